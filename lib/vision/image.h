@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Pictures as the stages see them: a view (borrowed, with stride) and an image (owned, sized once).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace cerberus::vision {
+
+struct Size {
+  int width = 0;
+  int height = 0;
+  bool operator==(const Size&) const = default;
+  long area() const { return static_cast<long>(width) * height; }
+};
+
+// A borrowed picture of `width` x `height` samples; `stride` is the distance between rows in samples
+// and may be larger than the width. Never owns, never checks: callers hand in what is mapped.
+template <typename T>
+struct View {
+  T* data = nullptr;
+  int width = 0;
+  int height = 0;
+  std::ptrdiff_t stride = 0;
+
+  T* row(int y) const { return data + y * stride; }
+  T& at(int x, int y) const { return row(y)[x]; }
+  Size size() const { return {width, height}; }
+  bool empty() const { return width <= 0 || height <= 0; }
+  operator View<const T>() const
+    requires(!std::is_const_v<T>)
+  {
+    return {data, width, height, stride};
+  }
+};
+
+using GrayView = View<const std::uint8_t>;
+using MutableGrayView = View<std::uint8_t>;
+
+// An owned picture. Rows start on 64-byte boundaries and every row is padded to a multiple of 64 bytes, so a
+// kernel may read whole vectors inside a row. `resize` to the present size does nothing: the steady state
+// allocates nothing.
+template <typename T>
+class Image {
+ public:
+  static constexpr std::size_t kAlign = 64;
+
+  Image() = default;
+  explicit Image(Size size) { resize(size); }
+
+  // Returns true when the memory is new (and zeroed).
+  bool resize(Size size) {
+    if (size == size_) return false;
+    constexpr std::size_t per = kAlign / sizeof(T);
+    stride_ = static_cast<std::ptrdiff_t>((static_cast<std::size_t>(size.width) + per - 1) / per * per);
+    size_ = size;
+    const std::size_t bytes = static_cast<std::size_t>(stride_) * size.height * sizeof(T);
+    data_.reset(bytes ? static_cast<T*>(::operator new(bytes, std::align_val_t{kAlign})) : nullptr);
+    fill_bytes(0);
+    return true;
+  }
+
+  void fill_bytes(int value) {
+    if (data_) std::memset(data_.get(), value, bytes());
+  }
+
+  std::size_t bytes() const { return static_cast<std::size_t>(stride_) * size_.height * sizeof(T); }
+  Size size() const { return size_; }
+  bool empty() const { return !data_; }
+  View<T> view() { return {data_.get(), size_.width, size_.height, stride_}; }
+  View<const T> view() const { return {data_.get(), size_.width, size_.height, stride_}; }
+  void swap(Image& other) noexcept {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+    std::swap(stride_, other.stride_);
+  }
+
+ private:
+  static_assert(std::is_trivially_copyable_v<T>);
+  struct Free {
+    void operator()(T* p) const { ::operator delete(p, std::align_val_t{kAlign}); }
+  };
+  std::unique_ptr<T, Free> data_;
+  Size size_;
+  std::ptrdiff_t stride_ = 0;
+};
+
+}  // namespace cerberus::vision

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From differences to the moving area: threshold, set algebra (paper Eq. 3, M(k-1), M(k)) and, in preset `default`,
+// a registered memory of the scene chosen by confidence.
+#pragma once
+
+#include <memory>
+
+#include "vision/fuzzy_threshold.h"
+#include "vision/image.h"
+#include "vision/transform.h"
+
+namespace cerberus::vision {
+
+enum class Area { leading, common, all };  // M(k), M(k-1), D(k)
+
+struct MovingAreaOptions {
+  FuzzyThresholdOptions threshold;
+  Area area = Area::all;
+  bool noise_floor = true;  // clamp Th to the measured noise
+  bool memory = true;       // use the registered memory
+};
+
+struct MovingAreaInput {
+  GrayView picture;            // F(k), analysis pixels
+  Transform motion;            // frame k-1 to k
+  double confidence = 1;       // of that motion
+  bool still = false;          // the camera stands
+  GrayView current, previous;  // D(k), D(k-1)
+  const Histogram* histogram = nullptr;
+  int frames = 0;  // DifferenceResult::frames
+  double gain = 1, offset = 0;
+};
+
+struct MovingAreaResult {
+  int threshold = 0;        // Th used
+  int fuzzy_threshold = 0;  // Th as fuzziness alone chose it
+  double sigma = 0;         // noise of the plain difference
+  bool ready = false;       // false until three frames of the scene were seen: the mask is empty
+};
+
+class MovingArea {
+ public:
+  MovingArea();
+  ~MovingArea();
+  MovingArea(MovingArea&&) noexcept;
+  MovingArea& operator=(MovingArea&&) noexcept;
+
+  void set_options(const MovingAreaOptions& options);
+  void reset();
+  // mask := 0 or 255 a pixel.
+  MovingAreaResult update(const MovingAreaInput& input, MutableGrayView mask);
+  std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cerberus::vision

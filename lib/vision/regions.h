@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From the moving area to regions of interest: clean-up, labelling, merging of one person's fragments, splitting of
+// two people side by side ("post treatment" of the paper).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "vision/image.h"
+#include "vision/transform.h"
+
+namespace cerberus::vision {
+
+struct Box {
+  double x = 0, y = 0, width = 0, height = 0;  // top left corner and extent, pixels
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+  double area() const { return width * height; }
+};
+double intersection_over_union(const Box& a, const Box& b);
+
+struct RegionOptions {
+  int closing = 11;           // side of the closing, analysis pixels at 320 wide; scaled with the picture
+  bool people = true;         // merge and split by the learnt height of a person; off: plain components
+  double minimum_area = 0;    // analysis pixels; 0: chosen from the picture's size
+};
+
+struct Region {
+  Box box;              // analysis pixels
+  double area = 0;      // moving pixels inside
+  Point centroid;       // of the moving pixels
+  double confidence = 0;  // 0..1
+  int label = 0;        // value in the label picture (several regions may share one after a split)
+};
+
+class RegionFinder {
+ public:
+  RegionFinder();
+  ~RegionFinder();
+  RegionFinder(RegionFinder&&) noexcept;
+  RegionFinder& operator=(RegionFinder&&) noexcept;
+
+  void set_options(const RegionOptions& options);
+  // Forget what was learnt of the scene (heights); a cut does that.
+  void reset();
+  // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background.
+  // motion: frame k-1 to k, so that what was learnt moves with the camera. The span lives until the next call.
+  std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
+  std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cerberus::vision
