@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the chain costs, beside its peers on the same frames in the same run. Single-threaded everywhere:
+// figures are CPU time of the one streaming thread (or of the calling thread), medians of five runs; quote
+// the ratios.
+#include <gst/app/gstappsrc.h>
+#include <gst/gst.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <functional>
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
+#include <opencv2/video/background_segm.hpp>
+
+#include "frames.h"
+#include "support/allocations.h"
+#include "support/chain.h"
+
+using namespace cerberus;
+using namespace cerberus::bench;
+
+namespace {
+
+constexpr int kRuns = 5;
+
+struct Cost {
+  double milliseconds = 0;
+  double lowest = 0, highest = 0;
+  bool measured = false;
+};
+
+Cost summarise(std::vector<double> runs) {
+  const auto [low, high] = std::minmax_element(runs.begin(), runs.end());
+  return {1e3 * median(runs), 1e3 * *low, 1e3 * *high, true};
+}
+
+// Thread CPU time of the streaming thread between the first buffer and the end of the stream.
+struct StreamClock {
+  double begin = -1, last = 0;
+  std::size_t seen = 0;
+};
+
+GstPadProbeReturn on_source_item(GstPad*, GstPadProbeInfo* info, gpointer data) {
+  auto* clock = static_cast<StreamClock*>(data);
+  if (GST_PAD_PROBE_INFO_TYPE(info) & GST_PAD_PROBE_TYPE_BUFFER) {
+    if (clock->begin < 0) clock->begin = thread_seconds();
+    clock->last = thread_seconds();
+    ++clock->seen;
+  }
+  return GST_PAD_PROBE_OK;
+}
+
+// Seconds a frame of one run of `elements` over `count` frames pushed from memory; negative when it does not
+// run.
+double run_pipeline(const std::string& elements, const Frames& frames, std::size_t count) {
+  const std::string line = "appsrc name=in format=time block=true max-bytes=0 max-buffers=8 ! " + elements +
+                           " ! fakesink name=out sync=false";
+  GError* error = nullptr;
+  GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
+  if (error) {
+    std::fprintf(stderr, "bench: %s\n", error->message);
+    g_clear_error(&error);
+    if (pipeline) gst_object_unref(pipeline);
+    return -1;
+  }
+  GstElement* in = gst_bin_get_by_name(GST_BIN(pipeline), "in");
+  GstCaps* caps = gst_caps_from_string((frames.caps + ", framerate=(fraction)30/1").c_str());
+  g_object_set(in, "caps", caps, nullptr);
+  gst_caps_unref(caps);
+  StreamClock clock;
+  GstPad* pad = gst_element_get_static_pad(in, "src");
+  gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, on_source_item, &clock, nullptr);
+  gst_object_unref(pad);
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& frame = frames.data[frames.loop(n)];
+    GstBuffer* buffer =
+        gst_buffer_new_wrapped_full(GST_MEMORY_FLAG_READONLY, const_cast<std::uint8_t*>(frame.data()),
+                                    frame.size(), 0, frame.size(), nullptr, nullptr);
+    GST_BUFFER_PTS(buffer) = gst_util_uint64_scale(n, GST_SECOND, 30);
+    GST_BUFFER_DURATION(buffer) = GST_SECOND / 30;
+    if (gst_app_src_push_buffer(GST_APP_SRC(in), buffer) != GST_FLOW_OK) break;
+  }
+  gst_app_src_end_of_stream(GST_APP_SRC(in));
+  GstBus* bus = gst_element_get_bus(pipeline);
+  GstMessage* message = gst_bus_timed_pop_filtered(
+      bus, 120 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+  const bool finished = message && GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS && clock.seen == count;
+  if (message) gst_message_unref(message);
+  gst_object_unref(bus);
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(in);
+  gst_object_unref(pipeline);
+  return finished ? (clock.last - clock.begin) / static_cast<double>(count - 1) : -1;
+}
+
+Cost pipeline_cost(const std::string& elements, const Frames& frames, std::size_t count) {
+  std::vector<double> runs;
+  for (int run = 0; run < kRuns; ++run) {
+    const double seconds = run_pipeline(elements, frames, count);
+    if (seconds < 0) return {};
+    runs.push_back(seconds);
+  }
+  return summarise(runs);
+}
+
+Cost loop_cost(const Frames& frames, std::size_t count, const std::function<void(const cv::Mat&)>& work) {
+  std::vector<double> runs;
+  for (int run = 0; run < kRuns; ++run) {
+    const double begin = thread_seconds();
+    for (std::size_t n = 0; n < count; ++n) {
+      auto& frame = frames.data[frames.loop(n)];
+      work(cv::Mat(frames.height, frames.width, CV_8UC1, const_cast<std::uint8_t*>(frame.data())));
+    }
+    runs.push_back((thread_seconds() - begin) / static_cast<double>(count));
+  }
+  return summarise(runs);
+}
+
+void print(const char* name, const Cost& cost, const Cost& unit) {
+  if (!cost.measured) {
+    std::printf("  %-58s %s\n", name, "not there");
+    return;
+  }
+  std::printf("  %-58s %8.3f ms  (%.3f .. %.3f)", name, cost.milliseconds, cost.lowest, cost.highest);
+  if (unit.measured) std::printf("   %6.2f", cost.milliseconds / unit.milliseconds);
+  std::printf("\n");
+}
+
+bool has(const char* element) {
+  GstElementFactory* factory = gst_element_factory_find(element);
+  if (factory) gst_object_unref(factory);
+  return factory != nullptr;
+}
+
+void stages(const Frames& frames, const char* what) {
+  tests::Chain chain;
+  const std::size_t count = 600;
+  std::printf("\nStages, %s (%dx%d), ns an analysis pixel and allocations a frame (after 50 frames)\n", what,
+              frames.width, frames.height);
+  std::array<double, tests::Chain::kStages> spent{};
+  std::array<std::size_t, tests::Chain::kStages> allocated{};
+  for (std::size_t n = 0; n < count; ++n) {
+    const auto& frame = frames.data[frames.loop(n)];
+    chain.begin({frame.data(), frames.width, frames.height, frames.width, 1, false, 0, 0, 0}, 1.0 / 30);
+    for (std::size_t s = 0; s < tests::Chain::kStages; ++s) {
+      const std::size_t before = tests::allocations();
+      const double begin = thread_seconds();
+      chain.run_stage(s);
+      if (n < 50) continue;
+      spent[s] += thread_seconds() - begin;
+      allocated[s] += tests::allocations() - before;
+    }
+  }
+  const double pixels = static_cast<double>(chain.analysis_size().area());
+  double total = 0;
+  for (std::size_t s = 0; s < tests::Chain::kStages; ++s) {
+    const double seconds = spent[s] / static_cast<double>(count - 50);
+    total += seconds;
+    std::printf("  %-58s %8.2f ns  %8.3f ms  %5.1f allocations\n", tests::Chain::stage_name(s),
+                1e9 * seconds / pixels, 1e3 * seconds,
+                static_cast<double>(allocated[s]) / static_cast<double>(count - 50));
+  }
+  std::printf("  %-58s %8.2f ns  %8.3f ms  %5.1f bytes held an analysis pixel\n", "all", 1e9 * total / pixels,
+              1e3 * total, static_cast<double>(chain.bytes()) / pixels);
+}
+
+void against_opencv(const Frames& frames, const char* what) {
+  const std::size_t count = 300;
+  std::printf("\n%s, %dx%d grey, cost a frame (last column: ratio to MOG2)\n", what, frames.width,
+              frames.height);
+  auto mog2 = cv::createBackgroundSubtractorMOG2();
+  auto knn = cv::createBackgroundSubtractorKNN();
+  cv::Mat mask;
+  const Cost unit = loop_cost(frames, count, [&](const cv::Mat& f) { mog2->apply(f, mask); });
+  print("OpenCV MOG2", unit, unit);
+  print("OpenCV KNN", loop_cost(frames, count, [&](const cv::Mat& f) { knn->apply(f, mask); }), unit);
+  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit);
+  print("motiondetect preset=paper", pipeline_cost("motiondetect preset=paper", frames, count), unit);
+  print("no element at all", pipeline_cost("identity", frames, count), unit);
+}
+
+void against_gstreamer(const Frames& frames) {
+  const std::size_t count = frames.width > 1000 ? 120 : 240;
+  std::printf(
+      "\nThrough GStreamer, %dx%d I420, cost a frame (last column: ratio to videoconvert ! motioncells)\n",
+      frames.width, frames.height);
+  const Cost unit =
+      has("motioncells") ? pipeline_cost("videoconvert n-threads=1 ! motioncells", frames, count) : Cost{};
+  print("videoconvert ! motioncells", unit, unit);
+  if (has("segmentation"))
+    print("videoconvert ! segmentation method=mog2",
+          pipeline_cost("videoconvert n-threads=1 ! segmentation method=mog2", frames, count), unit);
+  else
+    std::printf("  segmentation is not there (package gstreamer1.0-opencv)\n");
+  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit);
+  print("cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack",
+        pipeline_cost("cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack", frames,
+                      count),
+        unit);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  cv::setNumThreads(1);
+  const auto source = vtest_source();
+  if (!source) {
+    std::printf("bench: no vtest.avi (Debian package opencv-doc, or ../shared/data): skipped\n");
+    return 77;
+  }
+  const auto grey = load_frames(*source, "GRAY8", 320, 240, 90);
+  if (!grey) return 1;
+  stages(*grey, "still camera (vtest.avi)");
+  against_opencv(*grey, "Still camera (vtest.avi)");
+  if (const auto data = data_folder()) {
+    const std::string frames = (*data / "davis_tennis" / "frames" / "%05d.jpg").string();
+    const auto tennis =
+        load_frames("multifilesrc location=" + frames +
+                        " start-index=0 stop-index=69 caps=image/jpeg,framerate=24/1 ! jpegdec",
+                    "GRAY8", 320, 240, 70);
+    if (tennis) {
+      stages(*tennis, "moving camera (tennis)");
+      against_opencv(*tennis, "Moving camera (tennis)");
+    }
+  } else {
+    std::printf("\n../shared/data is not there: the moving camera is left out\n");
+  }
+  for (const auto& [width, height, count] : {std::array{320, 240, 90}, {768, 576, 60}, {1920, 1080, 40}})
+    if (const auto frames = load_frames(*source, "I420", width, height, count)) against_gstreamer(*frames);
+  return 0;
+}

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "frames.h"
+
+#include <gst/app/gstappsink.h>
+#include <gst/video/video.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+
+namespace cerberus::bench {
+
+std::size_t Frames::loop(std::size_t n) const {
+  const std::size_t last = data.size() - 1;
+  if (last == 0) return 0;
+  const std::size_t i = n % (2 * last);
+  return i <= last ? i : 2 * last - i;
+}
+
+std::optional<Frames> load_frames(const std::string& source, const char* format, int width, int height,
+                                  int count) {
+  std::string line = source + " ! videoconvert ! videoscale ! video/x-raw,format=" + format;
+  if (width > 0) line += ",width=" + std::to_string(width) + ",height=" + std::to_string(height);
+  line += ",pixel-aspect-ratio=1/1 ! appsink name=out sync=false max-buffers=4";
+  GError* error = nullptr;
+  GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
+  if (error) {
+    std::fprintf(stderr, "bench: %s\n", error->message);
+    g_clear_error(&error);
+    if (pipeline) gst_object_unref(pipeline);
+    return std::nullopt;
+  }
+  GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  Frames frames;
+  while (static_cast<int>(frames.data.size()) < count) {
+    GstSample* sample = gst_app_sink_pull_sample(GST_APP_SINK(out));
+    if (!sample) break;
+    if (frames.data.empty()) {
+      GstCaps* caps = gst_caps_copy(gst_sample_get_caps(sample));
+      GstStructure* s = gst_caps_get_structure(caps, 0);
+      gst_structure_get_int(s, "width", &frames.width);
+      gst_structure_get_int(s, "height", &frames.height);
+      gst_structure_remove_field(s, "framerate");
+      gchar* text = gst_caps_to_string(caps);
+      frames.caps = text;
+      g_free(text);
+      gst_caps_unref(caps);
+    }
+    GstMapInfo map;
+    GstBuffer* buffer = gst_sample_get_buffer(sample);
+    if (gst_buffer_map(buffer, &map, GST_MAP_READ)) {
+      frames.data.emplace_back(map.data, map.data + map.size);
+      gst_buffer_unmap(buffer, &map);
+    }
+    gst_sample_unref(sample);
+  }
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+  gst_object_unref(out);
+  gst_object_unref(pipeline);
+  if (frames.data.empty()) {
+    std::fprintf(stderr, "bench: no frame from: %s\n", line.c_str());
+    return std::nullopt;
+  }
+  return frames;
+}
+
+std::optional<std::filesystem::path> data_folder() {
+  if (const char* named = std::getenv("CERBERUS_DATA")) {
+    if (std::filesystem::is_directory(named)) return std::filesystem::path(named);
+    std::fprintf(stderr, "bench: CERBERUS_DATA=%s is no folder\n", named);
+    return std::nullopt;
+  }
+  const std::filesystem::path beside = std::filesystem::path(CERBERUS_SOURCE_ROOT) / ".." / "shared" / "data";
+  if (std::filesystem::is_directory(beside)) return std::filesystem::canonical(beside);
+  return std::nullopt;
+}
+
+std::optional<std::string> vtest_source() {
+  std::vector<std::filesystem::path> places;
+  if (const auto data = data_folder()) places.push_back(*data / "pets09_s2l1_view1" / "vtest.avi");
+  places.emplace_back("/usr/share/doc/opencv-doc/examples/data/vtest.avi");
+  for (const auto& place : places)
+    if (std::filesystem::exists(place)) return "filesrc location=" + place.string() + " ! decodebin";
+  return std::nullopt;
+}
+
+double thread_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+}  // namespace cerberus::bench

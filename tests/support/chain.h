@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The whole vision chain without GStreamer, stage by stage, with the elements' defaults: for tests and
+// benches of lib.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "vision/camera_motion.h"
+#include "vision/luma.h"
+#include "vision/moving_area.h"
+#include "vision/regions.h"
+#include "vision/three_frame_difference.h"
+#include "vision/tracks.h"
+
+namespace cerberus::tests {
+
+class Chain {
+ public:
+  static constexpr std::size_t kStages = 6;
+  static const char* stage_name(std::size_t stage);
+
+  // A frame of `seconds` after the one before; then run_stage(0) ... run_stage(kStages - 1), or step() for
+  // all.
+  void begin(const vision::LumaSource& frame, double seconds);
+  void run_stage(std::size_t stage);
+  void step(const vision::LumaSource& frame, double seconds);
+
+  vision::Size analysis_size() const { return luma_.size(); }
+  vision::GrayView mask() const { return mask_.view(); }
+  const vision::CameraMotionResult& motion() const { return motion_result_; }
+  const vision::MovingAreaResult& area() const { return area_result_; }
+  std::span<const vision::Track> tracks() const { return tracks_; }
+  // Bytes that all stages hold, planes included.
+  std::size_t bytes() const;
+
+ private:
+  vision::LumaSource frame_;
+  double seconds_ = 0;
+  vision::LumaScaler scaler_;
+  vision::CameraMotion motion_;
+  vision::ThreeFrameDifference difference_;
+  vision::MovingArea area_;
+  vision::RegionFinder regions_;
+  vision::Tracker tracker_;
+  vision::Image<std::uint8_t> luma_, current_, previous_, mask_;
+  vision::Image<std::uint16_t> labels_;
+  vision::Histogram histogram_{};
+  vision::CameraMotionResult motion_result_;
+  vision::DifferenceResult difference_result_;
+  vision::MovingAreaResult area_result_;
+  std::vector<vision::Region> scaled_;
+  std::span<const vision::Region> found_;
+  std::span<const vision::Track> tracks_;
+};
+
+}  // namespace cerberus::tests
