@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One line of JSON, written in order into one string that is used again: no tree, no locale, no allocation
+// once warm.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace cerberus {
+
+class JsonLine {
+ public:
+  void clear() {
+    text_.clear();
+    comma_ = false;
+  }
+  // A complete line, newline included.
+  std::string_view finish() {
+    text_ += '\n';
+    return text_;
+  }
+
+  JsonLine& open(char bracket) {
+    separate();
+    text_ += bracket;
+    comma_ = false;
+    return *this;
+  }
+  JsonLine& close(char bracket) {
+    text_ += bracket;
+    comma_ = true;
+    return *this;
+  }
+  // Keys are literals of ours: they need no escapes.
+  JsonLine& key(std::string_view name) {
+    separate();
+    text_ += '"';
+    text_ += name;
+    text_ += "\":";
+    comma_ = false;
+    return *this;
+  }
+
+  JsonLine& null() { return raw("null"); }
+  JsonLine& integer(std::integral auto value) {
+    char digits[24];
+    return raw({digits, std::to_chars(digits, digits + sizeof digits, value).ptr});
+  }
+  // Rounded to `decimals` places, then the shortest form that reads back as that number. NaN, infinity: null.
+  JsonLine& fixed(double value, int decimals) {
+    if (!std::isfinite(value)) return null();
+    const double unit = std::pow(10.0, decimals);
+    if (std::abs(value) < 1e15) value = std::round(value * unit) / unit;
+    return shortest(value);
+  }
+  // Up to `digits` significant digits. NaN, infinity: null.
+  JsonLine& significant(double value, int digits) {
+    if (!std::isfinite(value)) return null();
+    char text[40];
+    value += 0.0;  // no "-0"
+    return raw(
+        {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr});
+  }
+  JsonLine& string(std::string_view value);
+
+ private:
+  void separate() {
+    if (comma_) text_ += ',';
+  }
+  JsonLine& raw(std::string_view token) {
+    separate();
+    text_ += token;
+    comma_ = true;
+    return *this;
+  }
+  JsonLine& shortest(double value) {
+    char text[40];
+    value += 0.0;
+    return raw({text, std::to_chars(text, text + sizeof text, value).ptr});
+  }
+
+  std::string text_;
+  bool comma_ = false;  // a separator is due before the next token
+};
+
+// Quotes, backslashes and control characters escaped (RFC 8259, section 7); other bytes as they are.
+inline JsonLine& JsonLine::string(std::string_view value) {
+  static constexpr char kHex[] = "0123456789abcdef";
+  separate();
+  text_ += '"';
+  for (const char c : value) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      text_ += '\\';
+      text_ += c;
+    } else if (byte < 0x20) {
+      text_ += "\\u00";
+      text_ += kHex[byte >> 4];
+      text_ += kHex[byte & 15];
+    } else {
+      text_ += c;
+    }
+  }
+  text_ += '"';
+  comma_ = true;
+  return *this;
+}
+
+}  // namespace cerberus
