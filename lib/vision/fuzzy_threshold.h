@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The threshold by indices of fuzziness (paper Eq. 4-10; Tobias and Seara, IEEE Trans. Image Processing 11(12), 2002).
+// The threshold by indices of fuzziness (paper Eq. 4-10; Tobias and Seara, IEEE Trans. Image Processing
+// 11(12), 2002).
 #pragma once
 
 #include <array>
@@ -9,18 +10,19 @@
 
 namespace cerberus::vision {
 
-enum class Weighting { linear, log };     // g = h | ln(1 + h)
-enum class Extremes { subset, image };    // width of the S-function from the subset's or the whole image's ends
+enum class Weighting { linear, log };   // g = h | ln(1 + h)
+enum class Extremes { subset, image };  // width of the S-function from the subset's or the whole image's ends
 
 struct FuzzyThresholdOptions {
   Weighting weighting = Weighting::log;
   Extremes extremes = Extremes::image;
-  int order = 1;                 // k of Eq. 8 and 9
-  double seed_share = 0.3964;    // P1
-  bool clip = true;              // drop the few highest levels (log weighting only)
+  int order = 1;               // k of Eq. 8 and 9
+  double seed_share = 0.3964;  // P1
+  bool clip = true;            // drop the few highest levels (log weighting only)
 };
 
-// Everything the choice rests on, for the picture `stage=histogram` (the paper's figures 2 and 3) and for tests.
+// Everything the choice rests on, for the picture `stage=histogram` (the paper's figures 2 and 3) and for
+// tests.
 struct FuzzyThresholdCurves {
   int lowest = 0, highest = 0, middle = 0;  // x0, x1, m
   int seed_low = 0, seed_high = 0;          // j, r

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Masks with one bit a pixel: 64 pixels a machine word, so that set algebra, morphology and flood filling of
+// a whole picture cost a few microseconds in plain portable code.
+#pragma once
+
+#include <cstdint>
+
+#include "vision/image.h"
+
+namespace cerberus::vision {
+
+// Pixel x of a row is bit x % 64 of word x / 64. Bits beyond the width are 0 after every function of this
+// header and of morphology.h (they read as "outside the picture").
+using BitMask = Image<std::uint64_t>;
+using BitView = View<const std::uint64_t>;  // width counts words
+using MutableBitView = View<std::uint64_t>;
+
+// The size, in words, of the mask of a picture.
+inline Size bit_mask_size(Size picture) {
+  return {(picture.width + 63) / 64, picture.height};
+}
+// The bits of the last word of a row that are pixels.
+inline std::uint64_t last_word_bits(int width) {
+  return width % 64 ? (std::uint64_t{1} << (width % 64)) - 1 : ~std::uint64_t{0};
+}
+
+// d = 1 where the difference is above the threshold (paper Eq. 3): bits := picture > threshold (0..255).
+void binarise(GrayView picture, int threshold, MutableBitView bits);
+// Bits := picture != 0, and back: 255 where the bit is set, else 0.
+void pack(GrayView mask, MutableBitView bits);
+void unpack(BitView bits, MutableGrayView mask);
+
+// Set algebra, all views of one size; the result may be one of the operands. M(k-1) = D(k) n D(k-1) is
+// `intersect`, M(k) = D(k) - M(k-1) is `subtract` (the paper's words have it the other way round; its formula
+// is meant).
+void intersect(BitView a, BitView b, MutableBitView out);
+void unite(BitView a, BitView b, MutableBitView out);
+void subtract(BitView a, BitView b, MutableBitView out);
+
+// Number of set pixels.
+long count(BitView bits);
+
+}  // namespace cerberus::vision

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/morphology.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+
+namespace cerberus::vision {
+
+namespace {
+
+using Word = std::uint64_t;
+
+void copy(BitView from, MutableBitView to) {
+  for (int y = 0; y < to.height; ++y)
+    std::memcpy(to.row(y), from.row(y), static_cast<std::size_t>(to.width) * sizeof(Word));
+}
+
+// out := row moved by n pixels towards higher (n > 0) or lower x; zeros follow.
+void shift_row(const Word* row, int words, int n, Word* out) {
+  const int whole = (n < 0 ? -n : n) / 64, part = (n < 0 ? -n : n) % 64;
+  for (int i = 0; i < words; ++i) {
+    Word value = 0;
+    if (n >= 0) {
+      const int from = i - whole;
+      if (from >= 0) value = row[from] << part;
+      if (part && from >= 1) value |= row[from - 1] >> (64 - part);
+    } else {
+      const int from = i + whole;
+      if (from < words) value = row[from] >> part;
+      if (part && from + 1 < words) value |= row[from + 1] << (64 - part);
+    }
+    out[i] = value;
+  }
+}
+
+// One row united with itself moved by -radius .. +radius: the reach doubles with every step.
+void spread_row(Word* row, Word* scratch, int words, int radius, Word last) {
+  for (int direction : {1, -1}) {
+    int reach = 0;
+    while (reach < radius) {
+      const int step = std::min(reach + 1, radius - reach);
+      shift_row(row, words, direction * step, scratch);
+      for (int i = 0; i < words; ++i) row[i] |= scratch[i];
+      reach += step;
+    }
+  }
+  row[words - 1] &= last;
+}
+
+// Rows united with their neighbours up to `radius` rows away, again by doubling: first upwards, then
+// downwards, in an order in which every row read is still the one of the step before.
+void spread_columns(MutableBitView bits, int radius) {
+  int reach = 0;
+  while (reach < radius) {
+    const int step = std::min(reach + 1, radius - reach);
+    for (int y = 0; y + step < bits.height; ++y)
+      for (int i = 0; i < bits.width; ++i) bits.row(y)[i] |= bits.row(y + step)[i];
+    reach += step;
+  }
+  reach = 0;
+  while (reach < radius) {
+    const int step = std::min(reach + 1, radius - reach);
+    for (int y = bits.height - 1; y >= step; --y)
+      for (int i = 0; i < bits.width; ++i) bits.row(y)[i] |= bits.row(y - step)[i];
+    reach += step;
+  }
+}
+
+void invert(MutableBitView bits, int width) {
+  const Word last = last_word_bits(width);
+  for (int y = 0; y < bits.height; ++y) {
+    for (int i = 0; i < bits.width; ++i) bits.row(y)[i] = ~bits.row(y)[i];
+    bits.row(y)[bits.width - 1] &= last;
+  }
+}
+
+// Every run of `within` that holds a seed becomes seeded: adding the seed to the run carries a 1 through its
+// rest, and the changed bits are the run from the seed upwards. The mirrored direction is done by shifting.
+// Returns whether the row grew.
+bool fill_runs(Word* seeds, const Word* within, int words) {
+  bool grew = false;
+  Word carry = 0;  // a run seeded in the word below goes on
+  for (int i = 0; i < words; ++i) {
+    const Word mask = within[i];
+    Word seed = (seeds[i] | carry) & mask;
+    const Word sum = mask + seed;
+    Word filled = (seed | (mask & (sum ^ mask))) & mask;
+    // Towards lower x inside the word, by doubling.
+    Word room = mask;
+    for (int step = 1; step < 64; step *= 2) {
+      filled |= room & (filled >> step);
+      room &= room >> step;
+    }
+    grew |= filled != seeds[i];
+    seeds[i] = filled;
+    carry = filled >> 63;
+  }
+  for (int i = words - 2; i >= 0; --i) {  // runs that reach down over a word's edge
+    Word filled = seeds[i];
+    if (!(seeds[i + 1] & 1) || !(within[i] >> 63) || (filled >> 63)) continue;
+    Word room = within[i];
+    filled |= Word{1} << 63;
+    for (int step = 1; step < 64; step *= 2) {
+      filled |= room & (filled >> step);
+      room &= room >> step;
+    }
+    grew |= filled != seeds[i];
+    seeds[i] = filled;
+  }
+  return grew;
+}
+
+// Seeds of a row := seeds | the neighbouring row's reach (8-connected when wide, else straight), inside
+// `within`.
+bool take_over(Word* row, const Word* neighbour, const Word* within, Word* scratch, int words, bool wide) {
+  Word any = 0;
+  for (int i = 0; i < words; ++i) {
+    Word reach = neighbour[i];
+    if (wide) {
+      reach |= neighbour[i] << 1 | neighbour[i] >> 1;
+      if (i > 0) reach |= neighbour[i - 1] >> 63;
+      if (i + 1 < words) reach |= neighbour[i + 1] << 63;
+    }
+    scratch[i] = reach & within[i] & ~row[i];
+    any |= scratch[i];
+  }
+  if (!any) return false;
+  for (int i = 0; i < words; ++i) row[i] |= scratch[i];
+  fill_runs(row, within, words);
+  return true;
+}
+
+// Sweeps down and up until nothing grows: a spiral needs many sweeps, ordinary shapes two or three.
+void grow(MutableBitView seeds, BitView within, Word* scratch, bool wide) {
+  for (int y = 0; y < seeds.height; ++y) fill_runs(seeds.row(y), within.row(y), seeds.width);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (int y = 1; y < seeds.height; ++y)
+      changed |= take_over(seeds.row(y), seeds.row(y - 1), within.row(y), scratch, seeds.width, wide);
+    for (int y = seeds.height - 2; y >= 0; --y)
+      changed |= take_over(seeds.row(y), seeds.row(y + 1), within.row(y), scratch, seeds.width, wide);
+  }
+}
+
+}  // namespace
+
+void Morphology::dilate(MutableBitView bits, int width, int side) {
+  const int radius = side / 2;
+  if (radius < 1 || bits.empty()) return;
+  a_.resize(bits.size());
+  const Word last = last_word_bits(width);
+  for (int y = 0; y < bits.height; ++y) spread_row(bits.row(y), a_.view().row(0), bits.width, radius, last);
+  spread_columns(bits, radius);
+}
+
+void Morphology::erode(MutableBitView bits, int width, int side) {
+  if (side / 2 < 1 || bits.empty()) return;
+  invert(bits, width);
+  dilate(bits, width, side);
+  invert(bits, width);
+}
+
+void Morphology::close(MutableBitView bits, int width, int side) {
+  dilate(bits, width, side);
+  erode(bits, width, side);
+}
+
+void Morphology::open(MutableBitView bits, int width, int side) {
+  erode(bits, width, side);
+  dilate(bits, width, side);
+}
+
+// Counts by bit-sliced addition: three bits of sum for each row's triple, then the column's.
+void Morphology::vote(MutableBitView bits, int width, int least) {
+  if (bits.empty()) return;
+  a_.resize(bits.size());
+  copy(bits, a_.view());
+  const Word last = last_word_bits(width);
+  const MutableBitView in = a_.view();
+  for (int y = 0; y < bits.height; ++y) {
+    for (int i = 0; i < bits.width; ++i) {
+      Word ones = 0, twos = 0, fours = 0, eights = 0;
+      const auto add = [&](Word value) {
+        Word carry = ones & value;
+        ones ^= value;
+        Word next = twos & carry;
+        twos ^= carry;
+        carry = fours & next;
+        fours ^= next;
+        eights |= carry;
+      };
+      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, bits.height - 1); ++v) {
+        const Word* row = in.row(v);
+        add(row[i]);
+        add(row[i] << 1 | (i > 0 ? row[i - 1] >> 63 : 0));
+        add(row[i] >> 1 | (i + 1 < bits.width ? row[i + 1] << 63 : 0));
+      }
+      Word keep = 0;
+      for (int n = std::max(least, 0); n <= 9; ++n) {
+        const auto is = [](Word slice, int bit) { return bit ? slice : ~slice; };
+        keep |= is(ones, n & 1) & is(twos, n >> 1 & 1) & is(fours, n >> 2 & 1) & is(eights, n >> 3 & 1);
+      }
+      bits.row(y)[i] = keep & in.row(y)[i];
+    }
+    bits.row(y)[bits.width - 1] &= last;
+  }
+}
+
+void Morphology::reconstruct(MutableBitView seeds, BitView within, int width) {
+  (void)width;
+  if (seeds.empty()) return;
+  a_.resize(seeds.size());
+  intersect(seeds, within, seeds);
+  grow(seeds, within, a_.view().row(0), true);
+}
+
+void Morphology::fill_holes(MutableBitView bits, int width) {
+  if (bits.empty()) return;
+  a_.resize(bits.size());
+  b_.resize(bits.size());
+  const MutableBitView outside = b_.view();
+  invert(bits, width);  // now: background
+  b_.fill_bytes(0);
+  const int right = width - 1;
+  for (int y = 0; y < bits.height; ++y) {
+    Word* row = outside.row(y);
+    if (y == 0 || y == bits.height - 1)
+      for (int i = 0; i < bits.width; ++i) row[i] = bits.row(y)[i];
+    row[0] |= bits.row(y)[0] & 1;
+    row[right / 64] |= bits.row(y)[right / 64] & (Word{1} << (right % 64));
+  }
+  grow(outside, bits, a_.view().row(0), false);
+  copy(outside, bits);
+  invert(bits, width);
+}
+
+void Morphology::close(MutableGrayView mask, int side) {
+  if (mask.empty()) return;
+  packed_.resize(bit_mask_size(mask.size()));
+  pack(mask, packed_.view());
+  close(packed_.view(), mask.width, side);
+  unpack(packed_.view(), mask);
+}
+
+void Morphology::open(MutableGrayView mask, int side) {
+  if (mask.empty()) return;
+  packed_.resize(bit_mask_size(mask.size()));
+  pack(mask, packed_.view());
+  open(packed_.view(), mask.width, side);
+  unpack(packed_.view(), mask);
+}
+
+namespace {
+
+void extreme_reference(GrayView mask, int side, MutableGrayView out, bool largest) {
+  const int radius = side / 2;
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x) {
+      bool found = false;
+      for (int v = std::max(y - radius, 0); v <= std::min(y + radius, mask.height - 1); ++v)
+        for (int u = std::max(x - radius, 0); u <= std::min(x + radius, mask.width - 1); ++u)
+          found |= (mask.at(u, v) != 0) == largest;
+      out.at(x, y) = found == largest ? 255 : 0;
+    }
+}
+
+}  // namespace
+
+void dilate_reference(GrayView mask, int side, MutableGrayView out) {
+  extreme_reference(mask, side, out, true);
+}
+void erode_reference(GrayView mask, int side, MutableGrayView out) {
+  extreme_reference(mask, side, out, false);
+}
+
+}  // namespace cerberus::vision
