@@ -1,0 +1,51 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+#include <gst/video/video.h>
+#include <cerberus/api.h>
+
+G_BEGIN_DECLS
+
+/**
+ * CERBERUS_VIDEO_FORMATS:
+ *
+ * Every video format that the elements read, as a list for a caps string: all 8-bit formats with a luma plane (or
+ * interleaved luma), read without any conversion, and the packed RGB family, from which luma is computed.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_VIDEO_FORMATS                                                              \
+  "{ GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, RGB, BGR, RGBx, BGRx, "   \
+  "xRGB, xBGR, RGBA, BGRA, ARGB, ABGR }"
+
+/**
+ * CERBERUS_VIDEO_CAPS:
+ *
+ * Caps string of raw video in %CERBERUS_VIDEO_FORMATS, any size and frame rate.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_VIDEO_CAPS GST_VIDEO_CAPS_MAKE (CERBERUS_VIDEO_FORMATS)
+
+/**
+ * CERBERUS_JSON_LINES_CAPS:
+ *
+ * Caps string of JSON lines: every buffer is one JSON object in UTF-8 that ends with a line feed.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_JSON_LINES_CAPS "application/x-json-lines"
+
+/**
+ * cerberus_video_format_is_supported:
+ * @format: a video format
+ *
+ * Returns: %TRUE if @format is one of %CERBERUS_VIDEO_FORMATS.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_video_format_is_supported (GstVideoFormat format);
+
+G_END_DECLS

@@ -1,0 +1,13 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* The one header to include: what Cerberus' elements attach to buffers, post and ask. */
+#pragma once
+
+#include <cerberus/api.h>
+#include <cerberus/camera-motion.h>
+#include <cerberus/caps.h>
+#include <cerberus/message.h>
+#include <cerberus/plane.h>
+#include <cerberus/query.h>
+#include <cerberus/region.h>
+#include <cerberus/threshold.h>
+#include <cerberus/version.h>

@@ -1,0 +1,205 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+#include <cerberus/api.h>
+
+G_BEGIN_DECLS
+
+/**
+ * CerberusRegionState:
+ * @CERBERUS_REGION_SEEN: measured in this frame
+ * @CERBERUS_REGION_COASTED: carried on by its velocity, nothing was measured in this frame
+ * @CERBERUS_REGION_STOPPED: it stopped moving and is held where it was
+ *
+ * How a region's place is known.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CERBERUS_REGION_SEEN,
+  CERBERUS_REGION_COASTED,
+  CERBERUS_REGION_STOPPED
+} CerberusRegionState;
+
+/**
+ * CerberusRegion:
+ * @id: identity of the track (from 1, stable over frames) if @tracked, else a number within the frame
+ * @tracked: @id, @vx, @vy, @age and @state come from a tracker
+ * @person: verified to be a person
+ * @x: left edge, frame pixels
+ * @y: top edge, frame pixels
+ * @width: frame pixels
+ * @height: frame pixels
+ * @confidence: 0 to 1
+ * @vx: speed to the right, frame pixels a second, the camera's motion taken out
+ * @vy: speed downwards, frame pixels a second, the camera's motion taken out
+ * @age: time since the object was first seen
+ * @state: how its place is known
+ * @bearing: direction of its centre, degrees, positive to the right of the camera's axis; NaN if unknown
+ * @distance: metres from the camera; NaN if unknown
+ *
+ * Something that moves. On a buffer it is a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person), which
+ * other elements and tools read too.
+ *
+ * Since: 0.1
+ */
+typedef struct _CerberusRegion CerberusRegion;
+struct _CerberusRegion {
+  guint id;
+  gboolean tracked;
+  gboolean person;
+  gdouble x;
+  gdouble y;
+  gdouble width;
+  gdouble height;
+  gdouble confidence;
+  gdouble vx;
+  gdouble vy;
+  GstClockTime age;
+  CerberusRegionState state;
+  gdouble bearing;
+  gdouble distance;
+
+  /*< private >*/
+  gpointer _cerberus_reserved[GST_PADDING];
+};
+
+#define CERBERUS_TYPE_REGION (cerberus_region_get_type ())
+#define CERBERUS_TYPE_REGION_STATE (cerberus_region_state_get_type ())
+
+CERBERUS_API
+GType cerberus_region_get_type (void) G_GNUC_CONST;
+
+CERBERUS_API
+GType cerberus_region_state_get_type (void) G_GNUC_CONST;
+
+/**
+ * cerberus_region_init: (skip)
+ * @region: (out caller-allocates): memory to fill
+ *
+ * Fills @region with the defaults of cerberus_region_new(), for structures on the stack.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_region_init (CerberusRegion *region);
+
+/**
+ * cerberus_region_new: (constructor)
+ *
+ * Makes an empty, untracked region: all zero, bearing and distance unknown.
+ *
+ * Returns: (transfer full): a new region; free with cerberus_region_free().
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusRegion *cerberus_region_new (void);
+
+/**
+ * cerberus_region_copy:
+ * @region: a region
+ *
+ * Returns: (transfer full) (nullable): a copy; %NULL only for a %NULL @region.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusRegion *cerberus_region_copy (const CerberusRegion *region);
+
+/**
+ * cerberus_region_free: (skip)
+ * @region: (transfer full) (nullable): a region
+ *
+ * Frees @region.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_region_free (CerberusRegion *region);
+
+/**
+ * cerberus_region_state_to_string:
+ * @state: a state
+ *
+ * Returns: (transfer none): `seen`, `coasted` or `stopped`.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+const gchar *cerberus_region_state_to_string (CerberusRegionState state);
+
+/**
+ * cerberus_region_to_structure:
+ * @region: a region
+ *
+ * Writes @region as a structure named `cerberus-object`, as it stands in messages. Numbers that are not finite are left
+ * out.
+ *
+ * Returns: (transfer full) (nullable): a new structure; %NULL only for a %NULL @region.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+GstStructure *cerberus_region_to_structure (const CerberusRegion *region);
+
+/**
+ * cerberus_region_from_structure:
+ * @structure: a structure
+ *
+ * Reads what cerberus_region_to_structure() wrote. Fields that are missing, or of another type, keep the defaults of
+ * cerberus_region_new().
+ *
+ * Returns: (transfer full) (nullable): a new region; %NULL if @structure is not a `cerberus-object`.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusRegion *cerberus_region_from_structure (const GstStructure *structure);
+
+/**
+ * cerberus_buffer_add_region:
+ * @buffer: a writable buffer
+ * @region: what to attach, copied
+ *
+ * Attaches @region as #GstVideoRegionOfInterestMeta with the params `detection` (confidence), `object_id` (id, only if
+ * tracked) and `cerberus-object` (everything), and where GStreamer has it (1.24) in a #GstAnalyticsRelationMeta too.
+ * The meta's whole pixels are the ones nearest to @region's edges, cut at the frame's left and top.
+ *
+ * Returns: %TRUE if attached; %FALSE if @buffer is not writable or the position is not finite.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_buffer_add_region (GstBuffer *buffer, const CerberusRegion *region);
+
+/**
+ * cerberus_buffer_get_regions:
+ * @buffer: a buffer
+ *
+ * Reads all regions, in the order in which they were attached. Where the picture was scaled since, positions and speeds
+ * follow it. Regions of interest that others attached are not returned.
+ *
+ * Returns: (transfer container) (element-type CerberusRegion): copies of the regions, possibly none; release with
+ *     g_ptr_array_unref(), which frees the regions too.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+GPtrArray *cerberus_buffer_get_regions (GstBuffer *buffer);
+
+/**
+ * cerberus_buffer_remove_regions:
+ * @buffer: a writable buffer
+ *
+ * Removes all regions that cerberus_buffer_add_region() attached; regions of interest of others stay.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_buffer_remove_regions (GstBuffer *buffer);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusRegion, cerberus_region_free)
+
+G_END_DECLS
