@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drawing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace cerberus::draw {
+
+namespace {
+
+constexpr std::array<Color, 8> kPalette = {{{1, 1, 1},
+                                            {0.902, 0.624, 0.000},    // orange
+                                            {0.337, 0.706, 0.914},    // sky blue
+                                            {0.000, 0.690, 0.510},    // bluish green, a little lighter
+                                            {0.941, 0.894, 0.259},    // yellow
+                                            {0.150, 0.520, 0.850},    // blue, lighter: on dark pictures
+                                            {0.900, 0.420, 0.100},    // vermilion
+                                            {0.860, 0.520, 0.700}}};  // reddish purple
+
+constexpr double kCasing = 0.6;  // opacity of the dark casing under lines
+
+double luminance(Color c) {
+  return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
+}
+
+void source(cairo_t* cr, Color c, double alpha = 1) {
+  cairo_set_source_rgba(cr, c.r, c.g, c.b, alpha);
+}
+
+// A patch of the frame, drawn by `draw` in the frame's coordinates; clipped to the frame.
+template <typename Draw>
+void add_patch(std::vector<Patch>& patches, Area frame, Area area, Draw draw) {
+  area = area.intersection(frame);
+  if (area.empty()) return;
+  SurfacePtr surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, area.width, area.height));
+  ContextPtr cr(cairo_create(surface.get()));
+  cairo_translate(cr.get(), -area.x, -area.y);
+  draw(cr.get());
+  if (cairo_status(cr.get()) != CAIRO_STATUS_SUCCESS) return;
+  cr.reset();
+  cairo_surface_flush(surface.get());
+  patches.push_back({area, std::move(surface)});
+}
+
+Area around(double left, double top, double right, double bottom, double margin) {
+  const int x = static_cast<int>(std::floor(left - margin)), y = static_cast<int>(std::floor(top - margin));
+  return {x, y, static_cast<int>(std::ceil(right + margin)) - x,
+          static_cast<int>(std::ceil(bottom + margin)) - y};
+}
+
+void rounded_rectangle(cairo_t* cr, double x, double y, double w, double h, double r) {
+  constexpr double kQuarter = std::numbers::pi / 2;
+  r = std::max(0.0, std::min({r, w / 2, h / 2}));
+  cairo_new_sub_path(cr);
+  cairo_arc(cr, x + w - r, y + r, r, -kQuarter, 0);
+  cairo_arc(cr, x + w - r, y + h - r, r, 0, kQuarter);
+  cairo_arc(cr, x + r, y + h - r, r, kQuarter, 2 * kQuarter);
+  cairo_arc(cr, x + r, y + r, r, 2 * kQuarter, 3 * kQuarter);
+  cairo_close_path(cr);
+}
+
+// The part of the object inside the frame: what strangers claim to lie far outside must not reach integers.
+std::optional<Object> clipped(Object object, Area frame) {
+  const double right = std::min<double>(object.x + object.width, frame.width),
+               bottom = std::min<double>(object.y + object.height, frame.height);
+  object.x = std::max(object.x, 0.0);
+  object.y = std::max(object.y, 0.0);
+  object.width = right - object.x;
+  object.height = bottom - object.y;
+  const bool sane =
+      std::isfinite(object.x) && std::isfinite(object.y) && object.width > 0 && object.height > 0;
+  return sane ? std::optional(object) : std::nullopt;
+}
+
+// Locale-independent, two significant digits at least.
+std::string number(double value) {
+  char text[32];
+  value = std::min(value, 99999.0);
+  const int decimals = value < 10 ? 1 : 0;
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
+}
+
+}  // namespace
+
+Color identity_color(std::uint32_t id) {
+  return id == 0 ? kPalette[0] : kPalette[1 + (id - 1) % 7];
+}
+
+void select_font(cairo_t* cairo, double size, bool bold) {
+  cairo_select_font_face(cairo, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cairo, size);
+}
+
+double text_width(cairo_t* cairo, const char* text) {
+  cairo_text_extents_t extents;
+  cairo_text_extents(cairo, text, &extents);
+  return extents.x_advance;
+}
+
+Area Area::intersection(const Area& other) const {
+  const int left = std::max(x, other.x), top = std::max(y, other.y);
+  return {left, top, std::min(x + width, other.x + other.width) - left,
+          std::min(y + height, other.y + other.height) - top};
+}
+
+double automatic_line_width(vision::Size frame) {
+  return 1.3 * std::pow(std::max(std::min(frame.width, frame.height), 60) / 240.0, 0.7);
+}
+
+void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
+  scene_ = &scene;
+  frame_ = {0, 0, scene.frame.width, scene.frame.height};
+  line_ = scene.line_width > 0 ? scene.line_width : automatic_line_width(scene.frame);
+  font_ = 9.5 * std::pow(std::max(std::min(frame_.width, frame_.height), 120) / 240.0, 0.6);
+  taken_.clear();
+  for (auto& entry : labels_) entry.second.used = false;
+  objects_.clear();
+  for (const Object& object : scene.objects)
+    if (const auto inside = clipped(object, frame_)) objects_.push_back(*inside);
+  for (const auto& trail : scene.trails) paint_trail(trail, patches);
+  if (scene.boxes)
+    for (const Object& object : objects_) paint_box(object, patches);
+  if (scene.ids)
+    for (const Object& object : objects_) paint_label(object, patches);
+  if (scene.crosshair) paint_crosshair(patches);
+  std::erase_if(labels_, [](const auto& entry) { return !entry.second.used; });
+  scene_ = nullptr;
+}
+
+// A line that thins out and fades with age, cut into patches of bounded size.
+void Painter::paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>& patches) {
+  const auto& points = trail.points;
+  if (points.size() < 2) return;
+  // The box's foot trembles by pixels from frame to frame: a short centred mean, ends kept.
+  constexpr std::ptrdiff_t kReach = 3;
+  smooth_.clear();
+  const auto n = static_cast<std::ptrdiff_t>(points.size());
+  for (std::ptrdiff_t i = 0; i < n; ++i) {
+    const std::ptrdiff_t reach = std::min({kReach, i, n - 1 - i});
+    vision::TrailPoint mean{{0, 0}, points[i].time};
+    for (std::ptrdiff_t j = i - reach; j <= i + reach; ++j) {
+      mean.position.x += points[j].position.x / (2.0 * reach + 1);
+      mean.position.y += points[j].position.y / (2.0 * reach + 1);
+    }
+    smooth_.push_back(mean);
+  }
+
+  const Color color = identity_color(trail.id);
+  const double most = std::max(64.0, 24 * line_);  // side of a patch, pixels
+  const double margin = 1.2 * line_ + 2;
+  std::size_t first = 0;
+  while (first + 1 < smooth_.size()) {
+    double left = smooth_[first].position.x, right = left, top = smooth_[first].position.y, bottom = top;
+    std::size_t last = first;
+    while (last + 1 < smooth_.size()) {
+      const vision::Point p = smooth_[last + 1].position;
+      const double l = std::min(left, p.x), r = std::max(right, p.x), t = std::min(top, p.y),
+                   b = std::max(bottom, p.y);
+      if (last > first && (r - l > most || b - t > most)) break;
+      left = l, right = r, top = t, bottom = b;
+      ++last;
+    }
+    add_patch(patches, frame_, around(left, top, right, bottom, margin), [&](cairo_t* cr) {
+      cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+      cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+      // Segments replace what they overlap, so that joints do not add up.
+      cairo_set_operator(cr, CAIRO_OPERATOR_SOURCE);
+      for (const bool casing : {true, false})
+        for (std::size_t i = first; i < last; ++i) {
+          const double age = (scene_->time - smooth_[i].time) / std::max(scene_->trail_time, 1e-3);
+          const double fresh = std::clamp(1 - age, 0.0, 1.0);
+          cairo_set_line_width(cr, line_ * (0.5 + 0.7 * fresh) + (casing ? std::max(1.0, 0.7 * line_) : 0));
+          source(cr, casing ? Color{} : color, (casing ? 0.45 : 0.95) * std::min(1.0, 1.4 * fresh));
+          cairo_move_to(cr, smooth_[i].position.x, smooth_[i].position.y);
+          cairo_line_to(cr, smooth_[i + 1].position.x, smooth_[i + 1].position.y);
+          cairo_stroke(cr);
+        }
+    });
+    first = last;
+  }
+}
+
+void Painter::paint_box(const Object& object, std::vector<Patch>& patches) {
+  const double radius = 2 * line_, casing = std::max(1.0, 0.6 * line_);
+  const double reach = line_ / 2 + casing + 1;
+  const Color color = identity_color(object.id);
+  const auto draw = [&](cairo_t* cr) {
+    rounded_rectangle(cr, object.x, object.y, object.width, object.height, radius);
+    const double dashes[] = {5 * line_, 4 * line_}, dots[] = {0.01, 2.6 * line_};
+    if (object.look == Look::coasted) cairo_set_dash(cr, dashes, 2, 0);
+    if (object.look == Look::stopped) {
+      cairo_set_dash(cr, dots, 2, 0);
+      cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+    }
+    cairo_set_line_width(cr, line_ + 2 * casing);
+    source(cr, {}, kCasing);
+    cairo_stroke_preserve(cr);
+    cairo_set_line_width(cr, object.look == Look::stopped ? 1.3 * line_ : line_);
+    source(cr, color, object.look == Look::coasted ? 0.85 : 1);
+    cairo_stroke(cr);
+  };
+  const double right = object.x + object.width, bottom = object.y + object.height;
+  const double rim = radius + reach;  // the corners lie in the upper and lower strip
+  if (object.width < 4 * rim || object.height < 4 * rim) {
+    add_patch(patches, frame_, around(object.x, object.y, right, bottom, reach), draw);
+    return;
+  }
+  // Only the rim: a tall person in 4K would otherwise be megabytes of transparency.
+  const Area all = around(object.x, object.y, right, bottom, reach);
+  const int thick = static_cast<int>(std::ceil(rim + reach));
+  add_patch(patches, frame_, {all.x, all.y, all.width, thick}, draw);
+  add_patch(patches, frame_, {all.x, all.y + thick, thick, all.height - 2 * thick}, draw);
+  add_patch(patches, frame_, {all.x + all.width - thick, all.y + thick, thick, all.height - 2 * thick}, draw);
+  add_patch(patches, frame_, {all.x, all.y + all.height - thick, all.width, thick}, draw);
+}
+
+// A pill in the object's colour: identity, then speed (and distance) where there is room, or two bars for
+// stopped.
+Painter::Label& Painter::label(const Object& object, double room) {
+  std::string id = object.id ? std::to_string(object.id) : std::string();
+  std::string more;
+  const bool bars = object.look == Look::stopped;
+  if (scene_->speeds && !bars && std::isfinite(object.speed)) more = number(object.speed) + " px/s";
+  if (std::isfinite(object.distance) && object.distance > 0)
+    more = (more.empty() ? "" : more + "  ") + number(object.distance) + " m";
+
+  static thread_local const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const ContextPtr measure(cairo_create(scratch.get()));
+  select_font(measure.get(), font_, true);
+  const double id_width = id.empty() ? 0 : text_width(measure.get(), id.c_str());
+  select_font(measure.get(), 0.85 * font_);
+  const double gap = 0.45 * font_, pad = 0.4 * font_, bar_width = 0.5 * font_;
+  double more_width = more.empty() ? 0 : text_width(measure.get(), more.c_str());
+  const auto total = [&] {
+    return 2 * pad + id_width + (bars ? (id.empty() ? 0 : gap) + bar_width : 0) +
+           (more_width > 0 ? (id.empty() && !bars ? 0 : gap) + more_width : 0);
+  };
+  if (total() > room) more.clear(), more_width = 0;
+  const double width = total(), height = 1.35 * font_;
+
+  std::string key = id + '|' + more + '|' + char('0' + static_cast<int>(object.look)) + std::to_string(font_);
+  Label& label = labels_[key];
+  label.used = true;
+  if (label.pixels || width <= 2 * pad) return label;
+
+  label.width = static_cast<int>(std::ceil(width)) + 2;
+  label.height = static_cast<int>(std::ceil(height)) + 2;
+  label.pixels.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, label.width, label.height));
+  const ContextPtr context(cairo_create(label.pixels.get()));
+  cairo_t* cr = context.get();
+  const Color color = identity_color(object.id);
+  const bool dark = luminance(color) > 0.45;
+  const Color ink = dark ? Color{0.05, 0.05, 0.05} : Color{1, 1, 1};
+  rounded_rectangle(cr, 0.5, 0.5, width + 1, height + 1, 0.35 * font_);
+  source(cr, {}, 0.55);
+  cairo_fill(cr);
+  rounded_rectangle(cr, 1, 1, width, height, 0.3 * font_);
+  source(cr, color, object.look == Look::coasted ? 0.8 : 0.95);
+  cairo_fill(cr);
+  double x = 1 + pad;
+  const double base = 1 + height / 2 + 0.36 * font_;
+  source(cr, ink);
+  if (!id.empty()) {
+    select_font(cr, font_, true);
+    cairo_move_to(cr, x, base);
+    cairo_show_text(cr, id.c_str());
+    x += id_width + gap;
+  }
+  if (bars) {
+    cairo_rectangle(cr, x, 1 + 0.25 * height, 0.16 * font_, 0.5 * height);
+    cairo_rectangle(cr, x + 0.32 * font_, 1 + 0.25 * height, 0.16 * font_, 0.5 * height);
+    cairo_fill(cr);
+    x += bar_width + gap;
+  }
+  if (!more.empty()) {
+    select_font(cr, 0.85 * font_);
+    cairo_move_to(cr, x, base - 0.03 * font_);
+    cairo_show_text(cr, more.c_str());
+  }
+  cairo_surface_flush(label.pixels.get());
+  return label;
+}
+
+void Painter::paint_label(const Object& object, std::vector<Patch>& patches) {
+  const Label& label = this->label(object, std::max(1.9 * object.width, 3.2 * font_));
+  if (!label.pixels) return;
+  // Above the box, below it, then inside its top: the first place in the frame that no other label has.
+  const int x = std::clamp(static_cast<int>(std::lround(object.x - line_ / 2 - 1)), 0,
+                           std::max(0, frame_.width - label.width));
+  const int gap = static_cast<int>(std::ceil(line_));
+  const int places[] = {static_cast<int>(std::lround(object.y)) - label.height - gap,
+                        static_cast<int>(std::lround(object.y + object.height)) + gap,
+                        static_cast<int>(std::lround(object.y)) + gap};
+  const auto is_free = [&](const Area& a) {
+    return a.y >= 0 && a.y + a.height <= frame_.height &&
+           std::none_of(taken_.begin(), taken_.end(),
+                        [&](const Area& t) { return !t.intersection(a).empty(); });
+  };
+  Area area{x, 0, label.width, label.height};
+  bool found = false;
+  for (const int y : places) {
+    area.y = y;
+    if ((found = is_free(area))) break;
+  }
+  if (!found) area.y = std::clamp(places[0], 0, std::max(0, frame_.height - label.height));
+  taken_.push_back(area);
+  if (!area.intersection(frame_).empty() && area.width <= frame_.width && area.height <= frame_.height)
+    patches.push_back({area, SurfacePtr(cairo_surface_reference(label.pixels.get()))});
+}
+
+void Painter::paint_crosshair(std::vector<Patch>& patches) {
+  const double cx = frame_.width / 2.0, cy = frame_.height / 2.0;
+  const double arm = 0.06 * std::min(frame_.width, frame_.height), hole = 0.3 * arm, reach = 1.5 * line_ + 2;
+  const auto draw = [&](cairo_t* cr) {
+    cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+    for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
+      cairo_move_to(cr, cx + dx * hole, cy + dy * hole);
+      cairo_line_to(cr, cx + dx * arm, cy + dy * arm);
+    }
+    cairo_set_line_width(cr, 2.2 * line_);
+    source(cr, {}, kCasing);
+    cairo_stroke_preserve(cr);
+    cairo_set_line_width(cr, line_);
+    source(cr, {1, 1, 1});
+    cairo_stroke(cr);
+    cairo_arc(cr, cx, cy, 0.6 * line_, 0, 2 * std::numbers::pi);
+    cairo_fill(cr);
+  };
+  add_patch(patches, frame_, around(cx - arm, cy - arm, cx + arm, cy + arm, reach), draw);
+}
+
+}  // namespace cerberus::draw
