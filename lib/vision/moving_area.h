@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From differences to the moving area: threshold, set algebra (paper Eq. 3, M(k-1), M(k)) and, in preset `default`,
-// a registered memory of the scene chosen by confidence.
+// From differences to the moving area: threshold, set algebra (paper Eq. 3, M(k-1), M(k)) and, in preset
+// `default`, a registered memory of the scene chosen by confidence.
 #pragma once
 
 #include <memory>
@@ -24,6 +24,7 @@ struct MovingAreaInput {
   GrayView picture;            // F(k), analysis pixels
   Transform motion;            // frame k-1 to k
   double confidence = 1;       // of that motion
+  double residual = 0;         // RMS distance of the patches that follow it, analysis pixels
   bool still = false;          // the camera stands
   GrayView current, previous;  // D(k), D(k-1)
   const Histogram* histogram = nullptr;

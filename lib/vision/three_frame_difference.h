@@ -14,8 +14,7 @@ namespace cerberus::vision {
 using Histogram = std::array<std::uint32_t, 256>;
 
 struct DifferenceOptions {
-  int blur = 3;       // side of the box blur before differencing: 1 (off) or 3
-  int tolerance = 0;  // 1: compare with the minimum and maximum of the 3x3 neighbourhood
+  int blur = 3;                  // side of the box blur before differencing: 1 (off) or 3
   bool compensate_light = true;  // take a global change of gain and offset out before differencing
 };
 
@@ -37,10 +36,10 @@ class ThreeFrameDifference {
 
   void set_options(const DifferenceOptions& options);
   void reset();
-  // picture: F(k). motion: frame k-1 to k, analysis pixels. current := D(k) = |F(k) - F(k-1)|, previous := D(k-1) =
-  // |F(k-1) - F(k-2)| (Eq. 2, whose printed elements are one index late), both in frame k's coordinates; pixels not
-  // valid in all three frames are 0 in both. histogram: of `current` over the valid pixels.
-  // Sizes of the three views must agree; a new size resets.
+  // picture: F(k). motion: frame k-1 to k, analysis pixels. current := D(k) = |F(k) - F(k-1)|, previous :=
+  // D(k-1) = |F(k-1) - F(k-2)| (Eq. 2, whose printed elements are one index late), both in frame k's
+  // coordinates; pixels not valid in all three frames are 0 in both. histogram: of `current` over the valid
+  // pixels. Sizes of the three views must agree; a new size resets.
   DifferenceResult update(GrayView picture, const Transform& motion, MutableGrayView current,
                           MutableGrayView previous, Histogram& histogram);
   std::size_t bytes() const;

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/light.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr int kBand = 8;  // rows; flicker at 100 Hz has a period of 70 rows and more
+constexpr int kColumnStep = 4, kRowStep = 2;
+constexpr int kBandReach = 16;  // grey levels a band may differ by
+
+RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
+  return spans.empty() ? RowSpan{0, width} : spans[static_cast<std::size_t>(y)];
+}
+
+// Interpolated median of counted levels (index 0 stands for `first`); levels are as wide as they are apart.
+template <typename Counts>
+double median(const Counts& counts, int total, int first) {
+  const double half = total / 2.0;
+  double below = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] && below + counts[i] >= half)
+      return first + static_cast<double>(i) - 0.5 + (half - below) / counts[i];
+    below += counts[i];
+  }
+  return 0;
+}
+
+}  // namespace
+
+void LightChange::clear() {
+  none_ = true;
+  gain_ = 1;
+  offset_ = 0;
+  agreement_ = 1;
+  std::fill(rows_.begin(), rows_.end(), RowLight{});
+}
+
+void LightChange::estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
+  rows_.resize(static_cast<std::size_t>(present.height));
+  clear();
+  if (present.empty()) return;
+  estimate_global(reference, present, spans);
+  estimate_bands(reference, present, spans);
+  none_ = std::ranges::all_of(rows_, [](const RowLight& r) { return r == RowLight{}; });
+}
+
+void LightChange::estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
+  for (auto& c : counts_) c.fill(0);
+  std::array<int, kClasses> number{};
+  std::array<std::int64_t, kClasses> sum{};
+  for (int y = 0; y < present.height; y += kRowStep) {
+    const RowSpan s = span_of(spans, y, present.width);
+    const std::uint8_t *a = reference.row(y), *b = present.row(y);
+    for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
+      const int k = a[x] >> 4;
+      ++counts_[k][std::clamp(b[x] - a[x], -kReach, kReach) + kReach];
+      ++number[k];
+      sum[k] += a[x];
+    }
+  }
+  int total = 0;
+  for (const int n : number) total += n;
+  if (total < 64) return;
+
+  struct Entry {
+    double a, e, weight;
+  };
+  std::array<Entry, kClasses> points;
+  int used = 0;
+  for (int k = 0; k < kClasses; ++k) {
+    if (number[k] * 100 < total) continue;
+    const double a = static_cast<double>(sum[k]) / number[k], e = median(counts_[k], number[k], -kReach);
+    if (a + e > 250 || a + e < 4 || a > 250) continue;  // clipped: says nothing about gain
+    points[used++] = {a, e, static_cast<double>(number[k])};
+  }
+  if (!used) return;
+  // e = offset + slope (a - mean), by least squares whose weights fall with the distance from the line
+  // (Cauchy, scale one grey level). With a narrow range of brightness only the offset can be told.
+  double slope = 0, offset = 0, mean = 0;
+  std::array<double, kClasses> w;
+  for (int i = 0; i < used; ++i) w[i] = points[i].weight;
+  for (int round = 0; round < 6; ++round) {
+    double sw = 0, sa = 0, se = 0, saa = 0, sae = 0;
+    for (int i = 0; i < used; ++i) sw += w[i], sa += w[i] * points[i].a, se += w[i] * points[i].e;
+    mean = sa / sw;
+    offset = se / sw;
+    for (int i = 0; i < used; ++i) {
+      const double da = points[i].a - mean;
+      saa += w[i] * da * da;
+      sae += w[i] * da * (points[i].e - offset);
+    }
+    slope = sae /
+            (saa + 100 * sw);  // as if the gain were known to be 1 to within the noise: a ridge of 10 levels
+    for (int i = 0; i < used; ++i) {
+      const double r = points[i].e - offset - slope * (points[i].a - mean);
+      w[i] = points[i].weight / (1 + r * r);
+    }
+  }
+  const double at_zero = offset - slope * mean;
+  int agree = 0;
+  for (int k = 0; k < kClasses; ++k) {
+    if (!number[k]) continue;
+    const double a = static_cast<double>(sum[k]) / number[k];
+    const int e = static_cast<int>(std::lround(std::clamp(a + at_zero + slope * a, 0.0, 255.0) - a));
+    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d) agree += counts_[k][d + kReach];
+  }
+  agreement_ = static_cast<double>(agree) / total;
+  // Below a third of a level anywhere between black and white nothing is gained.
+  if (std::max(std::abs(at_zero), std::abs(at_zero + 255 * slope)) < 0.35) return;
+  gain_ = std::clamp(1 + slope, 0.25, 4.0);
+  offset_ = at_zero;
+  const RowLight light{static_cast<std::int32_t>(std::lround(256 * gain_)),
+                       static_cast<std::int32_t>(std::lround(256 * offset_))};
+  std::fill(rows_.begin(), rows_.end(), light);
+}
+
+void LightChange::estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
+  const int bands = (present.height + kBand - 1) / kBand;
+  constexpr int kMaximumBands = 512;
+  if (bands < 4 || bands > kMaximumBands) return;
+  std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
+  double strongest = 0;
+  for (int band = 0; band < bands; ++band) {
+    std::array<std::uint16_t, 2 * kBandReach + 1> counts{};
+    int number = 0;
+    std::int64_t sum = 0;
+    for (int y = band * kBand; y < std::min((band + 1) * kBand, present.height); y += kRowStep) {
+      const RowSpan s = span_of(spans, y, present.width);
+      const std::uint8_t *a = reference.row(y), *b = present.row(y);
+      const RowLight light = rows_[y];
+      for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
+        const int now = std::clamp((a[x] * light.gain + light.offset + 128) >> 8, 0, 255);
+        ++counts[std::clamp(b[x] - now, -kBandReach, kBandReach) + kBandReach];
+        sum += now;
+        ++number;
+      }
+    }
+    const double bright = number ? std::max(static_cast<double>(sum) / number, 16.0) : 16.0;
+    excess[band] = number >= 32 ? median(counts, number, -kBandReach) / bright : 0;
+    strongest = std::max(strongest, std::abs(excess[band]) * bright);
+  }
+  if (strongest < 0.5) return;
+  for (int y = 0; y < present.height; ++y) {  // linear between the middles of bands
+    const double position = std::clamp((y + 0.5) / kBand - 0.5, 0.0, bands - 1.0);
+    const int low = static_cast<int>(position), high = std::min(low + 1, bands - 1);
+    const double k = 1 + excess[low] + (position - low) * (excess[high] - excess[low]);
+    rows_[y].gain = static_cast<std::int32_t>(std::lround(rows_[y].gain * k));
+    rows_[y].offset = static_cast<std::int32_t>(std::lround(rows_[y].offset * k));
+  }
+}
+
+void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out) {
+  // Saturating at the ends as a sensor does; a gain below 4 and an offset of a few hundred levels keep 32
+  // bits safe.
+  for (int x = 0; x < count; ++x) {
+    const std::int32_t value = (reference[x] * light.gain + light.offset + 128) >> 8;
+    out[x] = static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
+  }
+}
+
+}  // namespace cerberus::vision

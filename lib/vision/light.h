@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Light that changes between two pictures of the same scene: exposure and gain steps (global), mains flicker
+// seen through a rolling shutter (bands of rows). Robust against moving objects, so that it can be taken out
+// before pictures are compared.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "vision/image.h"
+#include "vision/warp.h"
+
+namespace cerberus::vision {
+
+// What a row of the reference has to become to be compared with the present: (value * gain + offset) / 256.
+struct RowLight {
+  std::int32_t gain = 256;
+  std::int32_t offset = 0;
+  bool operator==(const RowLight&) const = default;
+};
+
+class LightChange {
+ public:
+  // present ~ gain * reference + offset over the valid spans (empty: everywhere). gain and offset come from
+  // the median differences of 16 brightness classes, a line put robustly through them; what then remains in
+  // bands of 8 rows (median again) is a further gain of the band. Changes too small to tell from noise are
+  // not made.
+  void estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  void clear();
+
+  bool none() const { return none_; }
+  double gain() const { return gain_; }
+  double offset() const { return offset_; }  // grey levels
+  // Share of the sampled pixels that agree with the model to within a few levels: low when the picture as a
+  // whole cannot be explained by a change of light.
+  double agreement() const { return agreement_; }
+  RowLight row(int y) const { return y < static_cast<int>(rows_.size()) ? rows_[y] : RowLight{}; }
+  std::size_t bytes() const { return rows_.capacity() * sizeof(RowLight) + sizeof(counts_); }
+
+ private:
+  static constexpr int kClasses = 16, kReach = 127, kLevels = 2 * kReach + 1;
+  void estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  void estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+
+  bool none_ = true;
+  double gain_ = 1, offset_ = 0, agreement_ = 1;
+  std::vector<RowLight> rows_;
+  std::array<std::array<std::uint16_t, kLevels>, kClasses> counts_{};
+};
+
+// out := the row of the reference under the present light, clamped to 0..255.
+void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out);
+
+}  // namespace cerberus::vision
