@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
 
 namespace cerberus::vision {
 
@@ -65,7 +66,7 @@ class Image {
   }
 
   void fill_bytes(int value) {
-    if (data_) std::memset(data_.get(), value, bytes());
+    if (data_) std::memset(static_cast<void*>(data_.get()), value, bytes());
   }
 
   std::size_t bytes() const { return static_cast<std::size_t>(stride_) * size_.height * sizeof(T); }

@@ -29,7 +29,7 @@ struct RowSpan {
 class Warp {
  public:
   // motion: source (frame k-1) to target (frame k). False when the motion is not sane for this size: no pixel
-  // is valid and the methods only fill. Allocates only when the size grows.
+  // is valid and the methods only fill. Allocates only when the size changes.
   bool prepare(const Transform& motion, Size size);
 
   bool is_identity() const { return kind_ == Kind::identity; }
@@ -40,31 +40,36 @@ class Warp {
   long valid_pixels() const { return valid_; }
 
   // Bilinear with 1/128 pixel weights, rounded to nearest.
-  void bilinear(GrayView source, MutableGrayView target, std::uint8_t fill = 0) const;
-  void bilinear(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill = 0) const;
+  void bilinear(GrayView source, MutableGrayView target, std::uint8_t fill = 0);
+  void bilinear(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill = 0);
   // The nearest source pixel (ties to the right and down): for labels, ages, flags.
-  void nearest(GrayView source, MutableGrayView target, std::uint8_t fill = 0) const;
-  void nearest(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill = 0) const;
+  void nearest(GrayView source, MutableGrayView target, std::uint8_t fill = 0);
+  void nearest(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill = 0);
 
-  std::size_t bytes() const { return spans_.bytes() + rows_.bytes() + columns_.bytes(); }
+  std::size_t bytes() const { return spans_.bytes() + positions_.bytes(); }
 
  private:
   enum class Kind { nothing, identity, shift, affine, projective };
 
-  template <typename Row>
-  void for_each_row(Row&& row) const;
+  RowSpan shift_span(int y) const;
+  RowSpan affine_span(int y) const;
+  RowSpan projective_span(int y) const;
+  bool projective_position(int x, int y, std::int32_t& u, std::int32_t& v) const;
+  void find_positions(int y);
+  template <typename T, typename Sample>
+  void draw(View<const T> source, View<T> target, T fill, Sample&& sample);
 
   Kind kind_ = Kind::nothing;
   Size size_;
   int dx_ = 0, dy_ = 0;  // Kind::shift: source = target - (dx, dy)
-  Transform inverse_;    // target to source
+  Transform inverse_;    // target to source, third coordinate positive where it is valid
   long valid_ = 0;
-  Image<RowSpan> spans_;                 // 1 x height, see prepare()
-  Image<std::int32_t> rows_;             // affine: where each row starts in the source, 1/65536 pixel
-  mutable Image<std::int32_t> columns_;  // source positions of the row at hand, x then y
+  Image<RowSpan> spans_;           // height x 1
+  Image<std::int32_t> positions_;  // source positions of the row at hand, 1/128 pixel: row 0 x, row 1 y
 };
 
-// The same by definition, one pixel at a time with no fast path: what the tests hold Warp against.
+// The same by definition, one pixel at a time in floating point, no fast path: what the tests hold Warp
+// against.
 void warp_bilinear_reference(const Transform& motion, GrayView source, MutableGrayView target,
                              std::uint8_t fill);
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/warp_kernels.h"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "vision/warp_kernels.cpp"
+#include <hwy/foreach_target.h>
+//
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace cerberus::vision::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+// (p00 (128 - fx) + p01 fx) (128 - fy) + (p10 (128 - fx) + p11 fx) fy, rounded: at most 65535 * 2^14, below
+// 2^31.
+template <class D>
+HWY_INLINE hn::Vec<D> blend(D, hn::Vec<D> p00, hn::Vec<D> p01, hn::Vec<D> p10, hn::Vec<D> p11, hn::Vec<D> fx,
+                            hn::Vec<D> fy) {
+  const auto top = hn::Add(hn::ShiftLeft<7>(p00), hn::Mul(hn::Sub(p01, p00), fx));
+  const auto bottom = hn::Add(hn::ShiftLeft<7>(p10), hn::Mul(hn::Sub(p11, p10), fx));
+  const auto sum = hn::Add(hn::ShiftLeft<7>(top), hn::Mul(hn::Sub(bottom, top), fy));
+  return hn::ShiftRight<14>(hn::Add(sum, hn::Set(D(), 1 << 13)));
+}
+
+// A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly always
+// neighbours in the source: then whole vectors are read, otherwise one pixel at a time. No gather instruction
+// is needed.
+template <class D, typename T>
+HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, const std::int32_t* y,
+                              T* out) {
+  const hn::Rebind<T, D> dt;
+  constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
+  const auto right = hn::Set(d, source.width - 2), low = hn::Set(d, source.height - 2);
+  const auto px = hn::LoadU(d, x), py = hn::LoadU(d, y);
+  const auto ix = hn::Min(hn::ShiftRight<7>(px), right), iy = hn::Min(hn::ShiftRight<7>(py), low);
+  const auto fx = hn::Sub(px, hn::ShiftLeft<7>(ix)), fy = hn::Sub(py, hn::ShiftLeft<7>(iy));
+  const int x0 = hn::GetLane(ix), y0 = hn::GetLane(iy);
+  const bool neighbours = hn::AllTrue(d, hn::And(hn::Eq(ix, hn::Iota(d, x0)), hn::Eq(iy, hn::Set(d, y0))));
+  const auto load = [&](const T* p) { return hn::PromoteTo(d, hn::LoadU(dt, p)); };
+  if (neighbours) {
+    const T* p = &source.at(x0, y0);
+    const T* q = p + source.stride;
+    hn::StoreU(hn::DemoteTo(dt, blend(d, load(p), load(p + 1), load(q), load(q + 1), fx, fy)), dt, out);
+    return;
+  }
+  HWY_ALIGN std::int32_t xs[kLanes], ys[kLanes];
+  HWY_ALIGN T p00[kLanes], p01[kLanes], p10[kLanes], p11[kLanes];
+  hn::Store(ix, d, xs);
+  hn::Store(iy, d, ys);
+  for (int i = 0; i < static_cast<int>(hn::Lanes(d)); ++i) {
+    const T* p = &source.at(xs[i], ys[i]);
+    const T* q = p + source.stride;
+    p00[i] = p[0], p01[i] = p[1], p10[i] = q[0], p11[i] = q[1];
+  }
+  hn::StoreU(hn::DemoteTo(dt, blend(d, load(p00), load(p01), load(p10), load(p11), fx, fy)), dt, out);
+}
+
+template <typename T>
+HWY_INLINE void sample(View<const T> source, const std::int32_t* x, const std::int32_t* y, int count,
+                       T* out) {
+  const hn::CappedTag<std::int32_t, 16> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) sample_vector(d, source, x + i, y + i, out + i);
+  const hn::CappedTag<std::int32_t, 1> one;
+  for (; i < count; ++i) sample_vector(one, source, x + i, y + i, out + i);
+}
+
+void sample_bytes(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
+                  std::uint8_t* out) {
+  sample(source, x, y, count, out);
+}
+
+void sample_words(View<const std::uint16_t> source, const std::int32_t* x, const std::int32_t* y, int count,
+                  std::uint16_t* out) {
+  sample(source, x, y, count, out);
+}
+
+}  // namespace cerberus::vision::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace cerberus::vision {
+
+HWY_EXPORT(sample_bytes);
+HWY_EXPORT(sample_words);
+
+void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
+                     std::uint8_t* out) {
+  HWY_DYNAMIC_DISPATCH(sample_bytes)(source, x, y, count, out);
+}
+
+void sample_bilinear(View<const std::uint16_t> source, const std::int32_t* x, const std::int32_t* y,
+                     int count, std::uint16_t* out) {
+  HWY_DYNAMIC_DISPATCH(sample_words)(source, x, y, count, out);
+}
+
+}  // namespace cerberus::vision
+#endif
