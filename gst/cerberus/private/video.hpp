@@ -4,6 +4,8 @@
 
 #include <gst/video/video.h>
 
+#include <algorithm>
+
 #include "vision/luma.h"
 
 namespace cerberus {
@@ -15,8 +17,11 @@ class VideoFrame {
   VideoFrame(const GstVideoInfo& info, GstBuffer* buffer, GstMapFlags flags) {
     // NO_REF: the caller holds the buffer longer than we do, and a reference would make it unwritable
     // meanwhile.
+    const GstVideoMeta* meta = gst_buffer_get_video_meta(buffer);
+    if (meta && !describes(*meta, info)) return;
     mapped_ = gst_video_frame_map(
         &frame_, &info, buffer, static_cast<GstMapFlags>(int{flags} | int{GST_VIDEO_FRAME_MAP_FLAG_NO_REF}));
+    if (mapped_ && !fits()) unmap();
   }
   ~VideoFrame() { unmap(); }
   VideoFrame(const VideoFrame&) = delete;
@@ -31,6 +36,29 @@ class VideoFrame {
   }
 
  private:
+  // gst_video_frame_map() answers a video meta of another format or size with a critical, which ends programs
+  // that make criticals fatal.
+  static bool describes(const GstVideoMeta& meta, const GstVideoInfo& info) {
+    return meta.format == GST_VIDEO_INFO_FORMAT(&info) && meta.n_planes == GST_VIDEO_INFO_N_PLANES(&info) &&
+           meta.width == static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info)) &&
+           meta.height == static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
+  }
+  // It never compares the strides and offsets of a meta with the memory behind them: every sample of every
+  // component must lie inside.
+  bool fits() const {
+    for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS(&frame_); ++c) {
+      const GstMapInfo& map = frame_.map[frame_.meta ? GST_VIDEO_FRAME_COMP_PLANE(&frame_, c) : 0];
+      const gint64 rows = GST_VIDEO_FRAME_COMP_HEIGHT(&frame_, c);
+      const gint64 row =
+          gint64{GST_VIDEO_FRAME_COMP_WIDTH(&frame_, c) - 1} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, c) + 1;
+      const gint64 last = (rows - 1) * GST_VIDEO_FRAME_COMP_STRIDE(&frame_, c);  // negative: bottom-up
+      const gint64 first = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame_, c)) - map.data;
+      if (first + std::min<gint64>(0, last) < 0) return false;
+      if (first + std::max<gint64>(0, last) + row > static_cast<gint64>(map.size)) return false;
+    }
+    return true;
+  }
+
   GstVideoFrame frame_;
   bool mapped_ = false;
 };
