@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From the moving area to regions of interest: clean-up, labelling, merging of one person's fragments, splitting of
-// two people side by side ("post treatment" of the paper).
+// From the moving area to regions of interest: clean-up, labelling, merging of one person's fragments,
+// splitting of two people side by side ("post treatment" of the paper).
 #pragma once
 
 #include <cstdint>
@@ -21,17 +21,17 @@ struct Box {
 double intersection_over_union(const Box& a, const Box& b);
 
 struct RegionOptions {
-  int closing = 11;           // side of the closing, analysis pixels at 320 wide; scaled with the picture
-  bool people = true;         // merge and split by the learnt height of a person; off: plain components
-  double minimum_area = 0;    // analysis pixels; 0: chosen from the picture's size
+  int closing = 11;         // side of the closing, analysis pixels at 320 wide; scaled with the picture
+  bool people = true;       // merge and split by the learnt height of a person; off: plain components
+  double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
 };
 
 struct Region {
-  Box box;              // analysis pixels
-  double area = 0;      // moving pixels inside
-  Point centroid;       // of the moving pixels
+  Box box;                // analysis pixels
+  double area = 0;        // moving pixels inside
+  Point centroid;         // of the moving pixels
   double confidence = 0;  // 0..1
-  int label = 0;        // value in the label picture (several regions may share one after a split)
+  int label = 0;          // value in the label picture (several regions may share one after a split)
 };
 
 class RegionFinder {
@@ -44,8 +44,9 @@ class RegionFinder {
   void set_options(const RegionOptions& options);
   // Forget what was learnt of the scene (heights); a cut does that.
   void reset();
-  // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background.
-  // motion: frame k-1 to k, so that what was learnt moves with the camera. The span lives until the next call.
+  // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 =
+  // background. motion: frame k-1 to k, so that what was learnt moves with the camera. The span lives until
+  // the next call.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
   std::size_t bytes() const;
 

@@ -14,18 +14,18 @@ namespace cerberus::vision {
 enum class TrackState { seen, coasted, stopped };
 
 struct TrackOptions {
-  double confirm_time = 0.2;    // s of evidence before a track is published
-  double coast_time = 1.0;      // s a moving track is carried without evidence
-  double hold_stopped = 30.0;   // s a confirmed track that stopped is held
-  double minimum_speed = 0;     // frame pixels a second; slower ones are not published (0: no limit)
-  double maximum_speed = 0;     // frame pixels a second; faster jumps are not the same object (0: no limit)
+  double confirm_time = 0.2;   // s of evidence before a track is published
+  double coast_time = 1.0;     // s a moving track is carried without evidence
+  double hold_stopped = 30.0;  // s a confirmed track that stopped is held
+  double minimum_speed = 0;    // frame pixels a second; slower ones are not published (0: no limit)
+  double maximum_speed = 0;    // frame pixels a second; faster jumps are not the same object (0: no limit)
 };
 
 struct Track {
-  std::uint32_t id = 0;  // from 1, never used again in a stream
-  Box box;               // frame pixels, clamped to the frame
+  std::uint32_t id = 0;   // from 1, never used again in a stream
+  Box box;                // frame pixels, clamped to the frame
   double vx = 0, vy = 0;  // frame pixels a second relative to the scene, camera motion taken out
-  double age = 0;        // s since first seen
+  double age = 0;         // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
 };
@@ -40,9 +40,12 @@ class Tracker {
   void set_options(const TrackOptions& options);
   // Forget all tracks (identities go on counting).
   void reset();
-  // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous frame
-  // (<= 0: unknown, taken as the last known distance). Returns confirmed tracks, by id; lives until the next call.
-  std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds, Size frame);
+  // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous
+  // frame
+  // (<= 0: unknown, taken as the last known distance). Returns confirmed tracks, by id; lives until the next
+  // call.
+  std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
+                                Size frame);
 
  private:
   struct State;
