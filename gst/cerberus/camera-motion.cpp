@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <cerberus/camera-motion.h>
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "private/meta.hpp"
+#include "vision/transform.h"
+
+namespace {
+
+using cerberus::vision::Size;
+using cerberus::vision::Transform;
+
+constexpr CerberusCameraMotion kUnknown = {
+    .matrix = {1, 0, 0, 0, 1, 0, 0, 0, 1},
+    .from = GST_CLOCK_TIME_NONE,
+    .confidence = 0,
+    .residual = 0,
+    .still = FALSE,
+    .scene_age = 0,
+    ._cerberus_reserved = {},
+};
+
+gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
+  reinterpret_cast<CerberusCameraMotionMeta*>(meta)->motion = kUnknown;
+  return TRUE;
+}
+
+// The same motion in a picture of another size. The residual scales by the geometric mean of both directions.
+CerberusCameraMotion scaled(const CerberusCameraMotion& motion, Size from, Size to) {
+  CerberusCameraMotion result = motion;
+  if (from == to || from.area() <= 0 || to.area() <= 0) return result;
+  Transform transform;
+  std::copy(std::begin(motion.matrix), std::end(motion.matrix), transform.m.begin());
+  // A still camera stays exactly identity; rounding would make it almost.
+  if (!transform.is_identity()) transform = transform.rescaled(from, to);
+  std::copy(transform.m.begin(), transform.m.end(), result.matrix);
+  result.residual *= std::sqrt(static_cast<double>(to.area()) / static_cast<double>(from.area()));
+  return result;
+}
+
+// Copies and scaling keep the meta; whatever else is done to a picture (cropping, turning) makes its pixels
+// wrong.
+gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
+  const CerberusCameraMotion& motion = reinterpret_cast<CerberusCameraMotionMeta*>(meta)->motion;
+  if (GST_META_TRANSFORM_IS_COPY(type)) return cerberus_buffer_add_camera_motion_meta(to, &motion) != nullptr;
+  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
+  const auto* scale = static_cast<GstVideoMetaTransform*>(data);
+  const CerberusCameraMotion result =
+      scaled(motion, {GST_VIDEO_INFO_WIDTH(scale->in_info), GST_VIDEO_INFO_HEIGHT(scale->in_info)},
+             {GST_VIDEO_INFO_WIDTH(scale->out_info), GST_VIDEO_INFO_HEIGHT(scale->out_info)});
+  return cerberus_buffer_add_camera_motion_meta(to, &result) != nullptr;
+}
+
+}  // namespace
+
+G_DEFINE_BOXED_TYPE(CerberusCameraMotion, cerberus_camera_motion, cerberus_camera_motion_copy,
+                    cerberus_camera_motion_free)
+
+GType cerberus_camera_motion_meta_api_get_type(void) {
+  static const GType type = [] {
+    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, nullptr};
+    return gst_meta_api_type_register("CerberusCameraMotionMetaAPI", tags);
+  }();
+  return type;
+}
+
+const GstMetaInfo* cerberus_camera_motion_meta_get_info(void) {
+  static const GstMetaInfo* const info = cerberus::register_meta<CerberusCameraMotionMeta>(
+      CERBERUS_CAMERA_MOTION_META_API_TYPE, "CerberusCameraMotionMeta", meta_init, nullptr, meta_transform);
+  return info;
+}
+
+void cerberus_camera_motion_init(CerberusCameraMotion* motion) {
+  g_return_if_fail(motion);
+  *motion = kUnknown;
+}
+
+CerberusCameraMotion* cerberus_camera_motion_new(void) {
+  return cerberus_camera_motion_copy(&kUnknown);
+}
+
+CerberusCameraMotion* cerberus_camera_motion_copy(const CerberusCameraMotion* motion) {
+  return static_cast<CerberusCameraMotion*>(g_memdup2(motion, sizeof *motion));
+}
+
+void cerberus_camera_motion_free(CerberusCameraMotion* motion) {
+  g_free(motion);
+}
+
+gboolean cerberus_camera_motion_apply(const CerberusCameraMotion* motion, gdouble x, gdouble y,
+                                      gdouble* out_x, gdouble* out_y) {
+  g_return_val_if_fail(motion, FALSE);
+  const gdouble* m = motion->matrix;
+  const double w = m[6] * x + m[7] * y + m[8];
+  const double px = (m[0] * x + m[1] * y + m[2]) / w, py = (m[3] * x + m[4] * y + m[5]) / w;
+  if (!std::isfinite(px) || !std::isfinite(py)) return FALSE;
+  if (out_x) *out_x = px;
+  if (out_y) *out_y = py;
+  return TRUE;
+}
+
+CerberusCameraMotionMeta* cerberus_buffer_add_camera_motion_meta(GstBuffer* buffer,
+                                                                 const CerberusCameraMotion* motion) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  g_return_val_if_fail(gst_buffer_is_writable(buffer), nullptr);
+  g_return_val_if_fail(motion, nullptr);
+  auto* meta = cerberus::ensure_meta<CerberusCameraMotionMeta>(buffer, CERBERUS_CAMERA_MOTION_META_INFO);
+  meta->motion = *motion;
+  return meta;
+}
+
+gboolean cerberus_buffer_set_camera_motion(GstBuffer* buffer, const CerberusCameraMotion* motion) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
+  if (!gst_buffer_is_writable(buffer)) return FALSE;
+  if (motion) return cerberus_buffer_add_camera_motion_meta(buffer, motion) != nullptr;
+  cerberus::remove_meta(buffer, CERBERUS_CAMERA_MOTION_META_API_TYPE);
+  return TRUE;
+}
+
+const CerberusCameraMotionMeta* cerberus_buffer_get_camera_motion_meta(GstBuffer* buffer) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  return reinterpret_cast<CerberusCameraMotionMeta*>(
+      gst_buffer_get_meta(buffer, CERBERUS_CAMERA_MOTION_META_API_TYPE));
+}
+
+CerberusCameraMotion* cerberus_buffer_get_camera_motion(GstBuffer* buffer) {
+  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(buffer);
+  return meta ? cerberus_camera_motion_copy(&meta->motion) : nullptr;
+}

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Regions as GstAnalyticsRelationMeta (GStreamer 1.24): one object detection each, related to a tracking
+// entry where the region is tracked. Nothing happens where GStreamer has none.
+//
+// Entries cannot be taken out of a relation meta again, so ours come out only as a whole: `ours` is the
+// number of entries that our regions on the buffer stand for, and a meta that holds more belongs to somebody
+// else too.
+#pragma once
+
+#include "compat.hpp"
+
+#if CERBERUS_ANALYTICS
+#include <gst/analytics/analytics.h>
+#endif
+
+namespace cerberus::analytics {
+
+struct Detection {
+  const char* type;
+  guint x, y, width, height;  // pixels
+  double confidence;
+  bool tracked;
+  guint id;
+  GstClockTime age;
+};
+
+#if CERBERUS_ANALYTICS
+
+// Returns how many entries were added. A meta shared with strangers gets tracked regions only: those that a
+// tracker is going to replace would stay for ever.
+inline guint add(GstBuffer* buffer, const Detection& d, guint ours) {
+  GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(buffer);
+  if (!meta) meta = gst_buffer_add_analytics_relation_meta(buffer);
+  if (!d.tracked && gst_analytics_relation_get_length(meta) != ours) return 0;
+
+  GstAnalyticsODMtd detection;
+  if (!gst_analytics_relation_meta_add_od_mtd(meta, g_quark_from_string(d.type), static_cast<gint>(d.x),
+                                              static_cast<gint>(d.y), static_cast<gint>(d.width),
+                                              static_cast<gint>(d.height), static_cast<gfloat>(d.confidence),
+                                              &detection))
+    return 0;
+  if (!d.tracked) return 1;
+
+  const GstClockTime now = GST_BUFFER_PTS(buffer);
+  const GstClockTime first = GST_CLOCK_TIME_IS_VALID(now) && now >= d.age ? now - d.age : 0;
+  GstAnalyticsTrackingMtd track;
+  if (!gst_analytics_relation_meta_add_tracking_mtd(meta, d.id, first, &track)) return 1;
+  if (GST_CLOCK_TIME_IS_VALID(now)) gst_analytics_tracking_mtd_update_last_seen(&track, now);
+  gst_analytics_relation_meta_set_relation(meta, GST_ANALYTICS_REL_TYPE_RELATE_TO, detection.id, track.id);
+  return 2;
+}
+
+inline void remove(GstBuffer* buffer, guint ours) {
+  GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(buffer);
+  if (meta && ours > 0 && gst_analytics_relation_get_length(meta) == ours)
+    gst_buffer_remove_meta(buffer, reinterpret_cast<GstMeta*>(meta));
+}
+
+#else
+
+inline guint add(GstBuffer*, const Detection&, guint) {
+  return 0;
+}
+inline void remove(GstBuffer*, guint) {}
+
+#endif
+
+}  // namespace cerberus::analytics
