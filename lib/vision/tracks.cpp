@@ -34,6 +34,7 @@ struct Body {
   double age = 0, unseen = 0, shared = 0, misfit = 0;
   double travelled = 0;  // largest distance from the origin, S
   double confidence = 0;
+  double top_speed = 0;  // pixels a second
   int hits = 0, frames = 0;
   int region = -1;
   bool stopped = false, dead = false;
@@ -378,6 +379,7 @@ void Tracker::State::publish() {
                          {x0, y0, x1 - x0, y1 - y0},
                          b.x.velocity,
                          b.y.velocity,
+                         b.top_speed,
                          b.age,
                          std::clamp(b.confidence, 0.0, 1.0),
                          b.stopped       ? TrackState::stopped

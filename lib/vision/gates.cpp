@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/gates.h"
+
+namespace cerberus::vision {
+
+SizeGate human_size(double body_width) {
+  SizeGate gate;
+  gate.metres_wide = {0.5 * body_width, 3 * body_width};
+  return gate;
+}
+
+SpeedGate human_speed() {
+  SpeedGate gate;
+  gate.metres = {0.1, 4.0};
+  return gate;
+}
+
+bool passes(const SizeGate& gate, const Box& box, const Placement& place) {
+  return gate.width.holds(box.width) && gate.height.holds(box.height) &&
+         gate.metres_wide.holds(place.width) && gate.metres_high.holds(place.height);
+}
+
+bool passes(const SpeedGate& gate, double speed, double top_speed, const Placement& place) {
+  const auto within = [&](const Range& range, double now, double top) {
+    return !(range.most > 0 && now > range.most) && !(top < range.least);
+  };
+  return within(gate.pixels, speed, top_speed) &&
+         within(gate.metres, to_metres(speed, place), to_metres(top_speed, place));
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/lens.h"
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace cerberus::vision {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+double wrap_angle(double radians) {
+  constexpr double turn = 2 * std::numbers::pi;
+  if (!std::isfinite(radians)) return kNan;
+  double a = std::fmod(radians + std::numbers::pi, turn);
+  if (a < 0) a += turn;
+  // fmod of a tiny negative number plus a turn rounds to the turn itself.
+  return a >= turn ? -std::numbers::pi : a - std::numbers::pi;
+}
+
+Lens::Lens(double horizontal_fov, Size frame) : frame_(frame) {
+  if (horizontal_fov > 0 && horizontal_fov < std::numbers::pi && frame.width > 0 && frame.height > 0)
+    focal_ = frame.width / 2.0 / std::tan(horizontal_fov / 2);
+}
+
+double Lens::vertical_fov() const {
+  return known() ? 2 * std::atan(frame_.height / 2.0 / focal_) : kNan;
+}
+
+Lens::Ray Lens::ray(Point p, double tilt) const {
+  const double right = (p.x - frame_.width / 2.0) / focal_, up = (frame_.height / 2.0 - p.y) / focal_;
+  const double c = std::cos(tilt), s = std::sin(tilt);
+  return {right, up * c + s, c - up * s};
+}
+
+Direction Lens::direction(Point p, double pan, double tilt) const {
+  if (!known()) return {kNan, kNan};
+  const Ray r = ray(p, tilt);
+  return {wrap_angle(pan + std::atan2(r.right, r.ahead)), std::atan2(r.up, std::hypot(r.right, r.ahead))};
+}
+
+double Lens::floor_distance(Point p, double tilt, double mounting_height) const {
+  if (!known() || !(mounting_height > 0)) return kNan;
+  const Ray r = ray(p, tilt);
+  if (!(r.up < 0)) return kNan;
+  return mounting_height * std::hypot(r.right, r.ahead) / -r.up;
+}
+
+Placement Lens::place(const Box& box, double pan, double tilt, double mounting_height) const {
+  const double middle = box.x + box.width / 2;
+  Placement place{direction({middle, box.y + box.height / 2}, pan, tilt).bearing, kNan, kNan, kNan, kNan};
+  if (!known() || !(mounting_height > 0) || box.bottom() > frame_.height - 1) return place;
+  const Point foot{middle, box.bottom()};
+  const Ray r = ray(foot, tilt);
+  if (!(r.up < 0)) return place;
+  place.distance = floor_distance(foot, tilt, mounting_height);
+  place.metres_per_pixel = mounting_height / -r.up / focal_;
+  place.width = box.width * place.metres_per_pixel;
+  place.height = mounting_height + place.distance * std::tan(direction({middle, box.y}, pan, tilt).elevation);
+  return place;
+}
+
+}  // namespace cerberus::vision

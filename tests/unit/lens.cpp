@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The lens against angles and distances worked out by hand: 640x480 behind 90 degrees, so f = 320 pixels, tan
+// = 1 at the picture's edge.
+#include "vision/lens.h"
+
+#include <check.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+const Lens kLens(90 * kDegree, {640, 480});
+
+}  // namespace
+
+START_TEST(the_focal_length_and_the_height_of_the_view_follow_from_the_width) {
+  ck_assert_double_eq_tol(kLens.focal_length(), 320, 1e-9);
+  ck_assert_double_eq_tol(kLens.vertical_fov(), 2 * std::atan(0.75), 1e-12);  // 73.74 degrees
+}
+END_TEST
+
+START_TEST(the_middle_of_the_picture_is_where_the_camera_looks) {
+  const Direction d = kLens.direction({320, 240}, 30 * kDegree, -20 * kDegree);
+  ck_assert_double_eq_tol(d.bearing, 30 * kDegree, 1e-12);
+  ck_assert_double_eq_tol(d.elevation, -20 * kDegree, 1e-12);
+}
+END_TEST
+
+START_TEST(right_in_the_picture_is_a_larger_bearing_and_up_a_larger_elevation) {
+  ck_assert_double_eq_tol(kLens.direction({640, 240}, 0, 0).bearing, 45 * kDegree, 1e-12);
+  ck_assert_double_eq_tol(kLens.direction({0, 240}, 0, 0).bearing, -45 * kDegree, 1e-12);
+  ck_assert_double_eq_tol(kLens.direction({320, 0}, 0, 0).elevation, std::atan(0.75), 1e-12);
+  // Corner, level: up 0.75, hypot(1, 1) = sqrt 2.
+  ck_assert_double_eq_tol(kLens.direction({640, 0}, 0, 0).elevation, std::atan(0.75 / std::sqrt(2.0)), 1e-12);
+}
+END_TEST
+
+START_TEST(a_tilted_camera_sees_its_sides_further_round_than_a_level_one) {
+  // Tilt -45: the ray at the right edge, middle row, is (1, -sqrt(1/2), sqrt(1/2)); bearing = atan(sqrt 2)
+  // = 54.7356.
+  const Direction d = kLens.direction({640, 240}, 0, -45 * kDegree);
+  ck_assert_double_eq_tol(d.bearing / kDegree, 54.735610317245346, 1e-9);
+  // elevation = atan(-sqrt(1/2) / sqrt(1.5)) = -30 degrees.
+  ck_assert_double_eq_tol(d.elevation / kDegree, -30, 1e-9);
+}
+END_TEST
+
+START_TEST(bearings_wrap_into_minus_180_to_180) {
+  ck_assert_double_eq_tol(kLens.direction({640, 240}, 160 * kDegree, 0).bearing / kDegree, -155, 1e-9);
+  ck_assert_double_eq(wrap_angle(std::numbers::pi), -std::numbers::pi);
+  ck_assert_double_eq(wrap_angle(-std::numbers::pi), -std::numbers::pi);
+  ck_assert_double_eq_tol(wrap_angle(7 * std::numbers::pi / 2), -std::numbers::pi / 2, 1e-12);
+  ck_assert_double_lt(wrap_angle(-1e-17), std::numbers::pi);
+  ck_assert(std::isnan(wrap_angle(std::numeric_limits<double>::infinity())));
+}
+END_TEST
+
+START_TEST(the_floor_is_as_far_as_the_mounting_height_at_45_degrees_down) {
+  ck_assert_double_eq_tol(kLens.floor_distance({320, 240}, -45 * kDegree, 0.8), 0.8, 1e-12);
+  // Level, 80 of 320 pixels below the horizon: slope 1/4, so 4 x 0.8 m.
+  ck_assert_double_eq_tol(kLens.floor_distance({320, 320}, 0, 0.8), 3.2, 1e-12);
+  // The same row at the right edge: hypot(1, 1) further along the floor.
+  ck_assert_double_eq_tol(kLens.floor_distance({640, 320}, 0, 0.8), 3.2 * std::sqrt(2.0), 1e-12);
+}
+END_TEST
+
+START_TEST(the_floor_is_nowhere_on_and_above_the_horizon) {
+  ck_assert(std::isnan(kLens.floor_distance({320, 240}, 0, 0.8)));
+  ck_assert(std::isnan(kLens.floor_distance({320, 100}, 0, 0.8)));
+  ck_assert(std::isnan(kLens.floor_distance({320, 400}, 0, 0)));
+  ck_assert(std::isnan(kLens.floor_distance({320, 400}, 0, std::numeric_limits<double>::quiet_NaN())));
+}
+END_TEST
+
+START_TEST(a_person_four_metres_away_has_the_size_it_had_when_drawn) {
+  // Level camera at 0.8 m, person 1.7 m tall and 0.48 m wide, 4 m ahead: 80 pixels a metre. Feet 64 pixels
+  // below the horizon, head (1.7 - 0.8) x 80 = 72 above; 38.4 wide.
+  const Placement p = kLens.place({320 - 19.2, 240 - 72, 38.4, 136}, 0, 0, 0.8);
+  ck_assert_double_eq_tol(p.distance, 4, 1e-9);
+  ck_assert_double_eq_tol(p.metres_per_pixel, 1 / 80.0, 1e-12);
+  ck_assert_double_eq_tol(p.width, 0.48, 1e-9);
+  ck_assert_double_eq_tol(p.height, 1.7, 1e-9);
+  ck_assert_double_eq_tol(p.bearing, 0, 1e-12);
+}
+END_TEST
+
+START_TEST(a_tilted_camera_measures_the_same_person) {
+  // Tilt -30, camera 3 m up, person 1.7 m tall 5 m ahead. Feet: elevation -atan(3/5), in the picture
+  // 320 tan(atan(3/5) - 30) below the middle; head: elevation -atan(1.3/5).
+  const double tilt = -30 * kDegree;
+  const double foot = 240 + 320 * std::tan(std::atan(3.0 / 5) + tilt);
+  const double head = 240 + 320 * std::tan(std::atan(1.3 / 5) + tilt);
+  const Placement p = kLens.place({310, head, 20, foot - head}, 10 * kDegree, tilt, 3);
+  ck_assert_double_eq_tol(p.distance, 5, 1e-9);
+  ck_assert_double_eq_tol(p.height, 1.7, 1e-9);
+  ck_assert_double_eq_tol(p.bearing, 10 * kDegree, 1e-12);
+  // Depth along the axis: 5 cos 30 + 3 sin 30 = 5.8301; 20 pixels of it / 320.
+  ck_assert_double_eq_tol(p.width, 20 * (5 * std::cos(30 * kDegree) + 1.5) / 320, 1e-9);
+}
+END_TEST
+
+START_TEST(feet_that_are_not_in_the_picture_give_no_distance) {
+  const Placement p = kLens.place({300, 100, 40, 380}, 0, 0, 0.8);
+  ck_assert(std::isnan(p.distance));
+  ck_assert(std::isnan(p.width));
+  ck_assert(std::isnan(p.height));
+  ck_assert(std::isnan(p.metres_per_pixel));
+  ck_assert_double_eq_tol(p.bearing, 0, 1e-12);
+}
+END_TEST
+
+START_TEST(a_lens_nobody_described_knows_nothing) {
+  for (const double fov : {0.0, -1.0, std::numbers::pi, 4.0, std::numeric_limits<double>::quiet_NaN()}) {
+    const Lens lens(fov, {640, 480});
+    ck_assert(!lens.known());
+    ck_assert(std::isnan(lens.direction({1, 2}, 0, 0).bearing));
+    ck_assert(std::isnan(lens.place({300, 100, 40, 100}, 0, 0, 0.8).distance));
+    ck_assert(std::isnan(lens.vertical_fov()));
+  }
+  ck_assert(!Lens(1, {0, 0}).known());
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("lens");
+  TCase* tests = tcase_create("lens");
+  tcase_add_test(tests, the_focal_length_and_the_height_of_the_view_follow_from_the_width);
+  tcase_add_test(tests, the_middle_of_the_picture_is_where_the_camera_looks);
+  tcase_add_test(tests, right_in_the_picture_is_a_larger_bearing_and_up_a_larger_elevation);
+  tcase_add_test(tests, a_tilted_camera_sees_its_sides_further_round_than_a_level_one);
+  tcase_add_test(tests, bearings_wrap_into_minus_180_to_180);
+  tcase_add_test(tests, the_floor_is_as_far_as_the_mounting_height_at_45_degrees_down);
+  tcase_add_test(tests, the_floor_is_nowhere_on_and_above_the_horizon);
+  tcase_add_test(tests, a_person_four_metres_away_has_the_size_it_had_when_drawn);
+  tcase_add_test(tests, a_tilted_camera_measures_the_same_person);
+  tcase_add_test(tests, feet_that_are_not_in_the_picture_give_no_distance);
+  tcase_add_test(tests, a_lens_nobody_described_knows_nothing);
+  suite_add_tcase(suite, tests);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/zones.h"
+
+#include <check.h>
+
+#include <clocale>
+#include <cstdlib>
+#include <string>
+#include <string_view>
+#include <vector>
+
+using namespace cerberus::vision;
+
+namespace {
+
+void accepted(Zones& zones, const char* text) {
+  const std::string error = zones.parse(text);
+  ck_assert_msg(error.empty(), "%s", error.c_str());
+}
+
+std::vector<std::string> drawn(const char* text, Size size) {
+  Zones zones;
+  accepted(zones, text);
+  Image<std::uint8_t> plane(size);
+  zones.draw(plane.view());
+  std::vector<std::string> rows;
+  for (int y = 0; y < size.height; ++y) {
+    rows.emplace_back();
+    for (int x = 0; x < size.width; ++x) rows.back() += plane.view().at(x, y) == 255 ? '#' : '.';
+  }
+  return rows;
+}
+
+void same_picture(const std::vector<std::string>& rows, const std::vector<std::string>& expected) {
+  ck_assert_uint_eq(rows.size(), expected.size());
+  for (std::size_t y = 0; y < rows.size(); ++y) ck_assert_str_eq(rows[y].c_str(), expected[y].c_str());
+}
+
+// The error names the word, and says what to write.
+void refused(const char* text, std::string_view word, std::string_view advice) {
+  Zones zones;
+  const std::string error = zones.parse(text);
+  ck_assert_msg(error.find(word) != std::string::npos, "%s", error.c_str());
+  ck_assert_msg(error.find(advice) != std::string::npos, "%s", error.c_str());
+  ck_assert_msg(error.find("for example") != std::string::npos, "%s", error.c_str());
+  ck_assert(zones.everywhere());
+}
+
+}  // namespace
+
+START_TEST(without_polygons_motion_counts_everywhere) {
+  for (const char* text : {"", "   ", ";", " ; ; \n"}) same_picture(drawn(text, {3, 2}), {"###", "###"});
+}
+END_TEST
+
+START_TEST(an_included_rectangle_covers_the_pixels_whose_centres_it_holds) {
+  // x from 2 to 6 of 8 pixels, y from 1 to 3 of 4.
+  same_picture(drawn("include 0.25,0.25 0.75,0.25 0.75,0.75 0.25,0.75", {8, 4}),
+               {"........", "..####..", "..####..", "........"});
+  // The full picture, corners on its very edge.
+  same_picture(drawn("include 0,0 1,0 1,1 0,1", {3, 2}), {"###", "###"});
+}
+END_TEST
+
+START_TEST(a_triangle_is_cut_where_centres_cross_its_side) {
+  // Corners (0,0) (4,4) (0,4): centres with x <= y are inside or on the diagonal; on it x = y belongs to the
+  // right.
+  same_picture(drawn("include 0,0 1,1 0,1", {4, 4}), {"....", "#...", "##..", "###."});
+}
+END_TEST
+
+START_TEST(an_exclude_takes_away_from_everywhere_and_from_includes_whatever_the_order) {
+  same_picture(drawn("exclude 0,0 0.5,0 0.5,1 0,1", {4, 1}), {"..##"});
+  same_picture(drawn("exclude 0,0 0.5,0 0.5,1 0,1; include 0,0 0.75,0 0.75,1 0,1", {4, 1}), {"..#."});
+  same_picture(drawn("include 0,0 0.25,0 0.25,1 0,1\ninclude 0.75,0 1,0 1,1 0.75,1;", {4, 1}), {"#..#"});
+}
+END_TEST
+
+START_TEST(a_polygon_that_crosses_itself_is_filled_even_odd) {
+  // A square drawn twice round encloses nothing.
+  same_picture(drawn("include 0,0 1,0 1,1 0,1 0,0 1,0 1,1 0,1", {3, 1}), {"..."});
+  // An hourglass (0,0) (4,0) (0,4) (4,4): on row 0.5 from 0.5 to 3.5, on row 1.5 from 1.5 to 2.5.
+  same_picture(drawn("include 0,0 1,0 0,1 1,1", {4, 4}), {"###.", ".#..", ".#..", "###."});
+}
+END_TEST
+
+START_TEST(wrong_words_are_named_with_what_to_write_instead) {
+  refused("includ 0,0 1,0 1,1", "\"includ\"", "include nor exclude");
+  refused("0,0 1,0 1,1", "\"0,0\"", "include nor exclude");
+  refused("include 0,0 1,0 1;1", "\"1\"", "x,y");
+  refused("include 0,0 1,0 0.5,1.2", "\"0.5,1.2\"", "from 0 to 1");
+  refused("include 0,0 1,0 -0.1,1", "\"-0.1,1\"", "from 0 to 1");
+  refused("include 0,0 1,0 0,5,0,5", "\"0,5,0,5\"", "decimal points");
+  refused("include 0,0 1,0 nan,1", "\"nan,1\"", "x,y");
+  refused("include 0,0 1,0 0.5px,1", "\"0.5px,1\"", "x,y");
+  refused("include 0,0 1,0 , ", "\",\"", "x,y");
+  refused("include 0,0 1,1; exclude", "include 0,0 1,1", "2 corners");
+  refused("exclude", "\"exclude\"", "at least three");
+}
+END_TEST
+
+START_TEST(a_wrong_text_leaves_the_old_polygons_in_place) {
+  Zones zones;
+  accepted(zones, "exclude 0,0 0.5,0 0.5,1 0,1");
+  ck_assert(!zones.parse("nonsense").empty());
+  Image<std::uint8_t> mask({4, 1});
+  mask.fill_bytes(255);
+  zones.apply(mask.view());
+  ck_assert_int_eq(mask.view().at(1, 0), 0);
+  ck_assert_int_eq(mask.view().at(2, 0), 255);
+}
+END_TEST
+
+START_TEST(the_mask_loses_what_does_not_count_at_every_size_and_after_every_change) {
+  Zones zones;
+  accepted(zones, "include 0,0 0.5,0 0.5,1 0,1");
+  for (const int width : {4, 8, 4}) {
+    Image<std::uint8_t> mask({width, 2});
+    mask.fill_bytes(255);
+    mask.view().at(0, 1) = 0;
+    zones.apply(mask.view());
+    ck_assert_int_eq(mask.view().at(0, 0), 255);
+    ck_assert_int_eq(mask.view().at(0, 1), 0);
+    ck_assert_int_eq(mask.view().at(width / 2 - 1, 1), 255);
+    ck_assert_int_eq(mask.view().at(width / 2, 0), 0);
+  }
+  accepted(zones, "exclude 0,0 0.5,0 0.5,1 0,1");
+  Image<std::uint8_t> mask({4, 2});
+  mask.fill_bytes(255);
+  zones.apply(mask.view());
+  ck_assert_int_eq(mask.view().at(0, 0), 0);
+  ck_assert_int_eq(mask.view().at(3, 0), 255);
+}
+END_TEST
+
+START_TEST(decimal_points_are_read_in_a_german_locale) {
+  if (!std::setlocale(LC_ALL, "de_DE.UTF-8")) return;  // not installed here
+  same_picture(drawn("exclude 0,0 0.5,0 0.5,1 0,1", {4, 1}), {"..##"});
+  std::setlocale(LC_ALL, "C");
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("zones");
+  TCase* tests = tcase_create("zones");
+  tcase_add_test(tests, without_polygons_motion_counts_everywhere);
+  tcase_add_test(tests, an_included_rectangle_covers_the_pixels_whose_centres_it_holds);
+  tcase_add_test(tests, a_triangle_is_cut_where_centres_cross_its_side);
+  tcase_add_test(tests, an_exclude_takes_away_from_everywhere_and_from_includes_whatever_the_order);
+  tcase_add_test(tests, a_polygon_that_crosses_itself_is_filled_even_odd);
+  tcase_add_test(tests, wrong_words_are_named_with_what_to_write_instead);
+  tcase_add_test(tests, a_wrong_text_leaves_the_old_polygons_in_place);
+  tcase_add_test(tests, the_mask_loses_what_does_not_count_at_every_size_and_after_every_change);
+  tcase_add_test(tests, decimal_points_are_read_in_a_german_locale);
+  suite_add_tcase(suite, tests);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
