@@ -91,6 +91,12 @@ void cerberus_camera_motion_free(CerberusCameraMotion* motion) {
   g_free(motion);
 }
 
+void cerberus_camera_motion_set_matrix(CerberusCameraMotion* motion, const gdouble* matrix) {
+  g_return_if_fail(motion);
+  g_return_if_fail(matrix);
+  std::copy_n(matrix, std::size(motion->matrix), motion->matrix);
+}
+
 gboolean cerberus_camera_motion_apply(const CerberusCameraMotion* motion, gdouble x, gdouble y,
                                       gdouble* out_x, gdouble* out_y) {
   g_return_val_if_fail(motion, FALSE);

@@ -117,6 +117,18 @@ CERBERUS_API
 void cerberus_camera_motion_free (CerberusCameraMotion *motion);
 
 /**
+ * cerberus_camera_motion_set_matrix:
+ * @motion: a motion
+ * @matrix: (array fixed-size=9): nine numbers, row-major, as in #CerberusCameraMotion
+ *
+ * Sets the matrix: bindings cannot write an array inside a structure.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_camera_motion_set_matrix (CerberusCameraMotion *motion, const gdouble *matrix);
+
+/**
  * cerberus_camera_motion_apply:
  * @motion: a motion
  * @x: column in the previous frame, pixels
