@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The rules of the house that a program can check: licences, the direction of dependencies, scripts that explain."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+TOP = pathlib.Path(__file__).resolve().parents[2]
+FOLDERS = ('lib', 'gst', 'plugins', 'pipelines', 'tests', 'docs', '.ci')
+SOURCES = {'.h', '.hpp', '.hh', '.c', '.cc', '.cpp', '.py', '.in', '.txt', '.build', '.launch', ''}
+complaints = []
+
+
+def files():
+    for folder in FOLDERS:
+        for path in sorted((TOP / folder).rglob('*')):
+            if path.is_file() and '__pycache__' not in path.parts:
+                yield path
+    yield TOP / 'meson.build'
+    yield TOP / 'meson_options.txt'
+
+
+def complain(path, text):
+    complaints.append(f'{path.relative_to(TOP)}: {text}')
+
+
+# Every file of ours says its licence in its first lines. Pictures and Markdown are prose; launch files begin with what
+# they do, and say it below.
+def check_licence(path):
+    if path.suffix in SOURCES - {'.launch'}:
+        head = path.read_text('utf-8', errors='replace').splitlines()[:3]
+        if not any('SPDX-License-Identifier: LGPL-2.1-or-later' in line for line in head):
+            complain(path, 'no SPDX-License-Identifier: LGPL-2.1-or-later in its first lines')
+
+
+# lib <- gst <- plugins <- pipelines: nobody includes what is further down the line. The private helpers of gst/ are for
+# the plugins. What each folder must never include, as the beginning of the name between the brackets or quotes:
+FORBIDDEN = {
+    'lib': ('gst/', 'glib', 'gobject', 'gio/', 'cerberus/', 'plugins/', 'pipelines/', 'tests/', 'opencv'),
+    'gst': ('plugins/', 'pipelines/', 'tests/', 'opencv'),
+    'plugins': ('pipelines/', 'tests/', 'opencv'),
+    'pipelines': ('tests/', 'cerberus/private/', 'opencv'),
+}
+DEPENDENCIES = {  # words of a meson.build that would turn an arrow round
+    'lib': ('gst_dep', 'gst_base_dep', 'gst_video_dep', 'cerberus_dep', 'glib', 'plugins', 'opencv'),
+    'gst': ('all_plugins', 'opencv'),
+    'plugins': ('opencv',),
+    'pipelines': ('opencv',),
+}
+
+
+def check_direction(path):
+    layer = path.relative_to(TOP).parts[0]
+    text = path.read_text('utf-8', errors='replace')
+    if path.suffix in {'.h', '.hpp', '.c', '.cpp'}:
+        for name in re.findall(r'^\s*#\s*include\s*[<"]([^>"]+)', text, re.M):
+            real = name
+            if name.startswith('.'):
+                target = os.path.relpath(os.path.normpath(path.parent / name), TOP)
+                real = target if target.split('/')[0] != layer else ''
+            if real.startswith(FORBIDDEN.get(layer, ())):
+                complain(path, f'includes {name}: dependencies run lib <- gst <- plugins <- pipelines')
+    elif path.name == 'meson.build':
+        code = re.sub(r'#.*', '', text)
+        for word in DEPENDENCIES.get(layer, ()):
+            if re.search(rf'\b{word}\b', code):
+                complain(path, f'names {word}: dependencies run lib <- gst <- plugins <- pipelines')
+
+
+# An installed header must not lean on one that is not installed.
+def check_installed_header(path):
+    parts = path.relative_to(TOP).parts
+    if parts[0] == 'gst' and path.suffix == '.h' and 'private' not in parts:
+        text = path.read_text('utf-8')
+        if re.search(r'#\s*include.*(private/|\.hpp|vision/)', text):
+            complain(path, 'is installed and includes a header that is not')
+
+
+def check_launch_file(path):
+    if path.suffix == '.launch':
+        lines = path.read_text('utf-8').splitlines()
+        if not re.match(r'# [A-Z].*\.$', lines[0]):
+            complain(path, 'its first line must be a comment that says in a sentence what it does')
+        name = path.stem
+        tested = (TOP / 'tests' / 'pipelines' / 'launch_files.py').read_text('utf-8')
+        if f"start('{name}'" not in tested:
+            complain(path, 'is run by no test')
+
+
+def check_commands():
+    for command in ('pipelines/demo', 'pipelines/run', 'pipelines/setup', 'tests/run', 'docs/generate'):
+        if not os.access(TOP / command, os.X_OK):
+            complain(TOP / command, 'cannot be run')
+    for command in ('pipelines/demo', 'pipelines/run', 'pipelines/setup', 'tests/run'):
+        done = subprocess.run([TOP / command, '--help'], capture_output=True, text=True, timeout=20)
+        if done.returncode != 0 or len(done.stdout) < 100:
+            complain(TOP / command, 'does not explain itself when asked with --help')
+
+
+def check_links(path):
+    """Pictures and pages that a Markdown file points to are there."""
+    if path.suffix == '.md':
+        for target in re.findall(r'\]\(([^)#\s]+)(?:#[^)]*)?\)', path.read_text('utf-8')):
+            if '://' not in target and not target.startswith('mailto:') and not (path.parent / target).exists():
+                complain(path, f'points to {target}, which is not there')
+
+
+for each in files():
+    check_licence(each)
+    check_direction(each)
+    check_installed_header(each)
+    check_launch_file(each)
+    check_links(each)
+for each in TOP.glob('*.md'):
+    check_links(each)
+check_commands()
+print('\n'.join(complaints))
+sys.exit(1 if complaints else 0)

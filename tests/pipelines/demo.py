@@ -1,0 +1,154 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The program behind pipelines/demo: what it writes and says, and what it says when it cannot."""
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import time
+
+from support import TOP, all_tests, ball, gst_launch, json_lines, must, run, video
+
+ANNOTATE = sys.argv[1]
+
+
+def annotate(file, output='out', **more):
+    return run([ANNOTATE, '--output', output, file], **more)
+
+
+def refuses(file, *words, output='out'):
+    """It ends with an error in one line that has these words."""
+    status, said = annotate(file, output)
+    assert status == 1, f'exit status {status}: {said}'
+    errors = [line for line in said.splitlines() if line.startswith('demo: ')]
+    assert len(errors) == 1, said
+    assert all(word in errors[0] for word in words), said
+
+
+def decoded(path):
+    must(gst_launch(f'filesrc location={path} ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! '
+                    'filesink location=decoded.raw'))
+    return os.path.getsize('decoded.raw')
+
+
+def test_a_video_gives_an_mp4_a_json_line_a_frame_and_a_summary():
+    said = must(annotate(video('ball.mp4', 'mp4mux')))
+    assert re.search(r'^60 frames, [0-9.]+ frames per second, [1-9]\d* objects? seen: '
+                     r'out/annotated.mp4 and out/objects.jsonl$', said, re.MULTILINE), said
+    lines = json_lines('out/objects.jsonl')
+    assert len(lines) == 60 and any(line['objects'] for line in lines)
+    assert decoded('out/annotated.mp4') == 60 * 320 * 240
+
+
+def test_the_summary_counts_the_identities_in_the_lines():
+    said = must(annotate(video('ball.mp4', 'mp4mux')))
+    seen = {thing['id'] for line in json_lines('out/objects.jsonl') for thing in line['objects']}
+    assert f' {len(seen)} object' in said, (seen, said)
+
+
+def test_it_is_run_twice_with_the_same_result():
+    file = video('ball.mkv', 'matroskamux')
+    must(annotate(file))
+    first = pathlib.Path('out/objects.jsonl').read_bytes()
+    must(annotate(file))
+    assert pathlib.Path('out/objects.jsonl').read_bytes() == first
+
+
+def test_a_file_name_with_spaces_and_a_folder_that_is_not_there_yet():
+    video('ball.mp4', 'mp4mux').rename('a ball, "rolling".mp4')
+    must(annotate('a ball, "rolling".mp4', 'a/b c'))
+    assert len(json_lines('a/b c/objects.jsonl')) == 60
+
+
+def test_odd_sizes_become_an_mp4_all_the_same():
+    must(gst_launch(f'{ball(frames=20, width=321, height=243).replace("I420", "BGR")} ! avimux ! filesink location=odd.avi'))
+    must(annotate('odd.avi'))
+    assert len(json_lines('out/objects.jsonl')) == 20
+    assert decoded('out/annotated.mp4') > 0
+
+
+def test_interlaced_video_is_deinterlaced():
+    must(gst_launch('videotestsrc pattern=ball num-buffers=30 ! video/x-raw,width=320,height=240,framerate=25/1 ! '
+                    'interlace field-pattern=1 ! x264enc interlaced=true ! matroskamux ! filesink location=i.mkv'))
+    must(annotate('i.mkv'))
+    assert json_lines('out/objects.jsonl')
+
+
+def test_sound_beside_the_picture_does_not_matter():
+    must(gst_launch(f'{ball()} ! x264enc ! mp4mux name=m ! filesink location=s.mp4 '
+                    'audiotestsrc num-buffers=100 ! audioconvert ! avenc_aac ! m.'))
+    must(annotate('s.mp4'))
+    assert len(json_lines('out/objects.jsonl')) == 60
+
+
+def test_sound_alone_is_no_video():
+    must(gst_launch('audiotestsrc num-buffers=20 ! wavenc ! filesink location=a.wav'))
+    refuses('a.wav', 'a.wav', 'no picture')
+
+
+def test_a_file_that_is_not_there():
+    refuses('nothing.avi', 'nothing.avi')
+
+
+def test_an_empty_file():
+    pathlib.Path('empty.avi').touch()
+    refuses('empty.avi', 'empty.avi', 'not a video')
+
+
+def test_noise_is_no_video():
+    pathlib.Path('noise.avi').write_bytes(bytes((k * k * 7 + k // 3) % 256 for k in range(50000)))
+    refuses('noise.avi', 'noise.avi', 'not a video')
+
+
+def test_a_folder_is_no_video():
+    os.mkdir('folder')
+    refuses('folder', 'folder')
+
+
+def test_a_full_disk_is_called_by_its_name():
+    file = video('ball.mp4', 'mp4mux')
+    for name in ('annotated.mp4', 'objects.jsonl'):
+        os.makedirs('full', exist_ok=True)
+        os.symlink('/dev/full', f'full/{name}')
+        refuses(file, 'no space left', output='full')
+        os.unlink(f'full/{name}')
+
+
+def test_an_output_that_cannot_be_written():
+    file = video('ball.mp4', 'mp4mux')
+    os.makedirs('out/annotated.mp4')
+    refuses(file, 'out')
+
+
+def test_a_display_that_cannot_be_opened_does_not_stop_it():
+    said = must(annotate(video('ball.mp4', 'mp4mux'), env={'DISPLAY': ':9876'}))
+    assert 'no window' in said and '60 frames' in said, said
+
+
+def test_ctrl_c_finishes_the_files():
+    file = video('long.mp4', 'mp4mux', frames=3000)
+    process = subprocess.Popen([ANNOTATE, '--output', 'out', file], stderr=subprocess.DEVNULL)
+    until = time.monotonic() + 60
+    while process.poll() is None and time.monotonic() < until:
+        if os.path.exists('out/objects.jsonl') and os.path.getsize('out/objects.jsonl') > 0:
+            break
+        time.sleep(0.005)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(60) == 0
+    lines = json_lines('out/objects.jsonl')
+    assert 0 < len(lines) < 3000, f'{len(lines)} lines'
+    assert decoded('out/annotated.mp4') == len(lines) * 320 * 240
+
+
+def test_the_command_explains_itself_and_its_mistakes():
+    demo = TOP / 'pipelines' / 'demo'
+    assert './pipelines/demo [--output DIR] [FILE]' in must(run([demo, '--help']))
+    for wrong, word in ((['nothing.avi'], 'no file nothing.avi'), (['--fast'], '--fast'), (['a', 'b'], 'one file'),
+                        (['--output', '/proc/here', __file__], '/proc/here')):
+        status, said = run([demo, *wrong])
+        assert status == 2 and word in said, said
+
+
+all_tests(globals())

@@ -1,0 +1,168 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Runs the launch files of pipelines/, with a test source in place of the camera and files in place of screens.
+
+    launch_files.py NAME live|file
+
+The source is GStreamer's bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving,
+so that objects are found. Networks are the loopback, on ports that were free a moment ago.
+"""
+import contextlib
+import os
+import pathlib
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+from support import LIMIT, TOP, ball, gst_launch, json_lines, must, video
+
+WIDTH, HEIGHT, FRAMES = 320, 240, 75
+
+
+def start(name, **variables):
+    line = [str(TOP / 'pipelines' / 'run'), name, *(f'{key}={value}' for key, value in variables.items())]
+    return subprocess.Popen(line, cwd=os.getcwd(), start_new_session=True, text=True,
+                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+
+
+def finish(process):
+    """What it printed. It must end well, by itself and in time."""
+    try:
+        output, _ = process.communicate(timeout=LIMIT)
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, signal.SIGKILL)
+        output, _ = process.communicate()
+        sys.exit(f'it did not end within {LIMIT} seconds:\n{output}')
+    assert process.returncode == 0, f'exit status {process.returncode}:\n{output}'
+    return output
+
+
+def source(kind):
+    if kind == 'live':
+        return ball(frames=FRAMES, more='is-live=true')
+    if not os.path.exists('ball.mp4'):
+        video('ball.mp4', 'mp4mux', frames=FRAMES)
+    return 'filesrc location=ball.mp4 ! decodebin'
+
+
+def decode(path, pixel_format='I420'):
+    """The frames of a file, through a decoder that knows nothing of how it was made."""
+    raw = path + '.raw'
+    must(gst_launch(f'filesrc location={path} ! decodebin ! videoconvert ! video/x-raw,format={pixel_format} ! '
+                    f'filesink location={raw}'))
+    return frames(raw, WIDTH * HEIGHT * 3 // 2)
+
+
+def frames(path, size):
+    data = pathlib.Path(path).read_bytes()
+    assert len(data) % size == 0, f'{path}: {len(data)} bytes are no whole number of frames of {size}'
+    return [data[k:k + size] for k in range(0, len(data), size)]
+
+
+def coloured(frame):
+    """Whether an I420 frame has a pixel that is clearly not grey."""
+    chroma = frame[WIDTH * HEIGHT:]
+    return max(chroma) > 160 or min(chroma) < 96
+
+
+def check_lines(path, count=FRAMES):
+    lines = json_lines(path)
+    assert len(lines) == count, f'{len(lines)} JSON lines for {count} frames'
+    assert [line['frame'] for line in lines] == list(range(lines[0]['frame'], lines[0]['frame'] + count))
+    assert all(a['pts'] < b['pts'] for a, b in zip(lines, lines[1:])), 'timestamps do not rise'
+    assert all((line['width'], line['height']) == (WIDTH, HEIGHT) for line in lines)
+    seen = sum(bool(line['objects']) for line in lines)
+    assert seen > count // 3, f'the ball was found in {seen} of {count} frames'
+
+
+def test_annotate(kind):
+    finish(start('annotate', SOURCE=source(kind), MP4='out.mp4', JSON='out.jsonl'))
+    check_lines('out.jsonl')
+    pictures = decode('out.mp4')
+    assert len(pictures) == FRAMES, f'{len(pictures)} frames in the MP4'
+    assert sum(map(coloured, pictures)) > FRAMES // 3, 'no boxes were drawn'
+
+
+def test_live(kind):
+    finish(start('live', SOURCE=source(kind), SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
+    pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
+    assert len(pictures) >= FRAMES // 10, f'{len(pictures)} frames were shown'  # it may drop late ones
+    assert any(map(coloured, pictures)), 'no box was shown'
+
+
+def test_record(kind):
+    finish(start('record', SOURCE=source(kind), FILE='out.mkv', JSON='out.jsonl'))
+    check_lines('out.jsonl')
+    pictures = decode('out.mkv')
+    assert len(pictures) == FRAMES, f'{len(pictures)} frames in the recording'
+    assert not any(map(coloured, pictures)), 'the recording is not the original picture'
+
+
+def test_stages(kind):
+    finish(start('stages', SOURCE=source(kind), SINK='video/x-raw,format=GRAY8 ! filesink location=out.raw'))
+    width, height = 384, 288
+    pictures = frames('out.raw', 3 * width * 2 * height)
+    # A live compositor starts when its first input does, and may repeat or skip a frame.
+    assert abs(len(pictures) - FRAMES) <= (FRAMES // 2 if kind == 'live' else 0), f'{len(pictures)} frames'
+    for tile, stage in enumerate(('luma', 'difference', 'histogram', 'mask', 'labels', 'result')):
+        left, top = tile % 3 * width, tile // 3 * height
+        rows = (range(top, top + height))
+        shows = sum(len(set(b''.join(picture[y * 3 * width + left:y * 3 * width + left + width] for y in rows))) > 1
+                    for picture in pictures)
+        assert shows > len(pictures) // 3, f'stage {stage} shows something in {shows} of {len(pictures)} frames'
+
+
+def free_port():
+    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as sock:
+        sock.bind(('127.0.0.1', 0))
+        return sock.getsockname()[1]
+
+
+def wait_for(what, condition, process):
+    until = time.monotonic() + LIMIT
+    while not condition():
+        if process.poll() is not None:
+            sys.exit(f'the receiver ended while waiting for {what}:\n{process.communicate()[0]}')
+        if time.monotonic() > until:
+            os.killpg(process.pid, signal.SIGKILL)
+            sys.exit(f'waited in vain for {what}:\n{process.communicate()[0]}')
+        time.sleep(0.02)
+
+
+def listening(port):
+    return any(line.split()[1].endswith(f':{port:04X}') for line in open('/proc/net/udp', encoding='ascii').readlines()[1:])
+
+
+def size(path):
+    return os.path.getsize(path) if os.path.exists(path) else 0
+
+
+def test_rtp(kind):
+    port, json_port = free_port(), free_port()
+    stream = source(kind)
+    receiver = start('rtp-receive', ADDRESS='127.0.0.1', PORT=port, JSON_PORT=json_port, JSON='out.jsonl',
+                     SINK='video/x-raw,format=I420 ! filesink buffer-mode=unbuffered location=out.raw')
+    wait_for('its ports', lambda: listening(port) and listening(json_port), receiver)
+    finish(start('rtp-send', SOURCE=stream, HOST='127.0.0.1', PORT=port, JSON_PORT=json_port))
+    # The decoder keeps a few frames until the stream ends, which a receiver of UDP never hears of.
+    wait_for('the frames', lambda: size('out.raw') >= (FRAMES - 5) * WIDTH * HEIGHT * 3 // 2, receiver)
+    os.killpg(receiver.pid, signal.SIGINT)
+    finish(receiver)
+    check_lines('out.jsonl')
+    pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
+    assert FRAMES - 5 <= len(pictures) <= FRAMES, f'{len(pictures)} frames were received'
+    assert sum(map(coloured, pictures)) > FRAMES // 3, 'the received picture has no boxes'
+
+
+def main():
+    name, kind = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as folder:
+        os.chdir(folder)
+        globals()[f'test_{name}'](kind)
+        os.chdir('/')
+
+
+main()
