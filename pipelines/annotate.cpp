@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// cerberus-annotate: what ./pipelines/demo runs once everything is built. A video file goes in, and beside the video
-// with boxes comes one JSON line a frame. The line is the one of annotate.launch, with three things more that a launch
-// line cannot do: progress, a summary, and a window that may be missing or be closed without disturbing the work.
+// cerberus-annotate: what ./pipelines/demo runs once everything is built. A video file goes in, and beside
+// the video with boxes comes one JSON line a frame. The line is the one of annotate.launch, with three things
+// more that a launch line cannot do: progress, a summary, and a window that may be missing or be closed
+// without disturbing the work.
 
 #include <glib-unix.h>
 #include <glib/gstdio.h>
@@ -22,18 +23,22 @@ using namespace std::string_literals;
 
 namespace {
 
-// The JSON branch has no limit in its queue: x264enc holds dozens of frames before the first comes out, and a branch
-// that stopped taking frames meanwhile would stall both. Lines are small, frames are not, so the queue stands behind
-// motionjson. Encoders want even sizes; deinterlace and videoflip (turned phones) let other video through untouched.
+// The JSON branch has no limit in its queue: x264enc holds dozens of frames before the first comes out, and a
+// branch that stopped taking frames meanwhile would stall both. Lines are small, frames are not, so the queue
+// stands behind motionjson. Encoders want even sizes; deinterlace and videoflip (turned phones) let other
+// video through untouched.
 constexpr const char* kPipeline =
-    "filesrc name=file ! decodebin name=decoder ! videoconvert ! deinterlace ! videoflip video-direction=auto ! "
+    "filesrc name=file ! decodebin name=decoder ! videoconvert ! deinterlace ! videoflip "
+    "video-direction=auto ! "
     "motiondetect name=detect ! tee name=t "
-    "t. ! motionjson ! queue max-size-buffers=0 max-size-bytes=0 max-size-time=0 ! filesink name=json async=false "
+    "t. ! motionjson ! queue max-size-buffers=0 max-size-bytes=0 max-size-time=0 ! filesink name=json "
+    "async=false "
     "t. ! queue ! motionoverlay ! videoconvert ! videoscale ! "
     "video/x-raw,format=I420,width=[2,16384,2],height=[2,16384,2] ! tee name=drawn "
     "drawn. ! queue max-size-buffers=3 ! x264enc speed-preset=veryfast pass=qual quantizer=21 ! mp4mux ! "
     "filesink name=mp4 "
-    "drawn. ! queue leaky=downstream max-size-buffers=1 ! appsink name=shown async=false sync=false drop=true "
+    "drawn. ! queue leaky=downstream max-size-buffers=1 ! appsink name=shown async=false sync=false "
+    "drop=true "
     "max-buffers=1";
 
 struct Run {
@@ -63,8 +68,8 @@ GstPadProbeReturn on_frame(GstPad*, GstPadProbeInfo* info, gpointer data) {
   static const GQuark motion = g_quark_from_static_string("motion");
   gpointer state = nullptr;
   std::lock_guard lock(run.mutex);
-  while (GstMeta* meta = gst_buffer_iterate_meta_filtered(buffer, &state,
-                                                          GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
+  while (GstMeta* meta =
+             gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     auto* region = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
     if (region->roi_type == motion) run.objects.insert(region->id);
   }
@@ -94,7 +99,8 @@ gboolean show_progress(gpointer data) {
   std::string percent;
   const GstClockTime length = duration(run);
   if (length != GST_CLOCK_TIME_NONE)
-    percent = std::to_string(std::min<guint64>(100, gst_util_uint64_scale(run.position, 100, length))) + " %, ";
+    percent =
+        std::to_string(std::min<guint64>(100, gst_util_uint64_scale(run.position, 100, length))) + " %, ";
   std::fprintf(stderr, "%s%s%" G_GUINT64_FORMAT " frames, %.1f a second, %zu objects%s",
                run.terminal ? "\r\033[K" : "", percent.c_str(), frames, frames / run.seconds(), objects,
                run.terminal ? "" : "\n");
@@ -128,8 +134,10 @@ std::string explain(const Run& run, GstMessage* message) {
   } else if (source == "file") {
     text = "cannot read " + run.file + ": " + error->message;
   } else if (run.frames == 0) {
-    text = run.file + " is not a video that can be read here (damaged, cut off at its start, of an unknown kind, or "
-           "without a picture): " + error->message;
+    text = run.file +
+           " is not a video that can be read here (damaged, cut off at its start, of an unknown kind, or "
+           "without a picture): " +
+           error->message;
   } else {
     text = run.file + ", after frame " + std::to_string(run.frames.load()) + ": " + error->message;
   }
@@ -162,11 +170,13 @@ void on_no_more_pads(GstElement* decoder, gpointer) {
   g_value_unset(&item);
   gst_iterator_free(pads);
   if (!linked)
-    GST_ELEMENT_ERROR(decoder, STREAM, WRONG_TYPE, ("There is no picture in it, or no decoder for it."), (nullptr));
+    GST_ELEMENT_ERROR(decoder, STREAM, WRONG_TYPE, ("There is no picture in it, or no decoder for it."),
+                      (nullptr));
 }
 
-// The window is a pipeline of its own: whatever happens to it (no display after all, closed by its user) ends here.
-// The sinks are tried by hand: autovideosink also tries those for DirectFB, which can crash where there is none.
+// The window is a pipeline of its own: whatever happens to it (no display after all, closed by its user) ends
+// here. The sinks are tried by hand: autovideosink also tries those for DirectFB, which can crash where there
+// is none.
 void open_window(Run& run) {
   if (!g_getenv("DISPLAY") && !g_getenv("WAYLAND_DISPLAY")) return;
   for (const char* name : {"waylandsink", "xvimagesink", "ximagesink", "glimagesink"}) {
@@ -174,8 +184,8 @@ void open_window(Run& run) {
     if (!factory) continue;
     gst_object_unref(factory);
     const std::string line =
-        "appsrc name=in format=time max-buffers=2 max-bytes=0 leaky-type=downstream ! videoconvert ! "s + name +
-        " sync=false";
+        "appsrc name=in format=time max-buffers=2 max-bytes=0 leaky-type=downstream ! videoconvert ! "s +
+        name + " sync=false";
     run.window = gst_parse_launch(line.c_str(), nullptr);
     if (!run.window) continue;
     if (gst_element_set_state(run.window, GST_STATE_READY) != GST_STATE_CHANGE_FAILURE) {
@@ -294,12 +304,16 @@ int main(int argc, char** argv) {
   if (!good) {
     std::fprintf(stderr, "demo: %s\n", run.error.c_str());
   } else {
-    if (!run.interrupted && length != GST_CLOCK_TIME_NONE && run.position + run.position / 10 + GST_SECOND < length)
-      std::fprintf(stderr, "demo: %s says it lasts %.1f s, but its frames end at %.1f s: it is cut off or damaged\n",
+    if (!run.interrupted && length != GST_CLOCK_TIME_NONE &&
+        run.position + run.position / 10 + GST_SECOND < length)
+      std::fprintf(stderr,
+                   "demo: %s says it lasts %.1f s, but its frames end at %.1f s: it is cut off or damaged\n",
                    run.file.c_str(), length / 1e9, run.position / 1e9);
-    std::printf("%" G_GUINT64_FORMAT " frames, %.1f frames per second, %zu objects seen: %s/annotated.mp4 and "
+    std::printf("%" G_GUINT64_FORMAT
+                " frames, %.1f frames per second, %zu objects seen: %s/annotated.mp4 and "
                 "%s/objects.jsonl\n",
-                run.frames.load(), run.frames / seconds, run.objects.size(), run.folder.c_str(), run.folder.c_str());
+                run.frames.load(), run.frames / seconds, run.objects.size(), run.folder.c_str(),
+                run.folder.c_str());
   }
   gst_clear_object(&run.pipeline);
   gst_clear_object(&run.window);

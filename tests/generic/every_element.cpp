@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What must hold for each element of the project's plugins, whatever it does: the registry is asked which there are,
-// so a new element is tested from its first day on.
+// What must hold for each element of the project's plugins, whatever it does: the registry is asked which
+// there are, so a new element is tested from its first day on.
 
 #include <gst/check/gstcheck.h>
 #include <gst/gst.h>
@@ -35,7 +35,9 @@ GstElement* make(const std::string& name) {
   return element;
 }
 
-bool is_own(GType type) { return g_str_has_prefix(g_type_name(type), "Cerberus"); }
+bool is_own(GType type) {
+  return g_str_has_prefix(g_type_name(type), "Cerberus");
+}
 
 void for_each_property(GstElement* element, const std::function<void(GParamSpec*)>& visit) {
   guint count = 0;
@@ -54,10 +56,11 @@ std::vector<GValue> values_of(GParamSpec* spec) {
     set(&item, value);
     values.push_back(item);
   };
-  if (auto* s = G_IS_PARAM_SPEC_BOOLEAN(spec) ? G_PARAM_SPEC_BOOLEAN(spec) : nullptr; s) {
-    for (gboolean value : {FALSE, TRUE}) add(g_value_set_boolean, value);
+  if (G_IS_PARAM_SPEC_BOOLEAN(spec)) {
+    for (gboolean value : {gboolean{FALSE}, gboolean{TRUE}}) add(g_value_set_boolean, value);
   } else if (G_IS_PARAM_SPEC_INT(spec)) {
-    for (gint value : {G_PARAM_SPEC_INT(spec)->minimum, G_PARAM_SPEC_INT(spec)->maximum}) add(g_value_set_int, value);
+    for (gint value : {G_PARAM_SPEC_INT(spec)->minimum, G_PARAM_SPEC_INT(spec)->maximum})
+      add(g_value_set_int, value);
   } else if (G_IS_PARAM_SPEC_UINT(spec)) {
     for (guint value : {G_PARAM_SPEC_UINT(spec)->minimum, G_PARAM_SPEC_UINT(spec)->maximum})
       add(g_value_set_uint, value);
@@ -145,8 +148,8 @@ GST_START_TEST(a_property_gives_back_what_it_was_given) {
         g_value_init(&back, spec->value_type);
         g_object_get_property(G_OBJECT(element), spec->name, &back);
         if (!may_refuse)
-          fail_unless(g_param_values_cmp(spec, &value, &back) == 0, "%s::%s was set to %s and says %s", name.c_str(),
-                      spec->name, as_text(value).c_str(), as_text(back).c_str());
+          fail_unless(g_param_values_cmp(spec, &value, &back) == 0, "%s::%s was set to %s and says %s",
+                      name.c_str(), spec->name, as_text(value).c_str(), as_text(back).c_str());
         g_value_unset(&back);
         g_value_unset(&value);
       }
@@ -160,14 +163,15 @@ GST_START_TEST(a_new_element_has_the_defaults_that_it_declares) {
   for (const auto& name : elements()) {
     GstElement* element = make(name);
     for_each_property(element, [&](GParamSpec* spec) {
-      if (!(spec->flags & G_PARAM_WRITABLE) || !(spec->flags & G_PARAM_READABLE) || G_IS_PARAM_SPEC_BOXED(spec) ||
-          G_IS_PARAM_SPEC_OBJECT(spec))
+      if (!(spec->flags & G_PARAM_WRITABLE) || !(spec->flags & G_PARAM_READABLE) ||
+          G_IS_PARAM_SPEC_BOXED(spec) || G_IS_PARAM_SPEC_OBJECT(spec))
         return;
       GValue value = G_VALUE_INIT;
       g_value_init(&value, spec->value_type);
       g_object_get_property(G_OBJECT(element), spec->name, &value);
-      fail_unless(g_param_value_defaults(spec, &value), "%s::%s is %s in a new element, not its declared default",
-                  name.c_str(), spec->name, as_text(value).c_str());
+      fail_unless(g_param_value_defaults(spec, &value),
+                  "%s::%s is %s in a new element, not its declared default", name.c_str(), spec->name,
+                  as_text(value).c_str());
       g_value_unset(&value);
     });
     gst_object_unref(element);
@@ -209,7 +213,8 @@ GST_START_TEST(no_value_within_its_range_crashes_or_hangs_an_element) {
       for (GValue& value : values_of(spec)) {
         GstElement* pipeline = pipeline_with(name);
         GstElement* tested = gst_bin_get_by_name(GST_BIN(pipeline), "tested");
-        if (!(spec->flags & G_PARAM_CONSTRUCT_ONLY)) g_object_set_property(G_OBJECT(tested), spec->name, &value);
+        if (!(spec->flags & G_PARAM_CONSTRUCT_ONLY))
+          g_object_set_property(G_OBJECT(tested), spec->name, &value);
         run_to_the_end(name, pipeline, std::string(spec->name) + "=" + as_text(value));
         gst_object_unref(tested);
         gst_object_unref(pipeline);
