@@ -7,11 +7,10 @@
 #include <optional>
 
 #include "vision/image.h"
+#include "vision/motion_fit.h"
 #include "vision/transform.h"
 
 namespace cerberus::vision {
-
-enum class MotionModel { none, translation, similarity, affine, homography };
 
 struct CameraMotionOptions {
   MotionModel model = MotionModel::similarity;
@@ -22,7 +21,7 @@ struct CameraMotionResult {
   double confidence = 0;  // share of the picture's usable patches that follow the transform, 0..1
   double residual = 0;    // RMS distance of those patches from it, analysis pixels
   bool still = false;     // the camera stands: the transform is exactly identity
-  int scene_age = 0;      // frames of this scene seen, this one included: 1 = no predecessor (start, reset, cut)
+  int scene_age = 0;  // frames of this scene seen, this one included: 1 = no predecessor (start, reset, cut)
 };
 
 // Feeds on one analysis picture a frame. Keeps a copy of what it needs of the previous one (a small pyramid).

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Where the whole picture went, roughly: the first guess for pans too fast for patches to be followed.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "vision/image.h"
+
+namespace cerberus::vision {
+
+// A small picture (at most 64 pixels a side) freed of brightness and contrast: what a pixel stands out of its 5 x 5
+// surroundings, scaled to a common mean. Kept with a border so that it can be compared at any shift.
+class Relief {
+ public:
+  static constexpr int kMaxSide = 64;
+
+  void build(GrayView picture);
+  Size size() const { return size_; }
+  double contrast() const { return contrast_; }  // mean distance from the surroundings, grey levels
+
+ private:
+  friend struct ShiftSearch;
+  static constexpr int kStride = 96, kBorder = 16;  // 16 columns left and right of 64
+  Size size_;
+  double contrast_ = 0;
+  alignas(64) std::array<std::uint8_t, kStride * kMaxSide> later_{};     // as the later picture: border 255
+  alignas(64) std::array<std::uint8_t, kMaxSide * kMaxSide> earlier_{};  // as the earlier: padded with 0
+};
+
+struct Shift {
+  double dx = 0, dy = 0;  // earlier to later, pixels of the small picture
+  double difference = 1;  // mean difference over the overlap, 0 (equal) to about 1 (unrelated)
+};
+
+// The best shift of up to a quarter of the picture either way, to a fraction of a pixel; and the best one that is
+// not next to it.
+struct ShiftSearch {
+  std::array<Shift, 2> run(const Relief& earlier, const Relief& later);
+};
+
+}  // namespace cerberus::vision

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One motion of the whole picture from many small ones, of which half may belong to moving objects.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "vision/transform.h"
+
+namespace cerberus::vision {
+
+enum class MotionModel { none, translation, similarity, affine, homography };
+
+// Where patches of frame k-1 were found in frame k, with what each is worth.
+struct MotionSamples {
+  static constexpr int kMax = 192;
+  static constexpr int kRegions = 16;
+
+  int count = 0;
+  std::array<float, kMax> x, y;           // frame k-1, pixels
+  std::array<float, kMax> u, v;           // frame k
+  std::array<float, kMax> wxx, wxy, wyy;  // inverse covariance of (u, v), 1 / pixel^2
+  std::array<float, kMax> evidence;       // 0..1: how much it says about both directions
+  std::array<std::uint8_t, kMax> region;  // which of kRegions parts of the picture it lies in
+};
+
+struct MotionFit {
+  Transform transform;
+  double support = 0;   // sum over regions of the square root of their evidence that agrees
+  double cost = 0;      // sum of evidence times the squared Mahalanobis distance, cut off at kGate
+  double agreeing = 0;  // evidence of the samples within the gate
+  double residual = 0;  // RMS distance of those, pixels
+};
+
+// Squared Mahalanobis distance (two degrees of freedom: 1 % of honest samples are beyond) at which a sample disagrees.
+constexpr float kGate = 9.0f;
+
+// How well `transform` explains the samples. Agreement in many parts of the picture counts for more than the same number
+// in one: objects are compact, the background is everywhere.
+MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
+
+// Consensus over random pairs of samples (a fixed sequence: the same input gives the same output), over `guesses`, then
+// least squares with Tukey's weights over what agrees. The model is reduced where the samples cannot carry it. Returns
+// the guess with most support where there are no samples at all (identity without guesses).
+MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
+                     std::span<const Transform> guesses);
+
+// Only the least squares part, from `start`.
+MotionFit refine_motion(const MotionSamples& samples, MotionModel model, Size picture,
+                        const Transform& start);
+
+}  // namespace cerberus::vision

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Small pieces of the picture that can be found again: choosing them and following them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "vision/image.h"
+#include "vision/motion_fit.h"
+#include "vision/motion_kernels.h"
+#include "vision/pyramid.h"
+
+namespace cerberus::vision {
+
+struct PatchSite {
+  float x, y;           // centre, pixels of level 0
+  std::uint8_t region;  // of MotionSamples::kRegions, 4 x 4 over the picture
+};
+
+// The most telling patch of every cell of a grid of at most 16 x 12 cells; cells without texture give none.
+struct PatchSites {
+  int count = 0;
+  std::array<PatchSite, MotionSamples::kMax> site;
+
+  // noise: standard deviation of a pixel of level 0; texture must stand out of it.
+  void choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch);
+};
+
+// What following one patch gave.
+struct PatchMatch {
+  float dx = 0, dy = 0;  // displacement, pixels of the level; of its centre (x, y) on that level
+  float x = 0, y = 0;
+  float correlation = 0;            // of the two patches, -1..1; 0 where it left the picture
+  float noise2 = 0;                 // variance of what the match leaves unexplained, grey levels^2
+  float hxx = 0, hxy = 0, hyy = 0;  // gradient information, gain taken out, grey levels^2 / pixel^2
+};
+
+// The patch around `site` on level `level`, first looked for at displacement (dx, dy): inverse compositional Gauss-Newton
+// (Baker and Matthews, IJCV 56(3), 2004) with gain and offset as further unknowns, so that light may change. Template and
+// gradients come from the earlier picture. rounds 0 only rates the given place.
+PatchMatch follow_patch(GrayView earlier, GrayView later, int level, const PatchSite& site, float dx,
+                        float dy, int rounds);
+
+}  // namespace cerberus::vision
