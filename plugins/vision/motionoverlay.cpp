@@ -1,0 +1,465 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-motionoverlay
+ * @title: motionoverlay
+ * @short_description: draws what moves
+ * @see_also: motiondetect, motionjson, motionview
+ *
+ * Draws a box around everything that moves, with its identity and speed, and the way it came. The line tells
+ * how its place is known: solid = seen in this frame, dashed = carried on by its velocity, dotted and two
+ * bars in the label = it stands and is held. Colours belong to identities and are told apart with any colour
+ * vision. Trails lie on the scene: while the camera turns they turn with the picture.
+ *
+ * Pads: raw video in and out, the same format. Where downstream takes GstVideoOverlayComposition (caps
+ * feature or allocation query, as most sinks that draw with a graphics card do) the pictures are attached and
+ * the frame is not touched; otherwise they are blended into a writable copy of what they cover. A frame in
+ * which nothing moves passes as it is. Other branches of a tee never see the drawing.
+ *
+ * Reads the region and camera-motion metas. Posts no messages. Regions that no tracker has seen are drawn in
+ * white, without identity and trail. What reaches beyond the frame is cut at its edge.
+ *
+ * ## Example launch lines
+ * |[
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionoverlay ! videoconvert !
+ * autovideosink gst-launch-1.0 v4l2src ! videoconvert ! motiondetect ! motionoverlay trail-time=5000000000 !
+ * videoconvert ! autovideosink gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect !
+ * motionoverlay show-trails=false ! videoconvert ! x264enc ! mp4mux ! filesink location=annotated.mp4
+ * ]|
+ *
+ * Since: 0.1
+ */
+
+#include <cerberus/cerberus.h>
+#include <gst/base/gstbasetransform.h>
+#include <gst/video/gstvideometa.h>
+#include <gst/video/video-overlay-composition.h>
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "cerberus/private/element.hpp"
+#include "cerberus/private/video.hpp"
+#include "drawing.hpp"
+#include "vision/trails.h"
+
+namespace {
+
+using cerberus::vision::Transform;
+namespace draw = cerberus::draw;
+
+GST_DEBUG_CATEGORY_STATIC(motionoverlay_debug);
+#define GST_CAT_DEFAULT motionoverlay_debug
+
+constexpr gboolean kDefaultShow = TRUE;
+constexpr gboolean kDefaultCrosshair = FALSE;
+constexpr GstClockTime kDefaultTrailTime = 2 * GST_SECOND;
+constexpr GstClockTime kMaximumTrailTime = 60 * GST_SECOND;
+constexpr double kDefaultLineWidth = 0;
+constexpr double kMaximumLineWidth = 64;
+
+#define OVERLAY_CAPS                                                                              \
+  GST_VIDEO_CAPS_MAKE(GST_VIDEO_OVERLAY_COMPOSITION_BLEND_FORMATS)                                \
+  ";" GST_VIDEO_CAPS_MAKE_WITH_FEATURES(GST_CAPS_FEATURE_MEMORY_SYSTEM_MEMORY                     \
+                                        ", " GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION, \
+                                        GST_VIDEO_OVERLAY_COMPOSITION_BLEND_FORMATS)
+
+GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(OVERLAY_CAPS));
+GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(OVERLAY_CAPS));
+
+enum {
+  PROP_0,
+  PROP_SHOW_BOXES,
+  PROP_SHOW_IDS,
+  PROP_SHOW_SPEEDS,
+  PROP_SHOW_TRAILS,
+  PROP_TRAIL_TIME,
+  PROP_LINE_WIDTH,
+  PROP_CROSSHAIR
+};
+
+struct Settings {
+  bool boxes = kDefaultShow, ids = kDefaultShow, speeds = kDefaultShow, trails = kDefaultShow;
+  bool crosshair = kDefaultCrosshair;
+  GstClockTime trail_time = kDefaultTrailTime;
+  double line_width = kDefaultLineWidth;
+};
+
+struct State {  // streaming thread only
+  GstVideoInfo info;
+  bool attach = false;  // downstream takes compositions
+  double time = 0;      // s, of the last frame
+  bool fresh = true;    // the next frame has no predecessor
+  bool warned = false;  // a frame that cannot be written
+  cerberus::vision::Trails trails;
+  draw::Painter painter;
+  std::vector<draw::Object> objects;
+  std::vector<cerberus::vision::TrailMark> marks;
+  std::vector<draw::Patch> patches;
+};
+
+struct Private {
+  std::mutex lock;
+  Settings settings;
+  State state;
+};
+
+CERBERUS_DEFINE_TYPE(CerberusMotionOverlay, cerberus_motion_overlay, GstBaseTransform,
+                     GST_TYPE_BASE_TRANSFORM, Private)
+
+using CompositionPtr =
+    std::unique_ptr<GstVideoOverlayComposition, decltype(&gst_video_overlay_composition_unref)>;
+
+bool has_composition_feature(const GstCaps* caps, guint index = 0) {
+  return gst_caps_features_contains(gst_caps_get_features(caps, index),
+                                    GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
+}
+
+// Caps of every structure twice: with the feature and without it.
+GstCaps* both_ways(const GstCaps* caps) {
+  GstCaps* with = gst_caps_new_empty();
+  GstCaps* without = gst_caps_new_empty();
+  for (guint i = 0; i < gst_caps_get_size(caps); ++i) {
+    const GstStructure* structure = gst_caps_get_structure(caps, i);
+    GstCapsFeatures* features = gst_caps_features_copy(gst_caps_get_features(caps, i));
+    gst_caps_features_remove(features, GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
+    gst_caps_append_structure_full(without, gst_structure_copy(structure), gst_caps_features_copy(features));
+    gst_caps_features_add(features, GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION);
+    gst_caps_append_structure_full(with, gst_structure_copy(structure), features);
+  }
+  return gst_caps_merge(with, without);
+}
+
+// Many accept any caps and know nothing of compositions (a file sink would lose the drawing): who really
+// draws them says so in the answer to the allocation query.
+bool downstream_draws(GstBaseTransform* transform, GstCaps* caps) {
+  GstQuery* query = gst_query_new_allocation(caps, FALSE);
+  const bool draws =
+      gst_pad_peer_query(transform->srcpad, query) &&
+      gst_query_find_allocation_meta(query, GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
+  gst_query_unref(query);
+  return draws;
+}
+
+CompositionPtr compose(const std::vector<draw::Patch>& patches, const GstVideoOverlayComposition* before) {
+  CompositionPtr composition(
+      before ? gst_video_overlay_composition_copy(const_cast<GstVideoOverlayComposition*>(before))
+             : gst_video_overlay_composition_new(nullptr),
+      gst_video_overlay_composition_unref);
+  for (const draw::Patch& patch : patches) {
+    // The buffer holds the surface: no copy, and labels that stay the same are shared from frame to frame.
+    cairo_surface_t* surface = cairo_surface_reference(patch.pixels.get());
+    const gsize size = static_cast<gsize>(cairo_image_surface_get_stride(surface)) * patch.area.height;
+    GstBuffer* pixels = gst_buffer_new_wrapped_full(
+        GST_MEMORY_FLAG_READONLY, cairo_image_surface_get_data(surface), size, 0, size, surface,
+        [](gpointer data) { cairo_surface_destroy(static_cast<cairo_surface_t*>(data)); });
+    gsize offsets[GST_VIDEO_MAX_PLANES] = {};
+    gint strides[GST_VIDEO_MAX_PLANES] = {cairo_image_surface_get_stride(surface)};
+    gst_buffer_add_video_meta_full(pixels, GST_VIDEO_FRAME_FLAG_NONE,
+                                   GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB, patch.area.width,
+                                   patch.area.height, 1, offsets, strides);
+    GstVideoOverlayRectangle* rectangle = gst_video_overlay_rectangle_new_raw(
+        pixels, patch.area.x, patch.area.y, patch.area.width, patch.area.height,
+        GST_VIDEO_OVERLAY_FORMAT_FLAG_PREMULTIPLIED_ALPHA);
+    gst_buffer_unref(pixels);
+    gst_video_overlay_composition_add_rectangle(composition.get(), rectangle);
+    gst_video_overlay_rectangle_unref(rectangle);
+  }
+  return composition;
+}
+
+void forget(State& state) {
+  state.trails.reset();
+  state.painter.reset();
+  state.fresh = true;
+}
+
+gboolean cerberus_motion_overlay_start(GstBaseTransform* transform) {
+  State& state = cerberus_motion_overlay_self(transform)->priv->state;
+  forget(state);
+  state.attach = state.warned = false;
+  return TRUE;
+}
+
+gboolean cerberus_motion_overlay_stop(GstBaseTransform* transform) {
+  forget(cerberus_motion_overlay_self(transform)->priv->state);
+  return TRUE;
+}
+
+GstCaps* cerberus_motion_overlay_transform_caps(GstBaseTransform*, GstPadDirection, GstCaps* caps,
+                                                GstCaps* filter) {
+  GstCaps* result = both_ways(caps);
+  if (!filter) return result;
+  GstCaps* common = gst_caps_intersect_full(filter, result, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(result);
+  return common;
+}
+
+// Only called where downstream leaves a choice.
+GstCaps* cerberus_motion_overlay_fixate_caps(GstBaseTransform* transform, GstPadDirection direction,
+                                             GstCaps* caps, GstCaps* others) {
+  const auto take = [&](bool feature) -> GstCaps* {
+    for (guint i = 0; i < gst_caps_get_size(others); ++i)
+      if (has_composition_feature(others, i) == feature) return gst_caps_fixate(gst_caps_copy_nth(others, i));
+    return nullptr;
+  };
+  GstCaps* with = take(true);
+  GstCaps* without = take(false);
+  // Upstream's own composition stays attached if downstream takes it at all.
+  const bool prefer = direction == GST_PAD_SINK && with && !gst_caps_is_empty(with) &&
+                      (!without || downstream_draws(transform, with));
+  GstCaps*& chosen = prefer || !without ? with : without;
+  GstCaps* result = chosen ? std::exchange(chosen, nullptr) : gst_caps_copy(others);
+  gst_clear_caps(&with);
+  gst_clear_caps(&without);
+  gst_caps_unref(others);
+  GST_DEBUG_OBJECT(transform, "%" GST_PTR_FORMAT " for %" GST_PTR_FORMAT, result, caps);
+  return result;
+}
+
+gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps* out) {
+  State& state = cerberus_motion_overlay_self(transform)->priv->state;
+  if (!gst_video_info_from_caps(&state.info, in)) {
+    GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video's description is incomplete."),
+                      ("caps %" GST_PTR_FORMAT, in));
+    return FALSE;
+  }
+  forget(state);
+  state.attach = has_composition_feature(out) || downstream_draws(transform, out);
+  GST_INFO_OBJECT(transform, "drawing is %s", state.attach ? "attached" : "blended");
+  return TRUE;
+}
+
+gboolean cerberus_motion_overlay_sink_event(GstBaseTransform* transform, GstEvent* event) {
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_FLUSH_STOP:
+    case GST_EVENT_SEGMENT:
+    case GST_EVENT_STREAM_START:
+      forget(cerberus_motion_overlay_self(transform)->priv->state);
+      break;
+    default:
+      break;
+  }
+  return cerberus_motion_overlay_parent_class()->sink_event(transform, event);
+}
+
+// What the metas say, in the terms of the drawing.
+void read_objects(State& state, GstBuffer* buffer) {
+  state.objects.clear();
+  state.marks.clear();
+  GPtrArray* regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    draw::Object object;
+    object.id = region.tracked ? region.id : 0;
+    object.x = region.x, object.y = region.y;
+    object.width = region.width, object.height = region.height;
+    object.speed = region.tracked ? std::hypot(region.vx, region.vy) : NAN;
+    object.distance = region.distance;
+    object.look = region.state == CERBERUS_REGION_STOPPED   ? draw::Look::stopped
+                  : region.state == CERBERUS_REGION_COASTED ? draw::Look::coasted
+                                                            : draw::Look::seen;
+    state.objects.push_back(object);
+    // People and cars stand on the ground: the trail is where their feet were.
+    if (object.id)
+      state.marks.push_back({object.id, {region.x + region.width / 2, region.y + region.height}});
+  }
+  g_ptr_array_unref(regions);
+}
+
+void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
+  Transform motion;
+  if (const auto* camera = cerberus_buffer_get_camera_motion_meta(buffer)) {
+    std::copy_n(camera->motion.matrix, motion.m.size(), motion.m.begin());
+    if (camera->motion.scene_age == 1) state.fresh = true;
+  }
+  if (GST_BUFFER_IS_DISCONT(buffer)) state.fresh = true;
+  const double nominal = GST_VIDEO_INFO_FPS_N(&state.info) > 0
+                             ? double(GST_VIDEO_INFO_FPS_D(&state.info)) / GST_VIDEO_INFO_FPS_N(&state.info)
+                             : 1 / 30.0;
+  const double time =
+      GST_BUFFER_PTS_IS_VALID(buffer) ? double(GST_BUFFER_PTS(buffer)) / GST_SECOND : state.time + nominal;
+  if (state.fresh || time < state.time) state.trails.reset();
+  state.fresh = false;
+  state.time = time;
+  const cerberus::vision::Size frame{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
+  if (settings.trails)
+    state.trails.update(time, double(settings.trail_time) / GST_SECOND, motion, frame, state.marks);
+  else
+    state.trails.reset();
+}
+
+GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, GstBuffer* buffer) {
+  return cerberus::guarded(transform, GST_FLOW_ERROR, [&]() -> GstFlowReturn {
+    Private& self = *cerberus_motion_overlay_self(transform)->priv;
+    State& state = self.state;
+    const Settings settings = [&] {
+      std::lock_guard guard(self.lock);
+      return self.settings;
+    }();
+    read_objects(state, buffer);
+    update_trails(state, buffer, settings);
+
+    draw::Scene scene;
+    scene.frame = {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
+    scene.objects = state.objects;
+    scene.trails = state.trails.trails();
+    scene.time = state.time;
+    scene.trail_time = double(settings.trail_time) / GST_SECOND;
+    scene.line_width = settings.line_width;
+    scene.boxes = settings.boxes;
+    scene.ids = settings.ids;
+    scene.speeds = settings.speeds;
+    scene.crosshair = settings.crosshair;
+    state.patches.clear();
+    state.painter.paint(scene, state.patches);
+
+    GstVideoOverlayCompositionMeta* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
+    if (state.patches.empty() && (!meta || state.attach)) return GST_FLOW_OK;
+    const CompositionPtr composition = compose(state.patches, meta ? meta->overlay : nullptr);
+    state.patches.clear();
+    if (meta) gst_buffer_remove_video_overlay_composition_meta(buffer, meta);
+    if (state.attach) {
+      gst_buffer_add_video_overlay_composition_meta(buffer, composition.get());
+      return GST_FLOW_OK;
+    }
+    // Mapping for writing copies memory that others (a tee's other branch) hold too.
+    cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);
+    if ((!frame || !gst_video_overlay_composition_blend(composition.get(), frame.get())) && !state.warned) {
+      state.warned = true;
+      GST_ELEMENT_WARNING(transform, STREAM, FAILED, ("A frame could not be drawn on."),
+                          ("%" GST_PTR_FORMAT " is too small for %dx%d, or cannot be written", buffer,
+                           scene.frame.width, scene.frame.height));
+    }
+    return GST_FLOW_OK;
+  });
+}
+
+void cerberus_motion_overlay_set_property(GObject* object, guint id, const GValue* value, GParamSpec* spec) {
+  Private& self = *cerberus_motion_overlay_self(object)->priv;
+  std::lock_guard guard(self.lock);
+  Settings& settings = self.settings;
+  switch (id) {
+    case PROP_SHOW_BOXES:
+      settings.boxes = g_value_get_boolean(value);
+      break;
+    case PROP_SHOW_IDS:
+      settings.ids = g_value_get_boolean(value);
+      break;
+    case PROP_SHOW_SPEEDS:
+      settings.speeds = g_value_get_boolean(value);
+      break;
+    case PROP_SHOW_TRAILS:
+      settings.trails = g_value_get_boolean(value);
+      break;
+    case PROP_TRAIL_TIME:
+      settings.trail_time = g_value_get_uint64(value);
+      break;
+    case PROP_LINE_WIDTH:
+      settings.line_width = g_value_get_double(value);
+      break;
+    case PROP_CROSSHAIR:
+      settings.crosshair = g_value_get_boolean(value);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+  }
+}
+
+void cerberus_motion_overlay_get_property(GObject* object, guint id, GValue* value, GParamSpec* spec) {
+  Private& self = *cerberus_motion_overlay_self(object)->priv;
+  std::lock_guard guard(self.lock);
+  const Settings& settings = self.settings;
+  switch (id) {
+    case PROP_SHOW_BOXES:
+      g_value_set_boolean(value, settings.boxes);
+      break;
+    case PROP_SHOW_IDS:
+      g_value_set_boolean(value, settings.ids);
+      break;
+    case PROP_SHOW_SPEEDS:
+      g_value_set_boolean(value, settings.speeds);
+      break;
+    case PROP_SHOW_TRAILS:
+      g_value_set_boolean(value, settings.trails);
+      break;
+    case PROP_TRAIL_TIME:
+      g_value_set_uint64(value, settings.trail_time);
+      break;
+    case PROP_LINE_WIDTH:
+      g_value_set_double(value, settings.line_width);
+      break;
+    case PROP_CROSSHAIR:
+      g_value_set_boolean(value, settings.crosshair);
+      break;
+    default:
+      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
+  }
+}
+
+void cerberus_motion_overlay_init(CerberusMotionOverlay* self) {
+  gst_video_info_init(&self->priv->state.info);
+  gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
+  gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
+}
+
+void install_properties(GObjectClass* object) {
+  const auto flags = GParamFlags(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_CONTROLLABLE |
+                                 GST_PARAM_MUTABLE_PLAYING);
+  const auto boolean = [&](guint id, const char* name, const char* nick, const char* blurb, gboolean value) {
+    g_object_class_install_property(object, id, g_param_spec_boolean(name, nick, blurb, value, flags));
+  };
+  boolean(PROP_SHOW_BOXES, "show-boxes", "Show boxes", "Draw a box around every object", kDefaultShow);
+  boolean(PROP_SHOW_IDS, "show-ids", "Show identities", "Draw a label with the identity on every object",
+          kDefaultShow);
+  boolean(PROP_SHOW_SPEEDS, "show-speeds", "Show speeds",
+          "Add the speed in pixels a second to the label where the box is wide enough for it", kDefaultShow);
+  boolean(PROP_SHOW_TRAILS, "show-trails", "Show trails",
+          "Draw the way that every object came, fixed to the scene while the camera moves", kDefaultShow);
+  g_object_class_install_property(
+      object, PROP_TRAIL_TIME,
+      g_param_spec_uint64("trail-time", "Trail time",
+                          "How far back trails reach, in nanoseconds; 0 leaves none, 60 s is the most", 0,
+                          kMaximumTrailTime, kDefaultTrailTime, flags));
+  g_object_class_install_property(
+      object, PROP_LINE_WIDTH,
+      g_param_spec_double(
+          "line-width", "Line width",
+          "Width of the lines in pixels of the frame; 0 chooses one that reads well at the frame's "
+          "size, 64 is the most",
+          0, kMaximumLineWidth, kDefaultLineWidth, flags));
+  boolean(PROP_CROSSHAIR, "crosshair", "Crosshair", "Mark the centre of the picture", kDefaultCrosshair);
+}
+
+void cerberus_motion_overlay_class_init(CerberusMotionOverlayClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = cerberus_motion_overlay_set_property;
+  object->get_property = cerberus_motion_overlay_get_property;
+  install_properties(object);
+
+  GstElementClass* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_set_static_metadata(element, "Motion overlay", "Filter/Effect/Video",
+                                        "Draws boxes, identities, speeds and trails of what moves",
+                                        "Cerberus");
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+
+  GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
+  transform->start = cerberus_motion_overlay_start;
+  transform->stop = cerberus_motion_overlay_stop;
+  transform->transform_caps = cerberus_motion_overlay_transform_caps;
+  transform->fixate_caps = cerberus_motion_overlay_fixate_caps;
+  transform->set_caps = cerberus_motion_overlay_set_caps;
+  transform->sink_event = cerberus_motion_overlay_sink_event;
+  transform->transform_ip = cerberus_motion_overlay_transform_ip;
+}
+
+}  // namespace
+
+CERBERUS_REGISTER_ELEMENT(motionoverlay, GST_RANK_NONE, cerberus_motion_overlay, motionoverlay_debug,
+                          "drawing of what moves")
