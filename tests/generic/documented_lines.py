@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Every gst-launch line of the documentation runs, word for word but for what a test machine does not have.
+"""Every gst-launch line and Python program of the documentation runs, but for what a test machine does not have.
 
 Lines are taken from the fenced blocks of README.md and docs/ and from the |[ ... ]| blocks of the elements' SECTION
 comments. Cameras become a test source, files that are read become a small video, windows become a fakesink.
@@ -18,26 +18,34 @@ BALL = 'videotestsrc num-buffers=30 pattern=ball ! video/x-raw,width=320,height=
 NEEDS_HARDWARE = ('nvarguscamerasrc', 'nvvidconv', 'nvvideoconvert', 'vapostproc', 'v4l2convert', 'glupload')
 
 
-def blocks(path):
+def blocks(path, language='(?:sh|shell|bash)?'):
     text = path.read_text('utf-8')
     if path.suffix == '.md':
-        yield from re.findall(r'^```(?:sh|shell|bash)?\n(.*?)^```', text, re.S | re.M)
+        yield from re.findall(rf'^```{language}\n(.*?)^```', text, re.S | re.M)
     else:
         for comment in re.findall(r'/\*\*\n(.*?)\*/', text, re.S):
             comment = '\n'.join(re.sub(r'^\s*\* ?', '', line) for line in comment.splitlines())
             yield from re.findall(r'\|\[(?:\s*<!--.*?-->)?(.*?)\]\|', comment, re.S)
 
 
+PAGES = [TOP / 'README.md', *sorted((TOP / 'docs').rglob('*.md')), *sorted((TOP / 'plugins').rglob('*.cpp'))]
+PAGES = [path for path in PAGES if path.parent != TOP / 'docs' / 'elements']  # those repeat the comments
+
+
 def lines():
-    pages = [TOP / 'README.md', *sorted((TOP / 'docs').rglob('*.md')), *sorted((TOP / 'plugins').rglob('*.cpp'))]
-    for path in pages:
-        if not path.exists() or path.parts[-2] == 'elements' and path.suffix == '.md':
-            continue  # the element pages repeat the comments
+    for path in PAGES:
         for block in blocks(path):
             for line in block.replace('\\\n', ' ').splitlines():
                 line = line.strip().removeprefix('$ ')
                 if line.startswith('gst-launch-1.0 '):
                     yield path.relative_to(TOP), line
+
+
+def programs():
+    for path in PAGES:
+        if path.suffix == '.md':
+            for block in blocks(path, 'python'):
+                yield path.relative_to(TOP), re.sub(r'location=\S+', 'location=ball.mkv', block)
 
 
 def stand_in(line):
@@ -70,31 +78,42 @@ def stand_in(line):
     return result
 
 
+def goes_well(words):
+    """Runs to its end; what went wrong, else nothing."""
+    try:
+        done = subprocess.run(words, capture_output=True, text=True, timeout=60, errors='replace')
+    except subprocess.TimeoutExpired:
+        return 'it did not end'
+    return '' if done.returncode == 0 and 'Traceback' not in done.stderr else done.stdout[-2000:] + done.stderr
+
+
 def main():
     found, failed = 0, 0
+
+    def judge(name, words):
+        nonlocal found, failed
+        found += 1
+        wrong = goes_well(words)
+        print('FAIL' if wrong else 'ok  ', name)
+        if wrong:
+            failed += 1
+            print(f'  run as: {shlex.join(words)}\n  {wrong}')
+
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         subprocess.run(['gst-launch-1.0', '-q', *f'{BALL} ! x264enc ! matroskamux ! filesink location=ball.mkv'.split()],
                        check=True, timeout=60)
         for path, line in lines():
-            found += 1
             if any(name in line for name in NEEDS_HARDWARE):
                 print(f'skip {path}: {line} (its hardware is not here)')
-                continue
-            words = stand_in(line)
-            try:
-                done = subprocess.run(words, capture_output=True, text=True, timeout=60, errors='replace')
-                wrong = '' if done.returncode == 0 else done.stdout + done.stderr
-            except subprocess.TimeoutExpired:
-                wrong = 'it did not end'
-            print('FAIL' if wrong else 'ok  ', f'{path}: {line}')
-            if wrong:
-                failed += 1
-                print(f'  run as: {shlex.join(words)}\n  {wrong}')
+            else:
+                judge(f'{path}: {line}', stand_in(line))
+        for path, program in programs():
+            judge(f'{path}: a program', ['/usr/bin/python3', '-c', program])
         os.chdir('/')
-    print(f'{found} lines')
-    # A page without lines would make this test pass for nothing.
-    sys.exit(1 if failed or found < 3 else 0)
+    print(f'{found} lines and programs')
+    # Pages without any would make this test pass for nothing.
+    sys.exit(1 if failed or found < 8 else 0)
 
 
 main()
