@@ -108,6 +108,29 @@ std::span<const Component> Labeller::find(GrayView mask) {
   return components_;
 }
 
+std::span<const Component> Labeller::drop_smaller(std::uint32_t least, MutableGrayView mask) {
+  constexpr std::uint32_t gone = ~0u;
+  std::vector<std::uint32_t>& renumbered =
+      parent_;  // the forest has served; at least as many runs as components
+  std::uint32_t kept = 0;
+  for (std::size_t i = 0; i < components_.size(); ++i) {
+    const bool keep = components_[i].area >= least;
+    renumbered[i] = keep ? kept : gone;
+    if (keep) components_[kept++] = components_[i];
+  }
+  components_.resize(kept);
+  std::size_t end = 0;
+  for (Run run : runs_) {
+    run.component = renumbered[run.component];
+    if (run.component == gone)
+      std::fill(mask.row(run.row) + run.first, mask.row(run.row) + run.end, std::uint8_t{0});
+    else
+      runs_[end++] = run;
+  }
+  runs_.resize(end);
+  return components_;
+}
+
 void Labeller::write(View<std::uint16_t> labels) const {
   for (int y = 0; y < labels.height; ++y)
     std::memset(labels.row(y), 0, static_cast<std::size_t>(labels.width) * sizeof(std::uint16_t));

@@ -44,6 +44,10 @@ class Labeller {
   // nothing is allocated once it has.
   std::span<const Component> find(GrayView mask);
 
+  // Forgets the components smaller than `least` pixels, sets their pixels in the mask to 0 and numbers the others anew
+  // in the same order. mask: the one that find() was given.
+  std::span<const Component> drop_smaller(std::uint32_t least, MutableGrayView mask);
+
   std::span<const Component> components() const { return components_; }
   // In reading order.
   std::span<const Run> runs() const { return runs_; }

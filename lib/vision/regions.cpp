@@ -5,26 +5,185 @@
 #include <cmath>
 #include <vector>
 
+#include "vision/height_prior.h"
 #include "vision/labelling.h"
 #include "vision/mask.h"
 #include "vision/morphology.h"
+#include "vision/people.h"
 
 namespace cerberus::vision {
+namespace {
 
-double intersection_over_union(const Box& a, const Box& b) {
+constexpr double kLeastShare = 4e-4;     // of the picture: smaller blobs are noise (31 pixels of 320x240)
+constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
+
+// One person seen alone is upright and reasonably filled.
+bool looks_like_one_person(const Component& c, Size picture) {
+  const double aspect = static_cast<double>(c.height()) / c.width();
+  return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * c.width() * c.height() &&
+         c.left > 0 && c.top > 0 && c.right < picture.width && c.bottom < picture.height;
+}
+
+int gap(int a_from, int a_to, int b_from, int b_to) {
+  return std::max(a_from, b_from) - std::min(a_to, b_to);
+}
+
+Box box_of(const Window& w) {
+  return {static_cast<double>(w.left), static_cast<double>(w.top), static_cast<double>(w.width()),
+          static_cast<double>(w.height())};
+}
+
+double overlap(const Box& a, const Box& b) {
   const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
-  if (!(w > 0 && h > 0)) return 0;
-  return w * h / (a.area() + b.area() - w * h);
+  return w > 0 && h > 0 ? w * h : 0;
+}
+
+}  // namespace
+
+double intersection_over_union(const Box& a, const Box& b) {
+  const double both = overlap(a, b);
+  return both > 0 ? both / (a.area() + b.area() - both) : 0;
 }
 
 struct RegionFinder::State {
   RegionOptions options;
+  Size size;
+  BitMask moving, closed;
   Morphology morphology;
   Labeller labeller;
+  HeightPrior prior;
+  PeopleFinder people;
+  std::vector<int> group;  // of each component
   std::vector<Region> regions;
-  Size size;
+
+  std::uint32_t least() const {
+    return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
+                                                               : kLeastShare * size.area());
+  }
+  void learn();
+  void group_components();
+  void explain(int group);
+  void add_plain(std::size_t component);
+  void add_person(const Person& person, const Window& window, int label);
+  Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
 };
+
+void RegionFinder::State::learn() {
+  const auto parts = labeller.components();
+  for (const Component& c : parts) {
+    if (!looks_like_one_person(c, size)) continue;
+    const int reach = c.width() / 3;
+    const bool alone = std::none_of(parts.begin(), parts.end(), [&](const Component& o) {
+      return &o != &c && gap(c.left, c.right, o.left, o.right) < reach &&
+             gap(c.top, c.bottom, o.top, o.bottom) < reach;
+    });
+    if (alone) prior.learn(c.bottom, c.height());
+  }
+}
+
+// Components that may be pieces of one person: one above the other within half a body height, or almost touching.
+void RegionFinder::State::group_components() {
+  const auto parts = labeller.components();
+  group.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    group[i] = static_cast<int>(i);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Component &a = parts[i], &b = parts[j];
+      const double height = prior.height(std::max(a.bottom, b.bottom));
+      if (height <= 0) continue;
+      const int across = gap(a.left, a.right, b.left, b.right), down = gap(a.top, a.bottom, b.top, b.bottom);
+      if (across > 0.1 * height || down > 0.4 * height ||
+          std::max(a.bottom, b.bottom) - std::min(a.top, b.top) > 1.6 * height)
+        continue;
+      const int from = group[i], to = group[j];
+      for (std::size_t k = 0; k <= i; ++k)
+        if (group[k] == from)
+          group[k] = std::min(from, to);
+        else if (group[k] == to)
+          group[k] = std::min(from, to);
+    }
+  }
+}
+
+void RegionFinder::State::add_plain(std::size_t i) {
+  const Component& c = labeller.components()[i];
+  const Box box = box_of({c.left, c.top, c.right, c.bottom});
+  regions.push_back({box, static_cast<double>(c.area), c.centroid(),
+                     std::min(1.0, 0.3 + 0.7 * c.area / box.area()),
+                     static_cast<int>(std::min<std::size_t>(i + 1, 65535))});
+}
+
+// Pulls the edges of an expected box to the moving pixels around it that no other person explains better, a quarter
+// of the body either way at most.
+Box RegionFinder::State::fit(const Box& expected, const Window& window, std::size_t self,
+                             std::span<const Person> all) const {
+  const double reach_x = 0.3 * expected.width, reach_y = 0.15 * expected.height;
+  const int left = std::max(window.left, static_cast<int>(expected.x - reach_x));
+  const int right = std::min(window.right, static_cast<int>(std::ceil(expected.right() + reach_x)));
+  const int top = std::max(window.top, static_cast<int>(expected.y - reach_y));
+  const int bottom = std::min(window.bottom, static_cast<int>(std::ceil(expected.bottom() + reach_y)));
+  Window seen{right, bottom, left, top};
+  for (int y = top; y < bottom; ++y) {
+    const std::uint64_t* bits = moving.view().row(y);
+    for (int x = left; x < right; ++x) {
+      if (!(bits[x / 64] >> (x % 64) & 1)) continue;
+      const bool inside = x >= expected.x && x < expected.right() && y >= expected.y && y < expected.bottom();
+      bool others = false;
+      for (std::size_t k = 0; k < all.size() && !inside && !others; ++k)
+        others = k != self && x >= all[k].box.x && x < all[k].box.right() && y >= all[k].box.y &&
+                 y < all[k].box.bottom();
+      if (others) continue;
+      seen.left = std::min(seen.left, x);
+      seen.right = std::max(seen.right, x + 1);
+      seen.top = std::min(seen.top, y);
+      seen.bottom = std::max(seen.bottom, y + 1);
+    }
+  }
+  if (seen.width() <= 0 || seen.height() <= 0) return expected;
+  const auto blend = [](double a, double b) { return (a + b) / 2; };
+  const double x0 = blend(seen.left, expected.x), x1 = blend(seen.right, expected.right());
+  const double y0 = blend(seen.top, expected.y), y1 = blend(seen.bottom, expected.bottom());
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
+void RegionFinder::State::explain(int g) {
+  const auto parts = labeller.components();
+  Window window{size.width, size.height, 0, 0};
+  int members = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (group[i] != g) continue;
+    if (members++ == 0) first = i;
+    window = {std::min(window.left, parts[i].left), std::min(window.top, parts[i].top),
+              std::max(window.right, parts[i].right), std::max(window.bottom, parts[i].bottom)};
+  }
+  const double expected = prior.height(window.bottom);
+  const double aspect = static_cast<double>(window.height()) / window.width();
+  const bool usual = window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
+  if (expected <= 0 || (members == 1 && usual)) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (group[i] == g) add_plain(i);
+    return;
+  }
+  const auto found = people.find(moving.view(), size, window, prior);
+  for (std::size_t k = 0; k < found.size(); ++k) {
+    const Box box = fit(found[k].box, window, k, found);
+    regions.push_back({box,
+                       0,
+                       {box.x + box.width / 2, box.y + box.height / 2},
+                       std::clamp(found[k].score, 0.0, 1.0),
+                       static_cast<int>(std::min<std::size_t>(first + 1, 65535))});
+  }
+  // What no person explains stays what it is.
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (group[i] != g) continue;
+    const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});
+    double covered = 0;
+    for (const Person& p : found) covered += overlap(p.box, box);
+    if (covered < 0.4 * box.area()) add_plain(i);
+  }
+}
 
 RegionFinder::RegionFinder() : state_(std::make_unique<State>()) {}
 RegionFinder::~RegionFinder() = default;
@@ -36,31 +195,43 @@ void RegionFinder::set_options(const RegionOptions& options) {
 }
 
 void RegionFinder::reset() {
+  state_->prior.reset();
   state_->regions.clear();
 }
 
 std::size_t RegionFinder::bytes() const {
-  return state_->morphology.bytes() + state_->labeller.bytes();
+  const State& s = *state_;
+  return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
+         s.people.bytes() + s.regions.capacity() * sizeof(Region) + s.group.capacity() * sizeof(int);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
-                                             const Transform&) {
+                                             const Transform& motion) {
   State& s = *state_;
   s.regions.clear();
-  s.morphology.close(mask, s.options.closing * mask.width / 320 | 1);
-  const double least = s.options.minimum_area > 0 ? s.options.minimum_area : 4e-4 * mask.size().area();
-  for (const Component& c : s.labeller.find(mask)) {
-    if (c.area < least) continue;
-    const double box = static_cast<double>(c.width()) * c.height();
-    s.regions.push_back(
-        {{static_cast<double>(c.left), static_cast<double>(c.top), static_cast<double>(c.width()),
-          static_cast<double>(c.height())},
-         static_cast<double>(c.area),
-         c.centroid(),
-         std::min(1.0, 0.3 + c.area / box),
-         static_cast<int>(std::min<std::size_t>(&c - s.labeller.components().data() + 1, 65535))});
+  if (mask.size() != s.size) {
+    s.size = mask.size();
+    s.moving.resize(bit_mask_size(s.size));
+    s.closed.resize(bit_mask_size(s.size));
+    s.prior.reset();
   }
+  s.prior.advance(motion, s.size);
+  pack(mask, s.moving.view());
+  pack(mask, s.closed.view());
+  const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));
+  s.morphology.close(s.closed.view(), mask.width, side);
+  unpack(s.closed.view(), mask);
+  s.labeller.find(mask);
+  const auto parts = s.labeller.drop_smaller(s.least(), mask);
   s.labeller.write(labels);
+  if (!s.options.people || parts.size() > kMostParts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
+    return s.regions;
+  }
+  s.learn();
+  s.group_components();
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
   return s.regions;
 }
 

@@ -27,7 +27,9 @@ std::string_view take(std::string_view& text, std::string_view separators) {
 }
 
 std::string quoted(std::string_view word) {
-  return "\"" + std::string(word.substr(0, 60)) + "\"";
+  std::string text(1, '"');
+  text += word.substr(0, 60);
+  return text += '"';
 }
 
 // A whole word that is a fraction 0..1.
