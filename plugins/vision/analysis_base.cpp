@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analysis_base.hpp"
+
+#include <cerberus/cerberus.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "history.hpp"
+#include "properties.hpp"
+#include "stages.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
+#define GST_CAT_DEFAULT cerberus_analysis_debug
+
+namespace cerberus::plugin {
+namespace {
+
+constexpr int kMinimumSide = 32;
+constexpr int kMaximumWidth = 3840, kMaximumHeight = 2160;
+
+struct Settings {
+  int analysis_width = kDefaultAnalysisWidth;
+};
+
+const Property<Settings> kProperties[] = {
+    property("analysis-width", &Settings::analysis_width, 0, kMaximumWidth,
+             "Width in pixels of the small picture that is analysed, where none comes from upstream: larger "
+             "sees smaller "
+             "objects and costs more; frames that are not wider are analysed as they are; 0 = always the "
+             "frame's own width"),
+};
+
+}  // namespace
+
+struct AnalysisPrivate {
+  Adjustable<Settings> settings;
+  // From here on: streaming thread, and state changes while it does not run.
+  Analyser* analyser = nullptr;
+  GstVideoInfo info{};
+  bool have_info = false;
+  bool planes_wanted = false;
+  History history;
+  guint64 number = 0;   // analysed frames
+  guint scene_age = 0;  // of the last frame's camera motion, 0 = it had none
+  bool warned = false;  // about an unusable buffer, once a stream
+};
+
+namespace {
+
+AnalysisPrivate& priv_of(gpointer instance) {
+  return *static_cast<CerberusAnalysis*>(instance)->priv;
+}
+
+GstBaseTransformClass* parent_class();
+
+double finite(double value, double low, double high) {
+  return std::isfinite(value) ? std::clamp(value, low, high) : low;
+}
+
+// The camera's motion as the buffer tells it. Returns false when it starts from another frame than our last one.
+bool read_camera_motion(AnalysisPrivate& priv, Frame& frame) {
+  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(frame.buffer);
+  if (!meta) {
+    const bool lost = priv.scene_age != 0;  // the camera was measured until now: we do not know where it went
+    priv.scene_age = 0;
+    return !lost;
+  }
+  const CerberusCameraMotion& motion = meta->motion;
+  const bool follows = motion.scene_age != 1 && motion.from == frame.previous &&
+                       (motion.scene_age == 0 || motion.scene_age == priv.scene_age + 1);
+  priv.scene_age = motion.scene_age;
+  vision::Transform transform;
+  std::copy(std::begin(motion.matrix), std::end(motion.matrix), transform.m.begin());
+  // A stranger's numbers may be anything.
+  if (!follows || !transform.is_sane(frame.size())) return false;
+  frame.motion = {transform, finite(motion.confidence, 0, 1), finite(motion.residual, 0, 1e6),
+                  motion.still != FALSE};
+  return true;
+}
+
+Frame begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  Frame frame;
+  frame.buffer = buffer;
+  frame.info = &priv.info;
+  if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
+    frame.running_time =
+        gst_segment_to_running_time(&trans->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) priv.history.drop();
+  const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
+  const History::Step step =
+      priv.history.next(frame.running_time, fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0);
+  frame.fresh = step.fresh;
+  frame.seconds = step.seconds;
+  frame.previous = step.previous;
+  frame.number = ++priv.number;
+  frame.planes_wanted = priv.planes_wanted;
+  if (!priv.analyser->measures_camera() && !read_camera_motion(priv, frame)) frame.fresh = true;
+  if (frame.fresh) {
+    frame.motion = {};
+    frame.seconds = 0;
+    frame.previous = GST_CLOCK_TIME_NONE;
+  }
+  return frame;
+}
+
+GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
+  AnalysisPrivate& priv = priv_of(trans);
+  return guarded(trans, GST_FLOW_ERROR, [&] {
+    // A buffer that says itself that it is a placeholder: nothing to see, and no scene ends with it.
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
+    Frame frame = begin_frame(trans, priv, buffer);
+    if (priv.analyser->analyse(frame)) return GST_FLOW_OK;
+
+    // The picture is not there: the frame goes on as it came, and whoever follows is told by the flag.
+    priv.history.drop();
+    const bool told = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_CORRUPTED) || priv.warned;
+    GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_CORRUPTED);
+    if (!told) {
+      priv.warned = true;
+      GST_ELEMENT_WARNING(
+          trans, STREAM, DECODE,
+          ("A buffer does not hold the picture that its caps promise; it is passed on, not analysed."),
+          ("%" G_GSIZE_FORMAT " bytes at %" GST_TIME_FORMAT " for %d x %d %s need %" G_GSIZE_FORMAT,
+           gst_buffer_get_size(buffer), GST_TIME_ARGS(GST_BUFFER_PTS(buffer)),
+           GST_VIDEO_INFO_WIDTH(&priv.info), GST_VIDEO_INFO_HEIGHT(&priv.info),
+           GST_VIDEO_INFO_NAME(&priv.info), GST_VIDEO_INFO_SIZE(&priv.info)));
+    }
+    return GST_FLOW_OK;
+  });
+}
+
+gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
+  AnalysisPrivate& priv = priv_of(trans);
+  GstVideoInfo info;
+  if (!gst_video_info_from_caps(&info, incaps)) {
+    GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION, ("These video caps cannot be used."),
+                      ("%" GST_PTR_FORMAT, incaps));
+    return FALSE;
+  }
+  const int width = GST_VIDEO_INFO_WIDTH(&info), height = GST_VIDEO_INFO_HEIGHT(&info);
+  if (GST_VIDEO_INFO_IS_INTERLACED(&info)) {
+    GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION,
+                      ("Interlaced video cannot be analysed: put the element `deinterlace` in front."),
+                      ("%" GST_PTR_FORMAT, incaps));
+    return FALSE;
+  }
+  if (width < kMinimumSide || height < kMinimumSide || width > kMaximumWidth || height > kMaximumHeight) {
+    GST_ELEMENT_ERROR(
+        trans, CORE, NEGOTIATION,
+        ("Frames of %d x %d pixels cannot be analysed, only %d x %d to %d x %d: put `videoscale` in front.",
+         width, height, kMinimumSide, kMinimumSide, kMaximumWidth, kMaximumHeight),
+        ("%" GST_PTR_FORMAT, incaps));
+    return FALSE;
+  }
+  if (!priv.have_info || !gst_video_info_is_equal(&priv.info, &info)) priv.history.drop();
+  priv.info = info;
+  priv.have_info = true;
+  priv.warned = false;
+  return TRUE;
+}
+
+// Runs at every negotiation, so after caps and after RECONFIGURE.
+gboolean decide_allocation(GstBaseTransform* trans, GstQuery* query) {
+  priv_of(trans).planes_wanted = cerberus_pad_peer_wants_planes(GST_BASE_TRANSFORM_SRC_PAD(trans));
+  return parent_class()->decide_allocation(trans, query);
+}
+
+gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
+  AnalysisPrivate& priv = priv_of(trans);
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_SEGMENT:
+    case GST_EVENT_FLUSH_STOP:
+    case GST_EVENT_STREAM_START:
+      priv.history.drop();
+      break;
+    case GST_EVENT_EOS:
+      guarded(trans, [&] { priv.analyser->end_of_stream(); });
+      break;
+    default:
+      break;
+  }
+  return parent_class()->sink_event(trans, event);
+}
+
+gboolean start(GstBaseTransform* trans) {
+  AnalysisPrivate& priv = priv_of(trans);
+  return guarded(trans, FALSE, [&]() -> gboolean {
+    priv.history.drop();
+    priv.have_info = false;
+    priv.warned = false;
+    priv.scene_age = 0;
+    return priv.analyser->start();
+  });
+}
+
+gboolean stop(GstBaseTransform* trans) {
+  guarded(trans, [&] { priv_of(trans).analyser->stop(); });
+  return TRUE;
+}
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  priv_of(object).settings.set(kProperties, id, value);
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  priv_of(object).settings.get(kProperties, id, value);
+}
+
+void class_init(CerberusAnalysisClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(cerberus_analysis_debug, "cerberusanalysis", 0,
+                          "what all analysing elements share");
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+
+  static GstStaticPadTemplate sink =
+      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+  static GstStaticPadTemplate src =
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink);
+  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src);
+
+  GstBaseTransformClass* trans = GST_BASE_TRANSFORM_CLASS(klass);
+  trans->start = start;
+  trans->stop = stop;
+  trans->set_caps = set_caps;
+  trans->decide_allocation = decide_allocation;
+  trans->sink_event = sink_event;
+  trans->transform_ip = transform_ip;
+}
+
+void init(CerberusAnalysis* self) {
+  auto* trans = GST_BASE_TRANSFORM(self);
+  gst_base_transform_set_in_place(trans, TRUE);
+  // Not passthrough: that is what makes the buffer writable for metas (its memory stays shared).
+  gst_base_transform_set_passthrough(trans, FALSE);
+  gst_base_transform_set_gap_aware(trans, TRUE);
+  // A detector that skips late frames sees a gap instead of motion.
+  gst_base_transform_set_qos_enabled(trans, FALSE);
+}
+
+struct Traits {
+  using Self = CerberusAnalysis;
+  using Class = CerberusAnalysisClass;
+  using Object = AnalysisPrivate;
+  static const char* name() { return "CerberusAnalysis"; }
+  static GType parent() { return GST_TYPE_BASE_TRANSFORM; }
+  static void init(Self* self) { plugin::init(self); }
+  static void class_init(Class* klass) { plugin::class_init(klass); }
+  static void interfaces(GType) {}
+};
+
+GstBaseTransformClass* parent_class() {
+  return static_cast<GstBaseTransformClass*>(detail::TypeBuilder<Traits>::parent_class);
+}
+
+}  // namespace
+
+GType cerberus_analysis_get_type() {
+  return detail::TypeBuilder<Traits>::get();
+}
+
+void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser) {
+  self->priv->analyser = analyser;
+}
+
+int cerberus_analysis_width(const CerberusAnalysis* self) {
+  return self->priv->settings.snapshot().analysis_width;
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What every analysing element shares: frames go through untouched, in place and never copied; one of them at a time is
+// handed to the element's Analyser with all that is known about it.
+//
+// The base decides what is not thinking: caps (progressive, 32 x 32 to 3840 x 2160), when history ends (see History and
+// below), the camera's motion as found on the buffer, buffers that hold no picture, the property analysis-width, and
+// that no exception leaves.
+//
+// A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new segment, DISCONT, time
+// running backwards, a gap in time, a buffer without a usable picture, a cut seen by `cameramotion`, and when the
+// camera's motion starts from another frame than the last one seen here (something between dropped frames).
+#pragma once
+
+#include <gst/base/gstbasetransform.h>
+
+#include "cerberus/private/element.hpp"
+#include "frame.hpp"
+
+namespace cerberus::plugin {
+
+// An element's private struct implements this; all calls come from the streaming thread or a state change, never two
+// at once, and no lock is held.
+class Analyser {
+ public:
+  virtual ~Analyser() = default;
+  // READY to PAUSED: begin with a clean slate; false after posting an error. stop(): give back memory.
+  virtual bool start() { return true; }
+  virtual void stop() {}
+  // Looks at one frame and attaches what it found. False: the buffer does not hold the picture its caps promise.
+  virtual bool analyse(Frame& frame) = 0;
+  // The last frame of the stream was seen.
+  virtual void end_of_stream() {}
+  // True for the one element that measures the camera itself.
+  virtual bool measures_camera() const { return false; }
+};
+
+struct AnalysisPrivate;
+struct CerberusAnalysis : detail::Instance<GstBaseTransform, AnalysisPrivate> {};
+struct CerberusAnalysisClass {
+  GstBaseTransformClass parent_class;
+};
+
+// The parent type; its pad templates, caps and the property analysis-width are inherited.
+GType cerberus_analysis_get_type();
+// In type_init: `analyser` lives as long as the element.
+void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser);
+// The property analysis-width.
+int cerberus_analysis_width(const CerberusAnalysis* self);
+
+}  // namespace cerberus::plugin

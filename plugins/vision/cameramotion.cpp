@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-cameramotion
+ *
+ * Measures how the camera itself moved since the previous frame, from the picture alone, and attaches the result: a
+ * #CerberusCameraMotion (transform, confidence, residual, scene age) and the small luma plane that the following
+ * stages analyse. The frame goes through untouched and is never copied. A cut starts a new scene (scene age 1).
+ *
+ * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! cameramotion model=homography ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// "The camera motion of the input frame is compensated" (paper II.B, first line) leaves the how open: patches of the
+// analysis picture are matched between the frames and a transform is fitted that the moving objects cannot bend; see
+// lib/vision/camera_motion.h. Standing still is snapped to exactly the identity.
+#include <cerberus/cerberus.h>
+
+#include <algorithm>
+#include <iterator>
+#include <optional>
+
+#include "analysis_base.hpp"
+#include "elements.hpp"
+#include "enums.hpp"
+#include "properties.hpp"
+#include "stages.hpp"
+#include "vision/camera_motion.h"
+
+GST_DEBUG_CATEGORY_STATIC(cameramotion_debug);
+#define GST_CAT_DEFAULT cameramotion_debug
+
+namespace cerberus::plugin {
+namespace {
+
+struct Settings {
+  int model = static_cast<int>(vision::CameraMotionOptions{}.model);
+};
+
+const Property<Settings> kProperties[] = {
+    property("model", &Settings::model, motion_model_type,
+             "How the camera may have moved between two frames: a richer model follows more kinds of motion "
+             "and needs a "
+             "picture with more structure; none = it stands still"),
+};
+
+struct State {
+  LumaStage luma;
+  vision::CameraMotion motion;
+};
+
+struct Private final : Analyser {
+  CerberusAnalysis* base = nullptr;
+  Adjustable<Settings> settings;
+  std::optional<State> state;
+
+  bool measures_camera() const override { return true; }
+  bool start() override {
+    state.emplace();
+    settings.refresh();
+    return true;
+  }
+  void stop() override { state.reset(); }
+  bool analyse(Frame& frame) override;
+};
+
+CERBERUS_DEFINE_TYPE(CerberusCameraMotionElement, cerberus_camera_motion_element, CerberusAnalysis,
+                     cerberus_analysis_get_type(), Private)
+
+bool Private::analyse(Frame& frame) {
+  if (const auto changed = settings.changes())
+    state->motion.set_options({static_cast<vision::MotionModel>(changed->model)});
+  state->luma.set_analysis_width(cerberus_analysis_width(base));
+  const MappedPlane picture = state->luma.make(frame);
+  if (!picture) return false;
+  if (frame.fresh) state->motion.reset();
+  const vision::CameraMotionResult result = state->motion.update(picture.view<std::uint8_t>());
+
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  const vision::Transform transform =
+      result.still ? vision::Transform{} : result.transform.rescaled(picture.size(), frame.size());
+  std::copy(transform.m.begin(), transform.m.end(), std::begin(motion.matrix));
+  motion.from = result.scene_age > 1 ? frame.previous : GST_CLOCK_TIME_NONE;
+  motion.confidence = result.confidence;
+  motion.residual = result.residual * frame.size().width / picture.width();
+  motion.still = result.still;
+  motion.scene_age = static_cast<guint>(std::max(result.scene_age, 1));
+  cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
+  GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
+                 motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);
+  return true;
+}
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  cerberus_camera_motion_element_self(object)->priv->settings.set(kProperties, id, value);
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_camera_motion_element_self(object)->priv->settings.get(kProperties, id, value);
+}
+
+void cerberus_camera_motion_element_init(CerberusCameraMotionElement* self) {
+  self->priv->base = &self->parent;
+  cerberus_analysis_init_with(&self->parent, self->priv);
+}
+
+void cerberus_camera_motion_element_class_init(CerberusCameraMotionElementClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "Camera motion", "Filter/Analyzer/Video",
+                                        "Measures how the camera itself moved since the previous frame",
+                                        "The Cerberus developers");
+}
+
+}  // namespace
+
+GType cameramotion_type() {
+  return cerberus_camera_motion_element_get_type();
+}
+
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(cameramotion, GST_RANK_NONE, cerberus::plugin::cerberus_camera_motion_element,
+                          cameramotion_debug, "the camera's own motion")

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-fuzzythreshold
+ *
+ * Chooses the threshold of the registered differences by the indices of fuzziness, binarises both with it and attaches
+ * the moving area as the plane `mask` (0 or 255) and a #CerberusThreshold. The frame goes through untouched. Stages that
+ * are missing upstream are done here with their defaults. The mask is empty, and the threshold not `ready`, until three
+ * frames of the scene were seen.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! threeframediff ! fuzzythreshold area=leading ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// Paper Eq. 3 (d = 1 where the difference is above Th), M(k-1) = D(k) and D(k-1), M(k) = D(k) - M(k-1); Eq. 4 to 10 for Th,
+// in the reading of Tobias and Seara (IEEE Trans. Image Processing 11(12), 2002), from where the paper has them: Eq. 8 and
+// 9 both print the factor 2 / n^(1/k), which belongs once, and Eq. 8 needs the absolute value. See
+// lib/vision/fuzzy_threshold.h and moving_area.h. Deviations of the defaults, each a property: Th is held near the
+// measured noise (`noise-floor`), lone bright pixels do not count (`clip`), and a registered memory of the scene completes
+// what two neighbouring frames cannot see (`memory`).
+#include <optional>
+
+#include "analysis_base.hpp"
+#include "elements.hpp"
+#include "enums.hpp"
+#include "properties.hpp"
+#include "stages.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(fuzzythreshold_debug);
+#define GST_CAT_DEFAULT fuzzythreshold_debug
+
+namespace cerberus::plugin {
+namespace {
+
+struct Settings {
+  int weighting = static_cast<int>(vision::FuzzyThresholdOptions{}.weighting);
+  int extremes = static_cast<int>(vision::FuzzyThresholdOptions{}.extremes);
+  int order = vision::FuzzyThresholdOptions{}.order;
+  bool clip = vision::FuzzyThresholdOptions{}.clip;
+  int area = static_cast<int>(vision::MovingAreaOptions{}.area);
+  bool noise_floor = vision::MovingAreaOptions{}.noise_floor;
+  bool memory = vision::MovingAreaOptions{}.memory;
+};
+
+const Property<Settings> kProperties[] = {
+    property("weighting", &Settings::weighting, weighting_type,
+             "How the histogram's counts weigh: log lets a small object count beside a large background"),
+    property("extremes", &Settings::extremes, extremes_type,
+             "Between which levels the membership function of a fuzzy subset runs"),
+    property("order", &Settings::order, 1, 16,
+             "Order k of the index of fuzziness (Eq. 8 and 9): 1 is linear, 2 quadratic, higher ones follow "
+             "the largest "
+             "distances alone"),
+    property("clip", &Settings::clip,
+             "Let the few brightest levels of the histogram not count (weighting=log only)"),
+    property("area", &Settings::area, area_type, "Which moving area goes out"),
+    property(
+        "noise-floor", &Settings::noise_floor,
+        "Hold the threshold between one and one and a half times the floor that the measured noise sets"),
+    property("memory", &Settings::memory,
+             "Use a memory of the scene, moved along with the camera, where it knows better than two "
+             "neighbouring frames"),
+};
+
+vision::MovingAreaOptions options(const Settings& s) {
+  vision::MovingAreaOptions options;
+  options.threshold.weighting = static_cast<vision::Weighting>(s.weighting);
+  options.threshold.extremes = static_cast<vision::Extremes>(s.extremes);
+  options.threshold.order = s.order;
+  options.threshold.clip = s.clip;
+  options.area = static_cast<vision::Area>(s.area);
+  options.noise_floor = s.noise_floor;
+  options.memory = s.memory;
+  return options;
+}
+
+struct Private final : Analyser {
+  CerberusAnalysis* base = nullptr;
+  Adjustable<Settings> settings;
+  std::optional<MaskStage> stage;
+
+  bool start() override {
+    stage.emplace();
+    settings.refresh();
+    return true;
+  }
+  void stop() override { stage.reset(); }
+  bool analyse(Frame& frame) override {
+    if (const auto changed = settings.changes()) stage->set_options(options(*changed));
+    stage->luma().set_analysis_width(cerberus_analysis_width(base));
+    return stage->run(frame);
+  }
+};
+
+CERBERUS_DEFINE_TYPE(CerberusFuzzyThreshold, cerberus_fuzzy_threshold, CerberusAnalysis,
+                     cerberus_analysis_get_type(), Private)
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  cerberus_fuzzy_threshold_self(object)->priv->settings.set(kProperties, id, value);
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_fuzzy_threshold_self(object)->priv->settings.get(kProperties, id, value);
+}
+
+void cerberus_fuzzy_threshold_init(CerberusFuzzyThreshold* self) {
+  self->priv->base = &self->parent;
+  cerberus_analysis_init_with(&self->parent, self->priv);
+}
+
+void cerberus_fuzzy_threshold_class_init(CerberusFuzzyThresholdClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "Fuzzy threshold", "Filter/Analyzer/Video",
+                                        "Moving area by a threshold that the indices of fuzziness choose",
+                                        "The Cerberus developers");
+}
+
+}  // namespace
+
+GType fuzzythreshold_type() {
+  return cerberus_fuzzy_threshold_get_type();
+}
+
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(fuzzythreshold, GST_RANK_NONE, cerberus::plugin::cerberus_fuzzy_threshold,
+                          fuzzythreshold_debug, "threshold and moving area")

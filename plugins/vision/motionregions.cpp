@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-motionregions
+ *
+ * Turns the moving area into regions of interest: cleans the mask, labels it, joins one person's fragments, parts two
+ * people side by side, and attaches every region that passes `zones` and the limits of size as a
+ * #GstVideoRegionOfInterestMeta of type `motion` (see #CerberusRegion). The frame goes through untouched. Stages that are
+ * missing upstream are done here with their defaults. No region is published until three frames of a scene were seen.
+ *
+ * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
+ * element downstream (motionview) asks for them; see `keep-planes`.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! motionregions zones="include 0,0 1,0 1,0.5 0,0.5" ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// The paper calls this step "post treatment" (II.B) and leaves it open. Ours: see lib/vision/regions.h. Limits in metres
+// use the body width of 48 cm (III) and count only while `horizontal-fov` is known.
+#include <cerberus/cerberus.h>
+
+#include <optional>
+#include <string>
+
+#include "analysis_base.hpp"
+#include "elements.hpp"
+#include "enums.hpp"
+#include "properties.hpp"
+#include "room.hpp"
+#include "stages.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(motionregions_debug);
+#define GST_CAT_DEFAULT motionregions_debug
+
+namespace cerberus::plugin {
+namespace {
+
+constexpr double kMaximumPixels = 3840, kMaximumMetres = 100;
+
+struct Settings {
+  int closing = vision::RegionOptions{}.closing;
+  bool people = vision::RegionOptions{}.people;
+  double minimum_area = vision::RegionOptions{}.minimum_area;
+  std::string zones;
+  double minimum_width = 0, maximum_width = 0, minimum_height = 0, maximum_height = 0;
+  double minimum_width_metres = vision::human_size().metres_wide.least;
+  double maximum_width_metres = vision::human_size().metres_wide.most;
+  double minimum_height_metres = vision::human_size().metres_high.least;
+  double maximum_height_metres = vision::human_size().metres_high.most;
+  double horizontal_fov = 0;
+  double mounting_height = kDefaultMountingHeight;
+  int keep_planes = KEEP_PLANES_AUTO;
+};
+
+const Property<Settings> kProperties[] = {
+    property("closing", &Settings::closing, 0, 63,
+             "Side of the closing that fills holes and joins fragments, in pixels of an analysis picture 320 "
+             "wide (it grows "
+             "with the picture): larger joins what is farther apart; 0 or 1 = none"),
+    property("people", &Settings::people,
+             "Join fragments and part groups by the height of a person, learnt from the scene; off: one "
+             "region for each "
+             "connected part of the mask"),
+    property("minimum-area", &Settings::minimum_area, 0, 1e6,
+             "Moving pixels of the analysis picture that a region needs: larger drops small objects; 0 = "
+             "chosen from the "
+             "picture's size"),
+    property("zones", &Settings::zones,
+             "Where motion counts: polygons as `include X,Y X,Y X,Y ...; exclude X,Y ...` in fractions of "
+             "the picture from "
+             "its top left corner; empty = everywhere"),
+    property("minimum-width", &Settings::minimum_width, 0, kMaximumPixels,
+             "Regions narrower than this, in frame pixels, are dropped; 0 = no limit"),
+    property("maximum-width", &Settings::maximum_width, 0, kMaximumPixels,
+             "Regions wider than this, in frame pixels, are dropped; 0 = no limit"),
+    property("minimum-height", &Settings::minimum_height, 0, kMaximumPixels,
+             "Regions lower than this, in frame pixels, are dropped; 0 = no limit"),
+    property("maximum-height", &Settings::maximum_height, 0, kMaximumPixels,
+             "Regions higher than this, in frame pixels, are dropped; 0 = no limit"),
+    property(
+        "minimum-width-metres", &Settings::minimum_width_metres, 0, kMaximumMetres,
+        "Regions narrower than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+    property("maximum-width-metres", &Settings::maximum_width_metres, 0, kMaximumMetres,
+             "Regions wider than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+    property("minimum-height-metres", &Settings::minimum_height_metres, 0, kMaximumMetres,
+             "Regions lower than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+    property("maximum-height-metres", &Settings::maximum_height_metres, 0, kMaximumMetres,
+             "Regions higher than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+    property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
+    property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
+    property("keep-planes", &Settings::keep_planes, keep_planes_type,
+             "Whether the stages' planes stay on the frame after they were read here"),
+};
+
+struct Private final : Analyser {
+  CerberusAnalysis* base = nullptr;
+  Adjustable<Settings> settings;
+  std::optional<RegionStage> stage;
+  KeepPlanes keep = KEEP_PLANES_AUTO;
+
+  bool start() override;
+  void stop() override { stage.reset(); }
+  bool analyse(Frame& frame) override;
+  void apply(const Settings& s);
+};
+
+CERBERUS_DEFINE_TYPE(CerberusMotionRegions, cerberus_motion_regions, CerberusAnalysis,
+                     cerberus_analysis_get_type(), Private)
+
+void Private::apply(const Settings& s) {
+  stage->set_options({s.closing, s.people, s.minimum_area});
+  vision::SizeGate gate;
+  gate.width = {s.minimum_width, s.maximum_width};
+  gate.height = {s.minimum_height, s.maximum_height};
+  gate.metres_wide = {s.minimum_width_metres, s.maximum_width_metres};
+  gate.metres_high = {s.minimum_height_metres, s.maximum_height_metres};
+  stage->set_gate(gate, radians(s.horizontal_fov), s.mounting_height);
+  keep = static_cast<KeepPlanes>(s.keep_planes);
+}
+
+// Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
+bool Private::start() {
+  stage.emplace();
+  settings.refresh();
+  const std::string wrong = stage->zones().parse(settings.snapshot().zones);
+  if (wrong.empty()) return true;
+  GST_ELEMENT_ERROR(base, LIBRARY, SETTINGS, ("The property zones cannot be used: %s", wrong.c_str()),
+                    (nullptr));
+  return false;
+}
+
+bool Private::analyse(Frame& frame) {
+  if (const auto changed = settings.changes()) {
+    apply(*changed);
+    if (const std::string wrong = stage->zones().parse(changed->zones); !wrong.empty())
+      GST_ELEMENT_WARNING(base, LIBRARY, SETTINGS, ("The new zones are not used: %s", wrong.c_str()),
+                          (nullptr));
+  }
+  stage->luma().set_analysis_width(cerberus_analysis_width(base));
+  const bool found = stage->run(frame);
+  if (keep == KEEP_PLANES_NEVER || (keep == KEEP_PLANES_AUTO && !frame.planes_wanted))
+    cerberus_buffer_remove_plane_metas(frame.buffer);
+  return found;
+}
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  cerberus_motion_regions_self(object)->priv->settings.set(kProperties, id, value);
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_motion_regions_self(object)->priv->settings.get(kProperties, id, value);
+}
+
+void cerberus_motion_regions_init(CerberusMotionRegions* self) {
+  self->priv->base = &self->parent;
+  cerberus_analysis_init_with(&self->parent, self->priv);
+}
+
+void cerberus_motion_regions_class_init(CerberusMotionRegionsClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "Motion regions", "Filter/Analyzer/Video",
+                                        "Regions of interest from the moving area",
+                                        "The Cerberus developers");
+}
+
+}  // namespace
+
+GType motionregions_type() {
+  return cerberus_motion_regions_get_type();
+}
+
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(motionregions, GST_RANK_NONE, cerberus::plugin::cerberus_motion_regions,
+                          motionregions_debug, "regions of interest from the moving area")

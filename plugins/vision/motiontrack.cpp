@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-motiontrack
+ *
+ * Gives the regions of interest a stable identity, a velocity with the camera's motion taken out, an age and a state:
+ * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
+ * replaced by the tracked ones; the frame goes through untouched. Without `motionregions` upstream the regions are found
+ * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
+ * camera's axis) and, where its feet are seen, a distance (metres).
+ *
+ * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
+ * none was there for `hold-time`, at the end of the stream and when the element stops.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiontrack hold-time=500000000 ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// The paper tracks one target and says no more; see lib/vision/tracks.h for the method. Its limits of speed, 0.1 to 4 m/s
+// (III), are the defaults in metres a second and count only while `horizontal-fov` is known.
+#include <cerberus/cerberus.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "analysis_base.hpp"
+#include "elements.hpp"
+#include "properties.hpp"
+#include "room.hpp"
+#include "stages.hpp"
+#include "vision/tracks.h"
+
+GST_DEBUG_CATEGORY_STATIC(motiontrack_debug);
+#define GST_CAT_DEFAULT motiontrack_debug
+
+namespace cerberus::plugin {
+namespace {
+
+constexpr GstClockTime clock_time(double seconds) {
+  return static_cast<GstClockTime>(seconds * GST_SECOND + 0.5);
+}
+constexpr double seconds(GstClockTime time) {
+  return static_cast<double>(time) / GST_SECOND;
+}
+
+struct Settings {
+  guint64 confirm_time = clock_time(vision::TrackOptions{}.confirm_time);
+  guint64 coast_time = clock_time(vision::TrackOptions{}.coast_time);
+  guint64 hold_stopped = clock_time(vision::TrackOptions{}.hold_stopped);
+  guint64 hold_time = 2 * GST_SECOND;
+  double minimum_speed = 0, maximum_speed = 0;
+  double minimum_speed_metres = vision::human_speed().metres.least;
+  double maximum_speed_metres = vision::human_speed().metres.most;
+  double horizontal_fov = 0;
+  double mounting_height = kDefaultMountingHeight;
+};
+
+const Property<Settings> kProperties[] = {
+    property("confirm-time", &Settings::confirm_time,
+             "Nanoseconds for which an object must be seen before it is published: longer drops flicker and "
+             "answers later; "
+             "0 = at once"),
+    property("coast-time", &Settings::coast_time,
+             "Nanoseconds for which a moving object is carried on without being seen; 0 = it ends at once"),
+    property(
+        "hold-stopped", &Settings::hold_stopped,
+        "Nanoseconds for which an object that stopped moving is held where it stands; 0 = it ends at once"),
+    property(
+        "hold-time", &Settings::hold_time,
+        "Nanoseconds without any object after which the message that motion ended is posted; 0 = at once"),
+    property(
+        "minimum-speed", &Settings::minimum_speed, 0, 1e6,
+        "Objects that never were as fast as this, in frame pixels a second, are not published; 0 = no limit"),
+    property("maximum-speed", &Settings::maximum_speed, 0, 1e6,
+             "Objects faster than this, in frame pixels a second, are not published, and no jump wider than "
+             "it allows is "
+             "taken for the same object; 0 = no limit"),
+    property("minimum-speed-metres", &Settings::minimum_speed_metres, 0, 1000,
+             "Objects that never were as fast as this, in metres a second, are not published while "
+             "horizontal-fov is "
+             "known; 0 = no limit"),
+    property("maximum-speed-metres", &Settings::maximum_speed_metres, 0, 1000,
+             "Objects faster than this, in metres a second, are not published while horizontal-fov is known; "
+             "0 = no limit"),
+    property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
+    property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
+};
+
+// The highest speed each track has shown; as many as there are tracks.
+class TopSpeeds {
+ public:
+  double update(std::uint32_t id, double speed) {
+    const auto it = std::ranges::find(entries_, id, &Entry::id);
+    Entry& entry = it != entries_.end() ? *it : entries_.emplace_back(Entry{id, 0, false});
+    entry.alive = true;
+    return entry.top = std::max(entry.top, speed);
+  }
+  // Forgets the tracks that update() was not called for since the last sweep.
+  void sweep() {
+    std::erase_if(entries_, [](const Entry& entry) { return !entry.alive; });
+    for (Entry& entry : entries_) entry.alive = false;
+  }
+
+ private:
+  struct Entry {
+    std::uint32_t id;
+    double top;
+    bool alive;
+  };
+  std::vector<Entry> entries_;
+};
+
+// Motion started or ended, with hysteresis.
+class Presence {
+ public:
+  enum class Change { none, started, ended };
+  Change update(bool present, const Frame& frame, double hold) {
+    if (present) {
+      quiet_ = 0;
+      return std::exchange(active_, true) ? Change::none : Change::started;
+    }
+    // Running time tells the length of a gap as well; a stream without timestamps has only its frame rate.
+    const bool timed = GST_CLOCK_TIME_IS_VALID(frame.running_time) && GST_CLOCK_TIME_IS_VALID(last_);
+    quiet_ += timed ? (frame.running_time > last_ ? seconds(frame.running_time - last_) : 0) : frame.seconds;
+    return active_ && quiet_ >= hold ? end() : Change::none;
+  }
+  void passed(const Frame& frame) { last_ = frame.running_time; }
+  GstClockTime last() const { return last_; }
+  Change end() { return std::exchange(active_, false) ? Change::ended : Change::none; }
+
+ private:
+  bool active_ = false;
+  double quiet_ = 0;  // s
+  GstClockTime last_ = GST_CLOCK_TIME_NONE;
+};
+
+struct State {
+  RegionStage regions;  // where no motionregions is upstream
+  vision::Tracker tracker;
+  std::vector<vision::Region> found;  // what the tracker is fed with
+  std::vector<CerberusRegion> published;
+  TopSpeeds top_speeds;
+  Presence presence;
+  Settings settings;
+  vision::SpeedGate gate;
+};
+
+struct Private final : Analyser {
+  CerberusAnalysis* base = nullptr;
+  Adjustable<Settings> settings;
+  std::optional<State> state;
+
+  bool start() override {
+    state.emplace();
+    settings.refresh();
+    return true;
+  }
+  void stop() override {
+    end_of_stream();
+    state.reset();
+  }
+  void end_of_stream() override {
+    if (state) announce(state->presence.end(), state->presence.last());
+  }
+  bool analyse(Frame& frame) override;
+
+ private:
+  void apply(const Settings& s);
+  void read_regions(GstBuffer* buffer);
+  void publish(const Frame& frame, std::span<const vision::Track> tracks);
+  void announce(Presence::Change change, GstClockTime running_time);
+};
+
+CERBERUS_DEFINE_TYPE(CerberusMotionTrack, cerberus_motion_track, CerberusAnalysis,
+                     cerberus_analysis_get_type(), Private)
+
+void Private::apply(const Settings& s) {
+  vision::TrackOptions options;
+  options.confirm_time = seconds(s.confirm_time);
+  options.coast_time = seconds(s.coast_time);
+  options.hold_stopped = seconds(s.hold_stopped);
+  options.maximum_speed = s.maximum_speed;
+  state->tracker.set_options(options);
+  state->gate.pixels = {s.minimum_speed, s.maximum_speed};
+  state->gate.metres = {s.minimum_speed_metres, s.maximum_speed_metres};
+  state->settings = s;
+}
+
+void Private::read_regions(GstBuffer* buffer) {
+  state->found.clear();
+  GPtrArray* regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    vision::Region& r = state->found.emplace_back();
+    r.box = {region->x, region->y, region->width, region->height};
+    r.area = r.box.area();
+    r.centroid = {region->x + region->width / 2, region->y + region->height / 2};
+    r.confidence = region->confidence;
+  }
+  g_ptr_array_unref(regions);
+}
+
+bool Private::analyse(Frame& frame) {
+  if (const auto changed = settings.changes()) apply(*changed);
+  if (!regions_known(frame.buffer)) {
+    state->regions.luma().set_analysis_width(cerberus_analysis_width(base));
+    const bool found = state->regions.run(frame);
+    if (!frame.planes_wanted) cerberus_buffer_remove_plane_metas(frame.buffer);
+    if (!found) return false;
+  }
+  read_regions(frame.buffer);
+  if (frame.fresh) state->tracker.reset();
+  publish(frame, state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size()));
+  const double hold = seconds(state->settings.hold_time);
+  announce(state->presence.update(!state->published.empty(), frame, hold), frame.running_time);
+  state->presence.passed(frame);
+  return true;
+}
+
+void Private::publish(const Frame& frame, std::span<const vision::Track> tracks) {
+  cerberus_buffer_remove_regions(frame.buffer);
+  state->published.clear();
+  const Settings& s = state->settings;
+  const vision::Lens lens(radians(s.horizontal_fov), frame.size());
+  for (const vision::Track& track : tracks) {
+    const vision::Placement place = lens.place(track.box, 0, 0, s.mounting_height);
+    const double speed = std::hypot(track.vx, track.vy);
+    if (!vision::passes(state->gate, speed, state->top_speeds.update(track.id, speed), place)) continue;
+    CerberusRegion& out = state->published.emplace_back();
+    cerberus_region_init(&out);
+    out.id = track.id;
+    out.tracked = TRUE;
+    out.x = track.box.x;
+    out.y = track.box.y;
+    out.width = track.box.width;
+    out.height = track.box.height;
+    out.confidence = track.confidence;
+    out.vx = track.vx;
+    out.vy = track.vy;
+    out.age = clock_time(track.age);
+    out.state = static_cast<CerberusRegionState>(track.state);
+    out.bearing = degrees(place.bearing);
+    out.distance = place.distance;
+    cerberus_buffer_add_region(frame.buffer, &out);
+  }
+  state->top_speeds.sweep();
+}
+
+void Private::announce(Presence::Change change, GstClockTime running_time) {
+  if (change == Presence::Change::none) return;
+  const bool started = change == Presence::Change::started;
+  GPtrArray* objects = g_ptr_array_new();
+  if (started)
+    for (CerberusRegion& region : state->published) g_ptr_array_add(objects, &region);
+  gst_element_post_message(GST_ELEMENT(base),
+                           cerberus_message_new_motion(GST_OBJECT(base), started, running_time, objects));
+  g_ptr_array_unref(objects);
+}
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  cerberus_motion_track_self(object)->priv->settings.set(kProperties, id, value);
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_motion_track_self(object)->priv->settings.get(kProperties, id, value);
+}
+
+void cerberus_motion_track_init(CerberusMotionTrack* self) {
+  self->priv->base = &self->parent;
+  cerberus_analysis_init_with(&self->parent, self->priv);
+}
+
+void cerberus_motion_track_class_init(CerberusMotionTrackClass* klass) {
+  static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
+                static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED);
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+  gst_element_class_set_static_metadata(
+      GST_ELEMENT_CLASS(klass), "Motion tracks", "Filter/Analyzer/Video",
+      "Stable identities and velocities for the regions, camera motion taken out", "The Cerberus developers");
+}
+
+}  // namespace
+
+GType motiontrack_type() {
+  return cerberus_motion_track_get_type();
+}
+
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(motiontrack, GST_RANK_NONE, cerberus::plugin::cerberus_motion_track,
+                          motiontrack_debug, "identities and velocities of moving objects")

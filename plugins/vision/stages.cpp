@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "stages.hpp"
+
+#include <cerberus/cerberus.h>
+
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <utility>
+
+#include "cerberus/private/video.hpp"
+
+namespace cerberus::plugin {
+namespace {
+
+MappedPlane acquire(PlanePool& pool, vision::Size size, int sample_size = 1) {
+  MappedPlane plane = pool.acquire(size, sample_size);
+  if (!plane) throw std::bad_alloc();
+  return plane;
+}
+
+}  // namespace
+
+MappedPlane LumaStage::obtain(Frame& frame) {
+  MappedPlane upstream = MappedPlane::read(frame.buffer, CERBERUS_PLANE_LUMA);
+  // A plane larger than the frame is not ours, whoever attached it.
+  const vision::Size size = frame.size();
+  if (upstream && upstream.width() <= size.width && upstream.height() <= size.height) return upstream;
+  return make(frame);
+}
+
+MappedPlane LumaStage::make(Frame& frame) {
+  const VideoFrame mapped(*frame.info, frame.buffer, GST_MAP_READ);
+  if (!mapped) return {};
+  MappedPlane plane = acquire(pool_, vision::analysis_size(frame.size(), analysis_width_));
+  scaler_.scale(luma_source(*mapped.get()), plane.writable<std::uint8_t>());
+  plane.publish(frame.buffer, CERBERUS_PLANE_LUMA);
+  return MappedPlane::read(frame.buffer, CERBERUS_PLANE_LUMA);
+}
+
+bool DifferenceStage::ensure(Frame& frame) {
+  const MappedPlane histogram = MappedPlane::read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
+  if (histogram && histogram.width() * 4 >= static_cast<int>(sizeof(HistogramRecord)) &&
+      cerberus_buffer_get_plane_meta(frame.buffer, CERBERUS_PLANE_DIFFERENCE) &&
+      cerberus_buffer_get_plane_meta(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE))
+    return true;
+  return run(frame);
+}
+
+bool DifferenceStage::run(Frame& frame) {
+  const MappedPlane picture = luma_.obtain(frame);
+  if (!picture) return false;
+  if (sequence_.broken_by(frame)) difference_.reset();
+  const vision::Size size = picture.size();
+  MappedPlane current = acquire(current_pool_, size);
+  MappedPlane previous = acquire(previous_pool_, size);
+  MappedPlane histogram = acquire(histogram_pool_, {sizeof(HistogramRecord) / 4, 1}, 4);
+
+  vision::Histogram counts;
+  const vision::DifferenceResult result =
+      difference_.update(picture.view<std::uint8_t>(), frame.motion.in(size, frame.size()),
+                         current.writable<std::uint8_t>(), previous.writable<std::uint8_t>(), counts);
+  HistogramRecord record;
+  std::memcpy(record.count, counts.data(), sizeof record.count);
+  record.frames = result.frames;
+  record.gain = static_cast<float>(result.gain);
+  record.offset = static_cast<float>(result.offset);
+  std::memcpy(histogram.writable<std::uint32_t>().data, &record, sizeof record);
+
+  current.publish(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
+  previous.publish(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+  histogram.publish(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
+  return true;
+}
+
+bool MaskStage::ensure(Frame& frame) {
+  if (cerberus_buffer_get_plane_meta(frame.buffer, CERBERUS_PLANE_MASK)) return true;
+  return run(frame);
+}
+
+bool MaskStage::run(Frame& frame) {
+  const MappedPlane picture = before_.luma().obtain(frame);
+  if (!picture || !before_.ensure(frame)) return false;
+  const MappedPlane current = MappedPlane::read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
+  const MappedPlane previous = MappedPlane::read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+  const MappedPlane histogram = MappedPlane::read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
+  const vision::Size size = picture.size();
+  if (current.size() != size || previous.size() != size) return false;
+  if (sequence_.broken_by(frame) || size != size_) area_.reset();
+  size_ = size;
+
+  HistogramRecord record;
+  std::memcpy(&record, histogram.view<std::uint32_t>().data, sizeof record);
+  vision::Histogram counts;
+  std::memcpy(counts.data(), record.count, sizeof record.count);
+  vision::MovingAreaInput input;
+  input.picture = picture.view<std::uint8_t>();
+  input.motion = frame.motion.in(size, frame.size());
+  input.confidence = frame.motion.confidence;
+  input.residual = frame.motion.residual * size.width / frame.size().width;
+  input.still = frame.motion.still;
+  input.current = current.view<std::uint8_t>();
+  input.previous = previous.view<std::uint8_t>();
+  input.histogram = &counts;
+  input.frames = record.frames;
+  input.gain = record.gain;
+  input.offset = record.offset;
+
+  MappedPlane mask = acquire(pool_, size);
+  const vision::MovingAreaResult result = area_.update(input, mask.writable<std::uint8_t>());
+  mask.publish(frame.buffer, CERBERUS_PLANE_MASK);
+
+  CerberusThreshold threshold{};
+  threshold.threshold = static_cast<guint>(result.threshold);
+  threshold.fuzzy_threshold = static_cast<guint>(result.fuzzy_threshold);
+  threshold.noise = result.sigma;
+  threshold.ready = result.ready;
+  cerberus_buffer_add_threshold_meta(frame.buffer, &threshold);
+  return true;
+}
+
+bool RegionStage::ensure(Frame& frame) {
+  if (regions_known(frame.buffer)) return true;
+  return run(frame);
+}
+
+bool RegionStage::run(Frame& frame) {
+  if (!before_.ensure(frame)) return false;
+  const MappedPlane found = MappedPlane::read(frame.buffer, CERBERUS_PLANE_MASK);
+  const vision::Size size = found.size();
+  if (sequence_.broken_by(frame) || size != size_) finder_.reset();
+  size_ = size;
+
+  MappedPlane mask = acquire(mask_pool_, size);
+  MappedPlane labels = acquire(label_pool_, size, sizeof(std::uint16_t));
+  const vision::MutableGrayView target = mask.writable<std::uint8_t>();
+  for (int y = 0; y < size.height; ++y)
+    std::memcpy(target.row(y), found.view<std::uint8_t>().row(y), static_cast<std::size_t>(size.width));
+  zones_.apply(target);
+
+  const std::span<const vision::Region> regions =
+      finder_.update(target, labels.writable<std::uint16_t>(), frame.motion.in(size, frame.size()));
+  mask.publish(frame.buffer, CERBERUS_PLANE_MASK);
+  labels.publish(frame.buffer, CERBERUS_PLANE_LABELS);
+
+  const CerberusThresholdMeta* threshold = cerberus_buffer_get_threshold_meta(frame.buffer);
+  const bool ready = !threshold || threshold->threshold.ready;
+  cerberus_buffer_remove_regions(frame.buffer);
+  if (ready) publish(frame, regions, size);
+  mark_regions_known(frame.buffer);
+  return true;
+}
+
+namespace {
+
+constexpr char kRegionsKnown[] = "CerberusRegionsKnown";
+
+bool register_mark() {
+  // No tags: a fact that survives conversion, scaling and encoding with the regions.
+  static const gchar* tags[] = {nullptr};
+  return gst_meta_get_info(kRegionsKnown) != nullptr ||
+         gst_meta_register_custom(kRegionsKnown, tags, nullptr, nullptr, nullptr) != nullptr;
+}
+
+}  // namespace
+
+bool regions_known(GstBuffer* buffer) {
+  static const bool registered = register_mark();
+  return registered && gst_buffer_get_custom_meta(buffer, kRegionsKnown) != nullptr;
+}
+
+void mark_regions_known(GstBuffer* buffer) {
+  if (!regions_known(buffer)) gst_buffer_add_custom_meta(buffer, kRegionsKnown);
+}
+
+void RegionStage::publish(Frame& frame, std::span<const vision::Region> regions, vision::Size analysis) {
+  const double sx = static_cast<double>(frame.size().width) / analysis.width;
+  const double sy = static_cast<double>(frame.size().height) / analysis.height;
+  const vision::Lens lens(field_of_view_, frame.size());
+  guint number = 0;
+  for (const vision::Region& region : regions) {
+    const vision::Box box{region.box.x * sx, region.box.y * sy, region.box.width * sx,
+                          region.box.height * sy};
+    if (!vision::passes(gate_, box, lens.place(box, 0, 0, mounting_height_))) continue;
+    CerberusRegion out;
+    cerberus_region_init(&out);
+    out.id = number++;
+    out.x = box.x;
+    out.y = box.y;
+    out.width = box.width;
+    out.height = box.height;
+    out.confidence = region.confidence;
+    cerberus_buffer_add_region(frame.buffer, &out);
+  }
+}
+
+}  // namespace cerberus::plugin

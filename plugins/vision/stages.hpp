@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The steps from a frame to its regions, each with its predecessor inside: a stage whose input is not on the buffer
+// makes that input itself, with the defaults, and leaves it there for those who follow. Every element of the corridor
+// is one of these stages with properties; so the bin and the chain cannot differ.
+#pragma once
+
+#include <span>
+
+#include "cerberus/private/plane_pool.hpp"
+#include "frame.hpp"
+#include "vision/gates.h"
+#include "vision/lens.h"
+#include "vision/luma.h"
+#include "vision/moving_area.h"
+#include "vision/regions.h"
+#include "vision/three_frame_difference.h"
+#include "vision/zones.h"
+
+namespace cerberus::plugin {
+
+inline constexpr int kDefaultAnalysisWidth = 320;
+
+// The frame's small grey picture.
+class LumaStage {
+ public:
+  void set_analysis_width(int width) { analysis_width_ = width; }
+  // The plane upstream attached, else one of our own (attached too). Empty: the buffer's memory does not hold the
+  // picture its caps promise.
+  MappedPlane obtain(Frame& frame);
+  // Always our own.
+  MappedPlane make(Frame& frame);
+
+ private:
+  int analysis_width_ = kDefaultAnalysisWidth;
+  vision::LumaScaler scaler_;
+  PlanePool pool_;
+};
+
+// What rides in a HISTOGRAM plane: 256 counts, then what the differences were made of.
+struct HistogramRecord {
+  std::uint32_t count[256];
+  std::int32_t frames;  // vision::DifferenceResult
+  float gain, offset;
+};
+
+// Registered differences and their histogram (Eq. 1, 2).
+class DifferenceStage {
+ public:
+  LumaStage& luma() { return luma_; }
+  void set_options(const vision::DifferenceOptions& options) { difference_.set_options(options); }
+  // Both return false for an unusable buffer.
+  bool ensure(Frame& frame);
+  bool run(Frame& frame);
+  std::size_t bytes() const { return difference_.bytes(); }
+
+ private:
+  LumaStage luma_;
+  vision::ThreeFrameDifference difference_;
+  Sequence sequence_;
+  PlanePool current_pool_, previous_pool_, histogram_pool_;
+};
+
+// Threshold and moving area (Eq. 3 to 10).
+class MaskStage {
+ public:
+  LumaStage& luma() { return before_.luma(); }
+  void set_options(const vision::MovingAreaOptions& options) { area_.set_options(options); }
+  bool ensure(Frame& frame);
+  bool run(Frame& frame);
+  std::size_t bytes() const { return area_.bytes() + before_.bytes(); }
+
+ private:
+  DifferenceStage before_;
+  vision::MovingArea area_;
+  vision::Size size_;
+  Sequence sequence_;
+  PlanePool pool_;
+};
+
+// Regions of interest from the moving area.
+class RegionStage {
+ public:
+  LumaStage& luma() { return before_.luma(); }
+  void set_options(const vision::RegionOptions& options) { finder_.set_options(options); }
+  vision::Zones& zones() { return zones_; }
+  // field_of_view: horizontal, radians, 0 = unknown (limits in metres are not judged then); mounting_height: metres.
+  void set_gate(const vision::SizeGate& gate, double field_of_view, double mounting_height) {
+    gate_ = gate;
+    field_of_view_ = field_of_view;
+    mounting_height_ = mounting_height;
+  }
+  bool ensure(Frame& frame);
+  bool run(Frame& frame);
+  std::size_t bytes() const { return finder_.bytes() + zones_.bytes() + before_.bytes(); }
+
+ private:
+  void publish(Frame& frame, std::span<const vision::Region> regions, vision::Size analysis);
+  MaskStage before_;
+  vision::RegionFinder finder_;
+  vision::Zones zones_;
+  vision::SizeGate gate_;
+  double field_of_view_ = 0, mounting_height_ = 0;
+  vision::Size size_;
+  Sequence sequence_;
+  PlanePool mask_pool_, label_pool_;
+};
+
+// "Nothing was found" and "nobody has looked" are told apart by a mark on the buffer.
+bool regions_known(GstBuffer* buffer);
+void mark_regions_known(GstBuffer* buffer);
+
+}  // namespace cerberus::plugin
