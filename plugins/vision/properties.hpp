@@ -87,8 +87,6 @@ class Adjustable {
   [[gnu::noinline]] static GParamSpec* spec(const Property<Settings>& entry, const Settings& defaults) {
     constexpr auto flags =
         static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
-    [[maybe_unused]] static const Settings
-        defaults{};  // static: GCC 12 fears for members that no Settings has
     const auto* e = &entry;
     return std::visit(
         [&](auto member) -> GParamSpec* {
