@@ -19,33 +19,30 @@
  *  "vy":0.4,"confidence":0.93,"bearing":-12.25,"distance":null}]}
  * ]|
  *
- * - `pts`: nanoseconds, of the buffer; null where it has none. `frame`: counts input buffers from 0 since
- * start.
+ * - `pts`: nanoseconds, of the buffer; null where it has none. `frame`: counts input buffers from 0 since start.
  * - `width`, `height`: of the frame, pixels.
- * - `threshold`: grey levels; null while there is none (no `fuzzythreshold` upstream, or fewer than three
- * frames of the scene).
+ * - `threshold`: grey levels; null while there is none (no `fuzzythreshold` upstream, or fewer than three frames
+ *   of the scene).
  * - `camera`: where the picture went from the previous frame to this one, a homography in row-major order, in
- * pixels of this frame; identity where nothing upstream measured it, and `confidence` is null then, else 0
- * to 1.
- * - `objects`: `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion`
- * or `person`; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`: pixels of the frame, `vx`,
- * `vy`: pixels a second, camera motion taken out; `bearing`: degrees, positive to the right; `distance`:
- * metres.
+ *   pixels of this frame; identity where nothing upstream measured it, and `confidence` is null then, else 0 to 1.
+ * - `objects`: `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion` or
+ *   `person`; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`: pixels of the frame; `vx`, `vy`:
+ *   pixels a second, camera motion taken out; `bearing`: degrees, positive to the right; `distance`: metres.
  *
  * Numbers have a point whatever the locale. Pixels, speeds, degrees and metres are rounded to 2 decimals,
  * confidences to 3, `camera` to 9 significant digits. What is unknown, not a number or infinite is null.
- * Later stages add keys
- * (`pose`, `pir`, `fusion`): readers ignore keys that they do not know.
+ * Later stages add keys (`pose`, `pir`, `fusion`): readers ignore keys that they do not know.
  *
  * Reads the camera-motion, threshold and region metas of motiondetect's stages. Posts no messages.
  *
  * ## Example launch lines
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 ! motionjson ! filesink location=/dev/stdout
- * gst-launch-1.0 -q filesrc location=vtest.avi ! decodebin ! motiondetect ! motionjson ! filesink
- * location=objects.jsonl gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! tee name=t t.
- * ! queue ! motionjson ! filesink location=objects.jsonl t. ! queue ! motionoverlay ! videoconvert !
- * autovideosink
+ * gst-launch-1.0 -q filesrc location=vtest.avi ! decodebin ! motiondetect ! motionjson ! \
+ *     filesink location=objects.jsonl
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! tee name=t \
+ *     t. ! queue ! motionjson ! filesink location=objects.jsonl \
+ *     t. ! queue ! motionoverlay ! videoconvert ! autovideosink
  * ]|
  *
  * Since: 0.1

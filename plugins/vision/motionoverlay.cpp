@@ -20,10 +20,12 @@
  *
  * ## Example launch lines
  * |[
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionoverlay ! videoconvert !
- * autovideosink gst-launch-1.0 v4l2src ! videoconvert ! motiondetect ! motionoverlay trail-time=5000000000 !
- * videoconvert ! autovideosink gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect !
- * motionoverlay show-trails=false ! videoconvert ! x264enc ! mp4mux ! filesink location=annotated.mp4
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionoverlay ! \
+ *     videoconvert ! autovideosink
+ * gst-launch-1.0 v4l2src ! videoconvert ! motiondetect ! motionoverlay trail-time=5000000000 crosshair=true ! \
+ *     videoconvert ! autovideosink
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionoverlay show-trails=false ! \
+ *     videoconvert ! x264enc ! mp4mux ! filesink location=annotated.mp4
  * ]|
  *
  * Since: 0.1
@@ -38,28 +40,24 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/video.hpp"
 #include "drawing.hpp"
+#include "properties.hpp"
 #include "vision/trails.h"
 
 namespace {
 
+using cerberus::plugin::Adjustable;
+using cerberus::plugin::Property;
+using cerberus::plugin::property;
 using cerberus::vision::Transform;
 namespace draw = cerberus::draw;
 
 GST_DEBUG_CATEGORY_STATIC(motionoverlay_debug);
 #define GST_CAT_DEFAULT motionoverlay_debug
-
-constexpr gboolean kDefaultShow = TRUE;
-constexpr gboolean kDefaultCrosshair = FALSE;
-constexpr GstClockTime kDefaultTrailTime = 2 * GST_SECOND;
-constexpr GstClockTime kMaximumTrailTime = 60 * GST_SECOND;
-constexpr double kDefaultLineWidth = 0;
-constexpr double kMaximumLineWidth = 64;
 
 #define OVERLAY_CAPS                                                                              \
   GST_VIDEO_CAPS_MAKE(GST_VIDEO_OVERLAY_COMPOSITION_BLEND_FORMATS)                                \
@@ -72,22 +70,27 @@ GstStaticPadTemplate sink_template =
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(OVERLAY_CAPS));
 
-enum {
-  PROP_0,
-  PROP_SHOW_BOXES,
-  PROP_SHOW_IDS,
-  PROP_SHOW_SPEEDS,
-  PROP_SHOW_TRAILS,
-  PROP_TRAIL_TIME,
-  PROP_LINE_WIDTH,
-  PROP_CROSSHAIR
+struct Settings {
+  bool boxes = true, ids = true, speeds = true, trails = true, crosshair = false;
+  guint64 trail_time = 2 * GST_SECOND;
+  double line_width = 0;
 };
 
-struct Settings {
-  bool boxes = kDefaultShow, ids = kDefaultShow, speeds = kDefaultShow, trails = kDefaultShow;
-  bool crosshair = kDefaultCrosshair;
-  GstClockTime trail_time = kDefaultTrailTime;
-  double line_width = kDefaultLineWidth;
+constexpr double kWidestLine = 64;
+
+const Property<Settings> kProperties[] = {
+    property("show-boxes", &Settings::boxes, "Draw a box around every object"),
+    property("show-ids", &Settings::ids, "Draw a label with the identity on every object"),
+    property("show-speeds", &Settings::speeds,
+             "Add the speed in pixels a second to the label where the box is wide enough for it"),
+    property("show-trails", &Settings::trails,
+             "Draw the way that every object came, fixed to the scene while the camera moves"),
+    property("trail-time", &Settings::trail_time,
+             "How far back trails reach, in nanoseconds: 0 leaves none; a trail has 1024 points at most, one "
+             "a frame"),
+    property("line-width", &Settings::line_width, 0, kWidestLine,
+             "Width of the lines in pixels of the frame: 0 chooses one that reads well at the frame's size"),
+    property("crosshair", &Settings::crosshair, "Mark the centre of the picture"),
 };
 
 struct State {  // streaming thread only
@@ -104,14 +107,14 @@ struct State {  // streaming thread only
 };
 
 struct Private {
-  std::mutex lock;
-  Settings settings;
+  Adjustable<Settings> settings;
   State state;
 };
 
 CERBERUS_DEFINE_TYPE(CerberusMotionOverlay, cerberus_motion_overlay, GstBaseTransform,
                      GST_TYPE_BASE_TRANSFORM, Private)
 
+using CapsPtr = std::unique_ptr<GstCaps, decltype(&gst_caps_unref)>;
 using CompositionPtr =
     std::unique_ptr<GstVideoOverlayComposition, decltype(&gst_video_overlay_composition_unref)>;
 
@@ -203,20 +206,17 @@ GstCaps* cerberus_motion_overlay_transform_caps(GstBaseTransform*, GstPadDirecti
 // Only called where downstream leaves a choice.
 GstCaps* cerberus_motion_overlay_fixate_caps(GstBaseTransform* transform, GstPadDirection direction,
                                              GstCaps* caps, GstCaps* others) {
-  const auto take = [&](bool feature) -> GstCaps* {
+  const auto first = [&](bool feature) -> CapsPtr {
     for (guint i = 0; i < gst_caps_get_size(others); ++i)
-      if (has_composition_feature(others, i) == feature) return gst_caps_fixate(gst_caps_copy_nth(others, i));
-    return nullptr;
+      if (has_composition_feature(others, i) == feature)
+        return CapsPtr(gst_caps_fixate(gst_caps_copy_nth(others, i)), gst_caps_unref);
+    return CapsPtr(nullptr, gst_caps_unref);
   };
-  GstCaps* with = take(true);
-  GstCaps* without = take(false);
-  // Upstream's own composition stays attached if downstream takes it at all.
-  const bool prefer = direction == GST_PAD_SINK && with && !gst_caps_is_empty(with) &&
-                      (!without || downstream_draws(transform, with));
-  GstCaps*& chosen = prefer || !without ? with : without;
-  GstCaps* result = chosen ? std::exchange(chosen, nullptr) : gst_caps_copy(others);
-  gst_clear_caps(&with);
-  gst_clear_caps(&without);
+  CapsPtr with = first(true), without = first(false);
+  const bool attach =
+      with && (!without || (direction == GST_PAD_SINK && downstream_draws(transform, with.get())));
+  CapsPtr& chosen = attach ? with : without;
+  GstCaps* result = chosen ? chosen.release() : gst_caps_copy(others);
   gst_caps_unref(others);
   GST_DEBUG_OBJECT(transform, "%" GST_PTR_FORMAT " for %" GST_PTR_FORMAT, result, caps);
   return result;
@@ -298,10 +298,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
   return cerberus::guarded(transform, GST_FLOW_ERROR, [&]() -> GstFlowReturn {
     Private& self = *cerberus_motion_overlay_self(transform)->priv;
     State& state = self.state;
-    const Settings settings = [&] {
-      std::lock_guard guard(self.lock);
-      return self.settings;
-    }();
+    const Settings settings = self.settings.snapshot();
     read_objects(state, buffer);
     update_trails(state, buffer, settings);
 
@@ -340,66 +337,12 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
   });
 }
 
-void cerberus_motion_overlay_set_property(GObject* object, guint id, const GValue* value, GParamSpec* spec) {
-  Private& self = *cerberus_motion_overlay_self(object)->priv;
-  std::lock_guard guard(self.lock);
-  Settings& settings = self.settings;
-  switch (id) {
-    case PROP_SHOW_BOXES:
-      settings.boxes = g_value_get_boolean(value);
-      break;
-    case PROP_SHOW_IDS:
-      settings.ids = g_value_get_boolean(value);
-      break;
-    case PROP_SHOW_SPEEDS:
-      settings.speeds = g_value_get_boolean(value);
-      break;
-    case PROP_SHOW_TRAILS:
-      settings.trails = g_value_get_boolean(value);
-      break;
-    case PROP_TRAIL_TIME:
-      settings.trail_time = g_value_get_uint64(value);
-      break;
-    case PROP_LINE_WIDTH:
-      settings.line_width = g_value_get_double(value);
-      break;
-    case PROP_CROSSHAIR:
-      settings.crosshair = g_value_get_boolean(value);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
-  }
+void cerberus_motion_overlay_set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  cerberus_motion_overlay_self(object)->priv->settings.set(kProperties, id, value);
 }
 
-void cerberus_motion_overlay_get_property(GObject* object, guint id, GValue* value, GParamSpec* spec) {
-  Private& self = *cerberus_motion_overlay_self(object)->priv;
-  std::lock_guard guard(self.lock);
-  const Settings& settings = self.settings;
-  switch (id) {
-    case PROP_SHOW_BOXES:
-      g_value_set_boolean(value, settings.boxes);
-      break;
-    case PROP_SHOW_IDS:
-      g_value_set_boolean(value, settings.ids);
-      break;
-    case PROP_SHOW_SPEEDS:
-      g_value_set_boolean(value, settings.speeds);
-      break;
-    case PROP_SHOW_TRAILS:
-      g_value_set_boolean(value, settings.trails);
-      break;
-    case PROP_TRAIL_TIME:
-      g_value_set_uint64(value, settings.trail_time);
-      break;
-    case PROP_LINE_WIDTH:
-      g_value_set_double(value, settings.line_width);
-      break;
-    case PROP_CROSSHAIR:
-      g_value_set_boolean(value, settings.crosshair);
-      break;
-    default:
-      G_OBJECT_WARN_INVALID_PROPERTY_ID(object, id, spec);
-  }
+void cerberus_motion_overlay_get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_motion_overlay_self(object)->priv->settings.get(kProperties, id, value);
 }
 
 void cerberus_motion_overlay_init(CerberusMotionOverlay* self) {
@@ -408,39 +351,11 @@ void cerberus_motion_overlay_init(CerberusMotionOverlay* self) {
   gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
 }
 
-void install_properties(GObjectClass* object) {
-  const auto flags = GParamFlags(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_CONTROLLABLE |
-                                 GST_PARAM_MUTABLE_PLAYING);
-  const auto boolean = [&](guint id, const char* name, const char* nick, const char* blurb, gboolean value) {
-    g_object_class_install_property(object, id, g_param_spec_boolean(name, nick, blurb, value, flags));
-  };
-  boolean(PROP_SHOW_BOXES, "show-boxes", "Show boxes", "Draw a box around every object", kDefaultShow);
-  boolean(PROP_SHOW_IDS, "show-ids", "Show identities", "Draw a label with the identity on every object",
-          kDefaultShow);
-  boolean(PROP_SHOW_SPEEDS, "show-speeds", "Show speeds",
-          "Add the speed in pixels a second to the label where the box is wide enough for it", kDefaultShow);
-  boolean(PROP_SHOW_TRAILS, "show-trails", "Show trails",
-          "Draw the way that every object came, fixed to the scene while the camera moves", kDefaultShow);
-  g_object_class_install_property(
-      object, PROP_TRAIL_TIME,
-      g_param_spec_uint64("trail-time", "Trail time",
-                          "How far back trails reach, in nanoseconds; 0 leaves none, 60 s is the most", 0,
-                          kMaximumTrailTime, kDefaultTrailTime, flags));
-  g_object_class_install_property(
-      object, PROP_LINE_WIDTH,
-      g_param_spec_double(
-          "line-width", "Line width",
-          "Width of the lines in pixels of the frame; 0 chooses one that reads well at the frame's "
-          "size, 64 is the most",
-          0, kMaximumLineWidth, kDefaultLineWidth, flags));
-  boolean(PROP_CROSSHAIR, "crosshair", "Crosshair", "Mark the centre of the picture", kDefaultCrosshair);
-}
-
 void cerberus_motion_overlay_class_init(CerberusMotionOverlayClass* klass) {
   GObjectClass* object = G_OBJECT_CLASS(klass);
   object->set_property = cerberus_motion_overlay_set_property;
   object->get_property = cerberus_motion_overlay_get_property;
-  install_properties(object);
+  Adjustable<Settings>::install(object, kProperties);
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element, "Motion overlay", "Filter/Effect/Video",

@@ -23,9 +23,9 @@
  * ## Example launch lines
  * |[
  * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionview stage=mask ! videoconvert ! autovideosink
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! threeframediff ! fuzzythreshold ! motionview stage=histogram !
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! threeframediff ! fuzzythreshold ! motionview stage=histogram ! \
  *     videoconvert ! autovideosink
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionview stage=difference gain=4 !
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionview stage=difference gain=4 ! \
  *     motionoverlay ! videoconvert ! autovideosink
  * ]|
  *
