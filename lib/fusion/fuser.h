@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Camera and PIR sensors in, one action out, frame by frame: the state machine of sensor fusion.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string_view>
+
+#include "fusion/complete.h"
+#include "fusion/rules.h"
+
+namespace cerberus::fusion {
+
+using Time = std::chrono::nanoseconds;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+enum class RuleSet : std::uint8_t { complete, table };
+enum class TargetChoice : std::uint8_t { nearest, largest, newest };
+
+struct FuserOptions {
+  RuleSet rules = RuleSet::complete;
+  TargetChoice choice = TargetChoice::nearest;        // when none is followed yet
+  Time camera_hold = std::chrono::milliseconds(500);  // camera found is kept this long after the last track
+  Time return_delay = std::chrono::seconds(5);        // without any detection before the head returns to zero
+  Time hold_stopped = std::chrono::seconds(30);  // a followed person who stopped is held at least this long
+  double hysteresis = 2 * (3.14159265358979323846 / 180);
+  double lens = 60 * (3.14159265358979323846 / 180);  // horizontal field of view; 0: not known
+  Interval limits = kDefaultLimits;                   // of pan
+  Time dwell = std::chrono::seconds(2);               // least time at a place before the next one is tried
+};
+// What the paper says and no more: its table, no return delay, no hysteresis.
+FuserOptions paper_options();
+
+enum class TrackState : std::uint8_t { seen, coasted, stopped };
+
+// A confirmed track of this frame.
+struct Track {
+  std::uint32_t id = 0;                        // not 0
+  double x = 0, y = 0, width = 0, height = 0;  // frame pixels
+  double bearing = kUnknown;                   // radians
+  double distance = kUnknown;                  // metres
+  Time age{};
+  TrackState state = TrackState::seen;
+};
+
+struct Input {
+  Time time{};                            // running time of the frame
+  std::span<const Track> tracks;          // any order
+  std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
+  double pan = kUnknown;                  // radians, the head at the frame's capture time
+  double base_yaw_rate = kUnknown;        // radians a second
+};
+
+struct Decision {
+  Action action = Action::hold;
+  int rule = 0;  // number of the table's rule; complete: 1 (camera) and 7 (zero), 0 for the rest
+  std::string_view
+      rule_name;  // of the table's rule; complete: "camera", "overlap", "sector", "return", "zero";
+                  // "stopped", "return": what defers rule 7. Valid until the fuser's next change of rules.
+  std::uint32_t target = 0;  // id of the track to follow; 0: none
+  Interval sector{
+      kUnknown, kUnknown};  // turn: where to; search: sweep from edge to edge (already within the limits and
+                            // pulled in by half a lens: a head just goes there and back). Else NaN.
+  double pan = kUnknown;    // as used
+  bool limited = false;     // what is wanted lies (partly) beyond the pan limits
+  bool camera_found = false;
+  SensorBits fired = 0;     // sensors that counted
+  SensorBits doubtful = 0;  // said 1 while the base turned (or just after): not counted
+  SensorBits invalid = 0;   // said 2: not counted
+  bool changed =
+      false;  // rule, action, target, sector, limited, camera_found, or a sensor differs from last frame
+};
+
+// Not thread-safe: one streaming thread. Steady state allocates nothing. The same inputs give the same decisions.
+class Fuser {
+ public:
+  Fuser();
+  ~Fuser();
+  Fuser(Fuser&&) noexcept;
+  Fuser& operator=(Fuser&&) noexcept;
+
+  // May be called at any time, also between frames of a running stream; what is known of tracks and sensors stays.
+  void set_options(const FuserOptions& options);
+  const FuserOptions& options() const;
+  // From the PIR caps; the default is the paper's three.
+  void set_geometry(const Geometry& geometry);
+  // The table that RuleSet::table follows; the default is paper_rules(). Must have passed check().
+  void set_table(RuleTable table);
+
+  // Forget tracks, detections and timers (flush, DISCONT, new segment). Options, geometry and table stay.
+  void reset();
+  // Time that goes back resets first. Long gaps let timers expire as if frames had come.
+  const Decision& update(const Input& input);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cerberus::fusion

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The rules of sensor fusion as data: (camera found, infer1..n) x band of pan angles -> action (the paper's II.D).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sensing/sectors.h"
+
+namespace cerberus::fusion {
+
+using sensing::kMaxSensors;
+using sensing::SensorBits;
+
+enum class Action : std::uint8_t { track, turn_left, turn_right, search, zero, hold };
+// "track", "turn-left", "turn-right", "search", "zero", "hold": as in files, messages and JSON.
+std::string_view name(Action action);
+
+// A band of pan angles (radians) and what to do there. No limits: every angle, and an unknown one (NaN).
+struct Band {
+  double lower = -std::numeric_limits<double>::infinity();
+  double upper = std::numeric_limits<double>::infinity();
+  bool lower_included = true, upper_included = true;
+  Action action = Action::track;
+  sensing::Interval search{};  // pan angles to sweep between, for Action::search
+
+  bool unlimited() const;
+  bool holds(double pan) const;
+};
+
+enum class Camera : std::uint8_t { any, found, missing };
+
+// Applies when the camera is as asked, all sensors of `all`, at least one of `any` (if it names some) and none of
+// `none` detect, and one of the bands holds the pan angle. Bands are if / else-if / else: the first one counts.
+struct Rule {
+  int number = 0;
+  std::string name;
+  Camera camera = Camera::any;
+  SensorBits all = 0, any = 0, none = 0;
+  std::vector<Band> bands;
+
+  bool matches(bool camera_found, SensorBits fired) const;
+  const Band* band(double pan) const;  // nullptr: none holds it
+};
+
+enum class Precedence : std::uint8_t {
+  order,  // the first rule that applies wins
+  exact,  // exactly one answer in every case: check() refuses the table otherwise
+};
+
+struct RuleTable {
+  std::string name;
+  int sensors = 0;  // how many it speaks of; detections of further sensors are not looked at
+  Precedence precedence = Precedence::exact;
+  std::vector<Rule> rules;  // in order of precedence
+
+  struct Match {
+    const Rule* rule = nullptr;  // nullptr: no rule applies (an unchecked table)
+    const Band* band = nullptr;
+  };
+  // pan: radians; NaN (unknown) meets unlimited bands only.
+  Match evaluate(bool camera_found, SensorBits fired, double pan) const;
+};
+
+// The paper's seven rules, literally: by number whatever the bearings, in the order 1, 5, 6, 2, 3, 4, 7, first match
+// wins, rules 2-4 turn at their edge and 5-6 track at it. infer2 + infer3 falls to rule 3 and all three to rule 5:
+// the paper has no rule for these two cells, this order is ours.
+const RuleTable& paper_rules();
+
+}  // namespace cerberus::fusion

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Angles: radians everywhere inside lib/, degrees in files, messages and on the command line. Pan and bearings are
+// positive to the right (clockwise from above).
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+namespace cerberus::sensing {
+
+// One way of converting, used for rule edges and for the pan angle alike: an angle written as the same number of
+// degrees is the same double in radians, so that "at the edge" means what it says.
+constexpr double radians(double degrees) {
+  return degrees * (std::numbers::pi / 180);
+}
+constexpr double degrees(double radians) {
+  return radians * (180 / std::numbers::pi);
+}
+
+// The same direction in [-pi, pi). NaN and infinity become NaN.
+inline double wrap(double radians) {
+  constexpr double turn = 2 * std::numbers::pi;
+  if (radians >= -std::numbers::pi && radians < std::numbers::pi) return radians;
+  const double wrapped = radians - turn * std::floor((radians + std::numbers::pi) / turn);
+  return wrapped >= std::numbers::pi ? wrapped - turn : wrapped;
+}
+
+}  // namespace cerberus::sensing

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What PIR sensors cover: arcs of the full circle, and what of them a head with stops can turn to.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace cerberus::sensing {
+
+constexpr int kMaxSensors = 16;
+// One bit a sensor: bit 0 = infer1.
+using SensorBits = std::uint16_t;
+
+// An arc of the circle, radians, both ends belong to it: from `from` clockwise (to the right) to `from` + `width`.
+struct Arc {
+  double from = 0;   // [-pi, pi)
+  double width = 0;  // 0 .. 2 pi; 0 = one direction, 2 pi = the whole circle
+};
+
+// A closed interval of pan angles, radians, from <= to: a part of a line, nothing wraps.
+struct Interval {
+  double from = 0;
+  double to = 0;
+  double width() const { return to - from; }
+  double middle() const { return (from + to) / 2; }
+  bool holds(double x) const { return x >= from && x <= to; }
+  // 0 inside; else how far x is away, always positive.
+  double distance(double x) const { return x < from ? from - x : x > to ? x - to : 0; }
+};
+
+// A list without allocation; what does not fit is dropped, which the sizes below rule out.
+template <typename T, int N>
+struct FixedList {
+  std::array<T, N> items{};
+  int count = 0;
+  void push(const T& item) {
+    if (count < N) items[static_cast<unsigned>(count++)] = item;
+  }
+  T& operator[](int i) { return items[static_cast<unsigned>(i)]; }
+  const T& operator[](int i) const { return items[static_cast<unsigned>(i)]; }
+  T* begin() { return items.data(); }
+  T* end() { return items.data() + count; }
+  const T* begin() const { return items.data(); }
+  const T* end() const { return items.data() + count; }
+};
+
+// Where the sensors look. As pirsrc's caps give it: nothing is configured twice.
+class Geometry {
+ public:
+  // The paper's: ahead, left, right, 120 degrees each (II.A; DESIGN.md: 0, -120, +120).
+  Geometry();
+  // bearings: radians, 1 .. 16 of them, finite (wrapped here). field_of_view: radians, in (0, 2 pi].
+  // Returns false and changes nothing when they are not that.
+  bool set(std::span<const double> bearings, double field_of_view);
+
+  int count() const { return count_; }
+  double bearing(int sensor) const { return bearings_[static_cast<unsigned>(sensor)]; }
+  double field_of_view() const { return field_of_view_; }
+  Arc sector(int sensor) const;
+  bool operator==(const Geometry&) const = default;
+
+ private:
+  std::array<double, kMaxSensors> bearings_{};
+  int count_ = 0;
+  double field_of_view_ = 0;
+};
+
+// Arcs may meet in several places (two of 180 degrees, back to back, meet in two points).
+constexpr int kMaxOverlaps = kMaxSensors + 1;
+using Arcs = FixedList<Arc, kMaxOverlaps>;
+
+// What all sensors of `fired` cover together; empty when there is nothing. Sectors that only touch (nearer than
+// 1e-6 rad) meet in an arc of width 0: somebody on the border trips both.
+Arcs overlap(const Geometry& geometry, SensorBits fired);
+
+// The parts of an arc that pan angles within `limits` can look at, from left to right: none, one, or several (the arc
+// behind a head of +-170 degrees is reached from both stops). The limits may be further apart than a turn.
+using Intervals = FixedList<Interval, 8>;
+Intervals reachable(const Arc& arc, const Interval& limits);
+
+// The limit nearest to an arc that cannot be reached, by the angle that stays between them; equally near: the one
+// nearer to `pan`.
+double nearest_limit(const Arc& arc, const Interval& limits, double pan);
+
+}  // namespace cerberus::sensing
