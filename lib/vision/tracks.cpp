@@ -24,6 +24,7 @@ constexpr double kBirthSpeed = 3.0;          // S/s, standard deviation of the u
 constexpr double kPositionNoise = 0.05;      // S: a region's centre flickers by this
 constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's extent flickers by 15 %
 constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
+constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
 constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
 
 struct Body {
@@ -31,7 +32,10 @@ struct Body {
   MovingValue x, y;      // centre
   SlowValue w, h;        // logarithms of the extent
   Point origin;          // where it was first seen, carried with the scene
-  double age = 0, unseen = 0, shared = 0, misfit = 0;
+  double age = 0, unseen = 0, shared = 0;
+  double fitted = 0;  // s during which the region had the track's extent: how well the extent is known
+  double misfit = 0;  // s since it had, and what was seen in the meantime
+  Box misfit_from, misfit_last;
   double travelled = 0;  // largest distance from the origin, S
   double confidence = 0;
   double top_speed = 0;  // pixels a second
@@ -105,6 +109,8 @@ struct Tracker::State {
   void associate(bool confirmed);
   void gather_fragments();
   void share_regions();
+  void adopt(Body& body, const Box& seen);
+  bool outgrown(Body& body, const Box& seen);
   void correct(Body& body, const Box& seen, double confidence, bool alone);
   void give_birth();
   void age();
@@ -144,8 +150,9 @@ void Tracker::State::predict(const Transform& motion) {
       b.x.predict(seconds, noise);
       b.y.predict(seconds, noise);
     }
-    b.w.predict(seconds, kSizeWander);
-    b.h.predict(seconds, kSizeWander);
+    const double wander = at_border(b) ? kBorderWander : kSizeWander;
+    b.w.predict(seconds, wander);
+    b.h.predict(seconds, wander);
     b.age += seconds;
     ++b.frames;
     b.region = -1;
@@ -234,29 +241,47 @@ void Tracker::State::gather_fragments() {
   }
 }
 
+// The region's extent replaces the track's.
+void Tracker::State::adopt(Body& b, const Box& seen) {
+  b.w = {std::log(seen.width), kSizeNoise * kSizeNoise};
+  b.h = {std::log(seen.height), kSizeNoise * kSizeNoise};
+  b.x.position = seen.x + seen.width / 2;
+  b.y.position = seen.y + seen.height / 2;
+  b.misfit = b.fitted = 0;
+}
+
+// One object, one region, extents that disagree. A larger region soon is right: the object came into view, or only a
+// piece of it was seen before. A smaller one is a piece of an object that hardly moves (an arm) as long as it stays
+// in place; it is right when the old extent was never well known, or when the piece walks away on its own.
+bool Tracker::State::outgrown(Body& b, const Box& seen) {
+  if (b.misfit == 0) b.misfit_from = seen;
+  b.misfit += seconds;
+  b.misfit_last = seen;
+  const bool larger = seen.width * seen.height > b.width() * b.height();
+  if (larger) return b.misfit >= (b.fitted < 0.5 ? 0.2 : 0.6) || at_border(b);
+  const double walked = std::hypot(seen.x + seen.width / 2 - b.misfit_from.x - b.misfit_from.width / 2,
+                                   seen.y + seen.height / 2 - b.misfit_from.y - b.misfit_from.height / 2);
+  return b.misfit >= 0.5 && (b.fitted < 0.5 || walked > 0.5 * b.size());
+}
+
 void Tracker::State::correct(Body& b, const Box& seen, double confidence, bool alone) {
   const Box box = b.box();
   const double s = b.size();
   const Residual rx = compare(box.x, box.right(), seen.x, seen.right());
   const Residual ry = compare(box.y, box.bottom(), seen.y, seen.bottom());
-  const double noise = kPositionNoise * s * kPositionNoise * s;
+  const double noise = kPositionNoise * s * kPositionNoise * s, size_noise = kSizeNoise * kSizeNoise;
   b.stopped = false;
   const bool fits = rx.same_extent && ry.same_extent;
-  b.misfit = fits || !alone ? 0 : b.misfit + seconds;
-  if (b.misfit > 0.5) {
-    // One object, one region, and for half a second the extents disagree: the region is right.
-    b.w = {std::log(seen.width), kSizeNoise * kSizeNoise};
-    b.h = {std::log(seen.height), kSizeNoise * kSizeNoise};
-    b.x.position = seen.x + seen.width / 2;
-    b.y.position = seen.y + seen.height / 2;
-    b.misfit = 0;
+  if (!fits && alone && outgrown(b, seen)) {
+    adopt(b, seen);
   } else {
     b.x.correct(rx.distance, rx.same_extent ? noise : 6 * noise);
     b.y.correct(ry.distance, ry.same_extent ? noise : 6 * noise);
-    const double size_noise = kSizeNoise * kSizeNoise;
     if (fits && alone) {
       b.w.correct(std::log(seen.width), size_noise);
       b.h.correct(std::log(seen.height), size_noise);
+      b.misfit = 0;
+      b.fitted += seconds;
     }
   }
   ++b.hits;
@@ -264,13 +289,14 @@ void Tracker::State::correct(Body& b, const Box& seen, double confidence, bool a
   const double keep = std::exp(-seconds / 0.5);
   b.confidence = keep * b.confidence + (1 - keep) * (fits ? confidence : 0.7 * confidence);
   b.travelled = std::max(b.travelled, std::hypot(b.x.position - b.origin.x, b.y.position - b.origin.y) / s);
+  if (b.id != 0) b.top_speed = std::max(b.top_speed, std::hypot(b.x.velocity, b.y.velocity));
 }
 
-// Two objects, one blob: a confirmed track without region of its own that is expected inside a blob larger
-// than its owner lives on in it.
+// Two objects, one blob: a confirmed track without region of its own that is expected inside a blob larger than its
+// owner lives on in it. But tracks that together fill only a small part of their blob were pieces of one object: the
+// oldest becomes it and the others go.
 void Tracker::State::share_regions() {
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    Body& b = bodies[i];
+  for (Body& b : bodies) {
     if (b.region >= 0 || b.id == 0) continue;
     const Box box = b.box();
     for (std::size_t j = 0; j < regions.size(); ++j) {
@@ -283,14 +309,39 @@ void Tracker::State::share_regions() {
       break;
     }
   }
-  for (Body& b : bodies) {
-    if (b.region < 0) continue;
-    bool alone = true;
-    for (const Body& other : bodies) alone &= &other == &b || other.region != b.region;
-    const Region& r = regions[b.region];
-    correct(b, r.box, r.confidence, alone);
-    b.shared = alone ? 0 : b.shared + seconds;
+  for (std::size_t j = 0; j < regions.size(); ++j) {
+    const Region& r = regions[j];
+    double filled = 0;
+    int count = 0;
+    Body* oldest = nullptr;
+    for (Body& b : bodies) {
+      if (b.region != static_cast<int>(j)) continue;
+      filled += overlap(b.box(), r.box);
+      ++count;
+      if (!oldest || b.age > oldest->age) oldest = &b;
+    }
+    const bool pieces = count > 1 && filled < 0.4 * r.box.area();
+    for (Body& b : bodies) {
+      if (b.region != static_cast<int>(j)) continue;
+      if (pieces && &b != oldest) {
+        b.dead = true;
+        continue;
+      }
+      const bool alone = count == 1 || pieces;
+      correct(b, r.box, r.confidence, alone);
+      b.shared = alone ? 0 : b.shared + seconds;
+    }
   }
+  // A track without evidence whose box holds several others was the blob they have come out of.
+  for (Body& b : bodies) {
+    if (b.region >= 0 || b.id == 0) continue;
+    const Box box = b.box();
+    int inside = 0;
+    for (const Region& r : regions)
+      inside += overlap(r.box, box) > 0.6 * r.box.area() && r.box.area() > 0.1 * box.area();
+    b.dead |= inside > 1;
+  }
+  std::erase_if(bodies, [](const Body& b) { return b.dead; });
 }
 
 void Tracker::State::give_birth() {
