@@ -40,8 +40,8 @@ struct _CerberusCameraMotion {
  * @meta: parent
  * @motion: the camera's motion
  *
- * Carries a #CerberusCameraMotion on a video buffer. Scaled with the picture; lost where the picture is cropped, turned
- * or flipped. At most one a buffer.
+ * Carries a #CerberusCameraMotion on a video buffer. Scaled with the picture, lost where it is cropped; videoflip keeps it
+ * as it is, which is wrong, and gives nobody a chance to notice. At most one a buffer.
  *
  * Since: 0.1
  */

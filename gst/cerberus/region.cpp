@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "private/analytics.hpp"
+#include "private/meta.hpp"
 
 namespace {
 
@@ -100,39 +101,106 @@ bool read(const GstStructure* structure, CerberusRegion& region) {
   return true;
 }
 
-// How far an edge moved when the picture was scaled. The far edge is taken: rounding weighs least there.
-double scale_of(guint start, guint length, guint old_start, guint old_length) {
-  return (static_cast<double>(start) + length) / (static_cast<double>(old_start) + old_length);
+// Our own record of a region. GStreamer's meta beside it is what others read: it holds whole pixels only, and up to
+// (at least) 1.22 it loses its params where a picture is converted or scaled.
+struct RegionMeta {
+  GstMeta meta;
+  CerberusRegion region;
+  guint analytics;  // how many entries of an analytics meta stand for the region
+};
+
+const GstMetaInfo* region_meta_info();
+
+RegionMeta* next_region(GstBuffer* buffer, gpointer& state) {
+  return reinterpret_cast<RegionMeta*>(
+      gst_buffer_iterate_meta_filtered(buffer, &state, region_meta_info()->api));
 }
 
-// The meta is what scaling elements keep right; the exact position in our params is used while both agree.
-void follow(const GstVideoRegionOfInterestMeta& meta, CerberusRegion& region) {
-  if (is_sane(region)) {
-    const Pixels was = whole_pixels(region);
-    if (was.x == meta.x && was.y == meta.y && was.width == meta.w && was.height == meta.h) return;
-    region.vx *= scale_of(meta.x, meta.w, was.x, was.width);
-    region.vy *= scale_of(meta.y, meta.h, was.y, was.height);
+void record(GstBuffer* buffer, const CerberusRegion& region, guint analytics) {
+  auto* meta = reinterpret_cast<RegionMeta*>(gst_buffer_add_meta(buffer, region_meta_info(), nullptr));
+  meta->region = region;
+  meta->analytics = analytics;
+}
+
+const char* type_of(const CerberusRegion& region) {
+  return region.person ? kPerson : kMotion;
+}
+
+// True of a meta that stands for one of our regions.
+bool is_ours(GstMeta* meta) {
+  return meta->info->api == GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE &&
+         gst_video_region_of_interest_meta_get_param(reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta),
+                                                     kOurs);
+}
+
+void add_params(GstVideoRegionOfInterestMeta* meta, const CerberusRegion& region) {
+  gst_video_region_of_interest_meta_add_param(
+      meta, gst_structure_new(kDetection, "confidence", G_TYPE_DOUBLE, region.confidence, nullptr));
+  if (region.tracked) {
+    gst_video_region_of_interest_meta_add_param(
+        meta, gst_structure_new(kObjectId, "id", G_TYPE_INT, static_cast<gint>(region.id), nullptr));
   }
-  region.x = meta.x;
-  region.y = meta.y;
-  region.width = meta.w;
-  region.height = meta.h;
+  gst_video_region_of_interest_meta_add_param(meta, cerberus_region_to_structure(&region));
 }
 
-const GstStructure* our_param(GstVideoRegionOfInterestMeta* meta) {
-  return gst_video_region_of_interest_meta_get_param(meta, kOurs);
-}
-
-// How many entries of an analytics meta stand for our regions.
-guint count_analytics(GstBuffer* buffer) {
-  guint total = 0;
+// Gives the scaled meta of `region` its params again, which scaling took away. It is there already: it stood before
+// our record on the buffer, and metas are transformed in that order.
+void restore_params(GstBuffer* buffer, const CerberusRegion& region) {
+  const GQuark type = g_quark_from_static_string(type_of(region));
   gpointer state = nullptr;
   while (GstMeta* meta =
              gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
-    guint count = 0;
-    const GstStructure* ours = our_param(reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta));
-    if (ours && gst_structure_get_uint(ours, kAnalytics, &count)) total += count;
+    auto* roi = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
+    if (roi->roi_type != type || roi->id != static_cast<gint>(region.id) || is_ours(meta)) continue;
+    const Pixels expected = whole_pixels(region);
+    const auto near = [](guint a, guint b) { return (a > b ? a - b : b - a) <= 2; };  // GStreamer rounds down
+    if (near(roi->x, expected.x) && near(roi->y, expected.y) && near(roi->w, expected.width) &&
+        near(roi->h, expected.height))
+      return add_params(roi, region);
   }
+}
+
+gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
+  reinterpret_cast<RegionMeta*>(meta)->region = kEmpty;
+  reinterpret_cast<RegionMeta*>(meta)->analytics = 0;
+  return TRUE;
+}
+
+// Copies and scaling keep the region; whatever else is done to a picture makes its pixels wrong.
+gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
+  const auto* own = reinterpret_cast<RegionMeta*>(meta);
+  CerberusRegion region = own->region;
+  if (GST_META_TRANSFORM_IS_COPY(type)) {
+    record(to, region, own->analytics);
+    return TRUE;
+  }
+  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
+  const auto* scale = static_cast<GstVideoMetaTransform*>(data);
+  if (GST_VIDEO_INFO_WIDTH(scale->in_info) <= 0 || GST_VIDEO_INFO_HEIGHT(scale->in_info) <= 0) return FALSE;
+  const double sx =
+      static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->out_info)) / GST_VIDEO_INFO_WIDTH(scale->in_info);
+  const double sy =
+      static_cast<double>(GST_VIDEO_INFO_HEIGHT(scale->out_info)) / GST_VIDEO_INFO_HEIGHT(scale->in_info);
+  for (double* n : {&region.x, &region.width, &region.vx}) *n *= sx;
+  for (double* n : {&region.y, &region.height, &region.vy}) *n *= sy;
+  record(to, region, own->analytics);
+  restore_params(to, region);
+  return TRUE;
+}
+
+const GstMetaInfo* region_meta_info() {
+  static const GstMetaInfo* const info = [] {
+    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, nullptr};
+    const GType api = gst_meta_api_type_register("CerberusRegionMetaAPI", tags);
+    return cerberus::register_meta<RegionMeta>(api, "CerberusRegionMeta", meta_init, nullptr, meta_transform);
+  }();
+  return info;
+}
+
+guint count_analytics(GstBuffer* buffer) {
+  guint total = 0;
+  gpointer state = nullptr;
+  while (const RegionMeta* meta = next_region(buffer, state)) total += meta->analytics;
   return total;
 }
 
@@ -206,25 +274,17 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
   g_return_val_if_fail(region, FALSE);
   if (!gst_buffer_is_writable(buffer) || !is_sane(*region)) return FALSE;
 
-  const char* type = region->person ? kPerson : kMotion;
   const Pixels p = whole_pixels(*region);
-  const guint analytics = cerberus::analytics::add(buffer,
-                                                   {type, p.x, p.y, p.width, p.height, region->confidence,
-                                                    region->tracked != FALSE, region->id, region->age},
-                                                   count_analytics(buffer));
-
+  const guint analytics =
+      cerberus::analytics::add(buffer,
+                               {type_of(*region), p.x, p.y, p.width, p.height, region->confidence,
+                                region->tracked != FALSE, region->id, region->age},
+                               count_analytics(buffer));
   GstVideoRegionOfInterestMeta* meta =
-      gst_buffer_add_video_region_of_interest_meta(buffer, type, p.x, p.y, p.width, p.height);
+      gst_buffer_add_video_region_of_interest_meta(buffer, type_of(*region), p.x, p.y, p.width, p.height);
   meta->id = static_cast<gint>(region->id);
-  gst_video_region_of_interest_meta_add_param(
-      meta, gst_structure_new(kDetection, "confidence", G_TYPE_DOUBLE, region->confidence, nullptr));
-  if (region->tracked) {
-    gst_video_region_of_interest_meta_add_param(
-        meta, gst_structure_new(kObjectId, "id", G_TYPE_INT, static_cast<gint>(region->id), nullptr));
-  }
-  GstStructure* ours = cerberus_region_to_structure(region);
-  if (analytics) gst_structure_set(ours, kAnalytics, G_TYPE_UINT, analytics, nullptr);
-  gst_video_region_of_interest_meta_add_param(meta, ours);
+  add_params(meta, *region);
+  record(buffer, *region, analytics);
   return TRUE;
 }
 
@@ -232,15 +292,8 @@ GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
   GPtrArray* regions = g_ptr_array_new_with_free_func(reinterpret_cast<GDestroyNotify>(cerberus_region_free));
   gpointer state = nullptr;
-  while (GstMeta* meta =
-             gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
-    auto* roi = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
-    CerberusRegion region;
-    const GstStructure* ours = our_param(roi);
-    if (!ours || !read(ours, region)) continue;
-    follow(*roi, region);
-    g_ptr_array_add(regions, cerberus_region_copy(&region));
-  }
+  while (const RegionMeta* meta = next_region(buffer, state))
+    g_ptr_array_add(regions, cerberus_region_copy(&meta->region));
   return regions;
 }
 
@@ -251,9 +304,7 @@ void cerberus_buffer_remove_regions(GstBuffer* buffer) {
   gst_buffer_foreach_meta(
       buffer,
       [](GstBuffer*, GstMeta** meta, gpointer) -> gboolean {
-        if ((*meta)->info->api == GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE &&
-            our_param(reinterpret_cast<GstVideoRegionOfInterestMeta*>(*meta)))
-          *meta = nullptr;
+        if ((*meta)->info->api == region_meta_info()->api || is_ours(*meta)) *meta = nullptr;
         return TRUE;
       },
       nullptr);

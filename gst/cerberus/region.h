@@ -39,8 +39,12 @@ typedef enum {
  * @bearing: direction of its centre, degrees, positive to the right of the camera's axis; NaN if unknown
  * @distance: metres from the camera; NaN if unknown
  *
- * Something that moves. On a buffer it is a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person), which
- * other elements and tools read too.
+ * Something that moves. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),
+ * which other elements and tools read.
+ *
+ * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do not
+ * turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them as they
+ * are, which is wrong, and gives nobody a chance to notice.
  *
  * Since: 0.1
  */
@@ -179,7 +183,7 @@ gboolean cerberus_buffer_add_region (GstBuffer *buffer, const CerberusRegion *re
  * @buffer: a buffer
  *
  * Reads all regions, in the order in which they were attached. Where the picture was scaled since, positions and speeds
- * follow it. Regions of interest that others attached are not returned.
+ * follow it, to fractions of a pixel. Regions of interest that others attached are not returned.
  *
  * Returns: (transfer container) (element-type CerberusRegion): copies of the regions, possibly none; release with
  *     g_ptr_array_unref(), which frees the regions too.

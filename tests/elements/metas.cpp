@@ -1,0 +1,415 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What is attached to a frame arrives where it must, dies where it must, and is right where it arrives.
+#include <cerberus/cerberus.h>
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <gst/video/video.h>
+
+#include <cmath>
+#include <string>
+
+#include "support.h"
+
+namespace {
+
+constexpr int kWidth = 64, kHeight = 48;
+const std::string kI420 = "video/x-raw,format=I420,framerate=25/1,width=64,height=48";
+
+// A frame that carries one of everything, and a region of interest of a stranger.
+GstBuffer* annotated_frame(gsize bytes = kWidth * kHeight * 3 / 2) {
+  GstBuffer* frame = gst_buffer_new_allocate(nullptr, bytes, nullptr);
+  gst_buffer_memset(frame, 0, 128, bytes);
+  GST_BUFFER_PTS(frame) = 0;
+  GST_BUFFER_DURATION(frame) = GST_SECOND / 25;
+
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  motion.matrix[2] = 3;
+  motion.matrix[5] = -2;
+  motion.from = 40 * GST_MSECOND;
+  motion.confidence = 0.75;
+  motion.residual = 0.5;
+  motion.scene_age = 7;
+  cerberus_buffer_add_camera_motion_meta(frame, &motion);
+
+  CerberusThreshold threshold{};
+  threshold.threshold = 12;
+  threshold.fuzzy_threshold = 30;
+  threshold.noise = 1.5;
+  threshold.ready = TRUE;
+  cerberus_buffer_add_threshold_meta(frame, &threshold);
+
+  GstBuffer* plane = gst_buffer_new_allocate(nullptr, 64 * 6, nullptr);
+  gst_buffer_memset(plane, 0, 255, 64 * 6);
+  cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_MASK, plane, 8, 6, 64);
+
+  gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);  // a stranger's
+
+  CerberusRegion region;
+  cerberus_region_init(&region);
+  region.id = 5;
+  region.tracked = TRUE;
+  region.x = 8.25;
+  region.y = 16;
+  region.width = 15.75;
+  region.height = 24;
+  region.vx = 10;
+  region.vy = -5;
+  region.age = 3 * GST_SECOND;
+  region.state = CERBERUS_REGION_COASTED;
+  region.confidence = 0.9;
+  cerberus_buffer_add_region(frame, &region);
+  return frame;
+}
+
+struct Passage {
+  const char* launch;
+  const char* out_caps;  // nullptr: anything
+  bool motion, threshold, plane, region;
+};
+
+// videoflip copies every meta as it is, whatever its tags (1.22): all but the threshold is wrong behind it, as the
+// documentation says. Here that is recorded, so that a GStreamer that does better is noticed.
+const Passage kPassages[] = {
+    {"identity", nullptr, true, true, true, true},
+    {"queue", nullptr, true, true, true, true},
+    {"tee ! queue", nullptr, true, true, true, true},
+    {"videorate", "video/x-raw,format=I420,framerate=25/1,width=64,height=48", true, true, true, true},
+    {"videoconvert", "video/x-raw,format=I420,framerate=25/1,width=64,height=48", true, true, true, true},
+    {"videoconvert", "video/x-raw,format=RGB,framerate=25/1,width=64,height=48", true, true, false, true},
+    {"videoscale", "video/x-raw,format=I420,framerate=25/1,width=128,height=24", true, true, false, true},
+    {"videocrop left=8 top=8", nullptr, false, true, false, false},
+    {"videoflip method=horizontal-flip", nullptr, true, true, true, true},
+    {"x264enc tune=zerolatency", nullptr, true, true, false, true},
+};
+
+GstBuffer* pass(const Passage& passage) {
+  GstHarness* h = gst_harness_new_parse(passage.launch);
+  gst_harness_set_src_caps_str(h, kI420.c_str());
+  if (passage.out_caps) gst_harness_set_sink_caps_str(h, passage.out_caps);
+  fail_unless_equals_int(gst_harness_push(h, annotated_frame()), GST_FLOW_OK);
+  fail_unless(gst_harness_push_event(h, gst_event_new_eos()));
+  GstBuffer* out = gst_harness_pull(h);
+  fail_unless(out, "nothing came out of %s", passage.launch);
+  gst_harness_teardown(h);
+  return out;
+}
+
+guint count_ours(GstBuffer* frame) {
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(frame);
+  return regions->len;
+}
+
+const Passage& passage_named(const char* launch) {
+  for (const Passage& p : kPassages)
+    if (g_str_equal(p.launch, launch)) return p;
+  ck_abort_msg("no such passage");
+}
+
+}  // namespace
+
+START_TEST(every_element_keeps_what_it_should) {
+  const Passage& p = kPassages[_i];
+  const std::string name(p.launch, std::string(p.launch).find_first_of(" !") == std::string::npos
+                                       ? std::string(p.launch).size()
+                                       : std::string(p.launch).find_first_of(" !"));
+  g_autoptr(GstElementFactory) factory = gst_element_factory_find(name.c_str());
+  if (!factory) {
+    g_printerr("skipped: element %s is not installed\n", name.c_str());
+    return;
+  }
+  g_autoptr(GstBuffer) out = pass(p);
+  g_autoptr(CerberusCameraMotion) motion = cerberus_buffer_get_camera_motion(out);
+  g_autoptr(CerberusThreshold) threshold = cerberus_buffer_get_threshold(out);
+  fail_unless_equals_int(motion != nullptr, p.motion);
+  fail_unless_equals_int(threshold != nullptr, p.threshold);
+  fail_unless_equals_int(cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_MASK) != nullptr, p.plane);
+  fail_unless_equals_int(count_ours(out), p.region);
+  if (motion) {
+    fail_unless_equals_uint64(motion->from, 40 * GST_MSECOND);
+    fail_unless_equals_float(motion->confidence, 0.75);
+    fail_unless_equals_int(motion->scene_age, 7);
+  }
+  if (threshold) {
+    fail_unless_equals_int(threshold->threshold, 12);
+    fail_unless_equals_int(threshold->fuzzy_threshold, 30);
+    fail_unless_equals_float(threshold->noise, 1.5);
+    fail_unless(threshold->ready);
+  }
+}
+END_TEST
+
+// Hand-computed: the picture becomes twice as wide and half as high, so a shift by (3, -2) is one by (6, -1).
+START_TEST(scaling_scales_the_camera_motion) {
+  g_autoptr(GstBuffer) out = pass(passage_named("videoscale"));
+  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
+  const double expected[9] = {1, 0, 6, 0, 1, -1, 0, 0, 1};
+  for (int i = 0; i < 9; ++i) fail_unless(std::abs(meta->motion.matrix[i] - expected[i]) < 1e-12);
+  fail_unless(std::abs(meta->motion.residual - 0.5 * std::sqrt(2.0 * 0.5)) < 1e-12);
+}
+END_TEST
+
+// A homography in both pictures maps the same place to the same place: (x + 0.5) * factor - 0.5 takes one to
+// the other.
+START_TEST(a_scaled_homography_maps_the_same_places) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  g_autoptr(CerberusCameraMotion) motion = cerberus_camera_motion_new();
+  const double matrix[9] = {0.98, -0.1, 4, 0.12, 1.03, -3, 1e-4, -2e-4, 1};
+  cerberus_camera_motion_set_matrix(motion, matrix);
+  fail_unless(cerberus_buffer_set_camera_motion(frame, motion));
+
+  GstVideoInfo in, out;
+  gst_video_info_set_format(&in, GST_VIDEO_FORMAT_GRAY8, 320, 240);
+  gst_video_info_set_format(&out, GST_VIDEO_FORMAT_GRAY8, 1920, 1080);
+  GstVideoMetaTransform scale{&in, &out};
+  g_autoptr(GstBuffer) scaled = gst_buffer_new();
+  GstMeta* meta = gst_buffer_get_meta(frame, CERBERUS_CAMERA_MOTION_META_API_TYPE);
+  fail_unless(
+      meta->info->transform_func(scaled, meta, frame, gst_video_meta_transform_scale_get_quark(), &scale));
+  g_autoptr(CerberusCameraMotion) result = cerberus_buffer_get_camera_motion(scaled);
+
+  const double fx = 6, fy = 4.5;
+  const double points[][2] = {{0, 0}, {319, 0}, {0, 239}, {319, 239}, {100.5, 77}};
+  for (const auto& p : points) {
+    double x = 0, y = 0, big_x = 0, big_y = 0;
+    fail_unless(cerberus_camera_motion_apply(motion, p[0], p[1], &x, &y));
+    fail_unless(cerberus_camera_motion_apply(result, (p[0] + 0.5) * fx - 0.5, (p[1] + 0.5) * fy - 0.5, &big_x,
+                                             &big_y));
+    fail_unless(std::abs(big_x - ((x + 0.5) * fx - 0.5)) < 1e-6);
+    fail_unless(std::abs(big_y - ((y + 0.5) * fy - 0.5)) < 1e-6);
+  }
+}
+END_TEST
+
+START_TEST(a_still_camera_stays_exactly_still_when_scaled) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  g_autoptr(CerberusCameraMotion) motion = cerberus_camera_motion_new();
+  motion->still = TRUE;
+  cerberus_buffer_set_camera_motion(frame, motion);
+  GstVideoInfo in, out;
+  gst_video_info_set_format(&in, GST_VIDEO_FORMAT_GRAY8, 333, 97);
+  gst_video_info_set_format(&out, GST_VIDEO_FORMAT_GRAY8, 100, 1000);
+  GstVideoMetaTransform scale{&in, &out};
+  g_autoptr(GstBuffer) scaled = gst_buffer_new();
+  GstMeta* meta = gst_buffer_get_meta(frame, CERBERUS_CAMERA_MOTION_META_API_TYPE);
+  fail_unless(
+      meta->info->transform_func(scaled, meta, frame, gst_video_meta_transform_scale_get_quark(), &scale));
+  const CerberusCameraMotionMeta* result = cerberus_buffer_get_camera_motion_meta(scaled);
+  const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (int i = 0; i < 9; ++i) fail_unless(result->motion.matrix[i] == identity[i]);
+  fail_unless(result->motion.still);
+}
+END_TEST
+
+START_TEST(a_point_on_the_horizon_has_no_place) {
+  g_autoptr(CerberusCameraMotion) motion = cerberus_camera_motion_new();
+  const double matrix[9] = {1, 0, 0, 0, 1, 0, 1, 0, -10};  // w = x - 10
+  cerberus_camera_motion_set_matrix(motion, matrix);
+  double x = -1, y = -1;
+  fail_if(cerberus_camera_motion_apply(motion, 10, 5, &x, &y));
+  fail_unless_equals_float(x, -1);
+  fail_unless(cerberus_camera_motion_apply(motion, 12, 5, &x, &y));  // w = 2
+  fail_unless_equals_float(x, 6);
+  fail_unless_equals_float(y, 2.5);
+  fail_unless(cerberus_camera_motion_apply(motion, 12, 5, nullptr, nullptr));
+}
+END_TEST
+
+START_TEST(copies_carry_everything_and_share_the_planes) {
+  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) shallow = gst_buffer_copy(frame);
+  g_autoptr(GstBuffer) deep = gst_buffer_copy_deep(frame);
+  for (GstBuffer* copy : {shallow, deep}) {
+    fail_unless(cerberus_buffer_get_camera_motion_meta(copy));
+    fail_unless(cerberus_buffer_get_threshold_meta(copy));
+    fail_unless_equals_int(count_ours(copy), 1);
+    fail_unless(cerberus_buffer_get_plane_meta(copy, CERBERUS_PLANE_MASK));
+    fail_unless(cerberus_buffer_get_plane_meta(copy, CERBERUS_PLANE_MASK)->buffer ==
+                cerberus_buffer_get_plane_meta(frame, CERBERUS_PLANE_MASK)->buffer);
+  }
+}
+END_TEST
+
+START_TEST(a_part_of_a_frame_has_no_planes) {
+  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) part = gst_buffer_copy_region(frame, GST_BUFFER_COPY_ALL, 0, 100);
+  fail_if(cerberus_buffer_get_plane_meta(part, CERBERUS_PLANE_MASK));
+  fail_unless(cerberus_buffer_get_threshold_meta(part));
+}
+END_TEST
+
+// Two branches of a tee share one buffer until one writes: what it takes off its copy stays on the other's.
+START_TEST(branches_of_a_tee_do_not_disturb_each_other) {
+  GstElement* tee = gst_element_factory_make("tee", nullptr);
+  GstHarness* one = gst_harness_new_with_element(tee, "sink", "src_%u");
+  GstHarness* two = gst_harness_new_with_element(tee, nullptr, "src_%u");
+  gst_harness_set_src_caps_str(one, kI420.c_str());
+  fail_unless_equals_int(gst_harness_push(one, annotated_frame()), GST_FLOW_OK);
+  g_autoptr(GstBuffer) changed = gst_harness_pull(one);
+  g_autoptr(GstBuffer) kept = gst_harness_pull(two);
+  changed = gst_buffer_make_writable(changed);
+  fail_unless(changed != kept);
+  cerberus_buffer_remove_plane_metas(changed);
+  cerberus_buffer_remove_regions(changed);
+  cerberus_buffer_set_camera_motion(changed, nullptr);
+  cerberus_buffer_set_threshold(changed, nullptr);
+  fail_if(cerberus_buffer_get_plane_meta(changed, CERBERUS_PLANE_MASK));
+  fail_if(cerberus_buffer_get_camera_motion_meta(changed));
+  fail_if(cerberus_buffer_get_threshold_meta(changed));
+  fail_unless_equals_int(count_ours(changed), 0);
+  fail_unless(cerberus_buffer_get_plane_meta(kept, CERBERUS_PLANE_MASK));
+  fail_unless(cerberus_buffer_get_camera_motion_meta(kept));
+  fail_unless(cerberus_buffer_get_threshold_meta(kept));
+  fail_unless_equals_int(count_ours(kept), 1);
+  gst_harness_teardown(two);
+  gst_harness_teardown(one);
+  gst_object_unref(tee);
+}
+END_TEST
+
+START_TEST(a_frame_has_one_of_each_and_the_last_one_counts) {
+  g_autoptr(GstBuffer) frame = annotated_frame();
+  CerberusThreshold threshold{};
+  threshold.threshold = 99;
+  fail_unless(cerberus_buffer_set_threshold(frame, &threshold));
+  g_autoptr(CerberusCameraMotion) motion = cerberus_camera_motion_new();
+  motion->scene_age = 8;
+  fail_unless(cerberus_buffer_set_camera_motion(frame, motion));
+  GstBuffer* plane = gst_buffer_new_allocate(nullptr, 4, nullptr);
+  fail_unless(cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_MASK, plane, 2, 2, 2));
+
+  fail_unless_equals_int(gst_buffer_get_n_meta(frame, CERBERUS_THRESHOLD_META_API_TYPE), 1);
+  fail_unless_equals_int(gst_buffer_get_n_meta(frame, CERBERUS_CAMERA_MOTION_META_API_TYPE), 1);
+  fail_unless_equals_int(gst_buffer_get_n_meta(frame, CERBERUS_PLANE_META_API_TYPE), 1);
+  fail_unless_equals_int(cerberus_buffer_get_threshold_meta(frame)->threshold.threshold, 99);
+  fail_unless_equals_int(cerberus_buffer_get_camera_motion_meta(frame)->motion.scene_age, 8);
+  fail_unless(cerberus_buffer_get_plane_meta(frame, CERBERUS_PLANE_MASK)->buffer == plane);
+}
+END_TEST
+
+START_TEST(planes_of_every_kind_are_found_by_their_kind) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  for (int kind = CERBERUS_PLANE_LUMA; kind <= CERBERUS_PLANE_LABELS; ++kind) {
+    const auto k = static_cast<CerberusPlaneKind>(kind);
+    const int bytes = cerberus_plane_kind_sample_size(k);
+    fail_unless(cerberus_buffer_add_plane_meta(frame, k, gst_buffer_new_allocate(nullptr, 64 * 3, nullptr),
+                                               kind + 1, 3, 64));
+    fail_unless_equals_int(bytes, kind == CERBERUS_PLANE_LABELS      ? 2
+                                  : kind == CERBERUS_PLANE_HISTOGRAM ? 4
+                                                                     : 1);
+  }
+  for (int kind = CERBERUS_PLANE_LUMA; kind <= CERBERUS_PLANE_LABELS; ++kind) {
+    int width = 0, height = 0, stride = 0;
+    g_autoptr(GstBuffer) plane =
+        cerberus_buffer_get_plane(frame, static_cast<CerberusPlaneKind>(kind), &width, &height, &stride);
+    fail_unless(plane);
+    fail_unless_equals_int(width, kind + 1);
+    fail_unless_equals_int(height, 3);
+    fail_unless_equals_int(stride, 64);
+  }
+  cerberus_buffer_remove_plane_metas(frame);
+  fail_if(cerberus_buffer_get_plane(frame, CERBERUS_PLANE_LUMA, nullptr, nullptr, nullptr));
+  fail_unless_equals_int(gst_buffer_get_n_meta(frame, CERBERUS_PLANE_META_API_TYPE), 0);
+}
+END_TEST
+
+// One row less than a whole stride is enough: the last row need not be padded.
+START_TEST(a_plane_larger_than_its_buffer_is_refused_and_released) {
+  struct {
+    int width, height, stride, bytes;
+    bool good;
+  } const cases[] = {
+      {8, 4, 16, 56, true},
+      {8, 4, 16, 55, false},
+      {8, 4, 7, 64, false},
+      {0, 4, 16, 64, false},
+      {8, 0, 16, 64, false},
+      {-8, 4, 16, 64, false},
+      {G_MAXINT, G_MAXINT, G_MAXINT, 64, false},
+  };
+  for (const auto& c : cases) {
+    g_autoptr(GstBuffer) frame = gst_buffer_new();
+    g_autoptr(GstBuffer) plane = gst_buffer_new_allocate(nullptr, c.bytes, nullptr);
+    CerberusPlaneMeta* meta = nullptr;
+    gst_buffer_ref(plane);
+    if (c.good)
+      meta = cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_LUMA, plane, c.width, c.height, c.stride);
+    else
+      ASSERT_CRITICAL(meta = cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_LUMA, plane, c.width,
+                                                            c.height, c.stride));
+    fail_unless_equals_int(meta != nullptr, c.good);
+    const int holders = c.good ? 2 : 1;
+    ASSERT_MINI_OBJECT_REFCOUNT(plane, "plane", holders);
+  }
+  // 16-bit samples on an odd stride cannot be read.
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  ASSERT_CRITICAL(cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_LABELS,
+                                                 gst_buffer_new_allocate(nullptr, 100, nullptr), 4, 4, 9));
+}
+END_TEST
+
+START_TEST(a_shared_frame_cannot_be_annotated) {
+  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) other = gst_buffer_ref(frame);
+  g_autoptr(CerberusCameraMotion) motion = cerberus_camera_motion_new();
+  g_autoptr(CerberusThreshold) threshold = cerberus_threshold_new();
+  g_autoptr(CerberusRegion) region = cerberus_region_new();
+  fail_if(cerberus_buffer_set_camera_motion(frame, motion));
+  fail_if(cerberus_buffer_set_threshold(frame, threshold));
+  fail_if(cerberus_buffer_add_region(frame, region));
+  ASSERT_CRITICAL(cerberus_buffer_add_camera_motion_meta(frame, motion));
+  ASSERT_CRITICAL(cerberus_buffer_add_threshold_meta(frame, threshold));
+  ASSERT_CRITICAL(cerberus_buffer_remove_plane_metas(frame));
+  ASSERT_CRITICAL(cerberus_buffer_remove_regions(frame));
+}
+END_TEST
+
+START_TEST(nothing_crashes_on_null) {
+  fail_if(cerberus_camera_motion_copy(nullptr));
+  fail_if(cerberus_threshold_copy(nullptr));
+  fail_if(cerberus_region_copy(nullptr));
+  cerberus_camera_motion_free(nullptr);
+  cerberus_threshold_free(nullptr);
+  cerberus_region_free(nullptr);
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  ASSERT_CRITICAL(cerberus_camera_motion_init(nullptr));
+  ASSERT_CRITICAL(cerberus_camera_motion_apply(nullptr, 0, 0, nullptr, nullptr));
+  ASSERT_CRITICAL(cerberus_camera_motion_set_matrix(nullptr, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_get_camera_motion(nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_set_camera_motion(nullptr, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_add_camera_motion_meta(frame, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_get_threshold(nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_set_threshold(nullptr, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_add_threshold_meta(frame, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_MASK, nullptr, 1, 1, 1));
+  ASSERT_CRITICAL(cerberus_buffer_get_plane(nullptr, CERBERUS_PLANE_MASK, nullptr, nullptr, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_remove_plane_metas(nullptr));
+}
+END_TEST
+
+static Suite* metas_suite(void) {
+  watch_library_log();
+  Suite* s = suite_create("metas");
+  TCase* tc = tcase_create("survival");
+  suite_add_tcase(s, tc);
+  tcase_add_loop_test(tc, every_element_keeps_what_it_should, 0, G_N_ELEMENTS(kPassages));
+  tcase_add_test(tc, copies_carry_everything_and_share_the_planes);
+  tcase_add_test(tc, a_part_of_a_frame_has_no_planes);
+  tcase_add_test(tc, branches_of_a_tee_do_not_disturb_each_other);
+  tc = tcase_create("meaning");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, scaling_scales_the_camera_motion);
+  tcase_add_test(tc, a_scaled_homography_maps_the_same_places);
+  tcase_add_test(tc, a_still_camera_stays_exactly_still_when_scaled);
+  tcase_add_test(tc, a_point_on_the_horizon_has_no_place);
+  tcase_add_test(tc, a_frame_has_one_of_each_and_the_last_one_counts);
+  tcase_add_test(tc, planes_of_every_kind_are_found_by_their_kind);
+  tc = tcase_create("bad input");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_plane_larger_than_its_buffer_is_refused_and_released);
+  tcase_add_test(tc, a_shared_frame_cannot_be_annotated);
+  tcase_add_test(tc, nothing_crashes_on_null);
+  return s;
+}
+
+GST_CHECK_MAIN(metas)

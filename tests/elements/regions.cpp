@@ -1,0 +1,350 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Regions on buffers, in structures and in messages.
+#include <cerberus/cerberus.h>
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <gst/video/video.h>
+
+#include <cmath>
+#include <initializer_list>
+
+#include "support.h"
+
+namespace {
+
+CerberusRegion walker() {
+  CerberusRegion region;
+  cerberus_region_init(&region);
+  region.id = 5;
+  region.tracked = TRUE;
+  region.x = 8.25;
+  region.y = 16;
+  region.width = 15.5;
+  region.height = 24;
+  region.confidence = 0.9;
+  region.vx = 10;
+  region.vy = -5;
+  region.age = 3 * GST_SECOND;
+  region.state = CERBERUS_REGION_COASTED;
+  region.bearing = -12.5;
+  return region;
+}
+
+void assert_same(const CerberusRegion& a, const CerberusRegion& b) {
+  fail_unless_equals_int(a.id, b.id);
+  fail_unless_equals_int(a.tracked, b.tracked);
+  fail_unless_equals_int(a.person, b.person);
+  fail_unless_equals_int(a.state, b.state);
+  fail_unless_equals_uint64(a.age, b.age);
+  const double pairs[][2] = {{a.x, b.x},
+                             {a.y, b.y},
+                             {a.width, b.width},
+                             {a.height, b.height},
+                             {a.confidence, b.confidence},
+                             {a.vx, b.vx},
+                             {a.vy, b.vy},
+                             {a.bearing, b.bearing},
+                             {a.distance, b.distance}};
+  for (const auto& p : pairs) fail_unless(p[0] == p[1] || (std::isnan(p[0]) && std::isnan(p[1])));
+}
+
+const CerberusRegion& at(GPtrArray* regions, guint i) {
+  return *static_cast<CerberusRegion*>(g_ptr_array_index(regions, i));
+}
+
+GstVideoRegionOfInterestMeta* roi(GstBuffer* frame) {
+  return reinterpret_cast<GstVideoRegionOfInterestMeta*>(
+      gst_buffer_get_meta(frame, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE));
+}
+
+guint count_rois(GstBuffer* frame) {
+  return gst_buffer_get_n_meta(frame, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE);
+}
+
+GstBuffer* through(const char* launch, const char* out_caps, const CerberusRegion& region) {
+  GstHarness* h = gst_harness_new_parse(launch);
+  gst_harness_set_src_caps_str(h, "video/x-raw,format=I420,framerate=25/1,width=64,height=48");
+  gst_harness_set_sink_caps_str(h, out_caps);
+  GstBuffer* frame = gst_buffer_new_allocate(nullptr, 64 * 48 * 3 / 2, nullptr);
+  gst_buffer_memset(frame, 0, 128, -1);
+  fail_unless(cerberus_buffer_add_region(frame, &region));
+  fail_unless_equals_int(gst_harness_push(h, frame), GST_FLOW_OK);
+  GstBuffer* out = gst_harness_pull(h);
+  gst_harness_teardown(h);
+  return out;
+}
+
+}  // namespace
+
+START_TEST(a_region_reads_back_as_it_was_added) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  const CerberusRegion region = walker();
+  fail_unless(cerberus_buffer_add_region(frame, &region));
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(frame);
+  fail_unless_equals_int(regions->len, 1);
+  assert_same(at(regions, 0), region);
+}
+END_TEST
+
+START_TEST(regions_keep_their_order) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  CerberusRegion region = walker();
+  for (guint id = 9; id > 0; --id) {
+    region.id = id;
+    cerberus_buffer_add_region(frame, &region);
+  }
+  g_autoptr(GstBuffer) copy = gst_buffer_copy(frame);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(copy);
+  fail_unless_equals_int(regions->len, 9);
+  for (guint i = 0; i < 9; ++i) fail_unless_equals_int(at(regions, i).id, 9 - i);
+}
+END_TEST
+
+// Others read GStreamer's meta: whole pixels (edges 8.25 and 23.75 are nearest to 8 and 24) and the known params.
+START_TEST(other_tools_find_a_region_of_interest) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  CerberusRegion region = walker();
+  cerberus_buffer_add_region(frame, &region);
+  GstVideoRegionOfInterestMeta* meta = roi(frame);
+  fail_unless_equals_string(g_quark_to_string(meta->roi_type), "motion");
+  fail_unless_equals_int(meta->id, 5);
+  fail_unless_equals_int(meta->x, 8);
+  fail_unless_equals_int(meta->y, 16);
+  fail_unless_equals_int(meta->w, 16);
+  fail_unless_equals_int(meta->h, 24);
+  double confidence = 0;
+  int id = 0;
+  gst_structure_get_double(gst_video_region_of_interest_meta_get_param(meta, "detection"), "confidence",
+                           &confidence);
+  gst_structure_get_int(gst_video_region_of_interest_meta_get_param(meta, "object_id"), "id", &id);
+  fail_unless_equals_float(confidence, 0.9);
+  fail_unless_equals_int(id, 5);
+  const GstStructure* ours = gst_video_region_of_interest_meta_get_param(meta, "cerberus-object");
+  fail_unless_equals_string(gst_structure_get_string(ours, "state"), "coasted");
+
+  g_autoptr(GstBuffer) second_frame = gst_buffer_new();
+  region.person = TRUE;
+  region.tracked = FALSE;
+  cerberus_buffer_add_region(second_frame, &region);
+  fail_unless_equals_string(g_quark_to_string(roi(second_frame)->roi_type), "person");
+  fail_if(gst_video_region_of_interest_meta_get_param(roi(second_frame), "object_id"));
+}
+END_TEST
+
+// 64x48 to 160x12: 2.5 times as wide, a quarter as high; GStreamer's own meta loses its params there (1.22).
+START_TEST(scaling_scales_regions_and_keeps_what_others_read) {
+  g_autoptr(GstBuffer) out =
+      through("videoscale", "video/x-raw,format=I420,framerate=25/1,width=160,height=12", walker());
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+  fail_unless_equals_int(regions->len, 1);
+  CerberusRegion expected = walker();
+  expected.x = 20.625;
+  expected.y = 4;
+  expected.width = 38.75;
+  expected.height = 6;
+  expected.vx = 25;
+  expected.vy = -1.25;
+  assert_same(at(regions, 0), expected);
+  fail_unless_equals_int(count_rois(out), 1);
+  fail_unless(std::abs(static_cast<int>(roi(out)->x) - 20) <= 1);
+  fail_unless(gst_video_region_of_interest_meta_get_param(roi(out), "detection"));
+  fail_unless(gst_video_region_of_interest_meta_get_param(roi(out), "object_id"));
+  double vx = 0;
+  gst_structure_get_double(gst_video_region_of_interest_meta_get_param(roi(out), "cerberus-object"), "vx",
+                           &vx);
+  fail_unless_equals_float(vx, 25);
+}
+END_TEST
+
+START_TEST(converting_changes_nothing) {
+  g_autoptr(GstBuffer) out =
+      through("videoconvert", "video/x-raw,format=RGB,framerate=25/1,width=64,height=48", walker());
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+  fail_unless_equals_int(regions->len, 1);
+  assert_same(at(regions, 0), walker());
+  fail_unless(gst_video_region_of_interest_meta_get_param(roi(out), "cerberus-object"));
+}
+END_TEST
+
+START_TEST(removing_regions_leaves_those_of_strangers) {
+  GstBuffer* const frames[] = {
+      gst_buffer_new(),
+      through("videoscale", "video/x-raw,format=I420,framerate=25/1,width=31,height=17", walker()),
+  };
+  for (GstBuffer* frame : frames) {
+    const CerberusRegion region = walker();
+    gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);
+    cerberus_buffer_add_region(frame, &region);
+    gst_buffer_add_video_region_of_interest_meta(frame, "face", 5, 6, 7, 8);
+    cerberus_buffer_add_region(frame, &region);
+    cerberus_buffer_remove_regions(frame);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(frame);
+    fail_unless_equals_int(regions->len, 0);
+    fail_unless_equals_int(count_rois(frame), 2);
+    fail_unless_equals_int(roi(frame)->x, 1);
+    gst_buffer_unref(frame);
+  }
+}
+END_TEST
+
+START_TEST(a_region_over_the_edge_of_the_frame_is_cut_for_others_only) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  CerberusRegion region = walker();
+  region.x = -10.5;
+  region.y = -100;
+  region.width = 30;
+  region.height = 20;
+  fail_unless(cerberus_buffer_add_region(frame, &region));
+  fail_unless_equals_int(roi(frame)->x, 0);
+  fail_unless_equals_int(roi(frame)->w, 20);
+  fail_unless_equals_int(roi(frame)->y, 0);
+  fail_unless_equals_int(roi(frame)->h, 1);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(frame);
+  assert_same(at(regions, 0), region);
+}
+END_TEST
+
+START_TEST(a_region_without_a_place_is_refused) {
+  const double bad[] = {NAN, INFINITY, -INFINITY, 1e12, -1e12};
+  for (double value : bad) {
+    for (auto member :
+         {&CerberusRegion::x, &CerberusRegion::y, &CerberusRegion::width, &CerberusRegion::height}) {
+      g_autoptr(GstBuffer) frame = gst_buffer_new();
+      CerberusRegion region = walker();
+      region.*member = value;
+      fail_if(cerberus_buffer_add_region(frame, &region));
+      fail_unless_equals_int(count_rois(frame), 0);
+    }
+  }
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  CerberusRegion region = walker();
+  region.width = -1;
+  fail_if(cerberus_buffer_add_region(frame, &region));
+}
+END_TEST
+
+START_TEST(a_structure_holds_everything_but_what_is_unknown) {
+  const CerberusRegion region = walker();  // distance is NaN
+  g_autoptr(GstStructure) structure = cerberus_region_to_structure(&region);
+  fail_if(gst_structure_has_field(structure, "distance"));
+  fail_unless(gst_structure_has_field(structure, "bearing"));
+  g_autoptr(CerberusRegion) back = cerberus_region_from_structure(structure);
+  assert_same(*back, region);
+}
+END_TEST
+
+START_TEST(a_strangers_structure_is_read_with_care) {
+  g_autoptr(GstStructure) other = gst_structure_new_empty("cerberus-objects");
+  fail_if(cerberus_region_from_structure(other));
+  g_autoptr(GstStructure) wrong = gst_structure_new("cerberus-object", "id", G_TYPE_STRING, "five", "x",
+                                                    G_TYPE_INT, 3, "state", G_TYPE_STRING, "flying", "age",
+                                                    G_TYPE_DOUBLE, 1.0, "width", G_TYPE_DOUBLE, 4.0, nullptr);
+  g_autoptr(CerberusRegion) region = cerberus_region_from_structure(wrong);
+  g_autoptr(CerberusRegion) expected = cerberus_region_new();
+  expected->width = 4;
+  assert_same(*region, *expected);
+}
+END_TEST
+
+START_TEST(a_motion_message_reads_back) {
+  g_autoptr(GPtrArray) regions = g_ptr_array_new();
+  CerberusRegion one = walker(), two = walker();
+  two.id = 6;
+  g_ptr_array_add(regions, &one);
+  g_ptr_array_add(regions, &two);
+  g_autoptr(GstElement) source = gst_element_factory_make("identity", "here");
+  gst_object_ref_sink(source);
+  for (const bool started : {true, false}) {
+    g_autoptr(GstMessage) message = cerberus_message_new_motion(GST_OBJECT(source), started, 42, regions);
+    fail_unless(GST_MESSAGE_SRC(message) == GST_OBJECT(source));
+    fail_unless(cerberus_message_is_motion(message));
+    fail_unless_equals_string(gst_structure_get_string(gst_message_get_structure(message), "state"),
+                              started ? "started" : "ended");
+    gboolean was_started = !started;
+    GstClockTime time = 0;
+    g_autoptr(GPtrArray) back = nullptr;
+    fail_unless(cerberus_message_parse_motion(message, &was_started, &time, &back));
+    fail_unless_equals_int(was_started, started);
+    fail_unless_equals_uint64(time, 42);
+    fail_unless_equals_int(back->len, 2);
+    assert_same(at(back, 0), one);
+    assert_same(at(back, 1), two);
+    fail_unless(cerberus_message_parse_motion(message, nullptr, nullptr, nullptr));
+  }
+}
+END_TEST
+
+START_TEST(a_motion_message_may_have_no_objects_and_no_source) {
+  g_autoptr(GstMessage) message = cerberus_message_new_motion(nullptr, FALSE, GST_CLOCK_TIME_NONE, nullptr);
+  GstClockTime time = 0;
+  g_autoptr(GPtrArray) regions = nullptr;
+  fail_unless(cerberus_message_parse_motion(message, nullptr, &time, &regions));
+  fail_unless_equals_uint64(time, GST_CLOCK_TIME_NONE);
+  fail_unless_equals_int(regions->len, 0);
+}
+END_TEST
+
+START_TEST(other_messages_are_not_motion) {
+  GstMessage* const messages[] = {
+      gst_message_new_eos(nullptr),
+      gst_message_new_element(nullptr, gst_structure_new_empty("something")),
+      gst_message_new_element(nullptr, gst_structure_new_empty("cerberus-motion")),
+      gst_message_new_element(
+          nullptr, gst_structure_new("cerberus-motion", "state", G_TYPE_STRING, "paused", "running-time",
+                                     G_TYPE_UINT64, G_GUINT64_CONSTANT(1), nullptr)),
+      gst_message_new_element(nullptr, gst_structure_new("cerberus-motion", "state", G_TYPE_STRING, "started",
+                                                         "running-time", G_TYPE_UINT64, G_GUINT64_CONSTANT(1),
+                                                         "objects", G_TYPE_INT, 3, nullptr)),
+  };
+  for (GstMessage* message : messages) {
+    gboolean started = 77;
+    GstClockTime time = 77;
+    GPtrArray* regions = nullptr;
+    fail_if(cerberus_message_parse_motion(message, &started, &time, &regions));
+    fail_unless_equals_int(started, 77);
+    fail_unless_equals_uint64(time, 77);
+    fail_if(regions);
+    gst_message_unref(message);
+  }
+}
+END_TEST
+
+START_TEST(nothing_crashes_on_null) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  ASSERT_CRITICAL(cerberus_region_init(nullptr));
+  ASSERT_CRITICAL(cerberus_region_to_structure(nullptr));
+  ASSERT_CRITICAL(cerberus_region_from_structure(nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_add_region(nullptr, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_add_region(frame, nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_get_regions(nullptr));
+  ASSERT_CRITICAL(cerberus_buffer_remove_regions(nullptr));
+  ASSERT_CRITICAL(cerberus_message_is_motion(nullptr));
+  ASSERT_CRITICAL(cerberus_message_parse_motion(nullptr, nullptr, nullptr, nullptr));
+}
+END_TEST
+
+static Suite* regions_suite(void) {
+  watch_library_log();
+  Suite* s = suite_create("regions");
+  TCase* tc = tcase_create("buffers");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_region_reads_back_as_it_was_added);
+  tcase_add_test(tc, regions_keep_their_order);
+  tcase_add_test(tc, other_tools_find_a_region_of_interest);
+  tcase_add_test(tc, scaling_scales_regions_and_keeps_what_others_read);
+  tcase_add_test(tc, converting_changes_nothing);
+  tcase_add_test(tc, removing_regions_leaves_those_of_strangers);
+  tcase_add_test(tc, a_region_over_the_edge_of_the_frame_is_cut_for_others_only);
+  tcase_add_test(tc, a_region_without_a_place_is_refused);
+  tc = tcase_create("structures and messages");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_structure_holds_everything_but_what_is_unknown);
+  tcase_add_test(tc, a_strangers_structure_is_read_with_care);
+  tcase_add_test(tc, a_motion_message_reads_back);
+  tcase_add_test(tc, a_motion_message_may_have_no_objects_and_no_source);
+  tcase_add_test(tc, other_messages_are_not_motion);
+  tcase_add_test(tc, nothing_crashes_on_null);
+  return s;
+}
+
+GST_CHECK_MAIN(regions)

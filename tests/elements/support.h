@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What element tests share.
+#pragma once
+
+#include <gst/check/gstcheck.h>
+
+// gst-check watches the log of GStreamer and GLib only: a critical of our own library must fail a test as well, unless
+// ASSERT_CRITICAL expects it. Call it at the start of a suite.
+inline void watch_library_log() {
+  g_log_set_handler(
+      "Cerberus", static_cast<GLogLevelFlags>(G_LOG_LEVEL_CRITICAL | G_LOG_LEVEL_WARNING),
+      [](const gchar*, GLogLevelFlags level, const gchar* message, gpointer) {
+        if (level & G_LOG_LEVEL_CRITICAL) _gst_check_raised_critical = TRUE;
+        if (level & G_LOG_LEVEL_WARNING) _gst_check_raised_warning = TRUE;
+        if (!_gst_check_expecting_log) ck_abort_msg("Cerberus: %s", message);
+      },
+      nullptr);
+}
