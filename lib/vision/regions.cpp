@@ -64,7 +64,7 @@ struct RegionFinder::State {
   void learn();
   void group_components();
   void explain(int group);
-  void add_plain(std::size_t component);
+  void add_plain(std::size_t component, bool person = false);
   void add_person(const Person& person, const Window& window, int label);
   Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
 };
@@ -106,11 +106,11 @@ void RegionFinder::State::group_components() {
   }
 }
 
-void RegionFinder::State::add_plain(std::size_t i) {
+void RegionFinder::State::add_plain(std::size_t i, bool person) {
   const Component& c = labeller.components()[i];
   const Box box = box_of({c.left, c.top, c.right, c.bottom});
   regions.push_back({box, static_cast<double>(c.area), c.centroid(),
-                     std::min(1.0, 0.3 + 0.7 * c.area / box.area()),
+                     std::min(1.0, person ? 0.5 + 0.5 * c.area / box.area() : 0.45 * c.area / box.area()),
                      static_cast<int>(std::min<std::size_t>(i + 1, 65535))});
 }
 
@@ -160,10 +160,11 @@ void RegionFinder::State::explain(int g) {
   }
   const double expected = prior.height(window.bottom);
   const double aspect = static_cast<double>(window.height()) / window.width();
-  const bool usual = window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
+  const bool usual =
+      expected > 0 && window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
   if (expected <= 0 || (members == 1 && usual)) {
     for (std::size_t i = 0; i < parts.size(); ++i)
-      if (group[i] == g) add_plain(i);
+      if (group[i] == g) add_plain(i, usual);
     return;
   }
   const auto found = people.find(moving.view(), size, window, prior);
@@ -172,7 +173,7 @@ void RegionFinder::State::explain(int g) {
     regions.push_back({box,
                        0,
                        {box.x + box.width / 2, box.y + box.height / 2},
-                       std::clamp(found[k].score, 0.0, 1.0),
+                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0),
                        static_cast<int>(std::min<std::size_t>(first + 1, 65535))});
   }
   // What no person explains stays what it is.

@@ -27,11 +27,13 @@ struct RegionOptions {
 };
 
 struct Region {
-  Box box;                // analysis pixels
-  double area = 0;        // moving pixels inside
-  Point centroid;         // of the moving pixels
-  double confidence = 0;  // 0..1
-  int label = 0;          // value in the label picture (several regions may share one after a split)
+  Box box;          // analysis pixels
+  double area = 0;  // moving pixels inside
+  Point centroid;   // of the moving pixels
+  // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below: moving
+  // pixels that hang together and may be a piece of an object or several objects.
+  double confidence = 0;
+  int label = 0;  // value in the label picture (several regions may share one after a split)
 };
 
 class RegionFinder {

@@ -25,7 +25,8 @@ constexpr double kPositionNoise = 0.05;      // S: a region's centre flickers by
 constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's extent flickers by 15 %
 constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
 constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
-constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
+constexpr double kWhole = 0.5;       // regions from this confidence on are one object with its true extent
+constexpr double kStandSpeed = 0.3;  // S/s: slower than this (0.5 m/s) may have stopped
 
 struct Body {
   std::uint32_t id = 0;  // 0: not confirmed yet
@@ -110,7 +111,7 @@ struct Tracker::State {
   void gather_fragments();
   void share_regions();
   void adopt(Body& body, const Box& seen);
-  bool outgrown(Body& body, const Box& seen);
+  bool outgrown(Body& body, const Box& seen, bool whole);
   void correct(Body& body, const Box& seen, double confidence, bool alone);
   void give_birth();
   void age();
@@ -226,10 +227,10 @@ void Tracker::State::associate(bool confirmed) {
 // Leftover regions that lie where an object is expected are pieces of it.
 void Tracker::State::gather_fragments() {
   for (std::size_t j = 0; j < regions.size(); ++j) {
-    if (owner[j] >= 0 || used[j]) continue;
+    if (owner[j] >= 0 || used[j] || regions[j].confidence >= kWhole) continue;
     const Box& piece = regions[j].box;
     for (Body& b : bodies) {
-      if (b.region < 0 || b.id == 0) continue;
+      if (b.region < 0 || b.id == 0 || regions[b.region].confidence >= kWhole) continue;
       const Box expected = b.box();
       if (overlap(expected, piece) < 0.6 * piece.area() || piece.area() > 0.7 * expected.area()) continue;
       used[j] = 1;
@@ -253,10 +254,11 @@ void Tracker::State::adopt(Body& b, const Box& seen) {
 // One object, one region, extents that disagree. A larger region soon is right: the object came into view, or only a
 // piece of it was seen before. A smaller one is a piece of an object that hardly moves (an arm) as long as it stays
 // in place; it is right when the old extent was never well known, or when the piece walks away on its own.
-bool Tracker::State::outgrown(Body& b, const Box& seen) {
+bool Tracker::State::outgrown(Body& b, const Box& seen, bool whole) {
   if (b.misfit == 0) b.misfit_from = seen;
   b.misfit += seconds;
   b.misfit_last = seen;
+  if (whole) return b.misfit >= 0.2;
   const bool larger = seen.width * seen.height > b.width() * b.height();
   if (larger) return b.misfit >= (b.fitted < 0.5 ? 0.2 : 0.6) || at_border(b);
   const double walked = std::hypot(seen.x + seen.width / 2 - b.misfit_from.x - b.misfit_from.width / 2,
@@ -272,7 +274,7 @@ void Tracker::State::correct(Body& b, const Box& seen, double confidence, bool a
   const double noise = kPositionNoise * s * kPositionNoise * s, size_noise = kSizeNoise * kSizeNoise;
   b.stopped = false;
   const bool fits = rx.same_extent && ry.same_extent;
-  if (!fits && alone && outgrown(b, seen)) {
+  if (!fits && alone && outgrown(b, seen, confidence >= kWhole)) {
     adopt(b, seen);
   } else {
     b.x.correct(rx.distance, rx.same_extent ? noise : 6 * noise);
@@ -287,7 +289,7 @@ void Tracker::State::correct(Body& b, const Box& seen, double confidence, bool a
   ++b.hits;
   b.unseen = 0;
   const double keep = std::exp(-seconds / 0.5);
-  b.confidence = keep * b.confidence + (1 - keep) * (fits ? confidence : 0.7 * confidence);
+  b.confidence = keep * b.confidence + (1 - keep) * (0.5 + 0.5 * confidence) * (fits ? 1 : 0.7);
   b.travelled = std::max(b.travelled, std::hypot(b.x.position - b.origin.x, b.y.position - b.origin.y) / s);
   if (b.id != 0) b.top_speed = std::max(b.top_speed, std::hypot(b.x.velocity, b.y.velocity));
 }
@@ -300,7 +302,7 @@ void Tracker::State::share_regions() {
     if (b.region >= 0 || b.id == 0) continue;
     const Box box = b.box();
     for (std::size_t j = 0; j < regions.size(); ++j) {
-      if (owner[j] < 0) continue;
+      if (owner[j] < 0 || regions[j].confidence >= kWhole) continue;
       const Body& first = bodies[owner[j]];
       const Box& blob = regions[j].box;
       if (first.id == 0 || overlap(box, blob) < 0.5 * box.area()) continue;

@@ -25,8 +25,9 @@ struct Track {
   std::uint32_t id = 0;   // from 1, never used again in a stream
   Box box;                // frame pixels, clamped to the frame
   double vx = 0, vy = 0;  // frame pixels a second relative to the scene, camera motion taken out
-  double top_speed = 0;   // highest speed so far, frame pixels a second (what a lower limit of speed asks about)
-  double age = 0;         // s since first seen
+  double top_speed =
+      0;           // highest speed so far, frame pixels a second (what a lower limit of speed asks about)
+  double age = 0;  // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
 };
