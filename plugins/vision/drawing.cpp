@@ -219,14 +219,14 @@ void Painter::paint_box(const Object& object, std::vector<Patch>& patches) {
   add_patch(patches, frame_, {all.x, all.y + all.height - thick, all.width, thick}, draw);
 }
 
-// A pill in the object's colour: identity, then speed (and distance) where there is room, or two bars for
-// stopped.
-Painter::Label& Painter::label(const Object& object, double room) {
+// A pill in the object's colour: identity, two bars for stopped, and where `detailed` speed and distance.
+Painter::Label& Painter::label(const Object& object, bool detailed) {
   std::string id = object.id ? std::to_string(object.id) : std::string();
   std::string more;
   const bool bars = object.look == Look::stopped;
-  if (scene_->speeds && !bars && std::isfinite(object.speed)) more = number(object.speed) + " px/s";
-  if (std::isfinite(object.distance) && object.distance > 0)
+  if (detailed && scene_->speeds && !bars && std::isfinite(object.speed))
+    more = number(object.speed) + " px/s";
+  if (detailed && std::isfinite(object.distance) && object.distance > 0)
     more = (more.empty() ? "" : more + "  ") + number(object.distance) + " m";
 
   static thread_local const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
@@ -235,13 +235,10 @@ Painter::Label& Painter::label(const Object& object, double room) {
   const double id_width = id.empty() ? 0 : text_width(measure.get(), id.c_str());
   select_font(measure.get(), 0.85 * font_);
   const double gap = 0.45 * font_, pad = 0.4 * font_, bar_width = 0.5 * font_;
-  double more_width = more.empty() ? 0 : text_width(measure.get(), more.c_str());
-  const auto total = [&] {
-    return 2 * pad + id_width + (bars ? (id.empty() ? 0 : gap) + bar_width : 0) +
-           (more_width > 0 ? (id.empty() && !bars ? 0 : gap) + more_width : 0);
-  };
-  if (total() > room) more.clear(), more_width = 0;
-  const double width = total(), height = 1.35 * font_;
+  const double more_width = more.empty() ? 0 : text_width(measure.get(), more.c_str());
+  const double width = 2 * pad + id_width + (bars ? (id.empty() ? 0 : gap) + bar_width : 0) +
+                       (more_width > 0 ? (id.empty() && !bars ? 0 : gap) + more_width : 0);
+  const double height = 1.35 * font_;
 
   std::string key = id + '|' + more + '|' + char('0' + static_cast<int>(object.look)) + std::to_string(font_);
   Label& label = labels_[key];
@@ -286,31 +283,37 @@ Painter::Label& Painter::label(const Object& object, double room) {
   return label;
 }
 
+// Above the box, below it, or inside its top: the first place in the frame that no other label has; what is long gives
+// way to what is short.
 void Painter::paint_label(const Object& object, std::vector<Patch>& patches) {
-  const Label& label = this->label(object, std::max(1.9 * object.width, 3.2 * font_));
-  if (!label.pixels) return;
-  // Above the box, below it, then inside its top: the first place in the frame that no other label has.
-  const int x = std::clamp(static_cast<int>(std::lround(object.x - line_ / 2 - 1)), 0,
-                           std::max(0, frame_.width - label.width));
   const int gap = static_cast<int>(std::ceil(line_));
-  const int places[] = {static_cast<int>(std::lround(object.y)) - label.height - gap,
-                        static_cast<int>(std::lround(object.y + object.height)) + gap,
-                        static_cast<int>(std::lround(object.y)) + gap};
+  const int top = static_cast<int>(std::lround(object.y));
+  const int bottom = static_cast<int>(std::lround(object.y + object.height));
   const auto is_free = [&](const Area& a) {
     return a.y >= 0 && a.y + a.height <= frame_.height &&
            std::none_of(taken_.begin(), taken_.end(),
                         [&](const Area& t) { return !t.intersection(a).empty(); });
   };
-  Area area{x, 0, label.width, label.height};
+  const Label* chosen = nullptr;
+  Area area;
   bool found = false;
-  for (const int y : places) {
-    area.y = y;
-    if ((found = is_free(area))) break;
+  for (const bool detailed : {true, false}) {
+    chosen = &label(object, detailed);
+    if (!chosen->pixels) continue;
+    area.width = chosen->width;
+    area.height = chosen->height;
+    area.x = std::clamp(static_cast<int>(std::lround(object.x - line_ / 2 - 1)), 0,
+                        std::max(0, frame_.width - area.width));
+    for (const int y : {top - area.height - gap, bottom + gap, top + gap}) {
+      area.y = y;
+      if ((found = is_free(area))) break;
+    }
+    if (found) break;
   }
-  if (!found) area.y = std::clamp(places[0], 0, std::max(0, frame_.height - label.height));
+  if (!chosen->pixels || area.width > frame_.width || area.height > frame_.height) return;
+  if (!found) area.y = std::clamp(top - area.height - gap, 0, frame_.height - area.height);
   taken_.push_back(area);
-  if (!area.intersection(frame_).empty() && area.width <= frame_.width && area.height <= frame_.height)
-    patches.push_back({area, SurfacePtr(cairo_surface_reference(label.pixels.get()))});
+  patches.push_back({area, SurfacePtr(cairo_surface_reference(chosen->pixels.get()))});
 }
 
 void Painter::paint_crosshair(std::vector<Patch>& patches) {

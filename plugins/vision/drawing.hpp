@@ -85,7 +85,7 @@ class Painter {
     int width = 0, height = 0;
     bool used = false;
   };
-  Label& label(const Object& object, double room);
+  Label& label(const Object& object, bool detailed);
   void paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>& patches);
   void paint_box(const Object& object, std::vector<Patch>& patches);
   void paint_label(const Object& object, std::vector<Patch>& patches);

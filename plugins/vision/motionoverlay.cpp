@@ -82,7 +82,7 @@ const Property<Settings> kProperties[] = {
     property("show-boxes", &Settings::boxes, "Draw a box around every object"),
     property("show-ids", &Settings::ids, "Draw a label with the identity on every object"),
     property("show-speeds", &Settings::speeds,
-             "Add the speed in pixels a second to the label where the box is wide enough for it"),
+             "Add the speed in pixels a second (and the distance, where known) to the label where there is room"),
     property("show-trails", &Settings::trails,
              "Draw the way that every object came, fixed to the scene while the camera moves"),
     property("trail-time", &Settings::trail_time,
