@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Frames as lib/ reads them, in every format and layout; planes from the pool.
+// The C++ library comes first: gst-check defines a macro `fail`.
+#include <cstdint>
+#include <iterator>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cerberus/private/plane_pool.hpp"
+#include "cerberus/private/video.hpp"
+
+#include <cerberus/cerberus.h>
+#include <gst/check/gstcheck.h>
+#include <gst/video/video.h>
+
+#include "support.h"
+
+namespace {
+
+using cerberus::MappedPlane;
+using cerberus::PlanePool;
+using cerberus::VideoFrame;
+using cerberus::vision::LumaSource;
+
+const char* const kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
+                                "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
+                                "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
+const int kSizes[][2] = {{32, 32}, {33, 35}, {1, 1}, {640, 3}};
+
+std::uint8_t sample(int x, int y, int channel) {
+  return static_cast<std::uint8_t>(31 * x + 57 * y + 101 * channel + 7);
+}
+
+// Fills a mapped frame with GStreamer's own packers, the oracle for where samples are: Y or R, G, B = channels 0..2.
+void fill(GstVideoFrame* frame) {
+  const GstVideoFormatInfo* format = frame->info.finfo;
+  const int width = GST_VIDEO_FRAME_WIDTH(frame), height = GST_VIDEO_FRAME_HEIGHT(frame);
+  std::vector<std::uint8_t> line(4 * (width + 8));
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      line[4 * x] = 255;
+      for (int c = 0; c < 3; ++c) line[4 * x + 1 + c] = sample(x, y, c);
+    }
+    format->pack_func(format, GST_VIDEO_PACK_FLAG_NONE, line.data(), 0, frame->data, frame->info.stride,
+                      GST_VIDEO_CHROMA_SITE_UNKNOWN, y, width);
+  }
+}
+
+void assert_found(const LumaSource& source, int width, int height, bool rgb, const char* what) {
+  fail_unless_equals_int(source.width, width);
+  fail_unless_equals_int(source.height, height);
+  fail_unless_equals_int(source.rgb, rgb);
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const std::uint8_t* pixel = source.data + y * source.stride + x * source.pixel_stride;
+      const bool good = rgb ? pixel[source.r] == sample(x, y, 0) && pixel[source.g] == sample(x, y, 1) &&
+                                  pixel[source.b] == sample(x, y, 2)
+                            : pixel[0] == sample(x, y, 0);
+      fail_unless(good, "%s %dx%d: wrong at %d, %d", what, width, height, x, y);
+    }
+  }
+}
+
+const char* format_name(int i) {
+  return kFormats[i];
+}
+
+}  // namespace
+
+START_TEST(the_brightness_of_every_format_is_found) {
+  const GstVideoFormat format = gst_video_format_from_string(format_name(_i));
+  fail_unless(cerberus_video_format_is_supported(format));
+  for (const auto& size : kSizes) {
+    GstVideoInfo info;
+    gst_video_info_set_format(&info, format, size[0], size[1]);
+    g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+    VideoFrame writing(info, buffer, GST_MAP_READWRITE);
+    fill(writing.get());
+    writing.unmap();
+    VideoFrame frame(info, buffer, GST_MAP_READ);
+    fail_unless(static_cast<bool>(frame));
+    assert_found(cerberus::luma_source(*frame.get()), size[0], size[1], GST_VIDEO_INFO_IS_RGB(&info),
+                 format_name(_i));
+  }
+}
+END_TEST
+
+// Strides far above the width, and borders around the picture, as video memory of cameras has them.
+START_TEST(padding_around_the_picture_is_respected) {
+  const GstVideoFormat format = gst_video_format_from_string(format_name(_i));
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, format, 33, 35);
+  GstVideoAlignment alignment;
+  gst_video_alignment_reset(&alignment);
+  alignment.padding_left = 16;
+  alignment.padding_right = 200;
+  alignment.padding_top = 4;
+  alignment.padding_bottom = 6;
+  GstVideoInfo padded = info;
+  fail_unless(gst_video_info_align(&padded, &alignment));
+  g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, padded.size, nullptr);
+  gst_buffer_memset(buffer, 0, 0xAA, padded.size);
+  gst_buffer_add_video_meta_full(buffer, GST_VIDEO_FRAME_FLAG_NONE, format, 33, 35,
+                                 GST_VIDEO_INFO_N_PLANES(&padded), padded.offset, padded.stride);
+  VideoFrame writing(info, buffer, GST_MAP_READWRITE);
+  fill(writing.get());
+  writing.unmap();
+  VideoFrame frame(info, buffer, GST_MAP_READ);
+  const LumaSource source = cerberus::luma_source(*frame.get());
+  fail_unless(source.stride >= 33 + 200);
+  assert_found(source, 33, 35, GST_VIDEO_INFO_IS_RGB(&info), format_name(_i));
+}
+END_TEST
+
+// Bottom-up pictures (some Windows and DIB sources): the first row is the last in memory.
+START_TEST(a_negative_stride_reads_upwards) {
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_BGRx, 8, 5);
+  g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+  GstMapInfo map;
+  gst_buffer_map(buffer, &map, GST_MAP_WRITE);
+  for (int y = 0; y < 5; ++y)
+    for (int x = 0; x < 8; ++x)
+      for (int c = 0; c < 3; ++c) map.data[(4 - y) * 32 + 4 * x + 2 - c] = sample(x, y, c);
+  gst_buffer_unmap(buffer, &map);
+  gsize offset[GST_VIDEO_MAX_PLANES] = {4 * 32};
+  gint stride[GST_VIDEO_MAX_PLANES] = {-32};
+  gst_buffer_add_video_meta_full(buffer, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_FORMAT_BGRx, 8, 5, 1, offset,
+                                 stride);
+  VideoFrame frame(info, buffer, GST_MAP_READ);
+  fail_unless(static_cast<bool>(frame));
+  assert_found(cerberus::luma_source(*frame.get()), 8, 5, true, "bottom-up BGRx");
+}
+END_TEST
+
+START_TEST(the_caps_name_exactly_the_supported_formats) {
+  g_autoptr(GstCaps) caps = gst_caps_from_string(CERBERUS_VIDEO_CAPS);
+  const GValue* formats = gst_structure_get_value(gst_caps_get_structure(caps, 0), "format");
+  int listed = 0, supported = 0;
+  for (int f = GST_VIDEO_FORMAT_I420; gst_video_format_to_string(static_cast<GstVideoFormat>(f)); ++f) {
+    const auto format = static_cast<GstVideoFormat>(f);
+    bool in_list = false;
+    for (guint i = 0; i < gst_value_list_get_size(formats); ++i)
+      in_list |= g_str_equal(g_value_get_string(gst_value_list_get_value(formats, i)),
+                             gst_video_format_to_string(format));
+    fail_unless_equals_int(in_list, cerberus_video_format_is_supported(format));
+    listed += in_list;
+    supported += cerberus_video_format_is_supported(format);
+    if (f > 1000) break;
+  }
+  fail_unless_equals_int(listed, G_N_ELEMENTS(kFormats));
+  fail_unless_equals_int(gst_value_list_get_size(formats), G_N_ELEMENTS(kFormats));
+}
+END_TEST
+
+START_TEST(a_truncated_frame_is_refused) {
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_I420, 64, 48);
+  for (const gsize bytes : {gsize{0}, gsize{1}, info.size - 1}) {
+    g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, bytes, nullptr);
+    VideoFrame frame(info, buffer, GST_MAP_READ);
+    fail_if(static_cast<bool>(frame));
+  }
+}
+END_TEST
+
+// A reference held by the mapping would make the buffer unwritable: an element maps and annotates the same buffer.
+START_TEST(a_mapped_frame_can_still_be_annotated) {
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_GRAY8, 64, 48);
+  g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+  VideoFrame frame(info, buffer, GST_MAP_READ);
+  g_autoptr(CerberusThreshold) threshold = cerberus_threshold_new();
+  fail_unless(cerberus_buffer_set_threshold(buffer, threshold));
+}
+END_TEST
+
+START_TEST(a_published_plane_is_read_back) {
+  PlanePool pool;
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  MappedPlane plane = pool.acquire({33, 7}, 2);
+  fail_unless(static_cast<bool>(plane));
+  auto view = plane.writable<std::uint16_t>();
+  fail_unless_equals_int(plane.stride() % 64, 0);
+  fail_unless_equals_int(reinterpret_cast<std::uintptr_t>(view.data) % 64, 0);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 33; ++x) view.at(x, y) = static_cast<std::uint16_t>(1000 * y + x);
+  fail_unless(plane.publish(frame, CERBERUS_PLANE_LABELS));
+  fail_if(static_cast<bool>(plane));
+
+  const MappedPlane back = MappedPlane::read(frame, CERBERUS_PLANE_LABELS);
+  fail_unless(back.size() == (cerberus::vision::Size{33, 7}));
+  const auto read = back.view<std::uint16_t>();
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 33; ++x) fail_unless_equals_int(read.at(x, y), 1000 * y + x);
+  fail_if(static_cast<bool>(MappedPlane::read(frame, CERBERUS_PLANE_MASK)));
+}
+END_TEST
+
+START_TEST(the_pool_uses_its_memory_again) {
+  PlanePool pool;
+  std::vector<const void*> seen;
+  for (int k = 0; k < 100; ++k) {
+    g_autoptr(GstBuffer) frame = gst_buffer_new();
+    MappedPlane one = pool.acquire({320, 240}), two = pool.acquire({320, 240});
+    for (MappedPlane* plane : {&one, &two}) {
+      const void* memory = plane->writable<std::uint8_t>().data;
+      bool known = false;
+      for (const void* s : seen) known |= s == memory;
+      if (!known) seen.push_back(memory);
+    }
+    one.publish(frame, CERBERUS_PLANE_DIFFERENCE);
+    two.publish(frame, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+  }
+  fail_unless_equals_int(seen.size(), 2);
+}
+END_TEST
+
+// A frame may wait in a queue longer than the element that annotated it lives, and across a change of size.
+START_TEST(planes_outlive_their_pool) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  {
+    PlanePool pool;
+    MappedPlane plane = pool.acquire({16, 16});
+    plane.writable<std::uint8_t>().at(15, 15) = 77;
+    plane.publish(frame, CERBERUS_PLANE_LUMA);
+    MappedPlane other = pool.acquire({160, 16});
+    fail_unless_equals_int(other.width(), 160);
+    fail_unless_equals_int(other.stride(), 192);
+  }
+  const MappedPlane back = MappedPlane::read(frame, CERBERUS_PLANE_LUMA);
+  fail_unless_equals_int(back.view<std::uint8_t>().at(15, 15), 77);
+}
+END_TEST
+
+START_TEST(a_plane_can_be_moved_and_dropped) {
+  PlanePool pool;
+  MappedPlane plane = pool.acquire({16, 16});
+  MappedPlane moved = std::move(plane);
+  fail_if(static_cast<bool>(plane));
+  fail_unless(static_cast<bool>(moved));
+  moved = MappedPlane();
+  fail_if(static_cast<bool>(moved));
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  fail_if(moved.publish(frame, CERBERUS_PLANE_LUMA));
+  for (const auto size :
+       {cerberus::vision::Size{0, 4}, cerberus::vision::Size{4, 0}, cerberus::vision::Size{-4, 4}})
+    fail_if(static_cast<bool>(pool.acquire(size)));
+}
+END_TEST
+
+static Suite* frames_suite(void) {
+  watch_library_log();
+  Suite* s = suite_create("frames");
+  TCase* tc = tcase_create("video");
+  suite_add_tcase(s, tc);
+  tcase_add_loop_test(tc, the_brightness_of_every_format_is_found, 0, G_N_ELEMENTS(kFormats));
+  tcase_add_loop_test(tc, padding_around_the_picture_is_respected, 0, G_N_ELEMENTS(kFormats));
+  tcase_add_test(tc, a_negative_stride_reads_upwards);
+  tcase_add_test(tc, the_caps_name_exactly_the_supported_formats);
+  tcase_add_test(tc, a_truncated_frame_is_refused);
+  tcase_add_test(tc, a_mapped_frame_can_still_be_annotated);
+  tc = tcase_create("planes");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_published_plane_is_read_back);
+  tcase_add_test(tc, the_pool_uses_its_memory_again);
+  tcase_add_test(tc, planes_outlive_their_pool);
+  tcase_add_test(tc, a_plane_can_be_moved_and_dropped);
+  return s;
+}
+
+GST_CHECK_MAIN(frames)
