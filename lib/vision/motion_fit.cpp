@@ -8,7 +8,6 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kHypotheses = 96;
 constexpr int kRefinements = 4;
 
 using Distances = std::array<float, MotionSamples::kMax>;
@@ -207,7 +206,7 @@ MotionFit refine_motion(const MotionSamples& s, MotionModel model, Size picture,
 }
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
-                     std::span<const Transform> guesses) {
+                     std::span<const Transform> guesses, int hypotheses) {
   Transform best;
   double most = -1;
   const auto consider = [&](const Transform& t) {
@@ -222,7 +221,7 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     random = random * 1664525u + 1013904223u;
     return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
   };
-  for (int h = 0; h < kHypotheses; ++h) {
+  for (int h = 0; h < hypotheses; ++h) {
     const int i = draw(), j = draw();
     Transform t;
     if (model == MotionModel::translation || h % 4 == 0)

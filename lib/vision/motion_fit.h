@@ -40,11 +40,11 @@ constexpr float kGate = 9.0f;
 // in one: objects are compact, the background is everywhere.
 MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
 
-// Consensus over random pairs of samples (a fixed sequence: the same input gives the same output), over `guesses`, then
+// Consensus over `hypotheses` random pairs of samples (a fixed sequence: the same input gives the same output), over `guesses`, then
 // least squares with Tukey's weights over what agrees. The model is reduced where the samples cannot carry it. Returns
 // the guess with most support where there are no samples at all (identity without guesses).
 MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
-                     std::span<const Transform> guesses);
+                     std::span<const Transform> guesses, int hypotheses);
 
 // Only the least squares part, from `start`.
 MotionFit refine_motion(const MotionSamples& samples, MotionModel model, Size picture,

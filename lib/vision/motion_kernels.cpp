@@ -113,6 +113,28 @@ PatchProducts match_patch(GrayView picture, float x, float y, const PatchTemplat
   return {total(d, with_x), total(d, with_y), total(d, with_v), total(d, sum), total(d, squares)};
 }
 
+void sum_gradient_blocks(GrayView picture, int x, int y, int blocks, std::int32_t* xx, std::int32_t* xy,
+                         std::int32_t* yy) {
+  const hn::CappedTag<std::int32_t, 4> d;
+  const hn::Rebind<std::uint8_t, decltype(d)> bytes;
+  const auto load = [&](const std::uint8_t* p) { return hn::PromoteTo(d, hn::LoadU(bytes, p)); };
+  for (int b = 0; b < blocks; ++b) {
+    auto sum_xx = hn::Zero(d), sum_xy = hn::Zero(d), sum_yy = hn::Zero(d);
+    for (int j = 0; j < 4; ++j)
+      for (int i = 0; i < 4; i += static_cast<int>(hn::Lanes(d))) {
+        const std::uint8_t* p = &picture.at(x + 4 * b + i, y + j);
+        const auto gx = hn::Sub(load(p + 1), load(p - 1));
+        const auto gy = hn::Sub(load(p + picture.stride), load(p - picture.stride));
+        sum_xx = hn::Add(sum_xx, hn::Mul(gx, gx));
+        sum_xy = hn::Add(sum_xy, hn::Mul(gx, gy));
+        sum_yy = hn::Add(sum_yy, hn::Mul(gy, gy));
+      }
+    xx[b] = hn::GetLane(hn::SumOfLanes(d, sum_xx));
+    xy[b] = hn::GetLane(hn::SumOfLanes(d, sum_xy));
+    yy[b] = hn::GetLane(hn::SumOfLanes(d, sum_yy));
+  }
+}
+
 std::uint32_t truncated_difference(const std::uint8_t* a, const std::uint8_t* b, int count,
                                    std::uint8_t limit) {
 #if HWY_TARGET == HWY_SCALAR
@@ -145,6 +167,7 @@ namespace cerberus::vision {
 HWY_EXPORT(halve_rows);
 HWY_EXPORT(make_template);
 HWY_EXPORT(match_patch);
+HWY_EXPORT(sum_gradient_blocks);
 HWY_EXPORT(truncated_difference);
 
 void halve_rows(const std::uint8_t* upper, const std::uint8_t* lower, int width, std::uint8_t* out) {
@@ -157,6 +180,11 @@ void make_template(GrayView picture, int x, int y, PatchTemplate& patch) {
 
 PatchProducts match_patch(GrayView picture, float x, float y, const PatchTemplate& patch) {
   return HWY_DYNAMIC_DISPATCH(match_patch)(picture, x, y, patch);
+}
+
+void sum_gradient_blocks(GrayView picture, int x, int y, int blocks, std::int32_t* xx, std::int32_t* xy,
+                         std::int32_t* yy) {
+  HWY_DYNAMIC_DISPATCH(sum_gradient_blocks)(picture, x, y, blocks, xx, xy, yy);
 }
 
 std::uint32_t truncated_difference(const std::uint8_t* a, const std::uint8_t* b, int count,

@@ -32,6 +32,11 @@ struct PatchProducts {
 // Needs 0 <= x <= width - kPatch - 1, the same for y.
 PatchProducts match_patch(GrayView picture, float x, float y, const PatchTemplate& patch);
 
+// Products of central differences (over two pixels, not halved) summed over blocks of 4 x 4 pixels from (x, y) to the
+// right: xx[b] = sum of gx gx, xy of gx gy, yy of gy gy. Reads one pixel around the blocks.
+void sum_gradient_blocks(GrayView picture, int x, int y, int blocks, std::int32_t* xx, std::int32_t* xy,
+                         std::int32_t* yy);
+
 // Sum over `count` bytes of min(|a - b|, limit). count a multiple of 16.
 std::uint32_t truncated_difference(const std::uint8_t* a, const std::uint8_t* b, int count,
                                    std::uint8_t limit);

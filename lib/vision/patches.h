@@ -31,14 +31,29 @@ struct PatchMatch {
   float dx = 0, dy = 0;  // displacement, pixels of the level; of its centre (x, y) on that level
   float x = 0, y = 0;
   float correlation = 0;            // of the two patches, -1..1; 0 where it left the picture
+  bool inside = false;              // the place looked at lies in the later picture
   float noise2 = 0;                 // variance of what the match leaves unexplained, grey levels^2
   float hxx = 0, hxy = 0, hyy = 0;  // gradient information, gain taken out, grey levels^2 / pixel^2
 };
 
-// The patch around `site` on level `level`, first looked for at displacement (dx, dy): inverse compositional Gauss-Newton
-// (Baker and Matthews, IJCV 56(3), 2004) with gain and offset as further unknowns, so that light may change. Template and
-// gradients come from the earlier picture. rounds 0 only rates the given place.
-PatchMatch follow_patch(GrayView earlier, GrayView later, int level, const PatchSite& site, float dx,
-                        float dy, int rounds);
+// Follows one patch on one level: inverse compositional Gauss-Newton (Baker and Matthews, IJCV 56(3), 2004) with gain and
+// offset as further unknowns, so that light may change. Template and gradients come from the earlier picture and are made
+// once, however often it is looked for.
+class PatchFollower {
+ public:
+  PatchFollower(GrayView earlier, int level, const PatchSite& site);
+  // Looks around displacement (dx, dy), pixels of the level, for at most `rounds` steps; 0 only rates the given place.
+  PatchMatch follow(GrayView later, float dx, float dy, int rounds) const;
+  float x() const { return match_.x; }  // centre on that level
+  float y() const { return match_.y; }
+
+ private:
+  PatchTemplate patch_;
+  PatchMatch match_;  // what does not depend on the later picture
+  int corner_x_ = 0, corner_y_ = 0;
+  float gain_x_ = 0, gain_y_ = 0;  // gradients' share that a change of gain explains
+  float stiff_ = 0;
+  bool textured_ = false;
+};
 
 }  // namespace cerberus::vision
