@@ -7,134 +7,180 @@
 #include "vision/people.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace cerberus::vision {
 namespace {
 
 constexpr double kBodyAspect = 0.36;  // width of a walking body / its height
-// ln(p / kOutside) and ln((1 - p) / (1 - kOutside)) with kCore = .65, kSide = .35, kOutside = .04
-constexpr double kCoreMoving = 2.79, kCoreStill = -1.01;
-constexpr double kSideMoving = 2.17, kSideStill = -0.39;
-constexpr double kPrice = 0.3;  // for each pixel of the box; a whole person brings about 1
+constexpr int kRowsOfABody = 40;      // cells a body is cut into at least, if it has as many pixels
+// 64 ln(p / kOutside) and 64 ln((1 - p) / (1 - kOutside)) with kCore = .65, kSide = .35, kOutside = .04
+constexpr int kUnit = 64;
+constexpr int kCoreMoving = 178, kCoreStill = -65;
+constexpr int kSideMoving = 139, kSideStill = -25;
+constexpr int kPrice = 19;  // 0.3 for each cell of the box; a whole person brings about 1
 constexpr std::size_t kMostPeople = 12;
+constexpr int kMostCells = 65535;  // both packed sums stay below 65536
+
+// One cell carries two numbers: moving in the lower 16 bits, counted at all in the upper. Sums of up to 65535 cells,
+// and differences of sums, are exact in both halves.
+constexpr std::uint32_t kCounted = 0x10000, kMoving = 1;
 
 }  // namespace
 
-// One table for two sums: moving pixels not yet explained in the lower 16 bits, pixels not yet explained in the upper.
-// Both stay below 65536 by the window's size, so differences of packed sums are exact.
-void PeopleFinder::add_up(BitView pixels) {
-  const int width = window_.width(), pitch = width + 1;
-  sums_.assign(static_cast<std::size_t>(pitch) * (window_.height() + 1), 0);
-  for (int y = 0; y < window_.height(); ++y) {
-    const std::uint64_t* bits = pixels.row(window_.top + y);
-    const std::uint32_t* above = &sums_[static_cast<std::size_t>(y) * pitch];
-    std::uint32_t* here = &sums_[static_cast<std::size_t>(y + 1) * pitch];
-    std::uint32_t row = 0;
-    for (int x = 0; x < width; ++x) {
-      const int px = window_.left + x;
-      bool free = true;
-      for (const Candidate& c : chosen_)
-        free &= px < c.left || px >= c.right || window_.top + y < c.top || window_.top + y >= c.bottom;
-      if (free) row += 0x10000u + static_cast<std::uint32_t>(bits[px / 64] >> (px % 64) & 1);
-      here[x + 1] = above[x + 1] + row;
+// Cells around the window, wide enough that every place a person may be judged at lies on the grid. Outside the picture
+// nothing is counted; inside the picture but outside the window nothing moves.
+bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
+  const double tallest = prior_->height(window.bottom);
+  if (tallest <= 0) return false;
+  step_ = std::max(1, static_cast<int>(tallest / kRowsOfABody));
+  const int around = static_cast<int>(kBodyAspect * tallest) + 2 * step_;
+  const int above = static_cast<int>(0.7 * tallest);
+  const int below = window.bottom >= picture_.height ? static_cast<int>(0.6 * tallest) : 2 * step_;
+  x0_ = window.left - around;
+  y0_ = window.top - above;
+  columns_ = (window.width() + 2 * around + step_ - 1) / step_;
+  rows_ = (window.height() + above + below + step_ - 1) / step_;
+  if (static_cast<long>(columns_) * rows_ > kMostCells) return false;
+  const auto cell = [&](int pixel, int origin) { return (pixel - origin + step_ - 1) / step_; };
+  inside_ = {std::clamp(cell(0, x0_), 0, columns_), std::clamp(cell(0, y0_), 0, rows_),
+             std::clamp(cell(picture_.width, x0_), 0, columns_),
+             std::clamp(cell(picture_.height, y0_), 0, rows_)};
+  window_ = {cell(window.left, x0_), cell(window.top, y0_), std::min(cell(window.right, x0_), columns_),
+             std::min(cell(window.bottom, y0_), rows_)};
+  cells_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
+  for (int r = inside_.top; r < inside_.bottom; ++r)
+    std::fill_n(&cells_[static_cast<std::size_t>(r) * columns_ + inside_.left], inside_.width(), kCounted);
+  // A cell moves when at least half of its pixels do (of one pixel: when it does).
+  const int half = std::max(1, step_ * step_ / 2);
+  for (int r = window_.top; r < window_.bottom; ++r)
+    for (int c = window_.left; c < window_.right; ++c) {
+      int moving = 0;
+      for (int y = std::max(window.top, y0_ + r * step_); y < std::min(window.bottom, y0_ + (r + 1) * step_);
+           ++y)
+        for (int x = std::max(window.left, x0_ + c * step_);
+             x < std::min(window.right, x0_ + (c + 1) * step_); ++x)
+          moving += static_cast<int>(pixels.row(y)[x / 64] >> (x % 64) & 1);
+      if (moving >= half) cells_[static_cast<std::size_t>(r) * columns_ + c] |= kMoving;
+    }
+  shapes_.assign(static_cast<std::size_t>(rows_) + 1, {});
+  for (int r = 0; r <= rows_; ++r) {
+    const double height = prior_->height(y0_ + r * step_) / step_;
+    if (height > 0)
+      shapes_[r] = {std::max(2, static_cast<int>(std::lround(height))),
+                    std::max(1, static_cast<int>(std::lround(kBodyAspect * height)))};
+  }
+  scores_.resize(static_cast<std::size_t>(columns_) + 1);
+  return true;
+}
+
+void PeopleFinder::add_up() {
+  const int pitch = columns_ + 1;
+  sums_.resize(static_cast<std::size_t>(pitch) * (rows_ + 1));
+  std::fill_n(sums_.begin(), pitch, 0u);
+  for (int r = 0; r < rows_; ++r) {
+    const std::uint32_t* cells = &left_[static_cast<std::size_t>(r) * columns_];
+    const std::uint32_t* above = &sums_[static_cast<std::size_t>(r) * pitch];
+    std::uint32_t* here = &sums_[static_cast<std::size_t>(r + 1) * pitch];
+    std::uint32_t row = here[0] = 0;
+    for (int c = 0; c < columns_; ++c) {
+      row += cells[c];
+      here[c + 1] = above[c + 1] + row;
     }
   }
 }
 
 std::uint32_t PeopleFinder::sum(int left, int top, int right, int bottom) const {
-  const int pitch = window_.width() + 1;
-  left = std::clamp(left - window_.left, 0, window_.width());
-  right = std::clamp(right - window_.left, 0, window_.width());
-  top = std::clamp(top - window_.top, 0, window_.height());
-  bottom = std::clamp(bottom - window_.top, 0, window_.height());
-  if (left >= right || top >= bottom) return 0;
-  return sums_[static_cast<std::size_t>(bottom) * pitch + right] -
-         sums_[static_cast<std::size_t>(bottom) * pitch + left] -
-         sums_[static_cast<std::size_t>(top) * pitch + right] +
-         sums_[static_cast<std::size_t>(top) * pitch + left];
+  const std::size_t pitch = static_cast<std::size_t>(columns_) + 1;
+  const std::uint32_t* t = &sums_[top * pitch];
+  const std::uint32_t* b = &sums_[bottom * pitch];
+  return b[right] - b[left] - t[right] + t[left];
 }
 
-PeopleFinder::Candidate PeopleFinder::judge(int left, int foot, double height) const {
-  const int h = std::max(1, static_cast<int>(std::lround(height)));
-  const int w = std::max(1, static_cast<int>(std::lround(kBodyAspect * height)));
-  const int quarter = w / 4;
-  Candidate c{left, foot - h, left + w, foot, 0, 0};
-  const std::uint32_t all = sum(c.left, c.top, c.right, c.bottom);
-  const std::uint32_t core = sum(c.left + quarter, c.top, c.right - quarter, c.bottom);
-  const std::uint32_t side = all - core;
-  // Outside the window nothing moves, but inside the picture it could have.
-  const int seen = (std::min(c.right, picture_.width) - std::max(c.left, 0)) *
-                   (std::min(c.bottom, picture_.height) - std::max(c.top, 0));
-  const int beyond = seen - [&] {
-    const int iw = std::min(c.right, window_.right) - std::max(c.left, window_.left);
-    const int ih = std::min(c.bottom, window_.bottom) - std::max(c.top, window_.top);
-    return iw > 0 && ih > 0 ? iw * ih : 0;
-  }();
-  const double core_moving = core & 0xffff, core_all = core >> 16;
-  const double side_moving = side & 0xffff, side_all = side >> 16;
-  const double gain = core_moving * kCoreMoving + (core_all - core_moving) * kCoreStill +
-                      side_moving * kSideMoving + (side_all - side_moving) * kSideStill +
-                      beyond * (kCoreStill + kSideStill) / 2;
-  c.score = gain - kPrice * seen;
-  c.per_pixel = seen > 0 ? gain / seen : 0;
-  return c;
-}
-
-// The best place for one more person whose left edge lies in [from, to).
-PeopleFinder::Candidate PeopleFinder::best(int from, int to) const {
-  Candidate best{0, 0, 0, 0, 0, 0};
-  const double tallest = prior_->height(window_.bottom);
-  const int row_step = std::max(1, static_cast<int>(tallest / 20));
-  const int below = window_.bottom >= picture_.height ? static_cast<int>(0.6 * tallest) : row_step;
-  for (int foot = window_.bottom + below; foot > window_.top; foot -= row_step) {
-    const double height = prior_->height(foot);
-    if (height <= 0) continue;
-    if (foot - window_.top < 0.4 * height) break;
-    const int column_step = std::max(1, static_cast<int>(kBodyAspect * height / 10));
-    for (int left = from; left < to; left += column_step) {
-      const Candidate c = judge(left, foot, height);
-      if (c.score > best.score) best = c;
+// The best place for one more person whose left edge lies in [from, to). Score 0: nowhere.
+PeopleFinder::Candidate PeopleFinder::best(int from, int to) {
+  Candidate best;
+  const std::size_t pitch = static_cast<std::size_t>(columns_) + 1;
+  for (int foot = rows_; foot > window_.top; --foot) {
+    const auto [h, w] = shapes_[foot];
+    if (h == 0 || foot - h < 0) continue;
+    if (foot - window_.top < 0.4 * h) break;
+    const int q = w / 4, first = std::max(from, 0), end = std::min(to, columns_ - w + 1);
+    if (first >= end) continue;
+    const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
+    const std::uint32_t* t = &sums_[(foot - h) * pitch];
+    const std::uint32_t* b = &sums_[foot * pitch];
+    int* scores = scores_.data();
+    const int in_left = inside_.left, in_right = inside_.right;
+    for (int l = first; l < end; ++l) {
+      const std::uint32_t all = b[l + w] - b[l] - t[l + w] + t[l];
+      const std::uint32_t core = b[l + w - q] - b[l + q] - t[l + w - q] + t[l + q];
+      const std::uint32_t side = all - core;
+      const int core_moving = core & 0xffff, core_still = static_cast<int>(core >> 16) - core_moving;
+      const int side_moving = side & 0xffff, side_still = static_cast<int>(side >> 16) - side_moving;
+      const int seen = (std::min(l + w, in_right) - std::max(l, in_left)) * high;
+      scores[l] = core_moving * kCoreMoving + core_still * kCoreStill + side_moving * kSideMoving +
+                  side_still * kSideStill - seen * kPrice;
     }
+    const int* top = std::max_element(scores + first, scores + end);
+    if (*top <= best.score) continue;
+    const int l = static_cast<int>(top - scores);
+    const int seen = (std::min(l + w, in_right) - std::max(l, in_left)) * high;
+    best = {l, foot - h, l + w, foot, *top, seen > 0 ? (*top + seen * kPrice) / seen : 0};
   }
   return best;
 }
 
+// What lies in the box is explained: it counts for nobody else.
+void PeopleFinder::take(const Candidate& c) {
+  for (int r = c.top; r < c.bottom; ++r)
+    std::fill(&left_[static_cast<std::size_t>(r) * columns_ + c.left],
+              &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
+  add_up();
+}
+
 // Takes people one after another, the best first or always the leftmost one, and returns what is gained in all.
-double PeopleFinder::explain(BitView pixels, bool from_the_left) {
+int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
-  double total = 0;
-  const int width = std::max(2, static_cast<int>(kBodyAspect * prior_->height(window_.bottom)));
-  int edge = window_.left;
+  left_ = cells_;
+  add_up();
+  const int width = std::max(1, shapes_[std::min(window_.bottom, rows_)].width);
+  int total = 0, edge = window_.left;
   while (chosen_.size() < kMostPeople) {
-    add_up(pixels);
     Candidate c;
     if (from_the_left) {
       // The leftmost column that still holds something decides; a person's edge is near it.
       while (edge < window_.right && (sum(edge, window_.top, edge + 1, window_.bottom) & 0xffff) == 0) ++edge;
       if (edge >= window_.right) break;
-      c = best(edge - width / 3, edge + width / 3);
+      c = best(edge - width / 3, edge + width / 3 + 1);
       if (c.score <= 0) {
         edge += std::max(1, width / 4);
         continue;
       }
     } else {
-      c = best(window_.left - width / 2, window_.right);
+      c = best(0, window_.right);
       if (c.score <= 0) break;
     }
     total += c.score;
     chosen_.push_back(c);
+    take(c);
   }
   return total;
 }
 
 // Each in turn may move, given the others.
-void PeopleFinder::settle(BitView pixels) {
+void PeopleFinder::settle() {
   const std::size_t n = chosen_.size();
   for (std::size_t i = 0; i < n && n > 1; ++i) {
     const Candidate old = chosen_.front();
     chosen_.erase(chosen_.begin());
-    add_up(pixels);
+    left_ = cells_;
+    for (const Candidate& c : chosen_)
+      for (int r = c.top; r < c.bottom; ++r)
+        std::fill(&left_[static_cast<std::size_t>(r) * columns_ + c.left],
+                  &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
+    add_up();
     const int w = old.right - old.left;
     const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1);
     if (c.score > 0) chosen_.push_back(c);
@@ -145,19 +191,21 @@ std::span<const Person> PeopleFinder::find(BitView pixels, Size picture, const W
                                            const HeightPrior& prior) {
   people_.clear();
   picture_ = picture;
-  window_ = window;
   prior_ = &prior;
-  if (prior.height(window.bottom) <= 0 || (window.width() + 1L) * (window.height() + 1L) > 65535)
-    return people_;
-  const double left_first = explain(pixels, true);
-  other_ = chosen_;
-  const double best_first = explain(pixels, false);
-  if (left_first > best_first) std::swap(chosen_, other_);
-  settle(pixels);
+  if (!lay_grid(pixels, window)) return people_;
+  // The leftmost first is right for people side by side, where the best first may stand in their middle; the best first
+  // is right for people behind one another.
+  const int best_first = explain(false);
+  if (chosen_.size() > 1 || window_.width() > 1.3 * shapes_[window_.bottom].width) {
+    std::swap(chosen_, other_);
+    if (explain(true) <= best_first) std::swap(chosen_, other_);
+    settle();
+  }
   for (const Candidate& c : chosen_)
-    people_.push_back({{static_cast<double>(c.left), static_cast<double>(c.top),
-                        static_cast<double>(c.right - c.left), static_cast<double>(c.bottom - c.top)},
-                       c.per_pixel});
+    people_.push_back(
+        {{static_cast<double>(x0_ + c.left * step_), static_cast<double>(y0_ + c.top * step_),
+          static_cast<double>((c.right - c.left) * step_), static_cast<double>((c.bottom - c.top) * step_)},
+         static_cast<double>(c.gain) / kUnit});
   return people_;
 }
 

@@ -32,25 +32,38 @@ class PeopleFinder {
   // heights there, or the window is too large to be judged. Deterministic; the span lives until the next call.
   std::span<const Person> find(BitView pixels, Size picture, const Window& window, const HeightPrior& prior);
 
-  std::size_t bytes() const { return sums_.capacity() * sizeof(std::uint32_t); }
+  std::size_t bytes() const {
+    return (cells_.capacity() + left_.capacity() + sums_.capacity()) * sizeof(std::uint32_t) +
+           scores_.capacity() * sizeof(int);
+  }
 
  private:
+  // All in cells of the grid; `right` and `bottom` exclusive.
   struct Candidate {
-    int left, top, right, bottom;  // picture pixels, may leave it
-    double score;                  // log likelihood gained, less the price of a person
-    double per_pixel;
+    int left = 0, top = 0, right = 0, bottom = 0;
+    int score = 0;  // what it gains less the price of a person, 1/64
+    int gain = 0;
   };
-  void add_up(BitView pixels);
+  struct Shape {  // of a person whose feet are at one row of the grid
+    int height = 0, width = 0;
+  };
+
+  bool lay_grid(BitView pixels, const Window& window);
+  void add_up();
   std::uint32_t sum(int left, int top, int right, int bottom) const;
-  Candidate judge(int left, int foot, double height) const;
-  Candidate best(int from, int to) const;
-  double explain(BitView pixels, bool from_the_left);
-  void settle(BitView pixels);
+  Candidate best(int from, int to);
+  void take(const Candidate& candidate);
+  int explain(bool from_the_left);
+  void settle();
 
   Size picture_;
-  Window window_;
   const HeightPrior* prior_ = nullptr;
-  std::vector<std::uint32_t> sums_;
+  // The grid: cells of step_ x step_ pixels, the first one's corner at (x0_, y0_); the picture and the window in it.
+  int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
+  Window inside_, window_;
+  std::vector<Shape> shapes_;                       // of each foot row 0..rows_
+  std::vector<std::uint32_t> cells_, left_, sums_;  // as seen; less what is explained; summed up
+  std::vector<int> scores_;
   std::vector<Candidate> chosen_, other_;
   std::vector<Person> people_;
 };

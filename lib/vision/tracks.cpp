@@ -35,6 +35,7 @@ struct Body {
   Point origin;          // where it was first seen, carried with the scene
   double age = 0, unseen = 0, shared = 0;
   double fitted = 0;  // s during which the region had the track's extent: how well the extent is known
+  double slow = 0;    // s it has been seen going slower than kStandSpeed, up to now
   double misfit = 0;  // s since it had, and what was seen in the meantime
   Box misfit_from, misfit_last;
   double travelled = 0;  // largest distance from the origin, S
@@ -117,6 +118,7 @@ struct Tracker::State {
   void age();
   void remove_duplicates();
   void publish();
+  bool has_stopped(const Body& body) const;
   bool at_border(const Body& body) const;
 };
 
@@ -291,6 +293,7 @@ void Tracker::State::correct(Body& b, const Box& seen, double confidence, bool a
   const double keep = std::exp(-seconds / 0.5);
   b.confidence = keep * b.confidence + (1 - keep) * (0.5 + 0.5 * confidence) * (fits ? 1 : 0.7);
   b.travelled = std::max(b.travelled, std::hypot(b.x.position - b.origin.x, b.y.position - b.origin.y) / s);
+  b.slow = std::hypot(b.x.velocity, b.y.velocity) < kStandSpeed * s ? b.slow + seconds : 0;
   if (b.id != 0) b.top_speed = std::max(b.top_speed, std::hypot(b.x.velocity, b.y.velocity));
 }
 
@@ -365,6 +368,16 @@ void Tracker::State::give_birth() {
   }
 }
 
+// Somebody who ceased to move, rather than left or went behind something: well seen before, slower and slower until
+// nothing moved any more, in the open and with nobody else in the way.
+bool Tracker::State::has_stopped(const Body& b) const {
+  if (b.slow < 0.3 || b.fitted < 1.0 || b.travelled < 0.5 || at_border(b)) return false;
+  const Box box = b.box();
+  return std::none_of(bodies.begin(), bodies.end(), [&](const Body& o) {
+    return &o != &b && o.id != 0 && o.region >= 0 && overlap(o.box(), box) > 0.2 * box.area();
+  });
+}
+
 bool Tracker::State::at_border(const Body& b) const {
   const Box box = b.box();
   const double margin = 0.1 * b.size();
@@ -387,9 +400,7 @@ void Tracker::State::age() {
     }
     const bool outside =
         b.x.position < 0 || b.y.position < 0 || b.x.position > frame.width || b.y.position > frame.height;
-    const double speed = std::hypot(b.x.velocity, b.y.velocity) / b.size();
-    if (!b.stopped && speed < kStandSpeed && b.age - b.unseen >= 1.0 && b.travelled >= 0.5 && !at_border(b))
-      b.stopped = true;
+    if (!b.stopped && has_stopped(b)) b.stopped = true;
     const double limit = b.stopped ? options.hold_stopped : options.coast_time;
     b.confidence *= std::exp(-seconds / (b.stopped ? options.hold_stopped : options.coast_time));
     b.dead = outside || b.unseen > limit || (!b.stopped && at_border(b) && b.unseen > 0.3 * limit);
