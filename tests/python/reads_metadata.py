@@ -1,0 +1,199 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""Reads regions, tracks, threshold and camera motion from Python, through GObject introspection.
+
+Run by the test suite, which sets GI_TYPELIB_PATH and LD_LIBRARY_PATH to the build (an installed Cerberus needs neither).
+It is also the example to start from: the class at the end shows how a program gets at each frame's metadata.
+"""
+import math
+import sys
+import unittest
+
+SKIPPED = 77
+
+if sys.argv[1:] and sys.argv[1] == "no-introspection":
+    print("skipped: built without introspection (option introspection, packages libgirepository1.0-dev and "
+          "gobject-introspection; off in sanitizer builds)")
+    sys.exit(SKIPPED)
+
+try:
+    import gi
+    gi.require_version("Gst", "1.0")
+    gi.require_version("GstApp", "1.0")
+    gi.require_version("GstVideo", "1.0")
+    from gi.repository import Gst, GstApp, GstVideo  # noqa: F401 (GstApp gives appsink its methods)
+except (ImportError, ValueError) as missing:
+    print(f"skipped: {missing} (packages python3-gi, gir1.2-gst-plugins-base-1.0)")
+    sys.exit(SKIPPED)
+
+gi.require_version("Cerberus", "1.0")  # built, so it must be found: no skip
+from gi.repository import Cerberus  # noqa: E402
+
+Gst.init(None)
+TIMEOUT = 30 * Gst.SECOND
+
+
+def region(**fields):
+    """A Cerberus.Region with some fields set."""
+    result = Cerberus.Region.new()
+    for name, value in fields.items():
+        setattr(result, name, value)
+    return result
+
+
+def frames(description, probe=None):
+    """Runs a pipeline that ends in `appsink name=sink`; yields each buffer. `probe` may annotate what leaves `mark`."""
+    pipeline = Gst.parse_launch(description)
+    if probe:
+        def on_buffer(_pad, info):
+            probe(info.get_buffer())
+            return Gst.PadProbeReturn.OK
+        pipeline.get_by_name("mark").get_static_pad("src").add_probe(Gst.PadProbeType.BUFFER, on_buffer)
+    sink = pipeline.get_by_name("sink")
+    pipeline.set_state(Gst.State.PLAYING)
+    try:
+        while sample := sink.try_pull_sample(TIMEOUT):
+            yield sample.get_buffer()
+        error = pipeline.get_bus().pop_filtered(Gst.MessageType.ERROR)
+        if error:
+            raise RuntimeError(error.parse_error())
+        if not sink.is_eos():
+            raise RuntimeError("the pipeline does not go on")
+    finally:
+        pipeline.set_state(Gst.State.NULL)
+
+
+class OnAPlainBuffer(unittest.TestCase):
+    def setUp(self):
+        self.buffer = Gst.Buffer.new_allocate(None, 16, None)
+
+    def test_a_bare_buffer_has_nothing(self):
+        self.assertEqual(Cerberus.buffer_get_regions(self.buffer), [])
+        self.assertIsNone(Cerberus.buffer_get_camera_motion(self.buffer))
+        self.assertIsNone(Cerberus.buffer_get_threshold(self.buffer))
+        plane, width, height, stride = Cerberus.buffer_get_plane(self.buffer, Cerberus.PlaneKind.MASK)
+        self.assertIsNone(plane)
+        self.assertEqual((width, height, stride), (0, 0, 0))
+
+    def test_regions_read_back(self):
+        for number in range(1, 4):
+            self.assertTrue(Cerberus.buffer_add_region(self.buffer, region(
+                id=number, tracked=True, x=10.5 * number, y=2, width=20.25, height=30, confidence=0.5, vx=-3.5,
+                age=number * Gst.SECOND, state=Cerberus.RegionState.STOPPED, bearing=12.5)))
+        found = Cerberus.buffer_get_regions(self.buffer)
+        self.assertEqual([r.id for r in found], [1, 2, 3])
+        last = found[2]
+        self.assertEqual((last.x, last.y, last.width, last.height), (31.5, 2, 20.25, 30))
+        self.assertEqual((last.vx, last.vy, last.confidence, last.bearing), (-3.5, 0, 0.5, 12.5))
+        self.assertEqual(last.age, 3 * Gst.SECOND)
+        self.assertEqual(last.state, Cerberus.RegionState.STOPPED)
+        self.assertTrue(math.isnan(last.distance))
+        Cerberus.buffer_remove_regions(self.buffer)
+        self.assertEqual(Cerberus.buffer_get_regions(self.buffer), [])
+        self.assertEqual(last.id, 3)  # a copy: it outlives what it was read from
+
+    def test_camera_motion_reads_back(self):
+        motion = Cerberus.CameraMotion.new()
+        self.assertEqual(list(motion.matrix), [1, 0, 0, 0, 1, 0, 0, 0, 1])
+        self.assertEqual(motion.from_, Gst.CLOCK_TIME_NONE)  # `from` is a word of Python's
+        motion.set_matrix([1, 0, 5, 0, 1, -7, 0, 0, 1])
+        motion.confidence = 0.75
+        motion.scene_age = 4
+        self.assertTrue(Cerberus.buffer_set_camera_motion(self.buffer, motion))
+        found = Cerberus.buffer_get_camera_motion(self.buffer)
+        self.assertEqual(list(found.matrix), [1, 0, 5, 0, 1, -7, 0, 0, 1])
+        self.assertEqual((found.confidence, found.scene_age), (0.75, 4))
+        good, x, y = found.apply(10, 20)
+        self.assertEqual((good, x, y), (True, 15, 13))
+        self.assertTrue(Cerberus.buffer_set_camera_motion(self.buffer, None))
+        self.assertIsNone(Cerberus.buffer_get_camera_motion(self.buffer))
+
+    def test_threshold_reads_back(self):
+        threshold = Cerberus.Threshold.new()
+        threshold.threshold, threshold.fuzzy_threshold, threshold.noise, threshold.ready = 12, 30, 1.5, True
+        self.assertTrue(Cerberus.buffer_set_threshold(self.buffer, threshold))
+        found = Cerberus.buffer_get_threshold(self.buffer)
+        self.assertEqual((found.threshold, found.fuzzy_threshold, found.noise, found.ready), (12, 30, 1.5, True))
+
+    def test_messages_read_back(self):
+        moving = [region(id=7, tracked=True, x=1, y=2, width=3, height=4), region(id=8)]
+        message = Cerberus.message_new_motion(None, True, 5 * Gst.SECOND, moving)
+        self.assertEqual(message.get_structure().get_name(), Cerberus.MESSAGE_MOTION)
+        good, started, running_time, found = Cerberus.message_parse_motion(message)
+        self.assertTrue(good and started)
+        self.assertEqual(running_time, 5 * Gst.SECOND)
+        self.assertEqual([r.id for r in found], [7, 8])
+        self.assertFalse(Cerberus.message_is_motion(Gst.Message.new_eos(None)))
+
+    def test_structures_read_back(self):
+        structure = region(id=3, x=1.5).to_structure()
+        self.assertEqual(structure.get_name(), "cerberus-object")
+        self.assertEqual(structure.get_double("x"), (True, 1.5))
+        self.assertEqual(Cerberus.Region.from_structure(structure).id, 3)
+
+    def test_queries_read_back(self):
+        query = Cerberus.query_new_planes()
+        self.assertEqual(Cerberus.query_parse_planes(query), (True, False))
+
+    def test_what_is_read_is_given_back(self):
+        """Ten thousand reads leave the process as large as it was."""
+        def pages():
+            with open("/proc/self/statm", encoding="ascii") as statm:
+                return int(statm.read().split()[1])
+        Cerberus.buffer_set_camera_motion(self.buffer, Cerberus.CameraMotion.new())
+        for number in range(20):
+            Cerberus.buffer_add_region(self.buffer, region(id=number))
+        def read():
+            for _ in range(10000):
+                Cerberus.buffer_get_regions(self.buffer)
+                Cerberus.buffer_get_camera_motion(self.buffer)
+        read()
+        before = pages()
+        read()
+        self.assertLess(pages() - before, 500)  # 200,000 regions leaked would be 9,000 pages
+
+    def test_version_and_formats(self):
+        version = Cerberus.version()
+        self.assertEqual((version.major, version.minor, version.micro),
+                         (Cerberus.VERSION_MAJOR, Cerberus.VERSION_MINOR, Cerberus.VERSION_MICRO))
+        self.assertTrue(Cerberus.video_format_is_supported(GstVideo.VideoFormat.NV12))
+        self.assertFalse(Cerberus.video_format_is_supported(GstVideo.VideoFormat.P010_10LE))
+
+
+class ThroughAPipeline(unittest.TestCase):
+    """Metadata that a pad probe reads, while the pipeline runs, and that reaches the application."""
+
+    def test_a_probe_reads_what_rides_on_the_frame(self):
+        # Python's wrapper of a buffer inside a probe holds a second reference, so a probe can read but not annotate.
+        seen = []
+        list(frames("videotestsrc num-buffers=3 ! video/x-raw,width=64,height=48 ! identity name=mark ! appsink name=sink",
+                    lambda buffer: seen.append((Cerberus.buffer_get_regions(buffer),
+                                                Cerberus.buffer_add_region(buffer, region(id=1))))))
+        self.assertEqual(seen, [([], False)] * 3)
+
+    def test_an_application_annotates_and_reads(self):
+        pipeline = Gst.parse_launch("appsrc name=source caps=video/x-raw,format=GRAY8,width=64,height=48,framerate=25/1 "
+                                    "format=time ! queue ! videoscale ! video/x-raw,width=128,height=96 ! "
+                                    "videoconvert ! video/x-raw,format=RGB ! appsink name=sink")
+        source, sink = pipeline.get_by_name("source"), pipeline.get_by_name("sink")
+        pipeline.set_state(Gst.State.PLAYING)
+        buffer = Gst.Buffer.new_wrapped(bytes(64 * 48))
+        buffer.pts = 0
+        Cerberus.buffer_add_region(buffer, region(id=9, tracked=True, x=8.25, y=16, width=15.5, height=24, vx=10))
+        motion = Cerberus.CameraMotion.new()
+        motion.set_matrix([1, 0, 3, 0, 1, -2, 0, 0, 1])
+        Cerberus.buffer_set_camera_motion(buffer, motion)
+        source.push_buffer(buffer)
+        source.end_of_stream()
+        sample = sink.try_pull_sample(TIMEOUT)
+        self.assertIsNotNone(sample)
+        out = sample.get_buffer()
+        found, = Cerberus.buffer_get_regions(out)
+        self.assertEqual((found.id, found.x, found.y, found.width, found.height), (9, 16.5, 32, 31, 48))
+        self.assertEqual(found.vx, 20)
+        self.assertEqual(list(Cerberus.buffer_get_camera_motion(out).matrix), [1, 0, 6, 0, 1, -4, 0, 0, 1])
+        pipeline.set_state(Gst.State.NULL)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
