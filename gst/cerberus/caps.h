@@ -22,11 +22,14 @@ G_BEGIN_DECLS
 /**
  * CERBERUS_VIDEO_CAPS:
  *
- * Caps string of raw video in %CERBERUS_VIDEO_FORMATS, any size and frame rate.
+ * Caps string of raw video in %CERBERUS_VIDEO_FORMATS, any size and frame rate. Caps that name no frame rate at all are a
+ * subset of it too.
  *
  * Since: 0.1
  */
-#define CERBERUS_VIDEO_CAPS GST_VIDEO_CAPS_MAKE (CERBERUS_VIDEO_FORMATS)
+#define CERBERUS_VIDEO_CAPS                                                                 \
+  "video/x-raw, format = (string) " CERBERUS_VIDEO_FORMATS                                  \
+  ", width = (int) [ 1, 2147483647 ], height = (int) [ 1, 2147483647 ]"
 
 /**
  * CERBERUS_JSON_LINES_CAPS:

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// When a scene ends: the rule alone, and what every stage makes of it. After each kind of break nothing may be published
+// before three frames of the new scene were seen, and nothing of the old scene ever again.
+#include "../../plugins/vision/history.hpp"
+
+#include "scene.h"
+#include "support.h"
+
+namespace {
+
+using cerberus::plugin::History;
+using scene::Line;
+using scene::Regions;
+using scene::World;
+
+constexpr double kNominal = 0.04;
+
+GST_START_TEST(frames_in_order_follow_each_other) {
+  History history;
+  fail_unless(history.next(0, kNominal).fresh);
+  for (int k = 1; k < 10; ++k) {
+    const History::Step step = history.next(k * scene::kStep, kNominal);
+    fail_if(step.fresh);
+    fail_unless(std::abs(step.seconds - 0.04) < 1e-9);
+    fail_unless_equals_uint64(step.previous, (k - 1) * scene::kStep);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_dropped_history_and_time_running_backwards_begin_a_scene) {
+  History history;
+  history.next(GST_SECOND, kNominal);
+  history.drop();
+  fail_unless(history.next(GST_SECOND + scene::kStep, kNominal).fresh);
+  fail_unless(history.next(GST_SECOND - 1, kNominal).fresh);
+  fail_if(history.next(GST_SECOND - 1, kNominal).fresh);  // the same time again: a duplicate, no step back
+}
+GST_END_TEST
+
+GST_START_TEST(a_gap_is_judged_by_the_rhythm_of_the_stream) {
+  History fast, slow, unknown;
+  fast.next(0, kNominal);
+  fail_if(fast.next(240 * GST_MSECOND, kNominal).fresh);      // a stall
+  fail_unless(fast.next(640 * GST_MSECOND, kNominal).fresh);  // 10 frames
+  slow.next(0, 2.0);
+  fail_if(slow.next(2 * GST_SECOND, 2.0).fresh);  // a frame every two seconds is no gap
+  fail_unless(slow.next(9 * GST_SECOND, 2.0).fresh);
+  unknown.next(0, 0);
+  fail_if(unknown.next(2 * GST_SECOND, 0).fresh);  // variable rate: the first distance is the rhythm
+  fail_if(unknown.next(4 * GST_SECOND, 0).fresh);
+  fail_unless(unknown.next(11 * GST_SECOND, 0).fresh);
+}
+GST_END_TEST
+
+GST_START_TEST(missing_timestamps_are_taken_as_evenly_spaced) {
+  History history;
+  fail_unless(history.next(GST_CLOCK_TIME_NONE, kNominal).fresh);
+  const History::Step step = history.next(GST_CLOCK_TIME_NONE, kNominal);
+  fail_if(step.fresh);
+  fail_unless(step.seconds == kNominal);
+  fail_if(history.next(GST_SECOND, kNominal).fresh);
+  fail_if(history.next(GST_CLOCK_TIME_NONE, kNominal).fresh);
+  fail_unless(
+      history.next(GST_SECOND - 1, kNominal).fresh);  // backwards, seen across the frame without a time
+}
+GST_END_TEST
+
+// ---- what the stages make of it
+
+enum Break { DISCONT, FLUSH, SEGMENT, BACKWARDS, GAP, CAPS, CUT, EMPTY_BUFFER, RESTART, BREAKS };
+const char* const kBreakNames[] = {"discont", "flush", "segment",      "backwards", "gap",
+                                   "caps",    "cut",   "empty buffer", "restart"};
+
+const char* const kLines[] = {
+    "motiondetect confirm-time=0 keep-planes=always",
+    "cameramotion ! threeframediff ! fuzzythreshold ! motionregions keep-planes=always",
+    "motionregions keep-planes=always",
+    "motiontrack confirm-time=0",
+};
+
+// Shows another place after the break, in which a figure walks the other way.
+GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen) {
+  const int kind = __i__ % BREAKS;
+  const char* launch = kLines[__i__ / BREAKS];
+  // Without cameramotion nobody knows of an unmarked cut.
+  if (kind == CUT && std::string(launch).find("motionregions") == 0) return;
+  if (kind == CUT && std::string(launch).find("motiontrack") == 0) return;
+
+  Line line(std::string(launch) + " ! identity");
+  World before, after;
+  after.wall = 5;
+  after.start = 250;
+  after.speed = -3;
+  guint found = 0;
+  line.run(before, 0, 30, [&](int, GstBuffer* out) { found += Regions(out).size(); });
+  fail_unless(found > 0, "%s finds nothing before the break", launch);
+
+  GstClockTime start = 30 * scene::kStep;
+  switch (kind) {
+    case FLUSH:
+      gst_harness_push_event(line.harness, gst_event_new_flush_start());
+      gst_harness_push_event(line.harness, gst_event_new_flush_stop(TRUE));
+      [[fallthrough]];
+    case SEGMENT: {
+      GstSegment segment;
+      gst_segment_init(&segment, GST_FORMAT_TIME);
+      gst_harness_push_event(line.harness, gst_event_new_segment(&segment));
+      break;
+    }
+    case BACKWARDS:
+      start = 10 * scene::kStep;
+      break;
+    case GAP:
+      start += 5 * GST_SECOND;
+      break;
+    case CAPS:
+      gst_harness_set_src_caps_str(
+          line.harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight, ",framerate=50/1").c_str());
+      break;
+    case EMPTY_BUFFER: {
+      GstBuffer* empty = gst_buffer_new();
+      GST_BUFFER_PTS(empty) = start;
+      GstBuffer* out = line.through(empty);
+      fail_unless_equals_int(Regions(out).size(), 0);
+      gst_buffer_unref(out);
+      start += scene::kStep;
+      break;
+    }
+    case RESTART:
+      line.restart();
+      break;
+    default:
+      break;
+  }
+
+  bool again = false;
+  for (int k = 0; k < 30; ++k) {
+    GstBuffer* in = scene::grey_buffer(after, k);
+    GST_BUFFER_PTS(in) = start + k * scene::kStep;
+    if (kind == DISCONT && k == 0) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    if (k < 2) {
+      fail_unless_equals_int(regions.size(), 0);
+      const CerberusThresholdMeta* threshold = cerberus_buffer_get_threshold_meta(out);
+      fail_unless(threshold && !threshold->threshold.ready, "%s: frame %d after %s is ready", launch, k,
+                  kBreakNames[kind]);
+    }
+    for (guint i = 0; i < regions.size(); ++i)
+      fail_unless(
+          scene::overlaps_figure(regions[i], after, k) || scene::overlaps_figure(regions[i], after, k - 1),
+          "%s: a wrong region %u frames after %s: %s", launch, k, kBreakNames[kind], regions.text().c_str());
+    again = again || regions.size() > 0;
+    gst_buffer_unref(out);
+  }
+  fail_unless(again, "%s finds nothing after %s", launch, kBreakNames[kind]);
+}
+GST_END_TEST
+
+// A leaky queue between cameramotion and the next stage: the camera's motion starts from a frame that stage never saw.
+GST_START_TEST(a_motion_from_another_frame_is_not_believed) {
+  World world;
+  world.pan = 5;
+  Line camera("cameramotion"), difference("threeframediff");
+  for (int k = 0; k < 20; ++k) {
+    GstBuffer* out = camera.through(scene::grey_buffer(world, k));
+    if (k == 12) {  // dropped on the way
+      gst_buffer_unref(out);
+      continue;
+    }
+    out = difference.through(out);
+    const CerberusPlaneMeta* plane = cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_DIFFERENCE);
+    fail_unless(plane != nullptr);
+    GstMapInfo map;
+    gst_buffer_map(plane->buffer, &map, GST_MAP_READ);
+    int different = 0;
+    for (int y = 0; y < plane->height; ++y)
+      for (int x = 0; x < plane->width; ++x) different += map.data[y * plane->stride + x] > 20;
+    gst_buffer_unmap(plane->buffer, &map);
+    gst_buffer_unref(out);
+    if (k == 13) fail_unless_equals_int(different, 0);
+    if (k == 11 || k == 19) fail_unless(different > 0 && different < scene::kWidth * scene::kHeight / 10);
+  }
+}
+GST_END_TEST
+
+// A placeholder is no picture: it goes through, says nothing, and the scene goes on.
+GST_START_TEST(gap_buffers_pass_and_end_no_scene) {
+  Line line("motiondetect confirm-time=0 ! identity");
+  const World world;
+  line.run(world, 0, 20);
+  GstBuffer* gap = gst_buffer_new_allocate(nullptr, scene::kWidth * scene::kHeight, nullptr);
+  gst_buffer_memset(gap, 0, 0, scene::kWidth * scene::kHeight);
+  GST_BUFFER_PTS(gap) = 20 * scene::kStep;
+  GST_BUFFER_FLAG_SET(gap, GST_BUFFER_FLAG_GAP);
+  GstBuffer* out = line.through(gap);
+  fail_unless(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_GAP));
+  fail_unless_equals_int(Regions(out).size(), 0);
+  gst_buffer_unref(out);
+  line.run(world, 21, 22, [](int, GstBuffer* buffer) { fail_unless(Regions(buffer).size() > 0); });
+}
+GST_END_TEST
+
+Suite* history_suite() {
+  Suite* suite = suite_create("history");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 60);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_test(tests, frames_in_order_follow_each_other);
+  tcase_add_test(tests, a_dropped_history_and_time_running_backwards_begin_a_scene);
+  tcase_add_test(tests, a_gap_is_judged_by_the_rhythm_of_the_stream);
+  tcase_add_test(tests, missing_timestamps_are_taken_as_evenly_spaced);
+  tcase_add_loop_test(tests, nothing_is_published_until_three_frames_of_a_new_scene_were_seen, 0,
+                      BREAKS * static_cast<int>(G_N_ELEMENTS(kLines)));
+  tcase_add_test(tests, a_motion_from_another_frame_is_not_believed);
+  tcase_add_test(tests, gap_buffers_pass_and_end_no_scene);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(history);

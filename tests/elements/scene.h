@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A small world for element tests: a textured wall, and a textured figure that walks in front of it. The same grey
+// levels in every format, so that every format must give the same answer.
+#pragma once
+
+// C++ first: check's macros (fail) bite standard headers.
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <cerberus/cerberus.h>
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <gst/video/video.h>
+
+namespace scene {
+
+constexpr int kWidth = 320, kHeight = 240;
+constexpr int kFigureWidth = 28, kFigureHeight = 72;
+constexpr GstClockTime kStep = GST_SECOND / 25;
+
+inline std::uint32_t hash(std::uint32_t x, std::uint32_t y, std::uint32_t seed) {
+  std::uint32_t h = x * 374761393u + y * 668265263u + seed * 2246822519u;
+  h = (h ^ (h >> 13)) * 1274126177u;
+  return h ^ (h >> 16);
+}
+
+// Value noise: random grey levels every `cell` pixels, bilinear between them.
+inline double texture(double x, double y, int cell, std::uint32_t seed) {
+  const double u = x / cell, v = y / cell;
+  const int i = static_cast<int>(std::floor(u)), j = static_cast<int>(std::floor(v));
+  const double a = u - i, b = v - j;
+  const auto level = [&](int p, int q) { return static_cast<double>(hash(p, q, seed) & 255); };
+  return (1 - b) * ((1 - a) * level(i, j) + a * level(i + 1, j)) +
+         b * ((1 - a) * level(i, j + 1) + a * level(i + 1, j + 1));
+}
+
+struct World {
+  std::uint32_t wall = 1;  // another number is another place
+  bool figure = true;
+  double start = 30, speed = 3;  // left edge at frame 0, pixels a frame
+  double pan = 0;                // pixels a frame by which the camera turns to the right
+  int width = kWidth, height = kHeight;
+
+  double figure_left(int frame) const { return start + speed * frame - pan * frame; }
+  double figure_top() const { return height * 0.4; }
+  bool on_figure(int x, int y, int frame) const {
+    const double left = figure_left(frame);
+    return figure && x >= left && x < left + kFigureWidth && y >= figure_top() &&
+           y < figure_top() + kFigureHeight;
+  }
+  std::uint8_t grey(int x, int y, int frame) const {
+    const double level = on_figure(x, y, frame) ? 150 + 0.35 * texture(x - figure_left(frame), y, 5, 77)
+                                                : 30 + 0.35 * texture(x + pan * frame, y, 9, wall);
+    return static_cast<std::uint8_t>(level);
+  }
+  std::vector<std::uint8_t> picture(int frame) const {
+    std::vector<std::uint8_t> p(static_cast<std::size_t>(width) * height);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x) p[static_cast<std::size_t>(y) * width + x] = grey(x, y, frame);
+    return p;
+  }
+};
+
+inline std::string caps(const char* format, int width, int height, const char* more = ",framerate=25/1") {
+  return "video/x-raw,format=" + std::string(format) + ",width=" + std::to_string(width) +
+         ",height=" + std::to_string(height) + more;
+}
+
+// Writes grey levels into a mapped frame of any of our formats: luma, or R = G = B; colourless, opaque.
+inline void paint(GstVideoFrame* frame, const std::vector<std::uint8_t>& grey) {
+  const bool rgb = GST_VIDEO_FORMAT_INFO_IS_RGB(frame->info.finfo);
+  for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS(frame); ++c) {
+    const int width = GST_VIDEO_FRAME_COMP_WIDTH(frame, c), height = GST_VIDEO_FRAME_COMP_HEIGHT(frame, c);
+    for (int y = 0; y < height; ++y) {
+      guint8* row = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(frame, c)) +
+                    static_cast<gssize>(y) * GST_VIDEO_FRAME_COMP_STRIDE(frame, c);
+      for (int x = 0; x < width; ++x) {
+        const bool bright = c == 0 || (rgb && c < 3);
+        row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(frame, c)] =
+            bright   ? grey[static_cast<std::size_t>(y) * GST_VIDEO_FRAME_WIDTH(frame) + x]
+            : c == 3 ? 255
+                     : 128;
+      }
+    }
+  }
+}
+
+inline GstBuffer* buffer(const char* format, int width, int height, const std::vector<std::uint8_t>& grey,
+                         GstClockTime pts) {
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, gst_video_format_from_string(format), width, height);
+  GstBuffer* out = gst_buffer_new_allocate(nullptr, info.size, nullptr);
+  gst_buffer_memset(out, 0, 0, info.size);
+  GstVideoFrame frame;
+  fail_unless(gst_video_frame_map(&frame, &info, out, GST_MAP_WRITE));
+  paint(&frame, grey);
+  gst_video_frame_unmap(&frame);
+  GST_BUFFER_PTS(out) = pts;
+  GST_BUFFER_DURATION(out) = kStep;
+  return out;
+}
+
+inline GstBuffer* grey_buffer(const World& world, int frame) {
+  return buffer("GRAY8", world.width, world.height, world.picture(frame), frame * kStep);
+}
+
+struct Regions {
+  explicit Regions(GstBuffer* buffer) : array(cerberus_buffer_get_regions(buffer)) {}
+  ~Regions() { g_ptr_array_unref(array); }
+  Regions(const Regions&) = delete;
+  guint size() const { return array->len; }
+  const CerberusRegion& operator[](guint i) const {
+    return *static_cast<const CerberusRegion*>(g_ptr_array_index(array, i));
+  }
+  // All of them, printed: two answers are the same when their texts are.
+  std::string text() const {
+    std::string all;
+    for (guint i = 0; i < size(); ++i) {
+      gchar* line = g_strdup_printf("%u %.3f %.3f %.3f %.3f %.4f|", (*this)[i].id, (*this)[i].x, (*this)[i].y,
+                                    (*this)[i].width, (*this)[i].height, (*this)[i].confidence);
+      all += line;
+      g_free(line);
+    }
+    return all;
+  }
+  GPtrArray* array;
+};
+
+inline bool overlaps_figure(const CerberusRegion& r, const World& world, int frame) {
+  const double left = world.figure_left(frame), top = world.figure_top();
+  return r.x < left + kFigureWidth && r.x + r.width > left && r.y < top + kFigureHeight &&
+         r.y + r.height > top;
+}
+
+// A harness with caps, closed at the end of its life.
+class Line {
+ public:
+  explicit Line(const std::string& launch, const std::string& caps_text = caps("GRAY8", kWidth, kHeight)) {
+    harness = launch.find(' ') == std::string::npos ? gst_harness_new(launch.c_str())
+                                                    : gst_harness_new_parse(launch.c_str());
+    bus = gst_bus_new();
+    gst_element_set_bus(harness->element, bus);
+    gst_harness_set_src_caps_str(harness, caps_text.c_str());
+  }
+  ~Line() {
+    gst_element_set_bus(harness->element, nullptr);
+    gst_harness_teardown(harness);
+    gst_object_unref(bus);
+  }
+  Line(const Line&) = delete;
+
+  // Pushes and returns what comes out; fails the test when nothing does.
+  GstBuffer* through(GstBuffer* in) {
+    fail_unless_equals_int(gst_harness_push(harness, in), GST_FLOW_OK);
+    GstBuffer* out = gst_harness_try_pull(harness);
+    fail_unless(out != nullptr, "one buffer in, none out");
+    return out;
+  }
+  void run(const World& world, int from, int to, const std::function<void(int, GstBuffer*)>& see = {}) {
+    for (int frame = from; frame < to; ++frame) {
+      GstBuffer* out = through(grey_buffer(world, frame));
+      if (see) see(frame, out);
+      gst_buffer_unref(out);
+    }
+  }
+  // To READY and on again, with a new stream.
+  void restart(const std::string& caps_text = caps("GRAY8", kWidth, kHeight)) {
+    gst_element_set_state(harness->element, GST_STATE_READY);
+    gst_element_set_state(harness->element, GST_STATE_PLAYING);
+    gst_harness_push_event(harness, gst_event_new_stream_start("again"));
+    gst_harness_push_event(harness,
+                           gst_event_new_caps(std::unique_ptr<GstCaps, void (*)(GstCaps*)>(
+                                                  gst_caps_from_string(caps_text.c_str()), gst_caps_unref)
+                                                  .get()));
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    gst_harness_push_event(harness, gst_event_new_segment(&segment));
+  }
+  // Messages of this type posted so far (removes them).
+  std::vector<std::string> messages(GstMessageType type) {
+    std::vector<std::string> texts;
+    while (GstMessage* message = gst_bus_pop_filtered(bus, type)) {
+      if (type == GST_MESSAGE_ERROR || type == GST_MESSAGE_WARNING) {
+        GError* error = nullptr;
+        type == GST_MESSAGE_ERROR ? gst_message_parse_error(message, &error, nullptr)
+                                  : gst_message_parse_warning(message, &error, nullptr);
+        texts.emplace_back(error->message);
+        g_error_free(error);
+      } else {
+        const GstStructure* s = gst_message_get_structure(message);
+        const gchar* state = s ? gst_structure_get_string(s, "state") : nullptr;
+        texts.emplace_back(state ? state : "");
+      }
+      gst_message_unref(message);
+    }
+    return texts;
+  }
+
+  GstHarness* harness;
+  GstBus* bus;
+};
+
+}  // namespace scene
