@@ -42,11 +42,18 @@ void Chain::run_stage(std::size_t stage) {
                                               previous_.view(), histogram_);
       break;
     case 3:
-      area_result_ =
-          area_.update({luma_.view(), motion_result_.transform, motion_result_.confidence,
-                        motion_result_.still, current_.view(), previous_.view(), &histogram_,
-                        difference_result_.frames, difference_result_.gain, difference_result_.offset},
-                       mask_.view());
+      area_result_ = area_.update({.picture = luma_.view(),
+                                   .motion = motion_result_.transform,
+                                   .confidence = motion_result_.confidence,
+                                   .residual = motion_result_.residual,
+                                   .still = motion_result_.still,
+                                   .current = current_.view(),
+                                   .previous = previous_.view(),
+                                   .histogram = &histogram_,
+                                   .frames = difference_result_.frames,
+                                   .gain = difference_result_.gain,
+                                   .offset = difference_result_.offset},
+                                  mask_.view());
       break;
     case 4: {
       found_ = regions_.update(mask_.view(), labels_.view(), motion_result_.transform);
