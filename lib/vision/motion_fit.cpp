@@ -169,6 +169,12 @@ class LeastSquares {
 
 }  // namespace
 
+bool follows(const MotionSamples& s, int i, const Transform& transform) {
+  const Point p = transform.apply({s.x[i], s.y[i]});
+  const double dx = s.u[i] - p.x, dy = s.v[i] - p.y;
+  return s.wxx[i] * dx * dx + 2 * s.wxy[i] * dx * dy + s.wyy[i] * dy * dy <= kGate;
+}
+
 MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
   Distances distances;
   measure(s, transform, distances);

@@ -36,6 +36,9 @@ struct MotionFit {
 // Squared Mahalanobis distance (two degrees of freedom: 1 % of honest samples are beyond) at which a sample disagrees.
 constexpr float kGate = 9.0f;
 
+// Whether sample i lies within the gate of `transform`.
+bool follows(const MotionSamples& samples, int i, const Transform& transform);
+
 // How well `transform` explains the samples. Agreement in many parts of the picture counts for more than the same number
 // in one: objects are compact, the background is everywhere.
 MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
