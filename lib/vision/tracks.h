@@ -17,7 +17,7 @@ struct TrackOptions {
   double confirm_time = 0.2;   // s of evidence before a track is published
   double coast_time = 1.0;     // s a moving track is carried without evidence
   double hold_stopped = 30.0;  // s a confirmed track that stopped is held
-  double minimum_speed = 0;    // frame pixels a second; slower ones are not published (0: no limit)
+  double minimum_speed = 0;    // frame pixels a second; what never was as fast is not published (0: no limit)
   double maximum_speed = 0;    // frame pixels a second; faster jumps are not the same object (0: no limit)
 };
 

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/body.h"
+
+namespace cerberus::vision {
+namespace {
+
+// People start, stop and turn within about a second: velocity wanders by 0.8 S/s in one.
+constexpr double kAcceleration = 0.8 * 0.8;  // S^2 / s^3
+constexpr double kBirthSpeed = 3.0;          // S/s, standard deviation of the unknown first velocity
+constexpr double kPositionNoise = 0.05;      // S: a region's centre flickers by this
+constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's extent flickers by 15 %
+constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
+constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
+constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
+constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
+constexpr double kCoastBrake = 1.0;          // s in which what is not seen is believed to slow down
+constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
+constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
+
+double square(double v) {
+  return v * v;
+}
+
+Point centre(const Box& b) {
+  return {b.x + b.width / 2, b.y + b.height / 2};
+}
+
+}  // namespace
+
+Residual compare_extents(double expected_from, double expected_to, double from, double to) {
+  const double extent = expected_to - expected_from, seen = to - from;
+  if (seen > 0.65 * extent && seen < 1.5 * extent)
+    return {(from + to - expected_from - expected_to) / 2, true};
+  const double low = from - expected_from, high = to - expected_to;
+  if (seen <= extent) return {low < 0 ? low : std::max(high, 0.0), false};
+  return {low > 0 ? low : std::min(high, 0.0), false};
+}
+
+double overlap_area(const Box& a, const Box& b) {
+  const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+  const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  return w > 0 && h > 0 ? w * h : 0;
+}
+
+Body Body::first_seen(const Region& region) {
+  Body b;
+  b.adopt(region.box);
+  const double s = b.size();
+  for (MovingValue* a : {&b.x, &b.y}) {
+    a->pp = square(kPositionNoise * s);
+    a->vv = square(kBirthSpeed * s);
+  }
+  b.origin = {b.x.position, b.y.position};
+  b.hits = b.frames = 1;
+  b.confidence = 0.5 * region.confidence;
+  return b;
+}
+
+Box Body::box() const {
+  const double bw = width(), bh = height();
+  return {x.position - bw / 2, y.position - bh / 2, bw, bh};
+}
+
+bool Body::at_border(Size frame) const {
+  const Box b = box();
+  const double margin = 0.1 * size();
+  return b.x < margin || b.y < margin || b.right() > frame.width - margin ||
+         b.bottom() > frame.height - margin;
+}
+
+bool Body::leaving(Size frame) const {
+  const Box b = box();
+  const double margin = 0.1 * size();
+  const bool sides = b.x < margin || b.right() > frame.width - margin;
+  const bool ends = b.y < margin || b.bottom() > frame.height - margin;
+  return (sides && b.width < 0.7 * widest) || (ends && b.height < 0.7 * tallest);
+}
+
+bool Body::predict(double seconds, Size frame) {
+  const double s = size();
+  if (stopped) {
+    // Stands still; where exactly is less and less sure, but never by more than half a body.
+    x.velocity = y.velocity = 0;
+    for (MovingValue* a : {&x, &y})
+      a->pp = std::min(a->pp + square(0.1 * s) * seconds, std::max(square(0.5 * s), a->pp));
+  } else {
+    for (MovingValue* a : {&x, &y}) a->predict(seconds, kAcceleration * s * s);
+  }
+  for (SlowValue* e : {&w, &h}) e->predict(seconds, at_border(frame) ? kBorderWander : kSizeWander);
+  age += seconds;
+  ++frames;
+  region = -1;
+  return std::isfinite(x.position) && std::isfinite(y.position);
+}
+
+// To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
+bool Body::carry(const Transform& motion) {
+  if (motion.is_identity()) return true;
+  const Point p{x.position - kHalfPixel, y.position - kHalfPixel};
+  const Point q = motion.apply(p), right = motion.apply({p.x + 1, p.y}), down = motion.apply({p.x, p.y + 1});
+  const double xx = right.x - q.x, yx = right.y - q.y, xy = down.x - q.x, yy = down.y - q.y;
+  const double det = xx * yy - xy * yx;
+  if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(det) || !(det > 1e-3)) return false;
+  x.position = q.x + kHalfPixel;
+  y.position = q.y + kHalfPixel;
+  const double vx = xx * x.velocity + xy * y.velocity, vy = yx * x.velocity + yy * y.velocity;
+  x.velocity = vx;
+  y.velocity = vy;
+  for (MovingValue* a : {&x, &y}) {
+    a->pp *= det;
+    a->pv *= det;
+    a->vv *= det;
+  }
+  const double scale = std::sqrt(det);
+  w.value += std::log(scale);
+  h.value += std::log(scale);
+  widest *= scale;
+  tallest *= scale;
+  origin = motion.apply(origin);
+  return true;
+}
+
+double Body::distance(const Box& seen) const {
+  const Box b = box();
+  const double s = size();
+  const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
+  const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
+  const double noise = square(2 * kPositionNoise * s);
+  const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
+  if (d2 > square(kFarthest)) return -1;
+  const double sizes = std::abs(std::log(seen.width) - w.value) + std::abs(std::log(seen.height) - h.value);
+  if (sizes > 2 * std::log(5.0)) return -1;  // a fifth or five times each way is something else
+  const Point c = centre(seen);
+  return 1 - intersection_over_union(b, seen) + 0.5 * sizes +
+         std::hypot(c.x - x.position, c.y - y.position) / s + 0.1 * std::sqrt(d2);
+}
+
+// The region's extent replaces the track's.
+void Body::adopt(const Box& seen) {
+  w = {std::log(seen.width), square(kSizeNoise)};
+  h = {std::log(seen.height), square(kSizeNoise)};
+  x.position = centre(seen).x;
+  y.position = centre(seen).y;
+  misfit = fitted = 0;
+}
+
+// One object, one region, extents that disagree: is the region right? A whole one is, after two looks. A larger one
+// soon is: the object came into view, or only a piece of it was seen before. A smaller one is a piece of an object that
+// hardly moves (an arm) as long as it stays in place; it is right when the old extent was never well known, or when the
+// piece walks away on its own.
+bool Body::outgrown(const Box& seen, bool whole, double seconds, Size frame) {
+  if (misfit == 0) misfit_from = seen;
+  misfit += seconds;
+  if (whole) return misfit >= 0.2;
+  if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6) || at_border(frame);
+  const Point from = centre(misfit_from), to = centre(seen);
+  return misfit >= 0.5 && (fitted < 0.5 || std::hypot(to.x - from.x, to.y - from.y) > 0.5 * size());
+}
+
+void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
+  const Box b = box(), &seen = r.box;
+  const double s = size(), noise = square(kPositionNoise * s);
+  const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
+  const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
+  const bool fits = rx.same_extent && ry.same_extent;
+  if (!fits && alone && outgrown(seen, r.confidence >= kWhole, seconds, frame)) {
+    adopt(seen);
+  } else {
+    x.correct(rx.distance, rx.same_extent ? noise : 6 * noise);
+    y.correct(ry.distance, ry.same_extent ? noise : 6 * noise);
+    if (fits && alone) {
+      w.correct(std::log(seen.width), square(kSizeNoise));
+      h.correct(std::log(seen.height), square(kSizeNoise));
+      misfit = 0;
+      fitted += seconds;
+    } else if (alone && seen.area() < b.area()) {
+      const double brake = std::exp(-seconds / kPieceBrake);
+      if (!rx.same_extent) x.velocity *= brake;
+      if (!ry.same_extent) y.velocity *= brake;
+    }
+  }
+  widest = std::max(widest, width());
+  tallest = std::max(tallest, height());
+  stopped = false;
+  ++hits;
+  unseen = 0;
+  const double keep = std::exp(-seconds / 0.5);
+  confidence = keep * confidence + (1 - keep) * (0.5 + 0.5 * r.confidence) * (fits ? 1 : 0.7);
+  travelled = std::max(travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s);
+  slow = speed() < kStandSpeed * s ? slow + seconds : 0;
+  if (id != 0) top_speed = std::max(top_speed, speed());
+}
+
+void Body::miss(double seconds) {
+  unseen += seconds;
+  const double brake = std::exp(-seconds / kCoastBrake);
+  x.velocity *= brake;
+  y.velocity *= brake;
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One object as the tracker believes it to be: two filters for where it is, two for how large it is.
+//
+// Lengths are measured in body lengths S = max(width, height) of the object itself: a standing person is about
+// 1.7 m, so a walk of 1.4 m/s is 0.8 S a second at any distance and any picture size. All noises follow from that.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "vision/kalman.h"
+#include "vision/regions.h"
+#include "vision/transform.h"
+
+namespace cerberus::vision {
+
+// Regions from this confidence on are one whole object with its true extent.
+constexpr double kWhole = 0.5;
+
+// One axis of a region against one axis of a track. Where the extents agree the centres are compared. Where they do
+// not (a fragment of the object, or a blob of several) only this much is known: the smaller lies inside the larger.
+struct Residual {
+  double distance = 0;
+  bool same_extent = true;
+};
+Residual compare_extents(double expected_from, double expected_to, double from, double to);
+
+double overlap_area(const Box& a, const Box& b);
+
+struct Body {
+  std::uint32_t id = 0;            // 0: not confirmed yet
+  MovingValue x, y;                // centre
+  SlowValue w, h;                  // logarithms of the extent
+  double widest = 0, tallest = 0;  // the largest extent it has had
+  Point origin;                    // where it was first seen, carried with the scene
+  double travelled = 0;            // largest distance from the origin, S
+  double top_speed = 0;            // pixels a second, since it was confirmed
+  double confidence = 0;
+  double age = 0, unseen = 0;  // s since first and since last seen
+  double fitted = 0;           // s during which a region had its extent: how well the extent is known
+  double shared = 0;           // s it has shared a region with others
+  double slow = 0;             // s it has been seen standing, or nearly, up to now
+  double misfit = 0;           // s since a region had its extent, and the first one that had not
+  Box misfit_from;
+  int hits = 0, frames = 0;
+  int region = -1;  // of this frame, -1 none
+  bool stopped = false, dead = false;
+
+  static Body first_seen(const Region& region);
+
+  double width() const { return std::exp(w.value); }
+  double height() const { return std::exp(h.value); }
+  double size() const { return std::max(width(), height()); }
+  double speed() const { return std::hypot(x.velocity, y.velocity); }
+  Box box() const;
+
+  // Less than a tenth of S from the picture's edge.
+  bool at_border(Size frame) const;
+  // Cut by the picture's edge to less than it was.
+  bool leaving(Size frame) const;
+
+  // Along its own velocity from frame k-1's time to frame k's, then with the camera into frame k's pixels. False: it
+  // has no place there.
+  bool predict(double seconds, Size frame);
+  bool carry(const Transform& motion);
+
+  // How badly a region fits: 0 perfectly; negative: it cannot be this object.
+  double distance(const Box& seen) const;
+
+  // Seen in this region; `alone`: by no other track.
+  void correct(const Region& region, bool alone, double seconds, Size frame);
+  // Not seen.
+  void miss(double seconds);
+
+ private:
+  void adopt(const Box& seen);
+  bool outgrown(const Box& seen, bool whole, double seconds, Size frame);
+};
+
+}  // namespace cerberus::vision
