@@ -2,6 +2,8 @@
 #include <cerberus/plane.h>
 #include <gst/video/video.h>
 
+#include <utility>
+
 #include "private/meta.hpp"
 
 namespace {
@@ -92,9 +94,9 @@ CerberusPlaneMeta* cerberus_buffer_add_plane_meta(GstBuffer* buffer, CerberusPla
   if (!meta)
     meta =
         reinterpret_cast<CerberusPlaneMeta*>(gst_buffer_add_meta(buffer, CERBERUS_PLANE_META_INFO, nullptr));
-  gst_clear_buffer(&meta->buffer);
+  drop(meta);
   meta->kind = kind;
-  meta->buffer = static_cast<GstBuffer*>(g_steal_pointer(&owned));
+  meta->buffer = std::exchange(owned, nullptr);
   meta->width = width;
   meta->height = height;
   meta->stride = stride;

@@ -72,7 +72,7 @@ class MappedPlane {
   void unmap() {
     if (!buffer_) return;
     gst_buffer_unmap(buffer_, &map_);
-    gst_clear_buffer(&buffer_);
+    gst_buffer_unref(std::exchange(buffer_, nullptr));
   }
   void swap(MappedPlane& other) noexcept {
     std::swap(buffer_, other.buffer_);
