@@ -1,0 +1,495 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "outputs.h"
+
+#include <gst/video/video-overlay-composition.h>
+
+using namespace outputs;
+
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240;
+const std::string kCaps = caps_string("I420", kWidth, kHeight);
+const char* const kFeature = "video/x-raw(memory:SystemMemory,meta:GstVideoOverlayComposition)";
+
+struct Rectangle {
+  int x, y;
+  unsigned width, height;
+};
+
+std::vector<Rectangle> rectangles(GstBuffer* buffer) {
+  std::vector<Rectangle> all;
+  const auto* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
+  if (!meta) return all;
+  for (guint i = 0; i < gst_video_overlay_composition_n_rectangles(meta->overlay); ++i) {
+    Rectangle r;
+    gst_video_overlay_rectangle_get_render_rectangle(
+        gst_video_overlay_composition_get_rectangle(meta->overlay, i), &r.x, &r.y, &r.width, &r.height);
+    all.push_back(r);
+  }
+  return all;
+}
+
+Harness started(const char* line = "motionoverlay", const std::string& caps = kCaps) {
+  Harness h = harness(line);
+  gst_harness_set_src_caps_str(h.get(), caps.c_str());
+  return h;
+}
+
+// A downstream that draws compositions itself.
+Harness attaching(const char* line = "motionoverlay") {
+  Harness h = harness(line);
+  gst_harness_add_propose_allocation_meta(h.get(), GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
+  gst_harness_set_src_caps_str(h.get(), kCaps.c_str());
+  return h;
+}
+
+GstBuffer* through(GstHarness* h, GstBuffer* buffer) {
+  fail_unless_equals_int(gst_harness_push(h, buffer), GST_FLOW_OK);
+  return gst_harness_pull(h);
+}
+
+std::vector<Rectangle> drawn(GstHarness* h, GstBuffer* buffer) {
+  GstBuffer* out = through(h, buffer);
+  const auto all = rectangles(out);
+  gst_buffer_unref(out);
+  return all;
+}
+
+GstBuffer* with_region(const GstVideoInfo& info, const CerberusRegion& r, int number = 0) {
+  GstBuffer* buffer = frame(info, number);
+  add(buffer, r);
+  return buffer;
+}
+
+// Luma (or green) of a pixel, whatever the format.
+int level(GstVideoFrame* f, int x, int y) {
+  const int comp = GST_VIDEO_FORMAT_INFO_IS_RGB(f->info.finfo) ? GST_VIDEO_COMP_G : GST_VIDEO_COMP_Y;
+  return GST_VIDEO_FRAME_COMP_DATA(
+      f, comp)[y * GST_VIDEO_FRAME_COMP_STRIDE(f, comp) + x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, comp)];
+}
+
+int changed_pixels(GstVideoFrame* f, int x0, int y0, int x1, int y1, int was) {
+  int n = 0;
+  for (int y = std::max(y0, 0); y < std::min(y1, GST_VIDEO_FRAME_HEIGHT(f)); ++y)
+    for (int x = std::max(x0, 0); x < std::min(x1, GST_VIDEO_FRAME_WIDTH(f)); ++x) n += level(f, x, y) != was;
+  return n;
+}
+
+void set_camera(GstBuffer* buffer, double dx, guint scene_age) {
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  motion.matrix[2] = dx;
+  motion.scene_age = scene_age;
+  cerberus_buffer_add_camera_motion_meta(buffer, &motion);
+}
+
+}  // namespace
+
+GST_START_TEST(a_frame_in_which_nothing_moves_passes_untouched) {
+  Harness h = started();
+  GstBuffer* in = frame(info_of(kCaps));
+  GstMemory* memory = gst_buffer_peek_memory(in, 0);
+  GstBuffer* out = through(h.get(), in);
+  fail_unless(gst_buffer_peek_memory(out, 0) == memory);
+  for (const guint8 byte : bytes(out)) fail_unless_equals_int(byte, 100);
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
+// In every format: the box's outline is there, its inside and the rest of the frame are as they were.
+GST_START_TEST(a_box_is_drawn_into_every_format) {
+  for (const char* format : kFormats) {
+    const std::string caps = caps_string(format, 321, 241);  // odd: chroma planes round up
+    const GstVideoInfo info = info_of(caps);
+    Harness h = started("motionoverlay show-ids=false", caps);
+    GstBuffer* out = through(h.get(), with_region(info, region(1, 100, 80, 60, 90)));
+    GstVideoFrame f;
+    fail_unless(gst_video_frame_map(&f, &info, out, GST_MAP_READ));
+    int edge = 0;
+    for (int y = 95; y < 155; ++y) edge += level(&f, 100, y) != 100 && level(&f, 160, y) != 100;
+    fail_unless_equals_int(edge, 60);
+    fail_unless_equals_int(changed_pixels(&f, 108, 88, 152, 162, 100), 0);
+    fail_unless_equals_int(changed_pixels(&f, 0, 0, 321, 74, 100), 0);
+    fail_unless_equals_int(changed_pixels(&f, 0, 176, 321, 241, 100), 0);
+    fail_unless_equals_int(changed_pixels(&f, 0, 0, 94, 241, 100), 0);
+    fail_unless_equals_int(changed_pixels(&f, 167, 0, 321, 241, 100), 0);
+    gst_video_frame_unmap(&f);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(tiny_and_odd_frames_are_drawn_on) {
+  for (const char* format : kFormats) {
+    const std::string caps = caps_string(format, 33, 35);
+    Harness h = started("motionoverlay crosshair=true", caps);
+    GstBuffer* out = through(h.get(), with_region(info_of(caps), region(1, 5, 6, 20, 22)));
+    const auto all = bytes(out);
+    fail_unless(std::any_of(all.begin(), all.end(), [](guint8 b) { return b != 100; }), "%s", format);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(the_other_branch_of_a_tee_keeps_its_pixels) {
+  Harness h = started();
+  GstBuffer* in = with_region(info_of(kCaps), region(1, 100, 80, 60, 90));
+  GstBuffer* other = gst_buffer_ref(in);     // what a tee does
+  GstBuffer* sibling = gst_buffer_copy(in);  // shares the memory, has own metas
+  GstBuffer* out = through(h.get(), in);
+  for (const guint8 byte : bytes(other)) fail_unless_equals_int(byte, 100);
+  for (const guint8 byte : bytes(sibling)) fail_unless_equals_int(byte, 100);
+  fail_if(bytes(out) == bytes(other));
+  gst_buffer_unref(out);
+  gst_buffer_unref(other);
+  gst_buffer_unref(sibling);
+}
+GST_END_TEST
+
+GST_START_TEST(drawings_are_attached_where_downstream_draws_them) {
+  Harness h = attaching();
+  GstBuffer* in = with_region(info_of(kCaps), region(1, 100, 80, 60, 90));
+  GstMemory* memory = gst_buffer_peek_memory(in, 0);
+  GstBuffer* out = through(h.get(), in);
+  fail_unless(gst_buffer_peek_memory(out, 0) == memory);
+  for (const guint8 byte : bytes(out)) fail_unless_equals_int(byte, 100);
+  fail_unless(rectangles(out).size() >= 2);  // box and label
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
+// Who takes any caps (a file sink) must not swallow the drawing.
+GST_START_TEST(the_caps_feature_is_used_only_where_downstream_draws) {
+  for (const bool draws : {false, true}) {
+    Harness h = harness("motionoverlay");
+    if (draws)
+      gst_harness_add_propose_allocation_meta(h.get(), GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
+    gst_harness_set_src_caps_str(h.get(), kCaps.c_str());
+    GstBuffer* out = through(h.get(), with_region(info_of(kCaps), region(1, 100, 80, 60, 90)));
+    GstCaps* caps = gst_pad_get_current_caps(h->sinkpad);
+    fail_unless_equals_int(gst_caps_features_contains(gst_caps_get_features(caps, 0),
+                                                      GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION),
+                           draws);
+    fail_unless_equals_int(rectangles(out).empty(), !draws);
+    gst_caps_unref(caps);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_downstream_with_only_the_caps_feature_gets_it) {
+  Harness h = harness("motionoverlay");
+  gst_harness_set_sink_caps_str(h.get(), kFeature);
+  gst_harness_set_src_caps_str(h.get(), kCaps.c_str());
+  fail_if(drawn(h.get(), with_region(info_of(kCaps), region(1, 100, 80, 60, 90))).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(a_drawing_that_was_there_stays) {
+  Harness h = attaching();
+  GstBuffer* in = with_region(info_of(kCaps), region(1, 100, 80, 60, 90));
+  GstBuffer* pixels = gst_buffer_new_allocate(nullptr, 4 * 4 * 4, nullptr);
+  gst_buffer_memset(pixels, 0, 255, 64);
+  gst_buffer_add_video_meta(pixels, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB, 4,
+                            4);
+  GstVideoOverlayRectangle* r =
+      gst_video_overlay_rectangle_new_raw(pixels, 3, 5, 4, 4, GST_VIDEO_OVERLAY_FORMAT_FLAG_NONE);
+  GstVideoOverlayComposition* before = gst_video_overlay_composition_new(r);
+  gst_buffer_add_video_overlay_composition_meta(in, before);
+  gst_buffer_unref(pixels);
+  gst_video_overlay_rectangle_unref(r);
+  const auto all = drawn(h.get(), in);
+  fail_unless(all.size() >= 3);
+  fail_unless_equals_int(all[0].x, 3);
+  fail_unless_equals_int(all[0].y, 5);
+  fail_unless_equals_int(gst_video_overlay_composition_n_rectangles(before),
+                         1);  // the other's is not changed
+  gst_video_overlay_composition_unref(before);
+}
+GST_END_TEST
+
+GST_START_TEST(nothing_is_drawn_beyond_the_frame) {
+  Harness h = attaching("motionoverlay line-width=9 crosshair=true");
+  const double far = 1e6;
+  int number = 0;
+  for (const CerberusRegion& r :
+       {region(1, -20, -30, 60, 90), region(2, 300, 220, 100, 100), region(3, 0, 0, 320, 240),
+        region(4, 5, 235, 9, 90), region(5, 2, 2, far, far), region(6, -far, -far, 2 * far, 2 * far),
+        region(7, 318, 1, 1, 1)})
+    for (const Rectangle& a : drawn(h.get(), with_region(info_of(kCaps), r, number++))) {
+      fail_unless(a.x >= 0 && a.y >= 0 && a.width > 0 && a.height > 0);
+      fail_unless(a.x + static_cast<int>(a.width) <= kWidth && a.y + static_cast<int>(a.height) <= kHeight);
+    }
+}
+GST_END_TEST
+
+GST_START_TEST(what_lies_outside_or_is_nonsense_is_not_drawn) {
+  Harness h = attaching("motionoverlay show-trails=false");
+  int number = 0;
+  for (const CerberusRegion& r :
+       {region(1, 400, 50, 20, 20), region(2, 50, 1e6, 20, 20), region(3, 50, 50, 0, 20)})
+    fail_unless(drawn(h.get(), with_region(info_of(kCaps), r, number++)).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(speeds_and_distances_that_are_not_numbers_leave_a_label_without_them) {
+  const auto label_width = [](double vx, double distance) {
+    Harness h = attaching("motionoverlay show-boxes=false show-trails=false");
+    CerberusRegion r = region(1, 100, 80, 60, 90);
+    r.vx = vx;
+    r.distance = distance;
+    const auto all = drawn(h.get(), with_region(info_of(kCaps), r));
+    fail_unless_equals_int(all.size(), 1);
+    return all[0].width;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  const unsigned bare = label_width(nan, nan);
+  fail_unless_equals_int(label_width(inf, -inf), bare);
+  fail_unless(label_width(12, nan) > bare);
+  fail_unless(label_width(12, 3.5) > label_width(12, nan));
+  fail_unless(label_width(1e308, nan) < 200);
+}
+GST_END_TEST
+
+GST_START_TEST(labels_keep_clear_of_each_other) {
+  Harness h = attaching("motionoverlay show-boxes=false show-trails=false");
+  GstBuffer* in = frame(info_of(kCaps));
+  add(in, region(1, 100, 80, 30, 60));
+  add(in, region(2, 110, 82, 30, 60));
+  add(in, region(3, 120, 78, 30, 60));
+  const auto all = drawn(h.get(), in);
+  fail_unless_equals_int(all.size(), 3);
+  for (std::size_t i = 0; i < all.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      const auto &a = all[i], &b = all[j];
+      const bool apart = a.x + int(a.width) <= b.x || b.x + int(b.width) <= a.x ||
+                         a.y + int(a.height) <= b.y || b.y + int(b.height) <= a.y;
+      fail_unless(apart);
+    }
+}
+GST_END_TEST
+
+// Width of everything drawn after 30 frames in which an object went `step` pixels a frame and the camera moved the
+// picture by `pan`.
+static int trail_extent(double step, double pan,
+                        const char* line = "motionoverlay show-boxes=false show-ids=false",
+                        const std::function<void(GstHarness*, GstBuffer*, int)>& disturb = {}) {
+  Harness h = attaching(line);
+  std::vector<Rectangle> all;
+  for (int k = 0; k < 30; ++k) {
+    GstBuffer* in = frame(info_of(kCaps), k);
+    add(in, region(1, 150 + step * (k - 15), 100, 20, 40));
+    set_camera(in, pan, k + 1);
+    if (disturb) disturb(h.get(), in, k);
+    all = drawn(h.get(), in);
+  }
+  int left = kWidth, right = 0;
+  for (const Rectangle& r : all) left = std::min(left, r.x), right = std::max(right, r.x + int(r.width));
+  return std::max(0, right - left);
+}
+
+GST_START_TEST(a_trail_is_as_long_as_the_way) {
+  const int extent = trail_extent(4, 0);  // 29 steps of 4 pixels
+  fail_unless(extent >= 116 && extent <= 126, "%d", extent);
+}
+GST_END_TEST
+
+GST_START_TEST(a_trail_lies_on_the_scene_while_the_camera_turns) {
+  // The object stands in the scene: the whole way in the picture is the camera's.
+  const int extent = trail_extent(-4, -4);
+  fail_unless(extent <= 12, "%d", extent);
+}
+GST_END_TEST
+
+GST_START_TEST(a_trail_is_as_old_as_trail_time) {
+  // 0.4 s at 25 frames a second: 10 steps.
+  const int extent = trail_extent(4, 0, "motionoverlay show-boxes=false show-ids=false trail-time=400000000");
+  fail_unless(extent >= 40 && extent <= 50, "%d", extent);
+  fail_unless_equals_int(trail_extent(4, 0, "motionoverlay show-boxes=false show-ids=false trail-time=0"), 0);
+  fail_unless_equals_int(
+      trail_extent(4, 0, "motionoverlay show-boxes=false show-ids=false show-trails=false"), 0);
+}
+GST_END_TEST
+
+GST_START_TEST(trails_are_forgotten_where_the_scene_begins_anew) {
+  const char* line = "motionoverlay show-boxes=false show-ids=false";
+  // Four steps remain behind frame 25.
+  const auto forgets = [&](const std::function<void(GstHarness*, GstBuffer*)>& event) {
+    const int extent = trail_extent(4, 0, line, [&](GstHarness* h, GstBuffer* in, int k) {
+      if (k == 25) event(h, in);
+    });
+    fail_unless(extent >= 16 && extent <= 26, "%d", extent);
+  };
+  forgets([](GstHarness*, GstBuffer* in) { GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT); });
+  forgets([](GstHarness*, GstBuffer* in) { set_camera(in, 0, 1); });  // a cut
+  forgets([](GstHarness* h, GstBuffer*) { push_flush(h); });
+}
+GST_END_TEST
+
+GST_START_TEST(time_that_runs_backwards_begins_a_trail_anew) {
+  Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
+  drawn(h.get(), with_region(info_of(kCaps), region(1, 50, 50, 20, 40), 10));
+  fail_if(drawn(h.get(), with_region(info_of(kCaps), region(1, 90, 50, 20, 40), 11)).empty());
+  fail_unless(drawn(h.get(), with_region(info_of(kCaps), region(1, 130, 50, 20, 40), 2)).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(frames_without_time_stamps_have_trails_too) {
+  Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
+  std::vector<Rectangle> all;
+  for (int k = 0; k < 5; ++k) {
+    GstBuffer* in = with_region(info_of(kCaps), region(1, 50 + 10 * k, 50, 20, 40));
+    GST_BUFFER_PTS(in) = GST_CLOCK_TIME_NONE;
+    all = drawn(h.get(), in);
+  }
+  fail_if(all.empty());
+}
+GST_END_TEST
+
+GST_START_TEST(regions_without_identity_have_a_box_only) {
+  Harness h = attaching("motionoverlay show-boxes=false");
+  CerberusRegion r = region(1, 100, 80, 60, 90);
+  r.tracked = FALSE;
+  for (int k = 0; k < 3; ++k) fail_unless(drawn(h.get(), with_region(info_of(kCaps), r, k)).empty());
+  GstElement* element = gst_harness_find_element(h.get(), "motionoverlay");
+  g_object_set(element, "show-boxes", TRUE, nullptr);
+  gst_object_unref(element);
+  fail_if(drawn(h.get(), with_region(info_of(kCaps), r, 4)).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(properties_change_while_playing) {
+  Harness h = attaching("motionoverlay name=o show-trails=false");
+  GstElement* element = gst_harness_find_element(h.get(), "motionoverlay");
+  const CerberusRegion r = region(1, 100, 80, 60, 90);
+  int number = 0;
+  const auto count = [&] {
+    return static_cast<int>(drawn(h.get(), with_region(info_of(kCaps), r, number++)).size());
+  };
+  const int both = count();
+  g_object_set(element, "show-ids", FALSE, nullptr);
+  fail_unless_equals_int(count(), both - 1);
+  g_object_set(element, "show-boxes", FALSE, nullptr);
+  fail_unless_equals_int(count(), 0);
+  g_object_set(element, "crosshair", TRUE, nullptr);
+  fail_unless_equals_int(count(), 1);
+  gst_object_unref(element);
+}
+GST_END_TEST
+
+GST_START_TEST(lines_are_as_wide_as_asked) {
+  const auto outline = [](const char* line) {
+    Harness h = started(line);
+    const GstVideoInfo info = info_of(kCaps);
+    GstBuffer* out = through(h.get(), with_region(info, region(1, 100, 80, 60, 90)));
+    GstVideoFrame f;
+    fail_unless(gst_video_frame_map(&f, &info, out, GST_MAP_READ));
+    const int width = changed_pixels(&f, 85, 130, 130, 131, 100);
+    gst_video_frame_unmap(&f);
+    gst_buffer_unref(out);
+    return width;
+  };
+  const int thin = outline("motionoverlay show-ids=false line-width=1"),
+            thick = outline("motionoverlay show-ids=false line-width=6");
+  fail_unless(thin >= 1 && thin <= 5, "%d", thin);      // the line, and a pixel of casing on each side
+  fail_unless(thick >= 6 && thick <= 16, "%d", thick);  // casing grows with the line
+}
+GST_END_TEST
+
+GST_START_TEST(a_new_frame_size_is_drawn_in) {
+  Harness h = attaching("motionoverlay crosshair=true");
+  drawn(h.get(), frame(info_of(kCaps)));
+  const std::string small = caps_string("NV12", 64, 48);
+  gst_harness_set_src_caps_str(h.get(), small.c_str());
+  const auto all = drawn(h.get(), frame(info_of(small), 1));
+  fail_unless_equals_int(all.size(), 1);
+  fail_unless_equals_int(all[0].x + all[0].width / 2, 32);
+  fail_unless_equals_int(all[0].y + all[0].height / 2, 24);
+}
+GST_END_TEST
+
+GST_START_TEST(a_downstream_that_begins_to_draw_is_noticed) {
+  Harness h = started();
+  fail_unless(drawn(h.get(), with_region(info_of(kCaps), region(1, 100, 80, 60, 90))).empty());
+  gst_harness_add_propose_allocation_meta(h.get(), GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
+  fail_unless(gst_harness_push_upstream_event(h.get(), gst_event_new_reconfigure()));
+  fail_if(drawn(h.get(), with_region(info_of(kCaps), region(1, 100, 80, 60, 90), 1)).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(a_buffer_without_a_picture_passes_with_one_warning) {
+  Harness h = started();
+  Bus bus(h.get());
+  for (int k = 0; k < 3; ++k) {
+    GstBuffer* empty = gst_buffer_new();
+    GST_BUFFER_PTS(empty) = k * GST_SECOND;
+    add(empty, region(1, 100, 80, 60, 90));
+    gst_buffer_unref(through(h.get(), empty));
+  }
+  fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING), 1);
+  fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR), 0);
+}
+GST_END_TEST
+
+GST_START_TEST(a_crowd_is_drawn) {
+  Harness h = started();
+  GstBuffer* in = frame(info_of(kCaps));
+  for (guint id = 1; id <= 500; ++id) add(in, region(id, (id * 37) % 300, (id * 53) % 220, 12, 18));
+  gst_buffer_unref(through(h.get(), in));
+}
+GST_END_TEST
+
+GST_START_TEST(two_instances_and_eos) {
+  Harness a = attaching("motionoverlay show-boxes=false show-ids=false"), b = attaching("motionoverlay");
+  drawn(a.get(), with_region(info_of(kCaps), region(1, 50, 50, 20, 40)));
+  drawn(b.get(), with_region(info_of(kCaps), region(1, 90, 50, 20, 40)));
+  fail_if(drawn(a.get(), with_region(info_of(kCaps), region(1, 90, 50, 20, 40), 1)).empty());
+  fail_unless(gst_harness_push_event(a.get(), gst_event_new_eos()));
+  fail_unless(event_came(a.get(), GST_EVENT_EOS));
+}
+GST_END_TEST
+
+static Suite* motionoverlay_suite() {
+  watch_library_log();
+  Suite* s = suite_create("motionoverlay");
+  TCase* tc = tcase_create("drawing");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_frame_in_which_nothing_moves_passes_untouched);
+  tcase_add_test(tc, a_box_is_drawn_into_every_format);
+  tcase_add_test(tc, tiny_and_odd_frames_are_drawn_on);
+  tcase_add_test(tc, nothing_is_drawn_beyond_the_frame);
+  tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);
+  tcase_add_test(tc, speeds_and_distances_that_are_not_numbers_leave_a_label_without_them);
+  tcase_add_test(tc, labels_keep_clear_of_each_other);
+  tcase_add_test(tc, regions_without_identity_have_a_box_only);
+  tcase_add_test(tc, lines_are_as_wide_as_asked);
+  tcase_add_test(tc, a_crowd_is_drawn);
+  tc = tcase_create("trails");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_trail_is_as_long_as_the_way);
+  tcase_add_test(tc, a_trail_lies_on_the_scene_while_the_camera_turns);
+  tcase_add_test(tc, a_trail_is_as_old_as_trail_time);
+  tcase_add_test(tc, trails_are_forgotten_where_the_scene_begins_anew);
+  tcase_add_test(tc, time_that_runs_backwards_begins_a_trail_anew);
+  tcase_add_test(tc, frames_without_time_stamps_have_trails_too);
+  tc = tcase_create("stream");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, the_other_branch_of_a_tee_keeps_its_pixels);
+  tcase_add_test(tc, drawings_are_attached_where_downstream_draws_them);
+  tcase_add_test(tc, the_caps_feature_is_used_only_where_downstream_draws);
+  tcase_add_test(tc, a_downstream_with_only_the_caps_feature_gets_it);
+  tcase_add_test(tc, a_drawing_that_was_there_stays);
+  tcase_add_test(tc, properties_change_while_playing);
+  tcase_add_test(tc, a_new_frame_size_is_drawn_in);
+  tcase_add_test(tc, a_downstream_that_begins_to_draw_is_noticed);
+  tcase_add_test(tc, a_buffer_without_a_picture_passes_with_one_warning);
+  tcase_add_test(tc, two_instances_and_eos);
+  return s;
+}
+
+GST_CHECK_MAIN(motionoverlay)
