@@ -16,8 +16,12 @@ gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
   return TRUE;
 }
 
+void drop(CerberusPlaneMeta* plane) {
+  if (GstBuffer* buffer = std::exchange(plane->buffer, nullptr)) gst_buffer_unref(buffer);
+}
+
 void meta_free(GstMeta* meta, GstBuffer*) {
-  gst_clear_buffer(&reinterpret_cast<CerberusPlaneMeta*>(meta)->buffer);
+  drop(reinterpret_cast<CerberusPlaneMeta*>(meta));
 }
 
 // A reference to the same samples, and only where the whole frame is copied: a part of it is another picture.

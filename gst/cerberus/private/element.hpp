@@ -67,7 +67,7 @@ class TypeBuilder {
     g_assert(G_OBJECT_CLASS(klass)->finalize == finalize);  // Private's destructor is the finalizer
   }
 
-  // A constructor that throws ends the program here, with its name, as GLib does when memory runs out: nobody
+  // A constructor that throws ends the program here, as GLib does when memory runs out: nobody
   // can tell g_object_new() of a failure.
   static void init(Self* self) noexcept {
     self->priv = ::new (G_STRUCT_MEMBER_P(self, private_offset)) Private();
