@@ -178,8 +178,10 @@ void on_no_more_pads(GstElement* decoder, gpointer) {
 // here. The sinks are tried by hand: autovideosink also tries those for DirectFB, which can crash where there
 // is none.
 void open_window(Run& run) {
-  if (!g_getenv("DISPLAY") && !g_getenv("WAYLAND_DISPLAY")) return;
-  for (const char* name : {"waylandsink", "xvimagesink", "ximagesink", "glimagesink"}) {
+  const bool wayland = g_getenv("WAYLAND_DISPLAY"), x11 = g_getenv("DISPLAY");
+  if (!wayland && !x11) return;
+  for (const char* name : {"waylandsink", "xvimagesink", "ximagesink"}) {
+    if (!(name == "waylandsink"s ? wayland : x11)) continue;
     GstElementFactory* factory = gst_element_factory_find(name);
     if (!factory) continue;
     gst_object_unref(factory);
