@@ -15,10 +15,17 @@ constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) 
 constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
 constexpr double kCoastBrake = 1.0;          // s in which what is not seen is believed to slow down
 constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
+constexpr double kFade = 20.0;               // how much less a shrinking extent counts while standing
 constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
 
 double square(double v) {
   return v * v;
+}
+
+// Does the picture's edge cut a region off? Not the ends of somebody who fills the picture from one side to the other.
+bool cut(double from, double to, double largest, int side) {
+  const double margin = 0.01 * side;
+  return (from < margin || to > side - margin) && largest < 0.7 * side;
 }
 
 Point centre(const Box& b) {
@@ -68,15 +75,7 @@ bool Body::at_border(Size frame) const {
          b.bottom() > frame.height - margin;
 }
 
-bool Body::leaving(Size frame) const {
-  const Box b = box();
-  const double margin = 0.1 * size();
-  const bool sides = b.x < margin || b.right() > frame.width - margin;
-  const bool ends = b.y < margin || b.bottom() > frame.height - margin;
-  return (sides && b.width < 0.7 * widest) || (ends && b.height < 0.7 * tallest);
-}
-
-bool Body::predict(double seconds, Size frame) {
+bool Body::predict(double seconds) {
   const double s = size();
   if (stopped) {
     // Stands still; where exactly is less and less sure, but never by more than half a body.
@@ -86,7 +85,7 @@ bool Body::predict(double seconds, Size frame) {
   } else {
     for (MovingValue* a : {&x, &y}) a->predict(seconds, kAcceleration * s * s);
   }
-  for (SlowValue* e : {&w, &h}) e->predict(seconds, at_border(frame) ? kBorderWander : kSizeWander);
+  for (SlowValue* e : {&w, &h}) e->predict(seconds, kSizeWander);
   age += seconds;
   ++frames;
   region = -1;
@@ -135,6 +134,14 @@ double Body::distance(const Box& seen) const {
          std::hypot(c.x - x.position, c.y - y.position) / s + 0.1 * std::sqrt(d2);
 }
 
+// Who stands dissolves from the mask piece by piece without getting smaller; who is cut by the picture's edge shows
+// more or less of himself with every frame.
+void Body::resize(SlowValue& extent, double seen, bool is_cut, double seconds) {
+  const bool fades = !is_cut && speed() < kStandSpeed * size() && std::log(seen) < extent.value;
+  if (is_cut) extent.variance += kBorderWander * seconds;
+  extent.correct(std::log(seen), square(kSizeNoise) * (fades ? kFade : 1));
+}
+
 // The region's extent replaces the track's.
 void Body::adopt(const Box& seen) {
   w = {std::log(seen.width), square(kSizeNoise)};
@@ -144,15 +151,16 @@ void Body::adopt(const Box& seen) {
   misfit = fitted = 0;
 }
 
-// One object, one region, extents that disagree: is the region right? A whole one is, after two looks. A larger one
-// soon is: the object came into view, or only a piece of it was seen before. A smaller one is a piece of an object that
-// hardly moves (an arm) as long as it stays in place; it is right when the old extent was never well known, or when the
-// piece walks away on its own.
-bool Body::outgrown(const Box& seen, bool whole, double seconds, Size frame) {
+// One object, one region, extents that disagree: is the region right? One that is cut by the picture's edge is, as the
+// object comes or goes, and a whole one is after two looks. A larger one soon is: only a piece was seen before. A
+// smaller one is a piece of an object that hardly moves (an arm) as long as it stays in place; it is right when the old
+// extent was never well known, or when the piece walks away on its own.
+bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
   if (misfit == 0) misfit_from = seen;
   misfit += seconds;
+  if (cut) return true;
   if (whole) return misfit >= 0.2;
-  if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6) || at_border(frame);
+  if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6);
   const Point from = centre(misfit_from), to = centre(seen);
   return misfit >= 0.5 && (fitted < 0.5 || std::hypot(to.x - from.x, to.y - from.y) > 0.5 * size());
 }
@@ -163,14 +171,17 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
   const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
   const bool fits = rx.same_extent && ry.same_extent;
-  if (!fits && alone && outgrown(seen, r.confidence >= kWhole, seconds, frame)) {
+  const bool cut_x = cut(seen.x, seen.right(), widest, frame.width);
+  const bool cut_y = cut(seen.y, seen.bottom(), tallest, frame.height);
+  leaving = (cut_x && seen.width < 0.7 * widest) || (cut_y && seen.height < 0.7 * tallest);
+  if (!fits && alone && outgrown(seen, r.confidence >= kWhole, cut_x || cut_y, seconds)) {
     adopt(seen);
   } else {
     x.correct(rx.distance, rx.same_extent ? noise : 6 * noise);
     y.correct(ry.distance, ry.same_extent ? noise : 6 * noise);
     if (fits && alone) {
-      w.correct(std::log(seen.width), square(kSizeNoise));
-      h.correct(std::log(seen.height), square(kSizeNoise));
+      resize(w, seen.width, cut_x, seconds);
+      resize(h, seen.height, cut_y, seconds);
       misfit = 0;
       fitted += seconds;
     } else if (alone && seen.area() < b.area()) {

@@ -46,6 +46,7 @@ struct Body {
   int hits = 0, frames = 0;
   int region = -1;  // of this frame, -1 none
   bool stopped = false, dead = false;
+  bool leaving = false;  // when last seen the picture's edge had cut it to less than it was
 
   static Body first_seen(const Region& region);
 
@@ -57,12 +58,10 @@ struct Body {
 
   // Less than a tenth of S from the picture's edge.
   bool at_border(Size frame) const;
-  // Cut by the picture's edge to less than it was.
-  bool leaving(Size frame) const;
 
   // Along its own velocity from frame k-1's time to frame k's, then with the camera into frame k's pixels. False: it
   // has no place there.
-  bool predict(double seconds, Size frame);
+  bool predict(double seconds);
   bool carry(const Transform& motion);
 
   // How badly a region fits: 0 perfectly; negative: it cannot be this object.
@@ -75,7 +74,8 @@ struct Body {
 
  private:
   void adopt(const Box& seen);
-  bool outgrown(const Box& seen, bool whole, double seconds, Size frame);
+  bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
+  void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
 };
 
 }  // namespace cerberus::vision

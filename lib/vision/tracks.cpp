@@ -80,7 +80,7 @@ void Tracker::State::take(std::span<const Region> input) {
 }
 
 void Tracker::State::predict(const Transform& motion) {
-  for (Body& b : bodies) b.dead = !b.predict(seconds, frame) || !b.carry(motion);
+  for (Body& b : bodies) b.dead = !b.predict(seconds) || !b.carry(motion);
   drop_dead();
 }
 
@@ -113,20 +113,27 @@ void Tracker::State::associate(bool confirmed) {
   }
 }
 
-// Leftover regions that lie where an object is expected are pieces of it.
+// Leftover regions that lie where an object is expected are pieces of it: they complete its region or, where it has
+// none (somebody standing who moves an arm), they are all there is of it.
 void Tracker::State::gather_fragments() {
   for (std::size_t j = 0; j < regions.size(); ++j) {
-    if (owner[j] >= 0 || used[j] || regions[j].confidence >= kWhole) continue;
+    if (owner[j] >= 0 || regions[j].confidence >= kWhole) continue;
     const Box& piece = regions[j].box;
-    for (Body& b : bodies) {
-      if (b.region < 0 || b.id == 0 || regions[b.region].confidence >= kWhole) continue;
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      Body& b = bodies[i];
+      if (b.id == 0 || (b.region >= 0 && regions[b.region].confidence >= kWhole)) continue;
       const Box expected = b.box();
       if (overlap_area(expected, piece) < 0.6 * piece.area() || piece.area() > 0.7 * expected.area())
         continue;
+      if (b.region < 0) {
+        b.region = static_cast<int>(j);
+        owner[j] = static_cast<int>(i);
+        break;
+      }
       used[j] = 1;
       Region& main = regions[b.region];
       const Box both = bounding(main.box, piece);
-      if (both.width < 1.25 * b.width() && both.height < 1.25 * b.height()) main.box = both;
+      if (both.width < 1.25 * expected.width && both.height < 1.25 * expected.height) main.box = both;
       break;
     }
   }
@@ -200,7 +207,7 @@ void Tracker::State::give_birth() {
 // Somebody who ceased to move, rather than left or went behind something: well seen before, slower and slower until
 // nothing moved any more, in the open and with nobody else in the way.
 bool Tracker::State::has_stopped(const Body& b) const {
-  if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.3 || b.leaving(frame)) return false;
+  if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.3 || b.leaving) return false;
   const Box box = b.box();
   return std::none_of(bodies.begin(), bodies.end(), [&](const Body& o) {
     return &o != &b && o.id != 0 && o.region >= 0 && overlap_area(o.box(), box) > 0.2 * box.area();
