@@ -6,6 +6,7 @@
 #include <array>
 
 #include "fusion/rules.h"
+#include "sensing/angles.h"
 #include "sensing/sectors.h"
 
 namespace cerberus::fusion {
@@ -14,17 +15,16 @@ using sensing::Geometry;
 using sensing::Interval;
 
 // A head of +-170 degrees, DESIGN.md's default.
-constexpr Interval kDefaultLimits{-170 * (3.14159265358979323846 / 180),
-                                  170 * (3.14159265358979323846 / 180)};
+constexpr Interval kDefaultLimits{sensing::radians(-170), sensing::radians(170)};
 
 // A place worth looking at: turn until pan is within `wanted`, then sweep `sweep` (never wider than `wanted`).
 struct Place {
   Interval wanted;
   Interval sweep;
   SensorBits sensors = 0;  // who asks for it
-  bool limited = false;    // part of what the sensors cover lies beyond the stops
+  bool limited = false;    // the stops keep the picture from covering all of it
 };
-constexpr int kMaxPlaces = 32;
+constexpr int kMaxPlaces = 72;  // for limits within one turn nothing can get lost
 using Places = sensing::FixedList<Place, kMaxPlaces>;
 
 // Where to look when the sensors `fired` detect and the head stands at `pan`, best first; empty for no sensor.

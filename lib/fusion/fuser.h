@@ -27,10 +27,10 @@ struct FuserOptions {
   Time camera_hold = std::chrono::milliseconds(500);  // camera found is kept this long after the last track
   Time return_delay = std::chrono::seconds(5);        // without any detection before the head returns to zero
   Time hold_stopped = std::chrono::seconds(30);  // a followed person who stopped is held at least this long
-  double hysteresis = 2 * (3.14159265358979323846 / 180);
-  double lens = 60 * (3.14159265358979323846 / 180);  // horizontal field of view; 0: not known
-  Interval limits = kDefaultLimits;                   // of pan
-  Time dwell = std::chrono::seconds(2);               // least time at a place before the next one is tried
+  double hysteresis = sensing::radians(2);
+  double lens = sensing::radians(60);    // horizontal field of view; 0: not known
+  Interval limits = kDefaultLimits;      // of pan
+  Time dwell = std::chrono::seconds(2);  // least time at a place before the next one is tried
 };
 // What the paper says and no more: its table, no return delay, no hysteresis.
 FuserOptions paper_options();

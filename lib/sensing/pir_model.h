@@ -17,6 +17,8 @@
 #include <span>
 #include <string_view>
 
+#include "sensing/angles.h"
+
 namespace cerberus::sensing {
 
 using Time = std::chrono::nanoseconds;
@@ -39,14 +41,17 @@ struct PirOptions {
   Time chatter_window = std::chrono::seconds(10);  // ... within this: chattering; 0 edges: never
 };
 
-// Modules as data (FACTS.md, "PIR modules"; the paper's Table 1). module_hold and module_block are what the module
-// itself does on its output line: nothing for the model to add, but what a user should know.
+// Modules as data (FACTS.md, "PIR modules"; the paper's Table 1). What the module does to its own output line (hold,
+// block) the model need not do again; it is told here because a user should know. Equal ends: not adjustable; 0: not known.
 struct PirPreset {
+  struct Span {
+    Time least{}, most{};
+  };
   std::string_view name;  // "hc-sr501", "am312", "sk-11"
-  PirOptions options;
-  Time module_hold, module_block;  // as delivered; 0: not known
-  double range;                    // metres
-  double field_of_view;            // radians
+  PirOptions options;     // hold and block 0
+  Span module_hold, module_block;
+  double range = 0;          // metres
+  double field_of_view = 0;  // radians
 };
 std::span<const PirPreset> pir_presets();
 const PirPreset* find_pir_preset(std::string_view name);  // nullptr: no such
@@ -70,8 +75,8 @@ class PirModel {
   // When presence or fault changed last: the edge's own time or the deadline, however late poll() was called.
   Time changed() const { return changed_; }
   PirFault fault() const { return fault_; }
-  // A detection that began, or stands, while the base turned faster than kDoubtfulTurn (see base()), until it ends or
-  // the base has been calm for kDoubtLinger.
+  // A detection that began or stood while the base turned faster than kDoubtfulTurn (see base()), until it ends or the
+  // base has been calm for kDoubtLinger.
   bool doubtful() const { return doubtful_; }
   // The base turns with `yaw_rate` radians a second from `time` on (NaN: unknown, taken as standing still).
   void base(Time time, double yaw_rate);
@@ -82,15 +87,17 @@ class PirModel {
   void advance(Time until);
   void settle(Time now);
   void rise(Time now);
-  bool chatters(Time now, unsigned rises) const;
+  Time past_rise(unsigned n) const;
   Time calm_time() const;
+  Time end_time() const;
 
   static constexpr unsigned kRises = 256;  // chatter_edges is clamped to it
 
   PirOptions options_;
   Time now_{}, changed_{};
-  bool started_ = false, line_ = false;  // line_: active, after polarity
-  bool detecting_ = false;               // what presence says when nothing makes it invalid
+  bool started_ = false, warming_ = false;
+  bool line_ = false;       // active, after polarity
+  bool detecting_ = false;  // what presence says when nothing makes it invalid
   Time active_since_{}, last_fall_{}, hold_until_{}, blocked_until_{}, warm_until_{};
   Presence presence_ = Presence::invalid;
   PirFault fault_ = PirFault::none;
@@ -101,7 +108,7 @@ class PirModel {
 };
 
 // A body that turns faster than this trips its own PIR sensors (5 degrees a second, DESIGN.md "Base").
-constexpr double kDoubtfulTurn = 5 * 3.14159265358979323846 / 180;
+constexpr double kDoubtfulTurn = radians(5);
 // A module holds its output for some seconds after the turn that tripped it.
 constexpr Time kDoubtLinger = std::chrono::seconds(3);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What PIR sensors cover: arcs of the full circle, and what of them a head with stops can turn to.
+// What PIR sensors cover: arcs of the full circle.
 #pragma once
 
 #include <array>
@@ -73,14 +73,5 @@ using Arcs = FixedList<Arc, kMaxOverlaps>;
 // What all sensors of `fired` cover together; empty when there is nothing. Sectors that only touch (nearer than
 // 1e-6 rad) meet in an arc of width 0: somebody on the border trips both.
 Arcs overlap(const Geometry& geometry, SensorBits fired);
-
-// The parts of an arc that pan angles within `limits` can look at, from left to right: none, one, or several (the arc
-// behind a head of +-170 degrees is reached from both stops). The limits may be further apart than a turn.
-using Intervals = FixedList<Interval, 8>;
-Intervals reachable(const Arc& arc, const Interval& limits);
-
-// The limit nearest to an arc that cannot be reached, by the angle that stays between them; equally near: the one
-// nearer to `pan`.
-double nearest_limit(const Arc& arc, const Interval& limits, double pan);
 
 }  // namespace cerberus::sensing

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fusion/complete.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace cerberus::fusion {
+
+namespace {
+
+using sensing::Arc;
+using sensing::Arcs;
+using sensing::wrap;
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kSame = 1e-9;  // rad
+
+// A place with what decides its rank.
+struct Candidate {
+  Place place;
+  double distance = 0;
+  int order = 0;
+};
+
+// Clockwise angle from one direction to another, [0, 2 pi).
+double clockwise(double from, double to) {
+  const double angle = wrap(to - from);
+  return angle < 0 ? angle + kTurn : angle;
+}
+
+// The stop that comes nearest to an arc which no pan angle within the limits reaches.
+double nearest_stop(const Arc& arc, const Interval& limits, double pan) {
+  const double to_right = clockwise(limits.to, arc.from);
+  const double to_left = clockwise(arc.from + arc.width, limits.from);
+  if (std::abs(to_right - to_left) > kSame) return to_right < to_left ? limits.to : limits.from;
+  return std::abs(pan - limits.to) < std::abs(pan - limits.from) ? limits.to : limits.from;
+}
+
+// Where a head that stands at `pan` looks for what lies in an arc: the arc's positions on the pan axis (it repeats every
+// turn; those more than a turn away say nothing new), cut to the limits. Calls take(Place).
+template <typename Take>
+void for_each_place(const Arc& arc, SensorBits sensors, double pan, double lens, const Interval& limits,
+                    Take&& take) {
+  if (arc.width >= kTurn - kSame) {  // all around: no edges but the stops
+    const double most = std::min(limits.width(), kTurn);
+    const double left = std::clamp(pan - most / 2, limits.from, limits.to - most);
+    const Interval around{left, left + most};
+    take(Place{around, around, sensors, limits.width() < kTurn - lens - kSame});
+    return;
+  }
+  const double inset = std::min(lens, arc.width) / 2;
+  const double first = arc.from + kTurn * (std::floor((pan - arc.from) / kTurn) - 1);
+  bool reached = false;
+  for (int turn = 0; turn < 4; ++turn) {
+    const Interval whole{first + turn * kTurn, first + turn * kTurn + arc.width};
+    const Interval wanted{std::max(whole.from, limits.from), std::min(whole.to, limits.to)};
+    if (wanted.from > wanted.to) continue;
+    reached = true;
+    const Interval pulled_in{whole.from + inset, whole.to - inset};
+    const Interval sweep{std::clamp(pulled_in.from, limits.from, limits.to),
+                         std::clamp(pulled_in.to, limits.from, limits.to)};
+    const bool limited = sweep.from > pulled_in.from + kSame || sweep.to < pulled_in.to - kSame;
+    take(Place{wanted, sweep, sensors, limited});
+  }
+  if (reached) return;
+  const double stop = nearest_stop(arc, limits, pan);
+  take(Place{{stop, stop}, {stop, stop}, sensors, true});
+}
+
+}  // namespace
+
+Places places(const Geometry& geometry, SensorBits fired, double pan,
+              const std::array<int, kMaxSensors>& order, double lens, const Interval& limits) {
+  fired &= static_cast<SensorBits>((1U << geometry.count()) - 1);
+  pan =
+      std::isfinite(pan) ? std::clamp(pan, limits.from, limits.to) : std::clamp(0.0, limits.from, limits.to);
+  sensing::FixedList<Candidate, kMaxPlaces> found;
+  Places result;
+  const auto flush = [&] {  // nearest first; found in order of sensor number, which a stable sort would keep
+    for (int i = 0; i < found.count; ++i) {
+      int best = i;
+      for (int j = i + 1; j < found.count; ++j) {
+        const double nearer = found[best].distance - found[j].distance;
+        if (nearer > kSame || (nearer > -kSame && found[j].order > found[best].order)) best = j;
+      }
+      std::rotate(found.begin() + i, found.begin() + best, found.begin() + best + 1);
+      result.push(found[i].place);
+    }
+    found.count = 0;
+  };
+  const auto add = [&](const Arc& arc, SensorBits sensors, int rank) {
+    for_each_place(arc, sensors, pan, lens, limits,
+                   [&](const Place& place) { found.push({place, place.wanted.distance(pan), rank}); });
+  };
+
+  for (const Arc& arc : overlap(geometry, fired)) add(arc, fired, 0);
+  flush();
+  if ((fired & (fired - 1)) == 0 && result.count > 0)
+    return result;  // one sensor: its sector is all there is
+  for (int i = 0; i < geometry.count(); ++i)
+    if (fired >> i & 1)
+      add(geometry.sector(i), static_cast<SensorBits>(1U << i), order[static_cast<unsigned>(i)]);
+  flush();
+  return result;
+}
+
+Action approach(const Place& place, double pan, bool inside, double hysteresis) {
+  const Interval& wanted = place.wanted;
+  const double away = wanted.distance(pan);
+  // Nobody stops a motor on a point.
+  const double enter = wanted.width() < 2 * hysteresis ? hysteresis : 0;
+  if (!(away > (inside ? enter + hysteresis : enter))) return Action::search;  // also where pan is not known
+  return pan < wanted.from ? Action::turn_right : Action::turn_left;
+}
+
+}  // namespace cerberus::fusion

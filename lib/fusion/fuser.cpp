@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fusion/fuser.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "sensing/pir_model.h"
+
+namespace cerberus::fusion {
+
+namespace {
+
+constexpr Time kLongAgo = Time::min();
+// Heads stop a little before an edge (dead band, steps): as good as there.
+constexpr double kEdge = sensing::radians(2);
+
+// time - since < duration, for times that may never have been.
+bool within(Time duration, Time since, Time time) {
+  return since != kLongAgo && time - since < duration;
+}
+
+SensorBits bit(int sensor) {
+  return static_cast<SensorBits>(1U << sensor);
+}
+
+// Both unknown counts as the same.
+bool same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
+}
+
+int rank(TrackState state) {
+  switch (state) {
+    case TrackState::seen:
+      return 0;
+    case TrackState::stopped:
+      return 1;
+    case TrackState::coasted:
+      break;
+  }
+  return 2;
+}
+
+// Is a better than b as somebody to follow? One who is seen before one who stands, before one who may be gone; then as
+// asked. Distance, where it is not known, is judged by the feet: lower in the picture is nearer on a floor.
+bool better(const Track& a, const Track& b, TargetChoice choice) {
+  if (rank(a.state) != rank(b.state)) return rank(a.state) < rank(b.state);
+  const double size_a = a.width * a.height, size_b = b.width * b.height;
+  switch (choice) {
+    case TargetChoice::nearest: {
+      const bool known_a = std::isfinite(a.distance), known_b = std::isfinite(b.distance);
+      if (known_a != known_b) return known_a;
+      const double near_a = known_a ? -a.distance : a.y + a.height;
+      const double near_b = known_b ? -b.distance : b.y + b.height;
+      if (near_a != near_b) return near_a > near_b;
+      break;
+    }
+    case TargetChoice::newest:
+      if (a.age != b.age) return a.age < b.age;
+      break;
+    case TargetChoice::largest:
+      break;
+  }
+  return size_a != size_b ? size_a > size_b : a.id < b.id;
+}
+
+FuserOptions sane(FuserOptions options) {
+  const auto least = [](auto& value, auto limit) { value = value > limit ? value : limit; };  // NaN too
+  least(options.camera_hold, Time::zero());
+  least(options.return_delay, Time::zero());
+  least(options.hold_stopped, Time::zero());
+  least(options.dwell, Time::zero());
+  least(options.hysteresis, 0.0);
+  options.lens = options.lens >= 0 && options.lens < std::numbers::pi ? options.lens : 0;
+  const Interval& limits = options.limits;
+  if (!std::isfinite(limits.from) || !std::isfinite(limits.to) || limits.from > limits.to)
+    options.limits = kDefaultLimits;
+  return options;
+}
+
+}  // namespace
+
+FuserOptions paper_options() {
+  return {.rules = RuleSet::table, .return_delay = Time::zero(), .hysteresis = 0};
+}
+
+struct Fuser::State {
+  FuserOptions options = sane({});
+  Geometry geometry;
+  RuleTable table = paper_rules();
+
+  // Everything that reset() forgets.
+  struct Memory {
+    bool begun = false;
+    Time time{};
+
+    // Camera.
+    std::uint32_t followed = 0;
+    bool followed_here = false;             // in this frame
+    Time found = kLongAgo;                  // last time there was a track
+    Time stopped = kLongAgo;                // since when the followed one stands; kLongAgo: it moves
+    std::array<std::uint32_t, 16> tired{};  // stood longer than hold_stopped, until they move again
+    unsigned tired_next = 0;
+
+    // Sensors.
+    SensorBits ones = 0, fired = 0, invalid = 0, doubtful = 0;
+    SensorBits tainted = 0;  // said 1 while the base turned
+    bool turning = false;
+    Time turned = kLongAgo;
+    std::array<int, kMaxSensors> order{};  // the higher, the later it fired
+    int fire_count = 0;
+    Time detected = kLongAgo;  // last time camera or sensors found something
+
+    // complete: the places to look at, in the order in which they were found when the sensors last changed.
+    Places places;
+    SensorBits asked = 0;  // the sensors they answer
+    int place = 0;
+    bool inside = false, seen_left = false, seen_right = false;
+    Time arrived{};
+
+    // table: the band that is being followed, for hysteresis.
+    RuleTable::Match match;
+    bool match_camera = false;
+    SensorBits match_fired = 0;
+  } memory;
+
+  Decision decision;
+
+  void read_sensors(const Input& input);
+  void read_tracks(const Input& input);
+  Decision decide(const Input& input);
+  Decision complete(const Input& input, Decision next);
+  Decision by_table(const Input& input, Decision next);
+  void look_at(int place);
+  void forget_places();
+  void watch_sweep(const Input& input);
+};
+
+void Fuser::State::read_sensors(const Input& input) {
+  Memory& m = memory;
+  const int known =
+      std::clamp(options.rules == RuleSet::table ? table.sensors : geometry.count(), 0, kMaxSensors);
+  const int count = static_cast<int>(std::min(input.sensors.size(), static_cast<std::size_t>(known)));
+  SensorBits ones = 0;
+  m.invalid = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::uint8_t value = input.sensors[static_cast<unsigned>(i)];
+    if (value == 1) ones |= bit(i);
+    if (value > 1) m.invalid |= bit(i);
+  }
+
+  // A turning body trips its own sensors, and a module holds that for a while after the turn.
+  const bool turning = std::abs(input.base_yaw_rate) > sensing::kDoubtfulTurn;  // false for NaN
+  if (turning || m.turning) m.tainted |= ones;  // also what came between two frames
+  if (m.turning && !turning) m.turned = input.time;
+  m.turning = turning;
+  if (!turning && !within(sensing::kDoubtLinger, m.turned, input.time)) m.tainted = 0;
+  m.tainted &= ones;
+  m.doubtful = m.tainted;
+
+  const auto fired = static_cast<SensorBits>(ones & ~m.doubtful);
+  const auto rising = static_cast<SensorBits>(fired & ~m.fired);
+  if (rising != 0) ++m.fire_count;
+  for (int i = 0; i < known; ++i)
+    if (rising >> i & 1) m.order[static_cast<unsigned>(i)] = m.fire_count;
+  m.ones = ones;
+  m.fired = fired;
+}
+
+// Keeps the one followed, else chooses; a person who stands is let go after hold_stopped.
+void Fuser::State::read_tracks(const Input& input) {
+  Memory& m = memory;
+  const Track* best = nullptr;
+  const Track* kept = nullptr;
+  for (const Track& track : input.tracks) {
+    if (track.id == 0) continue;
+    const auto tired = std::ranges::find(m.tired, track.id);
+    if (tired != m.tired.end()) {
+      if (track.state != TrackState::seen) continue;
+      *tired = 0;
+    }
+    if (track.id == m.followed) kept = &track;
+    if (best == nullptr || better(track, *best, options.choice)) best = &track;
+  }
+
+  if (kept != nullptr) {
+    if (kept->state == TrackState::seen) m.stopped = kLongAgo;
+    if (kept->state == TrackState::stopped && m.stopped == kLongAgo) m.stopped = input.time;
+    if (kept->state != TrackState::seen && m.stopped != kLongAgo &&
+        !within(options.hold_stopped, m.stopped, input.time)) {
+      m.tired[m.tired_next++ % m.tired.size()] = kept->id;
+      m.followed = 0;
+      m.stopped = kLongAgo;
+      return read_tracks(input);  // once a tired one: it is not looked at again
+    }
+  } else if (best != nullptr) {
+    m.followed = best->id;
+    m.stopped = best->state == TrackState::stopped ? input.time : kLongAgo;
+    kept = best;
+  }
+  m.followed_here = kept != nullptr;
+  if (kept != nullptr) m.found = input.time;
+}
+
+void Fuser::State::look_at(int place) {
+  memory.place = place;
+  memory.inside = memory.seen_left = memory.seen_right = false;
+}
+
+void Fuser::State::forget_places() {
+  memory.places.count = 0;
+  memory.asked = 0;
+}
+
+// A place that has been swept from edge to edge without success gives way to the next one: two people in two sectors,
+// or a sector that the stops cut in two, would else be looked at by half for ever.
+void Fuser::State::watch_sweep(const Input& input) {
+  Memory& m = memory;
+  const Interval& sweep = m.places[m.place].sweep;
+  m.seen_left = m.seen_left || input.pan <= sweep.from + kEdge;
+  m.seen_right = m.seen_right || input.pan >= sweep.to - kEdge;
+  if (m.places.count < 2 || !m.seen_left || !m.seen_right || input.time - m.arrived < options.dwell) return;
+  look_at((m.place + 1) % m.places.count);
+}
+
+Decision Fuser::State::complete(const Input& input, Decision next) {
+  Memory& m = memory;
+  const auto say = [&next](Action action, int rule, std::string_view name) {
+    next.action = action;
+    next.rule = rule;
+    next.rule_name = name;
+    return next;
+  };
+  if (next.camera_found) {
+    forget_places();
+    next.target = m.followed_here ? m.followed : 0;
+    return say(next.target != 0 ? Action::track : Action::hold, 1, "camera");
+  }
+  if (m.fired != 0 && m.fired != m.asked) {
+    const bool same_place = m.places.count > 0;
+    const Place old = same_place ? m.places[m.place] : Place{};
+    m.places = places(geometry, m.fired, input.pan, m.order, options.lens, options.limits);
+    m.asked = m.fired;
+    const Interval& wanted = m.places[0].wanted;
+    if (!same_place || wanted.from != old.wanted.from || wanted.to != old.wanted.to)
+      look_at(0);
+    else
+      m.place = 0;
+  }
+  if (m.fired == 0 && !within(options.return_delay, m.detected, input.time)) {
+    forget_places();
+    next.limited = !options.limits.holds(0);
+    return say(Action::zero, 7, "zero");
+  }
+  if (m.places.count == 0) return say(Action::hold, 0, "return");  // the camera had somebody a moment ago
+
+  if (m.inside) watch_sweep(input);
+  const Place& place = m.places[m.place];
+  const double pan = std::clamp(input.pan, options.limits.from, options.limits.to);  // NaN stays NaN
+  const Action action = approach(place, pan, m.inside, options.hysteresis);
+  const bool inside = action == Action::search;
+  if (inside && !m.inside) m.arrived = input.time;
+  m.inside = inside;
+  next.sector = inside ? place.sweep : place.wanted;
+  next.limited = place.limited;
+  const std::string_view why = m.fired == 0                         ? "return"
+                               : std::has_single_bit(place.sensors) ? "sector"
+                                                                    : "overlap";
+  return say(action, 0, why);
+}
+
+Decision Fuser::State::by_table(const Input& input, Decision next) {
+  Memory& m = memory;
+  RuleTable::Match match = table.evaluate(next.camera_found, m.fired, input.pan);
+  const bool same_case =
+      m.match.rule != nullptr && m.match_camera == next.camera_found && m.match_fired == m.fired;
+  if (same_case && match.band != m.match.band && options.hysteresis > 0) {
+    for (const double away : {-options.hysteresis, options.hysteresis})
+      if (table.evaluate(next.camera_found, m.fired, input.pan + away).band == m.match.band) {
+        match = m.match;
+        break;
+      }
+  }
+  m.match = match;
+  m.match_camera = next.camera_found;
+  m.match_fired = m.fired;
+  if (match.rule == nullptr) return next;  // pan not known, or a table that was not checked: hold
+
+  next.rule = match.rule->number;
+  next.rule_name = match.rule->name;
+  next.action = match.band->action;
+  const Interval& limits = options.limits;
+  switch (next.action) {
+    case Action::track:
+      next.target = m.followed_here ? m.followed : 0;
+      if (next.target == 0) next.action = Action::hold;  // "Camera Tracking" of nothing is standing still
+      break;
+    case Action::turn_left:
+      next.limited = input.pan <= limits.from;
+      break;
+    case Action::turn_right:
+      next.limited = input.pan >= limits.to;
+      break;
+    case Action::search: {
+      const Interval& sweep = match.band->search;
+      next.sector = {std::clamp(sweep.from, limits.from, limits.to),
+                     std::clamp(sweep.to, limits.from, limits.to)};
+      next.limited = sweep.from < limits.from || sweep.to > limits.to;
+      break;
+    }
+    case Action::zero:
+      next.limited = !limits.holds(0);
+      if (within(options.return_delay, m.detected, input.time)) {
+        next.action = Action::hold;
+        next.rule = 0;
+        next.rule_name = "return";
+        next.limited = false;
+      }
+      break;
+    case Action::hold:
+      break;
+  }
+  return next;
+}
+
+Decision Fuser::State::decide(const Input& input) {
+  Memory& m = memory;
+  read_sensors(input);
+  read_tracks(input);
+
+  Decision next;
+  next.pan = input.pan;
+  next.fired = m.fired;
+  next.doubtful = m.doubtful;
+  next.invalid = m.invalid;
+  next.camera_found = m.followed_here || within(options.camera_hold, m.found, input.time);
+  if (next.camera_found || m.fired != 0) m.detected = input.time;
+  next = options.rules == RuleSet::table ? by_table(input, next) : complete(input, next);
+
+  // Somebody who stopped is blind to camera and PIR alike, yet there: rule 7 waits.
+  if (next.action == Action::zero && within(options.hold_stopped, m.stopped, input.time)) {
+    next.action = Action::hold;
+    next.rule = 0;
+    next.rule_name = "stopped";
+    next.limited = false;
+  }
+  return next;
+}
+
+Fuser::Fuser() : state_(std::make_unique<State>()) {}
+Fuser::~Fuser() = default;
+Fuser::Fuser(Fuser&&) noexcept = default;
+Fuser& Fuser::operator=(Fuser&&) noexcept = default;
+
+void Fuser::set_options(const FuserOptions& options) {
+  state_->options = sane(options);
+  state_->forget_places();
+}
+
+const FuserOptions& Fuser::options() const {
+  return state_->options;
+}
+
+void Fuser::set_geometry(const Geometry& geometry) {
+  if (geometry == state_->geometry) return;
+  state_->geometry = geometry;
+  state_->forget_places();
+}
+
+void Fuser::set_table(RuleTable table) {
+  state_->memory.match = {};
+  state_->decision.rule_name = {};
+  state_->table = std::move(table);
+}
+
+void Fuser::reset() {
+  state_->memory = {};
+  state_->decision = {};
+}
+
+const Decision& Fuser::update(const Input& input) {
+  State& state = *state_;
+  if (state.memory.begun && input.time < state.memory.time) reset();
+  const bool first = !state.memory.begun;
+  state.memory.begun = true;
+  state.memory.time = input.time;
+
+  const Decision next = state.decide(input);
+  const Decision& old = state.decision;
+  const bool changed = first || next.action != old.action || next.rule != old.rule ||
+                       next.rule_name != old.rule_name || next.target != old.target ||
+                       !same(next.sector.from, old.sector.from) || !same(next.sector.to, old.sector.to) ||
+                       next.limited != old.limited || next.camera_found != old.camera_found ||
+                       next.fired != old.fired || next.doubtful != old.doubtful ||
+                       next.invalid != old.invalid;
+  state.decision = next;
+  state.decision.changed = changed;
+  return state.decision;
+}
+
+}  // namespace cerberus::fusion

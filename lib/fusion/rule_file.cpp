@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fusion/rule_file.h"
+
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <span>
+
+#include "fusion/rule_check.h"
+#include "sensing/angles.h"
+
+#define TOML_EXCEPTIONS 0
+#define TOML_HEADER_ONLY 1
+#define TOML_ENABLE_FORMATTERS 0
+#include <toml++/toml.h>
+
+namespace cerberus::fusion {
+
+namespace {
+
+constexpr std::size_t kMostBytes =
+    1 << 20;  // a rule file is a page; a device or a video named by mistake is not
+
+constexpr std::array kActions{Action::track,  Action::turn_left, Action::turn_right,
+                              Action::search, Action::zero,      Action::hold};
+
+class Reader {
+ public:
+  explicit Reader(std::string_view source) : source_(source) {}
+
+  RuleTable read(const toml::table& root) {
+    only(root, {"name", "sensors", "precedence", "rule"}, "the file");
+    RuleTable table;
+    table.name = text(root, "name", std::string(source_));
+    if (root.contains("sensors"))
+      table.sensors = static_cast<int>(whole(*root.get("sensors"), "sensors", 1, kMaxSensors));
+    else
+      complain(root, "\"sensors\" (how many there are) is missing");
+    const std::string precedence = text(root, "precedence", "exact");
+    if (precedence == "order")
+      table.precedence = Precedence::order;
+    else if (precedence != "exact")
+      complain(*root.get("precedence"), "unknown precedence \"" + precedence + "\" (exact, order)");
+    const toml::node* rules = root.get("rule");
+    if (rules == nullptr || !rules->is_array_of_tables()) {
+      complain(rules ? *rules : root, "no [[rule]] found");
+      return table;
+    }
+    for (const toml::node& rule : *rules->as_array())
+      table.rules.push_back(read_rule(*rule.as_table(), table));
+    return table;
+  }
+
+  const std::string& errors() const { return errors_; }
+  void complain(toml::source_position at, std::string_view text) {
+    if (!errors_.empty()) errors_ += '\n';
+    errors_ += source_;
+    if (at.line > 0) errors_ += ':' + std::to_string(at.line);
+    errors_ += ": ";
+    errors_ += text;
+  }
+
+ private:
+  void complain(const toml::node& node, std::string_view text) { complain(node.source().begin, text); }
+
+  Rule read_rule(const toml::table& from, const RuleTable& table) {
+    only(from, {"number", "name", "camera", "all", "any", "none", "bands", "action", "sweep"}, "a rule");
+    Rule rule;
+    rule.number = static_cast<int>(table.rules.size()) + 1;
+    if (const toml::node* number = from.get("number"))
+      rule.number = static_cast<int>(whole(*number, "number", 1, 1'000'000));
+    rule.name = text(from, "name", "rule " + std::to_string(rule.number));
+    const std::string camera = text(from, "camera", "any");
+    if (camera == "found" || camera == "missing")
+      rule.camera = camera == "found" ? Camera::found : Camera::missing;
+    else if (camera != "any")
+      complain(*from.get("camera"), "unknown camera \"" + camera + "\" (found, missing, any)");
+    rule.all = sensors(from, "all", table.sensors);
+    rule.any = sensors(from, "any", table.sensors);
+    rule.none = sensors(from, "none", table.sensors);
+
+    const toml::node* bands = from.get("bands");
+    if ((bands != nullptr) == from.contains("action")) {
+      complain(from, rule.name + " needs either \"action\" or \"bands\"");
+    } else if (bands == nullptr) {
+      rule.bands.push_back(read_action(from, rule.name));
+    } else if (!bands->is_array()) {
+      complain(*bands, "\"bands\" is a list: [ { up-to = -45, action = \"turn-right\" }, ... ]");
+    } else {
+      for (const toml::node& band : *bands->as_array()) {
+        if (const toml::table* entry = band.as_table())
+          rule.bands.push_back(read_band(*entry, rule.name));
+        else
+          complain(band, "a band is a table: { up-to = -45, action = \"turn-right\" }");
+      }
+    }
+    return rule;
+  }
+
+  Band read_band(const toml::table& from, const std::string& rule) {
+    only(from, {"from", "above", "up-to", "below", "action", "sweep"}, "a band");
+    if (from.contains("from") && from.contains("above"))
+      complain(from, "\"from\" and \"above\" exclude each other");
+    if (from.contains("up-to") && from.contains("below"))
+      complain(from, "\"up-to\" and \"below\" exclude each other");
+    Band band = read_action(from, rule);
+    const auto edge = [&](const char* key, double& limit, bool& included, bool closed) {
+      const toml::node* node = from.get(key);
+      if (node == nullptr) return;
+      limit = angle(*node, key);
+      included = closed;
+    };
+    edge("from", band.lower, band.lower_included, true);
+    edge("above", band.lower, band.lower_included, false);
+    edge("up-to", band.upper, band.upper_included, true);
+    edge("below", band.upper, band.upper_included, false);
+    return band;
+  }
+
+  // action and sweep, of a band or of a rule that has only one.
+  Band read_action(const toml::table& from, const std::string& rule) {
+    Band band;
+    const std::string wanted = text(from, "action", "");
+    bool known = false;
+    for (const Action action : kActions) {
+      if (wanted != name(action)) continue;
+      band.action = action;
+      known = true;
+    }
+    if (!known && wanted.empty() && !from.contains("action")) {
+      complain(from, rule + ": \"action\" is missing");
+    } else if (!known) {
+      complain(*from.get("action"),
+               "unknown action \"" + wanted + "\" (track, turn-left, turn-right, search, zero, hold)");
+    }
+    const toml::node* sweep = from.get("sweep");
+    const bool search = known && band.action == Action::search;
+    if (sweep != nullptr && known && !search) complain(*sweep, "only a search has a sweep");
+    if (!search) return band;
+    const toml::array* ends = sweep != nullptr ? sweep->as_array() : nullptr;
+    if (ends == nullptr || ends->size() != 2) {
+      complain(sweep ? *sweep : from,
+               "a search needs the two pan angles it sweeps between: sweep = [-60, 60]");
+      return band;
+    }
+    band.search = {angle((*ends)[0], "sweep"), angle((*ends)[1], "sweep")};
+    return band;
+  }
+
+  SensorBits sensors(const toml::table& from, const char* key, int count) {
+    const toml::node* node = from.get(key);
+    if (node == nullptr) return 0;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) {
+      complain(*node, std::string("\"") + key + "\" is a list of sensor numbers: [1, 3]");
+      return 0;
+    }
+    SensorBits bits = 0;
+    for (const toml::node& sensor : *list) {
+      const auto number = whole(sensor, "a sensor", 1, count > 0 ? count : kMaxSensors);
+      bits = static_cast<SensorBits>(bits | 1U << (number - 1));
+    }
+    return bits;
+  }
+
+  std::int64_t whole(const toml::node& node, std::string_view what, int least, int most) {
+    const toml::value<std::int64_t>* value = node.as_integer();
+    if (value != nullptr && value->get() >= least && value->get() <= most) return value->get();
+    complain(node, std::string(what) + " is a whole number from " + std::to_string(least) + " to " +
+                       std::to_string(most));
+    return least;
+  }
+
+  double angle(const toml::node& node, std::string_view what) {
+    const std::optional<double> degrees = node.is_number() ? node.value<double>() : std::nullopt;
+    if (degrees && std::abs(*degrees) <= 3600) return sensing::radians(*degrees);  // false for NaN
+    complain(node, std::string(what) + " is a pan angle in degrees");
+    return 0;
+  }
+
+  std::string text(const toml::table& from, const char* key, std::string otherwise) {
+    const toml::node* node = from.get(key);
+    if (node == nullptr) return otherwise;
+    if (const toml::value<std::string>* value = node->as_string()) return value->get();
+    complain(*node, std::string("\"") + key + "\" is a text in quotes");
+    return otherwise;
+  }
+
+  void only(const toml::table& table, std::initializer_list<std::string_view> known, std::string_view where) {
+    for (const auto& [key, node] : table) {
+      bool found = false;
+      for (const std::string_view name : known) found = found || key.str() == name;
+      if (!found)
+        complain(key.source().begin,
+                 "unknown key \"" + std::string(key.str()) + "\" in " + std::string(where));
+    }
+  }
+
+  std::string_view source_;
+  std::string errors_;
+};
+
+RuleFile failure(std::string error) {
+  return {std::nullopt, std::move(error)};
+}
+
+}  // namespace
+
+RuleFile parse_rules(std::string_view text, std::string_view source) {
+  Reader reader(source);
+  const toml::parse_result parsed = toml::parse(text, source);
+  if (!parsed) {
+    reader.complain(parsed.error().source().begin, parsed.error().description());
+    return failure(reader.errors());
+  }
+  RuleTable table = reader.read(parsed.table());
+  if (!reader.errors().empty()) return failure(reader.errors());
+  for (const RuleProblem& problem : check(table)) reader.complain(toml::source_position{}, problem.text);
+  if (!reader.errors().empty()) return failure(reader.errors());
+  return {std::move(table), ""};
+}
+
+RuleFile load_rules(const std::string& path) {
+  const auto close = [](std::FILE* file) { std::fclose(file); };
+  const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rbe"), close);
+  if (!file) return failure(path + ": " + std::strerror(errno));
+  std::string text(kMostBytes + 1, '\0');
+  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
+  if (std::ferror(file.get()) != 0) return failure(path + ": " + std::strerror(errno));
+  if (text.size() > kMostBytes) return failure(path + ": too long for a rule file");
+  return parse_rules(text, path);
+}
+
+}  // namespace cerberus::fusion

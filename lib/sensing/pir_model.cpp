@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "sensing/pir_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::sensing {
+
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::minutes;
+using std::chrono::seconds;
+
+constexpr Time kMostDebounce = milliseconds(50);
+constexpr Time kLongAgo = Time::min();
+
+// Later by a duration that is not negative; what lies beyond all time is kNever.
+constexpr Time later(Time time, Time duration) {
+  return time > Time::zero() && duration > kNever - time ? kNever : time + duration;
+}
+
+constexpr Time not_negative(Time time) {
+  return std::max(time, Time::zero());
+}
+
+// Not in any data sheet at hand, so assumed as modules of that kind have it: warm-up of AM312 and SK-11, the
+// AM312's angle. stuck_after is far beyond the longest hold of any of them.
+constexpr PirPreset kPresets[] = {
+    {.name = "hc-sr501",
+     .options = {.warm_up = seconds(60)},
+     .module_hold = {milliseconds(300), seconds(200)},
+     .module_block = {milliseconds(200), seconds(4)},
+     .range = 7,
+     .field_of_view = radians(120)},
+    {.name = "am312",
+     .options = {.warm_up = seconds(30)},
+     .module_hold = {seconds(2), seconds(2)},
+     .module_block = {seconds(2), seconds(2)},
+     .range = 5,
+     .field_of_view = radians(100)},
+    {.name = "sk-11",
+     .options = {.active_low = true, .warm_up = seconds(60)},
+     .module_hold = {},
+     .module_block = {},
+     .range = 12,
+     .field_of_view = radians(120)},
+};
+
+}  // namespace
+
+std::string_view describe(PirFault fault) {
+  switch (fault) {
+    case PirFault::stuck_on:
+      return "stuck on";
+    case PirFault::chattering:
+      return "chattering";
+    case PirFault::none:
+      break;
+  }
+  return "";
+}
+
+std::span<const PirPreset> pir_presets() {
+  return kPresets;
+}
+
+const PirPreset* find_pir_preset(std::string_view name) {
+  const auto found = std::ranges::find(kPresets, name, &PirPreset::name);
+  return found == std::end(kPresets) ? nullptr : found;
+}
+
+PirModel::PirModel(const PirOptions& options) : options_(options) {
+  options_.debounce = std::clamp(options_.debounce, Time::zero(), kMostDebounce);
+  options_.hold = not_negative(options_.hold);
+  options_.block = not_negative(options_.block);
+  options_.warm_up = not_negative(options_.warm_up);
+  options_.stuck_after = not_negative(options_.stuck_after);
+  options_.chatter_edges = std::min(options_.chatter_edges, kRises);
+  options_.chatter_window = not_negative(options_.chatter_window);
+}
+
+void PirModel::start(Time now, bool level) {
+  now_ = changed_ = now;
+  started_ = true;
+  line_ = detecting_ = false;
+  last_fall_ = hold_until_ = blocked_until_ = kLongAgo;
+  warm_until_ = later(now, options_.warm_up);
+  warming_ = options_.warm_up > Time::zero();
+  presence_ = Presence::invalid;
+  fault_ = PirFault::none;
+  turning_ = doubtful_ = false;
+  rise_count_ = 0;
+  line_ = level != options_.active_low;
+  if (line_) rise(now);
+  settle(now);
+}
+
+void PirModel::edge(Time time, bool level) {
+  if (!started_) return start(time, level);
+  advance(time);
+  const bool line = level != options_.active_low;
+  if (line == line_) return;
+  line_ = line;
+  if (line_) {
+    rise(now_);
+  } else {
+    last_fall_ = now_;
+  }
+  settle(now_);
+}
+
+Time PirModel::poll(Time now) {
+  if (started_) advance(now);
+  return deadline();
+}
+
+void PirModel::base(Time time, double yaw_rate) {
+  if (!started_) return;
+  advance(time);
+  const bool turning = std::abs(yaw_rate) > kDoubtfulTurn;  // false for NaN
+  if (turning_ && !turning) calm_since_ = now_;
+  turning_ = turning;
+  settle(now_);
+}
+
+void PirModel::advance(Time until) {
+  for (Time due = deadline(); due <= until && due != kNever; due = deadline()) {
+    now_ = std::max(now_, due);
+    settle(now_);
+  }
+  now_ = std::max(now_, until);
+}
+
+void PirModel::rise(Time now) {
+  // A gap shorter than the debounce time is no break of a line that is stuck.
+  if (rise_count_ == 0 || later(last_fall_, options_.debounce) <= now) active_since_ = now;
+  rises_[rise_count_++ % kRises] = now;
+  if (rise_count_ == 2 * kRises) rise_count_ = kRises;  // only "at least kRises" matters; never wraps to 0
+  if (detecting_ && options_.retrigger) hold_until_ = std::max(hold_until_, later(now, options_.hold));
+}
+
+// The time of the n-th last rise, n >= 1; kLongAgo: there were not so many.
+Time PirModel::past_rise(unsigned n) const {
+  return rise_count_ >= n ? rises_[(rise_count_ - n) % kRises] : kLongAgo;
+}
+
+// Fewer rises than half of what makes the fault are left in the window.
+Time PirModel::calm_time() const {
+  return later(past_rise(std::max(1U, options_.chatter_edges / 2)), options_.chatter_window);
+}
+
+// When the detection ends as things are; kNever: not before the line falls.
+Time PirModel::end_time() const {
+  if (!options_.retrigger && options_.hold > Time::zero()) return hold_until_;
+  return line_ ? kNever : std::max(later(last_fall_, options_.debounce), hold_until_);
+}
+
+Time PirModel::deadline() const {
+  if (!started_) return kNever;
+  Time due = kNever;
+  const auto at = [&due](bool expected, Time time) {
+    if (expected) due = std::min(due, time);
+  };
+  at(warming_, warm_until_);
+  at(detecting_, end_time());
+  at(!detecting_ && line_, blocked_until_);
+  at(fault_ == PirFault::none && line_ && options_.stuck_after > Time::zero(),
+     later(active_since_, options_.stuck_after));
+  at(fault_ == PirFault::stuck_on && !line_, later(last_fall_, options_.debounce));
+  at(fault_ == PirFault::chattering, calm_time());
+  at(doubtful_ && !turning_, later(calm_since_, kDoubtLinger));
+  return due;
+}
+
+// Brings everything to where it stands at `now`. Each deadline that has come is used up here.
+void PirModel::settle(Time now) {
+  if (warming_ && now >= warm_until_) warming_ = false;
+
+  if (detecting_ && now >= end_time()) {
+    detecting_ = false;
+    blocked_until_ = options_.block > Time::zero() ? later(now, options_.block) : kLongAgo;
+  }
+  if (!detecting_ && line_ && now >= blocked_until_) {
+    detecting_ = true;
+    hold_until_ = later(now, options_.hold);
+  }
+
+  const PirFault old_fault = fault_;
+  const unsigned limit = options_.chatter_edges;
+  if (fault_ == PirFault::stuck_on && !line_ && now >= later(last_fall_, options_.debounce))
+    fault_ = PirFault::none;
+  if (fault_ == PirFault::chattering && now >= calm_time()) fault_ = PirFault::none;
+  if (limit > 0 && rise_count_ >= limit && later(past_rise(limit), options_.chatter_window) > now)
+    fault_ = PirFault::chattering;
+  if (fault_ == PirFault::none && line_ && options_.stuck_after > Time::zero() &&
+      now >= later(active_since_, options_.stuck_after))
+    fault_ = PirFault::stuck_on;
+
+  doubtful_ = detecting_ && (turning_ || (doubtful_ && now < later(calm_since_, kDoubtLinger)));
+
+  const Presence old_presence = presence_;
+  presence_ = warming_ || fault_ != PirFault::none ? Presence::invalid
+              : detecting_                         ? Presence::detected
+                                                   : Presence::none;
+  if (presence_ != old_presence || fault_ != old_fault) changed_ = now;
+}
+
+}  // namespace cerberus::sensing

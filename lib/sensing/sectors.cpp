@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "sensing/sectors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "sensing/angles.h"
+
+namespace cerberus::sensing {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+constexpr double kTouch = 1e-6;  // rad; bearings come as decimal degrees, rounding must not decide
+
+// How far clockwise from the arc's start a direction lies, [0, 2 pi); just before the start counts as at it.
+double offset(const Arc& arc, double direction) {
+  double clockwise = wrap(direction - arc.from);
+  if (clockwise < 0) clockwise += kTurn;
+  return clockwise > kTurn - kTouch ? 0 : clockwise;
+}
+
+}  // namespace
+
+Geometry::Geometry() {
+  const std::array<double, 3> paper{0, radians(-120), radians(120)};
+  set(paper, radians(120));
+}
+
+bool Geometry::set(std::span<const double> bearings, double field_of_view) {
+  if (bearings.empty() || bearings.size() > kMaxSensors) return false;
+  if (!(field_of_view > 0) || !(field_of_view <= kTurn + kTouch)) return false;
+  if (!std::ranges::all_of(bearings, [](double bearing) { return std::isfinite(bearing); })) return false;
+  bearings_ = {};
+  std::ranges::transform(bearings, bearings_.begin(), wrap);
+  count_ = static_cast<int>(bearings.size());
+  field_of_view_ = std::min(field_of_view, kTurn);
+  return true;
+}
+
+Arc Geometry::sector(int sensor) const {
+  return {wrap(bearing(sensor) - field_of_view_ / 2), field_of_view_};
+}
+
+// A part of the intersection begins where some sector begins, and there only: so each sector's start is tried.
+Arcs overlap(const Geometry& geometry, SensorBits fired) {
+  Arcs found;
+  for (int i = 0; i < geometry.count(); ++i) {
+    if (!(fired >> i & 1)) continue;
+    Arc part = geometry.sector(i);
+    const bool known = std::ranges::any_of(
+        found, [&](const Arc& other) { return std::abs(wrap(other.from - part.from)) < kTouch; });
+    if (known || (part.width >= kTurn && found.count > 0)) continue;
+    bool common = true;
+    for (int j = 0; j < geometry.count() && common; ++j) {
+      if (!(fired >> j & 1) || j == i) continue;
+      const Arc other = geometry.sector(j);
+      const double start = offset(other, part.from);
+      common = other.width >= kTurn || start <= other.width + kTouch;
+      if (other.width < kTurn) part.width = std::min(part.width, std::max(0.0, other.width - start));
+    }
+    if (common) found.push(part);
+  }
+  return found;
+}
+
+}  // namespace cerberus::sensing
