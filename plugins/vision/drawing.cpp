@@ -170,8 +170,10 @@ void Painter::paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>
       cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
       // Segments replace what they overlap, so that joints do not add up.
       cairo_set_operator(cr, CAIRO_OPERATOR_SOURCE);
+      // The neighbours' ends too: else the casing would cut through the line where patches meet.
+      const std::size_t begin = first > 0 ? first - 1 : 0, end = std::min(last + 1, smooth_.size() - 1);
       for (const bool casing : {true, false})
-        for (std::size_t i = first; i < last; ++i) {
+        for (std::size_t i = begin; i < end; ++i) {
           const double age = (scene_->time - smooth_[i].time) / std::max(scene_->trail_time, 1e-3);
           const double fresh = std::clamp(1 - age, 0.0, 1.0);
           cairo_set_line_width(cr, line_ * (0.5 + 0.7 * fresh) + (casing ? std::max(1.0, 0.7 * line_) : 0));

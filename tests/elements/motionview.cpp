@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What is shown is compared pixel by pixel with what was put in: nearest neighbour by the definition (the sample that
+// covers the centre of the pixel), in floating point.
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "outputs.h"
+
+using namespace outputs;
+
+namespace {
+
+struct Picture {
+  GstVideoInfo info;
+  std::vector<guint8> data;
+  int width() const { return info.width; }
+  int height() const { return info.height; }
+  bool gray() const { return GST_VIDEO_INFO_FORMAT(&info) == GST_VIDEO_FORMAT_GRAY8; }
+  // GRAY8: the level; BGRx: 0xRRGGBB.
+  guint32 at(int x, int y) const {
+    const guint8* p = data.data() + static_cast<std::size_t>(y) * info.stride[0] +
+                      static_cast<std::size_t>(x) * (gray() ? 1 : 4);
+    return gray() ? p[0] : guint32{p[2]} << 16 | guint32{p[1]} << 8 | p[0];
+  }
+  bool all(guint32 value) const {
+    for (int y = 0; y < height(); ++y)
+      for (int x = 0; x < width(); ++x)
+        if (at(x, y) != value) return false;
+    return true;
+  }
+};
+
+Picture shown(GstHarness* h, GstBuffer* in) {
+  fail_unless_equals_int(gst_harness_push(h, in), GST_FLOW_OK);
+  GstBuffer* out = gst_harness_pull(h);
+  Picture picture;
+  GstCaps* caps = gst_pad_get_current_caps(h->sinkpad);
+  fail_unless(gst_video_info_from_caps(&picture.info, caps));
+  gst_caps_unref(caps);
+  picture.data = bytes(out);
+  fail_unless_equals_uint64(picture.data.size(), picture.info.size);
+  gst_buffer_unref(out);
+  return picture;
+}
+
+Harness started(const std::string& line, const std::string& caps, const char* sink_caps = nullptr) {
+  Harness h = harness(line.c_str());
+  if (sink_caps) gst_harness_set_sink_caps_str(h.get(), sink_caps);
+  gst_harness_set_src_caps_str(h.get(), caps.c_str());
+  return h;
+}
+
+// A plane of width x height samples, rows `padding` samples apart more than needed, made by value(x, y).
+template <typename T>
+void add_plane(GstBuffer* buffer, CerberusPlaneKind kind, int width, int height,
+               const std::function<int(int, int)>& value, int padding = 5) {
+  const std::size_t stride = (static_cast<std::size_t>(width) + padding) * sizeof(T);
+  std::vector<T> samples(stride / sizeof(T) * height, T(99));
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) samples[y * (stride / sizeof(T)) + x] = static_cast<T>(value(x, y));
+  GstBuffer* plane = gst_buffer_new_memdup(samples.data(), samples.size() * sizeof(T));
+  fail_unless(cerberus_buffer_add_plane_meta(buffer, kind, plane, width, height, static_cast<int>(stride)));
+}
+
+int sample_at(int pixel, int pixels, int samples) {
+  return static_cast<int>(std::floor((pixel + 0.5) * samples / pixels));
+}
+
+int checkers(int x, int y) {
+  return (x * 7 + y * 13) % 3 ? 0 : 255;
+}
+int ramp(int x, int y) {
+  return (x * 5 + y * 11) % 256;
+}
+
+const std::vector<std::pair<int, int>> kSizes = {{64, 48}, {33, 35}, {320, 240}, {321, 1}, {1, 1}, {640, 97}};
+
+}  // namespace
+
+GST_START_TEST(the_mask_is_enlarged_by_nearest_neighbour) {
+  for (const auto& [width, height] : kSizes)
+    for (const auto& [w, h] : {std::pair{32, 24}, {5, 3}, {64, 48}, {320, 240}, {1, 1}}) {
+      const std::string caps = caps_string("I420", width, height);
+      Harness harness = started("motionview stage=mask", caps);
+      GstBuffer* in = frame(info_of(caps));
+      add_plane<guint8>(in, CERBERUS_PLANE_MASK, w, h, checkers);
+      const Picture p = shown(harness.get(), in);
+      fail_unless(p.gray());
+      fail_unless_equals_int(p.width(), width);
+      fail_unless_equals_int(p.height(), height);
+      for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+          fail_unless_equals_int(p.at(x, y), checkers(sample_at(x, width, w), sample_at(y, height, h)));
+    }
+}
+GST_END_TEST
+
+GST_START_TEST(grey_stages_show_their_plane_in_grey_and_in_colour_pixels) {
+  const std::pair<const char*, CerberusPlaneKind> stages[] = {
+      {"luma", CERBERUS_PLANE_LUMA},
+      {"difference", CERBERUS_PLANE_DIFFERENCE},
+      {"previous-difference", CERBERUS_PLANE_PREVIOUS_DIFFERENCE},
+      {"mask", CERBERUS_PLANE_MASK}};
+  const std::string caps = caps_string("NV12", 66, 50);
+  for (const auto& [stage, kind] : stages)
+    for (const char* out : {"video/x-raw,format=GRAY8", "video/x-raw,format=BGRx"}) {
+      Harness harness = started(std::string("motionview stage=") + stage, caps, out);
+      GstBuffer* in = frame(info_of(caps));
+      for (const auto& other : stages)
+        add_plane<guint8>(in, other.second, 33, 25, other.second == kind ? ramp : checkers);
+      const Picture p = shown(harness.get(), in);
+      for (int y = 0; y < 50; ++y)
+        for (int x = 0; x < 66; ++x)
+          fail_unless_equals_int(p.at(x, y), guint32(ramp(x / 2, y / 2)) * (p.gray() ? 1 : 0x010101));
+    }
+}
+GST_END_TEST
+
+GST_START_TEST(gain_brightens_the_differences_and_stops_at_white) {
+  const std::string caps = caps_string("GRAY8", 64, 4);
+  Harness harness = started("motionview stage=difference gain=2.5", caps);
+  GstBuffer* in = frame(info_of(caps));
+  add_plane<guint8>(in, CERBERUS_PLANE_DIFFERENCE, 64, 4, [](int x, int) { return x * 4; });
+  const Picture p = shown(harness.get(), in);
+  for (int x = 0; x < 64; ++x)
+    fail_unless_equals_int(p.at(x, 2), std::min<long>(255, std::lround(x * 4 * 2.5)));
+}
+GST_END_TEST
+
+GST_START_TEST(every_label_has_a_colour_and_the_background_none) {
+  const std::string caps = caps_string("I420", 64, 32);
+  Harness harness = started("motionview stage=labels", caps);
+  GstBuffer* in = frame(info_of(caps));
+  add_plane<guint16>(in, CERBERUS_PLANE_LABELS, 8, 1, [](int x, int) { return x == 7 ? 65535 : x; });
+  const Picture p = shown(harness.get(), in);
+  fail_if(p.gray());
+  std::vector<guint32> colors;
+  for (int label = 0; label < 8; ++label) colors.push_back(p.at(label * 8 + 4, 16));
+  fail_unless_equals_int(colors[0], 0);
+  for (int i = 1; i < 7; ++i)
+    for (int j = 0; j < i; ++j) fail_if(colors[i] == colors[j]);
+  fail_if(colors[7] == 0);
+}
+GST_END_TEST
+
+// The threshold's upright line: the column with most pixels of its colour, in the upper half.
+static int threshold_column(const Picture& p) {
+  int best = -1, most = 0;
+  for (int x = 0; x < p.width(); ++x) {
+    int n = 0;
+    for (int y = p.height() / 8; y < p.height() / 2; ++y) {
+      const guint32 c = p.at(x, y);
+      n += (c >> 16) > 200 && (c >> 8 & 255) < 140 && (c & 255) < 120;
+    }
+    if (n > most) most = n, best = x;
+  }
+  return best;
+}
+
+static GstBuffer* with_histogram(const GstVideoInfo& info, guint threshold) {
+  GstBuffer* in = frame(info);
+  add_plane<guint32>(in, CERBERUS_PLANE_HISTOGRAM, 256, 1,
+                     [](int x, int) { return x < 60 ? 4000 / (1 + x * x) : 0; });
+  CerberusThreshold t{};
+  t.threshold = t.fuzzy_threshold = threshold;
+  t.ready = TRUE;
+  cerberus_buffer_add_threshold_meta(in, &t);
+  return in;
+}
+
+GST_START_TEST(the_histogram_shows_the_threshold_where_it_is) {
+  const std::string caps = caps_string("I420", 640, 480);
+  Harness harness = started("motionview stage=histogram", caps);
+  // The axis has 64 levels: steps of the threshold are steps of equal width.
+  const int a = threshold_column(shown(harness.get(), with_histogram(info_of(caps), 10)));
+  const int b = threshold_column(shown(harness.get(), with_histogram(info_of(caps), 20)));
+  const int c = threshold_column(shown(harness.get(), with_histogram(info_of(caps), 40)));
+  fail_unless(a > 0 && b > a && c > b, "%d %d %d", a, b, c);
+  fail_unless(std::abs((c - b) - 2 * (b - a)) <= 3, "%d %d %d", a, b, c);
+}
+GST_END_TEST
+
+GST_START_TEST(the_histogram_is_drawn_at_every_size) {
+  for (const auto& [width, height] : kSizes) {
+    const std::string caps = caps_string("I420", width, height);
+    Harness harness = started("motionview stage=histogram", caps);
+    const Picture p = shown(harness.get(), with_histogram(info_of(caps), 10));
+    fail_if(p.all(0));
+    GstBuffer* empty = frame(info_of(caps), 1);
+    add_plane<guint32>(empty, CERBERUS_PLANE_HISTOGRAM, 256, 1, [](int, int) { return 0; });
+    shown(harness.get(), empty);
+    GstBuffer* full = frame(info_of(caps), 2);
+    add_plane<guint32>(full, CERBERUS_PLANE_HISTOGRAM, 256, 1, [](int, int) { return -1; });  // 2^32 - 1 each
+    shown(harness.get(), full);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_missing_plane_is_black_and_told_once) {
+  for (const char* stage : {"difference", "previous-difference", "mask", "labels", "histogram"}) {
+    const std::string caps = caps_string("I420", 64, 48);
+    Harness harness = started(std::string("motionview stage=") + stage, caps);
+    Bus bus(harness.get());
+    for (int k = 0; k < 3; ++k) fail_unless(shown(harness.get(), frame(info_of(caps), k)).all(0));
+    std::string text;
+    fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING, &text), 1);
+    fail_unless(text.find(std::string("stage=") + stage) != std::string::npos, "%s", text.c_str());
+  }
+}
+GST_END_TEST
+
+// Grey of level 77 in every format: what is shown is what cameramotion would have analysed.
+GST_START_TEST(luma_is_made_here_where_no_stage_made_it) {
+  for (const char* format : kFormats) {
+    const std::string caps = caps_string(format, 354, 66);
+    Harness harness = started("motionview stage=luma", caps);
+    GstBuffer* in = frame(info_of(caps), 0, 77);
+    const Picture p = shown(harness.get(), in);
+    fail_unless(p.all(77), "%s: %d", format, p.at(3, 3));
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_buffer_without_a_picture_is_black_and_told_once) {
+  const std::string caps = caps_string("I420", 64, 48);
+  Harness harness = started("motionview stage=luma", caps);
+  Bus bus(harness.get());
+  for (int k = 0; k < 3; ++k) fail_unless(shown(harness.get(), gst_buffer_new()).all(0));
+  fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING), 1);
+}
+GST_END_TEST
+
+GST_START_TEST(somebody_who_asks_for_planes_is_told_yes) {
+  Harness harness = started("motionview ! identity", caps_string("I420", 64, 48));
+  fail_unless(cerberus_pad_peer_wants_planes(harness->srcpad));
+}
+GST_END_TEST
+
+GST_START_TEST(what_was_found_stays_on_the_picture_but_planes_do_not) {
+  const std::string caps = caps_string("I420", 64, 48);
+  Harness harness = started("motionview stage=mask", caps);
+  GstBuffer* in = frame(info_of(caps), 5);
+  add_plane<guint8>(in, CERBERUS_PLANE_MASK, 32, 24, checkers);
+  add(in, region(3, 10, 12, 20, 16));
+  CerberusThreshold threshold{};
+  threshold.threshold = 14;
+  cerberus_buffer_add_threshold_meta(in, &threshold);
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  motion.matrix[2] = 2;
+  cerberus_buffer_add_camera_motion_meta(in, &motion);
+  gst_harness_push(harness.get(), in);
+  GstBuffer* out = gst_harness_pull(harness.get());
+  fail_unless_equals_uint64(GST_BUFFER_PTS(out), 200 * GST_MSECOND);
+  fail_unless_equals_uint64(GST_BUFFER_DURATION(out), 40 * GST_MSECOND);
+  fail_if(cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_MASK));
+  fail_unless(cerberus_buffer_get_threshold_meta(out));
+  fail_unless(cerberus_buffer_get_camera_motion_meta(out)->motion.matrix[2] == 2);
+  GPtrArray* regions = cerberus_buffer_get_regions(out);
+  fail_unless_equals_int(regions->len, 1);
+  fail_unless(static_cast<CerberusRegion*>(g_ptr_array_index(regions, 0))->x == 10);
+  g_ptr_array_unref(regions);
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
+GST_START_TEST(the_stage_changes_while_playing_and_the_format_with_it) {
+  const std::string caps = caps_string("I420", 64, 48);
+  Harness harness = started("motionview stage=mask", caps);
+  GstElement* element = gst_harness_find_element(harness.get(), "motionview");
+  int number = 0;
+  for (const char* stage : {"mask", "labels", "difference", "histogram", "luma"}) {
+    gst_util_set_object_arg(G_OBJECT(element), "stage", stage);
+    for (int k = 0; k < 2; ++k) {
+      GstBuffer* in = with_histogram(info_of(caps), 9);
+      GST_BUFFER_PTS(in) = number++ * 40 * GST_MSECOND;
+      for (const auto kind : {CERBERUS_PLANE_MASK, CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_LUMA})
+        add_plane<guint8>(in, kind, 32, 24, [&](int, int) { return 10 + kind; });
+      add_plane<guint16>(in, CERBERUS_PLANE_LABELS, 32, 24, [](int, int) { return 1; });
+      const Picture p = shown(harness.get(), in);
+      const std::string name = stage;
+      fail_unless_equals_int(p.gray(), name != "labels" && name != "histogram");
+      if (name == "mask") fail_unless(p.all(10 + CERBERUS_PLANE_MASK));
+      if (name == "difference") fail_unless(p.all(10 + CERBERUS_PLANE_DIFFERENCE));
+      if (name == "luma") fail_unless(p.all(10 + CERBERUS_PLANE_LUMA));
+      fail_if(p.all(0));
+    }
+  }
+  gst_object_unref(element);
+}
+GST_END_TEST
+
+GST_START_TEST(every_format_is_taken) {
+  for (const char* format : kFormats) {
+    const std::string caps = caps_string(format, 33, 35);
+    Harness harness = started("motionview stage=mask", caps);
+    GstBuffer* in = frame(info_of(caps));
+    add_plane<guint8>(in, CERBERUS_PLANE_MASK, 33, 35, checkers);
+    const Picture p = shown(harness.get(), in);
+    for (int y = 0; y < 35; ++y)
+      for (int x = 0; x < 33; ++x) fail_unless_equals_int(p.at(x, y), checkers(x, y));
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(the_output_keeps_size_rate_and_pixel_aspect) {
+  Harness harness = started("motionview stage=mask",
+                            caps_string("I420", 64, 48, ",pixel-aspect-ratio=8/9,colorimetry=bt709"));
+  GstBuffer* in = frame(info_of(caps_string("I420", 64, 48)));
+  add_plane<guint8>(in, CERBERUS_PLANE_MASK, 32, 24, checkers);
+  const Picture p = shown(harness.get(), in);
+  fail_unless_equals_int(p.info.par_n * 9, p.info.par_d * 8);
+  fail_unless_equals_int(p.info.fps_n, 25);
+  Harness still = started("motionview", "video/x-raw,format=I420,width=64,height=48,framerate=0/1");
+  shown(still.get(), frame(info_of(caps_string("I420", 64, 48))));
+}
+GST_END_TEST
+
+GST_START_TEST(interlaced_video_is_refused_naming_deinterlace) {
+  Harness harness = outputs::harness("motionview");
+  Bus bus(harness.get());
+  const std::string caps = caps_string("I420", 64, 48, ",interlace-mode=interleaved");
+  gst_harness_set_src_caps_str(harness.get(), caps.c_str());
+  fail_unless_equals_int(gst_harness_push(harness.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+  std::string text;
+  fail_unless(bus.count(GST_MESSAGE_ERROR, &text) >= 1);  // the harness tries again and again
+  fail_unless(text.find("deinterlace") != std::string::npos, "%s", text.c_str());
+}
+GST_END_TEST
+
+GST_START_TEST(a_new_frame_size_a_flush_and_eos) {
+  const std::string caps = caps_string("I420", 64, 48), odd = caps_string("YUY2", 33, 35);
+  Harness harness = started("motionview stage=mask", caps);
+  for (int k = 0; k < 6; ++k) {
+    if (k == 2) push_flush(harness.get());
+    if (k == 4) gst_harness_set_src_caps_str(harness.get(), odd.c_str());
+    const GstVideoInfo info = info_of(k < 4 ? caps : odd);
+    GstBuffer* in = frame(info, k);
+    add_plane<guint8>(in, CERBERUS_PLANE_MASK, 32, 24, [](int, int) { return 255; });
+    const Picture p = shown(harness.get(), in);
+    fail_unless_equals_int(p.width(), info.width);
+    fail_unless(p.all(255));
+  }
+  fail_unless(gst_harness_push_event(harness.get(), gst_event_new_eos()));
+  fail_unless(event_came(harness.get(), GST_EVENT_EOS));
+}
+GST_END_TEST
+
+GST_START_TEST(upstream_may_use_any_stride_and_nothing_is_delayed) {
+  const std::string text = caps_string("I420", 64, 48);
+  Harness harness = started("motionview", text);
+  shown(harness.get(), frame(info_of(text)));
+  GstCaps* caps = gst_caps_from_string(text.c_str());
+  GstQuery* query = gst_query_new_allocation(caps, TRUE);
+  fail_unless(gst_pad_peer_query(harness->srcpad, query));
+  fail_unless(gst_query_find_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr));
+  gst_query_unref(query);
+  gst_caps_unref(caps);
+  gst_harness_set_upstream_latency(harness.get(), 5 * GST_MSECOND);
+  fail_unless_equals_uint64(gst_harness_query_latency(harness.get()), 5 * GST_MSECOND);
+}
+GST_END_TEST
+
+static Suite* motionview_suite() {
+  watch_library_log();
+  Suite* s = suite_create("motionview");
+  TCase* tc = tcase_create("pictures");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, the_mask_is_enlarged_by_nearest_neighbour);
+  tcase_add_test(tc, grey_stages_show_their_plane_in_grey_and_in_colour_pixels);
+  tcase_add_test(tc, gain_brightens_the_differences_and_stops_at_white);
+  tcase_add_test(tc, every_label_has_a_colour_and_the_background_none);
+  tcase_add_test(tc, the_histogram_shows_the_threshold_where_it_is);
+  tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
+  tcase_add_test(tc, a_missing_plane_is_black_and_told_once);
+  tcase_add_test(tc, luma_is_made_here_where_no_stage_made_it);
+  tcase_add_test(tc, a_buffer_without_a_picture_is_black_and_told_once);
+  tc = tcase_create("stream");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, somebody_who_asks_for_planes_is_told_yes);
+  tcase_add_test(tc, what_was_found_stays_on_the_picture_but_planes_do_not);
+  tcase_add_test(tc, the_stage_changes_while_playing_and_the_format_with_it);
+  tcase_add_test(tc, every_format_is_taken);
+  tcase_add_test(tc, the_output_keeps_size_rate_and_pixel_aspect);
+  tcase_add_test(tc, interlaced_video_is_refused_naming_deinterlace);
+  tcase_add_test(tc, a_new_frame_size_a_flush_and_eos);
+  tcase_add_test(tc, upstream_may_use_any_stride_and_nothing_is_delayed);
+  return s;
+}
+
+GST_CHECK_MAIN(motionview)
