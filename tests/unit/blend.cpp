@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/blend.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <vector>
+
+using namespace cerberus::vision;
+
+// The definition in floating point, sample by sample of the whole picture.
+static double expected(const std::vector<std::uint32_t>& drawing, int dw, int dh, int x, int y,
+                       const BlendComponent& c, int u, int v, int before) {
+  const int nx = 1 << c.shift_x, ny = 1 << c.shift_y;
+  double sum = 0;
+  for (int py = v * ny; py < (v + 1) * ny; ++py)
+    for (int px = u * nx; px < (u + 1) * nx; ++px) {
+      double value = before;
+      if (px >= x && px < x + dw && py >= y && py < y + dh) {
+        const std::uint32_t p = drawing[(py - y) * dw + px - x];
+        const double a = (p >> 24) / 255.0;
+        value = c.red * (p >> 16 & 255) + c.green * (p >> 8 & 255) + c.blue * (p & 255) + c.offset * a +
+                before * (1 - a);
+      }
+      sum += value;
+    }
+  return std::clamp(sum / (nx * ny), 0.0, 255.0);
+}
+
+static const BlendComponent kMatrices[] = {
+    {nullptr, 0, 1, 0, 0, 0.257, 0.504, 0.098, 16},     // Y of BT.601, limited range
+    {nullptr, 0, 1, 0, 0, -0.148, -0.291, 0.439, 128},  // its Cb
+    {nullptr, 0, 1, 0, 0, 1, 0, 0, 0},                  // R
+    {nullptr, 0, 1, 0, 0, 0, 0, 0, 255},                // A
+};
+
+START_TEST(every_layout_agrees_with_the_definition) {
+  std::mt19937 random(7);
+  const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  for (int round = 0; round < 400; ++round) {
+    BlendComponent c = kMatrices[upto(4)];
+    c.shift_x = upto(3), c.shift_y = upto(2), c.step = 1 + upto(4);
+    const int width = 1 + upto(40), height = 1 + upto(30);
+    const int samples = (width + (1 << c.shift_x) - 1) >> c.shift_x,
+              rows = (height + (1 << c.shift_y) - 1) >> c.shift_y;
+    c.stride = samples * c.step + upto(9);
+    std::vector<std::uint8_t> before(static_cast<std::size_t>(c.stride) * rows), after;
+    for (auto& b : before) b = static_cast<std::uint8_t>(upto(256));
+    const int dw = 1 + upto(width), dh = 1 + upto(height), x = upto(width - dw + 1),
+              y = upto(height - dh + 1);
+    std::vector<std::uint32_t> drawing(static_cast<std::size_t>(dw) * dh);
+    for (auto& p : drawing) {
+      const unsigned a = upto(3) == 0 ? 0 : upto(3) == 0 ? 255 : upto(256);
+      p = a << 24;
+      for (const int shift : {0, 8, 16}) p |= static_cast<unsigned>(upto(static_cast<int>(a) + 1)) << shift;
+    }
+    after = before;
+    c.data = after.data();
+    blend({drawing.data(), dw, dh, dw}, x, y, {&c, 1});
+    for (int v = 0; v < rows; ++v)
+      for (int i = 0; i < static_cast<int>(c.stride); ++i) {
+        const std::size_t at = static_cast<std::size_t>(v * c.stride + i);
+        if (i % c.step == 0 && i / c.step < samples)
+          ck_assert_double_eq_tol(after[at], expected(drawing, dw, dh, x, y, c, i / c.step, v, before[at]),
+                                  0.51);
+        else
+          ck_assert_int_eq(after[at], before[at]);  // other components, and what lies between rows
+      }
+  }
+}
+END_TEST
+
+START_TEST(opaque_white_is_white_and_nothing_is_nothing) {
+  std::vector<std::uint8_t> y(16, 60), cb(4, 90);
+  BlendComponent c[2] = {kMatrices[0], kMatrices[1]};
+  c[0].data = y.data(), c[0].stride = 4;
+  c[1].data = cb.data(), c[1].stride = 2, c[1].shift_x = c[1].shift_y = 1;
+  const std::uint32_t nothing[16] = {};
+  blend({nothing, 4, 4, 4}, 0, 0, c);
+  ck_assert(std::all_of(y.begin(), y.end(), [](int v) { return v == 60; }));
+  ck_assert(std::all_of(cb.begin(), cb.end(), [](int v) { return v == 90; }));
+  std::uint32_t white[16];
+  std::fill(white, white + 16, 0xffffffffu);
+  blend({white, 4, 4, 4}, 0, 0, c);
+  ck_assert(std::all_of(y.begin(), y.end(), [](int v) { return v == 235; }));
+  ck_assert(std::all_of(cb.begin(), cb.end(), [](int v) { return v == 128; }));
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("blend");
+  TCase* tc = tcase_create("blend");
+  tcase_add_test(tc, every_layout_agrees_with_the_definition);
+  tcase_add_test(tc, opaque_white_is_white_and_nothing_is_nothing);
+  suite_add_tcase(suite, tc);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
