@@ -35,8 +35,7 @@ CerberusCameraMotion scaled(const CerberusCameraMotion& motion, Size from, Size 
   if (from == to || from.area() <= 0 || to.area() <= 0) return result;
   Transform transform;
   std::copy(std::begin(motion.matrix), std::end(motion.matrix), transform.m.begin());
-  // A still camera stays exactly identity; rounding would make it almost.
-  if (!transform.is_identity()) transform = transform.rescaled(from, to);
+  transform = transform.rescaled(from, to);  // identity stays exactly identity
   std::copy(transform.m.begin(), transform.m.end(), result.matrix);
   result.residual *= std::sqrt(static_cast<double>(to.area()) / static_cast<double>(from.area()));
   return result;

@@ -145,6 +145,16 @@ START_TEST(the_private_object_lives_as_long_as_the_element) {
 }
 END_TEST
 
+START_TEST(the_parents_finalizer_runs_too) {
+  auto* element = static_cast<GstElement*>(g_object_new(cerberus_test_thrower_get_type(), nullptr));
+  bool finalized = false;  // GObject clears an object's data in its own finalizer
+  g_object_set_data_full(G_OBJECT(element), "flag", &finalized,
+                         [](gpointer flag) { *static_cast<bool*>(flag) = true; });
+  gst_object_unref(element);
+  fail_unless(finalized);
+}
+END_TEST
+
 START_TEST(the_type_has_its_name_parent_and_interfaces) {
   fail_unless_equals_string(g_type_name(cerberus_test_thrower_get_type()), "CerberusTestThrower");
   fail_unless(g_type_parent(cerberus_test_thrower_get_type()) == GST_TYPE_BASE_TRANSFORM);
@@ -210,6 +220,7 @@ static Suite* element_types_suite(void) {
   TCase* tc = tcase_create("types");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, the_private_object_lives_as_long_as_the_element);
+  tcase_add_test(tc, the_parents_finalizer_runs_too);
   tcase_add_test(tc, the_type_has_its_name_parent_and_interfaces);
   tcase_add_test(tc, a_registered_element_can_be_made);
   tc = tcase_create("guard");

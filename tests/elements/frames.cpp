@@ -199,8 +199,13 @@ START_TEST(a_published_plane_is_read_back) {
 }
 END_TEST
 
+// All planes of one size come from one pool, and there are never more of them than are in use at a time.
 START_TEST(the_pool_uses_its_memory_again) {
   PlanePool pool;
+  g_autoptr(GstBuffer) first = gst_buffer_new();
+  pool.acquire({320, 240}).publish(first, CERBERUS_PLANE_LUMA);
+  const GstBufferPool* origin = cerberus_buffer_get_plane_meta(first, CERBERUS_PLANE_LUMA)->buffer->pool;
+  fail_unless(origin);
   std::vector<const void*> seen;
   for (int k = 0; k < 100; ++k) {
     g_autoptr(GstBuffer) frame = gst_buffer_new();
@@ -213,6 +218,8 @@ START_TEST(the_pool_uses_its_memory_again) {
     }
     one.publish(frame, CERBERUS_PLANE_DIFFERENCE);
     two.publish(frame, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+    for (const auto kind : {CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_PREVIOUS_DIFFERENCE})
+      fail_unless(cerberus_buffer_get_plane_meta(frame, kind)->buffer->pool == origin);
   }
   fail_unless_equals_int(seen.size(), 2);
 }

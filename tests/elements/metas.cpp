@@ -77,7 +77,7 @@ const Passage kPassages[] = {
     {"videorate", "video/x-raw,format=I420,framerate=25/1,width=64,height=48", true, true, true, true},
     {"videoconvert", "video/x-raw,format=I420,framerate=25/1,width=64,height=48", true, true, true, true},
     {"videoconvert", "video/x-raw,format=RGB,framerate=25/1,width=64,height=48", true, true, false, true},
-    {"videoscale", "video/x-raw,format=I420,framerate=25/1,width=128,height=24", true, true, false, true},
+    {"videoscale", "video/x-raw,format=I420,framerate=25/1,width=256,height=24", true, true, false, true},
     {"videocrop left=8 top=8", nullptr, false, true, false, false},
     {"videoflip method=horizontal-flip", nullptr, true, true, true, true},
     {"x264enc tune=zerolatency", nullptr, true, true, false, true},
@@ -139,13 +139,14 @@ START_TEST(every_element_keeps_what_it_should) {
 }
 END_TEST
 
-// Hand-computed: the picture becomes twice as wide and half as high, so a shift by (3, -2) is one by (6, -1).
+// Hand-computed: the picture becomes four times as wide and half as high, so a shift by (3, -2) is one by (12, -1), and
+// lengths grow by sqrt(4 / 2) on average.
 START_TEST(scaling_scales_the_camera_motion) {
   g_autoptr(GstBuffer) out = pass(passage_named("videoscale"));
   const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
-  const double expected[9] = {1, 0, 6, 0, 1, -1, 0, 0, 1};
+  const double expected[9] = {1, 0, 12, 0, 1, -1, 0, 0, 1};
   for (int i = 0; i < 9; ++i) fail_unless(std::abs(meta->motion.matrix[i] - expected[i]) < 1e-12);
-  fail_unless(std::abs(meta->motion.residual - 0.5 * std::sqrt(2.0 * 0.5)) < 1e-12);
+  fail_unless(std::abs(meta->motion.residual - 0.5 * std::sqrt(2.0)) < 1e-12);
 }
 END_TEST
 
@@ -235,6 +236,12 @@ START_TEST(a_part_of_a_frame_has_no_planes) {
   g_autoptr(GstBuffer) part = gst_buffer_copy_region(frame, GST_BUFFER_COPY_ALL, 0, 100);
   fail_if(cerberus_buffer_get_plane_meta(part, CERBERUS_PLANE_MASK));
   fail_unless(cerberus_buffer_get_threshold_meta(part));
+
+  // GStreamer asks for metas of the tag `memory` only where everything is copied; should somebody ask otherwise:
+  GstMeta* meta = gst_buffer_get_meta(frame, CERBERUS_PLANE_META_API_TYPE);
+  GstMetaTransformCopy copy = {TRUE, 0, 100};
+  fail_if(meta->info->transform_func(part, meta, frame, _gst_meta_transform_copy, &copy));
+  fail_if(cerberus_buffer_get_plane_meta(part, CERBERUS_PLANE_MASK));
 }
 END_TEST
 
