@@ -1,0 +1,445 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "sensing/pir_model.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+#include <vector>
+
+using namespace cerberus::sensing;
+using namespace std::chrono_literals;
+
+namespace {
+
+// Nothing but the line: no warm-up, no faults.
+constexpr PirOptions kPlain{.debounce = 20ms, .stuck_after = 0s, .chatter_edges = 0};
+
+PirModel started(const PirOptions& options, Time now = 0ms) {
+  PirModel model(options);
+  model.start(now, options.active_low);
+  return model;
+}
+
+int presence(const PirModel& model) {
+  return static_cast<int>(model.presence());
+}
+
+struct Edge {
+  Time time;
+  bool level;
+};
+
+// Bursts of bounce and long rests, the level alternating.
+std::vector<Edge> random_edges(std::mt19937& random, int count) {
+  std::vector<Edge> edges;
+  Time now = 0ms;
+  for (int i = 0; i < count; ++i) {
+    const int most = std::vector<int>{8, 60, 900, 4000}[random() % 4];
+    now += std::chrono::milliseconds(1 + random() % static_cast<unsigned>(most));
+    edges.push_back({now, i % 2 == 0});
+  }
+  return edges;
+}
+
+// Presence at `time` straight from the definition, with the whole history at hand: the line is active, or fell less
+// than `debounce` ago, or rose less than `hold` ago. For models that retrigger and have no block time.
+bool defined_presence(const std::vector<Edge>& edges, Time time, Time debounce, Time hold) {
+  for (std::size_t i = 0; i < edges.size() && edges[i].time <= time; ++i) {
+    const Time until = i + 1 < edges.size() ? edges[i + 1].time : kNever;
+    if (edges[i].level && (time < until || time - until < debounce || time - edges[i].time < hold))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+START_TEST(a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time) {
+  PirModel model = started(kPlain);
+  ck_assert_int_eq(presence(model), 0);
+  ck_assert(model.deadline() == kNever);
+  model.edge(1000ms, true);
+  ck_assert_int_eq(presence(model), 1);
+  ck_assert(model.changed() == 1000ms);
+  model.edge(3000ms, false);
+  ck_assert_int_eq(presence(model), 1);
+  ck_assert(model.deadline() == 3020ms);
+  model.poll(3020ms - 1ns);
+  ck_assert_int_eq(presence(model), 1);
+  ck_assert(model.poll(3020ms) == kNever);
+  ck_assert_int_eq(presence(model), 0);
+}
+END_TEST
+
+START_TEST(bounce_does_not_show) {
+  PirModel model = started(kPlain);
+  model.edge(1000ms, true);
+  for (Time at = 1001ms; at < 1030ms; at += 2ms) {
+    model.edge(at, false);
+    ck_assert_int_eq(presence(model), 1);
+    model.edge(at + 1ms, true);
+    ck_assert_int_eq(presence(model), 1);
+  }
+  ck_assert(model.changed() == 1000ms);
+}
+END_TEST
+
+START_TEST(a_late_poll_still_tells_when_it_happened) {
+  PirModel model = started(kPlain);
+  model.edge(1000ms, true);
+  model.edge(2000ms, false);
+  model.poll(9000ms);
+  ck_assert_int_eq(presence(model), 0);
+  ck_assert(model.changed() == 2020ms);
+}
+END_TEST
+
+START_TEST(the_debounce_time_is_limited_to_50_ms) {
+  ck_assert(PirModel(PirOptions{.debounce = 10s}).options().debounce == 50ms);
+  ck_assert(PirModel(PirOptions{.debounce = -10s}).options().debounce == 0ms);
+}
+END_TEST
+
+START_TEST(an_open_collector_module_detects_while_its_line_is_low) {
+  PirOptions options = kPlain;
+  options.active_low = true;
+  PirModel model = started(options);
+  ck_assert_int_eq(presence(model), 0);
+  model.edge(1s, false);
+  ck_assert_int_eq(presence(model), 1);
+  model.edge(2s, true);
+  model.poll(3s);
+  ck_assert_int_eq(presence(model), 0);
+}
+END_TEST
+
+START_TEST(readings_are_invalid_before_the_start_and_in_warm_up) {
+  PirOptions options = kPlain;
+  options.warm_up = 60s;
+  PirModel model(options);
+  ck_assert_int_eq(presence(model), 2);
+  ck_assert(model.poll(5s) == kNever);
+  model.start(10s, false);
+  ck_assert(model.deadline() == 70s);
+  model.edge(20s, true);  // the spurious pulses of a module that warms up
+  ck_assert_int_eq(presence(model), 2);
+  model.edge(21s, false);
+  model.poll(70s - 1ns);
+  ck_assert_int_eq(presence(model), 2);
+  model.poll(70s);
+  ck_assert_int_eq(presence(model), 0);
+  ck_assert(model.changed() == 70s);
+
+  model.start(100s, true);  // somebody stands there already
+  model.poll(160s);
+  ck_assert_int_eq(presence(model), 1);
+}
+END_TEST
+
+START_TEST(hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers) {
+  PirOptions options = kPlain;
+  options.hold = 2s;
+  for (const bool retrigger : {true, false}) {
+    options.retrigger = retrigger;
+    PirModel model = started(options);
+    model.edge(10s, true);
+    model.edge(10s + 100ms, false);
+    model.edge(11s, true);
+    model.edge(11s + 100ms, false);
+    ck_assert(model.deadline() == (retrigger ? 13s : 12s));
+    model.poll(20s);
+    ck_assert_int_eq(presence(model), 0);
+    ck_assert(model.changed() == (retrigger ? 13s : 12s));
+  }
+}
+END_TEST
+
+START_TEST(without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time) {
+  PirOptions options = kPlain;
+  options.hold = 2s;
+  options.block = 3s;
+  options.retrigger = false;
+  PirModel model = started(options);
+  model.edge(10s, true);
+  ck_assert(model.poll(12s) == 15s);
+  ck_assert_int_eq(presence(model), 0);
+  ck_assert(model.poll(15s) == 17s);
+  ck_assert_int_eq(presence(model), 1);
+  options.block = 0s;  // nothing between the two: it never shows
+  model = started(options);
+  model.edge(10s, true);
+  model.poll(12s);
+  ck_assert_int_eq(presence(model), 1);
+  ck_assert(model.changed() == 10s);
+}
+END_TEST
+
+START_TEST(nothing_triggers_in_the_block_time) {
+  PirOptions options = kPlain;
+  options.block = 2s;
+  PirModel model = started(options);
+  model.edge(10s, true);
+  model.edge(11s, false);
+  model.edge(12s, true);
+  model.edge(12s + 500ms, false);
+  ck_assert_int_eq(presence(model), 0);
+  ck_assert(model.changed() == 11s + 20ms);
+  model.edge(14s, true);
+  ck_assert_int_eq(presence(model), 1);
+}
+END_TEST
+
+START_TEST(a_line_that_never_rests_is_stuck_until_it_does) {
+  PirOptions options = kPlain;
+  options.stuck_after = 600s;
+  PirModel model = started(options);
+  model.edge(10s, true);
+  ck_assert(model.deadline() == 610s);
+  model.edge(300s, false);  // a gap of 5 ms is no rest
+  model.edge(300s + 5ms, true);
+  model.poll(610s);
+  ck_assert(model.fault() == PirFault::stuck_on);
+  ck_assert_str_eq(describe(model.fault()).data(), "stuck on");
+  ck_assert_int_eq(presence(model), 2);
+  model.edge(700s, false);
+  ck_assert_int_eq(presence(model), 2);
+  model.poll(700s + 20ms);
+  ck_assert(model.fault() == PirFault::none);
+  ck_assert_int_eq(presence(model), 0);
+
+  model.edge(800s, true);  // a rest starts the count anew
+  model.edge(900s, false);
+  model.edge(901s, true);
+  ck_assert(model.deadline() == 1501s);
+}
+END_TEST
+
+START_TEST(a_line_that_chatters_is_invalid_until_it_calms_down) {
+  PirOptions options = kPlain;
+  options.chatter_edges = 20;
+  options.chatter_window = 2s;
+  PirModel model = started(options);
+  Time at = 1s;
+  for (int i = 1; i <= 20; ++i, at += 60ms) {
+    model.edge(at, true);
+    ck_assert(model.fault() == (i < 20 ? PirFault::none : PirFault::chattering));
+    model.edge(at + 30ms, false);
+  }
+  ck_assert_int_eq(presence(model), 2);
+  ck_assert_str_eq(describe(model.fault()).data(), "chattering");
+  // Rises at 1.00 + 0.06 i; the tenth from the end, at 1.60, leaves the window at 3.60 and fewer than half are left.
+  ck_assert(model.poll(3s) == 3600ms);
+  ck_assert_int_eq(presence(model), 2);
+  model.poll(3600ms);
+  ck_assert(model.fault() == PirFault::none);
+  ck_assert_int_eq(presence(model), 0);
+
+  for (at = 5s; at < 9s; at += 4ms) {  // however long it goes on
+    model.edge(at, true);
+    model.edge(at + 2ms, false);
+    ck_assert(model.fault() == (at < 5s + 76ms ? PirFault::none : PirFault::chattering));
+  }
+  model.poll(20s);
+  ck_assert(model.fault() == PirFault::none);
+
+  for (at = 20s; at < 50s; at += 150ms) {  // often, but not that often
+    model.edge(at, true);
+    model.edge(at + 75ms, false);
+    ck_assert(model.fault() == PirFault::none);
+  }
+}
+END_TEST
+
+START_TEST(no_module_of_the_list_chatters_by_its_own_timing) {
+  for (const PirPreset& preset : pir_presets()) {
+    if (preset.module_hold.least == 0s) continue;
+    PirModel model(preset.options);
+    model.start(0s, false);
+    for (Time at = 100s; at < 160s; at += preset.module_hold.least + preset.module_block.least) {
+      model.edge(at, true);
+      model.edge(at + preset.module_hold.least, false);
+      ck_assert(model.fault() == PirFault::none);
+    }
+    ck_assert(preset.options.stuck_after > preset.module_hold.most);
+  }
+}
+END_TEST
+
+START_TEST(a_turning_base_makes_detections_doubtful) {
+  PirModel model = started(kPlain);
+  model.base(1s, radians(4.9));
+  model.edge(1s, true);
+  ck_assert(!model.doubtful());
+  model.base(2s, radians(-5.1));
+  ck_assert(model.doubtful() && presence(model) == 1);
+  model.base(3s, 0);
+  ck_assert(model.doubtful());  // modules hold what the turn did to them
+  ck_assert(model.deadline() == 6s);
+  model.poll(6s);
+  ck_assert(!model.doubtful());
+
+  model.edge(7s, false);
+  model.base(8s, 1);
+  ck_assert(!model.doubtful());  // nothing detected: nothing to doubt
+  model.edge(9s, true);
+  ck_assert(model.doubtful());
+  model.base(10s, std::numeric_limits<double>::quiet_NaN());
+  model.edge(11s, false);
+  model.poll(11s + 20ms);
+  ck_assert(!model.doubtful());
+  model.edge(12s, true);
+  ck_assert(!model.doubtful());
+}
+END_TEST
+
+START_TEST(a_time_that_goes_back_counts_as_the_last_one) {
+  PirModel model = started(kPlain, 10s);
+  model.edge(20s, true);
+  model.edge(5s, false);
+  ck_assert(model.deadline() == 20s + 20ms);
+  model.poll(1s);
+  ck_assert_int_eq(presence(model), 1);
+  model.edge(kNever, true);  // and the end of all time is no trap
+  model.poll(kNever);
+  ck_assert(model.deadline() == kNever);
+}
+END_TEST
+
+START_TEST(presence_is_what_its_definition_says_on_random_lines) {
+  std::mt19937 random(3);
+  for (int round = 0; round < 300; ++round) {
+    PirOptions options = kPlain;
+    options.debounce = std::chrono::milliseconds(random() % 51);
+    options.hold = std::chrono::milliseconds(random() % 3 ? random() % 3000 : 0);
+    PirModel model = started(options);
+    const std::vector<Edge> edges = random_edges(random, 60);
+    Time now = 0ms;
+    for (std::size_t next = 0; now < 60s; now += std::chrono::milliseconds(1 + random() % 40)) {
+      for (; next < edges.size() && edges[next].time <= now; ++next) {
+        model.edge(edges[next].time, edges[next].level);
+        const bool expected = defined_presence(edges, edges[next].time, options.debounce, options.hold);
+        if (presence(model) != expected) ck_abort_msg("round %d, at an edge", round);
+        if (edges[next].level && presence(model) != 1)
+          ck_abort_msg("round %d, a rise was not reported", round);
+      }
+      model.poll(now);
+      const bool expected = defined_presence(edges, now, options.debounce, options.hold);
+      if (presence(model) != expected)
+        ck_abort_msg("round %d, %g s: presence is not %d", round, static_cast<double>(now.count()) / 1e9,
+                     expected);
+    }
+  }
+}
+END_TEST
+
+// With everything on: deadlines are honest, a late poll leads to the same state, and each option keeps its promise.
+START_TEST(sleeping_until_the_deadline_misses_nothing) {
+  std::mt19937 random(11);
+  for (int round = 0; round < 300; ++round) {
+    PirOptions options;
+    options.retrigger = random() % 2;
+    options.debounce = std::chrono::milliseconds(random() % 51);
+    options.hold = std::chrono::milliseconds(random() % 2 ? random() % 3000 : 0);
+    options.block = std::chrono::milliseconds(random() % 2 ? random() % 3000 : 0);
+    options.warm_up = std::chrono::milliseconds(random() % 2 ? random() % 9000 : 0);
+    options.stuck_after = std::chrono::milliseconds(random() % 2 ? 1000 + random() % 3000 : 0);
+    options.chatter_edges = random() % 2 ? 5 + random() % 30 : 0;
+    options.chatter_window = 2s;
+    PirModel sleeper = started(options), restless = started(options), late = started(options);
+    const std::vector<Edge> edges = random_edges(random, 80);
+    Time now = 0ms, ended = Time(-1h);
+    int last = presence(sleeper);
+    const auto follow = [&](Time at) {  // `sleeper` at a moment when something may change
+      if (presence(sleeper) == last) return;
+      if (sleeper.changed() != at) ck_abort_msg("round %d: changed at another time than told", round);
+      if (at < options.warm_up && presence(sleeper) != 2) ck_abort_msg("round %d: valid in warm-up", round);
+      if (last == 0 && presence(sleeper) == 1 && at - ended < options.block)
+        ck_abort_msg("round %d: blocked", round);
+      if (last == 1 && presence(sleeper) == 0) ended = at;
+      last = presence(sleeper);
+    };
+    for (const Edge& edge : edges) {
+      while (sleeper.deadline() <= edge.time) {
+        const Time due = sleeper.deadline();
+        if (due < now) ck_abort_msg("round %d: a deadline in the past", round);
+        now = due;
+        sleeper.poll(due);
+        if (sleeper.deadline() <= due) ck_abort_msg("round %d: a deadline that does not go away", round);
+        follow(due);
+      }
+      for (Time at = std::max(now, edge.time - 100ms); at < edge.time; at += 7ms) {
+        const Presence before = restless.presence();
+        const bool expected = restless.deadline() <= at;
+        restless.poll(at);
+        if (restless.presence() != before && !expected)
+          ck_abort_msg("round %d: a change without deadline", round);
+      }
+      now = edge.time;
+      for (PirModel* model : {&sleeper, &restless, &late}) model->edge(edge.time, edge.level);
+      follow(edge.time);
+      for (const PirModel* other : {&restless, &late}) {
+        if (other->presence() != sleeper.presence() || other->fault() != sleeper.fault() ||
+            other->changed() != sleeper.changed() || other->deadline() != sleeper.deadline())
+          ck_abort_msg("round %d: the state depends on when it was asked for", round);
+      }
+    }
+  }
+}
+END_TEST
+
+START_TEST(the_modules_are_there_by_name) {
+  ck_assert_int_eq(static_cast<int>(pir_presets().size()), 3);
+  ck_assert_ptr_null(find_pir_preset("none such"));
+  const PirPreset* hc = find_pir_preset("hc-sr501");
+  ck_assert(!hc->options.active_low && hc->options.warm_up == 60s && hc->module_hold.least == 300ms &&
+            hc->module_hold.most == 200s && hc->range == 7);
+  const PirPreset* am = find_pir_preset("am312");
+  ck_assert(am->module_hold.least == 2s && am->module_hold.most == 2s && am->module_block.most == 2s);
+  const PirPreset* sk = find_pir_preset("sk-11");  // the paper's Table 1
+  ck_assert(sk->options.active_low && sk->range == 12);
+  ck_assert_double_eq_tol(degrees(sk->field_of_view), 120, 1e-9);
+}
+END_TEST
+
+START_TEST(a_voltage_switches_with_hysteresis) {
+  LevelSwitch level(2.0, 1.0);
+  ck_assert(!level.update(1.9) && level.update(2.0) && level.update(1.0) && !level.update(0.99) &&
+            !level.update(1.5));
+  ck_assert(level.update(3) && level.update(std::numeric_limits<double>::quiet_NaN()));
+  LevelSwitch upside_down(1.0, 2.0);  // "off" above "on" means no hysteresis
+  ck_assert(upside_down.update(1.5) && !upside_down.update(0.9));
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("pir_model");
+  TCase* tests = tcase_create("pir_model");
+  tcase_add_test(tests, a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time);
+  tcase_add_test(tests, bounce_does_not_show);
+  tcase_add_test(tests, a_late_poll_still_tells_when_it_happened);
+  tcase_add_test(tests, the_debounce_time_is_limited_to_50_ms);
+  tcase_add_test(tests, an_open_collector_module_detects_while_its_line_is_low);
+  tcase_add_test(tests, readings_are_invalid_before_the_start_and_in_warm_up);
+  tcase_add_test(tests, hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers);
+  tcase_add_test(tests, without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time);
+  tcase_add_test(tests, nothing_triggers_in_the_block_time);
+  tcase_add_test(tests, a_line_that_never_rests_is_stuck_until_it_does);
+  tcase_add_test(tests, a_line_that_chatters_is_invalid_until_it_calms_down);
+  tcase_add_test(tests, no_module_of_the_list_chatters_by_its_own_timing);
+  tcase_add_test(tests, a_turning_base_makes_detections_doubtful);
+  tcase_add_test(tests, a_time_that_goes_back_counts_as_the_last_one);
+  tcase_add_test(tests, presence_is_what_its_definition_says_on_random_lines);
+  tcase_add_test(tests, sleeping_until_the_deadline_misses_nothing);
+  tcase_add_test(tests, the_modules_are_there_by_name);
+  tcase_add_test(tests, a_voltage_switches_with_hysteresis);
+  suite_add_tcase(suite, tests);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
