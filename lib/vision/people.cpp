@@ -19,7 +19,7 @@ constexpr int kRowsOfABody = 40;      // cells a body is cut into at least, if i
 constexpr int kUnit = 64;
 constexpr int kCoreMoving = 178, kCoreStill = -65;
 constexpr int kSideMoving = 139, kSideStill = -25;
-constexpr int kPrice = 19;  // 0.3 for each cell of the box; a whole person brings about 1
+constexpr int kPrice = 26;  // 0.4 for each cell of the box; a whole person brings 1 to 1.7
 constexpr std::size_t kMostPeople = 12;
 constexpr int kMostCells = 65535;  // both packed sums stay below 65536
 
@@ -98,15 +98,20 @@ std::uint32_t PeopleFinder::sum(int left, int top, int right, int bottom) const 
   return b[right] - b[left] - t[right] + t[left];
 }
 
-// The best place for one more person whose left edge lies in [from, to). Score 0: nowhere.
-PeopleFinder::Candidate PeopleFinder::best(int from, int to) {
+// The best place for one more person whose left edge lies in [from, to). Score 0: nowhere. With an anchor, a column,
+// what stays unexplained between it and the box is taken for lost and counts against the place.
+PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   Candidate best;
+  int best_value = 0;
   const std::size_t pitch = static_cast<std::size_t>(columns_) + 1;
+  const std::uint32_t* whole = &sums_[static_cast<std::size_t>(window_.bottom) * pitch];
   for (int foot = rows_; foot > window_.top; --foot) {
     const auto [h, w] = shapes_[foot];
     if (h == 0 || foot - h < 0) continue;
     if (foot - window_.top < 0.4 * h) break;
-    const int q = w / 4, first = std::max(from, 0), end = std::min(to, columns_ - w + 1);
+    // A third of the body at least is in the picture.
+    const int q = w / 4, first = std::max({from, 0, inside_.left - w + (w + 2) / 3});
+    const int end = std::min({to, columns_ - w + 1, inside_.right - (w + 2) / 3 + 1});
     if (first >= end) continue;
     const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
     const std::uint32_t* t = &sums_[(foot - h) * pitch];
@@ -123,11 +128,18 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to) {
       scores[l] = core_moving * kCoreMoving + core_still * kCoreStill + side_moving * kSideMoving +
                   side_still * kSideStill - seen * kPrice;
     }
+    const auto lost = [&](int l) {
+      return anchor >= 0 && l > anchor ? static_cast<int>((whole[l] - whole[anchor]) & 0xffff) * kSideMoving
+                                       : 0;
+    };
+    if (anchor >= 0)
+      for (int l = first; l < end; ++l) scores[l] -= lost(l);
     const int* top = std::max_element(scores + first, scores + end);
-    if (*top <= best.score) continue;
-    const int l = static_cast<int>(top - scores);
+    if (*top <= best_value) continue;
+    best_value = *top;
+    const int l = static_cast<int>(top - scores), score = *top + lost(l);
     const int seen = (std::min(l + w, in_right) - std::max(l, in_left)) * high;
-    best = {l, foot - h, l + w, foot, *top, seen > 0 ? (*top + seen * kPrice) / seen : 0};
+    best = {l, foot - h, l + w, foot, score, score / std::max(seen, 1) + kPrice};
   }
   return best;
 }
@@ -153,13 +165,13 @@ int PeopleFinder::explain(bool from_the_left) {
       // The leftmost column that still holds something decides; a person's edge is near it.
       while (edge < window_.right && (sum(edge, window_.top, edge + 1, window_.bottom) & 0xffff) == 0) ++edge;
       if (edge >= window_.right) break;
-      c = best(edge - width / 3, edge + width / 3 + 1);
+      c = best(edge - width / 3, edge + width / 3 + 1, edge);
       if (c.score <= 0) {
         edge += std::max(1, width / 4);
         continue;
       }
     } else {
-      c = best(0, window_.right);
+      c = best(0, window_.right, -1);
       if (c.score <= 0) break;
     }
     total += c.score;
@@ -182,7 +194,7 @@ void PeopleFinder::settle() {
                   &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
     add_up();
     const int w = old.right - old.left;
-    const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1);
+    const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1, -1);
     if (c.score > 0) chosen_.push_back(c);
   }
 }

@@ -51,7 +51,7 @@ class PeopleFinder {
   bool lay_grid(BitView pixels, const Window& window);
   void add_up();
   std::uint32_t sum(int left, int top, int right, int bottom) const;
-  Candidate best(int from, int to);
+  Candidate best(int from, int to, int anchor);
   void take(const Candidate& candidate);
   int explain(bool from_the_left);
   void settle();

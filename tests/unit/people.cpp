@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Drawn people, so that the right boxes are known: a body is a head, a trunk and two legs with a gap between them.
+#include "vision/people.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+using namespace cerberus::vision;
+
+namespace {
+
+struct Scene {
+  Size size;
+  Image<std::uint8_t> mask;
+  BitMask bits;
+  HeightPrior prior;
+
+  // People are as tall as their foot row is low, divided by `divisor`.
+  explicit Scene(Size picture = {320, 240}, double divisor = 4) : size(picture), mask(picture) {
+    bits.resize(bit_mask_size(picture));
+    for (int i = 0; i < 64; ++i) {
+      const double foot = picture.height * (0.3 + 0.7 * i / 63);
+      prior.learn(foot, foot / divisor);
+    }
+  }
+
+  void fill(double left, double top, double right, double bottom, std::uint8_t value = 255) {
+    for (int y = std::max(0, static_cast<int>(top)); y < std::min<int>(size.height, static_cast<int>(bottom));
+         ++y)
+      for (int x = std::max(0, static_cast<int>(left));
+           x < std::min<int>(size.width, static_cast<int>(right)); ++x)
+        mask.view().at(x, y) = value;
+  }
+  Box draw(double middle, double foot, double height) {
+    const double w = 0.36 * height, top = foot - height;
+    fill(middle - 0.2 * w, top, middle + 0.2 * w, top + 0.15 * height);
+    fill(middle - 0.5 * w, top + 0.15 * height, middle + 0.5 * w, top + 0.55 * height);
+    fill(middle - 0.4 * w, top + 0.55 * height, middle - 0.08 * w, foot);
+    fill(middle + 0.08 * w, top + 0.55 * height, middle + 0.4 * w, foot);
+    return {middle - w / 2, top, w, height};
+  }
+  // The window is the box of all that moves.
+  std::span<const Person> find(PeopleFinder& finder) {
+    Window window{size.width, size.height, 0, 0};
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        if (mask.view().at(x, y)) {
+          window = {std::min(window.left, x), std::min(window.top, y), std::max(window.right, x + 1),
+                    std::max(window.bottom, y + 1)};
+        }
+    if (window.width() <= 0) window = {0, 0, 10, 10};
+    pack(mask.view(), bits.view());
+    return finder.find(bits.view(), size, window, prior);
+  }
+};
+
+// Each expected box has its own found one and nobody else is there.
+void same_people(std::span<const Person> found, const std::vector<Box>& expected,
+                 double least_overlap = 0.6) {
+  ck_assert_uint_eq(found.size(), expected.size());
+  std::vector<char> used(found.size(), 0);
+  for (const Box& e : expected) {
+    std::size_t best = 0;
+    double overlap = -1;
+    for (std::size_t i = 0; i < found.size(); ++i)
+      if (!used[i] && intersection_over_union(found[i].box, e) > overlap) {
+        overlap = intersection_over_union(found[i].box, e);
+        best = i;
+      }
+    used[best] = 1;
+    ck_assert_double_ge(overlap, least_overlap);
+  }
+}
+
+}  // namespace
+
+START_TEST(one_person_is_one_box_in_the_right_place) {
+  Scene scene;
+  PeopleFinder finder;
+  const Box box = scene.draw(150, 180, 45);
+  const auto found = scene.find(finder);
+  same_people(found, {box}, 0.85);
+  ck_assert_double_gt(found[0].score, 0.7);
+}
+END_TEST
+
+START_TEST(two_side_by_side_who_touch_are_two) {
+  for (const double distance : {14.0, 16.0, 19.0, 23.0}) {
+    Scene scene;
+    PeopleFinder finder;
+    const Box a = scene.draw(150, 180, 45), b = scene.draw(150 + distance, 182, 45);
+    same_people(scene.find(finder), {a, b});
+  }
+}
+END_TEST
+
+START_TEST(four_in_a_row_are_four) {
+  Scene scene;
+  PeopleFinder finder;
+  std::vector<Box> boxes;
+  for (int i = 0; i < 4; ++i) boxes.push_back(scene.draw(120 + 17 * i, 180 + i % 2, 45));
+  same_people(scene.find(finder), boxes);
+}
+END_TEST
+
+START_TEST(a_person_cut_in_two_by_a_lamp_post_or_a_belt_is_one) {
+  Scene scene;
+  PeopleFinder finder;
+  const Box box = scene.draw(150, 180, 45);
+  scene.fill(0, 152, 320, 160, 0);  // a belt of 8 of 45 rows
+  same_people(scene.find(finder), {box}, 0.75);
+  scene.fill(148, 0, 152, 240, 0);  // and a post of 4 of 16 columns
+  same_people(scene.find(finder), {box}, 0.75);
+}
+END_TEST
+
+START_TEST(somebody_who_walks_behind_somebody_else_is_found_by_what_shows) {
+  Scene scene;
+  PeopleFinder finder;
+  const Box front = scene.draw(150, 200, 50), back = scene.draw(158, 172, 43);
+  same_people(scene.find(finder), {front, back}, 0.5);
+}
+END_TEST
+
+START_TEST(specks_and_small_animals_are_nobody) {
+  Scene scene;
+  PeopleFinder finder;
+  scene.fill(150, 170, 158, 180);  // 8 x 10 where people are 16 x 45
+  ck_assert_uint_eq(scene.find(finder).size(), 0);
+  Scene empty;
+  ck_assert_uint_eq(empty.find(finder).size(), 0);
+}
+END_TEST
+
+START_TEST(a_person_whose_feet_are_below_the_picture_is_placed_below_it) {
+  Scene scene;
+  PeopleFinder finder;
+  scene.draw(150, 260, 65);
+  const auto found = scene.find(finder);
+  ck_assert_uint_eq(found.size(), 1);
+  ck_assert_double_gt(found[0].box.bottom(), 248);
+  ck_assert_double_eq_tol(found[0].box.y, 195, 8);
+  ck_assert_double_eq_tol(found[0].box.x + found[0].box.width / 2, 150, 5);
+}
+END_TEST
+
+START_TEST(a_person_at_the_left_border_may_be_half_outside) {
+  Scene scene;
+  PeopleFinder finder;
+  const Box box = scene.draw(2, 180, 45);
+  const auto found = scene.find(finder);
+  ck_assert_uint_eq(found.size(), 1);
+  ck_assert_double_eq_tol(found[0].box.x, box.x, 5);
+}
+END_TEST
+
+START_TEST(a_larger_picture_gives_the_same_people_larger) {
+  Scene scene({1280, 960});
+  PeopleFinder finder;
+  const Box a = scene.draw(600, 720, 180), b = scene.draw(668, 728, 180);
+  same_people(scene.find(finder), {a, b});
+}
+END_TEST
+
+START_TEST(without_a_known_height_nobody_is_said_to_be_there) {
+  Scene scene;
+  PeopleFinder finder;
+  scene.draw(150, 180, 45);
+  scene.prior.reset();
+  ck_assert_uint_eq(scene.find(finder).size(), 0);
+}
+END_TEST
+
+START_TEST(a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory) {
+  Scene scene;
+  PeopleFinder finder;
+  for (int i = 0; i < 4; ++i) scene.draw(120 + 17 * i, 180 + i % 2, 45);
+  const auto first = scene.find(finder);
+  const std::vector<Person> kept(first.begin(), first.end());
+  const std::size_t bytes = finder.bytes();
+  const auto second = scene.find(finder);
+  ck_assert_uint_eq(second.size(), kept.size());
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    ck_assert_double_eq(second[i].box.x, kept[i].box.x);
+    ck_assert_double_eq(second[i].score, kept[i].score);
+  }
+  ck_assert_uint_eq(finder.bytes(), bytes);
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("people");
+  TCase* tests = tcase_create("people");
+  tcase_add_test(tests, one_person_is_one_box_in_the_right_place);
+  tcase_add_test(tests, two_side_by_side_who_touch_are_two);
+  tcase_add_test(tests, four_in_a_row_are_four);
+  tcase_add_test(tests, a_person_cut_in_two_by_a_lamp_post_or_a_belt_is_one);
+  tcase_add_test(tests, somebody_who_walks_behind_somebody_else_is_found_by_what_shows);
+  tcase_add_test(tests, specks_and_small_animals_are_nobody);
+  tcase_add_test(tests, a_person_whose_feet_are_below_the_picture_is_placed_below_it);
+  tcase_add_test(tests, a_person_at_the_left_border_may_be_half_outside);
+  tcase_add_test(tests, a_larger_picture_gives_the_same_people_larger);
+  tcase_add_test(tests, without_a_known_height_nobody_is_said_to_be_there);
+  tcase_add_test(tests, a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory);
+  suite_add_tcase(suite, tests);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
