@@ -132,14 +132,14 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
   scene_ = nullptr;
 }
 
-// A line that thins out and fades with age, cut into patches of bounded size.
+// A line that thins out and fades with age in steps, cut into patches of bounded size. The box's foot trembles by
+// pixels from frame to frame: the line follows a short centred mean (ends kept), and leaves out points closer together
+// than it is wide.
 void Painter::paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>& patches) {
-  const auto& points = trail.points;
-  if (points.size() < 2) return;
-  // The box's foot trembles by pixels from frame to frame: a short centred mean, ends kept.
   constexpr std::ptrdiff_t kReach = 3;
-  smooth_.clear();
+  const auto& points = trail.points;
   const auto n = static_cast<std::ptrdiff_t>(points.size());
+  smooth_.clear();
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const std::ptrdiff_t reach = std::min({kReach, i, n - 1 - i});
     vision::TrailPoint mean{{0, 0}, points[i].time};
@@ -147,12 +147,15 @@ void Painter::paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>
       mean.position.x += points[j].position.x / (2.0 * reach + 1);
       mean.position.y += points[j].position.y / (2.0 * reach + 1);
     }
-    smooth_.push_back(mean);
+    const auto distance = [&](vision::Point p) {
+      return std::max(std::abs(p.x - mean.position.x), std::abs(p.y - mean.position.y));
+    };
+    if (i == n - 1 && smooth_.size() > 1 && distance(smooth_.back().position) < line_) smooth_.pop_back();
+    if (smooth_.empty() || i == n - 1 || distance(smooth_.back().position) >= std::max(1.0, line_))
+      smooth_.push_back(mean);
   }
 
-  const Color color = identity_color(trail.id);
-  const double most = std::max(64.0, 24 * line_);  // side of a patch, pixels
-  const double margin = 1.2 * line_ + 2;
+  const double most = std::max(96.0, 40 * line_);  // side of a patch, pixels
   std::size_t first = 0;
   while (first + 1 < smooth_.size()) {
     double left = smooth_[first].position.x, right = left, top = smooth_[first].position.y, bottom = top;
@@ -165,38 +168,50 @@ void Painter::paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>
       left = l, right = r, top = t, bottom = b;
       ++last;
     }
-    add_patch(patches, frame_, around(left, top, right, bottom, margin), [&](cairo_t* cr) {
-      cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
-      cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
-      // Segments replace what they overlap, so that joints do not add up.
-      cairo_set_operator(cr, CAIRO_OPERATOR_SOURCE);
-      // The neighbours' ends too: else the casing would cut through the line where patches meet.
-      const std::size_t begin = first > 0 ? first - 1 : 0, end = std::min(last + 1, smooth_.size() - 1);
-      for (const bool casing : {true, false})
-        for (std::size_t i = begin; i < end; ++i) {
-          const double age = (scene_->time - smooth_[i].time) / std::max(scene_->trail_time, 1e-3);
-          const double fresh = std::clamp(1 - age, 0.0, 1.0);
-          cairo_set_line_width(cr, line_ * (0.5 + 0.7 * fresh) + (casing ? std::max(1.0, 0.7 * line_) : 0));
-          source(cr, casing ? Color{} : color, (casing ? 0.45 : 0.95) * std::min(1.0, 1.4 * fresh));
-          cairo_move_to(cr, smooth_[i].position.x, smooth_[i].position.y);
-          cairo_line_to(cr, smooth_[i + 1].position.x, smooth_[i + 1].position.y);
-          cairo_stroke(cr);
-        }
+    add_patch(patches, frame_, around(left, top, right, bottom, 1.2 * line_ + 2), [&](cairo_t* cr) {
+      // One neighbour on either side too: else the casing would cut through the line where patches meet.
+      stroke_trail(cr, identity_color(trail.id), first > 0 ? first - 1 : 0,
+                   std::min(last + 1, smooth_.size() - 1));
     });
     first = last;
   }
 }
 
+// The smoothed points first..last, in steps of age.
+void Painter::stroke_trail(cairo_t* cr, Color color, std::size_t first, std::size_t last) {
+  constexpr int kSteps = 8;
+  const auto step = [&](std::size_t i) {
+    const double age = (scene_->time - smooth_[i].time) / std::max(scene_->trail_time, 1e-3);
+    return std::clamp(static_cast<int>(kSteps * age), 0, kSteps - 1);
+  };
+  cairo_set_line_join(cr, CAIRO_LINE_JOIN_ROUND);
+  cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
+  cairo_set_operator(cr, CAIRO_OPERATOR_SOURCE);  // steps replace what they overlap: joints do not add up
+  for (const bool casing : {true, false})
+    for (std::size_t begin = first; begin < last;) {
+      const int age = step(begin);
+      cairo_move_to(cr, smooth_[begin].position.x, smooth_[begin].position.y);
+      do {
+        ++begin;
+        cairo_line_to(cr, smooth_[begin].position.x, smooth_[begin].position.y);
+      } while (begin < last && step(begin) == age);
+      const double fresh = 1 - (age + 0.5) / kSteps;
+      cairo_set_line_width(cr, line_ * (0.5 + 0.7 * fresh) + (casing ? std::max(1.0, 0.7 * line_) : 0));
+      source(cr, casing ? Color{} : color, (casing ? 0.45 : 0.95) * std::min(1.0, 1.4 * fresh));
+      cairo_stroke(cr);
+    }
+}
+
 void Painter::paint_box(const Object& object, std::vector<Patch>& patches) {
-  const double radius = 2 * line_, casing = std::max(1.0, 0.6 * line_);
-  const double reach = line_ / 2 + casing + 1;
+  const double corner = std::min({2 * line_, object.width / 2, object.height / 2});  // radius
+  const double casing = std::max(1.0, 0.6 * line_), reach = line_ / 2 + casing + 1;
   const Color color = identity_color(object.id);
-  const auto draw = [&](cairo_t* cr) {
-    rounded_rectangle(cr, object.x, object.y, object.width, object.height, radius);
+  // Strokes the path that is there; `walked`: length of the outline before it, so that dashes join.
+  const auto stroke = [&](cairo_t* cr, double walked) {
     const double dashes[] = {5 * line_, 4 * line_}, dots[] = {0.01, 2.6 * line_};
-    if (object.look == Look::coasted) cairo_set_dash(cr, dashes, 2, 0);
+    if (object.look == Look::coasted) cairo_set_dash(cr, dashes, 2, walked);
     if (object.look == Look::stopped) {
-      cairo_set_dash(cr, dots, 2, 0);
+      cairo_set_dash(cr, dots, 2, walked);
       cairo_set_line_cap(cr, CAIRO_LINE_CAP_ROUND);
     }
     cairo_set_line_width(cr, line_ + 2 * casing);
@@ -206,19 +221,35 @@ void Painter::paint_box(const Object& object, std::vector<Patch>& patches) {
     source(cr, color, object.look == Look::coasted ? 0.85 : 1);
     cairo_stroke(cr);
   };
+  const auto outline = [&](cairo_t* cr) {
+    rounded_rectangle(cr, object.x, object.y, object.width, object.height, corner);
+    stroke(cr, 0);
+  };
   const double right = object.x + object.width, bottom = object.y + object.height;
-  const double rim = radius + reach;  // the corners lie in the upper and lower strip
+  const double rim = corner + reach;  // the corners lie in the upper and lower strip
   if (object.width < 4 * rim || object.height < 4 * rim) {
-    add_patch(patches, frame_, around(object.x, object.y, right, bottom, reach), draw);
+    add_patch(patches, frame_, around(object.x, object.y, right, bottom, reach), outline);
     return;
   }
   // Only the rim: a tall person in 4K would otherwise be megabytes of transparency.
   const Area all = around(object.x, object.y, right, bottom, reach);
-  const int thick = static_cast<int>(std::ceil(rim + reach));
-  add_patch(patches, frame_, {all.x, all.y, all.width, thick}, draw);
-  add_patch(patches, frame_, {all.x, all.y + thick, thick, all.height - 2 * thick}, draw);
-  add_patch(patches, frame_, {all.x + all.width - thick, all.y + thick, thick, all.height - 2 * thick}, draw);
-  add_patch(patches, frame_, {all.x, all.y + all.height - thick, all.width, thick}, draw);
+  const int thick = static_cast<int>(std::ceil(rim + reach)),
+            thin = static_cast<int>(std::ceil(2 * reach)) + 1;
+  const double bend = corner * std::numbers::pi / 2, side = object.height - 2 * corner;
+  add_patch(patches, frame_, {all.x, all.y, all.width, thick}, outline);
+  add_patch(patches, frame_, {all.x, all.y + all.height - thick, all.width, thick}, outline);
+  const Area left_side{all.x, all.y + thick, thin, all.height - 2 * thick};
+  const Area right_side{all.x + all.width - thin, left_side.y, thin, left_side.height};
+  add_patch(patches, frame_, right_side, [&](cairo_t* cr) {
+    cairo_move_to(cr, right, object.y + corner);
+    cairo_line_to(cr, right, bottom - corner);
+    stroke(cr, bend);
+  });
+  add_patch(patches, frame_, left_side, [&](cairo_t* cr) {
+    cairo_move_to(cr, object.x, bottom - corner);
+    cairo_line_to(cr, object.x, object.y + corner);
+    stroke(cr, 3 * bend + side + (object.width - 2 * corner));
+  });
 }
 
 // A pill in the object's colour: identity, two bars for stopped, and where `detailed` speed and distance.

@@ -87,6 +87,7 @@ class Painter {
   };
   Label& label(const Object& object, bool detailed);
   void paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>& patches);
+  void stroke_trail(cairo_t* cairo, Color color, std::size_t first, std::size_t last);
   void paint_box(const Object& object, std::vector<Patch>& patches);
   void paint_label(const Object& object, std::vector<Patch>& patches);
   void paint_crosshair(std::vector<Patch>& patches);

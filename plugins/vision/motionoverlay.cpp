@@ -44,6 +44,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/video.hpp"
+#include "composition.hpp"
 #include "drawing.hpp"
 #include "properties.hpp"
 #include "vision/trails.h"
@@ -81,8 +82,9 @@ constexpr double kWidestLine = 64;
 const Property<Settings> kProperties[] = {
     property("show-boxes", &Settings::boxes, "Draw a box around every object"),
     property("show-ids", &Settings::ids, "Draw a label with the identity on every object"),
-    property("show-speeds", &Settings::speeds,
-             "Add the speed in pixels a second (and the distance, where known) to the label where there is room"),
+    property(
+        "show-speeds", &Settings::speeds,
+        "Add the speed in pixels a second (and the distance, where known) to the label where there is room"),
     property("show-trails", &Settings::trails,
              "Draw the way that every object came, fixed to the scene while the camera moves"),
     property("trail-time", &Settings::trail_time,
@@ -114,9 +116,8 @@ struct Private {
 CERBERUS_DEFINE_TYPE(CerberusMotionOverlay, cerberus_motion_overlay, GstBaseTransform,
                      GST_TYPE_BASE_TRANSFORM, Private)
 
+using draw::CompositionPtr;
 using CapsPtr = std::unique_ptr<GstCaps, decltype(&gst_caps_unref)>;
-using CompositionPtr =
-    std::unique_ptr<GstVideoOverlayComposition, decltype(&gst_video_overlay_composition_unref)>;
 
 bool has_composition_feature(const GstCaps* caps, guint index = 0) {
   return gst_caps_features_contains(gst_caps_get_features(caps, index),
@@ -149,31 +150,13 @@ bool downstream_draws(GstBaseTransform* transform, GstCaps* caps) {
   return draws;
 }
 
-CompositionPtr compose(const std::vector<draw::Patch>& patches, const GstVideoOverlayComposition* before) {
-  CompositionPtr composition(
-      before ? gst_video_overlay_composition_copy(const_cast<GstVideoOverlayComposition*>(before))
-             : gst_video_overlay_composition_new(nullptr),
-      gst_video_overlay_composition_unref);
-  for (const draw::Patch& patch : patches) {
-    // The buffer holds the surface: no copy, and labels that stay the same are shared from frame to frame.
-    cairo_surface_t* surface = cairo_surface_reference(patch.pixels.get());
-    const gsize size = static_cast<gsize>(cairo_image_surface_get_stride(surface)) * patch.area.height;
-    GstBuffer* pixels = gst_buffer_new_wrapped_full(
-        GST_MEMORY_FLAG_READONLY, cairo_image_surface_get_data(surface), size, 0, size, surface,
-        [](gpointer data) { cairo_surface_destroy(static_cast<cairo_surface_t*>(data)); });
-    gsize offsets[GST_VIDEO_MAX_PLANES] = {};
-    gint strides[GST_VIDEO_MAX_PLANES] = {cairo_image_surface_get_stride(surface)};
-    gst_buffer_add_video_meta_full(pixels, GST_VIDEO_FRAME_FLAG_NONE,
-                                   GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB, patch.area.width,
-                                   patch.area.height, 1, offsets, strides);
-    GstVideoOverlayRectangle* rectangle = gst_video_overlay_rectangle_new_raw(
-        pixels, patch.area.x, patch.area.y, patch.area.width, patch.area.height,
-        GST_VIDEO_OVERLAY_FORMAT_FLAG_PREMULTIPLIED_ALPHA);
-    gst_buffer_unref(pixels);
-    gst_video_overlay_composition_add_rectangle(composition.get(), rectangle);
-    gst_video_overlay_rectangle_unref(rectangle);
-  }
-  return composition;
+// Draws into the frame what upstream attached (if anything), then the patches.
+bool draw_into(State& state, GstBuffer* buffer, const GstVideoOverlayComposition* before) {
+  // Mapping for writing copies memory that others (a tee's other branch) hold too.
+  cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);
+  if (!frame) return false;
+  if (!before && draw::blend(state.patches, frame.get())) return true;
+  return gst_video_overlay_composition_blend(draw::compose(state.patches, before).get(), frame.get());
 }
 
 void forget(State& state) {
@@ -318,21 +301,17 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
 
     GstVideoOverlayCompositionMeta* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
     if (state.patches.empty() && (!meta || state.attach)) return GST_FLOW_OK;
-    const CompositionPtr composition = compose(state.patches, meta ? meta->overlay : nullptr);
-    state.patches.clear();
+    const CompositionPtr before(meta ? gst_video_overlay_composition_ref(meta->overlay) : nullptr);
     if (meta) gst_buffer_remove_video_overlay_composition_meta(buffer, meta);
     if (state.attach) {
-      gst_buffer_add_video_overlay_composition_meta(buffer, composition.get());
-      return GST_FLOW_OK;
-    }
-    // Mapping for writing copies memory that others (a tee's other branch) hold too.
-    cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);
-    if ((!frame || !gst_video_overlay_composition_blend(composition.get(), frame.get())) && !state.warned) {
+      gst_buffer_add_video_overlay_composition_meta(buffer, draw::compose(state.patches, before.get()).get());
+    } else if (!draw_into(state, buffer, before.get()) && !state.warned) {
       state.warned = true;
       GST_ELEMENT_WARNING(transform, STREAM, FAILED, ("A frame could not be drawn on."),
                           ("%" GST_PTR_FORMAT " is too small for %dx%d, or cannot be written", buffer,
                            scene.frame.width, scene.frame.height));
     }
+    state.patches.clear();
     return GST_FLOW_OK;
   });
 }
