@@ -12,8 +12,9 @@
 
 namespace {
 
-constexpr char kMotion[] = "motion";
-constexpr char kPerson[] = "person";
+using cerberus::analytics::kMotion;
+using cerberus::analytics::kPerson;
+
 constexpr char kDetection[] = "detection";
 constexpr char kObjectId[] = "object_id";
 constexpr char kOurs[] = "cerberus-object";

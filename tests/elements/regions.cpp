@@ -8,7 +8,12 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "cerberus/private/compat.hpp"
 #include "support.h"
+
+#if CERBERUS_ANALYTICS
+#include <gst/analytics/analytics.h>
+#endif
 
 namespace {
 
@@ -223,6 +228,76 @@ START_TEST(a_region_without_a_place_is_refused) {
 }
 END_TEST
 
+#if CERBERUS_ANALYTICS
+START_TEST(analytics_elements_find_a_detection_and_its_track) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  GST_BUFFER_PTS(frame) = 10 * GST_SECOND;
+  const CerberusRegion region = walker();
+  cerberus_buffer_add_region(frame, &region);
+  GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(frame);
+  fail_unless(meta);
+  fail_unless_equals_int(gst_analytics_relation_get_length(meta), 2);
+
+  gpointer state = nullptr;
+  GstAnalyticsODMtd detection;
+  fail_unless(
+      gst_analytics_relation_meta_iterate(meta, &state, gst_analytics_od_mtd_get_mtd_type(), &detection));
+  fail_unless_equals_string(g_quark_to_string(gst_analytics_od_mtd_get_obj_type(&detection)), "motion");
+  int x = 0, y = 0, width = 0, height = 0;
+  float confidence = 0;
+  fail_unless(gst_analytics_od_mtd_get_location(&detection, &x, &y, &width, &height, &confidence));
+  fail_unless(x == 8 && y == 16 && width == 16 && height == 24);
+  fail_unless(std::abs(confidence - 0.9f) < 1e-6f);
+
+  GstAnalyticsTrackingMtd track;
+  fail_unless(gst_analytics_relation_meta_get_direct_related(
+      meta, detection.id, GST_ANALYTICS_REL_TYPE_RELATE_TO, gst_analytics_tracking_mtd_get_mtd_type(),
+      nullptr, &track));
+  guint64 id = 0;
+  GstClockTime first_seen = 0, last_seen = 0;
+  gboolean lost = TRUE;
+  fail_unless(gst_analytics_tracking_mtd_get_info(&track, &id, &first_seen, &last_seen, &lost));
+  fail_unless_equals_uint64(id, 5);
+  fail_unless_equals_uint64(first_seen, 7 * GST_SECOND);
+  fail_unless_equals_uint64(last_seen, 10 * GST_SECOND);
+  fail_if(lost);
+}
+END_TEST
+
+START_TEST(detections_go_with_the_regions) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  CerberusRegion region = walker();
+  region.tracked = FALSE;
+  cerberus_buffer_add_region(frame, &region);
+  cerberus_buffer_add_region(frame, &region);
+  fail_unless_equals_int(gst_analytics_relation_get_length(gst_buffer_get_analytics_relation_meta(frame)), 2);
+  cerberus_buffer_remove_regions(frame);
+  fail_if(gst_buffer_get_analytics_relation_meta(frame));
+  region.tracked = TRUE;
+  cerberus_buffer_add_region(frame, &region);
+  fail_unless_equals_int(gst_analytics_relation_get_length(gst_buffer_get_analytics_relation_meta(frame)), 2);
+}
+END_TEST
+
+START_TEST(detections_of_strangers_stay) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  GstAnalyticsRelationMeta* meta = gst_buffer_add_analytics_relation_meta(frame);
+  GstAnalyticsODMtd dog;
+  gst_analytics_relation_meta_add_od_mtd(meta, g_quark_from_string("dog"), 1, 2, 3, 4, 0.5f, &dog);
+  CerberusRegion region = walker();
+  region.tracked = FALSE;
+  cerberus_buffer_add_region(frame,
+                             &region);  // a tracker will replace it, and it could not be taken out again
+  fail_unless_equals_int(gst_analytics_relation_get_length(meta), 1);
+  region.tracked = TRUE;
+  cerberus_buffer_add_region(frame, &region);
+  fail_unless_equals_int(gst_analytics_relation_get_length(meta), 3);
+  cerberus_buffer_remove_regions(frame);
+  fail_unless(gst_buffer_get_analytics_relation_meta(frame) == meta);
+}
+END_TEST
+#endif
+
 START_TEST(a_structure_holds_everything_but_what_is_unknown) {
   const CerberusRegion region = walker();  // distance is NaN
   g_autoptr(GstStructure) structure = cerberus_region_to_structure(&region);
@@ -336,6 +411,11 @@ static Suite* regions_suite(void) {
   tcase_add_test(tc, removing_regions_leaves_those_of_strangers);
   tcase_add_test(tc, a_region_over_the_edge_of_the_frame_is_cut_for_others_only);
   tcase_add_test(tc, a_region_without_a_place_is_refused);
+#if CERBERUS_ANALYTICS
+  tcase_add_test(tc, analytics_elements_find_a_detection_and_its_track);
+  tcase_add_test(tc, detections_go_with_the_regions);
+  tcase_add_test(tc, detections_of_strangers_stay);
+#endif
   tc = tcase_create("structures and messages");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_structure_holds_everything_but_what_is_unknown);

@@ -15,6 +15,10 @@
 
 namespace cerberus::analytics {
 
+// What a region is called in GStreamer's metas.
+inline constexpr char kMotion[] = "motion";
+inline constexpr char kPerson[] = "person";
+
 struct Detection {
   const char* type;
   guint x, y, width, height;  // pixels
@@ -50,9 +54,21 @@ inline guint add(GstBuffer* buffer, const Detection& d, guint ours) {
   return 2;
 }
 
+// Only detections of our types in `meta`? A meta may have been lost on the way (scaling, 1.24) and another one added.
+inline bool looks_like_ours(GstAnalyticsRelationMeta* meta) {
+  gpointer state = nullptr;
+  GstAnalyticsODMtd detection;
+  while (gst_analytics_relation_meta_iterate(meta, &state, gst_analytics_od_mtd_get_mtd_type(), &detection)) {
+    const GQuark type = gst_analytics_od_mtd_get_obj_type(&detection);
+    if (type != g_quark_from_static_string(kMotion) && type != g_quark_from_static_string(kPerson))
+      return false;
+  }
+  return true;
+}
+
 inline void remove(GstBuffer* buffer, guint ours) {
   GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(buffer);
-  if (meta && ours > 0 && gst_analytics_relation_get_length(meta) == ours)
+  if (meta && ours > 0 && gst_analytics_relation_get_length(meta) == ours && looks_like_ours(meta))
     gst_buffer_remove_meta(buffer, reinterpret_cast<GstMeta*>(meta));
 }
 
