@@ -4,6 +4,7 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <iterator>
 
@@ -41,6 +42,7 @@ struct AnalysisPrivate {
   GstVideoInfo info{};
   bool have_info = false;
   bool planes_wanted = false;
+  std::atomic<bool> ask_for_planes = true;  // whether somebody downstream wants them; set by any thread
   History history;
   guint64 number = 0;   // analysed frames
   guint scene_age = 0;  // of the last frame's camera motion, 0 = it had none
@@ -110,6 +112,9 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
   return guarded(trans, GST_FLOW_ERROR, [&] {
     // A buffer that says itself that it is a placeholder: nothing to see, and no scene ends with it.
     if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
+    // Asked with the first frame after caps or RECONFIGURE: by then everybody downstream knows the caps.
+    if (priv.ask_for_planes.exchange(false))
+      priv.planes_wanted = cerberus_pad_peer_wants_planes(GST_BASE_TRANSFORM_SRC_PAD(trans));
     Frame frame = begin_frame(trans, priv, buffer);
     if (priv.analyser->analyse(frame)) return GST_FLOW_OK;
 
@@ -158,13 +163,14 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
   priv.info = info;
   priv.have_info = true;
   priv.warned = false;
+  priv.ask_for_planes = true;
   return TRUE;
 }
 
-// Runs at every negotiation, so after caps and after RECONFIGURE.
-gboolean decide_allocation(GstBaseTransform* trans, GstQuery* query) {
-  priv_of(trans).planes_wanted = cerberus_pad_peer_wants_planes(GST_BASE_TRANSFORM_SRC_PAD(trans));
-  return parent_class()->decide_allocation(trans, query);
+gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
+  // Sent, among others, when somebody is linked downstream.
+  if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask_for_planes = true;
+  return parent_class()->src_event(trans, event);
 }
 
 gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
@@ -227,8 +233,8 @@ void class_init(CerberusAnalysisClass* klass) {
   trans->start = start;
   trans->stop = stop;
   trans->set_caps = set_caps;
-  trans->decide_allocation = decide_allocation;
   trans->sink_event = sink_event;
+  trans->src_event = src_event;
   trans->transform_ip = transform_ip;
 }
 

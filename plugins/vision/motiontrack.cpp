@@ -118,14 +118,16 @@ class TopSpeeds {
 class Presence {
  public:
   enum class Change { none, started, ended };
-  Change update(bool present, const Frame& frame, double hold) {
+  Change update(bool present, const Frame& frame, GstClockTime hold) {
     if (present) {
       quiet_ = 0;
       return std::exchange(active_, true) ? Change::none : Change::started;
     }
     // Running time tells the length of a gap as well; a stream without timestamps has only its frame rate.
-    const bool timed = GST_CLOCK_TIME_IS_VALID(frame.running_time) && GST_CLOCK_TIME_IS_VALID(last_);
-    quiet_ += timed ? (frame.running_time > last_ ? seconds(frame.running_time - last_) : 0) : frame.seconds;
+    if (GST_CLOCK_TIME_IS_VALID(frame.running_time) && GST_CLOCK_TIME_IS_VALID(last_))
+      quiet_ += frame.running_time > last_ ? frame.running_time - last_ : 0;
+    else
+      quiet_ += clock_time(frame.seconds);
     return active_ && quiet_ >= hold ? end() : Change::none;
   }
   void passed(const Frame& frame) { last_ = frame.running_time; }
@@ -134,7 +136,7 @@ class Presence {
 
  private:
   bool active_ = false;
-  double quiet_ = 0;  // s
+  GstClockTime quiet_ = 0;  // without any object
   GstClockTime last_ = GST_CLOCK_TIME_NONE;
 };
 
@@ -215,8 +217,8 @@ bool Private::analyse(Frame& frame) {
   read_regions(frame.buffer);
   if (frame.fresh) state->tracker.reset();
   publish(frame, state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size()));
-  const double hold = seconds(state->settings.hold_time);
-  announce(state->presence.update(!state->published.empty(), frame, hold), frame.running_time);
+  const bool present = !state->published.empty();
+  announce(state->presence.update(present, frame, state->settings.hold_time), frame.running_time);
   state->presence.passed(frame);
   return true;
 }

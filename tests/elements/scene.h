@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -167,15 +166,17 @@ class Line {
       gst_buffer_unref(out);
     }
   }
+  void push_caps(const std::string& text) {
+    GstCaps* caps = gst_caps_from_string(text.c_str());
+    gst_harness_push_event(harness, gst_event_new_caps(caps));
+    gst_caps_unref(caps);
+  }
   // To READY and on again, with a new stream.
   void restart(const std::string& caps_text = caps("GRAY8", kWidth, kHeight)) {
     gst_element_set_state(harness->element, GST_STATE_READY);
     gst_element_set_state(harness->element, GST_STATE_PLAYING);
     gst_harness_push_event(harness, gst_event_new_stream_start("again"));
-    gst_harness_push_event(harness,
-                           gst_event_new_caps(std::unique_ptr<GstCaps, void (*)(GstCaps*)>(
-                                                  gst_caps_from_string(caps_text.c_str()), gst_caps_unref)
-                                                  .get()));
+    push_caps(caps_text);
     GstSegment segment;
     gst_segment_init(&segment, GST_FORMAT_TIME);
     gst_harness_push_event(harness, gst_event_new_segment(&segment));

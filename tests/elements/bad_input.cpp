@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Input that nobody should send and somebody will: a clear word or a sane result, never a crash, never a wrong answer.
+#include <limits>
+
+#include "scene.h"
+#include "support.h"
+
+namespace {
+
+using scene::Line;
+using scene::Regions;
+using scene::World;
+
+const char* const kElements[] = {"cameramotion",  "threeframediff", "fuzzythreshold",
+                                 "motionregions", "motiontrack",    "motiondetect"};
+constexpr int kElementCount = G_N_ELEMENTS(kElements);
+constexpr const char* kDetect = "motiondetect confirm-time=0 ! identity";
+
+GstBuffer* sized(gsize bytes, GstClockTime pts) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes, nullptr);
+  gst_buffer_memset(buffer, 0, 90, bytes);
+  GST_BUFFER_PTS(buffer) = pts;
+  return buffer;
+}
+
+// The same frame with a video meta: any stride, any offset.
+GstBuffer* strided(const World& world, int frame, gint stride, gsize offset) {
+  const std::vector<std::uint8_t> grey = world.picture(frame);
+  const gsize bytes = offset + static_cast<gsize>(stride) * world.height;
+  GstBuffer* buffer = sized(bytes, frame * scene::kStep);
+  for (int y = 0; y < world.height; ++y)
+    gst_buffer_fill(buffer, offset + static_cast<gsize>(y) * stride,
+                    &grey[static_cast<std::size_t>(y) * world.width], world.width);
+  gsize offsets[GST_VIDEO_MAX_PLANES] = {offset};
+  gint strides[GST_VIDEO_MAX_PLANES] = {stride};
+  gst_buffer_add_video_meta_full(buffer, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_FORMAT_GRAY8, world.width,
+                                 world.height, 1, offsets, strides);
+  return buffer;
+}
+
+GST_START_TEST(empty_and_truncated_buffers_pass_with_one_warning_and_detection_goes_on) {
+  Line line(std::string(kElements[__i__]) + " ! identity");
+  const World world;
+  line.run(world, 0, 10);
+  int k = 10;
+  for (const gsize bytes : {gsize{0}, gsize{1}, gsize{scene::kWidth * scene::kHeight - 1}}) {
+    GstBuffer* out = line.through(sized(bytes, k++ * scene::kStep));
+    fail_unless_equals_uint64(gst_buffer_get_size(out), bytes);
+    fail_unless(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_CORRUPTED));
+    fail_unless_equals_int(Regions(out).size(), 0);
+    gst_buffer_unref(out);
+  }
+  const std::vector<std::string> warnings = line.messages(GST_MESSAGE_WARNING);
+  fail_unless_equals_int(warnings.size(), 1);
+  fail_unless(warnings[0].find("does not hold the picture") != std::string::npos);
+  guint found = 0;
+  line.run(world, k, k + 20, [&](int, GstBuffer* out) {
+    fail_if(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_CORRUPTED));
+    found += Regions(out).size();
+  });
+  if (__i__ >= 3) fail_unless(found > 0);
+}
+GST_END_TEST
+
+GST_START_TEST(a_stride_far_above_the_width_changes_nothing) {
+  const World world;
+  Line plain(kDetect), wide(kDetect);
+  for (int k = 0; k < 20; ++k) {
+    GstBuffer* a = plain.through(scene::grey_buffer(world, k));
+    GstBuffer* b = wide.through(strided(world, k, 4096 + 3, 77));
+    const std::string expected = Regions(a).text(), found = Regions(b).text();
+    ck_assert_str_eq(found.c_str(), expected.c_str());
+    if (k == 19) fail_unless(!expected.empty());
+    gst_buffer_unref(a);
+    gst_buffer_unref(b);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_video_meta_that_does_not_fit_is_an_unusable_buffer) {
+  const World world;
+  struct Lie {
+    GstVideoFormat format;
+    guint width, height;
+    gint stride;
+    gsize offset;
+  };
+  const Lie lies[] = {
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, 1 << 20, 0},           // rows far behind the memory
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, 320, 1},               // the last byte is missing
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, 320, gsize{1} << 40},  // begins nowhere
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, -320, 0},              // bottom-up, begins at the top
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, std::numeric_limits<gint>::min(), 0},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 320, 0},   // another size
+      {GST_VIDEO_FORMAT_NV12, 320, 240, 320, 0},  // another format
+  };
+  for (const Lie& lie : lies) {
+    Line line(kDetect);
+    line.run(world, 0, 5);
+    GstBuffer* in = scene::grey_buffer(world, 5);
+    gsize offsets[GST_VIDEO_MAX_PLANES] = {lie.offset, lie.offset};
+    gint strides[GST_VIDEO_MAX_PLANES] = {lie.stride, lie.stride};
+    GstVideoMeta* meta =
+        gst_buffer_add_video_meta(in, GST_VIDEO_FRAME_FLAG_NONE, lie.format, lie.width, lie.height);
+    std::copy(offsets, offsets + 4, meta->offset);
+    std::copy(strides, strides + 4, meta->stride);
+    gst_buffer_unref(line.through(in));
+    fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), 1);
+    line.run(world, 6, 10);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(missing_timestamps_are_no_obstacle) {
+  Line timed(kDetect), timeless(kDetect);
+  const World world;
+  guint found = 0;
+  for (int k = 0; k < 30; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GST_BUFFER_PTS(in) = GST_BUFFER_DTS(in) = GST_BUFFER_DURATION(in) = GST_CLOCK_TIME_NONE;
+    GstBuffer* a = timeless.through(in);
+    GstBuffer* b = timed.through(scene::grey_buffer(world, k));
+    const std::string without = Regions(a).text(), with = Regions(b).text();
+    ck_assert_str_eq(without.c_str(), with.c_str());
+    found += Regions(a).size();
+    gst_buffer_unref(a);
+    gst_buffer_unref(b);
+  }
+  fail_unless(found > 0);
+}
+GST_END_TEST
+
+GST_START_TEST(timestamps_that_run_backwards_all_the_time_give_no_region) {
+  Line line(kDetect);
+  const World world;
+  for (int k = 0; k < 20; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GST_BUFFER_PTS(in) = (100 - k) * scene::kStep;
+    GstBuffer* out = line.through(in);
+    fail_unless_equals_int(Regions(out).size(), 0);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+// Somebody else's metas of our own kinds, with numbers out of a nightmare.
+GST_START_TEST(metas_from_strangers_do_no_harm) {
+  Line line(std::string(kElements[__i__]) + " ! identity");
+  const World world;
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (int k = 0; k < 20; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    CerberusCameraMotion motion;
+    cerberus_camera_motion_init(&motion);
+    motion.matrix[k % 9] = k % 3 == 0 ? nan : k % 3 == 1 ? inf : -1e300;
+    motion.confidence = k % 2 ? nan : -7;
+    motion.residual = inf;
+    motion.from = k > 0 ? (k - 1) * scene::kStep : GST_CLOCK_TIME_NONE;
+    motion.scene_age = k + 1;
+    cerberus_buffer_add_camera_motion_meta(in, &motion);
+    for (const CerberusPlaneKind kind :
+         {CERBERUS_PLANE_LUMA, CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_PREVIOUS_DIFFERENCE,
+          CERBERUS_PLANE_HISTOGRAM, CERBERUS_PLANE_MASK, CERBERUS_PLANE_LABELS}) {
+      const int side = 1 + (k * 7 + kind * 13) % 60;  // planes that do not even agree with each other
+      const int row = side * cerberus_plane_kind_sample_size(kind);
+      cerberus_buffer_add_plane_meta(in, kind, sized(static_cast<gsize>(row) * side, 0), side, side, row);
+    }
+    CerberusRegion region;
+    cerberus_region_init(&region);
+    region.x = -1e9;
+    region.width = 1e9;
+    region.height = 1;
+    region.confidence = nan;
+    cerberus_buffer_add_region(in, &region);
+    gst_buffer_add_video_region_of_interest_meta(in, "face", 10, 20, 30, 40);
+    GstBuffer* out = line.through(in);
+    guint faces = 0;
+    gpointer position = nullptr;
+    while (GstMeta* meta =
+               gst_buffer_iterate_meta_filtered(out, &position, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
+      faces += reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta)->roi_type == g_quark_from_string("face");
+    fail_unless_equals_int(faces, 1);
+    gst_buffer_unref(out);
+  }
+  fail_unless(line.messages(GST_MESSAGE_ERROR).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(absurd_property_values_are_refused_or_harmless) {
+  GstElement* element = gst_element_factory_make(kElements[__i__], nullptr);
+  guint count = 0;
+  GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(element), &count);
+  for (guint i = 0; i < count; ++i) {
+    if (!(specs[i]->flags & G_PARAM_WRITABLE) || G_TYPE_FUNDAMENTAL(specs[i]->value_type) == G_TYPE_OBJECT)
+      continue;
+    if (specs[i]->owner_type != G_OBJECT_TYPE(element)) continue;
+    for (const double absurd : {-1e30, -1.0, 0.0, 1e-30, 1e30}) {
+      GValue from = G_VALUE_INIT, to = G_VALUE_INIT;
+      g_value_init(&from, G_TYPE_DOUBLE);
+      g_value_set_double(&from, absurd);
+      g_value_init(&to, specs[i]->value_type);
+      if (g_value_transform(&from, &to)) {
+        g_param_value_validate(specs[i], &to);  // the nearest value that the property takes: its extremes
+        g_object_set_property(G_OBJECT(element), specs[i]->name, &to);
+      }
+      g_value_unset(&to);
+    }
+  }
+  g_free(specs);
+  // With every number at its upper end the element still runs.
+  GstHarness* harness = gst_harness_new_with_element(element, "sink", "src");
+  gst_harness_set_src_caps_str(harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight).c_str());
+  const World world;
+  for (int k = 0; k < 8; ++k) {
+    fail_unless_equals_int(gst_harness_push(harness, scene::grey_buffer(world, k)), GST_FLOW_OK);
+    gst_buffer_unref(gst_harness_pull(harness));
+  }
+  gst_harness_teardown(harness);
+  gst_object_unref(element);
+}
+GST_END_TEST
+
+GST_START_TEST(zones_that_cannot_be_read_are_a_clear_error) {
+  for (const char* text :
+       {"include 0,0 1,0", "includ 0,0 1,0 1,1", "include 0,0 1,0 x,1", "include 0,0 1,0 1,2", "0.1"}) {
+    GstElement* element = gst_element_factory_make("motiondetect", nullptr);
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(element, bus);
+    g_object_set(element, "zones", text, nullptr);
+    fail_unless_equals_int(gst_element_set_state(element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+    GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    fail_unless(message != nullptr, "%s gave no error", text);
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    fail_unless(strstr(error->message, "zones") != nullptr, "%s", error->message);
+    fail_unless(g_error_matches(error, GST_LIBRARY_ERROR, GST_LIBRARY_ERROR_SETTINGS));
+    g_error_free(error);
+    gst_message_unref(message);
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_element_set_bus(element, nullptr);
+    gst_object_unref(bus);
+    gst_object_unref(element);
+  }
+}
+GST_END_TEST
+
+Suite* bad_input_suite() {
+  Suite* suite = suite_create("bad input");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 60);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_loop_test(tests, empty_and_truncated_buffers_pass_with_one_warning_and_detection_goes_on, 0,
+                      kElementCount);
+  tcase_add_test(tests, a_stride_far_above_the_width_changes_nothing);
+  tcase_add_test(tests, a_video_meta_that_does_not_fit_is_an_unusable_buffer);
+  tcase_add_test(tests, missing_timestamps_are_no_obstacle);
+  tcase_add_test(tests, timestamps_that_run_backwards_all_the_time_give_no_region);
+  tcase_add_loop_test(tests, metas_from_strangers_do_no_harm, 0, kElementCount);
+  tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
+  tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(bad_input);
