@@ -206,6 +206,15 @@ void show_black(GstVideoFrame* frame) {
   for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); ++y) std::memset(out_row(frame, y), 0, bytes);
 }
 
+// What lies between the end of a row and the next one is written to files too: equal pictures, equal bytes.
+void clear_padding(GstVideoFrame* frame) {
+  const std::ptrdiff_t bytes = static_cast<std::ptrdiff_t>(GST_VIDEO_FRAME_WIDTH(frame)) * (is_gray(frame) ? 1 : 4);
+  const std::ptrdiff_t padding = GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0) - bytes;
+  if (padding <= 0) return;
+  for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); ++y)
+    std::memset(out_row(frame, y) + bytes, 0, static_cast<std::size_t>(padding));
+}
+
 void show_gray(State& state, GstVideoFrame* frame, vision::GrayView plane, double gain) {
   std::uint8_t level[256];
   for (int i = 0; i < 256; ++i) level[i] = static_cast<std::uint8_t>(std::min(std::lround(i * gain), 255L));
@@ -400,6 +409,7 @@ GstFlowReturn cerberus_motion_view_transform(GstBaseTransform* transform, GstBuf
                         ("%" GST_PTR_FORMAT, out));
       return GST_FLOW_ERROR;
     }
+    clear_padding(frame.get());
     // A stage changed just now: this frame still has the old format.
     const bool fits = !is_colour(settings.stage) || !is_gray(frame.get());
     if (fits && show(state, settings, in, frame.get())) return GST_FLOW_OK;
