@@ -1,25 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
+// A region as a value: boxed, and written as a structure. On buffers: region-buffer.cpp.
 #include <cerberus/region.h>
-#include <gst/video/video.h>
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <initializer_list>
 #include <limits>
 
-#include "private/analytics.hpp"
-#include "private/meta.hpp"
-
 namespace {
-
-using cerberus::analytics::kMotion;
-using cerberus::analytics::kPerson;
-
-constexpr char kDetection[] = "detection";
-constexpr char kObjectId[] = "object_id";
-constexpr char kOurs[] = "cerberus-object";
-constexpr char kAnalytics[] =
-    "analytics";  // in the params only: how many analytics entries stand for the region
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -41,34 +28,6 @@ constexpr CerberusRegion kEmpty = {
     ._cerberus_reserved = {},
 };
 
-// The whole pixels nearest to a region's edges, cut at the frame's left and top (the meta holds no negative
-// numbers and the frame's size is not known here); at least one pixel.
-struct Pixels {
-  guint x, y, width, height;
-};
-
-struct Interval {
-  guint start, length;
-};
-
-Interval whole_pixels(double start, double length) {
-  const double first = std::max(std::round(start), 0.0);
-  const double last = std::max(std::round(start + length), first + 1);
-  return {static_cast<guint>(first), static_cast<guint>(last - first)};
-}
-
-Pixels whole_pixels(const CerberusRegion& region) {
-  const Interval h = whole_pixels(region.x, region.width), v = whole_pixels(region.y, region.height);
-  return {h.start, v.start, h.length, v.length};
-}
-
-bool is_sane(const CerberusRegion& region) {
-  constexpr double kFar = 1 << 24;  // no picture is that large, and whole numbers are exact up to here
-  const double numbers[] = {region.x, region.y, region.width, region.height};
-  return std::all_of(std::begin(numbers), std::end(numbers), [](double n) { return std::abs(n) < kFar; }) &&
-         region.width >= 0 && region.height >= 0;
-}
-
 struct Field {
   const char* name;
   double CerberusRegion::* member;
@@ -88,7 +47,7 @@ constexpr Field kNumbers[] = {
 // False where the structure is not a `cerberus-object`. A stranger may have written it: types and enums are
 // checked.
 bool read(const GstStructure* structure, CerberusRegion& region) {
-  if (!gst_structure_has_name(structure, kOurs)) return false;
+  if (!gst_structure_has_name(structure, CERBERUS_REGION_STRUCTURE)) return false;
   region = kEmpty;
   gst_structure_get(structure, "id", G_TYPE_UINT, &region.id, nullptr);
   gst_structure_get_boolean(structure, "tracked", &region.tracked);
@@ -100,109 +59,6 @@ bool read(const GstStructure* structure, CerberusRegion& region) {
   for (const auto s : {CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_STOPPED})
     if (g_strcmp0(state, cerberus_region_state_to_string(s)) == 0) region.state = s;
   return true;
-}
-
-// Our own record of a region. GStreamer's meta beside it is what others read: it holds whole pixels only, and up to
-// (at least) 1.22 it loses its params where a picture is converted or scaled.
-struct RegionMeta {
-  GstMeta meta;
-  CerberusRegion region;
-  guint analytics;  // how many entries of an analytics meta stand for the region
-};
-
-const GstMetaInfo* region_meta_info();
-
-RegionMeta* next_region(GstBuffer* buffer, gpointer& state) {
-  return reinterpret_cast<RegionMeta*>(
-      gst_buffer_iterate_meta_filtered(buffer, &state, region_meta_info()->api));
-}
-
-void record(GstBuffer* buffer, const CerberusRegion& region, guint analytics) {
-  auto* meta = reinterpret_cast<RegionMeta*>(gst_buffer_add_meta(buffer, region_meta_info(), nullptr));
-  meta->region = region;
-  meta->analytics = analytics;
-}
-
-const char* type_of(const CerberusRegion& region) {
-  return region.person ? kPerson : kMotion;
-}
-
-// True of a meta that stands for one of our regions.
-bool is_ours(GstMeta* meta) {
-  return meta->info->api == GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE &&
-         gst_video_region_of_interest_meta_get_param(reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta),
-                                                     kOurs);
-}
-
-void add_params(GstVideoRegionOfInterestMeta* meta, const CerberusRegion& region) {
-  gst_video_region_of_interest_meta_add_param(
-      meta, gst_structure_new(kDetection, "confidence", G_TYPE_DOUBLE, region.confidence, nullptr));
-  if (region.tracked) {
-    gst_video_region_of_interest_meta_add_param(
-        meta, gst_structure_new(kObjectId, "id", G_TYPE_INT, static_cast<gint>(region.id), nullptr));
-  }
-  gst_video_region_of_interest_meta_add_param(meta, cerberus_region_to_structure(&region));
-}
-
-// Gives the scaled meta of `region` its params again, which scaling took away. It is there already: it stood before
-// our record on the buffer, and metas are transformed in that order.
-void restore_params(GstBuffer* buffer, const CerberusRegion& region) {
-  const GQuark type = g_quark_from_static_string(type_of(region));
-  gpointer state = nullptr;
-  while (GstMeta* meta =
-             gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
-    auto* roi = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
-    if (roi->roi_type != type || roi->id != static_cast<gint>(region.id) || is_ours(meta)) continue;
-    const Pixels expected = whole_pixels(region);
-    const auto near = [](guint a, guint b) { return (a > b ? a - b : b - a) <= 2; };  // GStreamer rounds down
-    if (near(roi->x, expected.x) && near(roi->y, expected.y) && near(roi->w, expected.width) &&
-        near(roi->h, expected.height))
-      return add_params(roi, region);
-  }
-}
-
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  reinterpret_cast<RegionMeta*>(meta)->region = kEmpty;
-  reinterpret_cast<RegionMeta*>(meta)->analytics = 0;
-  return TRUE;
-}
-
-// Copies and scaling keep the region; whatever else is done to a picture makes its pixels wrong.
-gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
-  const auto* own = reinterpret_cast<RegionMeta*>(meta);
-  CerberusRegion region = own->region;
-  if (GST_META_TRANSFORM_IS_COPY(type)) {
-    record(to, region, own->analytics);
-    return TRUE;
-  }
-  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
-  const auto* scale = static_cast<GstVideoMetaTransform*>(data);
-  if (GST_VIDEO_INFO_WIDTH(scale->in_info) <= 0 || GST_VIDEO_INFO_HEIGHT(scale->in_info) <= 0) return FALSE;
-  const double sx =
-      static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->out_info)) / GST_VIDEO_INFO_WIDTH(scale->in_info);
-  const double sy =
-      static_cast<double>(GST_VIDEO_INFO_HEIGHT(scale->out_info)) / GST_VIDEO_INFO_HEIGHT(scale->in_info);
-  for (double* n : {&region.x, &region.width, &region.vx}) *n *= sx;
-  for (double* n : {&region.y, &region.height, &region.vy}) *n *= sy;
-  record(to, region, own->analytics);
-  restore_params(to, region);
-  return TRUE;
-}
-
-const GstMetaInfo* region_meta_info() {
-  static const GstMetaInfo* const info = [] {
-    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, nullptr};
-    const GType api = gst_meta_api_type_register("CerberusRegionMetaAPI", tags);
-    return cerberus::register_meta<RegionMeta>(api, "CerberusRegionMeta", meta_init, nullptr, meta_transform);
-  }();
-  return info;
-}
-
-guint count_analytics(GstBuffer* buffer) {
-  guint total = 0;
-  gpointer state = nullptr;
-  while (const RegionMeta* meta = next_region(buffer, state)) total += meta->analytics;
-  return total;
 }
 
 }  // namespace
@@ -254,9 +110,9 @@ const gchar* cerberus_region_state_to_string(CerberusRegionState state) {
 GstStructure* cerberus_region_to_structure(const CerberusRegion* region) {
   g_return_val_if_fail(region, nullptr);
   GstStructure* structure = gst_structure_new(
-      kOurs, "id", G_TYPE_UINT, region->id, "tracked", G_TYPE_BOOLEAN, region->tracked != FALSE, "person",
-      G_TYPE_BOOLEAN, region->person != FALSE, "age", GST_TYPE_CLOCK_TIME, region->age, "state",
-      G_TYPE_STRING, cerberus_region_state_to_string(region->state), nullptr);
+      CERBERUS_REGION_STRUCTURE, "id", G_TYPE_UINT, region->id, "tracked", G_TYPE_BOOLEAN,
+      region->tracked != FALSE, "person", G_TYPE_BOOLEAN, region->person != FALSE, "age", GST_TYPE_CLOCK_TIME,
+      region->age, "state", G_TYPE_STRING, cerberus_region_state_to_string(region->state), nullptr);
   for (const Field& field : kNumbers) {
     const double value = region->*field.member;
     if (std::isfinite(value)) gst_structure_set(structure, field.name, G_TYPE_DOUBLE, value, nullptr);
@@ -268,45 +124,4 @@ CerberusRegion* cerberus_region_from_structure(const GstStructure* structure) {
   g_return_val_if_fail(structure, nullptr);
   CerberusRegion region;
   return read(structure, region) ? cerberus_region_copy(&region) : nullptr;
-}
-
-gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* region) {
-  g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  g_return_val_if_fail(region, FALSE);
-  if (!gst_buffer_is_writable(buffer) || !is_sane(*region)) return FALSE;
-
-  const Pixels p = whole_pixels(*region);
-  const guint analytics =
-      cerberus::analytics::add(buffer,
-                               {type_of(*region), p.x, p.y, p.width, p.height, region->confidence,
-                                region->tracked != FALSE, region->id, region->age},
-                               count_analytics(buffer));
-  GstVideoRegionOfInterestMeta* meta =
-      gst_buffer_add_video_region_of_interest_meta(buffer, type_of(*region), p.x, p.y, p.width, p.height);
-  meta->id = static_cast<gint>(region->id);
-  add_params(meta, *region);
-  record(buffer, *region, analytics);
-  return TRUE;
-}
-
-GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer) {
-  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
-  GPtrArray* regions = g_ptr_array_new_with_free_func(reinterpret_cast<GDestroyNotify>(cerberus_region_free));
-  gpointer state = nullptr;
-  while (const RegionMeta* meta = next_region(buffer, state))
-    g_ptr_array_add(regions, cerberus_region_copy(&meta->region));
-  return regions;
-}
-
-void cerberus_buffer_remove_regions(GstBuffer* buffer) {
-  g_return_if_fail(GST_IS_BUFFER(buffer));
-  g_return_if_fail(gst_buffer_is_writable(buffer));
-  cerberus::analytics::remove(buffer, count_analytics(buffer));
-  gst_buffer_foreach_meta(
-      buffer,
-      [](GstBuffer*, GstMeta** meta, gpointer) -> gboolean {
-        if ((*meta)->info->api == region_meta_info()->api || is_ours(*meta)) *meta = nullptr;
-        return TRUE;
-      },
-      nullptr);
 }

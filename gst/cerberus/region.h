@@ -7,6 +7,15 @@
 G_BEGIN_DECLS
 
 /**
+ * CERBERUS_REGION_STRUCTURE:
+ *
+ * Name of the structure that holds a region in messages and in the params of a #GstVideoRegionOfInterestMeta.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_REGION_STRUCTURE "cerberus-object"
+
+/**
  * CerberusRegionState:
  * @CERBERUS_REGION_SEEN: measured in this frame
  * @CERBERUS_REGION_COASTED: carried on by its velocity, nothing was measured in this frame
