@@ -61,9 +61,11 @@ struct CameraMotion::State {
 
   CameraMotionResult estimate(const std::optional<Transform>& prior);
   CameraMotionResult start_scene();
-  Transform first_guess(int level, const std::array<Shift, 2>& shifts,
-                        const std::optional<Transform>& prior) const;
-  void follow(int level, const Transform& guess, int rounds);
+  PatchMatch look(const PatchFollower& patch, int level, const PatchSite& site, const Transform& guess,
+                  int rounds) const;
+  Transform follow_from_guesses(int level, const std::array<Shift, 2>& shifts,
+                                const std::optional<Transform>& prior);
+  void follow(int level, const Transform& guess);
   void collect(int level);
   void count_followers(const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
@@ -107,16 +109,21 @@ CameraMotionResult CameraMotion::State::start_scene() {
   return result;
 }
 
-// Follows every patch on one level, first looked for where `guess` (level 0 pixels) says.
-void CameraMotion::State::follow(int level, const Transform& guess, int rounds) {
-  const GrayView from = reference.level(level), to = current.level(level);
+// Looks for one patch where `guess` (level 0 pixels) says it went.
+PatchMatch CameraMotion::State::look(const PatchFollower& patch, int level, const PatchSite& site,
+                                     const Transform& guess, int rounds) const {
   const float scale = 1.0f / static_cast<float>(1 << level);
+  const Point p = guess.apply({site.x, site.y});
+  return patch.follow(current.level(level), static_cast<float>(p.x - site.x) * scale,
+                      static_cast<float>(p.y - site.y) * scale, rounds);
+}
+
+// Follows every patch on one level, first looked for where `guess` says.
+void CameraMotion::State::follow(int level, const Transform& guess) {
   looked_for = 0;
   for (int i = 0; i < sites.count; ++i) {
     const PatchSite& site = sites.site[i];
-    const Point p = guess.apply({site.x, site.y});
-    const float dx = static_cast<float>(p.x - site.x) * scale, dy = static_cast<float>(p.y - site.y) * scale;
-    matches[i] = PatchFollower(from, level, site).follow(to, dx, dy, rounds);
+    matches[i] = look(PatchFollower(reference.level(level), level, site), level, site, guess, 3);
     looked_for += matches[i].inside;
   }
 }
@@ -153,30 +160,39 @@ void CameraMotion::State::collect(int level) {
   }
 }
 
-// The most promising of: standing still, the last motion, the head's pose, the coarse search.
-Transform CameraMotion::State::first_guess(int level, const std::array<Shift, 2>& shifts,
-                                           const std::optional<Transform>& prior) const {
+// Follows every patch on the coarsest level. First looked for where the best guess for the whole picture says, or where
+// another one fits this patch clearly better: the background must be found even if a large object rates higher, and the
+// consensus decides later. Guesses: standing still, the last motion, the coarse search, the head's pose.
+Transform CameraMotion::State::follow_from_guesses(int level, const std::array<Shift, 2>& shifts,
+                                                   const std::optional<Transform>& prior) {
+  constexpr int kGuesses = 5;
+  constexpr float kClearly = 0.15f;
   const double coarse = 1 << search_level(reference.size());
-  std::array<Transform, 5> guesses{};
+  std::array<Transform, kGuesses> guesses{};
   int count = 1;
   if (!last.is_identity()) guesses[count++] = last;
   for (const Shift& s : shifts) guesses[count++] = Transform::translation(s.dx * coarse, s.dy * coarse);
   if (prior && prior->is_sane(reference.size())) guesses[count++] = *prior;
-  std::array<float, 5> ratings{};
-  const GrayView from = reference.level(level), to = current.level(level);
-  const float scale = 1.0f / static_cast<float>(1 << level);
+  std::array<std::array<float, kGuesses>, MotionSamples::kMax> fits;
+  std::array<float, kGuesses> ratings{};
   for (int i = 0; i < sites.count; ++i) {
-    const PatchSite& site = sites.site[i];
-    const PatchFollower patch(from, level, site);
+    const PatchFollower patch(reference.level(level), level, sites.site[i]);
     for (int g = 0; g < count; ++g) {
-      const Point p = guesses[g].apply({site.x, site.y});
-      const PatchMatch m = patch.follow(to, static_cast<float>(p.x - site.x) * scale,
-                                        static_cast<float>(p.y - site.y) * scale, 0);
-      ratings[g] += std::max(0.0f, m.correlation - 0.3f);
+      fits[i][g] = look(patch, level, sites.site[i], guesses[g], 0).correlation;
+      ratings[g] += std::max(0.0f, fits[i][g] - 0.3f);
     }
   }
   ratings[0] *= 1.05f;  // when in doubt, it stands
-  return guesses[std::max_element(ratings.begin(), ratings.begin() + count) - ratings.begin()];
+  const auto best = std::max_element(ratings.begin(), ratings.begin() + count) - ratings.begin();
+  looked_for = 0;
+  for (int i = 0; i < sites.count; ++i) {
+    const auto own = std::max_element(fits[i].begin(), fits[i].begin() + count) - fits[i].begin();
+    const auto from = fits[i][own] > fits[i][best] + kClearly ? own : best;
+    const PatchFollower patch(reference.level(level), level, sites.site[i]);
+    matches[i] = look(patch, level, sites.site[i], guesses[from], 6);
+    looked_for += matches[i].inside;
+  }
+  return guesses[best];
 }
 
 // Of the patches whose place can be seen, the share that was found and follows the fit; and the same with each counted
@@ -199,8 +215,9 @@ void CameraMotion::State::count_followers(const MotionFit& fit) {
 // pictures, share_well at most .20, difference at least .77; 2309 pairs of successive ones, share_well at least .32; half
 // the picture replaced: share_well at least .26 in 95 of 100.
 bool CameraMotion::State::is_cut(const Shift& shift) const {
-  if (sites.count < kLeastPatches) return current_relief.contrast() > 3 * reference_relief.contrast() + 1;
-  return share_well < 0.22 && shift.difference > 0.6;
+  const double before = reference_relief.contrast(), now = current_relief.contrast();
+  if (sites.count < kLeastPatches) return now > 3 * before + 1;
+  return share_well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
 }
 
 bool CameraMotion::State::is_still(const MotionFit& fit) const {
@@ -231,11 +248,11 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   sites_chosen = true;
   const int top = std::max(0, search_level(size) - 1);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
-  Transform motion = first_guess(top, shifts, prior);
+  Transform motion = follow_from_guesses(top, shifts, prior);
   MotionFit fit;
   share = share_well = 0;
   for (int level = top; level >= 0; --level) {
-    follow(level, motion, level == top ? 6 : 3);
+    if (level < top) follow(level, motion);
     collect(level);
     const std::array guesses{Transform{}, motion};
     const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace cerberus::vision {
 
 namespace {
 
-constexpr int kRefinements = 4;
+// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, as the start may be a simpler model.
+constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f};
 
 using Distances = std::array<float, MotionSamples::kMax>;
 
@@ -167,6 +169,49 @@ class LeastSquares {
   double cx_, cy_, scale_;
 };
 
+// The few best hypotheses that mean different motions.
+class Contenders {
+ public:
+  explicit Contenders(Size picture) : picture_(picture), alike_(0.02 * picture.width) {}
+
+  void add(const Transform& t, double support) {
+    if (count_ == kMost && support <= entries_[kMost - 1].support) return;
+    int place = 0;  // of the entry it takes over: its like, or the weakest
+    while (place < count_ && !alike(entries_[place].transform, t)) ++place;
+    if (place < count_ && support <= entries_[place].support) return;
+    if (place == count_) place = count_ < kMost ? count_++ : kMost - 1;
+    for (; place > 0 && entries_[place - 1].support < support; --place) entries_[place] = entries_[place - 1];
+    entries_[place] = {t, support};
+  }
+  Transform best() const { return entries_[0].transform; }
+  std::span<const Transform> all() {
+    for (int i = 0; i < count_; ++i) transforms_[i] = entries_[i].transform;
+    return {transforms_.data(), static_cast<std::size_t>(count_)};
+  }
+
+ private:
+  static constexpr int kMost = 3;
+  struct Entry {
+    Transform transform;
+    double support = 0;
+  };
+
+  bool alike(const Transform& a, const Transform& b) const {
+    const double right = picture_.width - 1, low = picture_.height - 1;
+    for (const Point p : {Point{0, 0}, Point{right, low}, Point{0.5 * right, 0.5 * low}}) {
+      const Point q = a.apply(p), r = b.apply(p);
+      if (std::abs(q.x - r.x) + std::abs(q.y - r.y) > alike_) return false;
+    }
+    return true;
+  }
+
+  Size picture_;
+  double alike_;
+  int count_ = 0;
+  std::array<Entry, kMost> entries_;
+  std::array<Transform, kMost> transforms_;
+};
+
 }  // namespace
 
 bool follows(const MotionSamples& s, int i, const Transform& transform) {
@@ -198,10 +243,11 @@ MotionFit refine_motion(const MotionSamples& s, MotionModel model, Size picture,
   const LeastSquares squares(model, picture);
   Transform t = start;
   Distances distances, weights{};
-  for (int round = 0; round < kRefinements && unknowns(model) > 0; ++round) {
+  if (model == MotionModel::none) return rate_motion(s, t);
+  for (const float gates : kGates) {
     measure(s, t, distances);
     for (int i = 0; i < s.count; ++i) {
-      const float inside = std::max(0.0f, 1.0f - distances[i] * (1.0f / (1.5f * kGate)));
+      const float inside = std::max(0.0f, 1.0f - distances[i] / (gates * kGate));
       weights[i] = inside * inside;  // Tukey's biweight
     }
     Transform next;
@@ -213,31 +259,29 @@ MotionFit refine_motion(const MotionSamples& s, MotionModel model, Size picture,
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses) {
-  Transform best;
-  double most = -1;
-  const auto consider = [&](const Transform& t) {
-    const double support = support_of(s, t);
-    if (support > most) most = support, best = t;
-  };
-  for (const Transform& t : guesses) consider(t);
-  if (model == MotionModel::none || s.count == 0) return rate_motion(s, guesses.empty() ? Transform{} : best);
+  Contenders contenders(picture);
+  for (const Transform& t : guesses) contenders.add(t, support_of(s, t));
+  if (model == MotionModel::none || s.count == 0) return rate_motion(s, contenders.best());
   const double least_distance = 0.15 * picture.width;
-  std::uint32_t random = 12345;  // numerical recipes' linear congruence; the upper bits are used
+  std::uint32_t random = 12345;  // linear congruence (Numerical Recipes), its upper bits
   const auto draw = [&] {
     random = random * 1664525u + 1013904223u;
     return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
   };
   for (int h = 0; h < hypotheses; ++h) {
     const int i = draw(), j = draw();
-    Transform t;
-    if (model == MotionModel::translation || h % 4 == 0)
-      consider(Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]));
-    else if (similarity_through(s, i, j, least_distance, t))
-      consider(t);
+    Transform t = Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]);
+    const bool shift = model == MotionModel::translation || h % 4 == 0;
+    if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t, support_of(s, t));
   }
-  MotionFit fit =
-      refine_motion(s, model == MotionModel::translation ? model : MotionModel::similarity, picture, best);
-  if (unknowns(model) > 4) {
+  // A hypothesis from two samples carries their errors; only refined ones can be compared.
+  const MotionModel simple = std::min(model, MotionModel::similarity);
+  MotionFit fit;
+  fit.support = -1;
+  for (const Transform& t : contenders.all())
+    if (const MotionFit refined = refine_motion(s, simple, picture, t); refined.support > fit.support)
+      fit = refined;
+  if (model > simple) {
     const MotionFit finer = refine_motion(s, model, picture, fit.transform);
     if (finer.support >= fit.support) fit = finer;
   }

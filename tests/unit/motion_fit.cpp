@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The robust fit on correspondences made from a known motion.
+#include "vision/motion_fit.h"
+
+#include <check.h>
+
+#include <cmath>
+#include <random>
+
+#include "support/allocations.h"
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+constexpr Size kSize{320, 240};
+
+// A grid of 16 x 12 honest samples of standard deviation 0.1.
+MotionSamples samples_of(const Transform& motion, std::mt19937& random, double sigma = 0.1) {
+  std::normal_distribution<double> normal(0, sigma);
+  MotionSamples s;
+  for (int y = 0; y < 12; ++y)
+    for (int x = 0; x < 16; ++x) {
+      const int n = s.count++;
+      s.x[n] = static_cast<float>(10 + 20 * x), s.y[n] = static_cast<float>(10 + 20 * y);
+      const Point p = motion.apply({s.x[n], s.y[n]});
+      s.u[n] = static_cast<float>(p.x + normal(random)), s.v[n] = static_cast<float>(p.y + normal(random));
+      s.wxx[n] = s.wyy[n] = 100, s.wxy[n] = 0;
+      s.evidence[n] = 1;
+      s.region[n] = static_cast<std::uint8_t>(y / 3 * 4 + x / 4);
+    }
+  return s;
+}
+
+double disagreement(const Transform& a, const Transform& b) {
+  double worst = 0;
+  for (const Point p : {Point{0, 0}, Point{319, 0}, Point{0, 239}, Point{319, 239}, Point{160, 120}}) {
+    const Point q = a.apply(p), r = b.apply(p);
+    worst = std::max(worst, std::hypot(q.x - r.x, q.y - r.y));
+  }
+  return worst;
+}
+
+const Transform kTurn = Transform::similarity(1.04, 0.05, -12, 7);
+const Transform kShear{{1.03, 0.04, -5, 0.01, 0.98, 6, 0, 0, 1}};
+const Transform kPan{{1.02, 0.01, 8, 0.005, 1.01, -3, 1e-4, -5e-5, 1}};
+
+}  // namespace
+
+START_TEST(every_model_recovers_its_own_motion) {
+  std::mt19937 random(1);
+  const struct {
+    MotionModel model;
+    Transform motion;
+  } cases[] = {{MotionModel::translation, Transform::translation(7.5, -3.25)},
+               {MotionModel::similarity, kTurn},
+               {MotionModel::affine, kShear},
+               {MotionModel::homography, kPan}};
+  for (const auto& c : cases) {
+    const MotionFit fit = fit_motion(samples_of(c.motion, random), c.model, kSize, {}, 96);
+    ck_assert_msg(disagreement(fit.transform, c.motion) < 0.12, "model %d off by %g",
+                  static_cast<int>(c.model), disagreement(fit.transform, c.motion));
+    ck_assert_double_gt(fit.agreeing, 185);  // 1 % of 192 lie beyond the gate
+    ck_assert_double_eq_tol(fit.residual, 0.1 * std::sqrt(2), 0.02);
+  }
+}
+END_TEST
+
+START_TEST(exact_samples_give_the_exact_motion) {
+  std::mt19937 random(2);
+  ck_assert_double_lt(
+      disagreement(fit_motion(samples_of(kTurn, random, 0), MotionModel::similarity, kSize, {}, 96).transform,
+                   kTurn),
+      2e-3);
+}
+END_TEST
+
+START_TEST(a_compact_object_of_45_percent_is_left_out) {
+  std::mt19937 random(3);
+  MotionSamples s = samples_of(kTurn, random);
+  const MotionSamples other = samples_of(Transform::translation(20, 1), random);
+  int object = 0;
+  for (int i = 0; i < s.count; ++i)
+    if (s.x[i] > 60 && s.x[i] < 240 && s.y[i] > 40) {  // 9 x 10 of 192
+      s.u[i] = other.u[i], s.v[i] = other.v[i];
+      ++object;
+    }
+  ck_assert_int_eq(object, 90);
+  const MotionFit fit = fit_motion(s, MotionModel::similarity, kSize, {}, 96);
+  ck_assert_double_lt(disagreement(fit.transform, kTurn), 0.15);
+  ck_assert_double_lt(fit.agreeing, 104);
+}
+END_TEST
+
+START_TEST(scattered_nonsense_of_60_percent_is_left_out) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> anywhere(-60, 60);
+  MotionSamples s = samples_of(kPan, random);
+  for (int i = 0; i < s.count; ++i)
+    if (i % 5 < 3) s.u[i] += anywhere(random), s.v[i] += anywhere(random);
+  ck_assert_double_lt(disagreement(fit_motion(s, MotionModel::homography, kSize, {}, 96).transform, kPan),
+                      0.3);
+}
+END_TEST
+
+START_TEST(agreement_all_over_the_picture_beats_the_same_number_in_one_place) {
+  std::mt19937 random(5);
+  MotionSamples s = samples_of({}, random);
+  for (int i = 0; i < s.count; ++i)
+    if (s.x[i] > 150) s.u[i] += 30;  // more than half: 9 of 16 columns
+  const double everywhere = rate_motion(s, {}).support;
+  MotionSamples compact = s;
+  for (int i = 0; i < s.count; ++i) compact.region[i] = 5;
+  ck_assert_double_gt(everywhere, 1.5 * rate_motion(compact, {}).support);
+}
+END_TEST
+
+START_TEST(edges_that_know_one_direction_only_are_combined) {
+  // Half of the samples know x only, half y only; what they do not know is wildly wrong.
+  std::mt19937 random(6);
+  std::uniform_real_distribution<float> anywhere(-3, 3);
+  MotionSamples s = samples_of(kTurn, random);
+  for (int i = 0; i < s.count; ++i) {
+    (i % 2 ? s.wxx : s.wyy)[i] = 0.01f;
+    (i % 2 ? s.u : s.v)[i] += anywhere(random);
+  }
+  const std::array guess{kTurn};
+  ck_assert_double_lt(disagreement(fit_motion(s, MotionModel::similarity, kSize, guess, 96).transform, kTurn),
+                      0.15);
+}
+END_TEST
+
+START_TEST(few_samples_give_the_simplest_motion_that_they_carry) {
+  std::mt19937 random(7);
+  MotionSamples s = samples_of(Transform::translation(4, 2), random, 0);
+  s.count = 1;
+  for (const MotionModel model :
+       {MotionModel::translation, MotionModel::similarity, MotionModel::homography}) {
+    const MotionFit fit = fit_motion(s, model, kSize, {}, 96);
+    ck_assert(fit.transform.is_sane(kSize));
+    ck_assert_double_lt(disagreement(fit.transform, Transform::translation(4, 2)), 0.2);
+  }
+  s.count = 0;
+  ck_assert(fit_motion(s, MotionModel::similarity, kSize, {}, 96).transform.is_identity());
+  const std::array guess{kTurn};
+  ck_assert(fit_motion(s, MotionModel::similarity, kSize, guess, 96).transform.m == kTurn.m);
+}
+END_TEST
+
+START_TEST(no_model_takes_the_best_guess_as_it_is) {
+  std::mt19937 random(8);
+  const std::array guesses{Transform{}, kTurn, Transform::translation(3, 3)};
+  ck_assert(fit_motion(samples_of(kTurn, random), MotionModel::none, kSize, guesses, 96).transform.m ==
+            kTurn.m);
+}
+END_TEST
+
+START_TEST(a_fit_allocates_nothing) {
+  std::mt19937 random(9);
+  const MotionSamples s = samples_of(kPan, random);
+  const std::size_t before = allocations();
+  fit_motion(s, MotionModel::homography, kSize, {}, 96);
+  ck_assert_uint_eq(allocations() - before, 0);
+}
+END_TEST
+
+int main() {
+  return run_suite(
+      "motion_fit",
+      {every_model_recovers_its_own_motion, exact_samples_give_the_exact_motion,
+       a_compact_object_of_45_percent_is_left_out, scattered_nonsense_of_60_percent_is_left_out,
+       agreement_all_over_the_picture_beats_the_same_number_in_one_place,
+       edges_that_know_one_direction_only_are_combined, few_samples_give_the_simplest_motion_that_they_carry,
+       no_model_takes_the_best_guess_as_it_is, a_fit_allocates_nothing});
+}
