@@ -5,8 +5,11 @@
 #include <cerberus/api.h>
 #include <cerberus/camera-motion.h>
 #include <cerberus/caps.h>
+#include <cerberus/fusion.h>
 #include <cerberus/message.h>
+#include <cerberus/pir.h>
 #include <cerberus/plane.h>
+#include <cerberus/pose.h>
 #include <cerberus/query.h>
 #include <cerberus/region.h>
 #include <cerberus/threshold.h>

@@ -86,20 +86,48 @@ void add_params(GstVideoRegionOfInterestMeta* meta, const CerberusRegion& region
   gst_video_region_of_interest_meta_add_param(meta, cerberus_region_to_structure(&region));
 }
 
-// Gives the scaled meta of `region` its params again, which scaling took away. It is there already: it stood before
-// our record on the buffer, and metas are transformed in that order.
-void restore_params(GstBuffer* buffer, const CerberusRegion& region) {
-  const GQuark type = g_quark_from_static_string(type_of(region));
+void drop_params(GstVideoRegionOfInterestMeta* meta) {
+  for (const char* name : {"detection", "object_id", CERBERUS_REGION_STRUCTURE}) {
+    GstStructure* param = gst_video_region_of_interest_meta_get_param(meta, name);
+    if (!param) continue;
+    meta->params = g_list_remove(meta->params, param);
+    gst_structure_free(param);
+  }
+}
+
+// Makes the scaled meta of a region say the same as our record: scaling takes its params away (1.22), and rounds its
+// pixels down from pixels that were rounded before. It is there already: it stood before our record on the buffer, and
+// metas are transformed in that order.
+void update_scaled(GstBuffer* buffer, const CerberusRegion& before, const CerberusRegion& after,
+                   const GstVideoMetaTransform& scale) {
+  const Pixels old = whole_pixels(before);
+  const auto is_scaled = [](guint n, guint old_n, gint from, gint to) {
+    const gint64 difference = gint64{n} - gint64{old_n} * to / from;
+    return difference >= -1 && difference <= 1;
+  };
+  const gint from_width = GST_VIDEO_INFO_WIDTH(scale.in_info),
+             to_width = GST_VIDEO_INFO_WIDTH(scale.out_info);
+  const gint from_height = GST_VIDEO_INFO_HEIGHT(scale.in_info),
+             to_height = GST_VIDEO_INFO_HEIGHT(scale.out_info);
+  const GQuark type = g_quark_from_static_string(type_of(before));
   gpointer state = nullptr;
   while (GstMeta* meta =
              gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     auto* roi = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
-    if (roi->roi_type != type || roi->id != static_cast<gint>(region.id) || is_ours(meta)) continue;
-    const Pixels expected = whole_pixels(region);
-    const auto near = [](guint a, guint b) { return (a > b ? a - b : b - a) <= 2; };  // GStreamer rounds down
-    if (near(roi->x, expected.x) && near(roi->y, expected.y) && near(roi->w, expected.width) &&
-        near(roi->h, expected.height))
-      return add_params(roi, region);
+    if (roi->roi_type != type || roi->id != static_cast<gint>(before.id)) continue;
+    if (!is_scaled(roi->x, old.x, from_width, to_width) ||
+        !is_scaled(roi->w, old.width, from_width, to_width) ||
+        !is_scaled(roi->y, old.y, from_height, to_height) ||
+        !is_scaled(roi->h, old.height, from_height, to_height))
+      continue;
+    const Pixels p = whole_pixels(after);
+    roi->x = p.x;
+    roi->y = p.y;
+    roi->w = p.width;
+    roi->h = p.height;
+    drop_params(roi);
+    add_params(roi, after);
+    return;
   }
 }
 
@@ -127,7 +155,7 @@ gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, g
   for (double* n : {&region.x, &region.width, &region.vx}) *n *= sx;
   for (double* n : {&region.y, &region.height, &region.vy}) *n *= sy;
   record(to, region, own->analytics);
-  restore_params(to, region);
+  update_scaled(to, own->region, region, *scale);
   return TRUE;
 }
 

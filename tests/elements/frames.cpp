@@ -166,6 +166,40 @@ START_TEST(a_truncated_frame_is_refused) {
 }
 END_TEST
 
+// A video meta that lies about where the samples are, or about what they are: refused, and no critical either.
+START_TEST(a_frame_outside_its_memory_is_refused) {
+  struct {
+    GstVideoFormat format;
+    guint width, height;
+    gsize offset;
+    gint stride;
+    bool good;
+  } const cases[] = {
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 0, 64, true},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 0, 65, false},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 1, 64, false},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 47 * 64, -64, true},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 0, -64, false},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 46 * 64, -64, false},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 48, 48 * 64, 64, false},
+      {GST_VIDEO_FORMAT_GRAY8, 32, 48, 0, 64, false},
+      {GST_VIDEO_FORMAT_GRAY8, 64, 47, 0, 64, false},
+      {GST_VIDEO_FORMAT_GRAY16_LE, 64, 48, 0, 64, false},
+  };
+  GstVideoInfo info;
+  gst_video_info_set_format(&info, GST_VIDEO_FORMAT_GRAY8, 64, 48);
+  for (const auto& c : cases) {
+    g_autoptr(GstBuffer) buffer = gst_buffer_new_allocate(nullptr, 64 * 48, nullptr);
+    gsize offset[GST_VIDEO_MAX_PLANES] = {c.offset};
+    gint stride[GST_VIDEO_MAX_PLANES] = {c.stride};
+    gst_buffer_add_video_meta_full(buffer, GST_VIDEO_FRAME_FLAG_NONE, c.format, c.width, c.height, 1, offset,
+                                   stride);
+    VideoFrame frame(info, buffer, GST_MAP_READ);
+    fail_unless_equals_int(static_cast<bool>(frame), c.good);
+  }
+}
+END_TEST
+
 // A reference held by the mapping would make the buffer unwritable: an element maps and annotates the same buffer.
 START_TEST(a_mapped_frame_can_still_be_annotated) {
   GstVideoInfo info;
@@ -268,6 +302,7 @@ static Suite* frames_suite(void) {
   tcase_add_test(tc, a_negative_stride_reads_upwards);
   tcase_add_test(tc, the_caps_name_exactly_the_supported_formats);
   tcase_add_test(tc, a_truncated_frame_is_refused);
+  tcase_add_test(tc, a_frame_outside_its_memory_is_refused);
   tcase_add_test(tc, a_mapped_frame_can_still_be_annotated);
   tc = tcase_create("planes");
   suite_add_tcase(s, tc);

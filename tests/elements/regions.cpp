@@ -151,13 +151,91 @@ START_TEST(scaling_scales_regions_and_keeps_what_others_read) {
   expected.vy = -1.25;
   assert_same(at(regions, 0), expected);
   fail_unless_equals_int(count_rois(out), 1);
-  fail_unless(std::abs(static_cast<int>(roi(out)->x) - 20) <= 1);
+  fail_unless_equals_int(roi(out)->x, 21);  // 20.625
+  fail_unless_equals_int(roi(out)->w, 38);  // to 59.375
   fail_unless(gst_video_region_of_interest_meta_get_param(roi(out), "detection"));
   fail_unless(gst_video_region_of_interest_meta_get_param(roi(out), "object_id"));
   double vx = 0;
   gst_structure_get_double(gst_video_region_of_interest_meta_get_param(roi(out), "cerberus-object"), "vx",
                            &vx);
   fail_unless_equals_float(vx, 25);
+}
+END_TEST
+
+// Up and down again, several times: nothing drifts, and what others read stays what it is. Two regions with one number
+// and one stranger's beside them are not mixed up.
+START_TEST(scaling_often_loses_nothing) {
+  for (const char* width : {"384", "65", "61", "512"}) {
+    g_autofree gchar* launch = g_strdup_printf(
+        "videoscale ! video/x-raw,width=%s,height=480 ! videoscale ! video/x-raw,width=100,height=100 ! "
+        "videoconvert ! "
+        "video/x-raw,format=RGB ! videoscale",
+        width);
+    GstHarness* h = gst_harness_new_parse(launch);
+    gst_harness_set_src_caps_str(h, "video/x-raw,format=I420,framerate=25/1,width=64,height=48");
+    gst_harness_set_sink_caps_str(h, "video/x-raw,format=RGB,framerate=25/1,width=64,height=48");
+    GstBuffer* frame = gst_buffer_new_allocate(nullptr, 64 * 48 * 3 / 2, nullptr);
+    gst_buffer_memset(frame, 0, 128, -1);
+    CerberusRegion one = walker(), two = walker();
+    one.x = 8.5;  // rounds up: 9
+    one.id = two.id = 0;
+    one.tracked = two.tracked = FALSE;
+    two.x = 40.5;
+    gst_buffer_add_video_region_of_interest_meta(frame, "motion", 14, 19, 16, 24);
+    cerberus_buffer_add_region(frame, &one);
+    cerberus_buffer_add_region(frame, &two);
+    fail_unless_equals_int(gst_harness_push(h, frame), GST_FLOW_OK);
+    g_autoptr(GstBuffer) out = gst_harness_pull(h);
+    gst_harness_teardown(h);
+
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    fail_unless_equals_int(regions->len, 2);
+    fail_unless(std::abs(at(regions, 0).x - 8.5) < 1e-9 && std::abs(at(regions, 1).x - 40.5) < 1e-9);
+    fail_unless(std::abs(at(regions, 0).vx - 10) < 1e-9);
+    const double places[] = {NAN, at(regions, 0).x, at(regions, 1).x};
+    gpointer state = nullptr;
+    for (const double place : places) {
+      auto* meta = reinterpret_cast<GstVideoRegionOfInterestMeta*>(
+          gst_buffer_iterate_meta_filtered(out, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE));
+      fail_unless(meta);
+      fail_unless_equals_int(g_list_length(meta->params), std::isnan(place) ? 0 : 2);
+      if (std::isnan(place)) continue;
+      fail_unless_equals_int(meta->x, std::lround(place));
+      double x = 0;
+      gst_structure_get_double(gst_video_region_of_interest_meta_get_param(meta, "cerberus-object"), "x", &x);
+      fail_unless(x == place);
+    }
+    cerberus_buffer_remove_regions(out);
+    fail_unless_equals_int(count_rois(out), 1);
+  }
+}
+END_TEST
+
+// A GStreamer that scales its meta and keeps the params would leave numbers of the old size in them.
+START_TEST(params_that_survive_scaling_are_brought_up_to_date) {
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  const CerberusRegion region = walker();
+  cerberus_buffer_add_region(frame, &region);
+  g_autoptr(GstBuffer) scaled = gst_buffer_new();
+  GstVideoRegionOfInterestMeta* meta =
+      gst_buffer_add_video_region_of_interest_meta(scaled, "motion", 16, 32, 32, 48);
+  meta->id = 5;
+  for (GList* l = roi(frame)->params; l; l = l->next)
+    gst_video_region_of_interest_meta_add_param(meta,
+                                                gst_structure_copy(static_cast<GstStructure*>(l->data)));
+
+  GstMeta* own = gst_buffer_get_meta(frame, g_type_from_name("CerberusRegionMetaAPI"));
+  GstVideoInfo in, out;
+  gst_video_info_set_format(&in, GST_VIDEO_FORMAT_GRAY8, 64, 48);
+  gst_video_info_set_format(&out, GST_VIDEO_FORMAT_GRAY8, 128, 96);
+  GstVideoMetaTransform scale{&in, &out};
+  fail_unless(
+      own->info->transform_func(scaled, own, frame, gst_video_meta_transform_scale_get_quark(), &scale));
+  fail_unless_equals_int(g_list_length(meta->params), 3);
+  double x = 0;
+  gst_structure_get_double(gst_video_region_of_interest_meta_get_param(meta, "cerberus-object"), "x", &x);
+  fail_unless_equals_float(x, 16.5);
+  fail_unless_equals_int(meta->x, 17);
 }
 END_TEST
 
@@ -407,6 +485,8 @@ static Suite* regions_suite(void) {
   tcase_add_test(tc, regions_keep_their_order);
   tcase_add_test(tc, other_tools_find_a_region_of_interest);
   tcase_add_test(tc, scaling_scales_regions_and_keeps_what_others_read);
+  tcase_add_test(tc, scaling_often_loses_nothing);
+  tcase_add_test(tc, params_that_survive_scaling_are_brought_up_to_date);
   tcase_add_test(tc, converting_changes_nothing);
   tcase_add_test(tc, removing_regions_leaves_those_of_strangers);
   tcase_add_test(tc, a_region_over_the_edge_of_the_frame_is_cut_for_others_only);

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <cerberus/fusion.h>
+
+#include <cmath>
+
+#include "private/meta.hpp"
+
+namespace {
+
+constexpr GEnumValue kActions[] = {
+    {CERBERUS_FUSION_TRACK, "CERBERUS_FUSION_TRACK", "track"},
+    {CERBERUS_FUSION_TURN_LEFT, "CERBERUS_FUSION_TURN_LEFT", "turn-left"},
+    {CERBERUS_FUSION_TURN_RIGHT, "CERBERUS_FUSION_TURN_RIGHT", "turn-right"},
+    {CERBERUS_FUSION_SEARCH, "CERBERUS_FUSION_SEARCH", "search"},
+    {CERBERUS_FUSION_ZERO, "CERBERUS_FUSION_ZERO", "zero"},
+    {CERBERUS_FUSION_HOLD, "CERBERUS_FUSION_HOLD", "hold"},
+    {0, nullptr, nullptr},
+};
+
+struct FusionMeta {
+  GstMeta meta;
+  CerberusFusion fusion;
+};
+
+gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
+  cerberus_fusion_init(&reinterpret_cast<FusionMeta*>(meta)->fusion);
+  return TRUE;
+}
+
+// True of the moment, whatever is done to the picture.
+gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
+  return cerberus_buffer_set_fusion(to, &reinterpret_cast<FusionMeta*>(meta)->fusion);
+}
+
+const GstMetaInfo* meta_info() {
+  static const GstMetaInfo* const info = cerberus::register_meta<FusionMeta>(
+      CERBERUS_FUSION_META_API_TYPE, "CerberusFusionMeta", meta_init, nullptr, meta_transform);
+  return info;
+}
+
+}  // namespace
+
+G_DEFINE_BOXED_TYPE(CerberusFusion, cerberus_fusion, cerberus_fusion_copy, cerberus_fusion_free)
+
+GType cerberus_fusion_action_get_type(void) {
+  static const GType type = g_enum_register_static("CerberusFusionAction", kActions);
+  return type;
+}
+
+GType cerberus_fusion_meta_api_get_type(void) {
+  static const GType type = [] {
+    const gchar* tags[] = {nullptr};
+    return gst_meta_api_type_register("CerberusFusionMetaAPI", tags);
+  }();
+  return type;
+}
+
+const gchar* cerberus_fusion_action_get_nick(CerberusFusionAction action) {
+  for (const GEnumValue& value : kActions)
+    if (value.value_nick && value.value == static_cast<gint>(action)) return value.value_nick;
+  g_return_val_if_reached("hold");
+}
+
+void cerberus_fusion_init(CerberusFusion* fusion) {
+  g_return_if_fail(fusion);
+  *fusion = {};
+  fusion->rule_name = g_intern_static_string("none");
+  fusion->action = CERBERUS_FUSION_HOLD;
+  fusion->pan = fusion->sector_from = fusion->sector_to = NAN;
+}
+
+CerberusFusion* cerberus_fusion_new(void) {
+  auto* fusion = g_new(CerberusFusion, 1);
+  cerberus_fusion_init(fusion);
+  return fusion;
+}
+
+CerberusFusion* cerberus_fusion_copy(const CerberusFusion* fusion) {
+  return static_cast<CerberusFusion*>(g_memdup2(fusion, sizeof *fusion));
+}
+
+void cerberus_fusion_free(CerberusFusion* fusion) {
+  g_free(fusion);
+}
+
+GBytes* cerberus_fusion_get_sensors(const CerberusFusion* fusion) {
+  g_return_val_if_fail(fusion, nullptr);
+  return g_bytes_new(fusion->sensors, MIN(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS));
+}
+
+gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fusion) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
+  if (!gst_buffer_is_writable(buffer)) return FALSE;
+  if (!fusion) {
+    cerberus::remove_meta(buffer, CERBERUS_FUSION_META_API_TYPE);
+    return TRUE;
+  }
+  auto* meta = cerberus::ensure_meta<FusionMeta>(buffer, meta_info());
+  if (meta) meta->fusion = *fusion;
+  return meta != nullptr;
+}
+
+const CerberusFusion* cerberus_buffer_peek_fusion(GstBuffer* buffer) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  auto* meta = reinterpret_cast<FusionMeta*>(gst_buffer_get_meta(buffer, CERBERUS_FUSION_META_API_TYPE));
+  return meta ? &meta->fusion : nullptr;
+}
+
+CerberusFusion* cerberus_buffer_get_fusion(GstBuffer* buffer) {
+  const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
+  return fusion ? cerberus_fusion_copy(fusion) : nullptr;
+}
+
+GstMessage* cerberus_message_new_fusion(GstObject* src, GstClockTime running_time,
+                                        const CerberusFusion* fusion) {
+  g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
+  g_return_val_if_fail(fusion, nullptr);
+  GstStructure* structure = gst_structure_new(
+      CERBERUS_MESSAGE_FUSION, "running-time", G_TYPE_UINT64, static_cast<guint64>(running_time), "rule",
+      G_TYPE_INT, fusion->rule, "rule-name", G_TYPE_STRING, fusion->rule_name, "action",
+      CERBERUS_TYPE_FUSION_ACTION, fusion->action, "target", G_TYPE_UINT, fusion->target, "pan",
+      G_TYPE_DOUBLE, fusion->pan, "sector-from", G_TYPE_DOUBLE, fusion->sector_from, "sector-to",
+      G_TYPE_DOUBLE, fusion->sector_to, "limited", G_TYPE_BOOLEAN, fusion->limited, "camera-found",
+      G_TYPE_BOOLEAN, fusion->camera_found, "doubtful", G_TYPE_UINT, fusion->doubtful, nullptr);
+  GValue array = G_VALUE_INIT;
+  gst_value_array_init(&array, fusion->n_sensors);
+  for (guint i = 0; i < MIN(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i) {
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, G_TYPE_INT);
+    g_value_set_int(&value, fusion->sensors[i]);
+    gst_value_array_append_and_take_value(&array, &value);
+  }
+  gst_structure_take_value(structure, "sensors", &array);
+  return gst_message_new_element(src, structure);
+}
+
+CerberusFusion* cerberus_message_parse_fusion(GstMessage* message, GstClockTime* running_time) {
+  g_return_val_if_fail(GST_IS_MESSAGE(message), nullptr);
+  if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ELEMENT ||
+      !gst_message_has_name(message, CERBERUS_MESSAGE_FUSION))
+    return nullptr;
+  const GstStructure* s = gst_message_get_structure(message);
+  CerberusFusion fusion;
+  cerberus_fusion_init(&fusion);
+  guint64 time = 0;
+  gint action = 0;
+  const gchar* rule_name = gst_structure_get_string(s, "rule-name");
+  const GValue* sensors = gst_structure_get_value(s, "sensors");
+  if (!rule_name || !sensors || !GST_VALUE_HOLDS_ARRAY(sensors) ||
+      !gst_structure_get_uint64(s, "running-time", &time) ||
+      !gst_structure_get_int(s, "rule", &fusion.rule) ||
+      !gst_structure_get_enum(s, "action", CERBERUS_TYPE_FUSION_ACTION, &action) ||
+      !gst_structure_get_uint(s, "target", &fusion.target) ||
+      !gst_structure_get_double(s, "pan", &fusion.pan) ||
+      !gst_structure_get_double(s, "sector-from", &fusion.sector_from) ||
+      !gst_structure_get_double(s, "sector-to", &fusion.sector_to) ||
+      !gst_structure_get_boolean(s, "limited", &fusion.limited) ||
+      !gst_structure_get_boolean(s, "camera-found", &fusion.camera_found) ||
+      !gst_structure_get_uint(s, "doubtful", &fusion.doubtful))
+    return nullptr;
+  fusion.n_sensors = gst_value_array_get_size(sensors);
+  if (fusion.n_sensors > CERBERUS_PIR_MAX_SENSORS) return nullptr;
+  for (guint i = 0; i < fusion.n_sensors; ++i) {
+    const GValue* value = gst_value_array_get_value(sensors, i);
+    if (!G_VALUE_HOLDS_INT(value)) return nullptr;
+    fusion.sensors[i] = static_cast<guint8>(g_value_get_int(value));
+  }
+  fusion.rule_name = g_intern_string(rule_name);
+  fusion.action = static_cast<CerberusFusionAction>(action);
+  if (running_time) *running_time = time;
+  return cerberus_fusion_copy(&fusion);
+}
+
+GstMessage* cerberus_message_new_pantilt(GstObject* src, GstClockTime running_time, const gchar* state,
+                                         const gchar* reason, const CerberusPose* pose) {
+  g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
+  g_return_val_if_fail(state && pose, nullptr);
+  return gst_message_new_element(
+      src, gst_structure_new(CERBERUS_MESSAGE_PANTILT, "state", G_TYPE_STRING, state, "reason", G_TYPE_STRING,
+                             reason ? reason : "", "head", G_TYPE_STRING, pose->head, "pan", G_TYPE_DOUBLE,
+                             pose->pan, "tilt", G_TYPE_DOUBLE, pose->tilt, "running-time", G_TYPE_UINT64,
+                             static_cast<guint64>(running_time), nullptr));
+}

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <cerberus/pose.h>
+
+#include <cmath>
+#include <utility>
+
+#include "private/meta.hpp"
+
+namespace {
+
+// No head turns further (many turns of cable) or faster; what claims to is garbage.
+constexpr double kMostDegrees = 1e6;
+
+struct PoseMeta {
+  GstMeta meta;
+  CerberusPose pose;
+};
+
+gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
+  cerberus_pose_init(&reinterpret_cast<PoseMeta*>(meta)->pose);
+  return TRUE;
+}
+
+// True of the moment, whatever is done to the picture.
+gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
+  return cerberus_buffer_set_pose(to, &reinterpret_cast<PoseMeta*>(meta)->pose);
+}
+
+const GstMetaInfo* meta_info() {
+  static const GstMetaInfo* const info = cerberus::register_meta<PoseMeta>(
+      CERBERUS_POSE_META_API_TYPE, "CerberusPoseMeta", meta_init, nullptr, meta_transform);
+  return info;
+}
+
+constexpr std::pair<const char*, double CerberusPose::*> kNumbers[] = {
+    {"pan", &CerberusPose::pan},
+    {"tilt", &CerberusPose::tilt},
+    {"pan-speed", &CerberusPose::pan_speed},
+    {"tilt-speed", &CerberusPose::tilt_speed},
+    {"pan-acceleration", &CerberusPose::pan_acceleration},
+    {"tilt-acceleration", &CerberusPose::tilt_acceleration},
+};
+
+bool is_custom_upstream(GstEvent* event, const char* name) {
+  return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM && gst_event_has_name(event, name);
+}
+
+}  // namespace
+
+G_DEFINE_BOXED_TYPE(CerberusPose, cerberus_pose, cerberus_pose_copy, cerberus_pose_free)
+
+GType cerberus_pose_source_get_type(void) {
+  static const GType type = [] {
+    static const GEnumValue values[] = {
+        {CERBERUS_POSE_COMMANDED, "CERBERUS_POSE_COMMANDED", "commanded"},
+        {CERBERUS_POSE_MEASURED, "CERBERUS_POSE_MEASURED", "measured"},
+        {0, nullptr, nullptr},
+    };
+    return g_enum_register_static("CerberusPoseSource", values);
+  }();
+  return type;
+}
+
+GType cerberus_pose_meta_api_get_type(void) {
+  static const GType type = [] {
+    const gchar* tags[] = {nullptr};
+    return gst_meta_api_type_register("CerberusPoseMetaAPI", tags);
+  }();
+  return type;
+}
+
+void cerberus_pose_init(CerberusPose* pose) {
+  g_return_if_fail(pose);
+  *pose = {};
+  pose->head = g_intern_static_string("head");
+  pose->valid_until = GST_CLOCK_TIME_NONE;
+  pose->settled = TRUE;
+}
+
+CerberusPose* cerberus_pose_new(void) {
+  auto* pose = g_new(CerberusPose, 1);
+  cerberus_pose_init(pose);
+  return pose;
+}
+
+void cerberus_pose_set_head(CerberusPose* pose, const gchar* head) {
+  g_return_if_fail(pose);
+  g_return_if_fail(head);
+  pose->head = g_intern_string(head);
+}
+
+CerberusPose* cerberus_pose_copy(const CerberusPose* pose) {
+  return static_cast<CerberusPose*>(g_memdup2(pose, sizeof *pose));
+}
+
+void cerberus_pose_free(CerberusPose* pose) {
+  g_free(pose);
+}
+
+gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_time, gdouble* pan,
+                                gdouble* tilt) {
+  g_return_val_if_fail(pose, FALSE);
+  GstClockTime when = running_time;
+  if (!GST_CLOCK_TIME_IS_VALID(when) || when < pose->valid_from) when = pose->valid_from;
+  if (GST_CLOCK_TIME_IS_VALID(pose->valid_until) && when > pose->valid_until) when = pose->valid_until;
+  const double dt = static_cast<double>(when - pose->valid_from) / GST_SECOND;
+  if (pan) *pan = pose->pan + (pose->pan_speed + 0.5 * pose->pan_acceleration * dt) * dt;
+  if (tilt) *tilt = pose->tilt + (pose->tilt_speed + 0.5 * pose->tilt_acceleration * dt) * dt;
+  return when == running_time;
+}
+
+GstEvent* cerberus_event_new_pose(const CerberusPose* pose) {
+  g_return_val_if_fail(pose, nullptr);
+  GstStructure* structure = gst_structure_new(
+      CERBERUS_EVENT_POSE, "head", G_TYPE_STRING, pose->head, "valid-from", G_TYPE_UINT64,
+      static_cast<guint64>(pose->valid_from), "valid-until", G_TYPE_UINT64,
+      static_cast<guint64>(pose->valid_until), "source", CERBERUS_TYPE_POSE_SOURCE, pose->source, "moving",
+      G_TYPE_BOOLEAN, pose->moving, "settled", G_TYPE_BOOLEAN, pose->settled, nullptr);
+  for (const auto& [name, member] : kNumbers)
+    gst_structure_set(structure, name, G_TYPE_DOUBLE, pose->*member, nullptr);
+  return gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, structure);
+}
+
+CerberusPose* cerberus_event_parse_pose(GstEvent* event) {
+  g_return_val_if_fail(GST_IS_EVENT(event), nullptr);
+  if (!is_custom_upstream(event, CERBERUS_EVENT_POSE)) return nullptr;
+  const GstStructure* structure = gst_event_get_structure(event);
+  CerberusPose pose;
+  cerberus_pose_init(&pose);
+  const gchar* head = gst_structure_get_string(structure, "head");
+  guint64 from = 0, until = 0;
+  gint source = 0;
+  if (!head || !gst_structure_get_uint64(structure, "valid-from", &from) ||
+      !gst_structure_get_uint64(structure, "valid-until", &until) ||
+      !gst_structure_get_enum(structure, "source", CERBERUS_TYPE_POSE_SOURCE, &source) ||
+      !gst_structure_get_boolean(structure, "moving", &pose.moving) ||
+      !gst_structure_get_boolean(structure, "settled", &pose.settled))
+    return nullptr;
+  if (!GST_CLOCK_TIME_IS_VALID(from) || (GST_CLOCK_TIME_IS_VALID(until) && until < from)) return nullptr;
+  for (const auto& [name, member] : kNumbers) {
+    double& number = pose.*member;
+    if (!gst_structure_get_double(structure, name, &number)) return nullptr;
+    if (!(std::fabs(number) <= kMostDegrees)) return nullptr;  // NaN fails too
+  }
+  pose.head = g_intern_string(head);
+  pose.valid_from = from;
+  pose.valid_until = until;
+  pose.source = static_cast<CerberusPoseSource>(source);
+  return cerberus_pose_copy(&pose);
+}
+
+GstEvent* cerberus_event_new_base(gdouble yaw_rate, GstClockTime running_time) {
+  return gst_event_new_custom(
+      GST_EVENT_CUSTOM_UPSTREAM,
+      gst_structure_new(CERBERUS_EVENT_BASE, "yaw-rate", G_TYPE_DOUBLE, yaw_rate, "running-time",
+                        G_TYPE_UINT64, static_cast<guint64>(running_time), nullptr));
+}
+
+gboolean cerberus_event_parse_base(GstEvent* event, gdouble* yaw_rate, GstClockTime* running_time) {
+  g_return_val_if_fail(GST_IS_EVENT(event), FALSE);
+  if (!is_custom_upstream(event, CERBERUS_EVENT_BASE)) return FALSE;
+  const GstStructure* structure = gst_event_get_structure(event);
+  gdouble rate = 0;
+  guint64 time = 0;
+  if (!gst_structure_get_double(structure, "yaw-rate", &rate) || !(std::fabs(rate) <= kMostDegrees))
+    return FALSE;
+  if (!gst_structure_get_uint64(structure, "running-time", &time) || !GST_CLOCK_TIME_IS_VALID(time))
+    return FALSE;
+  if (yaw_rate) *yaw_rate = rate;
+  if (running_time) *running_time = time;
+  return TRUE;
+}
+
+gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
+  if (!gst_buffer_is_writable(buffer)) return FALSE;
+  if (!pose) {
+    cerberus::remove_meta(buffer, CERBERUS_POSE_META_API_TYPE);
+    return TRUE;
+  }
+  auto* meta = cerberus::ensure_meta<PoseMeta>(buffer, meta_info());
+  if (meta) meta->pose = *pose;
+  return meta != nullptr;
+}
+
+const CerberusPose* cerberus_buffer_peek_pose(GstBuffer* buffer) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
+  auto* meta = reinterpret_cast<PoseMeta*>(gst_buffer_get_meta(buffer, CERBERUS_POSE_META_API_TYPE));
+  return meta ? &meta->pose : nullptr;
+}
+
+CerberusPose* cerberus_buffer_get_pose(GstBuffer* buffer) {
+  const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
+  return pose ? cerberus_pose_copy(pose) : nullptr;
+}

@@ -1,0 +1,259 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+#pragma once
+
+#include <gst/gst.h>
+#include <cerberus/api.h>
+
+G_BEGIN_DECLS
+
+/**
+ * CERBERUS_EVENT_POSE:
+ *
+ * Name of the structure of the custom upstream event by which a head tells where it looks. Listeners evaluate it and
+ * forward it; only a source ends it. Another head's event is ignored.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_EVENT_POSE "cerberus-pose"
+
+/**
+ * CERBERUS_EVENT_BASE:
+ *
+ * Name of the structure of the custom upstream event by which an application (or a simulator) tells how fast the body
+ * that carries head and sensors turns. Fields: `yaw-rate` (double, degrees a second, positive to the right),
+ * `running-time` (uint64, nanoseconds).
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_EVENT_BASE "cerberus-base"
+
+/**
+ * CerberusPoseSource:
+ * @CERBERUS_POSE_COMMANDED: what the head was told
+ * @CERBERUS_POSE_MEASURED: what the head said of itself
+ *
+ * Where a pose comes from.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CERBERUS_POSE_COMMANDED,
+  CERBERUS_POSE_MEASURED,
+} CerberusPoseSource;
+
+/**
+ * CerberusPose:
+ * @head: the head's name; interned, owned by nobody
+ * @pan: pan angle at @valid_from, degrees, positive to the right; does not wrap
+ * @tilt: tilt angle at @valid_from, degrees, positive up
+ * @pan_speed: degrees a second at @valid_from
+ * @tilt_speed: degrees a second at @valid_from
+ * @pan_acceleration: degrees a second squared, constant while valid
+ * @tilt_acceleration: degrees a second squared, constant while valid
+ * @valid_from: running time from which it holds
+ * @valid_until: running time until which it is certain to hold, %GST_CLOCK_TIME_NONE: until the next one
+ * @source: commanded or measured
+ * @moving: the head moves
+ * @settled: the head stands where it was sent
+ *
+ * Where a pan-tilt head looks: one piece of its plan, of constant acceleration.
+ *
+ * Since: 0.1
+ */
+typedef struct _CerberusPose CerberusPose;
+struct _CerberusPose {
+  const gchar *head;
+  gdouble pan, tilt;
+  gdouble pan_speed, tilt_speed;
+  gdouble pan_acceleration, tilt_acceleration;
+  GstClockTime valid_from, valid_until;
+  CerberusPoseSource source;
+  gboolean moving, settled;
+
+  /*< private >*/
+  gpointer _cerberus_reserved[GST_PADDING];
+};
+
+#define CERBERUS_TYPE_POSE (cerberus_pose_get_type ())
+#define CERBERUS_TYPE_POSE_SOURCE (cerberus_pose_source_get_type ())
+#define CERBERUS_POSE_META_API_TYPE (cerberus_pose_meta_api_get_type ())
+
+CERBERUS_API
+GType cerberus_pose_get_type (void) G_GNUC_CONST;
+
+CERBERUS_API
+GType cerberus_pose_source_get_type (void) G_GNUC_CONST;
+
+CERBERUS_API
+GType cerberus_pose_meta_api_get_type (void);
+
+/**
+ * cerberus_pose_init: (skip)
+ * @pose: (out caller-allocates): memory to fill
+ *
+ * Fills @pose with the defaults of cerberus_pose_new(), for structures on the stack.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_pose_init (CerberusPose *pose);
+
+/**
+ * cerberus_pose_new: (constructor)
+ *
+ * Makes a commanded pose straight ahead, at rest and settled, of the head "head", valid from 0 on.
+ *
+ * Returns: (transfer full): a new pose; free with cerberus_pose_free().
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusPose *cerberus_pose_new (void);
+
+/**
+ * cerberus_pose_set_head:
+ * @pose: a pose
+ * @head: the head's name
+ *
+ * Names the head (bindings cannot intern strings themselves).
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_pose_set_head (CerberusPose *pose, const gchar *head);
+
+/**
+ * cerberus_pose_copy:
+ * @pose: a pose
+ *
+ * Returns: (transfer full) (nullable): a copy; %NULL only for a %NULL @pose.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusPose *cerberus_pose_copy (const CerberusPose *pose);
+
+/**
+ * cerberus_pose_free: (skip)
+ * @pose: (transfer full) (nullable): a pose
+ *
+ * Frees @pose.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+void cerberus_pose_free (CerberusPose *pose);
+
+/**
+ * cerberus_pose_evaluate:
+ * @pose: a pose
+ * @running_time: when
+ * @pan: (out) (optional): pan angle then, degrees
+ * @tilt: (out) (optional): tilt angle then, degrees
+ *
+ * Tells where the head looks at @running_time: angle + speed dt + acceleration dt^2 / 2, held at the ends of the span
+ * in which the pose is valid.
+ *
+ * Returns: %TRUE if @running_time lies within that span.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_pose_evaluate (const CerberusPose *pose, GstClockTime running_time, gdouble *pan, gdouble *tilt);
+
+/**
+ * cerberus_event_new_pose:
+ * @pose: a pose
+ *
+ * Makes the custom upstream event %CERBERUS_EVENT_POSE.
+ *
+ * Returns: (transfer full): a new event.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+GstEvent *cerberus_event_new_pose (const CerberusPose *pose);
+
+/**
+ * cerberus_event_parse_pose:
+ * @event: an event
+ *
+ * Reads a %CERBERUS_EVENT_POSE.
+ *
+ * Returns: (transfer full) (nullable): the pose; %NULL if @event is no well-formed one (a number missing, not finite or
+ *     beyond any head, a span that ends before it begins).
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusPose *cerberus_event_parse_pose (GstEvent *event);
+
+/**
+ * cerberus_event_new_base:
+ * @yaw_rate: how fast the body turns, degrees a second, positive to the right
+ * @running_time: from when on
+ *
+ * Makes the custom upstream event %CERBERUS_EVENT_BASE.
+ *
+ * Returns: (transfer full): a new event.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+GstEvent *cerberus_event_new_base (gdouble yaw_rate, GstClockTime running_time);
+
+/**
+ * cerberus_event_parse_base:
+ * @event: an event
+ * @yaw_rate: (out) (optional): degrees a second, positive to the right
+ * @running_time: (out) (optional): from when on
+ *
+ * Reads a %CERBERUS_EVENT_BASE.
+ *
+ * Returns: %FALSE (and nothing is written) if @event is no well-formed one.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_event_parse_base (GstEvent *event, gdouble *yaw_rate, GstClockTime *running_time);
+
+/**
+ * cerberus_buffer_set_pose:
+ * @buffer: a writable buffer
+ * @pose: (nullable): where the head looked when the frame was taken, copied; %NULL removes
+ *
+ * Attaches @pose, replacing one that is there already. A fact about the moment: it survives scaling and cropping.
+ *
+ * Returns: %TRUE if @buffer now carries @pose (or none, for %NULL); %FALSE if @buffer is not writable.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_buffer_set_pose (GstBuffer *buffer, const CerberusPose *pose);
+
+/**
+ * cerberus_buffer_get_pose:
+ * @buffer: a buffer
+ *
+ * Returns: (transfer full) (nullable): a copy of the pose at the time when the frame was taken, or %NULL if nobody
+ *     attached one.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusPose *cerberus_buffer_get_pose (GstBuffer *buffer);
+
+/**
+ * cerberus_buffer_peek_pose: (skip)
+ * @buffer: a buffer
+ *
+ * Returns: (transfer none) (nullable): the pose on @buffer, without a copy.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+const CerberusPose *cerberus_buffer_peek_pose (GstBuffer *buffer);
+
+G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusPose, cerberus_pose_free)
+
+G_END_DECLS
