@@ -5,7 +5,7 @@ namespace cerberus::vision {
 namespace {
 
 // People start, stop and turn within about a second: velocity wanders by 0.8 S/s in one.
-constexpr double kAcceleration = 0.8 * 0.8;  // S^2 / s^3
+constexpr double kAcceleration = 0.5 * 0.5;  // S^2 / s^3
 constexpr double kBirthSpeed = 3.0;          // S/s, standard deviation of the unknown first velocity
 constexpr double kPositionNoise = 0.05;      // S: a region's centre flickers by this
 constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's extent flickers by 15 %
@@ -128,7 +128,7 @@ double Body::distance(const Box& seen) const {
   const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
   if (d2 > square(kFarthest)) return -1;
   const double sizes = std::abs(std::log(seen.width) - w.value) + std::abs(std::log(seen.height) - h.value);
-  if (sizes > 2 * std::log(5.0)) return -1;  // a fifth or five times each way is something else
+  if (sizes > 2 * std::log(10.0)) return -1;  // a tenth or ten times each way is something else
   const Point c = centre(seen);
   return 1 - intersection_over_union(b, seen) + 0.5 * sizes +
          std::hypot(c.x - x.position, c.y - y.position) / s + 0.1 * std::sqrt(d2);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <vector>
 
 #include "vision/height_prior.h"
@@ -15,6 +16,7 @@ namespace cerberus::vision {
 namespace {
 
 constexpr double kLeastShare = 4e-4;     // of the picture: smaller blobs are noise (31 pixels of 320x240)
+constexpr double kTallest = 2.2;         // heights of a person: what is taller is something else
 constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
 
 // One person seen alone is upright and reasonably filled.
@@ -54,6 +56,12 @@ struct RegionFinder::State {
   Labeller labeller;
   HeightPrior prior;
   PeopleFinder people;
+  struct Walker {      // a blob that looks like one person
+    Point foot, from;  // now, and where it was first seen, in today's pixels
+    double height;
+    int looks;
+  };
+  std::vector<Walker> walkers, walkers_before;
   std::vector<int> group;  // of each component
   std::vector<Region> regions;
 
@@ -61,7 +69,7 @@ struct RegionFinder::State {
     return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
                                                                : kLeastShare * size.area());
   }
-  void learn();
+  void learn(const Transform& motion);
   void group_components();
   void explain(int group);
   void add_plain(std::size_t component, bool person = false);
@@ -69,16 +77,35 @@ struct RegionFinder::State {
   Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
 };
 
-void RegionFinder::State::learn() {
+// Only walkers teach: blobs that look like one person, with nobody and nothing near, of the same height for three looks,
+// and on the way. Pieces of somebody close by come in crowds, flicker and stay in place.
+void RegionFinder::State::learn(const Transform& motion) {
   const auto parts = labeller.components();
+  std::swap(walkers, walkers_before);
+  walkers.clear();
   for (const Component& c : parts) {
     if (!looks_like_one_person(c, size)) continue;
-    const int reach = c.width() / 3;
+    const double reach = 0.4 * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(), [&](const Component& o) {
       return &o != &c && gap(c.left, c.right, o.left, o.right) < reach &&
              gap(c.top, c.bottom, o.top, o.bottom) < reach;
     });
-    if (alone) prior.learn(c.bottom, c.height());
+    if (!alone || walkers.size() == kMostParts) continue;
+    const double h = c.height();
+    Walker walker{{(c.left + c.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};
+    walker.from = walker.foot;
+    for (const Walker& w : walkers_before) {
+      const Point foot = motion.apply(w.foot);
+      if (std::abs(foot.x - walker.foot.x) > 0.5 * h || std::abs(foot.y - walker.foot.y) > 0.3 * h ||
+          w.height < 0.85 * h || w.height > 1.18 * h)
+        continue;
+      walker.from = motion.apply(w.from);
+      walker.looks = w.looks + 1;
+      break;
+    }
+    const double walked = std::hypot(walker.foot.x - walker.from.x, walker.foot.y - walker.from.y);
+    if (walker.looks >= 3 && walked > 0.15 * h) prior.learn(c.bottom, h, c.area);
+    walkers.push_back(walker);
   }
 }
 
@@ -162,7 +189,7 @@ void RegionFinder::State::explain(int g) {
   const double aspect = static_cast<double>(window.height()) / window.width();
   const bool usual =
       expected > 0 && window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
-  if (expected <= 0 || (members == 1 && usual)) {
+  if (expected <= 0 || window.height() > kTallest * expected || (members == 1 && usual)) {
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (group[i] == g) add_plain(i, usual);
     return;
@@ -197,6 +224,7 @@ void RegionFinder::set_options(const RegionOptions& options) {
 
 void RegionFinder::reset() {
   state_->prior.reset();
+  state_->walkers.clear();
   state_->regions.clear();
 }
 
@@ -214,11 +242,11 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
     s.size = mask.size();
     s.moving.resize(bit_mask_size(s.size));
     s.closed.resize(bit_mask_size(s.size));
-    s.prior.reset();
+    reset();
   }
   s.prior.advance(motion, s.size);
   pack(mask, s.moving.view());
-  pack(mask, s.closed.view());
+  std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());
   const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));
   s.morphology.close(s.closed.view(), mask.width, side);
   unpack(s.closed.view(), mask);
@@ -229,7 +257,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
     return s.regions;
   }
-  s.learn();
+  s.learn(motion);
   s.group_components();
   for (std::size_t i = 0; i < parts.size(); ++i)
     if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));

@@ -229,7 +229,10 @@ void Tracker::State::age() {
     }
     const bool outside =
         b.x.position < 0 || b.y.position < 0 || b.x.position > frame.width || b.y.position > frame.height;
-    if (!b.stopped && has_stopped(b)) b.stopped = true;
+    if (!b.stopped && has_stopped(b)) {
+      b.stopped = true;
+      b.x.velocity = b.y.velocity = 0;
+    }
     // Carried on for half as long as it was known, at most.
     const double coast = std::min(options.coast_time, 0.5 * (b.age - b.unseen));
     const double limit = b.stopped ? options.hold_stopped : b.at_border(frame) ? 0.3 * coast : coast;
