@@ -19,8 +19,15 @@ constexpr double kSame = 1e-9;  // rad
 // A place with what decides its rank.
 struct Candidate {
   Place place;
+  bool reachable = true;
   double distance = 0;
   int order = 0;
+
+  bool before(const Candidate& other) const {
+    if (reachable != other.reachable) return reachable;
+    if (std::abs(distance - other.distance) > kSame) return distance < other.distance;
+    return order > other.order;
+  }
 };
 
 // Clockwise angle from one direction to another, [0, 2 pi).
@@ -38,7 +45,7 @@ double nearest_stop(const Arc& arc, const Interval& limits, double pan) {
 }
 
 // Where a head that stands at `pan` looks for what lies in an arc: the arc's positions on the pan axis (it repeats every
-// turn; those more than a turn away say nothing new), cut to the limits. Calls take(Place).
+// turn; those more than a turn away say nothing new), cut to the limits. Calls take(place, whether pan can get there).
 template <typename Take>
 void for_each_place(const Arc& arc, SensorBits sensors, double pan, double lens, const Interval& limits,
                     Take&& take) {
@@ -46,26 +53,28 @@ void for_each_place(const Arc& arc, SensorBits sensors, double pan, double lens,
     const double most = std::min(limits.width(), kTurn);
     const double left = std::clamp(pan - most / 2, limits.from, limits.to - most);
     const Interval around{left, left + most};
-    take(Place{around, around, sensors, limits.width() < kTurn - lens - kSame});
+    take(Place{around, around, sensors, limits.width() < kTurn - lens - kSame}, true);
     return;
   }
-  const double inset = std::min(lens, arc.width) / 2;
+  const double inset = lens / 2;
   const double first = arc.from + kTurn * (std::floor((pan - arc.from) / kTurn) - 1);
   bool reached = false;
   for (int turn = 0; turn < 4; ++turn) {
     const Interval whole{first + turn * kTurn, first + turn * kTurn + arc.width};
-    const Interval wanted{std::max(whole.from, limits.from), std::min(whole.to, limits.to)};
-    if (wanted.from > wanted.to) continue;
+    if (whole.from > limits.to + kSame || whole.to < limits.from - kSame) continue;
+    const Interval wanted{std::clamp(whole.from, limits.from, limits.to),
+                          std::clamp(whole.to, limits.from, limits.to)};
     reached = true;
-    const Interval pulled_in{whole.from + inset, whole.to - inset};
-    const Interval sweep{std::clamp(pulled_in.from, limits.from, limits.to),
-                         std::clamp(pulled_in.to, limits.from, limits.to)};
+    Interval pulled_in{whole.from + inset, whole.to - inset};
+    if (arc.width <= lens) pulled_in.from = pulled_in.to = whole.middle();
+    const Interval sweep{std::clamp(pulled_in.from, wanted.from, wanted.to),
+                         std::clamp(pulled_in.to, wanted.from, wanted.to)};
     const bool limited = sweep.from > pulled_in.from + kSame || sweep.to < pulled_in.to - kSame;
-    take(Place{wanted, sweep, sensors, limited});
+    take(Place{wanted, sweep, sensors, limited}, true);
   }
   if (reached) return;
   const double stop = nearest_stop(arc, limits, pan);
-  take(Place{{stop, stop}, {stop, stop}, sensors, true});
+  take(Place{{stop, stop}, {stop, stop}, sensors, true}, false);
 }
 
 }  // namespace
@@ -80,18 +89,17 @@ Places places(const Geometry& geometry, SensorBits fired, double pan,
   const auto flush = [&] {  // nearest first; found in order of sensor number, which a stable sort would keep
     for (int i = 0; i < found.count; ++i) {
       int best = i;
-      for (int j = i + 1; j < found.count; ++j) {
-        const double nearer = found[best].distance - found[j].distance;
-        if (nearer > kSame || (nearer > -kSame && found[j].order > found[best].order)) best = j;
-      }
+      for (int j = i + 1; j < found.count; ++j)
+        if (found[j].before(found[best])) best = j;
       std::rotate(found.begin() + i, found.begin() + best, found.begin() + best + 1);
       result.push(found[i].place);
     }
     found.count = 0;
   };
   const auto add = [&](const Arc& arc, SensorBits sensors, int rank) {
-    for_each_place(arc, sensors, pan, lens, limits,
-                   [&](const Place& place) { found.push({place, place.wanted.distance(pan), rank}); });
+    for_each_place(arc, sensors, pan, lens, limits, [&](const Place& place, bool reachable) {
+      found.push({place, reachable, place.wanted.distance(pan), rank});
+    });
   };
 
   for (const Arc& arc : overlap(geometry, fired)) add(arc, fired, 0);
@@ -109,7 +117,7 @@ Action approach(const Place& place, double pan, bool inside, double hysteresis) 
   const Interval& wanted = place.wanted;
   const double away = wanted.distance(pan);
   // Nobody stops a motor on a point.
-  const double enter = wanted.width() < 2 * hysteresis ? hysteresis : 0;
+  const double enter = wanted.width() < 2 * hysteresis ? hysteresis : kSame;
   if (!(away > (inside ? enter + hysteresis : enter))) return Action::search;  // also where pan is not known
   return pan < wanted.from ? Action::turn_right : Action::turn_left;
 }

@@ -24,17 +24,17 @@ struct Place {
   SensorBits sensors = 0;  // who asks for it
   bool limited = false;    // the stops keep the picture from covering all of it
 };
-constexpr int kMaxPlaces = 72;  // for limits within one turn nothing can get lost
+constexpr int kMaxPlaces = 40;  // two for each of 16 sensors, and some that they share; more are dropped
 using Places = sensing::FixedList<Place, kMaxPlaces>;
 
 // Where to look when the sensors `fired` detect and the head stands at `pan`, best first; empty for no sensor.
 //   1 what all of them cover together (DESIGN.md: the wanted interval), nearest to the head first
 //   2 each fired sector, nearest to the head first; equally near: the one of the higher `order` (the later it fired),
 //     then the lower number
-// Each is cut to the limits; a sector cut in two by the stops gives two places; one out of reach becomes the nearest
-// limit. The sweep is the place with its edges pulled in by half a lens, because there the picture's border meets
-// the edge; narrower than the lens: its middle. fired: sensors beyond the geometry's count are ignored. lens: the
-// camera's horizontal field of view, [0, pi).
+// Within each of the two, what the head can turn to goes before what it cannot. Each is cut to the limits; a sector cut
+// in two by the stops gives two places; one out of reach becomes the nearest limit. The sweep is the place with its
+// edges pulled in by half a lens, because there the picture's border meets the edge; narrower than the lens: its middle.
+// fired: sensors beyond the geometry's count are ignored. lens: the camera's horizontal field of view, [0, pi).
 Places places(const Geometry& geometry, SensorBits fired, double pan,
               const std::array<int, kMaxSensors>& order, double lens, const Interval& limits);
 
