@@ -14,7 +14,7 @@ import sys
 import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
-BALL = 'videotestsrc num-buffers=30 pattern=ball ! video/x-raw,width=320,height=240,framerate=25/1'
+BALL = 'videotestsrc num-buffers=30 pattern=ball ! video/x-raw,format=I420,width=320,height=240,framerate=25/1'
 NEEDS_HARDWARE = ('nvarguscamerasrc', 'nvvidconv', 'nvvideoconvert', 'vapostproc', 'v4l2convert', 'glupload')
 
 

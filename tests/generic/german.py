@@ -9,12 +9,14 @@ import subprocess
 import sys
 import tempfile
 
-LINE = ('gst-launch-1.0 -q videotestsrc num-buffers=40 pattern=ball ! video/x-raw,format=I420,width=320,height=240 ! '
-        'motiondetect horizontal-fov=60 ! motionjson ! filesink location=')
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'pipelines'))
+from support import ball  # noqa: E402
+
+LINE = f'gst-launch-1.0 -q {ball(frames=40)} ! motiondetect horizontal-fov=60 preset=traffic ! motionjson ! filesink'
 
 
 def lines(name, **environment):
-    subprocess.run([*LINE.split()[:-1], f'location={name}'], check=True, timeout=60, env={**os.environ, **environment})
+    subprocess.run([*LINE.split(), f'location={name}'], check=True, timeout=60, env={**os.environ, **environment})
     return pathlib.Path(name).read_bytes()
 
 

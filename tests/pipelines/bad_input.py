@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Broken files and odd streams, through gst-launch: a clear error or a sane result; never a crash, a hang or silence."""
+"""Broken files and odd streams: a clear error or a sane result; never a crash, a hang or silence."""
 import pathlib
 import random
-import re
 
 from support import all_tests, ball, gst_launch, json_lines, must, video
 
@@ -60,7 +59,8 @@ def test_a_file_of_no_bytes():
 
 
 def test_the_size_changes_in_mid_stream():
-    must(gst_launch(f'concat name=c ! {TAIL} {ball(frames=30)} ! c. {ball(frames=30, width=640, height=360)} ! c.'))
+    must(gst_launch(f'concat name=c ! {TAIL} {ball(frames=30)} ! c. '
+                    f'{ball(frames=30, width=640, height=360, name="wide")} ! c.'))
     lines = json_lines('out.jsonl')
     assert [line['width'] for line in lines] == [320] * 30 + [640] * 30
     sane(lines, 60)
@@ -71,7 +71,7 @@ def test_the_size_changes_in_mid_stream():
 
 def test_a_stream_smaller_than_the_smallest_says_so():
     status, said = gst_launch(f'{ball(width=16, height=16)} ! {TAIL}')
-    assert status != 0 and re.search(r'ERROR|WARN', said), said
+    assert status != 0, said
     assert '32' in said, f'the message does not say how large it must be: {said}'
 
 
@@ -82,7 +82,7 @@ def test_interlaced_video_is_refused_and_deinterlace_is_named():
 
 
 def test_a_stream_without_a_frame_rate():
-    must(gst_launch(f'{ball(rate="0/1")} ! {TAIL}'))
+    must(gst_launch(f'{ball()} ! capssetter caps=video/x-raw,framerate=0/1 ! {TAIL}'))
     assert len(json_lines('out.jsonl')) == 60
 
 

@@ -11,7 +11,7 @@ import time
 
 from support import TOP, all_tests, ball, gst_launch, json_lines, must, run, video
 
-ANNOTATE = sys.argv[1]
+ANNOTATE = pathlib.Path(sys.argv[1]).resolve()
 
 
 def annotate(file, output='out', **more):
@@ -63,7 +63,7 @@ def test_a_file_name_with_spaces_and_a_folder_that_is_not_there_yet():
 
 
 def test_odd_sizes_become_an_mp4_all_the_same():
-    must(gst_launch(f'{ball(frames=20, width=321, height=243).replace("I420", "BGR")} ! avimux ! filesink location=odd.avi'))
+    must(gst_launch(f'{ball(frames=20, width=321, height=243)} ! videoconvert ! video/x-raw,format=BGR ! avimux ! filesink location=odd.avi'))
     must(annotate('odd.avi'))
     assert len(json_lines('out/objects.jsonl')) == 20
     assert decoded('out/annotated.mp4') > 0

@@ -4,8 +4,8 @@
 
     launch_files.py NAME live|file
 
-The source is GStreamer's bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving,
-so that objects are found. Networks are the loopback, on ports that were free a moment ago.
+The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
+objects are found. Networks are the loopback, on ports that were free a moment ago.
 """
 import contextlib
 import os
@@ -42,7 +42,7 @@ def finish(process):
 
 def source(kind):
     if kind == 'live':
-        return ball(frames=FRAMES, more='is-live=true')
+        return ball(frames=FRAMES, live=True)
     if not os.path.exists('ball.mp4'):
         video('ball.mp4', 'mp4mux', frames=FRAMES)
     return 'filesrc location=ball.mp4 ! decodebin'
@@ -68,21 +68,24 @@ def coloured(frame):
     return max(chroma) > 160 or min(chroma) < 96
 
 
-def check_lines(path, count=FRAMES):
+def check_lines(path):
+    """The lines are sane, and the ball is in them; their number."""
     lines = json_lines(path)
-    assert len(lines) == count, f'{len(lines)} JSON lines for {count} frames'
+    count = len(lines)
+    assert abs(count - FRAMES) <= 2, f'{count} lines'  # a live compositor may repeat a frame at its ends
     assert [line['frame'] for line in lines] == list(range(lines[0]['frame'], lines[0]['frame'] + count))
     assert all(a['pts'] < b['pts'] for a, b in zip(lines, lines[1:])), 'timestamps do not rise'
     assert all((line['width'], line['height']) == (WIDTH, HEIGHT) for line in lines)
     seen = sum(bool(line['objects']) for line in lines)
     assert seen > count // 3, f'the ball was found in {seen} of {count} frames'
+    return count
 
 
 def test_annotate(kind):
     finish(start('annotate', SOURCE=source(kind), MP4='out.mp4', JSON='out.jsonl'))
-    check_lines('out.jsonl')
+    count = check_lines('out.jsonl')
     pictures = decode('out.mp4')
-    assert len(pictures) == FRAMES, f'{len(pictures)} frames in the MP4'
+    assert len(pictures) == count, f'{len(pictures)} frames in the MP4, {count} lines'
     assert sum(map(coloured, pictures)) > FRAMES // 3, 'no boxes were drawn'
 
 
@@ -95,9 +98,9 @@ def test_live(kind):
 
 def test_record(kind):
     finish(start('record', SOURCE=source(kind), FILE='out.mkv', JSON='out.jsonl'))
-    check_lines('out.jsonl')
+    count = check_lines('out.jsonl')
     pictures = decode('out.mkv')
-    assert len(pictures) == FRAMES, f'{len(pictures)} frames in the recording'
+    assert len(pictures) == count, f'{len(pictures)} frames in the recording, {count} lines'
     assert not any(map(coloured, pictures)), 'the recording is not the original picture'
 
 
@@ -133,7 +136,8 @@ def wait_for(what, condition, process):
 
 
 def listening(port):
-    return any(line.split()[1].endswith(f':{port:04X}') for line in open('/proc/net/udp', encoding='ascii').readlines()[1:])
+    lines = pathlib.Path('/proc/net/udp').read_text('ascii').splitlines()[1:]
+    return any(line.split()[1].endswith(f':{port:04X}') for line in lines)
 
 
 def size(path):
@@ -151,9 +155,9 @@ def test_rtp(kind):
     wait_for('the frames', lambda: size('out.raw') >= (FRAMES - 5) * WIDTH * HEIGHT * 3 // 2, receiver)
     os.killpg(receiver.pid, signal.SIGINT)
     finish(receiver)
-    check_lines('out.jsonl')
+    count = check_lines('out.jsonl')
     pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
-    assert FRAMES - 5 <= len(pictures) <= FRAMES, f'{len(pictures)} frames were received'
+    assert FRAMES - 5 <= len(pictures) <= count, f'{len(pictures)} frames were received of {count}'
     assert sum(map(coloured, pictures)) > FRAMES // 3, 'the received picture has no boxes'
 
 

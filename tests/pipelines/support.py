@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import subprocess
+import sys
 import tempfile
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
@@ -21,7 +22,8 @@ def run(line, env=None, stdin=None):
 
 
 def gst_launch(line, **more):
-    return run('gst-launch-1.0 -q ' + line, **more)
+    """Runs a line of gst-launch. Not by gst-launch-1.0 itself: that of Debian 12 hangs when an error comes at once."""
+    return run([sys.executable, TOP / 'tests' / 'pipelines' / 'launch.py', *line.split()], **more)
 
 
 def must(result):
@@ -30,10 +32,15 @@ def must(result):
     return output
 
 
-def ball(frames=60, width=320, height=240, rate='25/1', more=''):
-    """The text of a source: a grey ball that bounces, in noise-free black."""
-    return (f'videotestsrc {more} num-buffers={frames} pattern=ball ! '
-            f'video/x-raw,format=I420,width={width},height={height},framerate={rate}')
+def ball(frames=60, width=320, height=240, live=False, name='scene'):
+    """The text of a source: a grey ball that bounces in front of a grey wall with rings on it, which stands still."""
+    part = ('videotestsrc num-buffers={frames} is-live={live} {what} ! video/x-raw,format=AYUV,width={width},'
+            'height={height},framerate=25/1 ! {name}.')
+    return ' '.join([
+        part.format(what='pattern=zone-plate kx2=12 ky2=12', **locals()),
+        part.format(what='pattern=ball background-color=0', **locals()),  # that is, a transparent one
+        f'compositor name={name} ! video/x-raw,format=AYUV,width={width},height={height} ! videoconvert ! '
+        'video/x-raw,format=I420'])
 
 
 def video(path, muxer, **what):
