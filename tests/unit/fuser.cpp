@@ -1,0 +1,692 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fusion/fuser.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sensing/angles.h"
+
+using namespace cerberus::fusion;
+using namespace std::chrono_literals;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+
+namespace {
+
+long allocations = 0;
+
+constexpr Time kFrame = 40ms;
+
+Track somebody(std::uint32_t id, TrackState state = TrackState::seen) {
+  return {.id = id, .x = 100, .y = 50, .width = 40, .height = 100, .age = 1s, .state = state};
+}
+
+// A stream of frames: feeds a fuser and keeps the time.
+struct Stream {
+  Fuser fuser;
+  Time now{};
+  double pan = 0;  // degrees
+  double yaw_rate = kUnknown;
+  std::vector<Track> tracks;
+  std::vector<std::uint8_t> sensors{0, 0, 0};
+
+  explicit Stream(const FuserOptions& options = {}) { fuser.set_options(options); }
+
+  const Decision& frame(Time step = kFrame) {
+    now += step;
+    return fuser.update({.time = now,
+                         .tracks = tracks,
+                         .sensors = sensors,
+                         .pan = radians(pan),
+                         .base_yaw_rate = radians(yaw_rate)});
+  }
+  const Decision& frames(Time duration) {
+    const Time end = now + duration;
+    while (now + kFrame < end) frame();
+    return frame(end - now);
+  }
+  // A head that does what it is told at 40 degrees a second.
+  void obey(const Decision& decision) {
+    const double step = 40 * 0.04;
+    double target = pan;
+    if (decision.action == Action::turn_left) target = -170;
+    if (decision.action == Action::turn_right) target = 170;
+    if (decision.action == Action::zero) target = 0;
+    if (decision.action == Action::search) {
+      const double from = degrees(decision.sector.from), to = degrees(decision.sector.to);
+      if (pan <= from + 0.5) sweeping_right = true;
+      if (pan >= to - 0.5) sweeping_right = false;
+      target = sweeping_right ? to : from;
+    }
+    pan += std::clamp(target - pan, -step, step);
+    ck_assert(pan >= -170 && pan <= 170);
+  }
+  bool sweeping_right = true;
+};
+
+void assert_sector(const Decision& decision, double from, double to) {
+  ck_assert_double_eq_tol(degrees(decision.sector.from), from, 1e-6);
+  ck_assert_double_eq_tol(degrees(decision.sector.to), to, 1e-6);
+}
+
+void assert_says(const Decision& decision, Action action, int rule, const char* rule_name) {
+  ck_assert_str_eq(name(decision.action).data(), name(action).data());
+  ck_assert_int_eq(decision.rule, rule);
+  const std::string said(decision.rule_name);
+  ck_assert_str_eq(said.c_str(), rule_name);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+START_TEST(nothing_anywhere_means_zero) {
+  Stream stream;
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::zero, 7, "zero");
+  ck_assert(decision.changed && !decision.camera_found && decision.target == 0 &&
+            std::isnan(decision.sector.from));
+  ck_assert(!stream.frame().changed);
+}
+END_TEST
+
+START_TEST(a_track_is_followed_and_kept_half_a_second) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::track, 1, "camera");
+  ck_assert(decision.camera_found && decision.target == 7);
+  stream.tracks.clear();
+  stream.frames(499ms);
+  assert_says(decision, Action::hold, 1, "camera");
+  ck_assert(decision.camera_found && decision.target == 0);
+  stream.frames(1ms);
+  ck_assert(!decision.camera_found);
+  assert_says(decision, Action::hold, 0, "return");
+}
+END_TEST
+
+START_TEST(the_head_returns_five_seconds_after_the_last_detection) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  stream.tracks.clear();
+  stream.frames(500ms - kFrame);  // the last frame with "camera found"
+  stream.frames(kFrame - 1ms);
+  ck_assert(decision.camera_found);
+  stream.frames(5s - 1ms);
+  assert_says(decision, Action::hold, 0, "return");
+  stream.frames(1ms);
+  assert_says(decision, Action::zero, 7, "zero");
+}
+END_TEST
+
+START_TEST(the_one_followed_is_kept_though_others_are_nearer) {
+  Stream stream;
+  Track far = somebody(1), near = somebody(2);
+  far.distance = 9;
+  near.distance = 3;
+  stream.tracks = {far};
+  const Decision& decision = stream.frame();
+  stream.tracks = {near, far};
+  stream.frame();
+  ck_assert_int_eq(decision.target, 1);
+  stream.tracks = {near};
+  stream.frame();
+  ck_assert_int_eq(decision.target, 2);
+}
+END_TEST
+
+START_TEST(a_target_is_chosen_by_nearness_size_or_newness) {
+  Track near = somebody(1), large = somebody(2), newest = somebody(3);
+  near.distance = 2;
+  large.distance = 5;
+  large.width = 200;
+  newest.distance = 4;
+  newest.age = 100ms;
+  const struct {
+    TargetChoice choice;
+    std::uint32_t expected;
+  } cases[] = {{TargetChoice::nearest, 1}, {TargetChoice::largest, 2}, {TargetChoice::newest, 3}};
+  for (const auto& one : cases) {
+    std::vector<Track> tracks{near, large, newest};
+    std::ranges::sort(tracks, {}, &Track::id);
+    do {  // whatever the order they come in
+      Stream stream(FuserOptions{.choice = one.choice});
+      stream.tracks = tracks;
+      ck_assert_int_eq(stream.frame().target, one.expected);
+    } while (std::ranges::next_permutation(tracks, {}, &Track::id).found);
+  }
+}
+END_TEST
+
+START_TEST(without_distances_the_lowest_feet_are_the_nearest) {
+  Stream stream;
+  Track high = somebody(1), low = somebody(2);
+  low.y = 90;
+  stream.tracks = {high, low};
+  ck_assert_int_eq(stream.frame().target, 2);
+}
+END_TEST
+
+START_TEST(one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone) {
+  Stream stream;
+  Track coasted = somebody(1, TrackState::coasted), stopped = somebody(2, TrackState::stopped),
+        seen = somebody(3);
+  coasted.distance = 1;
+  stopped.distance = 2;
+  seen.distance = 8;
+  stream.tracks = {coasted, stopped};
+  ck_assert_int_eq(stream.frame().target, 2);
+  Stream other;
+  other.tracks = {coasted, stopped, seen};
+  ck_assert_int_eq(other.frame().target, 3);
+}
+END_TEST
+
+START_TEST(who_stopped_is_tracked_for_half_a_minute_and_then_left) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  stream.tracks = {somebody(7, TrackState::stopped)};
+  stream.frame();
+  stream.frames(30s - 1ms);
+  assert_says(decision, Action::track, 1, "camera");
+  stream.frames(1ms);
+  ck_assert_int_eq(decision.target, 0);
+  stream.frames(6s);
+  assert_says(decision, Action::zero, 7, "zero");
+  stream.tracks = {somebody(7)};  // moves again
+  stream.frame();
+  ck_assert_int_eq(decision.target, 7);
+  stream.tracks = {somebody(7, TrackState::stopped)};  // and has another half minute
+  stream.frame();
+  stream.frames(29s);
+  ck_assert_int_eq(decision.target, 7);
+}
+END_TEST
+
+START_TEST(rule_7_waits_for_who_stopped_even_when_the_track_is_gone) {
+  for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
+    Stream stream(options);
+    stream.tracks = {somebody(7)};
+    const Decision& decision = stream.frame();
+    stream.tracks = {somebody(7, TrackState::stopped)};
+    stream.frame();
+    stream.tracks.clear();
+    stream.frames(10s);
+    assert_says(decision, Action::hold, 0, "stopped");
+    stream.sensors = {1, 0, 0};  // news from elsewhere go before
+    stream.pan = 100;
+    stream.frame();
+    ck_assert(decision.action == Action::turn_left);
+    stream.sensors = {0, 0, 0};
+    stream.frames(30s - 10s - kFrame - 1ms);
+    ck_assert(decision.action == Action::hold);
+    stream.frames(10s);
+    ck_assert(decision.action == Action::zero);
+  }
+}
+END_TEST
+
+START_TEST(a_sensor_makes_the_head_turn_and_then_sweep) {
+  Stream stream;
+  stream.pan = 100;
+  stream.sensors = {0, 1, 0};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::turn_left, 0, "sector");
+  assert_sector(decision, -170, -60);  // infer2's 120 degrees, as far as the head turns
+  ck_assert_int_eq(decision.fired, 0b010);
+  stream.pan = -59;
+  stream.frame();
+  assert_says(decision, Action::turn_left, 0, "sector");
+  stream.pan = -61;
+  stream.frame();
+  assert_says(decision, Action::search, 0, "sector");
+  assert_sector(decision, -150, -90);
+  ck_assert(!decision.limited);
+  stream.pan = -58.5;  // hysteresis
+  stream.frame();
+  assert_says(decision, Action::search, 0, "sector");
+  stream.pan = -57.5;
+  stream.frame();
+  assert_says(decision, Action::turn_left, 0, "sector");
+}
+END_TEST
+
+START_TEST(a_search_outlives_its_sensor_by_the_return_delay) {
+  Stream stream;
+  stream.pan = -100;
+  stream.sensors = {0, 1, 0};
+  const Decision& decision = stream.frame();
+  stream.sensors = {0, 0, 0};
+  stream.frames(5s - 1ms);
+  assert_says(decision, Action::search, 0, "return");
+  assert_sector(decision, -150, -90);
+  stream.frames(1ms);
+  assert_says(decision, Action::zero, 7, "zero");
+}
+END_TEST
+
+START_TEST(a_search_ends_when_somebody_is_found) {
+  Stream stream;
+  stream.sensors = {1, 0, 0};
+  const Decision& decision = stream.frame();
+  ck_assert(decision.action == Action::search);
+  stream.tracks = {somebody(1)};
+  stream.frame();
+  assert_says(decision, Action::track, 1, "camera");
+  ck_assert(std::isnan(decision.sector.from));
+}
+END_TEST
+
+START_TEST(two_sectors_without_a_common_part_are_both_searched) {
+  Geometry apart;
+  ck_assert(apart.set(std::vector<double>{radians(-90), radians(90)}, radians(90)));
+  Stream stream;
+  stream.fuser.set_geometry(apart);
+  stream.sensors = {1, 1};
+  stream.pan = -5;
+  bool left = false, right = false;
+  for (int i = 0; i < 25 * 40; ++i) {
+    const Decision& decision = stream.frame();
+    ck_assert(decision.action != Action::zero && decision.action != Action::hold);
+    if (i < 25) ck_assert(decision.action == Action::turn_left);  // the nearest first
+    stream.obey(decision);
+    left = left || stream.pan < -100;
+    right = right || stream.pan > 100;
+  }
+  ck_assert(left && right);
+}
+END_TEST
+
+START_TEST(equally_near_sectors_go_to_the_sensor_that_fired_last) {
+  Geometry apart;
+  ck_assert(apart.set(std::vector<double>{radians(-90), radians(90)}, radians(90)));
+  for (const bool left_first : {true, false}) {
+    Stream stream;
+    stream.fuser.set_geometry(apart);
+    stream.tracks = {somebody(1)};  // busy with somebody ahead
+    stream.sensors = {left_first, !left_first};
+    stream.frame();
+    stream.sensors = {1, 1};
+    stream.frame();
+    stream.tracks.clear();
+    const Decision& decision = stream.frames(600ms);
+    ck_assert(decision.action == (left_first ? Action::turn_right : Action::turn_left));
+  }
+  Stream stream;  // at the same time: the lower number
+  stream.fuser.set_geometry(apart);
+  stream.sensors = {1, 1};
+  ck_assert(stream.frame().action == Action::turn_left);
+}
+END_TEST
+
+// For every geometry, whatever fires, a head that obeys has shown every direction it can show before a minute is over.
+START_TEST(a_search_leaves_nothing_unseen) {
+  for (int count = 1; count <= 8; ++count)
+    for (const double width : {40.0, 75.0, 120.0, 180.0}) {
+      std::vector<double> bearings;
+      for (int i = 0; i < count; ++i) bearings.push_back(radians(360.0 * i / count));
+      Geometry sensors;
+      ck_assert(sensors.set(bearings, radians(width)));
+      for (unsigned fired = 1; fired < 1U << count; fired += count < 5 ? 1 : 29) {
+        Stream stream;
+        stream.fuser.set_geometry(sensors);
+        stream.sensors.assign(static_cast<unsigned>(count), 0);
+        for (unsigned i = 0; i < static_cast<unsigned>(count); ++i) stream.sensors[i] = fired >> i & 1;
+        std::array<bool, 360> seen{};
+        for (int i = 0; i < 25 * 200; ++i) {
+          stream.obey(stream.frame());
+          for (int away = -30; away <= 30; ++away)
+            seen[static_cast<unsigned>((static_cast<int>(std::lround(stream.pan)) + away + 720) % 360)] =
+                true;
+        }
+        for (int direction = 0; direction < 360; ++direction)
+          for (int s = 0; s < count; ++s) {
+            if (!(fired >> s & 1)) continue;
+            const double apart =
+                std::abs(degrees(cerberus::sensing::wrap(radians(direction) - sensors.bearing(s))));
+            if (apart > width / 2 - 3) continue;  // dead band of the head, whole degrees here
+            if (!seen[static_cast<unsigned>(direction)])
+              ck_abort_msg("%d sensors, %g degrees, fired %#x: %d was never in the picture", count, width,
+                           fired, direction);
+          }
+      }
+    }
+}
+END_TEST
+
+START_TEST(a_sector_beyond_the_limits_is_approached_and_said_to_be_limited) {
+  Stream stream(FuserOptions{.limits = {radians(-40), radians(40)}});
+  stream.sensors = {0, 1, 0};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::turn_left, 0, "sector");
+  ck_assert(decision.limited);
+  stream.pan = -39.5;
+  stream.frame();
+  assert_says(decision, Action::search, 0, "sector");
+  assert_sector(decision, -40, -40);
+  ck_assert(decision.limited);
+}
+END_TEST
+
+START_TEST(limits_without_zero_are_told) {
+  for (FuserOptions options : {FuserOptions{}, paper_options()}) {
+    options.limits = {radians(20), radians(90)};
+    Stream stream(options);
+    const Decision& decision = stream.frame();
+    ck_assert(decision.action == Action::zero && decision.limited);
+  }
+}
+END_TEST
+
+START_TEST(invalid_readings_do_not_count_but_are_told) {
+  Stream stream;
+  stream.sensors = {2, 0, 77};
+  const Decision& decision = stream.frame();
+  ck_assert(decision.action == Action::zero && decision.fired == 0 && decision.invalid == 0b101);
+  stream.sensors = {};  // a PIR pad that never spoke
+  stream.frame();
+  ck_assert(decision.action == Action::zero && decision.invalid == 0);
+}
+END_TEST
+
+START_TEST(what_a_turning_base_trips_is_doubtful_and_does_not_count) {
+  Stream stream;
+  stream.yaw_rate = 5.1;
+  stream.sensors = {1, 0, 0};
+  const Decision& decision = stream.frame();
+  ck_assert(decision.action == Action::zero && decision.fired == 0 && decision.doubtful == 0b001);
+  stream.yaw_rate = 0;
+  stream.sensors = {1, 1, 0};  // the second came between the two frames
+  stream.frame();
+  stream.sensors = {1, 1, 1};  // the third after the turn
+  stream.frame();
+  ck_assert_int_eq(decision.doubtful, 0b011);
+  ck_assert_int_eq(decision.fired, 0b100);
+  stream.frames(3s);
+  ck_assert_int_eq(decision.doubtful, 0);
+  ck_assert_int_eq(decision.fired, 0b111);
+
+  for (const double rate : {-60.0, 4.9, kUnknown}) {
+    stream.yaw_rate = rate;
+    stream.frame();
+    ck_assert_int_eq(decision.doubtful, rate < -5 ? 0b111 : 0);
+    stream.yaw_rate = 0;
+    stream.frames(4s);
+  }
+}
+END_TEST
+
+START_TEST(a_doubtful_sensor_that_rests_is_believed_again) {
+  Stream stream;
+  stream.yaw_rate = -45;
+  stream.sensors = {1, 0, 0};
+  const Decision& decision = stream.frame();
+  stream.yaw_rate = 0;
+  stream.frame();
+  ck_assert_int_eq(decision.doubtful, 1);
+  stream.sensors = {0, 0, 0};
+  stream.frame();
+  stream.frame();
+  stream.sensors = {1, 0, 0};
+  stream.frame();
+  ck_assert_int_eq(decision.doubtful, 0);
+  ck_assert_int_eq(decision.fired, 1);
+}
+END_TEST
+
+START_TEST(the_paper_stands_still_where_it_tracks_nobody) {
+  Stream stream(paper_options());
+  stream.sensors = {1, 0, 0};
+  stream.pan = 0;
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::hold, 2, "rule 2");
+  stream.pan = -45;
+  stream.frame();
+  assert_says(decision, Action::turn_right, 2, "rule 2");
+  stream.pan = -44.9;  // no hysteresis
+  stream.frame();
+  assert_says(decision, Action::hold, 2, "rule 2");
+  stream.sensors = {0, 0, 0};  // no return delay
+  stream.frame();
+  assert_says(decision, Action::zero, 7, "rule 7");
+  stream.tracks = {somebody(3)};
+  stream.sensors = {1, 1, 1};
+  stream.frame();
+  assert_says(decision, Action::track, 1, "rule 1");
+  ck_assert_int_eq(decision.target, 3);
+}
+END_TEST
+
+START_TEST(the_paper_ignores_a_fourth_sensor) {
+  Stream stream(paper_options());
+  stream.sensors = {0, 0, 0, 1};
+  ck_assert(stream.frame().action == Action::zero);
+  ck_assert_int_eq(stream.frame().fired, 0);
+}
+END_TEST
+
+START_TEST(a_table_turns_no_further_than_the_stop) {
+  Stream stream(paper_options());
+  stream.fuser.set_options([] {
+    FuserOptions options = paper_options();
+    options.limits = {radians(-90), radians(50)};
+    return options;
+  }());
+  stream.sensors = {0, 0, 1};  // rule 4 wants more than 60
+  stream.pan = 49;
+  const Decision& decision = stream.frame();
+  ck_assert(decision.action == Action::turn_right && !decision.limited);
+  stream.pan = 50;
+  stream.frame();
+  ck_assert(decision.action == Action::turn_right && decision.limited);
+}
+END_TEST
+
+START_TEST(a_users_table_has_hysteresis_return_delay_and_searches) {
+  RuleTable table{.name = "mine",
+                  .sensors = 1,
+                  .precedence = Precedence::order,
+                  .rules = {{.number = 4,
+                             .name = "look",
+                             .all = 1,
+                             .bands = {{.upper = radians(-30), .action = Action::turn_right},
+                                       {.action = Action::search, .search = {radians(-20), radians(200)}}}},
+                            {.number = 9, .name = "home", .bands = {{.action = Action::zero}}}}};
+  Stream stream(FuserOptions{.rules = RuleSet::table});
+  stream.fuser.set_table(table);
+  stream.sensors = {1};
+  stream.pan = -31;
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::turn_right, 4, "look");
+  stream.pan = -28.5;
+  stream.frame();
+  ck_assert(decision.action == Action::turn_right);
+  stream.pan = -27.5;
+  stream.frame();
+  ck_assert(decision.action == Action::search && decision.limited);
+  assert_sector(decision, -20, 170);
+  stream.pan = -31;  // back within hysteresis
+  stream.frame();
+  ck_assert(decision.action == Action::search);
+  stream.sensors = {0};
+  stream.frames(4s);
+  assert_says(decision, Action::hold, 0, "return");
+  stream.frames(2s);
+  assert_says(decision, Action::zero, 9, "home");
+}
+END_TEST
+
+START_TEST(an_unknown_pan_angle_commands_no_turn) {
+  for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
+    Stream stream(options);
+    stream.pan = kUnknown;
+    for (const std::vector<std::uint8_t>& sensors :
+         {std::vector<std::uint8_t>{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}) {
+      stream.sensors = sensors;
+      const Decision& decision = stream.frame();
+      ck_assert(decision.action == Action::search || decision.action == Action::hold);
+    }
+  }
+}
+END_TEST
+
+START_TEST(time_that_goes_back_starts_anew) {
+  Stream stream;
+  stream.tracks = {somebody(7, TrackState::stopped)};
+  stream.sensors = {1, 0, 0};
+  stream.frames(100s);
+  stream.tracks.clear();
+  stream.sensors = {0, 0, 0};
+  const Decision& decision = stream.frame(-90s);
+  assert_says(decision, Action::zero, 7, "zero");
+  ck_assert(decision.changed);
+}
+END_TEST
+
+START_TEST(a_long_gap_lets_every_timer_expire) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  stream.sensors = {1, 0, 0};
+  stream.frame();
+  stream.tracks.clear();
+  stream.sensors = {0, 0, 0};
+  assert_says(stream.frame(1h), Action::zero, 7, "zero");
+}
+END_TEST
+
+START_TEST(options_that_make_no_sense_are_put_right) {
+  Fuser fuser;
+  fuser.set_options({.camera_hold = -1s,
+                     .return_delay = -1s,
+                     .hysteresis = kUnknown,
+                     .lens = 99,
+                     .limits = {1, -1},
+                     .dwell = -1s});
+  ck_assert(fuser.options().camera_hold == 0s && fuser.options().return_delay == 0s);
+  ck_assert(fuser.options().hysteresis == 0 && fuser.options().lens == 0 && fuser.options().dwell == 0s);
+  ck_assert(fuser.options().limits.from == kDefaultLimits.from &&
+            fuser.options().limits.to == kDefaultLimits.to);
+}
+END_TEST
+
+START_TEST(whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations) {
+  for (unsigned seed = 0; seed < 60; ++seed) {
+    FuserOptions options = seed % 3 == 0 ? paper_options() : FuserOptions{};
+    options.limits = {radians(-170.0 + seed), radians(170.0 - 2 * seed)};
+    Fuser one, two;
+    one.set_options(options);
+    two.set_options(options);
+    std::mt19937 random(seed);
+    Time now{};
+    std::vector<Track> tracks;
+    std::vector<std::uint8_t> sensors(3);
+    tracks.reserve(8);
+    Decision last;
+    for (int i = 0; i < 3000; ++i) {
+      now += random() % 500 == 0 ? Time(-3s) : std::chrono::milliseconds(random() % 300);
+      if (random() % 20 == 0) {
+        tracks.clear();
+        for (unsigned n = random() % 4; n > 0; --n)
+          tracks.push_back({.id = static_cast<std::uint32_t>(random() % 6),
+                            .x = static_cast<double>(random() % 300),
+                            .y = random() % 50 == 0 ? kUnknown : static_cast<double>(random() % 200),
+                            .width = 20,
+                            .height = 60,
+                            .age = std::chrono::milliseconds(random() % 9000),
+                            .state = static_cast<TrackState>(random() % 3)});
+      }
+      if (random() % 15 == 0) sensors[random() % 3] = static_cast<std::uint8_t>(random() % 4);
+      const double pan = random() % 50 == 0 ? kUnknown : radians(static_cast<double>(random() % 360) - 180);
+      const Input input{.time = now,
+                        .tracks = tracks,
+                        .sensors = sensors,
+                        .pan = pan,
+                        .base_yaw_rate = random() % 10 == 0 ? 0.5 : kUnknown};
+      const long before = allocations;
+      const Decision& a = one.update(input);
+      if (allocations != before) ck_abort_msg("seed %u: allocates", seed);
+      const Decision& b = two.update(input);
+      if (a.action != b.action || a.rule != b.rule || a.target != b.target || a.changed != b.changed ||
+          (a.sector.from != b.sector.from && !std::isnan(a.sector.from)))
+        ck_abort_msg("seed %u: two runs differ", seed);
+      const bool followed = std::ranges::any_of(
+          tracks, [&](const Track& track) { return track.id == a.target && track.id != 0; });
+      if ((a.action == Action::track) != (a.target != 0)) ck_abort_msg("seed %u: tracks nobody", seed);
+      if (a.target != 0 && !followed) ck_abort_msg("seed %u: a target that is not there", seed);
+      if ((a.fired & (a.doubtful | a.invalid)) != 0) ck_abort_msg("seed %u: counts what is not sure", seed);
+      if (a.action == Action::search &&
+          !(a.sector.from <= a.sector.to && a.sector.from >= options.limits.from &&
+            a.sector.to <= options.limits.to))
+        ck_abort_msg("seed %u: searches beyond the limits", seed);
+      if (options.rules == RuleSet::complete && a.action == Action::turn_left && !(pan > options.limits.from))
+        ck_abort_msg("seed %u: turns left at the left stop", seed);
+      if (options.rules == RuleSet::complete && a.action == Action::turn_right && !(pan < options.limits.to))
+        ck_abort_msg("seed %u: turns right at the right stop", seed);
+      if (!a.changed && (a.action != last.action || a.target != last.target || a.fired != last.fired))
+        ck_abort_msg("seed %u: a change is not told", seed);
+      last = a;
+    }
+  }
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("fuser");
+  TCase* tests = tcase_create("fuser");
+  tcase_set_timeout(tests, 60);
+  tcase_add_test(tests, nothing_anywhere_means_zero);
+  tcase_add_test(tests, a_track_is_followed_and_kept_half_a_second);
+  tcase_add_test(tests, the_head_returns_five_seconds_after_the_last_detection);
+  tcase_add_test(tests, the_one_followed_is_kept_though_others_are_nearer);
+  tcase_add_test(tests, a_target_is_chosen_by_nearness_size_or_newness);
+  tcase_add_test(tests, without_distances_the_lowest_feet_are_the_nearest);
+  tcase_add_test(tests, one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone);
+  tcase_add_test(tests, who_stopped_is_tracked_for_half_a_minute_and_then_left);
+  tcase_add_test(tests, rule_7_waits_for_who_stopped_even_when_the_track_is_gone);
+  tcase_add_test(tests, a_sensor_makes_the_head_turn_and_then_sweep);
+  tcase_add_test(tests, a_search_outlives_its_sensor_by_the_return_delay);
+  tcase_add_test(tests, a_search_ends_when_somebody_is_found);
+  tcase_add_test(tests, two_sectors_without_a_common_part_are_both_searched);
+  tcase_add_test(tests, equally_near_sectors_go_to_the_sensor_that_fired_last);
+  tcase_add_test(tests, a_search_leaves_nothing_unseen);
+  tcase_add_test(tests, a_sector_beyond_the_limits_is_approached_and_said_to_be_limited);
+  tcase_add_test(tests, limits_without_zero_are_told);
+  tcase_add_test(tests, invalid_readings_do_not_count_but_are_told);
+  tcase_add_test(tests, what_a_turning_base_trips_is_doubtful_and_does_not_count);
+  tcase_add_test(tests, a_doubtful_sensor_that_rests_is_believed_again);
+  tcase_add_test(tests, the_paper_stands_still_where_it_tracks_nobody);
+  tcase_add_test(tests, the_paper_ignores_a_fourth_sensor);
+  tcase_add_test(tests, a_table_turns_no_further_than_the_stop);
+  tcase_add_test(tests, a_users_table_has_hysteresis_return_delay_and_searches);
+  tcase_add_test(tests, an_unknown_pan_angle_commands_no_turn);
+  tcase_add_test(tests, time_that_goes_back_starts_anew);
+  tcase_add_test(tests, a_long_gap_lets_every_timer_expire);
+  tcase_add_test(tests, options_that_make_no_sense_are_put_right);
+  tcase_add_test(tests, whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations);
+  suite_add_tcase(suite, tests);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
