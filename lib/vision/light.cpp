@@ -10,7 +10,9 @@ namespace {
 
 constexpr int kBand = 8;  // rows; flicker at 100 Hz has a period of 70 rows and more
 constexpr int kColumnStep = 4, kRowStep = 2;
-constexpr int kBandReach = 16;  // grey levels a band may differ by
+constexpr int kBandReach = 16;        // grey levels a band may differ by
+constexpr double kLeastBand = 1.0;    // grey levels: weaker bands are left alone
+constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
 
 RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
   return spans.empty() ? RowSpan{0, width} : spans[static_cast<std::size_t>(y)];
@@ -109,8 +111,8 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
     for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d) agree += counts_[k][d + kReach];
   }
   agreement_ = static_cast<double>(agree) / total;
-  // Below a third of a level anywhere between black and white nothing is gained.
-  if (std::max(std::abs(at_zero), std::abs(at_zero + 255 * slope)) < 0.35) return;
+  // What is hardly visible between dark grey and light grey is not worth a correction.
+  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return;
   gain_ = std::clamp(1 + slope, 0.25, 4.0);
   offset_ = at_zero;
   const RowLight light{static_cast<std::int32_t>(std::lround(256 * gain_)),
@@ -125,25 +127,35 @@ void LightChange::estimate_bands(GrayView reference, GrayView present, std::span
   std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
   double strongest = 0;
   for (int band = 0; band < bands; ++band) {
-    std::array<std::uint16_t, 2 * kBandReach + 1> counts{};
-    int number = 0;
+    // A band of light goes through the whole row, an object rarely does: the middle one of three thirds' medians.
+    std::array<std::array<std::uint16_t, 2 * kBandReach + 1>, 3> counts{};
+    std::array<int, 3> number{};
     std::int64_t sum = 0;
     for (int y = band * kBand; y < std::min((band + 1) * kBand, present.height); y += kRowStep) {
       const RowSpan s = span_of(spans, y, present.width);
       const std::uint8_t *a = reference.row(y), *b = present.row(y);
       const RowLight light = rows_[y];
-      for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
-        const int now = std::clamp((a[x] * light.gain + light.offset + 128) >> 8, 0, 255);
-        ++counts[std::clamp(b[x] - now, -kBandReach, kBandReach) + kBandReach];
-        sum += now;
-        ++number;
+      for (int third = 0; third < 3; ++third) {
+        const int end = std::min(s.end, (third + 1) * present.width / 3);
+        for (int x = std::max(s.begin, third * present.width / 3) + (y / kRowStep) % kColumnStep; x < end;
+             x += kColumnStep) {
+          const int now = std::clamp((a[x] * light.gain + light.offset + 128) >> 8, 0, 255);
+          ++counts[third][std::clamp(b[x] - now, -kBandReach, kBandReach) + kBandReach];
+          sum += now;
+          ++number[third];
+        }
       }
     }
-    const double bright = number ? std::max(static_cast<double>(sum) / number, 16.0) : 16.0;
-    excess[band] = number >= 32 ? median(counts, number, -kBandReach) / bright : 0;
-    strongest = std::max(strongest, std::abs(excess[band]) * bright);
+    const int total = number[0] + number[1] + number[2];
+    const double bright = total ? std::max(static_cast<double>(sum) / total, 16.0) : 16.0;
+    std::array<double, 3> middle{};
+    for (int third = 0; third < 3; ++third)
+      if (number[third] >= 16) middle[third] = median(counts[third], number[third], -kBandReach);
+    std::sort(middle.begin(), middle.end());
+    excess[band] = middle[1] / bright;
+    strongest = std::max(strongest, std::abs(middle[1]));
   }
-  if (strongest < 0.5) return;
+  if (strongest < kLeastBand) return;
   for (int y = 0; y < present.height; ++y) {  // linear between the middles of bands
     const double position = std::clamp((y + 0.5) / kBand - 0.5, 0.0, bands - 1.0);
     const int low = static_cast<int>(position), high = std::min(low + 1, bands - 1);

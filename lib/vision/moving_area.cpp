@@ -5,6 +5,7 @@
 
 #include "vision/mask.h"
 #include "vision/morphology.h"
+#include "vision/scene_memory.h"
 
 namespace cerberus::vision {
 
@@ -13,6 +14,7 @@ struct MovingArea::State {
   Size size;
   BitMask now, before;
   Morphology morphology;
+  SceneMemory memory;
 };
 
 MovingArea::MovingArea() : state_(std::make_unique<State>()) {}
@@ -23,7 +25,9 @@ MovingArea& MovingArea::operator=(MovingArea&&) noexcept = default;
 void MovingArea::set_options(const MovingAreaOptions& options) {
   state_->options = options;
 }
-void MovingArea::reset() {}
+void MovingArea::reset() {
+  state_->memory.reset();
+}
 
 MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayView mask) {
   State& s = *state_;
@@ -39,6 +43,12 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
   result.threshold =
       s.options.noise_floor ? clamp_to_noise(result.fuzzy_threshold, result.sigma) : result.fuzzy_threshold;
   result.ready = input.frames >= 3;
+  if (s.options.memory) {
+    if (input.frames <= 1) s.memory.reset();
+    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still},
+                    mask);
+    if (result.ready) return result;
+  }
   if (!result.ready) {
     for (int y = 0; y < mask.height; ++y) std::fill_n(mask.row(y), mask.width, std::uint8_t{0});
     return result;
@@ -59,7 +69,7 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
 
 std::size_t MovingArea::bytes() const {
   const State& s = *state_;
-  return s.now.bytes() + s.before.bytes() + s.morphology.bytes() + sizeof(State);
+  return s.memory.bytes() + s.now.bytes() + s.before.bytes() + s.morphology.bytes() + sizeof(State);
 }
 
 }  // namespace cerberus::vision

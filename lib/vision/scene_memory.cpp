@@ -1,0 +1,478 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/scene_memory.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+#include "vision/blur.h"
+#include "vision/labelling.h"
+#include "vision/light.h"
+#include "vision/mask.h"
+#include "vision/morphology.h"
+#include "vision/scene_alignment.h"
+#include "vision/scene_kernels.h"
+#include "vision/warp.h"
+
+namespace cerberus::vision {
+namespace {
+
+constexpr int kMargin = 16;  // columns beside the compared memory, so that kernels may look beyond the border
+constexpr double kFarthest =
+    12;  // pixels a corner may be off by turning and zooming before the memory is redrawn
+constexpr double kLeastSigma = 0.7;  // grey levels: rounding alone makes 0.3, compression more
+constexpr int kClosing = 9;          // side of the closing at 320 columns
+constexpr int kHold = 250;           // frames something that stopped is kept
+constexpr double kAgreement =
+    0.3;  // share of pixels a change of light has to explain, else it is another scene
+
+// Moves the content; what comes in is `fill`.
+template <typename T>
+void shift_content(View<T> v, int dx, int dy, T fill) {
+  const auto move_row = [&](int y) {
+    const int from = y - dy;
+    T* out = v.row(y);
+    if (from < 0 || from >= v.height || std::abs(dx) >= v.width) {
+      std::fill_n(out, v.width, fill);
+      return;
+    }
+    const T* in = v.row(from);
+    const std::size_t bytes = sizeof(T) * static_cast<std::size_t>(v.width - std::abs(dx));
+    if (dx >= 0) {
+      std::memmove(out + dx, in, bytes);
+      std::fill_n(out, dx, fill);
+    } else {
+      std::memmove(out, in - dx, bytes);
+      std::fill_n(out + v.width + dx, -dx, fill);
+    }
+  };
+  if (dy > 0)
+    for (int y = v.height - 1; y >= 0; --y) move_row(y);
+  else
+    for (int y = 0; y < v.height; ++y) move_row(y);
+}
+
+// Bits first..end-1 of a row.
+template <typename Each>
+void for_words(int first, int end, Each&& each) {
+  for (int x = first; x < end;) {
+    const int word = x / 64, stop = std::min(end, (word + 1) * 64);
+    const std::uint64_t ones =
+        stop - x == 64 ? ~std::uint64_t{0} : ((std::uint64_t{1} << (stop - x)) - 1) << (x % 64);
+    each(word, ones);
+    x = stop;
+  }
+}
+void set_bits(std::uint64_t* row, int first, int end) {
+  for_words(first, end, [&](int word, std::uint64_t ones) { row[word] |= ones; });
+}
+void clear_bits(std::uint64_t* row, int first, int end) {
+  for_words(first, end, [&](int word, std::uint64_t ones) { row[word] &= ~ones; });
+}
+// Noise by brightness from sampled absolute differences.
+class NoiseSamples {
+ public:
+  void add(int brightness, int difference) {
+    if (difference < kLevels) ++counts_[brightness >> 4][difference];
+  }
+  // 1.4826 x median of a class, none if there are too few samples.
+  std::optional<double> sigma(int k) const {
+    int total = 0;
+    for (const auto c : counts_[k]) total += c;
+    if (total < 40) return std::nullopt;
+    double below = 0;
+    for (int v = 0; v < kLevels; ++v) {
+      const double c = counts_[k][v];
+      if (c && below + c >= total / 2.0) {
+        const double low = v == 0 ? 0 : v - 0.5, width = v == 0 ? 0.5 : 1;
+        return 1.4826 * (low + width * (total / 2.0 - below) / c);
+      }
+      below += c;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  static constexpr int kLevels = 64;
+  std::array<std::array<std::uint16_t, kLevels>, kBrightness> counts_{};
+};
+
+// What is known of a connected part.
+struct Part {
+  int moved = 0;  // pixels that moved lately
+  int frame = 0, memory = 0,
+      n = 0;  // contrast across its outline in frame and memory, and over how many places
+};
+
+}  // namespace
+
+struct SceneMemory::State {
+  Size size;
+  int frames = 0;
+  Transform to_frame;  // memory pixel -> frame pixel
+  Image<std::uint16_t> mean;
+  Image<std::uint8_t> spread, age, quiet;
+  Image<std::uint8_t> present;    // the frame in memory coordinates, blurred
+  Image<std::uint8_t> known;      // the mean as compared: 8 bits, under the present light; with margins
+  Image<std::uint8_t> scratch;    // bytes of whatever needs them
+  Image<std::uint8_t> tolerance;  // one row of blocks, per pixel
+  BitMask weak, strong, moved, valid, absorb;
+  Morphology morphology;
+  Labeller labeller;
+  std::vector<Part> parts;
+  std::vector<std::uint8_t> verdict;
+  Warp warp;
+  LightChange light;
+  int columns = 0, rows = 0;  // of blocks
+  std::vector<BlockSums> blocks;
+  std::array<double, kBrightness> sigma{};  // of frame - memory by brightness, grey levels
+
+  void prepare(Size to);
+  void follow(const SceneMemoryInput& in);
+  void redraw();
+  View<std::uint8_t> known_view() {
+    const auto v = known.view();
+    return {v.data + v.stride + kMargin, size.width, size.height, v.stride};
+  }
+  void draw_known(bool lit);
+  bool draw_present(const SceneMemoryInput& in, GrayView blurred);
+  void measure_blocks();
+  void align(const SceneMemoryInput& in, GrayView blurred);
+  void compensate(bool still);
+  void learn_noise(const SceneMemoryInput& in, GrayView difference);
+  void compare(const SceneMemoryInput& in);
+  void decide(const SceneMemoryInput& in);
+  void learn();
+};
+
+SceneMemory::SceneMemory() : state_(std::make_unique<State>()) {}
+SceneMemory::~SceneMemory() = default;
+SceneMemory::SceneMemory(SceneMemory&&) noexcept = default;
+SceneMemory& SceneMemory::operator=(SceneMemory&&) noexcept = default;
+
+void SceneMemory::reset() {
+  state_->frames = 0;
+}
+
+void SceneMemory::State::prepare(Size to) {
+  if (to != size) {
+    size = to;
+    mean.resize(to);
+    for (auto* plane : {&spread, &age, &quiet, &present, &scratch}) plane->resize(to);
+    known.resize({to.width + 2 * kMargin, to.height + 2});
+    tolerance.resize({to.width, 1});
+    for (auto* bits : {&weak, &strong, &moved, &valid, &absorb}) bits->resize(bit_mask_size(to));
+    columns = (to.width + kSceneBlock - 1) / kSceneBlock;
+    rows = (to.height + kSceneBlock - 1) / kSceneBlock;
+    blocks.assign(static_cast<std::size_t>(columns) * rows, {});
+    frames = 0;
+  }
+  if (frames == 0) {
+    mean.fill_bytes(0);
+    for (auto* plane : {&spread, &age, &quiet}) plane->fill_bytes(0);
+    to_frame = {};
+  }
+  ++frames;
+}
+
+// The memory goes along with the camera by whole pixels.
+void SceneMemory::State::follow(const SceneMemoryInput& in) {
+  if (in.still || frames == 1) return;
+  to_frame = in.motion * to_frame;
+  const Point centre{(size.width - 1) / 2.0, (size.height - 1) / 2.0};
+  const Point seen = to_frame.apply(centre);
+  const double tx = seen.x - centre.x, ty = seen.y - centre.y;
+  if (!to_frame.is_sane(size) || std::abs(tx) > size.width || std::abs(ty) > size.height) {
+    frames = 0;
+    prepare(size);
+    return;
+  }
+  if (std::abs(tx) > 0.75 || std::abs(ty) > 0.75) {
+    const int dx = static_cast<int>(std::lround(tx)), dy = static_cast<int>(std::lround(ty));
+    shift_content<std::uint16_t>(mean.view(), dx, dy, 0);
+    for (auto* plane : {&spread, &age, &quiet}) shift_content<std::uint8_t>(plane->view(), dx, dy, 0);
+    to_frame = to_frame * Transform::translation(-dx, -dy);
+  }
+  if (to_frame.corner_motion(size) > kFarthest) redraw();
+}
+
+// The memory in the frame's own coordinates, by interpolation: only after much turning or zooming.
+void SceneMemory::State::redraw() {
+  if (!warp.prepare(to_frame, size)) {
+    frames = 0;
+    prepare(size);
+    return;
+  }
+  draw_known(false);
+  warp.bilinear(known_view(), present.view());
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      mean.view().at(x, y) = static_cast<std::uint16_t>(present.view().at(x, y) << 8);
+  for (auto* plane : {&spread, &age, &quiet}) {
+    warp.nearest(plane->view(), scratch.view());
+    plane->swap(scratch);
+  }
+  to_frame = {};
+}
+
+// known := the mean, lit as the frame is when asked to; borders repeated by one pixel.
+void SceneMemory::State::draw_known(bool lit) {
+  const auto k = known_view();
+  for (int y = 0; y < size.height; ++y) {
+    std::uint8_t* row = k.row(y);
+    round_row(mean.view().row(y), size.width, row);
+    if (lit) relight_row(row, light.row(y), size.width, row);
+    row[-1] = row[0];
+    row[size.width] = row[size.width - 1];
+  }
+  const std::size_t bytes = static_cast<std::size_t>(size.width) + 2;
+  std::memcpy(k.row(-1) - 1, k.row(0) - 1, bytes);
+  std::memcpy(k.row(size.height) - 1, k.row(size.height - 1) - 1, bytes);
+}
+
+bool SceneMemory::State::draw_present(const SceneMemoryInput& in, GrayView blurred) {
+  if (!warp.prepare(to_frame.inverse(), size)) return false;
+  if (warp.is_identity())
+    blur3(in.picture, 3, present.view());
+  else
+    warp.bilinear(blurred, present.view());
+  return true;
+}
+
+void SceneMemory::State::measure_blocks() {
+  const auto spans = warp.spans();
+  BlockRows r{present.view(), known_view(), age.view(), quiet.view(), 0, 0, 2, 3};
+  for (int by = 0; by < rows; ++by) {
+    r.first = std::max(by * kSceneBlock, 1);
+    r.end = std::min((by + 1) * kSceneBlock, size.height - 1);
+    // The columns that all rows of the block have (spans bend little within 16 rows).
+    int begin = 1, end = size.width - 1;
+    for (int y = r.first; y < r.end; y += r.step) {
+      begin = std::max(begin, spans[static_cast<std::size_t>(y)].begin);
+      end = std::min(end, spans[static_cast<std::size_t>(y)].end);
+    }
+    for (int bx = 0; bx < columns; ++bx)
+      blocks[static_cast<std::size_t>(by) * columns + bx] = block_sums(r, bx * kSceneBlock, begin, end);
+  }
+}
+
+// Registers the frame to the memory's content; leaves the block sums as they are after it.
+void SceneMemory::State::align(const SceneMemoryInput& in, GrayView blurred) {
+  measure_blocks();
+  const auto correction = align_to_memory(blocks, columns, size);
+  if (!correction) return;
+  const Transform before = to_frame;
+  to_frame = to_frame * *correction;
+  if (!to_frame.is_sane(size) || !draw_present(in, blurred)) {
+    to_frame = before;
+    draw_present(in, blurred);
+  }
+  measure_blocks();
+}
+
+// Takes a change of light out: a strong one for good, a weak one or bands (flicker) for this comparison only.
+void SceneMemory::State::compensate(bool still) {
+  light.estimate(known_view(), present.view(), warp.spans());
+  if (light.none()) return;
+  if (light.agreement() < kAgreement && still) {  // not a change of light: another scene
+    age.fill_bytes(0);
+    light.clear();
+    return;
+  }
+  const double at_middle = light.gain() * 128 + light.offset() - 128;
+  if (std::abs(at_middle) > 3) {
+    const int gain = static_cast<int>(std::lround(light.gain() * 256));
+    const int offset = static_cast<int>(std::lround(light.offset() * 256));
+    for (int y = 0; y < size.height; ++y) {
+      std::uint16_t* row = mean.view().row(y);
+      for (int x = 0; x < size.width; ++x)
+        row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
+    }
+    draw_known(false);
+    light.estimate(known_view(), present.view(), warp.spans());
+    if (light.none()) return;
+  }
+  draw_known(true);
+}
+
+// sigma of frame - memory by brightness. While the memory is young its own noise and the frame's cannot be told apart
+// there, and D(k) stands in: sqrt(1/2) of its sigma, times sqrt(1 + 1 / age) for a mean of that many frames.
+void SceneMemory::State::learn_noise(const SceneMemoryInput& in, GrayView difference) {
+  const bool start = frames < 8;
+  NoiseSamples samples;
+  const auto spans = warp.spans();
+  const auto k = known_view();
+  for (int y = 1 + frames % 4; y < size.height; y += 4) {
+    const RowSpan span = spans[static_cast<std::size_t>(y)];
+    for (int x = span.begin + frames / 4 % 4; x < span.end; x += 4) {
+      const int d = difference.at(x, y);
+      if (start)
+        samples.add(present.view().at(x, y), d);
+      else if (d <= in.threshold && age.view().at(x, y) > 2)
+        samples.add(k.at(x, y), std::abs(present.view().at(x, y) - k.at(x, y)));
+    }
+  }
+  const double plain = std::max(in.sigma * std::sqrt(0.5), kLeastSigma);
+  const double young = std::sqrt(0.5) * std::sqrt(1 + 1.0 / std::max(frames - 1, 1));
+  double last = plain;
+  for (int c = 0; c < kBrightness; ++c) {
+    const auto measured = samples.sigma(c);
+    if (start)
+      sigma[c] = measured ? std::max(*measured * young, kLeastSigma) : last;
+    else if (measured)
+      sigma[c] += 0.1 * (std::max(*measured, kLeastSigma) - sigma[c]);
+    last = sigma[c];  // a class nobody has seen is at least as noisy as the next darker one
+  }
+}
+
+void SceneMemory::State::compare(const SceneMemoryInput& in) {
+  CompareLimits limits;
+  for (int c = 0; c < kBrightness; ++c)
+    limits.noise[c] = static_cast<std::uint8_t>(std::min(std::lround(16 * sigma[c]), 255L));
+  const auto k = known_view();
+  CompareRow row;
+  row.width = size.width;
+  row.tolerance = tolerance.view().data;
+  for (int y = 0; y < size.height; ++y) {
+    const int by = y / kSceneBlock;
+    if (y % kSceneBlock == 0) {
+      // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its mean, since
+      // the tail counts. One pixel at least: interpolation and aliasing make that much.
+      for (int bx = 0; bx < columns; ++bx) {
+        double ge = 0, gg = 0;
+        for (int v = std::max(by - 1, 0); v <= std::min(by + 1, rows - 1); ++v)
+          for (int u = std::max(bx - 1, 0); u <= std::min(bx + 1, columns - 1); ++u) {
+            const BlockSums& b = blocks[static_cast<std::size_t>(v) * columns + u];
+            ge += b.ge;
+            gg += b.gg;
+          }
+        // Gradients are doubled: |e| / g = 2 ge / gg.
+        const double error = in.still ? 1 : std::clamp(2 * 2 * ge / (gg + 400), 1.0, 3.0);
+        std::fill_n(tolerance.view().data + bx * kSceneBlock,
+                    std::min(kSceneBlock, size.width - bx * kSceneBlock),
+                    static_cast<std::uint8_t>(std::lround(16 * error)));
+      }
+    }
+    row.present = present.view().row(y);
+    row.above = k.row(y - 1), row.memory = k.row(y), row.below = k.row(y + 1);
+    row.spread = spread.view().row(y), row.age = age.view().row(y);
+    row.moved = moved.view().row(y), row.quiet = quiet.view().row(y);
+    compare_row(row, limits, weak.view().row(y), strong.view().row(y));
+  }
+  intersect(weak.view(), valid.view(), weak.view());
+  intersect(strong.view(), valid.view(), strong.view());
+}
+
+// strong := the mask. weak := what must not be learnt. absorb := what is to be taken over.
+void SceneMemory::State::decide(const SceneMemoryInput& in) {
+  const int w = size.width;
+  const MutableBitView seeds = strong.view();
+  morphology.vote(weak.view(), w, 4);  // four of nine: noise is lonely
+  morphology.vote(seeds, w, 4);
+  morphology.reconstruct(seeds, weak.view(), w);
+  unpack(seeds, scratch.view());
+  labeller.find(scratch.view());
+  const auto components = labeller.components();
+  parts.assign(components.size(), {});
+  const GrayView f = present.view(), m = known_view();
+  const int lately = in.still ? 25 : 3;  // frames: a memory that has to be registered is believed less
+  for (const Run& r : labeller.runs()) {
+    Part& part = parts[r.component];
+    const std::uint8_t* q = quiet.view().row(r.row);
+    int moved_here = 0;
+    for (int x = r.first; x < r.end; ++x) moved_here += q[x] < lately;
+    part.moved += moved_here;
+    const auto contrast = [&](int outside, int inside) {
+      part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
+      part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
+      ++part.n;
+    };
+    if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
+    if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
+  }
+  std::memcpy(weak.view().data, seeds.data, weak.bytes());
+  absorb.fill_bytes(0);
+  for (const Run& r : labeller.runs()) {
+    const Part& part = parts[r.component];
+    const double share = in.still ? 0.1 : 0.25;
+    const bool moving = part.moved >= std::max(4.0, share * components[r.component].area);
+    if (moving) continue;
+    const bool object = part.n > 0 && part.frame > 1.3 * part.memory + 2 * part.n;
+    const bool ghost = part.n > 0 && part.memory > 1.3 * part.frame + 2 * part.n;
+    if (!(in.still && object)) clear_bits(seeds.row(r.row), r.first, r.end);
+    for (int x = r.first; x < r.end; ++x) {
+      const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
+      if (ghost || quiet.view().at(x, r.row) > patience) set_bits(absorb.view().row(r.row), x, x + 1);
+    }
+  }
+  const int side = std::max(3, kClosing * size.width / 320 | 1);
+  morphology.close(seeds, w, side);
+  intersect(seeds, valid.view(), seeds);
+  unite(weak.view(), seeds, weak.view());
+  morphology.dilate(weak.view(), w, 3);
+}
+
+void SceneMemory::State::learn() {
+  LearnRow row;
+  row.width = size.width;
+  row.phase = frames % 2 ? 15 : 0;
+  for (int y = 0; y < size.height; ++y) {
+    row.present = present.view().row(y), row.memory = known_view().row(y), row.quiet = quiet.view().row(y);
+    row.keep = weak.view().row(y), row.absorb = absorb.view().row(y), row.valid = valid.view().row(y);
+    row.mean = mean.view().row(y), row.spread = spread.view().row(y), row.age = age.view().row(y);
+    learn_row(row);
+  }
+}
+
+void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
+  State& s = *state_;
+  s.prepare(mask.size());
+  s.follow(in);
+  GrayView blurred = mask;
+  if (!s.to_frame.is_identity()) blur3(in.picture, 3, mask);
+  s.draw_known(false);
+  if (!s.draw_present(in, blurred)) {  // cannot be: follow() has seen to it
+    s.frames = 0;
+    return;
+  }
+  if (!in.still && s.frames > 1) s.align(in, blurred);
+  s.valid.fill_bytes(0);
+  for (int y = 0; y < s.size.height; ++y) {
+    const RowSpan span = s.warp.spans()[static_cast<std::size_t>(y)];
+    set_bits(s.valid.view().row(y), span.begin, span.end);
+  }
+  s.light.clear();
+  if (s.frames > 1) s.compensate(in.still);
+  GrayView difference = in.difference;
+  if (!s.warp.is_identity()) {
+    s.warp.nearest(in.difference, s.scratch.view());
+    difference = s.scratch.view();
+  }
+  binarise(difference, in.threshold, s.moved.view());
+  s.learn_noise(in, difference);
+  s.compare(in);
+  s.decide(in);
+  s.learn();
+  if (s.to_frame.corner_motion(s.size) < 0.5) {
+    unpack(s.strong.view(), mask);
+  } else {
+    unpack(s.strong.view(), s.scratch.view());
+    s.warp.prepare(s.to_frame, s.size);
+    s.warp.nearest(s.scratch.view(), mask);
+  }
+}
+
+std::size_t SceneMemory::bytes() const {
+  const State& s = *state_;
+  std::size_t total = sizeof(State) + s.mean.bytes() + s.known.bytes() + s.tolerance.bytes() +
+                      s.morphology.bytes() + s.labeller.bytes() + s.warp.bytes() + s.light.bytes();
+  for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present, &s.scratch}) total += plane->bytes();
+  for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb}) total += bits->bytes();
+  return total + s.parts.capacity() * sizeof(Part) + s.blocks.capacity() * sizeof(BlockSums);
+}
+
+}  // namespace cerberus::vision
