@@ -59,12 +59,11 @@ std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later
   std::array<float, (2 * Relief::kBorder + 1) * (2 * Relief::kBorder + 1)> map;
   for (int dy = -ry; dy <= ry; ++dy)
     for (int dx = -rx; dx <= rx; ++dx) {
-      std::uint32_t sum = 0;
       const int begin = std::max(0, -dy), end = std::min(size.height, size.height - dy);
-      for (int y = begin; y < end; ++y)
-        sum += truncated_difference(&earlier.earlier_[y * Relief::kMaxSide],
-                                    &later.later_[(y + dy) * Relief::kStride + Relief::kBorder + dx], padded,
-                                    kLimit);
+      const std::uint32_t sum =
+          truncated_difference(&earlier.earlier_[begin * Relief::kMaxSide], Relief::kMaxSide,
+                               &later.later_[(begin + dy) * Relief::kStride + Relief::kBorder + dx],
+                               Relief::kStride, padded, end - begin, kLimit);
       const int partners = (size.width - std::abs(dx)) * (end - begin);
       const int without = padded * (end - begin) - partners;
       map[(dy + ry) * columns + dx + rx] =

@@ -35,11 +35,14 @@ void measure(const MotionSamples& s, const Transform& t, Distances& distances) {
 }
 
 double support_of(const MotionSamples& s, const Distances& distances) {
-  std::array<float, MotionSamples::kRegions> regions{};
+  // Neighbours are of one region: four sums each, so that one addition need not wait for the last.
+  constexpr int kLanes = 4;
+  std::array<std::array<float, MotionSamples::kRegions>, kLanes> sums{};
   for (int i = 0; i < s.count; ++i)
-    regions[s.region[i]] += s.evidence[i] * std::max(0.0f, 1.0f - distances[i] * (1.0f / kGate));
+    sums[i % kLanes][s.region[i]] += s.evidence[i] * std::max(0.0f, 1.0f - distances[i] * (1.0f / kGate));
   double support = 0;
-  for (const float r : regions) support += std::sqrt(r);
+  for (int r = 0; r < MotionSamples::kRegions; ++r)
+    support += std::sqrt(sums[0][r] + sums[1][r] + (sums[2][r] + sums[3][r]));
   return support;
 }
 
@@ -60,26 +63,26 @@ bool similarity_through(const MotionSamples& s, int i, int j, double least_dista
   return true;
 }
 
-// Normal equations of at most 8 unknowns.
+// Normal equations of N unknowns.
+template <int N>
 struct Normal {
-  std::array<std::array<double, 8>, 8> a{};
-  std::array<double, 8> b{};
-  int n = 0;
+  using Row = std::array<double, N>;
+  std::array<Row, N> a{};  // upper triangle
+  Row b{};
 
   // Adds the measurement J p = d (two rows) with the 2x2 weight W.
-  void add(const std::array<double, 8>& jx, const std::array<double, 8>& jy, double dx, double dy, double wxx,
-           double wxy, double wyy) {
-    for (int i = 0; i < n; ++i) {
+  void add(const Row& jx, const Row& jy, double dx, double dy, double wxx, double wxy, double wyy) {
+    for (int i = 0; i < N; ++i) {
       const double ex = jx[i] * wxx + jy[i] * wxy, ey = jx[i] * wxy + jy[i] * wyy;
-      for (int j = i; j < n; ++j) a[i][j] += ex * jx[j] + ey * jy[j];
+      for (int j = i; j < N; ++j) a[i][j] += ex * jx[j] + ey * jy[j];
       b[i] += ex * dx + ey * dy;
     }
   }
 
   // Cholesky. False when not positive definite.
-  bool solve(std::array<double, 8>& p) {
-    for (int i = 0; i < n; ++i)
-      for (int j = i; j < n; ++j) {
+  bool solve(Row& p) {
+    for (int i = 0; i < N; ++i)
+      for (int j = i; j < N; ++j) {
         double sum = a[i][j];
         for (int k = 0; k < i; ++k) sum -= a[k][i] * a[k][j];
         if (i == j) {
@@ -89,89 +92,107 @@ struct Normal {
           a[i][j] = sum / a[i][i];
         }
       }
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < N; ++i) {
       double sum = b[i];
       for (int k = 0; k < i; ++k) sum -= a[k][i] * p[k];
       p[i] = sum / a[i][i];
     }
-    for (int i = n - 1; i >= 0; --i) {
+    for (int i = N - 1; i >= 0; --i) {
       double sum = p[i];
-      for (int k = i + 1; k < n; ++k) sum -= a[i][k] * p[k];
+      for (int k = i + 1; k < N; ++k) sum -= a[i][k] * p[k];
       p[i] = sum / a[i][i];
     }
     return true;
   }
 };
 
-int unknowns(MotionModel model) {
-  switch (model) {
-    case MotionModel::none:
-      return 0;
-    case MotionModel::translation:
-      return 2;
-    case MotionModel::similarity:
-      return 4;
-    case MotionModel::affine:
-      return 6;
-    case MotionModel::homography:
-      return 8;
-  }
-  return 0;
-}
-
 // One weighted least squares step. Unknowns are displacements in pixels at the picture's edge, so that one weak prior
-// fits all of them: X, Y are pixels from the centre over the half diagonal `scale`.
-//   X' = X + (t + a X + b Y - (g X + h Y) X') / scale
+// fits all of them: X, Y are pixels from the centre over the half diagonal.
+//   X' = X + (t + a X + b Y - (g X + h Y) X') / half diagonal
 class LeastSquares {
  public:
-  LeastSquares(MotionModel model, Size picture)
-      : model_(model),
-        cx_(0.5 * (picture.width - 1)),
+  explicit LeastSquares(Size picture)
+      : cx_(0.5 * (picture.width - 1)),
         cy_(0.5 * (picture.height - 1)),
         scale_(0.5 * std::hypot(picture.width, picture.height)) {}
 
-  bool step(const MotionSamples& s, const std::array<float, MotionSamples::kMax>& weights,
-            Transform& t) const {
-    Normal normal;
-    normal.n = unknowns(model_);
-    // Priors (pixels): shift free, linear part 10 % of the scale, perspective 3 %.
-    for (int i = 0; i < normal.n; ++i) {
-      const double sigma = (i < 2 ? 10.0 : i < 6 ? 0.1 : 0.03) * scale_;
-      normal.a[i][i] = 1 / (sigma * sigma);
+  bool step(MotionModel model, const MotionSamples& s, const Distances& weights, Transform& t) const {
+    using Row2 = std::array<double, 2>;
+    using Row4 = std::array<double, 4>;
+    using Row6 = std::array<double, 6>;
+    using Row8 = std::array<double, 8>;
+    switch (model) {
+      case MotionModel::none:
+        return false;
+      case MotionModel::translation:
+        return solve<2>(
+            s, weights, t,
+            [](double, double, double, double, Row2& jx, Row2& jy) { jx = {1, 0}, jy = {0, 1}; },
+            [](const Row2& p) { return Transform{{1, 0, p[0], 0, 1, p[1], 0, 0, 1}}; });
+      case MotionModel::similarity:
+        return solve<4>(
+            s, weights, t,
+            [](double X, double Y, double, double, Row4& jx, Row4& jy) {
+              jx = {1, 0, X, -Y}, jy = {0, 1, Y, X};
+            },
+            [](const Row4& p) { return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}; });
+      case MotionModel::affine:
+        return solve<6>(
+            s, weights, t,
+            [](double X, double Y, double, double, Row6& jx, Row6& jy) {
+              jx = {1, 0, X, Y, 0, 0}, jy = {0, 1, 0, 0, X, Y};
+            },
+            [](const Row6& p) { return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], 0, 0, 1}}; });
+      case MotionModel::homography:
+        return solve<8>(
+            s, weights, t,
+            [](double X, double Y, double U, double V, Row8& jx, Row8& jy) {
+              jx = {1, 0, X, Y, 0, 0, -X * U, -Y * U}, jy = {0, 1, 0, 0, X, Y, -X * V, -Y * V};
+            },
+            [](const Row8& p) {
+              return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], p[6], p[7], 1}};
+            });
     }
-    std::array<double, 8> jx{}, jy{};
-    for (int i = 0; i < s.count; ++i) {
-      const double w = weights[i];
-      if (!(w > 0)) continue;
-      const double X = (s.x[i] - cx_) / scale_, Y = (s.y[i] - cy_) / scale_;
-      const double U = (s.u[i] - cx_) / scale_, V = (s.v[i] - cy_) / scale_;
-      if (model_ == MotionModel::similarity) {
-        jx = {1, 0, X, -Y}, jy = {0, 1, Y, X};
-      } else {
-        jx = {1, 0, X, Y, 0, 0, -X * U, -Y * U}, jy = {0, 1, 0, 0, X, Y, -X * V, -Y * V};
-      }
-      normal.add(jx, jy, s.u[i] - s.x[i], s.v[i] - s.y[i], w * s.wxx[i], w * s.wxy[i], w * s.wyy[i]);
-    }
-    std::array<double, 8> p{};
-    if (!normal.solve(p)) return false;
-    for (double& v : p) v /= scale_;
-    const Transform centred = model_ == MotionModel::similarity
-                                  ? Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}
-                                  : Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], p[6], p[7], 1}};
-    const Transform to{{1 / scale_, 0, -cx_ / scale_, 0, 1 / scale_, -cy_ / scale_, 0, 0, 1}};
-    const Transform from{{scale_, 0, cx_, 0, scale_, cy_, 0, 0, 1}};
-    t = from * centred * to;
-    return true;
+    return false;
   }
 
  private:
-  MotionModel model_;
+  template <int N, typename Design, typename Compose>
+  bool solve(const MotionSamples& s, const Distances& weights, Transform& t, Design&& design,
+             Compose&& compose) const {
+    Normal<N> normal;
+    for (int i = 0; i < N; ++i) {  // priors: shift free, linear part 10 % of the scale, perspective 3 %
+      const double sigma = (i < 2 ? 10.0 : i < 6 ? 0.1 : 0.03) * scale_;
+      normal.a[i][i] = 1 / (sigma * sigma);
+    }
+    std::array<double, N> jx, jy, p{};
+    const double per_scale = 1 / scale_;
+    for (int i = 0; i < s.count; ++i) {
+      const double w = weights[i];
+      if (!(w > 0)) continue;
+      design((s.x[i] - cx_) * per_scale, (s.y[i] - cy_) * per_scale, (s.u[i] - cx_) * per_scale,
+             (s.v[i] - cy_) * per_scale, jx, jy);
+      normal.add(jx, jy, s.u[i] - s.x[i], s.v[i] - s.y[i], w * s.wxx[i], w * s.wxy[i], w * s.wyy[i]);
+    }
+    if (!normal.solve(p)) return false;
+    for (double& v : p) v *= per_scale;
+    const Transform to{{per_scale, 0, -cx_ * per_scale, 0, per_scale, -cy_ * per_scale, 0, 0, 1}};
+    const Transform from{{scale_, 0, cx_, 0, scale_, cy_, 0, 0, 1}};
+    t = from * compose(p) * to;
+    return true;
+  }
+
   double cx_, cy_, scale_;
 };
 
 // The few best hypotheses that mean different motions.
 class Contenders {
  public:
+  struct Entry {
+    Transform transform;
+    double support = 0;
+  };
+
   explicit Contenders(Size picture) : picture_(picture), alike_(0.02 * picture.width) {}
 
   void add(const Transform& t, double support) {
@@ -184,17 +205,11 @@ class Contenders {
     entries_[place] = {t, support};
   }
   Transform best() const { return entries_[0].transform; }
-  std::span<const Transform> all() {
-    for (int i = 0; i < count_; ++i) transforms_[i] = entries_[i].transform;
-    return {transforms_.data(), static_cast<std::size_t>(count_)};
-  }
+  double most() const { return entries_[0].support; }
+  std::span<const Entry> all() const { return {entries_.data(), static_cast<std::size_t>(count_)}; }
 
  private:
   static constexpr int kMost = 3;
-  struct Entry {
-    Transform transform;
-    double support = 0;
-  };
 
   bool alike(const Transform& a, const Transform& b) const {
     const double right = picture_.width - 1, low = picture_.height - 1;
@@ -209,7 +224,6 @@ class Contenders {
   double alike_;
   int count_ = 0;
   std::array<Entry, kMost> entries_;
-  std::array<Transform, kMost> transforms_;
 };
 
 }  // namespace
@@ -239,22 +253,21 @@ MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
   return fit;
 }
 
-MotionFit refine_motion(const MotionSamples& s, MotionModel model, Size picture, const Transform& start) {
-  const LeastSquares squares(model, picture);
-  Transform t = start;
+double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Transform& motion) {
+  const LeastSquares squares(picture);
   Distances distances, weights{};
-  if (model == MotionModel::none) return rate_motion(s, t);
   for (const float gates : kGates) {
-    measure(s, t, distances);
+    measure(s, motion, distances);
+    const float per_gate = 1 / (gates * kGate);
     for (int i = 0; i < s.count; ++i) {
-      const float inside = std::max(0.0f, 1.0f - distances[i] / (gates * kGate));
+      const float inside = std::max(0.0f, 1.0f - distances[i] * per_gate);
       weights[i] = inside * inside;  // Tukey's biweight
     }
     Transform next;
-    if (!squares.step(s, weights, next) || !next.is_sane(picture)) break;
-    t = next;
+    if (!squares.step(model, s, weights, next) || !next.is_sane(picture)) break;
+    motion = next;
   }
-  return rate_motion(s, t);
+  return support_of(s, motion);
 }
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
@@ -268,24 +281,30 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     random = random * 1664525u + 1013904223u;
     return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
   };
-  for (int h = 0; h < hypotheses; ++h) {
+  // Chance need not be asked where the guesses explain nearly everything (honest noise costs the last tenth).
+  const double enough = 0.85 * support_of(s, Distances{});
+  for (int h = 0; h < hypotheses && contenders.most() < enough; ++h) {
     const int i = draw(), j = draw();
     Transform t = Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]);
     const bool shift = model == MotionModel::translation || h % 4 == 0;
     if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t, support_of(s, t));
   }
   // A hypothesis from two samples carries their errors; only refined ones can be compared.
+  constexpr double kHopeless = 0.7;
   const MotionModel simple = std::min(model, MotionModel::similarity);
-  MotionFit fit;
-  fit.support = -1;
-  for (const Transform& t : contenders.all())
-    if (const MotionFit refined = refine_motion(s, simple, picture, t); refined.support > fit.support)
-      fit = refined;
-  if (model > simple) {
-    const MotionFit finer = refine_motion(s, model, picture, fit.transform);
-    if (finer.support >= fit.support) fit = finer;
+  Transform best;
+  double most = -1;
+  for (const auto& [hypothesis, support] : contenders.all()) {
+    if (support < kHopeless * most) break;
+    Transform refined = hypothesis;
+    const double after = refine_motion(s, simple, picture, refined);
+    if (after > most) most = after, best = refined;
   }
-  return fit;
+  if (model > simple) {
+    Transform finer = best;
+    if (refine_motion(s, model, picture, finer) >= most) best = finer;
+  }
+  return rate_motion(s, best);
 }
 
 }  // namespace cerberus::vision

@@ -49,8 +49,7 @@ MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
 MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses);
 
-// Only the least squares part, from `start`.
-MotionFit refine_motion(const MotionSamples& samples, MotionModel model, Size picture,
-                        const Transform& start);
+// Only the least squares part: improves `motion`, returns its support.
+double refine_motion(const MotionSamples& samples, MotionModel model, Size picture, Transform& motion);
 
 }  // namespace cerberus::vision

@@ -135,25 +135,27 @@ void sum_gradient_blocks(GrayView picture, int x, int y, int blocks, std::int32_
   }
 }
 
-std::uint32_t truncated_difference(const std::uint8_t* a, const std::uint8_t* b, int count,
-                                   std::uint8_t limit) {
+std::uint32_t truncated_difference(const std::uint8_t* a, int stride_a, const std::uint8_t* b, int stride_b,
+                                   int count, int rows, std::uint8_t limit) {
 #if HWY_TARGET == HWY_SCALAR
   std::uint32_t sum = 0;
-  for (int i = 0; i < count; ++i) {
-    const int difference = a[i] > b[i] ? a[i] - b[i] : b[i] - a[i];
-    sum += static_cast<std::uint32_t>(difference < limit ? difference : limit);
-  }
+  for (int y = 0; y < rows; ++y, a += stride_a, b += stride_b)
+    for (int i = 0; i < count; ++i) {
+      const int difference = a[i] > b[i] ? a[i] - b[i] : b[i] - a[i];
+      sum += static_cast<std::uint32_t>(difference < limit ? difference : limit);
+    }
   return sum;
 #else
   const hn::CappedTag<std::uint8_t, 16> d;
   const hn::Repartition<std::uint64_t, decltype(d)> d64;
   const auto most = hn::Set(d, limit);
   auto sum = hn::Zero(d64);
-  for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
-    const auto va = hn::LoadU(d, a + i), vb = hn::LoadU(d, b + i);
-    const auto difference = hn::Or(hn::SaturatedSub(va, vb), hn::SaturatedSub(vb, va));
-    sum = hn::Add(sum, hn::SumsOf8(hn::Min(difference, most)));
-  }
+  for (int y = 0; y < rows; ++y, a += stride_a, b += stride_b)
+    for (int i = 0; i < count; i += static_cast<int>(hn::Lanes(d))) {
+      const auto va = hn::LoadU(d, a + i), vb = hn::LoadU(d, b + i);
+      const auto difference = hn::Or(hn::SaturatedSub(va, vb), hn::SaturatedSub(vb, va));
+      sum = hn::Add(sum, hn::SumsOf8(hn::Min(difference, most)));
+    }
   return static_cast<std::uint32_t>(hn::GetLane(hn::SumOfLanes(d64, sum)));
 #endif
 }
@@ -187,9 +189,9 @@ void sum_gradient_blocks(GrayView picture, int x, int y, int blocks, std::int32_
   HWY_DYNAMIC_DISPATCH(sum_gradient_blocks)(picture, x, y, blocks, xx, xy, yy);
 }
 
-std::uint32_t truncated_difference(const std::uint8_t* a, const std::uint8_t* b, int count,
-                                   std::uint8_t limit) {
-  return HWY_DYNAMIC_DISPATCH(truncated_difference)(a, b, count, limit);
+std::uint32_t truncated_difference(const std::uint8_t* a, int stride_a, const std::uint8_t* b, int stride_b,
+                                   int count, int rows, std::uint8_t limit) {
+  return HWY_DYNAMIC_DISPATCH(truncated_difference)(a, stride_a, b, stride_b, count, rows, limit);
 }
 
 }  // namespace cerberus::vision

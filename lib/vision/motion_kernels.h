@@ -37,8 +37,8 @@ PatchProducts match_patch(GrayView picture, float x, float y, const PatchTemplat
 void sum_gradient_blocks(GrayView picture, int x, int y, int blocks, std::int32_t* xx, std::int32_t* xy,
                          std::int32_t* yy);
 
-// Sum over `count` bytes of min(|a - b|, limit). count a multiple of 16.
-std::uint32_t truncated_difference(const std::uint8_t* a, const std::uint8_t* b, int count,
-                                   std::uint8_t limit);
+// Sum over `rows` rows of `count` bytes of min(|a - b|, limit). count a multiple of 16, strides in bytes.
+std::uint32_t truncated_difference(const std::uint8_t* a, int stride_a, const std::uint8_t* b, int stride_b,
+                                   int count, int rows, std::uint8_t limit);
 
 }  // namespace cerberus::vision

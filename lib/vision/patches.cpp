@@ -73,42 +73,43 @@ PatchFollower::PatchFollower(GrayView earlier, int level, const PatchSite& site)
   make_template(earlier, corner_x_, corner_y_, patch_);
   textured_ = patch_.vv > kPatch * kPatch * 0.25f;
   if (!textured_) return;
-  gain_x_ = patch_.xv / patch_.vv, gain_y_ = patch_.yv / patch_.vv;
+  per_value_ = 1 / patch_.vv;
+  gain_x_ = patch_.xv * per_value_, gain_y_ = patch_.yv * per_value_;
   match_.hxx = patch_.xx - gain_x_ * patch_.xv, match_.hyy = patch_.yy - gain_y_ * patch_.yv;
   match_.hxy = patch_.xy - gain_x_ * patch_.yv;
   // A little stiffness: a patch that shows only an edge stays put along it.
-  stiff_ = 0.01f * (patch_.xx + patch_.yy) + kPatch * kPatch * 0.5f;
+  const float stiff = 0.01f * (patch_.xx + patch_.yy) + kPatch * kPatch * 0.5f;
+  const float xx = match_.hxx + stiff, yy = match_.hyy + stiff;
+  const float per_determinant = 1 / (xx * yy - match_.hxy * match_.hxy);
+  ixx_ = yy * per_determinant, ixy_ = -match_.hxy * per_determinant, iyy_ = xx * per_determinant;
 }
 
 PatchMatch PatchFollower::follow(GrayView later, float dx, float dy, int rounds) const {
   constexpr int kLast = kPatch + 1;
+  constexpr float kPixels = kPatch * kPatch, kEnough = 0.03f;
   PatchMatch match = match_;
   if (!textured_) return match;
-  const float xx = match.hxx + stiff_, yy = match.hyy + stiff_, determinant = xx * yy - match.hxy * match.hxy;
+  const float right = static_cast<float>(later.width - kLast), low = static_cast<float>(later.height - kLast);
+  PatchProducts p;
   for (int round = 0;; ++round) {
     const float px = static_cast<float>(corner_x_) + dx, py = static_cast<float>(corner_y_) + dy;
-    if (!(px >= 0 && py >= 0 && px <= static_cast<float>(later.width - kLast) &&
-          py <= static_cast<float>(later.height - kLast))) {
-      match.correlation = 0;
-      match.inside = false;
-      break;
-    }
-    const PatchProducts p = match_patch(later, px, py, patch_);
-    const float spread = p.squares - p.sum * p.sum / (kPatch * kPatch);
-    match.correlation = spread > 0 ? p.value / std::sqrt(spread * patch_.vv) : 0;
-    match.noise2 = std::max(spread - p.value * p.value / patch_.vv, 0.0f) / (kPatch * kPatch - 4);
-    match.dx = dx, match.dy = dy;
-    match.inside = true;
+    if (!(px >= 0 && py >= 0 && px <= right && py <= low)) return match;
+    p = match_patch(later, px, py, patch_);
     if (round == rounds) break;
     // later(p + d) = gain * earlier(p + e) + offset: regression on gradients and value, value eliminated.
     const float bx = p.x - gain_x_ * p.value, by = p.y - gain_y_ * p.value;
-    const float ex = (yy * bx - match.hxy * by) / determinant, ey = (xx * by - match.hxy * bx) / determinant;
-    const float gain = (p.value - patch_.xv * ex - patch_.yv * ey) / patch_.vv;
+    const float ex = ixx_ * bx + ixy_ * by, ey = ixy_ * bx + iyy_ * by;  // times the gain
+    const float gain = (p.value - patch_.xv * ex - patch_.yv * ey) * per_value_;
     if (!(gain > 0.15f)) break;  // nothing of the patch here
     const float step_x = std::clamp(ex / gain, -2.0f, 2.0f), step_y = std::clamp(ey / gain, -2.0f, 2.0f);
     dx -= step_x, dy -= step_y;
-    if (step_x * step_x + step_y * step_y < 0.02f * 0.02f) rounds = round + 1;
+    if (step_x * step_x + step_y * step_y < kEnough * kEnough) break;  // what was measured here holds there
   }
+  const float spread = p.squares - p.sum * p.sum / kPixels;
+  match.inside = true;
+  match.dx = dx, match.dy = dy;
+  match.correlation = spread > 0 ? p.value / std::sqrt(spread * patch_.vv) : 0;
+  match.noise2 = std::max(spread - p.value * p.value * per_value_, 0.0f) / (kPixels - 4);
   return match;
 }
 

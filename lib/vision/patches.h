@@ -51,8 +51,9 @@ class PatchFollower {
   PatchTemplate patch_;
   PatchMatch match_;  // what does not depend on the later picture
   int corner_x_ = 0, corner_y_ = 0;
-  float gain_x_ = 0, gain_y_ = 0;  // gradients' share that a change of gain explains
-  float stiff_ = 0;
+  float per_value_ = 0;
+  float gain_x_ = 0, gain_y_ = 0;      // gradients' share that a change of gain explains
+  float ixx_ = 0, ixy_ = 0, iyy_ = 0;  // inverse of the stiffened gradient information
   bool textured_ = false;
 };
 

@@ -26,16 +26,18 @@ std::array<Point, 4> corners(Size s) {
 
 }  // namespace
 
-Transform Transform::translation(double dx, double dy) { return {{1, 0, dx, 0, 1, dy, 0, 0, 1}}; }
+Transform Transform::translation(double dx, double dy) {
+  return {{1, 0, dx, 0, 1, dy, 0, 0, 1}};
+}
 
 Transform Transform::similarity(double scale, double angle, double dx, double dy) {
   const double c = scale * std::cos(angle), s = scale * std::sin(angle);
   return {{c, -s, dx, s, c, dy, 0, 0, 1}};
 }
 
-bool Transform::is_identity() const { return m == Transform{}.m; }
-
-bool Transform::is_affine() const { return m[6] == 0 && m[7] == 0 && m[8] == 1; }
+bool Transform::is_identity() const {
+  return m == Transform{}.m;
+}
 
 bool Transform::is_sane(Size picture) const {
   if (!std::all_of(m.begin(), m.end(), [](double v) { return std::isfinite(v); })) return false;
@@ -44,11 +46,6 @@ bool Transform::is_sane(Size picture) const {
     const double j = jacobian(*this, det, p);
     return j > 0.05 && j < 20.0;  // NaN fails both
   });
-}
-
-Point Transform::apply(Point p) const {
-  const double w = m[6] * p.x + m[7] * p.y + m[8];
-  return {(m[0] * p.x + m[1] * p.y + m[2]) / w, (m[3] * p.x + m[4] * p.y + m[5]) / w};
 }
 
 Transform Transform::inverse() const {

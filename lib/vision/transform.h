@@ -22,10 +22,15 @@ struct Transform {
   static Transform similarity(double scale, double angle, double dx, double dy);
 
   bool is_identity() const;
-  bool is_affine() const;  // last row is 0 0 1
+  bool is_affine() const { return m[6] == 0 && m[7] == 0 && m[8] == 1; }  // last row is 0 0 1
   // All numbers finite, orientation kept and not degenerate: the Jacobian at the picture's corners is positive.
   bool is_sane(Size picture) const;
-  Point apply(Point p) const;
+  Point apply(Point p) const {
+    const double x = m[0] * p.x + m[1] * p.y + m[2], y = m[3] * p.x + m[4] * p.y + m[5];
+    if (is_affine()) return {x, y};
+    const double w = m[6] * p.x + m[7] * p.y + m[8];
+    return {x / w, y / w};
+  }
   // The singular transform's inverse is identity: callers ask is_sane() first.
   Transform inverse() const;
   // The same motion in a picture scaled from `from` to `to` pixels, pixel areas aligned at the top left corner

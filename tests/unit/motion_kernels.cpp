@@ -31,14 +31,15 @@ START_TEST(truncated_differences_are_summed) {
   std::mt19937 random(2);
   for (int count = 16; count <= 96; count += 16)
     for (const int limit : {0, 1, 63, 255}) {
-      const GuardedPicture a({count, 1}), b({count, 1});
+      const GuardedPicture a({count, 3}, 5), b({count, 3}, 7);
       fill_random(a.view(), random), fill_random(b.view(), random);
       std::uint32_t expected = 0;
-      for (int i = 0; i < count; ++i)
-        expected += std::min(std::abs(a.view().at(i, 0) - b.view().at(i, 0)), limit);
-      ck_assert_uint_eq(
-          truncated_difference(a.view().data, b.view().data, count, static_cast<std::uint8_t>(limit)),
-          expected);
+      for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < count; ++x)
+          expected += std::min(std::abs(a.view().at(x, y) - b.view().at(x, y)), limit);
+      ck_assert_uint_eq(truncated_difference(a.view().data, count + 5, b.view().data, count + 7, count, 3,
+                                             static_cast<std::uint8_t>(limit)),
+                        expected);
     }
 }
 END_TEST
