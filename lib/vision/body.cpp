@@ -153,16 +153,19 @@ void Body::adopt(const Box& seen) {
 
 // One object, one region, extents that disagree: is the region right? One that is cut by the picture's edge is, as the
 // object comes or goes, and a whole one is after two looks. A larger one soon is: only a piece was seen before. A
-// smaller one is a piece of an object that hardly moves (an arm) as long as it stays in place; it is right when the old
-// extent was never well known, or when the piece walks away on its own.
+// smaller one is a piece of an object that stands (an arm) as long as it stays in place; it is right when the object was
+// on the way, when its extent was never well known, or when the piece walks away on its own.
 bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
-  if (misfit == 0) misfit_from = seen;
+  if (misfit == 0) {
+    misfit_from = seen;
+    stood = slow > 0 || stopped;
+  }
   misfit += seconds;
   if (cut) return true;
   if (whole) return misfit >= 0.2;
   if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6);
   const Point from = centre(misfit_from), to = centre(seen);
-  return misfit >= 0.5 && (fitted < 0.5 || std::hypot(to.x - from.x, to.y - from.y) > 0.5 * size());
+  return misfit >= 0.5 && (!stood || fitted < 0.5 || std::hypot(to.x - from.x, to.y - from.y) > 0.5 * size());
 }
 
 void Body::correct(const Region& r, bool alone, double seconds, Size frame) {

@@ -43,6 +43,7 @@ struct Body {
   double slow = 0;             // s it has been seen standing, or nearly, up to now
   double misfit = 0;           // s since a region had its extent, and the first one that had not
   Box misfit_from;
+  bool stood = false;  // it stood, or nearly, when the misfit began
   int hits = 0, frames = 0;
   int region = -1;  // of this frame, -1 none
   bool stopped = false, dead = false;
