@@ -433,7 +433,7 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   s.prepare(mask.size());
   s.follow(in);
   GrayView blurred = mask;
-  if (!s.to_frame.is_identity()) blur3(in.picture, 3, mask);
+  if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);
   s.draw_known(false);
   if (!s.draw_present(in, blurred)) {  // cannot be: follow() has seen to it
     s.frames = 0;
