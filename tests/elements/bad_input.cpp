@@ -193,7 +193,7 @@ GST_START_TEST(absurd_property_values_are_refused_or_harmless) {
   for (guint i = 0; i < count; ++i) {
     if (!(specs[i]->flags & G_PARAM_WRITABLE) || G_TYPE_FUNDAMENTAL(specs[i]->value_type) == G_TYPE_OBJECT)
       continue;
-    if (specs[i]->owner_type != G_OBJECT_TYPE(element)) continue;
+    if (specs[i]->value_type == G_TYPE_STRING) continue;
     for (const double absurd : {-1e30, -1.0, 0.0, 1e-30, 1e30}) {
       GValue from = G_VALUE_INIT, to = G_VALUE_INIT;
       g_value_init(&from, G_TYPE_DOUBLE);
