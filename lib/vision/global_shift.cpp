@@ -19,7 +19,9 @@ constexpr double kMeanRelief = 24, kMaxGain = 12;
 }  // namespace
 
 void Relief::build(GrayView picture) {
-  size_ = picture.size();
+  // A very long and narrow picture cannot be made that small: it has no relief, and no shift is found.
+  const bool fits = picture.width <= kMaxSide && picture.height <= kMaxSide;
+  size_ = fits ? picture.size() : Size{};
   std::array<int, kMaxSide * kMaxSide> stands_out;
   std::array<int, kMaxSide> columns;
   long total = 0;
