@@ -244,26 +244,27 @@ class WithMotionDetect(unittest.TestCase):
         self.assertEqual([threshold.ready for _, threshold, _ in seen], [False, False] + [True] * (len(seen) - 2))
         self.assertTrue(all(0 < threshold.threshold < 255 for _, threshold, _ in seen[2:]))
 
-        # The ball is where it is, with one identity (now and then it may be lost, never for long).
-        found = {}
-        for k, (x, y) in enumerate(balls):
-            for r in seen[k][2]:
+        # The ball is where it is, and keeps one identity. (How good masks and tracks are is not this test's business.)
+        followed = {}
+        for (x, y), (_, _, regions) in zip(balls, seen):
+            for r in regions:
                 self.assertTrue(r.tracked)
                 self.assertGreaterEqual(r.confidence, 0)
                 self.assertLessEqual(r.confidence, 1)
-                if r.x - 5 < x < r.x + r.width + 5 and r.y - 5 < y < r.y + r.height + 5:
-                    found[k] = r
-        self.assertGreaterEqual(len(found), 40, f"the ball was found in frames {sorted(found)}")
-        self.assertEqual({r.id for r in found.values()}, {min(found.values(), key=lambda r: r.id).id})
-        first, last = min(found), max(found)
-        self.assertGreater(found[last].age, found[first].age)
+                if r.x < x < r.x + r.width and r.y < y < r.y + r.height:
+                    followed.setdefault(r.id, []).append(r)
+        track = max(followed.values(), key=len, default=[])
+        self.assertGreaterEqual(len(track), 30, f"frames by identity: {({i: len(t) for i, t in followed.items()})}")
+        ages = [r.age for r in track]
+        self.assertEqual(ages, sorted(set(ages)))
 
-        # And the application was told when it began.
+        # And the application was told when it began, with the objects of that very frame.
+        first = next(k for k, (_, _, regions) in enumerate(seen) if regions)
         self.assertTrue(messages)
         good, started, running_time, told = messages[0]
         self.assertTrue(good and started)
         self.assertEqual(round(running_time * 30 / Gst.SECOND), first)
-        self.assertIn(found[first].id, [r.id for r in told])
+        self.assertEqual([(r.id, r.x, r.y) for r in told], [(r.id, r.x, r.y) for r in seen[first][2]])
 
 
 if __name__ == "__main__":
