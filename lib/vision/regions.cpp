@@ -17,12 +17,13 @@ namespace {
 
 constexpr double kLeastShare = 4e-4;     // of the picture: smaller blobs are noise (31 pixels of 320x240)
 constexpr double kTallest = 2.2;         // heights of a person: what is taller is something else
+constexpr double kSkirt = 0.3;           // columns lower than this share of the highest are a shadow
 constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
 
 // One person seen alone is upright and reasonably filled.
-bool looks_like_one_person(const Component& c, Size picture) {
-  const double aspect = static_cast<double>(c.height()) / c.width();
-  return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * c.width() * c.height() &&
+bool looks_like_one_person(const Component& c, const Window& body, Size picture) {
+  const double aspect = static_cast<double>(body.height()) / body.width();
+  return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * body.width() * body.height() &&
          c.left > 0 && c.top > 0 && c.right < picture.width && c.bottom < picture.height;
 }
 
@@ -62,13 +63,17 @@ struct RegionFinder::State {
     int looks;
   };
   std::vector<Walker> walkers, walkers_before;
-  std::vector<int> group;  // of each component
+  std::vector<int> group;      // of each component
+  std::vector<Window> bodies;  // of each component: its box without the shadow it casts
+  std::vector<int> columns;
+  std::vector<std::size_t> first_column;
   std::vector<Region> regions;
 
   std::uint32_t least() const {
     return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
                                                                : kLeastShare * size.area());
   }
+  void trim();
   void learn(const Transform& motion);
   void group_components();
   void explain(int group);
@@ -77,14 +82,45 @@ struct RegionFinder::State {
   Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
 };
 
+// A shadow on the floor is wide and low: a component's box ends where its columns become low.
+void RegionFinder::State::trim() {
+  const auto parts = labeller.components();
+  first_column.clear();
+  std::size_t total = 0;
+  for (const Component& c : parts) {
+    first_column.push_back(total);
+    total += static_cast<std::size_t>(c.width()) + 1;
+  }
+  // Each run adds one to its columns: steps up and down first, summed up afterwards.
+  columns.assign(total, 0);
+  for (const Run& r : labeller.runs()) {
+    int* at = &columns[first_column[r.component]] - parts[r.component].left;
+    ++at[r.first];
+    --at[r.end];
+  }
+  bodies.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    int* at = &columns[first_column[i]];
+    const int width = parts[i].width();
+    int highest = at[0];
+    for (int x = 1; x < width; ++x) highest = std::max(highest, at[x] += at[x - 1]);
+    int left = 0, right = width;
+    while (at[left] < kSkirt * highest) ++left;
+    while (at[right - 1] < kSkirt * highest) --right;
+    bodies.push_back({parts[i].left + left, parts[i].top, parts[i].left + right, parts[i].bottom});
+  }
+}
+
 // Only walkers teach: blobs that look like one person, with nobody and nothing near, of the same height for three looks,
 // and on the way. Pieces of somebody close by come in crowds, flicker and stay in place.
 void RegionFinder::State::learn(const Transform& motion) {
   const auto parts = labeller.components();
   std::swap(walkers, walkers_before);
   walkers.clear();
-  for (const Component& c : parts) {
-    if (!looks_like_one_person(c, size)) continue;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Component& c = parts[i];
+    const Window& body = bodies[i];
+    if (!looks_like_one_person(c, body, size)) continue;
     const double reach = 0.4 * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(), [&](const Component& o) {
       return &o != &c && gap(c.left, c.right, o.left, o.right) < reach &&
@@ -92,7 +128,7 @@ void RegionFinder::State::learn(const Transform& motion) {
     });
     if (!alone || walkers.size() == kMostParts) continue;
     const double h = c.height();
-    Walker walker{{(c.left + c.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};
+    Walker walker{{(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};
     walker.from = walker.foot;
     for (const Walker& w : walkers_before) {
       const Point foot = motion.apply(w.foot);
@@ -135,7 +171,7 @@ void RegionFinder::State::group_components() {
 
 void RegionFinder::State::add_plain(std::size_t i, bool person) {
   const Component& c = labeller.components()[i];
-  const Box box = box_of({c.left, c.top, c.right, c.bottom});
+  const Box box = box_of(bodies[i]);
   regions.push_back({box, static_cast<double>(c.area), c.centroid(),
                      std::min(1.0, person ? 0.5 + 0.5 * c.area / box.area() : 0.45 * c.area / box.area()),
                      static_cast<int>(std::min<std::size_t>(i + 1, 65535))});
@@ -177,16 +213,17 @@ Box RegionFinder::State::fit(const Box& expected, const Window& window, std::siz
 void RegionFinder::State::explain(int g) {
   const auto parts = labeller.components();
   Window window{size.width, size.height, 0, 0};
+  Window body = window;
   int members = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (group[i] != g) continue;
-    if (members++ == 0) first = i;
+    if (members++ == 0) first = i, body = bodies[i];
     window = {std::min(window.left, parts[i].left), std::min(window.top, parts[i].top),
               std::max(window.right, parts[i].right), std::max(window.bottom, parts[i].bottom)};
   }
   const double expected = prior.height(window.bottom);
-  const double aspect = static_cast<double>(window.height()) / window.width();
+  const double aspect = static_cast<double>(body.height()) / body.width();
   const bool usual =
       expected > 0 && window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
   if (expected <= 0 || window.height() > kTallest * expected || (members == 1 && usual)) {
@@ -253,6 +290,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   s.labeller.find(mask);
   const auto parts = s.labeller.drop_smaller(s.least(), mask);
   s.labeller.write(labels);
+  s.trim();
   if (!s.options.people || parts.size() > kMostParts) {
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
     return s.regions;
