@@ -35,11 +35,15 @@ void measure(const MotionSamples& s, const Transform& t, Distances& distances) {
 }
 
 double support_of(const MotionSamples& s, const Distances& distances) {
+  Distances parts;
+  for (int i = 0; i < s.count; ++i) {
+    const float part = 1.0f - distances[i] * (1.0f / kGate);
+    parts[i] = s.evidence[i] * (part > 0 ? part : 0);
+  }
   // Neighbours are of one region: four sums each, so that one addition need not wait for the last.
   constexpr int kLanes = 4;
   std::array<std::array<float, MotionSamples::kRegions>, kLanes> sums{};
-  for (int i = 0; i < s.count; ++i)
-    sums[i % kLanes][s.region[i]] += s.evidence[i] * std::max(0.0f, 1.0f - distances[i] * (1.0f / kGate));
+  for (int i = 0; i < s.count; ++i) sums[i % kLanes][s.region[i]] += parts[i];
   double support = 0;
   for (int r = 0; r < MotionSamples::kRegions; ++r)
     support += std::sqrt(sums[0][r] + sums[1][r] + (sums[2][r] + sums[3][r]));
@@ -260,8 +264,8 @@ double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Tr
     measure(s, motion, distances);
     const float per_gate = 1 / (gates * kGate);
     for (int i = 0; i < s.count; ++i) {
-      const float inside = std::max(0.0f, 1.0f - distances[i] * per_gate);
-      weights[i] = inside * inside;  // Tukey's biweight
+      const float inside = 1.0f - distances[i] * per_gate;
+      weights[i] = inside > 0 ? inside * inside : 0;  // Tukey's biweight
     }
     Transform next;
     if (!squares.step(model, s, weights, next) || !next.is_sane(picture)) break;

@@ -101,7 +101,9 @@ PatchMatch PatchFollower::follow(GrayView later, float dx, float dy, int rounds)
     const float ex = ixx_ * bx + ixy_ * by, ey = ixy_ * bx + iyy_ * by;  // times the gain
     const float gain = (p.value - patch_.xv * ex - patch_.yv * ey) * per_value_;
     if (!(gain > 0.15f)) break;  // nothing of the patch here
-    const float step_x = std::clamp(ex / gain, -2.0f, 2.0f), step_y = std::clamp(ey / gain, -2.0f, 2.0f);
+    const float per_gain = 1 / gain;
+    const float step_x = std::max(-2.0f, std::min(2.0f, ex * per_gain));
+    const float step_y = std::max(-2.0f, std::min(2.0f, ey * per_gain));
     dx -= step_x, dy -= step_y;
     if (step_x * step_x + step_y * step_y < kEnough * kEnough) break;  // what was measured here holds there
   }

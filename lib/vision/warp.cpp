@@ -137,16 +137,16 @@ void Warp::find_positions(int y) {
   const int count = span.end - span.begin;
   if (kind_ == Kind::affine) {
     // Inside the span the positions are inside the picture: 32 bits hold them.
-    const std::int64_t step_u = fixed(m[0]), step_v = fixed(m[3]);
-    const auto du = static_cast<std::int32_t>(step_u), dv = static_cast<std::int32_t>(step_v);
-    const auto u0 = static_cast<std::int32_t>(fixed(m[1] * y + m[2]) + step_u * span.begin + kHalf);
-    const auto v0 = static_cast<std::int32_t>(fixed(m[4] * y + m[5]) + step_v * span.begin + kHalf);
-    for (int i = 0; i < count; ++i) {
-      u[i] = (u0 + i * du) >> kRoundShift;
-      v[i] = (v0 + i * dv) >> kRoundShift;
-    }
+    const std::int64_t du = fixed(m[0]), dv = fixed(m[3]);
+    const std::int64_t u0 = fixed(m[1] * y + m[2]) + du * span.begin + kHalf;
+    const std::int64_t v0 = fixed(m[4] * y + m[5]) + dv * span.begin + kHalf;
+    step_positions(static_cast<std::int32_t>(u0), static_cast<std::int32_t>(du), kRoundShift, count, u);
+    step_positions(static_cast<std::int32_t>(v0), static_cast<std::int32_t>(dv), kRoundShift, count, v);
   } else {
-    for (int i = 0; i < count; ++i) projective_position(span.begin + i, y, u[i], v[i]);
+    float single[9];
+    std::copy(m.begin(), m.end(), single);
+    const int one = 1 << kPositionBits;
+    project_positions(single, span.begin, y, count, one * (size_.width - 1), one * (size_.height - 1), u, v);
   }
 }
 

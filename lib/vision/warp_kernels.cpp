@@ -13,6 +13,46 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+void step_positions(std::int32_t start, std::int32_t step, int shift, int count, std::int32_t* out) {
+  const hn::ScalableTag<std::int32_t> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  auto position = hn::Add(hn::Set(d, start), hn::Mul(hn::Iota(d, 0), hn::Set(d, step)));
+  const auto stride = hn::Set(d, step * lanes);
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) {
+    hn::StoreU(hn::ShiftRightSame(position, shift), d, out + i);
+    position = hn::Add(position, stride);
+  }
+  for (; i < count; ++i) out[i] = (start + i * step) >> shift;
+}
+
+void project_positions(const float (&m)[9], int x0, int y, int count, std::int32_t right, std::int32_t low,
+                       std::int32_t* x, std::int32_t* y_out) {
+  const float row = static_cast<float>(y);
+  const auto run = [&](auto d, int i) {
+    const hn::RebindToSigned<decltype(d)> ints;
+    const auto column = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<float>(x0 + i)));
+    const auto along = [&](int k) {
+      return hn::MulAdd(column, hn::Set(d, m[k]), hn::Set(d, m[k + 1] * row + m[k + 2]));
+    };
+    const auto scale = hn::Div(hn::Set(d, 128.0f), along(6));
+    const auto place = [&](int k, std::int32_t most) {
+      // Kept in range before the conversion: a row's end may lie beyond by rounding.
+      const auto v = hn::MulAdd(along(k), scale, hn::Set(d, 0.5f));
+      const auto kept = hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, static_cast<float>(most)));
+      return hn::ConvertTo(ints, kept);
+    };
+    hn::StoreU(place(0, right), ints, x + i);
+    hn::StoreU(place(3, low), ints, y_out + i);
+  };
+  const hn::ScalableTag<float> d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  int i = 0;
+  for (; i + lanes <= count; i += lanes) run(d, i);
+  const hn::CappedTag<float, 1> one;
+  for (; i < count; ++i) run(one, i);
+}
+
 // (p00 (128 - fx) + p01 fx) (128 - fy) + (p10 (128 - fx) + p11 fx) fy, rounded: at most 65535 * 2^14, below
 // 2^31.
 template <class D>
@@ -37,7 +77,8 @@ HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, 
   const auto ix = hn::Min(hn::ShiftRight<7>(px), right), iy = hn::Min(hn::ShiftRight<7>(py), low);
   const auto fx = hn::Sub(px, hn::ShiftLeft<7>(ix)), fy = hn::Sub(py, hn::ShiftLeft<7>(iy));
   const int x0 = hn::GetLane(ix), y0 = hn::GetLane(iy);
-  const bool neighbours = hn::AllTrue(d, hn::And(hn::Eq(ix, hn::Iota(d, x0)), hn::Eq(iy, hn::Set(d, y0))));
+  const bool neighbours = hn::AllTrue(
+      d, hn::And(hn::Eq(ix, hn::Add(hn::Iota(d, 0), hn::Set(d, x0))), hn::Eq(iy, hn::Set(d, y0))));
   const auto load = [&](const T* p) { return hn::PromoteTo(d, hn::LoadU(dt, p)); };
   if (neighbours) {
     const T* p = &source.at(x0, y0);
@@ -84,8 +125,19 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cerberus::vision {
 
+HWY_EXPORT(step_positions);
+HWY_EXPORT(project_positions);
 HWY_EXPORT(sample_bytes);
 HWY_EXPORT(sample_words);
+
+void step_positions(std::int32_t start, std::int32_t step, int shift, int count, std::int32_t* out) {
+  HWY_DYNAMIC_DISPATCH(step_positions)(start, step, shift, count, out);
+}
+
+void project_positions(const float (&m)[9], int x0, int y, int count, std::int32_t right, std::int32_t low,
+                       std::int32_t* x, std::int32_t* y_out) {
+  HWY_DYNAMIC_DISPATCH(project_positions)(m, x0, y, count, right, low, x, y_out);
+}
 
 void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
                      std::uint8_t* out) {
