@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 namespace cerberus::draw {
 
@@ -119,7 +120,8 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
   scene_ = &scene;
   frame_ = {0, 0, scene.frame.width, scene.frame.height};
   line_ = scene.line_width > 0 ? scene.line_width : automatic_line_width(scene.frame);
-  font_ = 9.5 * std::pow(std::max(std::min(frame_.width, frame_.height), 120) / 240.0, 0.6);
+  const double font = 9.5 * std::pow(std::max(std::min(frame_.width, frame_.height), 120) / 240.0, 0.6);
+  if (std::exchange(font_, font) != font) labels_.clear();
   taken_.clear();
   for (auto& entry : labels_) entry.second.used = false;
   objects_.clear();
@@ -255,49 +257,53 @@ void Painter::paint_box(const Object& object, std::vector<Patch>& patches) {
   });
 }
 
-// A pill in the object's colour: identity, two bars for stopped, and where `detailed` speed and distance.
-Painter::Label& Painter::label(const Object& object, bool detailed) {
-  std::string id = object.id ? std::to_string(object.id) : std::string();
+// The object's label, drawn when its words are new: identity, two bars for stopped, and where `detailed` speed and
+// distance.
+const Painter::Label& Painter::label(const Object& object, bool detailed) {
+  const std::string id = object.id ? std::to_string(object.id) : std::string();
   std::string more;
-  const bool bars = object.look == Look::stopped;
-  if (detailed && scene_->speeds && !bars && std::isfinite(object.speed))
+  if (detailed && scene_->speeds && object.look != Look::stopped && std::isfinite(object.speed))
     more = number(object.speed) + " px/s";
   if (detailed && std::isfinite(object.distance) && object.distance > 0)
     more = (more.empty() ? "" : more + "  ") + number(object.distance) + " m";
+  const char look = static_cast<char>('0' + static_cast<int>(object.look));
+  const auto [entry, fresh] = labels_.try_emplace(id + look + more);
+  entry->second.used = true;
+  if (fresh) draw_label(entry->second, identity_color(object.id), object.look, id, more);
+  return entry->second;
+}
 
-  static thread_local const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+// A pill in the object's colour. Stays empty where there are no words.
+void Painter::draw_label(Label& label, Color color, Look look, const std::string& id,
+                         const std::string& more) {
+  const bool bars = look == Look::stopped;
+  const double pad = 0.4 * font_, gap = 0.45 * font_, bars_width = 0.5 * font_, small = 0.85 * font_;
+  const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
   const ContextPtr measure(cairo_create(scratch.get()));
   select_font(measure.get(), font_, true);
   const double id_width = id.empty() ? 0 : text_width(measure.get(), id.c_str());
-  select_font(measure.get(), 0.85 * font_);
-  const double gap = 0.45 * font_, pad = 0.4 * font_, bar_width = 0.5 * font_;
+  select_font(measure.get(), small);
   const double more_width = more.empty() ? 0 : text_width(measure.get(), more.c_str());
-  const double width = 2 * pad + id_width + (bars ? (id.empty() ? 0 : gap) + bar_width : 0) +
-                       (more_width > 0 ? (id.empty() && !bars ? 0 : gap) + more_width : 0);
+  const int parts = !id.empty() + bars + !more.empty();
+  if (parts == 0) return;
+
+  const double width = 2 * pad + id_width + (bars ? bars_width : 0) + more_width + (parts - 1) * gap;
   const double height = 1.35 * font_;
-
-  std::string key = id + '|' + more + '|' + char('0' + static_cast<int>(object.look)) + std::to_string(font_);
-  Label& label = labels_[key];
-  label.used = true;
-  if (label.pixels || width <= 2 * pad) return label;
-
   label.width = static_cast<int>(std::ceil(width)) + 2;
   label.height = static_cast<int>(std::ceil(height)) + 2;
   label.pixels.reset(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, label.width, label.height));
   const ContextPtr context(cairo_create(label.pixels.get()));
   cairo_t* cr = context.get();
-  const Color color = identity_color(object.id);
-  const bool dark = luminance(color) > 0.45;
-  const Color ink = dark ? Color{0.05, 0.05, 0.05} : Color{1, 1, 1};
   rounded_rectangle(cr, 0.5, 0.5, width + 1, height + 1, 0.35 * font_);
   source(cr, {}, 0.55);
   cairo_fill(cr);
   rounded_rectangle(cr, 1, 1, width, height, 0.3 * font_);
-  source(cr, color, object.look == Look::coasted ? 0.8 : 0.95);
+  source(cr, color, look == Look::coasted ? 0.8 : 0.95);
   cairo_fill(cr);
+
   double x = 1 + pad;
   const double base = 1 + height / 2 + 0.36 * font_;
-  source(cr, ink);
+  source(cr, luminance(color) > 0.45 ? Color{0.05, 0.05, 0.05} : Color{1, 1, 1});
   if (!id.empty()) {
     select_font(cr, font_, true);
     cairo_move_to(cr, x, base);
@@ -305,22 +311,21 @@ Painter::Label& Painter::label(const Object& object, bool detailed) {
     x += id_width + gap;
   }
   if (bars) {
-    cairo_rectangle(cr, x, 1 + 0.25 * height, 0.16 * font_, 0.5 * height);
-    cairo_rectangle(cr, x + 0.32 * font_, 1 + 0.25 * height, 0.16 * font_, 0.5 * height);
+    for (const double at : {0.0, 0.32 * font_})
+      cairo_rectangle(cr, x + at, 1 + height / 4, 0.16 * font_, height / 2);
     cairo_fill(cr);
-    x += bar_width + gap;
+    x += bars_width + gap;
   }
   if (!more.empty()) {
-    select_font(cr, 0.85 * font_);
+    select_font(cr, small);
     cairo_move_to(cr, x, base - 0.03 * font_);
     cairo_show_text(cr, more.c_str());
   }
   cairo_surface_flush(label.pixels.get());
-  return label;
 }
 
-constexpr double kLongestLabel =
-    3;  // widths of its box; a crowd of small people is not to vanish behind numbers
+// In widths of its box: a crowd of small people is not to vanish behind numbers.
+constexpr double kLongestLabel = 3;
 
 // Above the box, below it, or inside its top: the first place in the frame that no other label has; what is long gives
 // way to what is short.

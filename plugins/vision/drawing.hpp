@@ -85,7 +85,8 @@ class Painter {
     int width = 0, height = 0;
     bool used = false;
   };
-  Label& label(const Object& object, bool detailed);
+  const Label& label(const Object& object, bool detailed);
+  void draw_label(Label& label, Color color, Look look, const std::string& id, const std::string& more);
   void paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>& patches);
   void stroke_trail(cairo_t* cairo, Color color, std::size_t first, std::size_t last);
   void paint_box(const Object& object, std::vector<Patch>& patches);
