@@ -113,10 +113,10 @@ START_TEST(other_queries_are_left_alone) {
 END_TEST
 
 START_TEST(nothing_crashes_on_null) {
-  ASSERT_CRITICAL(cerberus_query_is_planes(nullptr));
-  ASSERT_CRITICAL(cerberus_query_set_planes_wanted(nullptr, TRUE));
-  ASSERT_CRITICAL(cerberus_query_parse_planes(nullptr, nullptr));
-  ASSERT_CRITICAL(cerberus_pad_peer_wants_planes(nullptr));
+  EXPECT_CRITICAL(cerberus_query_is_planes(nullptr));
+  EXPECT_CRITICAL(cerberus_query_set_planes_wanted(nullptr, TRUE));
+  EXPECT_CRITICAL(cerberus_query_parse_planes(nullptr, nullptr));
+  EXPECT_CRITICAL(cerberus_pad_peer_wants_planes(nullptr));
 }
 END_TEST
 

@@ -5,7 +5,7 @@
 #include <gst/check/gstcheck.h>
 
 // gst-check watches the log of GStreamer and GLib only: a critical of our own library must fail a test as well, unless
-// ASSERT_CRITICAL expects it. Call it at the start of a suite.
+// EXPECT_CRITICAL expects it. Call it at the start of a suite.
 inline void watch_library_log() {
   g_log_set_handler(
       "Cerberus", static_cast<GLogLevelFlags>(G_LOG_LEVEL_CRITICAL | G_LOG_LEVEL_WARNING),
@@ -16,3 +16,11 @@ inline void watch_library_log() {
       },
       nullptr);
 }
+
+// ASSERT_CRITICAL that also passes where warnings end the program (the set-up that looks for leaks).
+#define EXPECT_CRITICAL(code)                                               \
+  do {                                                                      \
+    const GLogLevelFlags fatal = g_log_set_always_fatal(G_LOG_LEVEL_ERROR); \
+    ASSERT_CRITICAL(code);                                                  \
+    g_log_set_always_fatal(fatal);                                          \
+  } while (0)
