@@ -41,6 +41,8 @@ constexpr const char* kPipeline =
     "drop=true "
     "max-buffers=1";
 
+constexpr int kFirstFrameSeconds = 20, kNextFrameSeconds = 60;  // how long the watchdog waits for a frame
+
 struct Run {
   GstElement* pipeline = nullptr;
   GMainLoop* loop = nullptr;
@@ -51,6 +53,8 @@ struct Run {
   bool interrupted = false;
   std::atomic<guint64> frames = 0;
   std::atomic<GstClockTime> position = 0;
+  guint64 frames_before = 0;  // of the watchdog
+  int idle = 0;               // watchdog's ticks without a new frame
   std::mutex mutex;
   std::set<gint> objects;  // distinct identities so far
 
@@ -107,6 +111,24 @@ gboolean show_progress(gpointer data) {
   return G_SOURCE_CONTINUE;
 }
 
+std::string not_a_video(const Run& run) {
+  return run.file +
+         " is not a video that can be read here (damaged, cut off, of an unknown kind, or without a "
+         "picture): ";
+}
+
+// A damaged file can leave decodebin waiting for ever (GStreamer 1.22 may swallow a demuxer's error).
+gboolean watchdog(gpointer data) {
+  auto& run = *static_cast<Run*>(data);
+  run.idle = run.frames == run.frames_before ? run.idle + 1 : 0;
+  run.frames_before = run.frames;
+  if (run.idle < (run.frames == 0 ? kFirstFrameSeconds : kNextFrameSeconds)) return G_SOURCE_CONTINUE;
+  run.error = run.frames == 0 ? not_a_video(run) + "no frame came out of it"
+                              : run.file + ": no frame follows frame " + std::to_string(run.frames.load());
+  g_main_loop_quit(run.loop);
+  return G_SOURCE_REMOVE;
+}
+
 gboolean on_interrupt(gpointer data) {
   auto& run = *static_cast<Run*>(data);
   if (run.interrupted) {  // the second time: at once, and the MP4 is not finished
@@ -134,10 +156,7 @@ std::string explain(const Run& run, GstMessage* message) {
   } else if (source == "file") {
     text = "cannot read " + run.file + ": " + error->message;
   } else if (run.frames == 0) {
-    text = run.file +
-           " is not a video that can be read here (damaged, cut off at its start, of an unknown kind, or "
-           "without a picture): " +
-           error->message;
+    text = not_a_video(run) + error->message;
   } else {
     text = run.file + ", after frame " + std::to_string(run.frames.load()) + ": " + error->message;
   }
@@ -259,6 +278,7 @@ bool work(Run& run) {
   g_unix_signal_add(SIGTERM, on_interrupt, &run);
   run.terminal = isatty(STDERR_FILENO);
   g_timeout_add(run.terminal ? 200 : 10000, show_progress, &run);
+  g_timeout_add_seconds(1, watchdog, &run);
   run.started = std::chrono::steady_clock::now();
   gst_element_set_state(run.pipeline, GST_STATE_PLAYING);
   g_main_loop_run(run.loop);

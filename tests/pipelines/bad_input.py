@@ -9,8 +9,13 @@ from support import all_tests, ball, gst_launch, json_lines, must, video
 TAIL = 'motiondetect ! motionjson ! filesink location=out.jsonl'
 
 
+# Not decodebin, which in GStreamer 1.22 may keep the demuxer's error to itself and then wait for ever.
+DEMUXERS = {'.avi': 'avidemux', '.mp4': 'qtdemux', '.mkv': 'matroskademux'}
+
+
 def through(path):
-    return gst_launch(f'filesrc location={path} ! decodebin ! videoconvert ! {TAIL}')
+    demuxer = DEMUXERS[pathlib.Path(path).suffix]
+    return gst_launch(f'filesrc location={path} ! {demuxer} ! h264parse ! avdec_h264 ! videoconvert ! {TAIL}')
 
 
 def sane(lines, frames):
@@ -55,7 +60,7 @@ def test_videos_with_a_hole():
 def test_a_file_of_no_bytes():
     pathlib.Path('empty.avi').touch()
     status, said = through('empty.avi')
-    assert status != 0 and 'no data' in said, said
+    assert status != 0 and 'ERROR' in said, said
 
 
 def test_the_size_changes_in_mid_stream():
@@ -82,7 +87,8 @@ def test_interlaced_video_is_refused_and_deinterlace_is_named():
 
 
 def test_a_stream_without_a_frame_rate():
-    must(gst_launch(f'{ball()} ! capssetter caps=video/x-raw,framerate=0/1 ! {TAIL}'))
+    must(gst_launch('videotestsrc num-buffers=60 ! video/x-raw,format=I420,width=320,height=240,framerate=25/1 ! '
+                    f'capssetter caps=video/x-raw,framerate=0/1 ! {TAIL}'))
     assert len(json_lines('out.jsonl')) == 60
 
 

@@ -92,6 +92,19 @@ def test_a_file_that_is_not_there():
     refuses('nothing.avi', 'nothing.avi')
 
 
+def test_a_file_that_is_cut_off_before_its_index():
+    whole = video('ball.mp4', 'mp4mux').read_bytes()
+    pathlib.Path('cut.mp4').write_bytes(whole[:len(whole) // 2])
+    refuses('cut.mp4', 'cut.mp4', 'not a video')
+
+
+def test_a_file_that_is_cut_off_and_says_so():
+    whole = video('ball.mkv', 'matroskamux', frames=120).read_bytes()
+    pathlib.Path('cut.mkv').write_bytes(whole[:len(whole) // 2])
+    said = must(annotate('cut.mkv'))
+    assert 'cut off' in said and 0 < len(json_lines('out/objects.jsonl')) < 120, said
+
+
 def test_an_empty_file():
     pathlib.Path('empty.avi').touch()
     refuses('empty.avi', 'empty.avi', 'not a video')
@@ -110,10 +123,9 @@ def test_a_folder_is_no_video():
 def test_a_full_disk_is_called_by_its_name():
     file = video('ball.mp4', 'mp4mux')
     for name in ('annotated.mp4', 'objects.jsonl'):
-        os.makedirs('full', exist_ok=True)
-        os.symlink('/dev/full', f'full/{name}')
-        refuses(file, 'no space left', output='full')
-        os.unlink(f'full/{name}')
+        os.makedirs(name + '-full')
+        os.symlink('/dev/full', f'{name}-full/{name}')
+        refuses(file, 'no space left', output=name + '-full')
 
 
 def test_an_output_that_cannot_be_written():
