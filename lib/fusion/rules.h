@@ -37,10 +37,10 @@ enum class Camera : std::uint8_t { any, found, missing };
 // `none` detect, and one of the bands holds the pan angle. Bands are if / else-if / else: the first one counts.
 struct Rule {
   int number = 0;
-  std::string name;
+  std::string name{};
   Camera camera = Camera::any;
   SensorBits all = 0, any = 0, none = 0;
-  std::vector<Band> bands;
+  std::vector<Band> bands{};
 
   bool matches(bool camera_found, SensorBits fired) const;
   const Band* band(double pan) const;  // nullptr: none holds it
@@ -52,10 +52,10 @@ enum class Precedence : std::uint8_t {
 };
 
 struct RuleTable {
-  std::string name;
+  std::string name{};
   int sensors = 0;  // how many it speaks of; detections of further sensors are not looked at
   Precedence precedence = Precedence::exact;
-  std::vector<Rule> rules;  // in order of precedence
+  std::vector<Rule> rules{};  // in order of precedence
 
   struct Match {
     const Rule* rule = nullptr;  // nullptr: no rule applies (an unchecked table)

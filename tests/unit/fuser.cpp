@@ -223,6 +223,18 @@ START_TEST(who_stopped_is_tracked_for_half_a_minute_and_then_left) {
 }
 END_TEST
 
+START_TEST(who_moves_in_between_has_another_half_minute) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  for (const TrackState state : {TrackState::stopped, TrackState::seen, TrackState::stopped}) {
+    stream.tracks = {somebody(7, state)};
+    stream.frames(20s);
+    ck_assert_int_eq(decision.target, 7);
+  }
+}
+END_TEST
+
 START_TEST(rule_7_waits_for_who_stopped_even_when_the_track_is_gone) {
   for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
     Stream stream(options);
@@ -268,6 +280,18 @@ START_TEST(a_sensor_makes_the_head_turn_and_then_sweep) {
   stream.pan = -57.5;
   stream.frame();
   assert_says(decision, Action::turn_left, 0, "sector");
+}
+END_TEST
+
+START_TEST(another_sensor_is_a_new_question) {
+  Stream stream;
+  stream.pan = -59;
+  stream.sensors = {1, 0, 0};
+  const Decision& decision = stream.frame();
+  ck_assert(decision.action == Action::search);
+  stream.sensors = {0, 1, 0};  // one degree away: that is outside, hysteresis belongs to the old place
+  stream.frame();
+  ck_assert(decision.action == Action::turn_left);
 }
 END_TEST
 
@@ -662,6 +686,8 @@ int main() {
   tcase_add_test(tests, without_distances_the_lowest_feet_are_the_nearest);
   tcase_add_test(tests, one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone);
   tcase_add_test(tests, who_stopped_is_tracked_for_half_a_minute_and_then_left);
+  tcase_add_test(tests, who_moves_in_between_has_another_half_minute);
+  tcase_add_test(tests, another_sensor_is_a_new_question);
   tcase_add_test(tests, rule_7_waits_for_who_stopped_even_when_the_track_is_gone);
   tcase_add_test(tests, a_sensor_makes_the_head_turn_and_then_sweep);
   tcase_add_test(tests, a_search_outlives_its_sensor_by_the_return_delay);
