@@ -8,6 +8,8 @@ namespace {
 constexpr double kAcceleration = 0.5 * 0.5;  // S^2 / s^3
 constexpr double kBirthSpeed = 3.0;          // S/s, standard deviation of the unknown first velocity
 constexpr double kPositionNoise = 0.05;      // S: a region's centre flickers by this
+constexpr double kGateNoise = 0.15;          // S: what a place may be wrong by, beyond the filter's own doubt
+constexpr double kGrain = 1.0 / 320;         // of the frame's width: pixels of the picture that was analysed
 constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's extent flickers by 15 %
 constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
 constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
@@ -93,8 +95,10 @@ bool Body::predict(double seconds) {
 }
 
 // To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
-bool Body::carry(const Transform& motion) {
+bool Body::carry(const Transform& motion, Size frame) {
   if (motion.is_identity()) return true;
+  // The camera's motion is known to about a pixel of the analysed picture.
+  for (MovingValue* a : {&x, &y}) a->pp += square(kGrain * frame.width);
   const Point p{x.position - kHalfPixel, y.position - kHalfPixel};
   const Point q = motion.apply(p), right = motion.apply({p.x + 1, p.y}), down = motion.apply({p.x, p.y + 1});
   const double xx = right.x - q.x, yx = right.y - q.y, xy = down.x - q.x, yy = down.y - q.y;
@@ -124,7 +128,7 @@ double Body::distance(const Box& seen) const {
   const double s = size();
   const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
-  const double noise = square(2 * kPositionNoise * s);
+  const double noise = square(kGateNoise * s);
   const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
   if (d2 > square(kFarthest)) return -1;
   const double sizes = std::abs(std::log(seen.width) - w.value) + std::abs(std::log(seen.height) - h.value);
@@ -170,7 +174,7 @@ bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
 
 void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
   const Box b = box(), &seen = r.box;
-  const double s = size(), noise = square(kPositionNoise * s);
+  const double s = size(), noise = square(kPositionNoise * s) + square(kGrain * frame.width);
   const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
   const bool fits = rx.same_extent && ry.same_extent;

@@ -63,7 +63,7 @@ struct Body {
   // Along its own velocity from frame k-1's time to frame k's, then with the camera into frame k's pixels. False: it
   // has no place there.
   bool predict(double seconds);
-  bool carry(const Transform& motion);
+  bool carry(const Transform& motion, Size frame);
 
   // How badly a region fits: 0 perfectly; negative: it cannot be this object.
   double distance(const Box& seen) const;

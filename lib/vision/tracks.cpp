@@ -80,7 +80,7 @@ void Tracker::State::take(std::span<const Region> input) {
 }
 
 void Tracker::State::predict(const Transform& motion) {
-  for (Body& b : bodies) b.dead = !b.predict(seconds) || !b.carry(motion);
+  for (Body& b : bodies) b.dead = !b.predict(seconds) || !b.carry(motion, frame);
   drop_dead();
 }
 
