@@ -9,7 +9,7 @@ namespace cerberus::vision {
 namespace {
 
 constexpr int kBand = 8;  // rows; flicker at 100 Hz has a period of 70 rows and more
-constexpr int kColumnStep = 4, kRowStep = 2;
+constexpr int kColumnStep = 8, kRowStep = 2;
 constexpr int kBandReach = 16;        // grey levels a band may differ by
 constexpr double kLeastBand = 1.0;    // grey levels: weaker bands are left alone
 constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
@@ -162,15 +162,6 @@ void LightChange::estimate_bands(GrayView reference, GrayView present, std::span
     const double k = 1 + excess[low] + (position - low) * (excess[high] - excess[low]);
     rows_[y].gain = static_cast<std::int32_t>(std::lround(rows_[y].gain * k));
     rows_[y].offset = static_cast<std::int32_t>(std::lround(rows_[y].offset * k));
-  }
-}
-
-void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out) {
-  // Saturating at the ends as a sensor does; a gain below 4 and an offset of a few hundred levels keep 32
-  // bits safe.
-  for (int x = 0; x < count; ++x) {
-    const std::int32_t value = (reference[x] * light.gain + light.offset + 128) >> 8;
-    out[x] = static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
   }
 }
 

@@ -10,7 +10,7 @@ namespace cerberus::vision {
 namespace {
 
 constexpr int kUnknowns = 8;
-constexpr int kRounds = 5;
+constexpr int kRounds = 3;
 constexpr int kLeastPixels = 16;                   // of a block
 constexpr double kScale = 4;                       // squared grey levels
 constexpr double kSmallest = 0.04, kLargest = 12;  // pixels at the corners

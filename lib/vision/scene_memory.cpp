@@ -23,7 +23,9 @@ namespace {
 
 constexpr int kMargin = 16;  // columns beside the compared memory, so that kernels may look beyond the border
 constexpr double kFarthest =
-    12;  // pixels a corner may be off by turning and zooming before the memory is redrawn
+    12;                      // pixels a corner may be off by turning and zooming before the memory is redrawn
+constexpr double kRedo = 1;  // pixels: a smaller correction is used from the next frame on
+constexpr int kStanding = 5;  // frames after which a standing camera's memory is redrawn to fit it exactly
 constexpr double kLeastSigma = 0.7;  // grey levels: rounding alone makes 0.3, compression more
 constexpr int kClosing = 9;          // side of the closing at 320 columns
 constexpr int kHold = 250;           // frames something that stopped is kept
@@ -73,6 +75,33 @@ void set_bits(std::uint64_t* row, int first, int end) {
 void clear_bits(std::uint64_t* row, int first, int end) {
   for_words(first, end, [&](int word, std::uint64_t ones) { row[word] &= ~ones; });
 }
+// 64 bits of a row from x on, zeros outside the row.
+std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
+  const int word = x >> 6, part = x & 63;  // floor, also for negative x
+  const std::uint64_t low = word >= 0 && word < words ? row[word] : 0;
+  if (!part) return low;
+  const std::uint64_t high = word + 1 >= 0 && word + 1 < words ? row[word + 1] : 0;
+  return low >> part | high << (64 - part);
+}
+
+// out(q) := in(map q), to the nearest pixel, with one displacement for 32 x 8 pixels: what is left of a registration by
+// whole pixels turns so little that this is exact to about half a pixel.
+void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
+  for (int y0 = 0; y0 < out.height; y0 += 8)
+    for (int x0 = 0; x0 < out.width * 64; x0 += 32) {
+      const Point q{x0 + 15.5, y0 + 3.5}, p = map.apply(q);
+      const int dx = static_cast<int>(std::lround(p.x - q.x)), dy = static_cast<int>(std::lround(p.y - q.y));
+      for (int y = y0; y < std::min(y0 + 8, out.height); ++y) {
+        const int from = y + dy;
+        const std::uint64_t half =
+            from >= 0 && from < in.height ? bits_from(in.row(from), in.width, x0 + dx) & 0xffffffffu : 0;
+        std::uint64_t& word = out.row(y)[x0 / 64];
+        word = x0 % 64 ? word | half << 32 : half;
+      }
+    }
+  for (int y = 0; y < out.height; ++y) out.row(y)[out.width - 1] &= last_word_bits(width);
+}
+
 // Noise by brightness from sampled absolute differences.
 class NoiseSamples {
  public:
@@ -113,6 +142,7 @@ struct Part {
 struct SceneMemory::State {
   Size size;
   int frames = 0;
+  int standing = 0;    // frames the camera has stood while the memory was not in the frame's coordinates
   Transform to_frame;  // memory pixel -> frame pixel
   Image<std::uint16_t> mean;
   Image<std::uint8_t> spread, age, quiet;
@@ -143,7 +173,7 @@ struct SceneMemory::State {
   void measure_blocks();
   void align(const SceneMemoryInput& in, GrayView blurred);
   void compensate(bool still);
-  void learn_noise(const SceneMemoryInput& in, GrayView difference);
+  void learn_noise(const SceneMemoryInput& in);
   void compare(const SceneMemoryInput& in);
   void decide(const SceneMemoryInput& in);
   void learn();
@@ -181,6 +211,8 @@ void SceneMemory::State::prepare(Size to) {
 
 // The memory goes along with the camera by whole pixels.
 void SceneMemory::State::follow(const SceneMemoryInput& in) {
+  if (in.still && !to_frame.is_identity() && ++standing == kStanding) redraw();
+  if (!in.still) standing = 0;
   if (in.still || frames == 1) return;
   to_frame = in.motion * to_frame;
   const Point centre{(size.width - 1) / 2.0, (size.height - 1) / 2.0};
@@ -217,6 +249,7 @@ void SceneMemory::State::redraw() {
     plane->swap(scratch);
   }
   to_frame = {};
+  standing = 0;
 }
 
 // known := the mean, lit as the frame is when asked to; borders repeated by one pixel.
@@ -267,6 +300,7 @@ void SceneMemory::State::align(const SceneMemoryInput& in, GrayView blurred) {
   if (!correction) return;
   const Transform before = to_frame;
   to_frame = to_frame * *correction;
+  if (correction->corner_motion(size) < kRedo) return;
   if (!to_frame.is_sane(size) || !draw_present(in, blurred)) {
     to_frame = before;
     draw_present(in, blurred);
@@ -301,19 +335,20 @@ void SceneMemory::State::compensate(bool still) {
 
 // sigma of frame - memory by brightness. While the memory is young its own noise and the frame's cannot be told apart
 // there, and D(k) stands in: sqrt(1/2) of its sigma, times sqrt(1 + 1 / age) for a mean of that many frames.
-void SceneMemory::State::learn_noise(const SceneMemoryInput& in, GrayView difference) {
+void SceneMemory::State::learn_noise(const SceneMemoryInput& in) {
   const bool start = frames < 8;
   NoiseSamples samples;
   const auto spans = warp.spans();
   const auto k = known_view();
   for (int y = 1 + frames % 4; y < size.height; y += 4) {
     const RowSpan span = spans[static_cast<std::size_t>(y)];
+    const std::uint8_t *f = present.view().row(y), *m = k.row(y), *a = age.view().row(y);
+    const std::uint64_t* now = moved.view().row(y);
     for (int x = span.begin + frames / 4 % 4; x < span.end; x += 4) {
-      const int d = difference.at(x, y);
       if (start)
-        samples.add(present.view().at(x, y), d);
-      else if (d <= in.threshold && age.view().at(x, y) > 2)
-        samples.add(k.at(x, y), std::abs(present.view().at(x, y) - k.at(x, y)));
+        samples.add(in.picture.at(x, y), in.difference.at(x, y));
+      else if (a[x] > 2 && !(now[x / 64] >> (x % 64) & 1))
+        samples.add(m[x], std::abs(f[x] - m[x]));
     }
   }
   const double plain = std::max(in.sigma * std::sqrt(0.5), kLeastSigma);
@@ -447,22 +482,21 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   }
   s.light.clear();
   if (s.frames > 1) s.compensate(in.still);
-  GrayView difference = in.difference;
-  if (!s.warp.is_identity()) {
-    s.warp.nearest(in.difference, s.scratch.view());
-    difference = s.scratch.view();
+  if (s.warp.is_identity()) {
+    binarise(in.difference, in.threshold, s.moved.view());
+  } else {
+    binarise(in.difference, in.threshold, s.absorb.view());
+    map_bits(s.absorb.view(), s.to_frame, s.moved.view(), s.size.width);
   }
-  binarise(difference, in.threshold, s.moved.view());
-  s.learn_noise(in, difference);
+  s.learn_noise(in);
   s.compare(in);
   s.decide(in);
   s.learn();
-  if (s.to_frame.corner_motion(s.size) < 0.5) {
+  if (s.to_frame.is_identity()) {
     unpack(s.strong.view(), mask);
   } else {
-    unpack(s.strong.view(), s.scratch.view());
-    s.warp.prepare(s.to_frame, s.size);
-    s.warp.nearest(s.scratch.view(), mask);
+    map_bits(s.strong.view(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
+    unpack(s.absorb.view(), mask);
   }
 }
 
