@@ -193,7 +193,8 @@ void SceneMemory::State::prepare(Size to) {
     size = to;
     mean.resize(to);
     for (auto* plane : {&spread, &age, &quiet, &present, &scratch}) plane->resize(to);
-    known.resize({to.width + 2 * kMargin, to.height + 2});
+    // Kernels work in steps of 64 columns: the margins lie beyond the padded row.
+    known.resize({(to.width + 63) / 64 * 64 + 2 * kMargin, to.height + 2});
     tolerance.resize({to.width, 1});
     for (auto* bits : {&weak, &strong, &moved, &valid, &absorb}) bits->resize(bit_mask_size(to));
     columns = (to.width + kSceneBlock - 1) / kSceneBlock;
