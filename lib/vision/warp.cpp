@@ -15,8 +15,9 @@ constexpr int kStepBits = 16, kPositionBits = 7;
 constexpr int kRoundShift = kStepBits - kPositionBits;
 constexpr std::int64_t kHalf = 1 << (kRoundShift - 1);
 
+// Far outside any picture is far enough.
 std::int64_t fixed(double v) {
-  return static_cast<std::int64_t>(std::floor(v * (1 << kStepBits) + 0.5));
+  return static_cast<std::int64_t>(std::floor(std::clamp(v, -1e9, 1e9) * (1 << kStepBits) + 0.5));
 }
 
 std::int64_t floor_div(std::int64_t a, std::int64_t b) {

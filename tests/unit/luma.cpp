@@ -8,7 +8,7 @@
 
 #include "support/allocations.h"
 #include "support/pictures.h"
-#include "support/suite.h"
+#include "support/targets.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -157,11 +157,11 @@ START_TEST(the_steady_state_allocates_nothing_and_a_new_size_is_followed) {
 END_TEST
 
 int main() {
-  return run_suite("luma",
-                   {the_analysis_size_keeps_the_aspect_and_never_grows,
-                    the_reference_is_the_area_average_computed_by_hand, luma_of_rgb_has_the_weights_of_bt_601,
-                    every_layout_is_within_one_level_of_the_reference_and_inside_its_memory,
-                    ratios_beyond_the_vertical_sums_use_the_reference, the_frames_own_size_is_a_plain_copy,
-                    a_constant_picture_stays_what_it_is, a_picture_may_stand_on_its_head,
-                    the_steady_state_allocates_nothing_and_a_new_size_is_followed});
+  return run_suite_on_every_target(
+      "luma", {the_analysis_size_keeps_the_aspect_and_never_grows,
+               the_reference_is_the_area_average_computed_by_hand, luma_of_rgb_has_the_weights_of_bt_601,
+               every_layout_is_within_one_level_of_the_reference_and_inside_its_memory,
+               ratios_beyond_the_vertical_sums_use_the_reference, the_frames_own_size_is_a_plain_copy,
+               a_constant_picture_stays_what_it_is, a_picture_may_stand_on_its_head,
+               the_steady_state_allocates_nothing_and_a_new_size_is_followed});
 }

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "support/pictures.h"
-#include "support/suite.h"
+#include "support/targets.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -126,8 +126,9 @@ START_TEST(matching_gives_the_inner_products_with_the_interpolated_picture) {
 END_TEST
 
 int main() {
-  return run_suite("motion_kernels", {halving_is_the_rounded_mean_of_four, truncated_differences_are_summed,
-                                      gradient_blocks_are_sums_of_products_of_differences,
-                                      a_template_holds_value_and_gradients_without_their_means,
-                                      matching_gives_the_inner_products_with_the_interpolated_picture});
+  return run_suite_on_every_target("motion_kernels",
+                                   {halving_is_the_rounded_mean_of_four, truncated_differences_are_summed,
+                                    gradient_blocks_are_sums_of_products_of_differences,
+                                    a_template_holds_value_and_gradients_without_their_means,
+                                    matching_gives_the_inner_products_with_the_interpolated_picture});
 }

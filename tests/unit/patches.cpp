@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "support/pictures.h"
-#include "support/suite.h"
+#include "support/targets.h"
 #include "vision/global_shift.h"
 
 using namespace cerberus::vision;
@@ -153,11 +153,11 @@ START_TEST(the_coarse_search_finds_shifts_of_a_quarter_of_the_picture) {
 END_TEST
 
 int main() {
-  return run_suite("patches",
-                   {a_pyramid_halves_down_to_one_pixel_and_no_further,
-                    patches_lie_all_over_a_textured_picture_and_nowhere_in_a_flat_one,
-                    noise_alone_is_not_texture, a_patch_is_chosen_where_there_is_a_corner_not_an_edge,
-                    patches_are_followed_to_a_fraction_of_a_pixel_under_any_light,
-                    what_lies_outside_or_has_no_texture_is_not_found,
-                    the_coarse_search_finds_shifts_of_a_quarter_of_the_picture});
+  return run_suite_on_every_target(
+      "patches", {a_pyramid_halves_down_to_one_pixel_and_no_further,
+                  patches_lie_all_over_a_textured_picture_and_nowhere_in_a_flat_one,
+                  noise_alone_is_not_texture, a_patch_is_chosen_where_there_is_a_corner_not_an_edge,
+                  patches_are_followed_to_a_fraction_of_a_pixel_under_any_light,
+                  what_lies_outside_or_has_no_texture_is_not_found,
+                  the_coarse_search_finds_shifts_of_a_quarter_of_the_picture});
 }

@@ -6,7 +6,7 @@
 
 #include "support/allocations.h"
 #include "support/pictures.h"
-#include "support/suite.h"
+#include "support/targets.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -247,7 +247,7 @@ START_TEST(the_steady_state_allocates_nothing) {
 END_TEST
 
 int main() {
-  return run_suite(
+  return run_suite_on_every_target(
       "warp",
       {identity_is_a_copy_and_everything_is_valid, a_shift_by_whole_pixels_moves_them_unchanged,
        half_a_pixel_is_the_mean_of_two, every_motion_matches_the_reference_and_stays_inside_its_memory,
