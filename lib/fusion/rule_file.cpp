@@ -12,7 +12,21 @@
 #include "fusion/rule_check.h"
 #include "sensing/angles.h"
 
-#define TOML_EXCEPTIONS 0
+// toml++ states what it takes for granted about its input by assertions (an abort) or, with NDEBUG, by assumptions
+// (undefined behaviour), and some malformed files break them: "[&", or "]" where a value belongs
+// (marzer/tomlplusplus issues 294 and 301; seen here with 3.3). A mistyped rule file must not end a process: here they
+// throw, like its other errors, and everything is caught in parse().
+namespace cerberus::fusion {
+namespace {
+struct ParserLost {};
+[[noreturn]] void parser_lost() {
+  throw ParserLost();
+}
+}  // namespace
+}  // namespace cerberus::fusion
+#undef NDEBUG
+#define TOML_ASSERT(expression) ((expression) ? void() : ::cerberus::fusion::parser_lost())
+#define TOML_EXCEPTIONS 1
 #define TOML_HEADER_ONLY 1
 #define TOML_ENABLE_FORMATTERS 0
 #include <toml++/toml.h>
@@ -203,6 +217,20 @@ class Reader {
   std::string errors_;
 };
 
+// Nothing and a complaint where the text is not TOML.
+std::optional<toml::table> parse(std::string_view text, std::string_view source, Reader& reader) {
+  try {
+    return toml::parse(text, source);
+  } catch (const toml::parse_error& error) {
+    reader.complain(error.source().begin, error.description());
+  } catch (const ParserLost&) {
+    reader.complain({}, "this is not TOML: a value, a key or a bracket is missing or misplaced");
+  } catch (const std::exception& error) {
+    reader.complain({}, error.what());
+  }
+  return std::nullopt;
+}
+
 RuleFile failure(std::string error) {
   return {std::nullopt, std::move(error)};
 }
@@ -211,12 +239,8 @@ RuleFile failure(std::string error) {
 
 RuleFile parse_rules(std::string_view text, std::string_view source) {
   Reader reader(source);
-  const toml::parse_result parsed = toml::parse(text, source);
-  if (!parsed) {
-    reader.complain(parsed.error().source().begin, parsed.error().description());
-    return failure(reader.errors());
-  }
-  RuleTable table = reader.read(parsed.table());
+  const std::optional<toml::table> root = parse(text, source, reader);
+  RuleTable table = root ? reader.read(*root) : RuleTable{};
   if (!reader.errors().empty()) return failure(reader.errors());
   for (const RuleProblem& problem : check(table)) reader.complain(toml::source_position{}, problem.text);
   if (!reader.errors().empty()) return failure(reader.errors());
