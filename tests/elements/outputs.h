@@ -78,9 +78,14 @@ inline Harness harness(const char* line) {
 
 // Messages of `type` that the harness' element posted; to be watched from the start.
 struct Bus {
+  GstElement* element;
   GstBus* bus = gst_bus_new();
-  explicit Bus(GstHarness* h) { gst_element_set_bus(h->element, bus); }
-  ~Bus() { gst_object_unref(bus); }
+  explicit Bus(GstHarness* h) : element(h->element) { gst_element_set_bus(element, bus); }
+  ~Bus() {
+    gst_element_set_bus(element, nullptr);
+    gst_bus_set_flushing(bus, TRUE);  // messages hold the element, which holds the bus
+    gst_object_unref(bus);
+  }
   int count(GstMessageType type, std::string* text = nullptr) {
     int n = 0;
     while (GstMessage* message = gst_bus_pop_filtered(bus, type)) {
