@@ -344,7 +344,7 @@ END_TEST
 int main() {
   Suite* suite = suite_create("complete");
   TCase* tests = tcase_create("complete");
-  tcase_set_timeout(tests, 60);
+  tcase_set_timeout(tests, 200);
   tcase_add_test(tests, every_evenly_spread_geometry_has_one_answer_everywhere);
   tcase_add_test(tests, every_odd_geometry_has_one_answer_everywhere);
   tcase_add_test(tests, whatever_the_limits_there_is_one_answer_within_them);
