@@ -133,6 +133,7 @@ class NoiseSamples {
 // What is known of a connected part.
 struct Part {
   int moved = 0;  // pixels that moved lately
+  int fresh = 0;  // pixels that move now: what looks like a ghost needs them, or it goes at once
   int frame = 0, memory = 0,
       n = 0;  // contrast across its outline in frame and memory, and over how many places
 };
@@ -419,9 +420,10 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   for (const Run& r : labeller.runs()) {
     Part& part = parts[r.component];
     const std::uint8_t* q = quiet.view().row(r.row);
-    int moved_here = 0;
-    for (int x = r.first; x < r.end; ++x) moved_here += q[x] < lately;
+    int moved_here = 0, fresh_here = 0;
+    for (int x = r.first; x < r.end; ++x) moved_here += q[x] < lately, fresh_here += q[x] < 3;
     part.moved += moved_here;
+    part.fresh += fresh_here;
     const auto contrast = [&](int outside, int inside) {
       part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
       part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
@@ -436,9 +438,10 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
     const Part& part = parts[r.component];
     const double share = in.still ? 0.1 : 0.25;
     const bool moving = part.moved >= std::max(4.0, share * components[r.component].area);
-    if (moving) continue;
     const bool object = part.n > 0 && part.frame > 1.3 * part.memory + 2 * part.n;
     const bool ghost = part.n > 0 && part.memory > 1.3 * part.frame + 2 * part.n;
+    const bool fresh = part.fresh >= std::max(4.0, 0.05 * components[r.component].area);
+    if (moving && (fresh || !ghost || !in.still)) continue;
     if (!(in.still && object)) clear_bits(seeds.row(r.row), r.first, r.end);
     for (int x = r.first; x < r.end; ++x) {
       const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
