@@ -124,6 +124,62 @@ GST_START_TEST(a_box_is_drawn_into_every_format) {
 }
 GST_END_TEST
 
+// GStreamer's own converter is the judge: the middle of a thick orange line has the samples that it gives orange.
+GST_START_TEST(colours_are_right_in_every_format) {
+  std::vector<std::string> all;
+  for (const char* format : kFormats) all.push_back(caps_string(format, 320, 240));
+  for (const char* colorimetry : {"bt709", "bt601", "bt2020", "1:4:0:0"})  // the last one: full range
+    all.push_back(caps_string("I420", 320, 240, (std::string(",colorimetry=") + colorimetry).c_str()));
+  const GstVideoInfo rgb = info_of(caps_string("RGB", 320, 240));
+  GstBuffer* orange = frame(rgb);
+  const guint8 color[3] = {230, 159, 0};
+  for (gsize at = 0; at + 3 <= rgb.size; at += 3) gst_buffer_fill(orange, at, color, 3);
+  for (const std::string& caps : all) {
+    const GstVideoInfo info = info_of(caps);
+    Harness h = started("motionoverlay show-ids=false line-width=16", caps);
+    GstBuffer* out = through(h.get(), with_region(info, region(1, 100, 60, 120, 120)));
+    GstBuffer* judge = frame(info);
+    GstVideoFrame from, should, is;
+    fail_unless(gst_video_frame_map(&from, &rgb, orange, GST_MAP_READ));
+    fail_unless(gst_video_frame_map(&should, &info, judge, GST_MAP_WRITE));
+    fail_unless(gst_video_frame_map(&is, &info, out, GST_MAP_READ));
+    GstVideoConverter* converter = gst_video_converter_new(&rgb, &info, nullptr);
+    gst_video_converter_frame(converter, &from, &should);
+    gst_video_converter_free(converter);
+    for (const auto& [x, y] : {std::pair{101, 120}, {219, 120}, {160, 61}, {160, 179}})
+      for (guint i = 0; i < GST_VIDEO_FORMAT_INFO_N_COMPONENTS(info.finfo); ++i) {
+        const auto sample = [&](GstVideoFrame& f) {
+          return int{GST_VIDEO_FRAME_COMP_DATA(
+              &f,
+              i)[(y >> GST_VIDEO_FORMAT_INFO_H_SUB(info.finfo, i)) * GST_VIDEO_FRAME_COMP_STRIDE(&f, i) +
+                 (x >> GST_VIDEO_FORMAT_INFO_W_SUB(info.finfo, i)) * GST_VIDEO_FRAME_COMP_PSTRIDE(&f, i)]};
+        };
+        fail_unless(std::abs(sample(is) - sample(should)) <= 2, "%s: component %u is %d, should be %d",
+                    caps.c_str(), i, sample(is), sample(should));
+      }
+    gst_video_frame_unmap(&from);
+    gst_video_frame_unmap(&should);
+    gst_video_frame_unmap(&is);
+    gst_buffer_unref(out);
+    gst_buffer_unref(judge);
+  }
+  gst_buffer_unref(orange);
+}
+GST_END_TEST
+
+// What ours does not know goes to GStreamer's blending.
+GST_START_TEST(deep_formats_are_drawn_on_too) {
+  for (const char* format : {"P010_10LE", "I420_10LE", "AYUV", "GRAY16_LE"}) {
+    const std::string caps = caps_string(format, 321, 241);
+    Harness h = started("motionoverlay", caps);
+    GstBuffer* out = through(h.get(), with_region(info_of(caps), region(1, 100, 60, 120, 120)));
+    const auto all = bytes(out);
+    fail_unless(std::any_of(all.begin(), all.end(), [](guint8 b) { return b != 100; }), "%s", format);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(tiny_and_odd_frames_are_drawn_on) {
   for (const char* format : kFormats) {
     const std::string caps = caps_string(format, 33, 35);
@@ -461,6 +517,8 @@ static Suite* motionoverlay_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_frame_in_which_nothing_moves_passes_untouched);
   tcase_add_test(tc, a_box_is_drawn_into_every_format);
+  tcase_add_test(tc, colours_are_right_in_every_format);
+  tcase_add_test(tc, deep_formats_are_drawn_on_too);
   tcase_add_test(tc, tiny_and_odd_frames_are_drawn_on);
   tcase_add_test(tc, nothing_is_drawn_beyond_the_frame);
   tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);
