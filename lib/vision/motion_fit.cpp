@@ -230,6 +230,16 @@ class Contenders {
   std::array<Entry, kMost> entries_;
 };
 
+// Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at about
+// one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
+bool is_worth(const MotionFit& finer, const MotionFit& fit, MotionModel model) {
+  constexpr double kCritical = 4.6;  // F(4, many), .999
+  const double extra = model == MotionModel::homography ? 4 : 2;
+  const double unexplained = finer.agreeing > 1 ? finer.cost / (2 * finer.agreeing) : 1;
+  return finer.support > 0.95 * fit.support &&
+         fit.cost - finer.cost > kCritical * extra * std::max(unexplained, 0.2);
+}
+
 }  // namespace
 
 bool follows(const MotionSamples& s, int i, const Transform& transform) {
@@ -304,11 +314,11 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     const double after = refine_motion(s, simple, picture, refined);
     if (after > most) most = after, best = refined;
   }
-  if (model > simple) {
-    Transform finer = best;
-    if (refine_motion(s, model, picture, finer) >= most) best = finer;
-  }
-  return rate_motion(s, best);
+  const MotionFit fit = rate_motion(s, best);
+  if (model == simple) return fit;
+  refine_motion(s, model, picture, best);
+  const MotionFit finer = rate_motion(s, best);
+  return is_worth(finer, fit, model) ? finer : fit;
 }
 
 }  // namespace cerberus::vision
