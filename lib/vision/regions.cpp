@@ -289,7 +289,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   unpack(s.closed.view(), mask);
   s.labeller.find(mask);
   const auto parts = s.labeller.drop_smaller(s.least(), mask);
-  s.labeller.write(labels);
+  if (!labels.empty()) s.labeller.write(labels);  // empty: nobody wants them
   s.trim();
   if (!s.options.people || parts.size() > kMostParts) {
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);

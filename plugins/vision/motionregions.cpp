@@ -139,9 +139,9 @@ bool Private::analyse(Frame& frame) {
                           (nullptr));
   }
   stage->luma().set_analysis_width(cerberus_analysis_width(base));
-  const bool found = stage->run(frame);
-  if (keep == KEEP_PLANES_NEVER || (keep == KEEP_PLANES_AUTO && !frame.planes_wanted))
-    cerberus_buffer_remove_plane_metas(frame.buffer);
+  const bool keep_planes = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);
+  const bool found = stage->run(frame, keep_planes);
+  if (!keep_planes) cerberus_buffer_remove_plane_metas(frame.buffer);
   return found;
 }
 

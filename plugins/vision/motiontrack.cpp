@@ -210,7 +210,7 @@ bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) apply(*changed);
   if (!regions_known(frame.buffer)) {
     state->regions.luma().set_analysis_width(cerberus_analysis_width(base));
-    const bool found = state->regions.run(frame);
+    const bool found = state->regions.run(frame, frame.planes_wanted);
     if (!frame.planes_wanted) cerberus_buffer_remove_plane_metas(frame.buffer);
     if (!found) return false;
   }

@@ -19,10 +19,29 @@ MappedPlane acquire(PlanePool& pool, vision::Size size, int sample_size = 1) {
   return plane;
 }
 
+// The kernels work on whole vectors, so rows must be padded as a PlanePool pads them. A plane that is not comes from a
+// stranger and counts as missing.
+bool is_ours(const MappedPlane& plane) {
+  constexpr int kAlign = static_cast<int>(vision::Image<std::uint8_t>::kAlign);
+  const auto address = reinterpret_cast<std::uintptr_t>(plane.view<std::uint8_t>().data);
+  return plane && plane.stride() % kAlign == 0 && address % kAlign == 0;
+}
+
+MappedPlane read(GstBuffer* buffer, CerberusPlaneKind kind) {
+  MappedPlane plane = MappedPlane::read(buffer, kind);
+  if (!is_ours(plane)) plane = MappedPlane();
+  return plane;
+}
+
+void copy(vision::GrayView from, vision::MutableGrayView to) {
+  for (int y = 0; y < from.height; ++y)
+    std::memcpy(to.row(y), from.row(y), static_cast<std::size_t>(from.width));
+}
+
 }  // namespace
 
 MappedPlane LumaStage::obtain(Frame& frame) {
-  MappedPlane upstream = MappedPlane::read(frame.buffer, CERBERUS_PLANE_LUMA);
+  MappedPlane upstream = read(frame.buffer, CERBERUS_PLANE_LUMA);
   // A plane larger than the frame is not ours, whoever attached it.
   const vision::Size size = frame.size();
   if (upstream && upstream.width() <= size.width && upstream.height() <= size.height) return upstream;
@@ -35,14 +54,15 @@ MappedPlane LumaStage::make(Frame& frame) {
   MappedPlane plane = acquire(pool_, vision::analysis_size(frame.size(), analysis_width_));
   scaler_.scale(luma_source(*mapped.get()), plane.writable<std::uint8_t>());
   plane.publish(frame.buffer, CERBERUS_PLANE_LUMA);
-  return MappedPlane::read(frame.buffer, CERBERUS_PLANE_LUMA);
+  return read(frame.buffer, CERBERUS_PLANE_LUMA);
 }
 
 bool DifferenceStage::ensure(Frame& frame) {
-  const MappedPlane histogram = MappedPlane::read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
-  if (histogram && histogram.width() * 4 >= static_cast<int>(sizeof(HistogramRecord)) &&
-      cerberus_buffer_get_plane_meta(frame.buffer, CERBERUS_PLANE_DIFFERENCE) &&
-      cerberus_buffer_get_plane_meta(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE))
+  const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
+  const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
+  const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+  if (histogram.width() * sizeof(std::uint32_t) >= sizeof(HistogramRecord) && current &&
+      current.size() == previous.size())
     return true;
   return run(frame);
 }
@@ -74,16 +94,15 @@ bool DifferenceStage::run(Frame& frame) {
 }
 
 bool MaskStage::ensure(Frame& frame) {
-  if (cerberus_buffer_get_plane_meta(frame.buffer, CERBERUS_PLANE_MASK)) return true;
-  return run(frame);
+  return read(frame.buffer, CERBERUS_PLANE_MASK) || run(frame);
 }
 
 bool MaskStage::run(Frame& frame) {
   const MappedPlane picture = before_.luma().obtain(frame);
   if (!picture || !before_.ensure(frame)) return false;
-  const MappedPlane current = MappedPlane::read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
-  const MappedPlane previous = MappedPlane::read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
-  const MappedPlane histogram = MappedPlane::read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
+  const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
+  const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+  const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const vision::Size size = picture.size();
   if (current.size() != size || previous.size() != size) return false;
   if (sequence_.broken_by(frame) || size != size_) area_.reset();
@@ -119,27 +138,24 @@ bool MaskStage::run(Frame& frame) {
   return true;
 }
 
-bool RegionStage::ensure(Frame& frame) {
-  if (regions_known(frame.buffer)) return true;
-  return run(frame);
-}
-
-bool RegionStage::run(Frame& frame) {
+bool RegionStage::run(Frame& frame, bool want_labels) {
   if (!before_.ensure(frame)) return false;
-  const MappedPlane found = MappedPlane::read(frame.buffer, CERBERUS_PLANE_MASK);
-  const vision::Size size = found.size();
+  // Cleaned in place, unless somebody else looks at the uncleaned one (a tee between the stages).
+  MappedPlane mask = MappedPlane::take(frame.buffer, CERBERUS_PLANE_MASK);
+  if (!mask) {
+    const MappedPlane found = read(frame.buffer, CERBERUS_PLANE_MASK);
+    mask = acquire(mask_pool_, found.size());
+    copy(found.view<std::uint8_t>(), mask.writable<std::uint8_t>());
+  }
+  const vision::Size size = mask.size();
   if (sequence_.broken_by(frame) || size != size_) finder_.reset();
   size_ = size;
+  zones_.apply(mask.writable<std::uint8_t>());
 
-  MappedPlane mask = acquire(mask_pool_, size);
-  MappedPlane labels = acquire(label_pool_, size, sizeof(std::uint16_t));
-  const vision::MutableGrayView target = mask.writable<std::uint8_t>();
-  for (int y = 0; y < size.height; ++y)
-    std::memcpy(target.row(y), found.view<std::uint8_t>().row(y), static_cast<std::size_t>(size.width));
-  zones_.apply(target);
-
-  const std::span<const vision::Region> regions =
-      finder_.update(target, labels.writable<std::uint16_t>(), frame.motion.in(size, frame.size()));
+  MappedPlane labels;
+  if (want_labels) labels = acquire(label_pool_, size, sizeof(std::uint16_t));
+  const std::span<const vision::Region> regions = finder_.update(
+      mask.writable<std::uint8_t>(), labels.writable<std::uint16_t>(), frame.motion.in(size, frame.size()));
   mask.publish(frame.buffer, CERBERUS_PLANE_MASK);
   labels.publish(frame.buffer, CERBERUS_PLANE_LABELS);
 

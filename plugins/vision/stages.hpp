@@ -89,8 +89,8 @@ class RegionStage {
     field_of_view_ = field_of_view;
     mounting_height_ = mounting_height;
   }
-  bool ensure(Frame& frame);
-  bool run(Frame& frame);
+  // False for an unusable buffer. Labels (2 bytes a pixel) are only made where they are wanted.
+  bool run(Frame& frame, bool want_labels);
   std::size_t bytes() const { return finder_.bytes() + zones_.bytes() + before_.bytes(); }
 
  private:

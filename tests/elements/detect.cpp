@@ -361,6 +361,25 @@ GST_START_TEST(planes_stay_after_a_reconfigure_event_when_they_are_wanted_then) 
 }
 GST_END_TEST
 
+// The mask is cleaned in place, except where another branch of a tee still looks at the uncleaned one.
+GST_START_TEST(another_branch_keeps_its_uncleaned_mask) {
+  Line threshold("fuzzythreshold"), regions("motionregions keep-planes=always ! identity");
+  const World world = entering();
+  long changed = 0;
+  for (int k = 0; k < 40; ++k) {
+    GstBuffer* out = threshold.through(scene::grey_buffer(world, k));
+    GstBuffer* other = gst_buffer_copy(out);  // shares the planes
+    const long before = moving_pixels(other);
+    GstBuffer* cleaned = regions.through(out);
+    changed += moving_pixels(cleaned) != before;
+    fail_unless_equals_int(moving_pixels(other), before);
+    gst_buffer_unref(other);
+    gst_buffer_unref(cleaned);
+  }
+  fail_unless(changed > 0, "cleaning never changed anything: this test proves nothing");
+}
+GST_END_TEST
+
 // ---- the bin
 
 GST_START_TEST(a_property_that_was_set_wins_over_the_preset_in_any_order) {
@@ -543,6 +562,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, an_empty_scene_posts_nothing);
   tcase_add_loop_test(tests, planes_stay_only_where_somebody_asks_for_them, 0, 6);
   tcase_add_test(tests, planes_stay_after_a_reconfigure_event_when_they_are_wanted_then);
+  tcase_add_test(tests, another_branch_keeps_its_uncleaned_mask);
   tcase_add_test(tests, a_property_that_was_set_wins_over_the_preset_in_any_order);
   tcase_add_test(tests, the_human_gate_is_off_in_preset_traffic);
   tcase_add_test(tests, every_preset_works_and_each_property_reaches_its_stage);

@@ -32,6 +32,19 @@ class MappedPlane {
     return plane;
   }
 
+  // Takes the plane of `kind` off `frame` (a writable buffer) in order to write into it, where nobody else
+  // holds it; else false, and the plane stays.
+  static MappedPlane take(GstBuffer* frame, CerberusPlaneKind kind) {
+    MappedPlane plane;
+    CerberusPlaneMeta* meta = cerberus_buffer_get_plane_meta(frame, kind);
+    if (!meta || !gst_buffer_is_writable(meta->buffer)) return plane;
+    const int width = meta->width, height = meta->height, stride = meta->stride;
+    GstBuffer* buffer = gst_buffer_ref(meta->buffer);
+    gst_buffer_remove_meta(frame, reinterpret_cast<GstMeta*>(meta));
+    plane.map(buffer, width, height, stride, GST_MAP_READWRITE);
+    return plane;
+  }
+
   explicit operator bool() const { return buffer_ != nullptr; }
   int width() const { return width_; }
   int height() const { return height_; }
@@ -42,7 +55,7 @@ class MappedPlane {
   vision::View<const T> view() const {
     return {reinterpret_cast<const T*>(map_.data), width_, height_, stride_ / static_cast<int>(sizeof(T))};
   }
-  // Only of a plane that comes from PlanePool::acquire.
+  // Only of a plane that comes from PlanePool::acquire or take().
   template <typename T>
   vision::View<T> writable() {
     return {reinterpret_cast<T*>(map_.data), width_, height_, stride_ / static_cast<int>(sizeof(T))};
