@@ -50,7 +50,8 @@ class Indices {
       high = std::max(set.last, set.extra);
     }
     const double width = std::max(std::abs(b - high), std::abs(b - low));
-    if (width <= 0) return 0;
+    // Two levels apart have their mean at least half a level from the farther one; less is one level and rounding.
+    if (width < 0.25) return 0;
     if (options_.order == 1) {
       double total = span(set.first, set.last, b, width);
       if (set.extra >= 0) total += extra * delta(set.extra, b, width);

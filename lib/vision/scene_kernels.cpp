@@ -105,7 +105,7 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
   const D16 d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   if (lanes < 8) return compare_row_reference(row, limits, weak, strong);
-  const int padded = (row.width + 63) / 64 * 64;
+  const int padded = (row.width + lanes - 1) / lanes * lanes;  // inside every plane's padding
   alignas(16) std::uint8_t table_bytes[16];
   std::memcpy(table_bytes, limits.noise.data(), 16);
   const hn::Repartition<std::uint8_t, D16> d8;
@@ -145,7 +145,7 @@ void learn_row(const LearnRow& row) {
   const U16 du;
   const int lanes = static_cast<int>(hn::Lanes(d));
   if (lanes < 8) return learn_row_reference(row);
-  const int padded = (row.width + 63) / 64 * 64;
+  const int padded = (row.width + lanes - 1) / lanes * lanes;  // inside every plane's padding
   const hn::Repartition<std::uint8_t, D16> d8;
   alignas(16) std::uint8_t young_bytes[16], old_bytes[16];
   std::memcpy(young_bytes, kYoungRate.data(), 16);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The inner loops of the scene's memory, one row at a time (Highway, run-time dispatch), each with its scalar
-// reference. Planes belong to Image: rows may be read and written up to the next multiple of 64 samples.
+// reference. Planes belong to Image: rows may be read and written up to the next multiple of 16 samples, rows of bits by
+// whole words (bits beyond the width become anything).
 #pragma once
 
 #include <array>

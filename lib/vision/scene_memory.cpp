@@ -26,9 +26,10 @@ constexpr double kFarthest =
     12;                      // pixels a corner may be off by turning and zooming before the memory is redrawn
 constexpr double kRedo = 1;  // pixels: a smaller correction is used from the next frame on
 constexpr int kStanding = 5;  // frames after which a standing camera's memory is redrawn to fit it exactly
-constexpr double kLeastSigma = 0.7;  // grey levels: rounding alone makes 0.3, compression more
-constexpr int kClosing = 9;          // side of the closing at 320 columns
-constexpr int kHold = 250;           // frames something that stopped is kept
+constexpr double kLeastSigma = 0.7;    // grey levels: rounding alone makes 0.3, compression more
+constexpr int kClosing = 9;            // side of the closing at 320 columns
+constexpr int kHold = 250;             // frames something that stopped is kept
+constexpr int kNow = 3, kLately = 25;  // frames
 constexpr double kAgreement =
     0.3;  // share of pixels a change of light has to explain, else it is another scene
 
@@ -132,8 +133,7 @@ class NoiseSamples {
 
 // What is known of a connected part.
 struct Part {
-  int moved = 0;  // pixels that moved lately
-  int fresh = 0;  // pixels that move now: what looks like a ghost needs them, or it goes at once
+  int now = 0, lately = 0;  // pixels that moved in the last frames, and for some time back
   int frame = 0, memory = 0,
       n = 0;  // contrast across its outline in frame and memory, and over how many places
 };
@@ -194,8 +194,7 @@ void SceneMemory::State::prepare(Size to) {
     size = to;
     mean.resize(to);
     for (auto* plane : {&spread, &age, &quiet, &present, &scratch}) plane->resize(to);
-    // Kernels work in steps of 64 columns: the margins lie beyond the padded row.
-    known.resize({(to.width + 63) / 64 * 64 + 2 * kMargin, to.height + 2});
+    known.resize({to.width + 2 * kMargin, to.height + 2});
     tolerance.resize({to.width, 1});
     for (auto* bits : {&weak, &strong, &moved, &valid, &absorb}) bits->resize(bit_mask_size(to));
     columns = (to.width + kSceneBlock - 1) / kSceneBlock;
@@ -416,14 +415,15 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   const auto components = labeller.components();
   parts.assign(components.size(), {});
   const GrayView f = present.view(), m = known_view();
-  const int lately = in.still ? 25 : 3;  // frames: a memory that has to be registered is believed less
+  // A memory that has to be registered is believed less: what does not move now is not believed.
+  const int lately = in.still ? kLately : kNow;
   for (const Run& r : labeller.runs()) {
     Part& part = parts[r.component];
     const std::uint8_t* q = quiet.view().row(r.row);
-    int moved_here = 0, fresh_here = 0;
-    for (int x = r.first; x < r.end; ++x) moved_here += q[x] < lately, fresh_here += q[x] < 3;
-    part.moved += moved_here;
-    part.fresh += fresh_here;
+    int now = 0, before = 0;
+    for (int x = r.first; x < r.end; ++x) now += q[x] < kNow, before += q[x] < lately;
+    part.now += now;
+    part.lately += before;
     const auto contrast = [&](int outside, int inside) {
       part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
       part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
@@ -436,12 +436,12 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   absorb.fill_bytes(0);
   for (const Run& r : labeller.runs()) {
     const Part& part = parts[r.component];
-    const double share = in.still ? 0.1 : 0.25;
-    const bool moving = part.moved >= std::max(4.0, share * components[r.component].area);
+    const double area = components[r.component].area;
     const bool object = part.n > 0 && part.frame > 1.3 * part.memory + 2 * part.n;
     const bool ghost = part.n > 0 && part.memory > 1.3 * part.frame + 2 * part.n;
-    const bool fresh = part.fresh >= std::max(4.0, 0.05 * components[r.component].area);
-    if (moving && (fresh || !ghost || !in.still)) continue;
+    const double share = in.still ? 0.1 : 0.25;
+    const bool active = part.now >= std::max(4.0, share * area);
+    if (active || (!ghost && part.lately >= std::max(4.0, share * area))) continue;
     if (!(in.still && object)) clear_bits(seeds.row(r.row), r.first, r.end);
     for (int x = r.first; x < r.end; ++x) {
       const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
