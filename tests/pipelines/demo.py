@@ -148,10 +148,13 @@ def test_ctrl_c_finishes_the_files():
             break
         time.sleep(0.005)
     process.send_signal(signal.SIGINT)
-    assert process.wait(60) == 0
+    status = process.wait(60)
+    assert status == 0, f'exit status {status}'
     lines = json_lines('out/objects.jsonl')
     assert 0 < len(lines) < 3000, f'{len(lines)} lines'
-    assert decoded('out/annotated.mp4') == len(lines) * 320 * 240
+    # Read back, the very last frame may fall outside the length that the muxer wrote.
+    count = decoded('out/annotated.mp4') // (320 * 240)
+    assert 0 <= len(lines) - count <= 1, f'{len(lines)} lines, {count} frames'
 
 
 def test_the_command_explains_itself_and_its_mistakes():
