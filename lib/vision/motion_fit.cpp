@@ -5,6 +5,8 @@
 #include <cmath>
 #include <span>
 
+#include "vision/motion_least_squares.h"
+
 namespace cerberus::vision {
 
 namespace {
@@ -66,128 +68,6 @@ bool similarity_through(const MotionSamples& s, int i, int j, double least_dista
   t = {{a, -b, s.u[i] - a * s.x[i] + b * s.y[i], b, a, s.v[i] - b * s.x[i] - a * s.y[i], 0, 0, 1}};
   return true;
 }
-
-// Normal equations of N unknowns.
-template <int N>
-struct Normal {
-  using Row = std::array<double, N>;
-  std::array<Row, N> a{};  // upper triangle
-  Row b{};
-
-  // Adds the measurement J p = d (two rows) with the 2x2 weight W.
-  void add(const Row& jx, const Row& jy, double dx, double dy, double wxx, double wxy, double wyy) {
-    for (int i = 0; i < N; ++i) {
-      const double ex = jx[i] * wxx + jy[i] * wxy, ey = jx[i] * wxy + jy[i] * wyy;
-      for (int j = i; j < N; ++j) a[i][j] += ex * jx[j] + ey * jy[j];
-      b[i] += ex * dx + ey * dy;
-    }
-  }
-
-  // Cholesky. False when not positive definite.
-  bool solve(Row& p) {
-    for (int i = 0; i < N; ++i)
-      for (int j = i; j < N; ++j) {
-        double sum = a[i][j];
-        for (int k = 0; k < i; ++k) sum -= a[k][i] * a[k][j];
-        if (i == j) {
-          if (!(sum > 1e-12)) return false;
-          a[i][i] = std::sqrt(sum);
-        } else {
-          a[i][j] = sum / a[i][i];
-        }
-      }
-    for (int i = 0; i < N; ++i) {
-      double sum = b[i];
-      for (int k = 0; k < i; ++k) sum -= a[k][i] * p[k];
-      p[i] = sum / a[i][i];
-    }
-    for (int i = N - 1; i >= 0; --i) {
-      double sum = p[i];
-      for (int k = i + 1; k < N; ++k) sum -= a[i][k] * p[k];
-      p[i] = sum / a[i][i];
-    }
-    return true;
-  }
-};
-
-// One weighted least squares step. Unknowns are displacements in pixels at the picture's edge, so that one weak prior
-// fits all of them: X, Y are pixels from the centre over the half diagonal.
-//   X' = X + (t + a X + b Y - (g X + h Y) X') / half diagonal
-class LeastSquares {
- public:
-  explicit LeastSquares(Size picture)
-      : cx_(0.5 * (picture.width - 1)),
-        cy_(0.5 * (picture.height - 1)),
-        scale_(0.5 * std::hypot(picture.width, picture.height)) {}
-
-  bool step(MotionModel model, const MotionSamples& s, const Distances& weights, Transform& t) const {
-    using Row2 = std::array<double, 2>;
-    using Row4 = std::array<double, 4>;
-    using Row6 = std::array<double, 6>;
-    using Row8 = std::array<double, 8>;
-    switch (model) {
-      case MotionModel::none:
-        return false;
-      case MotionModel::translation:
-        return solve<2>(
-            s, weights, t,
-            [](double, double, double, double, Row2& jx, Row2& jy) { jx = {1, 0}, jy = {0, 1}; },
-            [](const Row2& p) { return Transform{{1, 0, p[0], 0, 1, p[1], 0, 0, 1}}; });
-      case MotionModel::similarity:
-        return solve<4>(
-            s, weights, t,
-            [](double X, double Y, double, double, Row4& jx, Row4& jy) {
-              jx = {1, 0, X, -Y}, jy = {0, 1, Y, X};
-            },
-            [](const Row4& p) { return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}; });
-      case MotionModel::affine:
-        return solve<6>(
-            s, weights, t,
-            [](double X, double Y, double, double, Row6& jx, Row6& jy) {
-              jx = {1, 0, X, Y, 0, 0}, jy = {0, 1, 0, 0, X, Y};
-            },
-            [](const Row6& p) { return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], 0, 0, 1}}; });
-      case MotionModel::homography:
-        return solve<8>(
-            s, weights, t,
-            [](double X, double Y, double U, double V, Row8& jx, Row8& jy) {
-              jx = {1, 0, X, Y, 0, 0, -X * U, -Y * U}, jy = {0, 1, 0, 0, X, Y, -X * V, -Y * V};
-            },
-            [](const Row8& p) {
-              return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], p[6], p[7], 1}};
-            });
-    }
-    return false;
-  }
-
- private:
-  template <int N, typename Design, typename Compose>
-  bool solve(const MotionSamples& s, const Distances& weights, Transform& t, Design&& design,
-             Compose&& compose) const {
-    Normal<N> normal;
-    for (int i = 0; i < N; ++i) {  // priors: shift free, linear part 10 % of the scale, perspective 3 %
-      const double sigma = (i < 2 ? 10.0 : i < 6 ? 0.1 : 0.03) * scale_;
-      normal.a[i][i] = 1 / (sigma * sigma);
-    }
-    std::array<double, N> jx, jy, p{};
-    const double per_scale = 1 / scale_;
-    for (int i = 0; i < s.count; ++i) {
-      const double w = weights[i];
-      if (!(w > 0)) continue;
-      design((s.x[i] - cx_) * per_scale, (s.y[i] - cy_) * per_scale, (s.u[i] - cx_) * per_scale,
-             (s.v[i] - cy_) * per_scale, jx, jy);
-      normal.add(jx, jy, s.u[i] - s.x[i], s.v[i] - s.y[i], w * s.wxx[i], w * s.wxy[i], w * s.wyy[i]);
-    }
-    if (!normal.solve(p)) return false;
-    for (double& v : p) v *= per_scale;
-    const Transform to{{per_scale, 0, -cx_ * per_scale, 0, per_scale, -cy_ * per_scale, 0, 0, 1}};
-    const Transform from{{scale_, 0, cx_, 0, scale_, cy_, 0, 0, 1}};
-    t = from * compose(p) * to;
-    return true;
-  }
-
-  double cx_, cy_, scale_;
-};
 
 // The few best hypotheses that mean different motions.
 class Contenders {
@@ -268,7 +148,7 @@ MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
 }
 
 double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Transform& motion) {
-  const LeastSquares squares(picture);
+  const MotionLeastSquares squares(picture);
   Distances distances, weights{};
   for (const float gates : kGates) {
     measure(s, motion, distances);

@@ -132,6 +132,19 @@ START_TEST(edges_that_know_one_direction_only_are_combined) {
 }
 END_TEST
 
+START_TEST(a_richer_model_is_taken_only_where_it_earns_its_unknowns) {
+  std::mt19937 random(10);
+  int affine = 0;
+  for (int i = 0; i < 50; ++i)
+    affine +=
+        fit_motion(samples_of(kTurn, random), MotionModel::homography, kSize, {}, 96).transform.is_affine();
+  ck_assert_int_ge(affine, 48);
+  for (int i = 0; i < 50; ++i)
+    ck_assert(
+        !fit_motion(samples_of(kPan, random), MotionModel::homography, kSize, {}, 96).transform.is_affine());
+}
+END_TEST
+
 START_TEST(few_samples_give_the_simplest_motion_that_they_carry) {
   std::mt19937 random(7);
   MotionSamples s = samples_of(Transform::translation(4, 2), random, 0);
@@ -167,11 +180,12 @@ START_TEST(a_fit_allocates_nothing) {
 END_TEST
 
 int main() {
-  return run_suite(
-      "motion_fit",
-      {every_model_recovers_its_own_motion, exact_samples_give_the_exact_motion,
-       a_compact_object_of_45_percent_is_left_out, scattered_nonsense_of_60_percent_is_left_out,
-       agreement_all_over_the_picture_beats_the_same_number_in_one_place,
-       edges_that_know_one_direction_only_are_combined, few_samples_give_the_simplest_motion_that_they_carry,
-       no_model_takes_the_best_guess_as_it_is, a_fit_allocates_nothing});
+  return run_suite("motion_fit",
+                   {every_model_recovers_its_own_motion, exact_samples_give_the_exact_motion,
+                    a_compact_object_of_45_percent_is_left_out, scattered_nonsense_of_60_percent_is_left_out,
+                    agreement_all_over_the_picture_beats_the_same_number_in_one_place,
+                    edges_that_know_one_direction_only_are_combined,
+                    a_richer_model_is_taken_only_where_it_earns_its_unknowns,
+                    few_samples_give_the_simplest_motion_that_they_carry,
+                    no_model_takes_the_best_guess_as_it_is, a_fit_allocates_nothing});
 }
