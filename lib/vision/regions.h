@@ -21,7 +21,7 @@ struct Box {
 double intersection_over_union(const Box& a, const Box& b);
 
 struct RegionOptions {
-  int closing = 11;         // side of the closing, analysis pixels at 320 wide; scaled with the picture
+  int closing = 9;          // side of the closing, analysis pixels at 320 wide; scaled with the picture
   bool people = true;       // merge and split by the learnt height of a person; off: plain components
   double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
 };
@@ -47,7 +47,7 @@ class RegionFinder {
   // Forget what was learnt of the scene (heights); a cut does that.
   void reset();
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 =
-  // background. motion: frame k-1 to k, so that what was learnt moves with the camera. The span lives until
+  // background, may be empty where nobody wants them. motion: frame k-1 to k, so that what was learnt moves with the camera. The span lives until
   // the next call.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
   std::size_t bytes() const;

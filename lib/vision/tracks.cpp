@@ -12,6 +12,9 @@ namespace cerberus::vision {
 namespace {
 
 constexpr double kDefaultSeconds = 1.0 / 25;  // until a frame distance is known
+// S: an object is published once it has moved by this; the hole somebody left in what was taken for the scene, and a
+// lamp that was switched on, never do.
+constexpr double kLeastTravel = 0.12;
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
 
@@ -218,7 +221,8 @@ void Tracker::State::age() {
   for (Body& b : bodies) {
     if (b.region >= 0) {
       const bool enough = b.hits >= 3 || (b.hits >= 2 && b.age >= 3 * options.confirm_time);
-      if (b.id == 0 && enough && b.age >= 0.99 * options.confirm_time && b.hits >= 0.6 * b.frames)
+      if (b.id == 0 && enough && b.travelled >= kLeastTravel && b.age >= 0.99 * options.confirm_time &&
+          b.hits >= 0.6 * b.frames)
         b.id = ++last_id;
       continue;
     }
