@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "composition.hpp"
 
-#include <cerberus/caps.h>
-
 #include "vision/blend.h"
 
 namespace cerberus::draw {
@@ -70,8 +68,7 @@ CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComp
   return composition;
 }
 
-bool blend(std::span<const Patch> patches, GstVideoFrame* frame) {
-  if (!cerberus_video_format_is_supported(GST_VIDEO_FRAME_FORMAT(frame))) return false;
+void blend(std::span<const Patch> patches, GstVideoFrame* frame) {
   vision::BlendComponent all[GST_VIDEO_MAX_COMPONENTS];
   const auto n = static_cast<std::size_t>(components(frame, all));
   for (const Patch& patch : patches) {
@@ -81,7 +78,6 @@ bool blend(std::span<const Patch> patches, GstVideoFrame* frame) {
         patch.area.height, cairo_image_surface_get_stride(surface) / 4};
     vision::blend(drawing, patch.area.x, patch.area.y, {all, n});
   }
-  return true;
 }
 
 }  // namespace cerberus::draw

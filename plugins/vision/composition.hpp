@@ -20,9 +20,9 @@ using CompositionPtr = std::unique_ptr<GstVideoOverlayComposition, CompositionDe
 // The patches as rectangles over those of `before` (may be null), which is not changed. Pixels are not copied.
 CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComposition* before);
 
-// Draws the patches into a frame mapped for reading and writing. False, and nothing drawn, for a format that is not
-// one of CERBERUS_VIDEO_FORMATS: gst_video_overlay_composition_blend() knows all of them, at the price of converting
-// every row that a rectangle touches over the frame's whole width (measured: six times slower on 768x576 I420).
-bool blend(std::span<const Patch> patches, GstVideoFrame* frame);
+// Draws the patches into a frame of 8-bit components (CERBERUS_VIDEO_FORMATS), mapped for reading and writing.
+// gst_video_overlay_composition_blend() knows every format, but converts each row that a rectangle touches over the
+// frame's whole width, once a rectangle (measured on 768x576 I420 with 7 people: 0.9 ms a frame against 0.3).
+void blend(std::span<const Patch> patches, GstVideoFrame* frame);
 
 }  // namespace cerberus::draw

@@ -10,7 +10,7 @@
  * bars in the label = it stands and is held. Colours belong to identities and are told apart with any colour
  * vision. Trails lie on the scene: while the camera turns they turn with the picture.
  *
- * Pads: raw video in and out, the same format. Where downstream takes GstVideoOverlayComposition (caps
+ * Pads: raw video in and out, in every format that the stages read. Where downstream takes GstVideoOverlayComposition (caps
  * feature or allocation query, as most sinks that draw with a graphics card do) the pictures are attached and
  * the frame is not touched; otherwise they are blended into a writable copy of what they cover. A frame in
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
@@ -61,10 +61,10 @@ GST_DEBUG_CATEGORY_STATIC(motionoverlay_debug);
 #define GST_CAT_DEFAULT motionoverlay_debug
 
 #define OVERLAY_CAPS                                                                              \
-  GST_VIDEO_CAPS_MAKE(GST_VIDEO_OVERLAY_COMPOSITION_BLEND_FORMATS)                                \
+  CERBERUS_VIDEO_CAPS                                                                             \
   ";" GST_VIDEO_CAPS_MAKE_WITH_FEATURES(GST_CAPS_FEATURE_MEMORY_SYSTEM_MEMORY                     \
                                         ", " GST_CAPS_FEATURE_META_GST_VIDEO_OVERLAY_COMPOSITION, \
-                                        GST_VIDEO_OVERLAY_COMPOSITION_BLEND_FORMATS)
+                                        CERBERUS_VIDEO_FORMATS)
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(OVERLAY_CAPS));
@@ -151,12 +151,13 @@ bool downstream_draws(GstBaseTransform* transform, GstCaps* caps) {
 }
 
 // Draws into the frame what upstream attached (if anything), then the patches.
-bool draw_into(State& state, GstBuffer* buffer, const GstVideoOverlayComposition* before) {
+bool draw_into(State& state, GstBuffer* buffer, GstVideoOverlayComposition* before) {
   // Mapping for writing copies memory that others (a tee's other branch) hold too.
   cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);
   if (!frame) return false;
-  if (!before && draw::blend(state.patches, frame.get())) return true;
-  return gst_video_overlay_composition_blend(draw::compose(state.patches, before).get(), frame.get());
+  if (before && !gst_video_overlay_composition_blend(before, frame.get())) return false;
+  draw::blend(state.patches, frame.get());
+  return true;
 }
 
 void forget(State& state) {

@@ -167,14 +167,31 @@ GST_START_TEST(colours_are_right_in_every_format) {
 }
 GST_END_TEST
 
-// What ours does not know goes to GStreamer's blending.
-GST_START_TEST(deep_formats_are_drawn_on_too) {
-  for (const char* format : {"P010_10LE", "I420_10LE", "AYUV", "GRAY16_LE"}) {
-    const std::string caps = caps_string(format, 321, 241);
-    Harness h = started("motionoverlay", caps);
-    GstBuffer* out = through(h.get(), with_region(info_of(caps), region(1, 100, 60, 120, 120)));
-    const auto all = bytes(out);
-    fail_unless(std::any_of(all.begin(), all.end(), [](guint8 b) { return b != 100; }), "%s", format);
+// An overlay of others in front of ours, and a downstream that does not draw: both are blended.
+GST_START_TEST(a_drawing_that_was_there_is_blended_where_downstream_does_not_draw) {
+  Harness h = started("motionoverlay show-ids=false");
+  const GstVideoInfo info = info_of(kCaps);
+  for (const bool ours : {false, true}) {
+    GstBuffer* in = frame(info, ours);
+    if (ours) add(in, region(1, 100, 80, 60, 90));
+    GstBuffer* pixels = gst_buffer_new_allocate(nullptr, 4 * 4 * 4, nullptr);
+    gst_buffer_memset(pixels, 0, 255, 64);
+    gst_buffer_add_video_meta(pixels, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB, 4,
+                              4);
+    GstVideoOverlayRectangle* r =
+        gst_video_overlay_rectangle_new_raw(pixels, 4, 6, 4, 4, GST_VIDEO_OVERLAY_FORMAT_FLAG_NONE);
+    GstVideoOverlayComposition* before = gst_video_overlay_composition_new(r);
+    gst_buffer_add_video_overlay_composition_meta(in, before);
+    gst_buffer_unref(pixels);
+    gst_video_overlay_rectangle_unref(r);
+    gst_video_overlay_composition_unref(before);
+    GstBuffer* out = through(h.get(), in);
+    fail_if(gst_buffer_get_video_overlay_composition_meta(out));
+    GstVideoFrame f;
+    fail_unless(gst_video_frame_map(&f, &info, out, GST_MAP_READ));
+    fail_unless(level(&f, 5, 7) > 230);  // white
+    fail_unless_equals_int(level(&f, 100, 130) != 100, ours);
+    gst_video_frame_unmap(&f);
     gst_buffer_unref(out);
   }
 }
@@ -518,7 +535,6 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, a_frame_in_which_nothing_moves_passes_untouched);
   tcase_add_test(tc, a_box_is_drawn_into_every_format);
   tcase_add_test(tc, colours_are_right_in_every_format);
-  tcase_add_test(tc, deep_formats_are_drawn_on_too);
   tcase_add_test(tc, tiny_and_odd_frames_are_drawn_on);
   tcase_add_test(tc, nothing_is_drawn_beyond_the_frame);
   tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);
@@ -542,6 +558,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, the_caps_feature_is_used_only_where_downstream_draws);
   tcase_add_test(tc, a_downstream_with_only_the_caps_feature_gets_it);
   tcase_add_test(tc, a_drawing_that_was_there_stays);
+  tcase_add_test(tc, a_drawing_that_was_there_is_blended_where_downstream_does_not_draw);
   tcase_add_test(tc, properties_change_while_playing);
   tcase_add_test(tc, a_new_frame_size_is_drawn_in);
   tcase_add_test(tc, a_downstream_that_begins_to_draw_is_noticed);
