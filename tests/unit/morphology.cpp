@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Masks of bits and their morphology against the definitions and hand-made pictures.
+#include "vision/morphology.h"
+
+#include <check.h>
+
+#include <random>
+#include <string>
+#include <vector>
+
+#include "support/allocations.h"
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+const std::vector<Size> kSizes{{1, 1},   {2, 3},   {33, 35},  {63, 9}, {64, 8},
+                               {65, 17}, {127, 5}, {130, 40}, {1, 50}, {200, 1}};
+
+Image<std::uint8_t> random_mask(Size size, int percent, unsigned seed) {
+  std::mt19937 random(seed);
+  Image<std::uint8_t> mask(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      mask.view().at(x, y) = random() % 100 < static_cast<unsigned>(percent) ? 255 : 0;
+  return mask;
+}
+
+BitMask packed(GrayView mask) {
+  BitMask bits(bit_mask_size(mask.size()));
+  pack(mask, bits.view());
+  return bits;
+}
+
+void assert_same(BitView bits, GrayView expected) {
+  Image<std::uint8_t> got(expected.size());
+  unpack(bits, got.view());
+  for (int y = 0; y < expected.height; ++y) {
+    for (int x = 0; x < expected.width; ++x)
+      ck_assert_msg(got.view().at(x, y) == (expected.at(x, y) ? 255 : 0), "(%d,%d) of %dx%d", x, y,
+                    expected.width, expected.height);
+    ck_assert_uint_eq(bits.row(y)[bits.width - 1] & ~last_word_bits(expected.width), 0);
+  }
+}
+
+// A picture in text: # is set.
+Image<std::uint8_t> drawn(const std::vector<std::string>& rows) {
+  Image<std::uint8_t> mask({static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
+  for (std::size_t y = 0; y < rows.size(); ++y)
+    for (std::size_t x = 0; x < rows[y].size(); ++x)
+      mask.view().row(static_cast<int>(y))[x] = rows[y][x] == '#' ? 255 : 0;
+  return mask;
+}
+
+}  // namespace
+
+START_TEST(a_mask_survives_packing_at_every_size) {
+  for (const Size size : kSizes) {
+    const auto mask = random_mask(size, 50, 3);
+    const auto bits = packed(mask.view());
+    assert_same(bits.view(), mask.view());
+    long set = 0;
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) set += mask.view().at(x, y) != 0;
+    ck_assert_int_eq(count(bits.view()), set);
+  }
+}
+END_TEST
+
+START_TEST(binarise_is_strictly_above_the_threshold) {
+  Image<std::uint8_t> d({67, 1});
+  for (int x = 0; x < 67; ++x) d.view().at(x, 0) = static_cast<std::uint8_t>(x * 3);
+  BitMask bits(bit_mask_size(d.size()));
+  binarise(d.view(), 30, bits.view());  // Eq. 3: 30 is 0, 33 is 1
+  for (int x = 0; x < 67; ++x) ck_assert_int_eq(bits.view().at(x / 64, 0) >> (x % 64) & 1, x > 10);
+  binarise(d.view(), 255, bits.view());
+  ck_assert_int_eq(count(bits.view()), 0);
+}
+END_TEST
+
+START_TEST(set_algebra_follows_the_three_frames) {
+  // One row: D(k) holds what moved from k-1 to k, D(k-1) from k-2 to k-1.
+  const auto now = packed(drawn({"..###.##"}).view()), before = packed(drawn({".###...#"}).view());
+  BitMask out(now.size());
+  intersect(now.view(), before.view(), out.view());  // M(k-1)
+  assert_same(out.view(), drawn({"..##...#"}).view());
+  subtract(now.view(), out.view(), out.view());  // M(k) = D(k) - M(k-1), in place
+  assert_same(out.view(), drawn({"....#.#."}).view());
+  unite(now.view(), before.view(), out.view());
+  assert_same(out.view(), drawn({".####.##"}).view());
+}
+END_TEST
+
+START_TEST(dilation_and_erosion_agree_with_the_definition) {
+  Morphology morphology;
+  for (const Size size : kSizes)
+    for (const int side : {1, 2, 3, 5, 11, 12, 31, 141}) {
+      const auto mask = random_mask(size, side < 4 ? 40 : 5, static_cast<unsigned>(side));
+      Image<std::uint8_t> expected(size);
+      auto bits = packed(mask.view());
+      morphology.dilate(bits.view(), size.width, side);
+      dilate_reference(mask.view(), side, expected.view());
+      assert_same(bits.view(), expected.view());
+      const auto dense = random_mask(size, side < 4 ? 60 : 96, static_cast<unsigned>(side) + 1);
+      bits = packed(dense.view());
+      morphology.erode(bits.view(), size.width, side);
+      erode_reference(dense.view(), side, expected.view());
+      assert_same(bits.view(), expected.view());
+    }
+}
+END_TEST
+
+START_TEST(closing_fills_gaps_and_opening_drops_specks) {
+  Morphology morphology;
+  auto mask = drawn({"#..#....", "........", "........", "........"});
+  morphology.close(mask.view(), 3);  // a gap of two is closed, and the border neither adds nor takes
+  assert_same(packed(mask.view()).view(), drawn({"####....", "........", "........", "........"}).view());
+  mask = drawn({"###.....", "###..#..", "###....."});
+  morphology.open(mask.view(), 3);
+  assert_same(packed(mask.view()).view(), drawn({"###.....", "###.....", "###....."}).view());
+}
+END_TEST
+
+START_TEST(closing_never_removes_and_opening_never_adds) {
+  Morphology morphology;
+  for (const Size size : kSizes) {
+    const auto mask = random_mask(size, 30, 9);
+    auto closed = random_mask(size, 30, 9), opened = random_mask(size, 30, 9);
+    morphology.close(closed.view(), 7);
+    morphology.open(opened.view(), 3);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) {
+        ck_assert(closed.view().at(x, y) >= mask.view().at(x, y));
+        ck_assert(opened.view().at(x, y) <= mask.view().at(x, y));
+      }
+  }
+}
+END_TEST
+
+START_TEST(vote_counts_the_neighbourhood) {
+  Morphology morphology;
+  for (const Size size : kSizes)
+    for (const int least : {1, 4, 5, 9}) {
+      const auto mask = random_mask(size, 60, 21);
+      auto bits = packed(mask.view());
+      morphology.vote(bits.view(), size.width, least);
+      Image<std::uint8_t> expected(size);
+      for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x) {
+          int n = 0;
+          for (int v = std::max(y - 1, 0); v <= std::min(y + 1, size.height - 1); ++v)
+            for (int u = std::max(x - 1, 0); u <= std::min(x + 1, size.width - 1); ++u)
+              n += mask.view().at(u, v) != 0;
+          expected.view().at(x, y) = mask.view().at(x, y) && n >= least ? 255 : 0;
+        }
+      assert_same(bits.view(), expected.view());
+    }
+}
+END_TEST
+
+START_TEST(reconstruction_keeps_the_parts_that_hold_a_seed) {
+  const auto within = drawn({"##..###.", "..#...#.", "#..##.#.", "#.....#."});
+  auto seeds = packed(drawn({"........", "........", "...#....", ".......#"}).view());
+  Morphology morphology;
+  morphology.reconstruct(seeds.view(), packed(within.view()).view(), 8);
+  // 8-connected: (3,2)-(2,1)-(1,0); the seed outside `within` counts for nothing.
+  assert_same(seeds.view(), drawn({"##......", "..#.....", "...##...", "........"}).view());
+}
+END_TEST
+
+START_TEST(reconstruction_agrees_with_flooding_on_random_pictures) {
+  Morphology morphology;
+  for (const Size size : kSizes)
+    for (const int percent : {30, 45, 60}) {
+      const auto within = random_mask(size, percent, 4);
+      const auto seed = random_mask(size, 2, 5);
+      auto bits = packed(seed.view());
+      morphology.reconstruct(bits.view(), packed(within.view()).view(), size.width);
+      Image<std::uint8_t> expected(size);
+      std::vector<std::pair<int, int>> open;
+      const auto visit = [&](int x, int y) {
+        if (x < 0 || y < 0 || x >= size.width || y >= size.height) return;
+        if (!within.view().at(x, y) || expected.view().at(x, y)) return;
+        expected.view().at(x, y) = 255;
+        open.emplace_back(x, y);
+      };
+      for (int y = 0; y < size.height; ++y)
+        for (int x = 0; x < size.width; ++x)
+          if (seed.view().at(x, y)) visit(x, y);
+      while (!open.empty()) {
+        const auto [x, y] = open.back();
+        open.pop_back();
+        for (int v = -1; v <= 1; ++v)
+          for (int u = -1; u <= 1; ++u) visit(x + u, y + v);
+      }
+      assert_same(bits.view(), expected.view());
+    }
+}
+END_TEST
+
+START_TEST(holes_are_filled_and_bays_are_not) {
+  auto bits = packed(drawn({".####.#.#", ".#..#.#.#", ".#..#.###", ".####...."}).view());
+  Morphology morphology;
+  morphology.fill_holes(bits.view(), 9);
+  assert_same(bits.view(), drawn({".####.#.#", ".####.#.#", ".####.###", ".####...."}).view());
+}
+END_TEST
+
+START_TEST(a_second_picture_of_the_same_size_allocates_nothing) {
+  Morphology morphology;
+  auto mask = random_mask({320, 240}, 20, 1);
+  morphology.close(mask.view(), 11);
+  const auto before = allocations();
+  morphology.close(mask.view(), 11);
+  morphology.open(mask.view(), 5);
+  ck_assert_uint_eq(allocations(), before);
+}
+END_TEST
+
+int main() {
+  return run_suite("morphology",
+                   {a_mask_survives_packing_at_every_size, binarise_is_strictly_above_the_threshold,
+                    set_algebra_follows_the_three_frames, dilation_and_erosion_agree_with_the_definition,
+                    closing_fills_gaps_and_opening_drops_specks, closing_never_removes_and_opening_never_adds,
+                    vote_counts_the_neighbourhood, reconstruction_keeps_the_parts_that_hold_a_seed,
+                    reconstruction_agrees_with_flooding_on_random_pictures, holes_are_filled_and_bays_are_not,
+                    a_second_picture_of_the_same_size_allocates_nothing});
+}

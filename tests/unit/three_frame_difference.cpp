@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Differences of three registered frames (Eq. 1, 2) against hand-computed pictures, and the light that is taken out.
+#include "vision/three_frame_difference.h"
+
+#include <check.h>
+
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "support/allocations.h"
+#include "support/pictures.h"
+#include "support/suite.h"
+#include "vision/blur.h"
+#include "vision/light.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+struct Run {
+  explicit Run(Size size, DifferenceOptions options = {}) : current(size), previous(size) {
+    stage.set_options(options);
+  }
+  DifferenceResult feed(const Image<std::uint8_t>& picture, const Transform& motion = {}) {
+    return stage.update(picture.view(), motion, current.view(), previous.view(), histogram);
+  }
+  ThreeFrameDifference stage;
+  Image<std::uint8_t> current, previous;
+  Histogram histogram{};
+};
+
+Image<std::uint8_t> flat(Size size, int value) {
+  Image<std::uint8_t> image(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) image.view().at(x, y) = static_cast<std::uint8_t>(value);
+  return image;
+}
+
+Image<std::uint8_t> with_pixel(Size size, int x, int y, int value) {
+  auto image = flat(size, 100);
+  image.view().at(x, y) = static_cast<std::uint8_t>(value);
+  return image;
+}
+
+DifferenceOptions plain() {
+  DifferenceOptions o;
+  o.blur = 1;
+  o.compensate_light = false;
+  return o;
+}
+
+Image<std::uint8_t> seen(const Scene& scene, Size size, double dx, double dy) {
+  Image<std::uint8_t> image(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      image.view().at(x, y) =
+          static_cast<std::uint8_t>(std::clamp(std::lround(scene.at(x - dx, y - dy)), 0L, 255L));
+  return image;
+}
+
+}  // namespace
+
+START_TEST(differences_of_a_still_camera_are_those_of_equation_2) {
+  Run run({9, 7}, plain());
+  ck_assert_int_eq(run.feed(with_pixel({9, 7}, 2, 3, 180)).frames, 1);
+  ck_assert_uint_eq(std::accumulate(run.histogram.begin(), run.histogram.end(), 0u), 0);
+  ck_assert_int_eq(run.feed(with_pixel({9, 7}, 3, 3, 190)).frames, 2);
+  ck_assert_int_eq(run.current.view().at(2, 3), 80);  // |100 - 180|
+  ck_assert_int_eq(run.current.view().at(3, 3), 90);
+  ck_assert_int_eq(run.previous.view().at(2, 3), 0);  // no frame k-2 yet
+  const auto result = run.feed(with_pixel({9, 7}, 4, 3, 60));
+  ck_assert_int_eq(result.frames, 3);
+  ck_assert_uint_eq(result.valid, 63);
+  for (int y = 0; y < 7; ++y)
+    for (int x = 0; x < 9; ++x) {
+      const int now = y == 3 && x == 3 ? 90 : y == 3 && x == 4 ? 40 : 0;     // |F(k) - F(k-1)|
+      const int before = y == 3 && x == 2 ? 80 : y == 3 && x == 3 ? 90 : 0;  // |F(k-1) - F(k-2)|
+      ck_assert_int_eq(run.current.view().at(x, y), now);
+      ck_assert_int_eq(run.previous.view().at(x, y), before);
+    }
+  ck_assert_uint_eq(run.histogram[0], 61);
+  ck_assert_uint_eq(run.histogram[40], 1);
+  ck_assert_uint_eq(run.histogram[90], 1);
+}
+END_TEST
+
+START_TEST(both_differences_are_in_the_coordinates_of_the_last_frame) {
+  // The world moves 2 right and 1 down a frame; a pixel of the world that lights up in one frame only.
+  const Size size{20, 16};
+  const Transform motion = Transform::translation(2, 1);
+  Run run(size, plain());
+  run.feed(with_pixel(size, 5, 5, 200));          // world point A, seen in k-2 only
+  run.feed(with_pixel(size, 9, 8, 150), motion);  // world point B, in k-1 only
+  run.feed(flat(size, 100), motion);
+  ck_assert_int_eq(run.previous.view().at(9, 7), 100);  // A is at 5 + 2 * 2, 5 + 2 * 1 in frame k
+  ck_assert_int_eq(run.previous.view().at(11, 9), 50);  // B at 9 + 2, 8 + 1
+  ck_assert_int_eq(run.current.view().at(11, 9), 50);
+  ck_assert_int_eq(run.current.view().at(9, 7), 0);
+}
+END_TEST
+
+START_TEST(what_not_all_three_frames_saw_is_no_motion) {
+  const Size size{20, 16};
+  Run run(size, plain());
+  std::mt19937 random(3);
+  DifferenceResult result;
+  for (int k = 0; k < 3; ++k) {
+    auto noise = flat(size, 0);
+    for (int y = 0; y < 16; ++y)
+      for (int x = 0; x < 20; ++x) noise.view().at(x, y) = static_cast<std::uint8_t>(random() % 2 ? 255 : 0);
+    result = run.feed(noise, k ? Transform::translation(3, 0) : Transform{});
+  }
+  ck_assert_uint_eq(result.valid, 14 * 16);  // two moves of 3 columns
+  ck_assert_uint_eq(std::accumulate(run.histogram.begin(), run.histogram.end(), 0u), 14 * 16);
+  for (int y = 0; y < 16; ++y)
+    for (int x = 0; x < 6; ++x) {
+      ck_assert_int_eq(run.current.view().at(x, y), 0);
+      ck_assert_int_eq(run.previous.view().at(x, y), 0);
+    }
+}
+END_TEST
+
+START_TEST(a_moving_camera_over_a_still_scene_shows_little) {
+  const Size size{96, 72};
+  const Scene scene(4);
+  Run run(size);
+  for (int k = 0; k < 4; ++k)
+    run.feed(seen(scene, size, 1.3 * k, -0.6 * k), k ? Transform::translation(1.3, -0.6) : Transform{});
+  std::uint32_t total = 0, small = 0;
+  for (int v = 0; v < 256; ++v) {
+    total += run.histogram[v];
+    if (v <= 4) small += run.histogram[v];
+  }
+  ck_assert(total > 80u * 60u);
+  ck_assert(small > total * 99 / 100);
+}
+END_TEST
+
+START_TEST(exposure_is_taken_out_and_reported) {
+  const Size size{96, 72};
+  const Scene scene(8);
+  const auto bright = seen(scene, size, 0, 0);
+  auto dark = flat(size, 0);
+  for (int y = 0; y < 72; ++y)
+    for (int x = 0; x < 96; ++x)
+      dark.view().at(x, y) = static_cast<std::uint8_t>(std::lround(0.8 * bright.view().at(x, y)));
+  Run run(size);
+  run.feed(bright);
+  run.feed(bright);
+  const auto result = run.feed(dark);
+  const double at_128 = result.gain * 128 + result.offset;
+  ck_assert_double_eq_tol(at_128, 0.8 * 128, 1.0);
+  std::uint32_t large = 0;
+  for (int v = 5; v < 256; ++v) large += run.histogram[v];
+  ck_assert_uint_lt(large, 96 * 72 / 100);
+  Run without(size, plain());
+  without.feed(bright);
+  without.feed(bright);
+  without.feed(dark);
+  large = 0;
+  for (int v = 10; v < 256; ++v) large += without.histogram[v];
+  ck_assert(large > 96u * 72u / 2);  // the test sees the step where nothing takes it out
+}
+END_TEST
+
+START_TEST(bands_of_a_rolling_shutter_are_taken_out_and_an_object_is_not) {
+  const Size size{160, 128};
+  const Scene scene(9, 20);
+  const auto before = seen(scene, size, 0, 0);
+  auto after = seen(scene, size, 0, 0);
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 160; ++x) {
+      const double gain = 1 + 0.08 * std::sin(2 * M_PI * y / 80.0);
+      double v = gain * after.view().at(x, y);
+      if (x >= 40 && x < 70 && y >= 30 && y < 90) v = 230;
+      after.view().at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(v), 0L, 255L));
+    }
+  Run run(size);
+  run.feed(before);
+  run.feed(before);
+  run.feed(after);
+  int missed = 0, wrong = 0;
+  for (int y = 0; y < 128; ++y)
+    for (int x = 0; x < 160; ++x) {
+      const int d = run.current.view().at(x, y);
+      if (x > 40 && x < 69 && y > 30 && y < 89) missed += d < 30;
+      if (x < 38 || x > 72 || y < 28 || y > 92) wrong += d > 6;
+    }
+  ck_assert_int_eq(missed, 0);
+  ck_assert_int_lt(wrong, 20);
+}
+END_TEST
+
+START_TEST(reset_and_a_new_size_begin_again) {
+  Run run({32, 32});
+  run.feed(flat({32, 32}, 50));
+  run.feed(flat({32, 32}, 90));
+  run.stage.reset();
+  ck_assert_int_eq(run.feed(flat({32, 32}, 200)).frames, 1);
+  ck_assert_int_eq(run.feed(flat({32, 32}, 200)).frames, 2);
+  run.current.resize({33, 35});
+  run.previous.resize({33, 35});
+  ck_assert_int_eq(run.feed(flat({33, 35}, 10)).frames, 1);
+}
+END_TEST
+
+START_TEST(a_motion_that_cannot_be_begins_again) {
+  Run run({32, 32});
+  run.feed(flat({32, 32}, 50));
+  run.feed(flat({32, 32}, 90));
+  ck_assert_int_eq(run.feed(flat({32, 32}, 90), Transform{{0, 0, 0, 0, 0, 0, 0, 0, 1}}).frames, 1);
+}
+END_TEST
+
+START_TEST(the_blur_is_the_rounded_mean_of_nine) {
+  std::mt19937 random(6);
+  for (const Size size :
+       {Size{1, 1}, Size{2, 1}, Size{1, 5}, Size{33, 35}, Size{512, 3}, Size{513, 2}, Size{1100, 3}}) {
+    Image<std::uint8_t> in(size), fast(size), slow(size);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x)
+        in.view().at(x, y) = static_cast<std::uint8_t>(random() % 4 ? random() : 255);
+    blur3(in.view(), 3, fast.view());
+    blur3_reference(in.view(), slow.view());
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) ck_assert_int_eq(fast.view().at(x, y), slow.view().at(x, y));
+  }
+}
+END_TEST
+
+START_TEST(steady_state_allocates_nothing) {
+  const Size size{96, 72};
+  const Scene scene(4);
+  Run run(size);
+  std::vector<Image<std::uint8_t>> frames;
+  for (int k = 0; k < 8; ++k) frames.push_back(seen(scene, size, 1.3 * k, 0.2 * k));
+  for (int k = 0; k < 4; ++k) run.feed(frames[k], Transform::translation(1.3, 0.2));
+  const auto before = allocations();
+  for (int k = 4; k < 8; ++k) run.feed(frames[k], Transform::translation(1.3, 0.2));
+  ck_assert_uint_eq(allocations(), before);
+}
+END_TEST
+
+int main() {
+  return run_suite(
+      "three_frame_difference",
+      {differences_of_a_still_camera_are_those_of_equation_2,
+       both_differences_are_in_the_coordinates_of_the_last_frame, what_not_all_three_frames_saw_is_no_motion,
+       a_moving_camera_over_a_still_scene_shows_little, exposure_is_taken_out_and_reported,
+       bands_of_a_rolling_shutter_are_taken_out_and_an_object_is_not, reset_and_a_new_size_begin_again,
+       a_motion_that_cannot_be_begins_again, the_blur_is_the_rounded_mean_of_nine,
+       steady_state_allocates_nothing});
+}
