@@ -70,6 +70,7 @@ struct CameraMotion::State {
   void count_followers(const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
   bool is_still(const MotionFit& fit) const;
+  bool is_known(const MotionFit& fit) const;
   void measure_noise();
   void next_reference(bool keep);
 };
@@ -232,6 +233,15 @@ bool CameraMotion::State::is_still(const MotionFit& fit) const {
   return none.support > 0.9 * fit.support && none.cost - fit.cost < 12 * std::max(1.0, unexplained);
 }
 
+// A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
+// camera that stood needs more to be set in motion.
+bool CameraMotion::State::is_known(const MotionFit& fit) const {
+  std::array<bool, MotionSamples::kRegions> seen{};
+  for (int i = 0; i < samples.count; ++i)
+    if (follows(samples, i, fit.transform)) seen[samples.region[i]] = true;
+  return std::count(seen.begin(), seen.end(), true) >= (still ? 8 : 5);
+}
+
 void CameraMotion::State::measure_noise() {
   std::array<float, MotionSamples::kMax> variances;
   int count = 0;
@@ -262,12 +272,14 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   }
   if (is_cut(shifts[0])) return start_scene();
   measure_noise();
+  const bool known = is_known(fit);
+  if (!known) fit = rate_motion(samples, prior && prior->is_sane(size) ? *prior : Transform{});
   still = options.model == MotionModel::none || is_still(fit);
   if (still) fit = rate_motion(samples, {});
   CameraMotionResult result;
   result.scene_age = ++scene_age;
   result.transform = last = fit.transform;
-  result.confidence = share;
+  result.confidence = known ? share : 0;
   result.residual = fit.residual;
   result.still = still;
   next_reference(still);

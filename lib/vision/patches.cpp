@@ -27,7 +27,9 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
   for (int y = 0; y < down; ++y)  // three planes below one another
     sum_gradient_blocks(picture, kMargin, kMargin + kBlock * y, across, blocks.row(y), blocks.row(down + y),
                         blocks.row(2 * down + y));
-  const int cells_x = std::clamp(size.width / 20, 1, 16), cells_y = std::clamp(size.height / 20, 1, 12);
+  // Cells of 20 pixels; small pictures have smaller ones, so that several parts of them speak.
+  const int cells_x = std::clamp(size.width / 20, std::clamp(size.width / 8, 1, 4), 16);
+  const int cells_y = std::clamp(size.height / 20, std::clamp(size.height / 8, 1, 4), 12);
   const double pixel_noise = noise / (1 << level);
   // Gradients of pure noise have variance 2 noise^2 a pixel (not halved differences).
   const double least = kPatch * kPatch * std::max(16.0, 3 * 2 * pixel_noise * pixel_noise);

@@ -189,6 +189,28 @@ START_TEST(a_person_walking_past_a_standing_camera_leaves_it_still) {
 }
 END_TEST
 
+START_TEST(a_person_before_a_blank_wall_is_not_the_camera) {
+  const Image<std::uint8_t> person = picture(Scene(79, 60));
+  std::mt19937 random(20);
+  CameraMotion camera;
+  for (int k = 0; k < 20; ++k) {
+    Image<std::uint8_t> frame = flat(120, random);
+    paste(person, frame.view(), 60 + 7 * std::max(k - 2, 0), 100, 60, 130);  // stands, then walks
+    const CameraMotionResult r = camera.update(frame.view());
+    ck_assert(r.transform.is_identity());
+    if (k > 2) ck_assert_double_eq(r.confidence, 0);
+    // The head knows better, if it says so.
+    if (k == 19) {
+      Image<std::uint8_t> last = flat(120, random);
+      paste(person, last.view(), 60 + 7 * 18, 100, 60, 130);
+      ck_assert_double_lt(disagreement(camera.update(last.view(), Transform::translation(5, 0)).transform,
+                                       Transform::translation(5, 0)),
+                          1e-9);
+    }
+  }
+}
+END_TEST
+
 START_TEST(a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure) {
   std::mt19937 random(9);
   const Image<std::uint8_t> scene = picture(Scene(9));
@@ -381,6 +403,7 @@ int main() {
                     translation_alone_gives_translation_alone_and_none_gives_identity,
                     objects_over_nearly_half_the_picture_do_not_move_the_camera,
                     a_person_walking_past_a_standing_camera_leaves_it_still,
+                    a_person_before_a_blank_wall_is_not_the_camera,
                     a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure,
                     vibration_of_three_tenths_of_a_pixel_is_not_snapped_away,
                     a_drift_too_slow_to_see_between_two_frames_adds_up,
