@@ -152,6 +152,7 @@ struct SceneMemory::State {
   Image<std::uint8_t> scratch;    // bytes of whatever needs them
   Image<std::uint8_t> tolerance;  // one row of blocks, per pixel
   BitMask weak, strong, moved, valid, absorb;
+  BitMask plain;  // the mask before it is closed: who makes regions of it needs the gaps between people
   Morphology morphology;
   Labeller labeller;
   std::vector<Part> parts;
@@ -196,7 +197,7 @@ void SceneMemory::State::prepare(Size to) {
     for (auto* plane : {&spread, &age, &quiet, &present, &scratch}) plane->resize(to);
     known.resize({to.width + 2 * kMargin, to.height + 2});
     tolerance.resize({to.width, 1});
-    for (auto* bits : {&weak, &strong, &moved, &valid, &absorb}) bits->resize(bit_mask_size(to));
+    for (auto* bits : {&weak, &strong, &moved, &valid, &absorb, &plain}) bits->resize(bit_mask_size(to));
     columns = (to.width + kSceneBlock - 1) / kSceneBlock;
     rows = (to.height + kSceneBlock - 1) / kSceneBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
@@ -449,6 +450,7 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
     }
   }
   const int side = std::max(3, kClosing * size.width / 320 | 1);
+  std::memcpy(plain.view().data, seeds.data, plain.bytes());
   morphology.close(seeds, w, side);
   intersect(seeds, valid.view(), seeds);
   unite(weak.view(), seeds, weak.view());
@@ -497,9 +499,9 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   s.decide(in);
   s.learn();
   if (s.to_frame.is_identity()) {
-    unpack(s.strong.view(), mask);
+    unpack(s.plain.view(), mask);
   } else {
-    map_bits(s.strong.view(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
+    map_bits(s.plain.view(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
     unpack(s.absorb.view(), mask);
   }
 }
