@@ -40,10 +40,8 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstring>
-#include <vector>
 
+#include "canvas.hpp"
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/plane_pool.hpp"
 #include "cerberus/private/video.hpp"
@@ -110,10 +108,10 @@ struct Settings {
 
 const Property<Settings> kProperties[] = {
     property("stage", &Settings::stage, stage_type, "Whose result is shown"),
-    property("gain", &Settings::gain, 0, 255,
-             "Factor of the grey levels shown for the two differences: 1 shows them as they are, 4 makes "
-             "small ones "
-             "visible, 0 shows black"),
+    property(
+        "gain", &Settings::gain, 0, 255,
+        "Factor of the grey levels shown for the two differences: 1 shows them as they are, 4 makes small "
+        "ones visible, 0 shows black"),
     property("weighting", &Settings::weighting, cerberus::plugin::weighting_type,
              "For stage=histogram: the weighting that the curves are drawn for (the one of fuzzythreshold)"),
     property("extremes", &Settings::extremes, cerberus::plugin::extremes_type,
@@ -125,8 +123,7 @@ struct State {  // streaming thread only
   guint warned = 0;  // one bit a stage
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> luma;
-  std::vector<int> columns;  // where the frame's columns lie in a plane `columns_from` wide
-  int columns_from = 0, columns_to = 0;
+  draw::Enlarger enlarger;
 };
 
 struct Private {
@@ -162,106 +159,14 @@ void warn_once(GstBaseTransform* transform, State& state, int stage, const char*
                       ("%s", why));
 }
 
-// Which sample of `from` covers the centre of pixel `to_index` of `to`: nearest neighbour, areas aligned at both ends.
-int nearest(int to_index, int to, int from) {
-  return static_cast<int>((2 * static_cast<gint64>(to_index) + 1) * from / (2 * static_cast<gint64>(to)));
+draw::Canvas canvas_of(GstVideoFrame* frame) {
+  return {static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(frame, 0)),
+          GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0), GST_VIDEO_FRAME_WIDTH(frame), GST_VIDEO_FRAME_HEIGHT(frame),
+          GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8};
 }
 
-const std::vector<int>& columns(State& state, int from, int to) {
-  if (state.columns_from != from || state.columns_to != to) {
-    state.columns.resize(to);
-    for (int x = 0; x < to; ++x) state.columns[x] = nearest(x, to, from);
-    state.columns_from = from, state.columns_to = to;
-  }
-  return state.columns;
-}
-
-// Walks over the frame's rows: write(y, row of the plane, columns) for a new one, again(y) where it repeats.
-template <typename T, typename Write, typename Again>
-void enlarge(State& state, vision::View<const T> plane, Write write, Again again) {
-  const int width = GST_VIDEO_INFO_WIDTH(&state.out), height = GST_VIDEO_INFO_HEIGHT(&state.out);
-  const auto& column = columns(state, plane.width, width);
-  int last = -1;
-  for (int y = 0; y < height; ++y) {
-    const int from = nearest(y, height, plane.height);
-    if (from == last)
-      again(y);
-    else
-      write(y, plane.row(from), column);
-    last = from;
-  }
-}
-
-std::uint8_t* out_row(GstVideoFrame* frame, int y) {
-  return static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(frame, 0)) +
-         static_cast<std::ptrdiff_t>(y) * GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0);
-}
-
-bool is_gray(const GstVideoFrame* frame) {
-  return GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8;
-}
-
-void show_black(GstVideoFrame* frame) {
-  const std::size_t bytes = static_cast<std::size_t>(GST_VIDEO_FRAME_WIDTH(frame)) * (is_gray(frame) ? 1 : 4);
-  for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); ++y) std::memset(out_row(frame, y), 0, bytes);
-}
-
-// What lies between the end of a row and the next one is written to files too: equal pictures, equal bytes.
-void clear_padding(GstVideoFrame* frame) {
-  const std::ptrdiff_t bytes = static_cast<std::ptrdiff_t>(GST_VIDEO_FRAME_WIDTH(frame)) * (is_gray(frame) ? 1 : 4);
-  const std::ptrdiff_t padding = GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0) - bytes;
-  if (padding <= 0) return;
-  for (int y = 0; y < GST_VIDEO_FRAME_HEIGHT(frame); ++y)
-    std::memset(out_row(frame, y) + bytes, 0, static_cast<std::size_t>(padding));
-}
-
-void show_gray(State& state, GstVideoFrame* frame, vision::GrayView plane, double gain) {
-  std::uint8_t level[256];
-  for (int i = 0; i < 256; ++i) level[i] = static_cast<std::uint8_t>(std::min(std::lround(i * gain), 255L));
-  const int width = GST_VIDEO_FRAME_WIDTH(frame);
-  const bool gray = is_gray(frame);
-  const std::size_t bytes = static_cast<std::size_t>(width) * (gray ? 1 : 4);
-  enlarge(
-      state, plane,
-      [&](int y, const std::uint8_t* from, const std::vector<int>& column) {
-        std::uint8_t* to = out_row(frame, y);
-        if (gray) {
-          for (int x = 0; x < width; ++x) to[x] = level[from[column[x]]];
-        } else {
-          auto* words = reinterpret_cast<std::uint32_t*>(to);
-          for (int x = 0; x < width; ++x) words[x] = level[from[column[x]]] * 0x010101u;
-        }
-      },
-      [&](int y) { std::memcpy(out_row(frame, y), out_row(frame, y - 1), bytes); });
-}
-
-std::uint32_t label_color(int label) {
-  if (label == 0) return 0;
-  const draw::Color c = draw::identity_color(static_cast<std::uint32_t>(label));
-  const auto byte = [](double share) { return static_cast<std::uint32_t>(std::lround(255 * share)); };
-  return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
-}
-
-void show_labels(State& state, GstVideoFrame* frame, vision::View<const std::uint16_t> plane) {
-  std::uint32_t colors[8];  // the palette's period is 7; 0 is the background
-  for (int i = 0; i < 8; ++i) colors[i] = label_color(i);
-  const int width = GST_VIDEO_FRAME_WIDTH(frame);
-  enlarge(
-      state, plane,
-      [&](int y, const std::uint16_t* from, const std::vector<int>& column) {
-        auto* to = reinterpret_cast<std::uint32_t*>(out_row(frame, y));
-        for (int x = 0; x < width; ++x) {
-          const int label = from[column[x]];
-          to[x] = colors[label ? 1 + (label - 1) % 7 : 0];
-        }
-      },
-      [&](int y) {
-        std::memcpy(out_row(frame, y), out_row(frame, y - 1), static_cast<std::size_t>(width) * 4);
-      });
-}
-
-void show_histogram(GstVideoFrame* frame, const std::uint32_t* counts, GstBuffer* buffer,
-                    const Settings& settings) {
+bool show_histogram(const std::uint32_t* counts, GstBuffer* buffer, const Settings& settings,
+                    const draw::Canvas& canvas) {
   vision::Histogram histogram;
   std::copy_n(counts, histogram.size(), histogram.begin());
   draw::ThresholdFigure figure;
@@ -275,43 +180,41 @@ void show_histogram(GstVideoFrame* frame, const std::uint32_t* counts, GstBuffer
     figure.fuzzy_threshold = static_cast<int>(std::min(meta->threshold.fuzzy_threshold, 255u));
     figure.noise = meta->threshold.noise;
   }
-  const int width = GST_VIDEO_FRAME_WIDTH(frame), height = GST_VIDEO_FRAME_HEIGHT(frame);
-  draw::SurfacePtr surface(cairo_image_surface_create_for_data(
-      out_row(frame, 0), CAIRO_FORMAT_RGB24, width, height, GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0)));
-  draw::ContextPtr cairo(cairo_create(surface.get()));
-  draw::draw_threshold_figure(cairo.get(), width, height, figure);
+  const draw::SurfacePtr surface(cairo_image_surface_create_for_data(
+      canvas.data, CAIRO_FORMAT_RGB24, canvas.width, canvas.height, static_cast<int>(canvas.stride)));
+  const draw::ContextPtr cairo(cairo_create(surface.get()));
+  draw::draw_threshold_figure(cairo.get(), canvas.width, canvas.height, figure);
   cairo_surface_flush(surface.get());
+  return cairo_status(cairo.get()) == CAIRO_STATUS_SUCCESS;
 }
 
 // The analysis picture, made here as cameramotion makes it.
-bool show_own_luma(State& state, GstBuffer* in, GstVideoFrame* out) {
+bool show_own_luma(State& state, GstBuffer* in, const draw::Canvas& canvas) {
   cerberus::VideoFrame frame(state.in, in, GST_MAP_READ);
   if (!frame) return false;
   const vision::LumaSource source = cerberus::luma_source(*frame.get());
   state.luma.resize(vision::analysis_size({source.width, source.height}, kAnalysisWidth));
   state.scaler.scale(source, state.luma.view());
-  show_gray(state, out, state.luma.view(), 1);
+  state.enlarger.show(state.luma.view(), 1, canvas);
   return true;
 }
 
 // False where there is nothing to show.
-bool show(State& state, const Settings& settings, GstBuffer* in, GstVideoFrame* out) {
+bool show(State& state, const Settings& settings, GstBuffer* in, const draw::Canvas& canvas) {
   const MappedPlane plane = MappedPlane::read(in, plane_kind(settings.stage));
-  if (!plane) return settings.stage == STAGE_LUMA && show_own_luma(state, in, out);
+  if (!plane) return settings.stage == STAGE_LUMA && show_own_luma(state, in, canvas);
   switch (settings.stage) {
     case STAGE_LABELS:
-      show_labels(state, out, plane.view<std::uint16_t>());
+      state.enlarger.show_labels(plane.view<std::uint16_t>(), canvas);
       return true;
     case STAGE_HISTOGRAM:
-      if (plane.width() < 256) return false;
-      show_histogram(out, plane.view<std::uint32_t>().row(0), in, settings);
-      return true;
+      return plane.width() >= 256 && show_histogram(plane.view<std::uint32_t>().row(0), in, settings, canvas);
     case STAGE_DIFFERENCE:
     case STAGE_PREVIOUS_DIFFERENCE:
-      show_gray(state, out, plane.view<std::uint8_t>(), settings.gain);
+      state.enlarger.show(plane.view<std::uint8_t>(), settings.gain, canvas);
       return true;
     default:
-      show_gray(state, out, plane.view<std::uint8_t>(), 1);
+      state.enlarger.show(plane.view<std::uint8_t>(), 1, canvas);
       return true;
   }
 }
@@ -409,11 +312,13 @@ GstFlowReturn cerberus_motion_view_transform(GstBaseTransform* transform, GstBuf
                         ("%" GST_PTR_FORMAT, out));
       return GST_FLOW_ERROR;
     }
-    clear_padding(frame.get());
+    const draw::Canvas canvas = canvas_of(frame.get());
+    const GstMapInfo& map = frame.get()->map[0];
+    canvas.clear_padding(static_cast<std::size_t>(map.data + map.size - canvas.data));
     // A stage changed just now: this frame still has the old format.
-    const bool fits = !is_colour(settings.stage) || !is_gray(frame.get());
-    if (fits && show(state, settings, in, frame.get())) return GST_FLOW_OK;
-    show_black(frame.get());
+    const bool fits = !is_colour(settings.stage) || !canvas.gray;
+    if (fits && show(state, settings, in, canvas)) return GST_FLOW_OK;
+    canvas.fill_black();
     if (fits)
       warn_once(transform, state, settings.stage,
                 settings.stage == STAGE_LUMA

@@ -128,6 +128,20 @@ GST_START_TEST(gain_brightens_the_differences_and_stops_at_white) {
 }
 GST_END_TEST
 
+GST_START_TEST(equal_pictures_are_equal_bytes_between_the_rows_too) {
+  const std::string caps = caps_string("I420", 33, 35);  // rows of 36 bytes
+  Harness harness = started("motionview stage=mask", caps);
+  for (int k = 0; k < 4; ++k) {
+    GstBuffer* in = frame(info_of(caps), k);
+    add_plane<guint8>(in, CERBERUS_PLANE_MASK, 33, 35, checkers);
+    const Picture p = shown(harness.get(), in);
+    fail_unless_equals_int(p.info.stride[0], 36);
+    for (int y = 0; y < 35; ++y)
+      for (int x = 33; x < 36; ++x) fail_unless_equals_int(p.data[y * 36 + x], 0);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(every_label_has_a_colour_and_the_background_none) {
   const std::string caps = caps_string("I420", 64, 32);
   Harness harness = started("motionview stage=labels", caps);
@@ -370,6 +384,7 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, the_mask_is_enlarged_by_nearest_neighbour);
   tcase_add_test(tc, grey_stages_show_their_plane_in_grey_and_in_colour_pixels);
   tcase_add_test(tc, gain_brightens_the_differences_and_stops_at_white);
+  tcase_add_test(tc, equal_pictures_are_equal_bytes_between_the_rows_too);
   tcase_add_test(tc, every_label_has_a_colour_and_the_background_none);
   tcase_add_test(tc, the_histogram_shows_the_threshold_where_it_is);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
