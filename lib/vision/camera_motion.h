@@ -17,10 +17,12 @@ struct CameraMotionOptions {
 };
 
 struct CameraMotionResult {
-  Transform transform;    // frame k-1 to frame k, analysis pixels; identity at the first frame of a scene
-  double confidence = 0;  // share of the picture's usable patches that follow the transform, 0..1
-  double residual = 0;    // RMS distance of those patches from it, analysis pixels
-  bool still = false;     // the camera stands: the transform is exactly identity
+  Transform transform;  // frame k-1 to frame k, analysis pixels; identity at the first frame of a scene
+  // Share of the picture's usable patches that follow the transform, 0..1; 0 where too few parts of the picture say
+  // anything (the transform then is the prior's, or identity).
+  double confidence = 0;
+  double residual = 0;  // RMS distance of those patches from it, analysis pixels
+  bool still = false;   // the camera stands: the transform is exactly identity
   int scene_age = 0;  // frames of this scene seen, this one included: 1 = no predecessor (start, reset, cut)
 };
 
