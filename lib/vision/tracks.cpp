@@ -210,7 +210,7 @@ void Tracker::State::give_birth() {
 // Somebody who ceased to move, rather than left or went behind something: well seen before, slower and slower until
 // nothing moved any more, in the open and with nobody else in the way.
 bool Tracker::State::has_stopped(const Body& b) const {
-  if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.3 || b.leaving) return false;
+  if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.45 || b.age - b.unseen < 1.5 || b.leaving) return false;
   const Box box = b.box();
   return std::none_of(bodies.begin(), bodies.end(), [&](const Body& o) {
     return &o != &b && o.id != 0 && o.region >= 0 && overlap_area(o.box(), box) > 0.2 * box.area();
