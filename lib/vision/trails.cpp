@@ -37,6 +37,10 @@ void Trails::update(double time, double duration, const Transform& motion, Size 
     trail->points.push_back({mark.position, time});
   }
   std::erase_if(trails_, [](const Trail& t) { return t.points.empty(); });
+  while (trails_.size() > kMostTrails)
+    trails_.erase(std::min_element(trails_.begin(), trails_.end(), [](const Trail& a, const Trail& b) {
+      return a.points.back().time < b.points.back().time;
+    }));
 }
 
 }  // namespace cerberus::vision

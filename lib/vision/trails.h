@@ -30,6 +30,8 @@ class Trails {
 
   // Points a trail at most: beyond it the oldest go, however long the duration.
   static constexpr std::size_t kMostPoints = 1024;
+  // Trails at most: beyond it those go whose last point is oldest.
+  static constexpr std::size_t kMostTrails = 256;
   // A point that went this many picture widths astray (camera transforms add up) is dropped with all before
   // it.
   static constexpr double kFarAway = 4;

@@ -89,6 +89,18 @@ START_TEST(a_trail_is_bounded_whatever_the_duration) {
 }
 END_TEST
 
+START_TEST(long_gone_trails_make_room_for_new_ones) {
+  Trails trails;
+  const int most = static_cast<int>(Trails::kMostTrails);
+  for (int k = 0; k < most + 10; ++k) {
+    const TrailMark mark{static_cast<std::uint32_t>(k + 1), {1, 1}};
+    trails.update(k, 1e9, {}, kFrame, {&mark, 1});
+  }
+  ck_assert_int_eq(trails.trails().size(), most);
+  for (const auto& trail : trails.trails()) ck_assert_int_gt(trail.id, 10);
+}
+END_TEST
+
 int main() {
   Suite* suite = suite_create("trails");
   TCase* tc = tcase_create("trails");
@@ -99,6 +111,7 @@ int main() {
   tcase_add_test(tc, points_carried_far_away_are_dropped_with_all_before_them);
   tcase_add_test(tc, not_a_number_leaves_no_mark);
   tcase_add_test(tc, a_trail_is_bounded_whatever_the_duration);
+  tcase_add_test(tc, long_gone_trails_make_room_for_new_ones);
   suite_add_tcase(suite, tc);
   SRunner* runner = srunner_create(suite);
   srunner_run_all(runner, CK_NORMAL);
