@@ -16,8 +16,7 @@ struct Weights {
       : red(fixed(c.red)), green(fixed(c.green)), blue(fixed(c.blue)), alpha(fixed(c.offset / 255)) {}
   static std::int32_t fixed(double weight) { return static_cast<std::int32_t>(std::lround(weight * 65536)); }
 
-  // Sums of bytes over n pixels to n x 65536 times the component. 16 pixels: below 2^16 x 255 x 16 x 4 < 2^31 for
-  // weights up to 1, which is what colour matrices have; int64 for those that have not.
+  // Sums of bytes over n pixels to n x 65536 times the component; 64 bits hold any weights and 16 pixels.
   std::int64_t operator()(std::int64_t r, std::int64_t g, std::int64_t b, std::int64_t a) const {
     return red * r + green * g + blue * b + alpha * a;
   }
