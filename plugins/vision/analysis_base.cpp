@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cmath>
 #include <iterator>
+#include <string>
 
 #include "history.hpp"
 #include "properties.hpp"
@@ -44,9 +45,10 @@ struct AnalysisPrivate {
   bool planes_wanted = false;
   std::atomic<bool> ask_for_planes = true;  // whether somebody downstream wants them; set by any thread
   History history;
-  guint64 number = 0;   // analysed frames
-  guint scene_age = 0;  // of the last frame's camera motion, 0 = it had none
-  bool warned = false;  // about an unusable buffer, once a stream
+  guint64 number = 0;     // analysed frames
+  guint scene_age = 0;    // of the last frame's camera motion, 0 = it had none
+  std::string complaint;  // about the caps, once said
+  bool warned = false;    // about an unusable buffer, once a stream
 };
 
 namespace {
@@ -136,35 +138,44 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
   });
 }
 
-gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
-  AnalysisPrivate& priv = priv_of(trans);
-  GstVideoInfo info;
-  if (!gst_video_info_from_caps(&info, incaps)) {
-    GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION, ("These video caps cannot be used."),
-                      ("%" GST_PTR_FORMAT, incaps));
-    return FALSE;
-  }
-  const int width = GST_VIDEO_INFO_WIDTH(&info), height = GST_VIDEO_INFO_HEIGHT(&info);
-  if (GST_VIDEO_INFO_IS_INTERLACED(&info)) {
-    GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION,
-                      ("Interlaced video cannot be analysed: put the element `deinterlace` in front."),
-                      ("%" GST_PTR_FORMAT, incaps));
-    return FALSE;
-  }
-  if (width < kMinimumSide || height < kMinimumSide || width > kMaximumWidth || height > kMaximumHeight) {
-    GST_ELEMENT_ERROR(
-        trans, CORE, NEGOTIATION,
-        ("Frames of %d x %d pixels cannot be analysed, only %d x %d to %d x %d: put `videoscale` in front.",
-         width, height, kMinimumSide, kMinimumSide, kMaximumWidth, kMaximumHeight),
-        ("%" GST_PTR_FORMAT, incaps));
-    return FALSE;
-  }
+void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
   if (!priv.have_info || !gst_video_info_is_equal(&priv.info, &info)) priv.history.drop();
   priv.info = info;
   priv.have_info = true;
   priv.warned = false;
   priv.ask_for_planes = true;
-  return TRUE;
+}
+
+// What is wrong with these caps, for the user; empty for nothing.
+std::string complaint(const GstCaps* caps, GstVideoInfo* info) {
+  if (!gst_video_info_from_caps(info, caps)) return "These video caps cannot be used.";
+  if (GST_VIDEO_INFO_IS_INTERLACED(info))
+    return "Interlaced video cannot be analysed: put the element `deinterlace` in front.";
+  const int width = GST_VIDEO_INFO_WIDTH(info), height = GST_VIDEO_INFO_HEIGHT(info);
+  if (width >= kMinimumSide && height >= kMinimumSide && width <= kMaximumWidth && height <= kMaximumHeight)
+    return {};
+  const auto size = [](int w, int h) { return std::to_string(w) + " x " + std::to_string(h); };
+  return "Frames of " + size(width, height) + " pixels cannot be analysed, only " +
+         size(kMinimumSide, kMinimumSide) + " to " + size(kMaximumWidth, kMaximumHeight) +
+         ": put `videoscale` in front.";
+}
+
+gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
+  AnalysisPrivate& priv = priv_of(trans);
+  GstVideoInfo info;
+  return guarded(trans, FALSE, [&]() -> gboolean {
+    const std::string wrong = complaint(incaps, &info);
+    if (!wrong.empty()) {
+      // Upstream tries again with every frame: one message a failure.
+      if (wrong != priv.complaint)
+        GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION, ("%s", wrong.c_str()), ("%" GST_PTR_FORMAT, incaps));
+      priv.complaint = wrong;
+      return FALSE;
+    }
+    priv.complaint.clear();
+    accept(priv, info);
+    return TRUE;
+  });
 }
 
 gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
@@ -197,6 +208,7 @@ gboolean start(GstBaseTransform* trans) {
     priv.have_info = false;
     priv.warned = false;
     priv.scene_age = 0;
+    priv.complaint.clear();
     return priv.analyser->start();
   });
 }

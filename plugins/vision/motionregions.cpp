@@ -135,8 +135,7 @@ bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
     apply(*changed);
     if (const std::string wrong = stage->zones().parse(changed->zones); !wrong.empty())
-      GST_ELEMENT_WARNING(base, LIBRARY, SETTINGS, ("The new zones are not used: %s", wrong.c_str()),
-                          (nullptr));
+      GST_ELEMENT_WARNING(base, LIBRARY, SETTINGS, ("%s", wrong.c_str()), ("the zones that were there stay"));
   }
   stage->luma().set_analysis_width(cerberus_analysis_width(base));
   const bool keep_planes = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);

@@ -110,13 +110,13 @@ GST_END_TEST
 void expect_refusal(const char* element, const std::string& caps, const char* word, const char* other_word) {
   Line line(element, caps);
   GstBuffer* in = gst_buffer_new_allocate(nullptr, 4096 * 2304 * 2, nullptr);
+  fail_unless_equals_int(gst_harness_push(line.harness, gst_buffer_ref(in)), GST_FLOW_NOT_NEGOTIATED);
+  line.push_caps(caps);  // upstream tries again
   fail_unless_equals_int(gst_harness_push(line.harness, in), GST_FLOW_NOT_NEGOTIATED);
   const std::vector<std::string> errors = line.messages(GST_MESSAGE_ERROR);
-  fail_unless(!errors.empty());
+  fail_unless_equals_int(errors.size(), 1);
   fail_unless(errors[0].find(word) != std::string::npos, "%s", errors[0].c_str());
   fail_unless(errors[0].find(other_word) != std::string::npos, "%s", errors[0].c_str());
-  for (std::size_t i = 1; i < errors.size(); ++i)
-    fail_unless(errors[i] == errors[0], "a second, different error: %s", errors[i].c_str());
 }
 
 GST_START_TEST(sizes_beyond_are_refused_with_the_size_and_the_remedy) {
