@@ -11,7 +11,7 @@ constexpr double kSpread =
     0.10;  // people and their blobs differ by this share of the height (standard deviation)
 constexpr double kAgree = 2.0;       // samples this many deviations from the line agree with it
 constexpr double kShare = 0.5;       // of the samples that must
-constexpr double kUncertain = 0.12;  // relative standard error of the line beyond which it says nothing
+constexpr double kUncertain = 0.16;  // relative standard error of the line beyond which it says nothing
 constexpr double kRepeats = 4.0;     // neighbouring frames show the same person: so many samples count as one
 constexpr int kGuesses = 40;         // pairs of samples tried as lines
 constexpr double kSteepest = 4.0;    // body height / mounting height: a camera at 0.45 m
