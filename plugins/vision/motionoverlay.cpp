@@ -249,8 +249,10 @@ void read_objects(State& state, GstBuffer* buffer) {
                   : region.state == CERBERUS_REGION_COASTED ? draw::Look::coasted
                                                             : draw::Look::seen;
     state.objects.push_back(object);
-    // People and cars stand on the ground: the trail is where their feet were.
-    if (object.id)
+    // People and cars stand on the ground: the trail is where their feet were, as long as those are in the picture.
+    const bool cut = region.x < 1 || region.x + region.width > GST_VIDEO_INFO_WIDTH(&state.info) - 1 ||
+                     region.y + region.height > GST_VIDEO_INFO_HEIGHT(&state.info) - 1;
+    if (object.id && !cut)
       state.marks.push_back({object.id, {region.x + region.width / 2, region.y + region.height}});
   }
   g_ptr_array_unref(regions);

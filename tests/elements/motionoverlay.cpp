@@ -3,6 +3,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <tuple>
 
 #include "outputs.h"
 
@@ -404,6 +405,17 @@ GST_START_TEST(trails_are_forgotten_where_the_scene_begins_anew) {
 }
 GST_END_TEST
 
+// Cut off at the frame's edge, the lower edge of a box is not where the object stands.
+GST_START_TEST(a_trail_does_not_follow_the_edge_of_the_frame) {
+  for (const auto& [x, y, dx, dy] : {std::tuple{50, 200, 10, 0}, {0, 50, 0, 10}, {300, 50, 0, 10}}) {
+    Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
+    for (int k = 0; k < 5; ++k)
+      fail_unless(
+          drawn(h.get(), with_region(info_of(kCaps), region(1, x + k * dx, y + k * dy, 20, 40), k)).empty());
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(time_that_runs_backwards_begins_a_trail_anew) {
   Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
   drawn(h.get(), with_region(info_of(kCaps), region(1, 50, 50, 20, 40), 10));
@@ -549,6 +561,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, a_trail_lies_on_the_scene_while_the_camera_turns);
   tcase_add_test(tc, a_trail_is_as_old_as_trail_time);
   tcase_add_test(tc, trails_are_forgotten_where_the_scene_begins_anew);
+  tcase_add_test(tc, a_trail_does_not_follow_the_edge_of_the_frame);
   tcase_add_test(tc, time_that_runs_backwards_begins_a_trail_anew);
   tcase_add_test(tc, frames_without_time_stamps_have_trails_too);
   tc = tcase_create("stream");
