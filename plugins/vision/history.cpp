@@ -23,17 +23,18 @@ History::Step History::next(GstClockTime time, double nominal) {
       if (usual_ <= 0) usual_ = nominal > 0 ? nominal : seconds;
       if (seconds <= std::max(kGapSeconds, kGapFactor * usual_)) {
         step = {false, seconds, previous_};
-        usual_ += kSmoothing * (seconds - usual_);
+        // Faster is believed at once, so that a long distance learnt from a gap does not excuse the next gap.
+        usual_ = seconds * kGapFactor < usual_ ? seconds : usual_ + kSmoothing * (seconds - usual_);
+      } else {
+        usual_ = seconds;  // caps that promise more frames than come must not make every frame a gap
       }
     } else {
       // A stream without timestamps, or one that loses them, is taken as evenly spaced: nothing says otherwise.
       step = {false, nominal, previous_};
     }
   }
-  if (step.fresh) {
-    newest_ = GST_CLOCK_TIME_NONE;
-    usual_ = 0;  // the rhythm of the new scene is learnt anew
-  }
+  if (!any_ || backwards) usual_ = 0;  // the rhythm of the new scene is learnt anew
+  if (step.fresh) newest_ = GST_CLOCK_TIME_NONE;
   any_ = true;
   previous_ = time;
   if (timed) newest_ = time;

@@ -22,4 +22,4 @@ static gboolean plugin_init(GstPlugin* plugin) {
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberusvision,
                   "Finds moving people in video from a camera that may turn itself", plugin_init,
-                  PLUGIN_VERSION, "LGPL", PACKAGE, "https://cerberus.invalid/")
+                  PLUGIN_VERSION, "LGPL", PACKAGE, "Unknown package origin")

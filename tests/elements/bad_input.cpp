@@ -77,6 +77,31 @@ GST_START_TEST(a_stride_far_above_the_width_changes_nothing) {
 }
 GST_END_TEST
 
+// As decoders of padded pictures make them: the meta is larger than the caps, the picture its top left part.
+GST_START_TEST(a_video_meta_larger_than_the_caps_changes_nothing) {
+  World world, larger;
+  larger.width = 352;
+  larger.height = 288;
+  Line plain(kDetect), padded(kDetect);
+  for (int k = 0; k < 20; ++k) {
+    GstBuffer* in = sized(static_cast<gsize>(larger.width) * larger.height, k * scene::kStep);
+    const std::vector<std::uint8_t> grey = world.picture(k);
+    for (int y = 0; y < world.height; ++y)
+      gst_buffer_fill(in, static_cast<gsize>(y) * larger.width,
+                      &grey[static_cast<std::size_t>(y) * world.width], world.width);
+    gst_buffer_add_video_meta(in, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_FORMAT_GRAY8, larger.width,
+                              larger.height);
+    GstBuffer* a = plain.through(scene::grey_buffer(world, k));
+    GstBuffer* b = padded.through(in);
+    const std::string expected = Regions(a).text(), found = Regions(b).text();
+    ck_assert_str_eq(found.c_str(), expected.c_str());
+    if (k == 19) fail_unless(!expected.empty());
+    gst_buffer_unref(a);
+    gst_buffer_unref(b);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(a_video_meta_that_does_not_fit_is_an_unusable_buffer) {
   const World world;
   struct Lie {
@@ -253,6 +278,7 @@ Suite* bad_input_suite() {
   tcase_add_loop_test(tests, empty_and_truncated_buffers_pass_with_one_warning_and_detection_goes_on, 0,
                       kElementCount);
   tcase_add_test(tests, a_stride_far_above_the_width_changes_nothing);
+  tcase_add_test(tests, a_video_meta_larger_than_the_caps_changes_nothing);
   tcase_add_test(tests, a_video_meta_that_does_not_fit_is_an_unusable_buffer);
   tcase_add_test(tests, missing_timestamps_are_no_obstacle);
   tcase_add_test(tests, timestamps_that_run_backwards_all_the_time_give_no_region);

@@ -52,6 +52,21 @@ GST_START_TEST(a_gap_is_judged_by_the_rhythm_of_the_stream) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_stream_slower_than_its_caps_is_not_blind) {
+  History history;
+  history.next(0, kNominal);
+  fail_unless(history.next(GST_SECOND, kNominal).fresh);
+  for (int k = 2; k < 10; ++k) fail_if(history.next(k * GST_SECOND, kNominal).fresh);
+  // and a single gap does not excuse the next one
+  History other;
+  GstClockTime time = 0;
+  other.next(time, kNominal);
+  fail_unless(other.next(time += 5 * GST_SECOND, kNominal).fresh);
+  fail_if(other.next(time += scene::kStep, kNominal).fresh);
+  fail_unless(other.next(time += 5 * GST_SECOND, kNominal).fresh);
+}
+GST_END_TEST
+
 GST_START_TEST(missing_timestamps_are_taken_as_evenly_spaced) {
   History history;
   fail_unless(history.next(GST_CLOCK_TIME_NONE, kNominal).fresh);
@@ -209,6 +224,7 @@ Suite* history_suite() {
   tcase_add_test(tests, frames_in_order_follow_each_other);
   tcase_add_test(tests, a_dropped_history_and_time_running_backwards_begin_a_scene);
   tcase_add_test(tests, a_gap_is_judged_by_the_rhythm_of_the_stream);
+  tcase_add_test(tests, a_stream_slower_than_its_caps_is_not_blind);
   tcase_add_test(tests, missing_timestamps_are_taken_as_evenly_spaced);
   tcase_add_loop_test(tests, nothing_is_published_until_three_frames_of_a_new_scene_were_seen, 0,
                       BREAKS * static_cast<int>(G_N_ELEMENTS(kLines)));

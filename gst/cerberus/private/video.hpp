@@ -21,7 +21,10 @@ class VideoFrame {
     if (meta && !describes(*meta, info)) return;
     mapped_ = gst_video_frame_map(
         &frame_, &info, buffer, static_cast<GstMapFlags>(int{flags} | int{GST_VIDEO_FRAME_MAP_FLAG_NO_REF}));
-    if (mapped_ && !fits()) unmap();
+    if (!mapped_) return;
+    GST_VIDEO_INFO_WIDTH(&frame_.info) = GST_VIDEO_INFO_WIDTH(&info);
+    GST_VIDEO_INFO_HEIGHT(&frame_.info) = GST_VIDEO_INFO_HEIGHT(&info);
+    if (!fits()) unmap();
   }
   ~VideoFrame() { unmap(); }
   VideoFrame(const VideoFrame&) = delete;
@@ -36,12 +39,12 @@ class VideoFrame {
   }
 
  private:
-  // gst_video_frame_map() answers a video meta of another format or size with a critical, which ends programs
-  // that make criticals fatal.
+  // gst_video_frame_map() answers a video meta of another format or a smaller size with a critical, which ends
+  // programs that make criticals fatal. A larger size is a decoder's: the picture is the top left part of it.
   static bool describes(const GstVideoMeta& meta, const GstVideoInfo& info) {
     return meta.format == GST_VIDEO_INFO_FORMAT(&info) && meta.n_planes == GST_VIDEO_INFO_N_PLANES(&info) &&
-           meta.width == static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info)) &&
-           meta.height == static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
+           meta.width >= static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info)) &&
+           meta.height >= static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
   }
   // It never compares the strides and offsets of a meta with the memory behind them: every sample of every
   // component must lie inside.
