@@ -35,8 +35,8 @@ void HeightPrior::advance(const Transform& motion, Size picture) {
   mean_variance_ *= scale * scale;
 }
 
-void HeightPrior::learn(double foot, double height, double area) {
-  samples_[next_] = {static_cast<float>(foot), static_cast<float>(height), static_cast<float>(area)};
+void HeightPrior::learn(double foot, double height, double weight) {
+  samples_[next_] = {static_cast<float>(foot), static_cast<float>(height), static_cast<float>(weight)};
   next_ = (next_ + 1) % kCapacity;
   count_ = std::min(count_ + 1, kCapacity);
   // Every sample counts at the start; later the line hardly changes.
@@ -59,7 +59,7 @@ void HeightPrior::fit() {
     for (std::size_t i = 0; i < count_; ++i) {
       const double expected = offset + slope * samples_[i].foot;
       const double e = (samples_[i].height - expected) / (kSpread * expected);
-      if (expected > 0 && std::abs(e) < kAgree) sum += samples_[i].area * (1 - e * e / (kAgree * kAgree));
+      if (expected > 0 && std::abs(e) < kAgree) sum += samples_[i].weight * (1 - e * e / (kAgree * kAgree));
     }
     return sum;
   };
@@ -75,15 +75,15 @@ void HeightPrior::fit() {
     const double offset = a.height - slope * a.foot, sum = agreement(slope, offset);
     if (sum > best) best = sum, best_slope = slope, best_offset = offset;
   }
-  double n = 0, area = 0, all_area = 0, sy = 0, sh = 0, syy = 0, syh = 0;
+  double n = 0, agreed = 0, all = 0, sy = 0, sh = 0, syy = 0, syh = 0;
   for (std::size_t i = 0; i < count_; ++i) {
-    all_area += samples_[i].area;
+    all += samples_[i].weight;
     const double y = samples_[i].foot, h = samples_[i].height, expected = best_offset + best_slope * y;
     if (!(expected > 0) || std::abs(h - expected) > kAgree * kSpread * expected) continue;
-    area += samples_[i].area;
+    agreed += samples_[i].weight;
     n += 1, sy += y, sh += h, syy += y * y, syh += y * h;
   }
-  if (n < kLeast || area < kShare * all_area) return;
+  if (n < kLeast || agreed < kShare * all) return;
   mean_foot_ = sy / n;
   mean_height_ = sh / n;
   const double variance = kSpread * mean_height_ * kSpread * mean_height_ * kRepeats;

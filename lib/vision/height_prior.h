@@ -23,9 +23,9 @@ class HeightPrior {
   // scales them).
   void advance(const Transform& motion, Size picture);
 
-  // Evidence of this frame: a blob that looks like one person. Pixels; `foot` is the lower edge of its box. `area` is
-  // its weight: where wholes and pieces contradict each other, wholes are larger.
-  void learn(double foot, double height, double area = 1);
+  // Evidence of this frame: a blob that looks like one person. Pixels; `foot` is the lower edge of its box. Its height is a
+  // fair weight: where wholes and pieces contradict each other, wholes are larger.
+  void learn(double foot, double height, double weight = 1);
 
   // Expected height of a person whose feet are at this row, 0 while unknown: before enough blobs agree, and at rows
   // too far from all that was seen to say.
@@ -35,7 +35,7 @@ class HeightPrior {
 
  private:
   struct Sample {
-    float foot = 0, height = 0, area = 0;
+    float foot = 0, height = 0, weight = 0;
   };
   static constexpr std::size_t kCapacity = 256;
   static constexpr std::size_t kLeast = 8;  // agreeing samples before anything is said

@@ -140,7 +140,7 @@ void RegionFinder::State::learn(const Transform& motion) {
       break;
     }
     const double walked = std::hypot(walker.foot.x - walker.from.x, walker.foot.y - walker.from.y);
-    if (walker.looks >= 3 && walked > 0.15 * h) prior.learn(c.bottom, h, c.area);
+    if (walker.looks >= 3 && walked > 0.15 * h) prior.learn(c.bottom, h, h);
     walkers.push_back(walker);
   }
 }
