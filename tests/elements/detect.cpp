@@ -241,6 +241,27 @@ GST_START_TEST(tracks_have_identity_velocity_age_and_state) {
 }
 GST_END_TEST
 
+// That regions were looked for is known behind tees, queues, converters and scalers, even where none was left.
+GST_START_TEST(what_motionregions_dropped_is_not_found_again_downstream) {
+  static const char* const between[] = {"identity", "queue", "videoconvert ! video/x-raw,format=RGBx",
+                                        "videoscale ! video/x-raw,width=160,height=120"};
+  const auto found = [&](const char* properties) {
+    guint count = 0;
+    Line line(std::string("motionregions ") + properties + " ! " + between[__i__] +
+              " ! motiontrack confirm-time=0");
+    for (int k = 0; k < 30; ++k) {
+      gst_harness_push(line.harness, scene::grey_buffer(World{}, k));
+      GstBuffer* out = gst_harness_pull(line.harness);
+      count += Regions(out).size();
+      gst_buffer_unref(out);
+    }
+    return count;
+  };
+  fail_unless(found("") > 0);
+  fail_unless_equals_int(found("minimum-width=300"), 0);
+}
+GST_END_TEST
+
 // ---- messages
 
 // A figure that leaves the picture: frames 0 to 59 with it, the empty wall afterwards.
@@ -558,6 +579,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
   tcase_add_test(tests, limits_of_speed_drop_what_is_outside);
   tcase_add_test(tests, tracks_have_identity_velocity_age_and_state);
+  tcase_add_loop_test(tests, what_motionregions_dropped_is_not_found_again_downstream, 0, 4);
   tcase_add_test(tests, motion_starts_once_and_ends_after_hold_time);
   tcase_add_test(tests, motion_ends_with_the_stream_and_with_the_element_but_once);
   tcase_add_test(tests, an_empty_scene_posts_nothing);
