@@ -22,16 +22,21 @@ namespace cerberus::vision {
 namespace {
 
 constexpr int kMargin = 16;  // columns beside the compared memory, so that kernels may look beyond the border
-constexpr double kFarthest =
-    12;                      // pixels a corner may be off by turning and zooming before the memory is redrawn
-constexpr double kRedo = 1;  // pixels: a smaller correction is used from the next frame on
+// Pixels a corner may be off by turning and zooming before the memory is redrawn.
+constexpr double kFarthest = 12;
+constexpr double kRedo = 1;   // pixels: a smaller correction is used from the next frame on
 constexpr int kStanding = 5;  // frames after which a standing camera's memory is redrawn to fit it exactly
 constexpr double kLeastSigma = 0.7;    // grey levels: rounding alone makes 0.3, compression more
 constexpr int kClosing = 9;            // side of the closing at 320 columns
 constexpr int kHold = 250;             // frames something that stopped is kept
 constexpr int kNow = 3, kLately = 25;  // frames
-constexpr double kAgreement =
-    0.3;  // share of pixels a change of light has to explain, else it is another scene
+constexpr double kStillShare = 0.1, kMovingShare = 0.25,
+                 kFreshShare = 0.05;  // of a part that must have moved
+constexpr int kGlance = 8;           // frames a moving camera's memory is defended against what does not move
+constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
+constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
+// Share of pixels a change of light has to explain, else it is another scene.
+constexpr double kAgreement = 0.3;
 
 // Moves the content; what comes in is `fill`.
 template <typename T>
@@ -370,6 +375,8 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   CompareLimits limits;
   for (int c = 0; c < kBrightness; ++c)
     limits.noise[c] = static_cast<std::uint8_t>(std::min(std::lround(16 * sigma[c]), 255L));
+  // Mean of |e| of normal noise: 0.8 sigma.
+  const double noise = 0.8 * std::max(in.sigma * std::sqrt(0.5), kLeastSigma);
   const auto k = known_view();
   CompareRow row;
   row.width = size.width;
@@ -377,18 +384,26 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   for (int y = 0; y < size.height; ++y) {
     const int by = y / kSceneBlock;
     if (y % kSceneBlock == 0) {
-      // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its mean, since
-      // the tail counts. One pixel at least: interpolation and aliasing make that much.
+      // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its mean, since the tail counts. One pixel at least: interpolation and
+      // aliasing make that much. Whether the memory is still good there is judged by what noise alone does not explain.
       for (int bx = 0; bx < columns; ++bx) {
-        double ge = 0, gg = 0;
+        double ge = 0, gg = 0, n = 0;
         for (int v = std::max(by - 1, 0); v <= std::min(by + 1, rows - 1); ++v)
           for (int u = std::max(bx - 1, 0); u <= std::min(bx + 1, columns - 1); ++u) {
             const BlockSums& b = blocks[static_cast<std::size_t>(v) * columns + u];
             ge += b.ge;
             gg += b.gg;
+            n += b.n;
           }
         // Gradients are doubled: |e| / g = 2 ge / gg.
         const double error = in.still ? 1 : std::clamp(2 * 2 * ge / (gg + 400), 1.0, 3.0);
+        // sum of g <= sqrt(n x sum of g^2)
+        const double beyond_noise = 2 * 2 * (ge - noise * std::sqrt(gg * n)) / (gg + 400);
+        if (!in.still && beyond_noise > kUnreliable) {
+          for (int v = y; v < std::min(y + kSceneBlock, size.height); ++v)
+            for (int u = bx * kSceneBlock; u < std::min((bx + 1) * kSceneBlock, size.width); ++u)
+              age.view().at(u, v) = std::min(age.view().at(u, v), kRelearn);
+        }
         std::fill_n(tolerance.view().data + bx * kSceneBlock,
                     std::min(kSceneBlock, size.width - bx * kSceneBlock),
                     static_cast<std::uint8_t>(std::lround(16 * error)));
@@ -440,12 +455,15 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
     const double area = components[r.component].area;
     const bool object = part.n > 0 && part.frame > 1.3 * part.memory + 2 * part.n;
     const bool ghost = part.n > 0 && part.memory > 1.3 * part.frame + 2 * part.n;
-    const double share = in.still ? 0.1 : 0.25;
-    const bool active = part.now >= std::max(4.0, share * area);
-    if (active || (!ghost && part.lately >= std::max(4.0, share * area))) continue;
+    const double share = in.still ? kStillShare : kMovingShare;
+    const bool moving = part.lately >= std::max(4.0, share * area);
+    const bool fresh = part.now >= std::max(4.0, kFreshShare * area);
+    if (moving && (fresh || !ghost)) continue;  // a ghost needs its owner's motion, or it goes at once
     if (!(in.still && object)) clear_bits(seeds.row(r.row), r.first, r.end);
     for (int x = r.first; x < r.end; ++x) {
-      const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
+      const int patience = in.still && object
+                               ? kHold
+                               : std::clamp<int>(age.view().at(x, r.row), 4, in.still ? kHold : kGlance);
       if (ghost || quiet.view().at(x, r.row) > patience) set_bits(absorb.view().row(r.row), x, x + 1);
     }
   }

@@ -40,7 +40,8 @@ class SceneMemory {
   SceneMemory& operator=(SceneMemory&&) noexcept;
 
   void reset();
-  // mask := 0 or 255 a pixel, closed. (Used as scratch before that.)
+  // mask := 0 or 255 a pixel, not closed: who makes regions of it closes it, and needs the gaps between people before
+  // that. (Used as scratch first.)
   void update(const SceneMemoryInput& input, MutableGrayView mask);
   std::size_t bytes() const;
 
