@@ -4,6 +4,7 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -57,12 +58,12 @@ MappedPlane LumaStage::make(Frame& frame) {
   return read(frame.buffer, CERBERUS_PLANE_LUMA);
 }
 
-bool DifferenceStage::ensure(Frame& frame) {
+bool DifferenceStage::ensure(Frame& frame, vision::Size size) {
   const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
   const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
-  if (histogram.width() * sizeof(std::uint32_t) >= sizeof(HistogramRecord) && current &&
-      current.size() == previous.size())
+  if (histogram.width() * sizeof(std::uint32_t) >= sizeof(HistogramRecord) && current.size() == size &&
+      previous.size() == size)
     return true;
   return run(frame);
 }
@@ -99,12 +100,11 @@ bool MaskStage::ensure(Frame& frame) {
 
 bool MaskStage::run(Frame& frame) {
   const MappedPlane picture = before_.luma().obtain(frame);
-  if (!picture || !before_.ensure(frame)) return false;
+  if (!picture || !before_.ensure(frame, picture.size())) return false;
   const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
   const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
   const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const vision::Size size = picture.size();
-  if (current.size() != size || previous.size() != size) return false;
   if (sequence_.broken_by(frame) || size != size_) area_.reset();
   size_ = size;
 
@@ -121,9 +121,9 @@ bool MaskStage::run(Frame& frame) {
   input.current = current.view<std::uint8_t>();
   input.previous = previous.view<std::uint8_t>();
   input.histogram = &counts;
-  input.frames = record.frames;
-  input.gain = record.gain;
-  input.offset = record.offset;
+  input.frames = std::clamp(record.frames, 0, 3);
+  input.gain = std::isfinite(record.gain) ? record.gain : 1;
+  input.offset = std::isfinite(record.offset) ? record.offset : 0;
 
   MappedPlane mask = acquire(pool_, size);
   const vision::MovingAreaResult result = area_.update(input, mask.writable<std::uint8_t>());

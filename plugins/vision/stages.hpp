@@ -48,8 +48,8 @@ class DifferenceStage {
  public:
   LumaStage& luma() { return luma_; }
   void set_options(const vision::DifferenceOptions& options) { difference_.set_options(options); }
-  // Both return false for an unusable buffer.
-  bool ensure(Frame& frame);
+  // Both return false for an unusable buffer. ensure() takes what is on the buffer if it has this size.
+  bool ensure(Frame& frame, vision::Size size);
   bool run(Frame& frame);
   std::size_t bytes() const { return difference_.bytes(); }
 
