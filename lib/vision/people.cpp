@@ -19,7 +19,8 @@ constexpr int kRowsOfABody = 40;      // cells a body is cut into at least, if i
 constexpr int kUnit = 64;
 constexpr int kCoreMoving = 178, kCoreStill = -65;
 constexpr int kSideMoving = 139, kSideStill = -25;
-constexpr int kPrice = 26;  // 0.4 for each cell of the box; a whole person brings 1 to 1.7
+constexpr int kPrice = 26;       // 0.4 for each cell of the box; a whole person brings 1 to 1.7
+constexpr double kSolid = 0.88;  // share of the boxes that moves: people leave more gaps
 constexpr std::size_t kMostPeople = 12;
 constexpr int kMostCells = 65535;  // both packed sums stay below 65536
 
@@ -199,6 +200,21 @@ void PeopleFinder::settle() {
   }
 }
 
+// Share of the cells in the chosen boxes that move.
+double PeopleFinder::filled() {
+  left_ = cells_;
+  int moving = 0, all = 0;
+  for (const Candidate& c : chosen_)
+    for (int r = c.top; r < c.bottom; ++r)
+      for (int x = c.left; x < c.right; ++x) {
+        std::uint32_t& cell = left_[static_cast<std::size_t>(r) * columns_ + x];
+        all += cell != 0;
+        moving += (cell & kMoving) != 0;
+        cell = 0;
+      }
+  return all > 0 ? static_cast<double>(moving) / all : 0;
+}
+
 std::span<const Person> PeopleFinder::find(BitView pixels, Size picture, const Window& window,
                                            const HeightPrior& prior) {
   people_.clear();
@@ -213,6 +229,8 @@ std::span<const Person> PeopleFinder::find(BitView pixels, Size picture, const W
     if (explain(true) <= best_first) std::swap(chosen_, other_);
     settle();
   }
+  // Three or more without a gap between heads, arms and legs are not people but a block: a car, a door.
+  if (chosen_.size() > 2 && filled() > kSolid) return people_;
   for (const Candidate& c : chosen_)
     people_.push_back(
         {{static_cast<double>(x0_ + c.left * step_), static_cast<double>(y0_ + c.top * step_),

@@ -55,6 +55,7 @@ class PeopleFinder {
   void take(const Candidate& candidate);
   int explain(bool from_the_left);
   void settle();
+  double filled();
 
   Size picture_;
   const HeightPrior* prior_ = nullptr;

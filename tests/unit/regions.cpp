@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/regions.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "support/allocations.h"
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr Size kSize{320, 240};
+
+struct Picture {
+  Image<std::uint8_t> mask{kSize};
+  Image<std::uint16_t> labels{kSize};
+
+  void clear() { mask.fill_bytes(0); }
+  void fill(double left, double top, double right, double bottom) {
+    for (int y = std::max(0, static_cast<int>(top)); y < std::min(kSize.height, static_cast<int>(bottom));
+         ++y)
+      for (int x = std::max(0, static_cast<int>(left)); x < std::min(kSize.width, static_cast<int>(right));
+           ++x)
+        mask.view().at(x, y) = 255;
+  }
+  // A person is a quarter as tall as the row of its feet.
+  Box person(double middle, double foot) {
+    const double h = foot / 4, w = 0.36 * h, top = foot - h;
+    fill(middle - 0.2 * w, top, middle + 0.2 * w, top + 0.15 * h);
+    fill(middle - 0.5 * w, top + 0.15 * h, middle + 0.5 * w, top + 0.55 * h);
+    fill(middle - 0.4 * w, top + 0.55 * h, middle - 0.08 * w, foot);
+    fill(middle + 0.08 * w, top + 0.55 * h, middle + 0.4 * w, foot);
+    return {middle - w / 2, top, w, h};
+  }
+  std::span<const Region> find(RegionFinder& finder, const Transform& motion = {}) {
+    return finder.update(mask.view(), labels.view(), motion);
+  }
+  long count() const {
+    long n = 0;
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x) n += mask.view().at(x, y) != 0;
+    return n;
+  }
+};
+
+// Single people walk by at several distances, until the finder knows how tall they are.
+void let_people_walk_by(RegionFinder& finder) {
+  Picture picture;
+  for (int k = 0; k < 60; ++k) {
+    picture.clear();
+    picture.person(30 + 4 * k, 110);
+    picture.person(290 - 4 * k, 170);
+    picture.person(60 + 3 * k, 230);
+    picture.find(finder);
+  }
+}
+
+int matched(std::span<const Region> regions, const std::vector<Box>& expected, double least) {
+  int n = 0;
+  for (const Box& e : expected)
+    n += std::any_of(regions.begin(), regions.end(),
+                     [&](const Region& r) { return intersection_over_union(r.box, e) >= least; });
+  return n;
+}
+
+}  // namespace
+
+START_TEST(overlap_of_boxes_as_computed_by_hand) {
+  const Box a{0, 0, 4, 2};
+  ck_assert_double_eq_tol(intersection_over_union(a, a), 1, 1e-12);
+  ck_assert_double_eq_tol(intersection_over_union(a, {2, 1, 4, 2}), 2.0 / 14, 1e-12);
+  ck_assert_double_eq(intersection_over_union(a, {4, 0, 1, 1}), 0);
+  ck_assert_double_eq(intersection_over_union({}, {}), 0);
+}
+END_TEST
+
+START_TEST(nothing_moving_gives_no_region_and_an_empty_label_picture) {
+  RegionFinder finder;
+  Picture picture;
+  picture.labels.fill_bytes(0xff);
+  ck_assert_uint_eq(picture.find(finder).size(), 0);
+  ck_assert_int_eq(picture.labels.view().at(160, 120), 0);
+}
+END_TEST
+
+START_TEST(before_anything_is_known_components_are_regions_with_box_area_and_label) {
+  RegionFinder finder;
+  Picture picture;
+  picture.fill(20, 30, 40, 60);
+  picture.fill(200, 100, 260, 130);
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 2);
+  ck_assert_double_eq(regions[0].box.x, 20);
+  ck_assert_double_eq(regions[0].box.y, 30);
+  ck_assert_double_eq(regions[0].box.width, 20);
+  ck_assert_double_eq(regions[0].box.height, 30);
+  ck_assert_double_eq(regions[0].area, 600);
+  ck_assert_double_eq_tol(regions[0].centroid.x, 29.5, 1e-9);
+  ck_assert_double_lt(regions[0].confidence, 0.5);
+  ck_assert_int_eq(regions[0].label, 1);
+  ck_assert_int_eq(picture.labels.view().at(25, 35), 1);
+  ck_assert_int_eq(picture.labels.view().at(230, 110), 2);
+}
+END_TEST
+
+START_TEST(the_mask_comes_back_closed_and_without_specks) {
+  RegionFinder finder;
+  Picture picture;
+  picture.fill(20, 30, 40, 60);
+  picture.fill(44, 30, 64, 60);      // a gap of 4 columns closes
+  picture.fill(200, 100, 203, 103);  // 9 pixels: a speck
+  picture.find(finder);
+  ck_assert_int_eq(picture.mask.view().at(42, 45), 255);
+  ck_assert_int_eq(picture.mask.view().at(201, 101), 0);
+  ck_assert_int_eq(picture.count(), 44 * 30);
+}
+END_TEST
+
+START_TEST(a_low_shadow_on_the_floor_is_not_part_of_the_box) {
+  RegionFinder finder;
+  Picture picture;
+  picture.fill(100, 60, 115, 110);
+  picture.fill(70, 105, 100, 110);
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert_double_eq_tol(regions[0].box.x, 100, 4);
+  ck_assert_double_eq(regions[0].box.right(), 115);
+}
+END_TEST
+
+START_TEST(two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen) {
+  RegionFinder finder;
+  Picture picture;
+  std::vector<Box> pair = {picture.person(150, 170), picture.person(166, 171)};
+  ck_assert_uint_eq(picture.find(finder).size(), 1);
+  let_people_walk_by(finder);
+  picture.clear();
+  pair = {picture.person(150, 170), picture.person(166, 171)};
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 2);
+  ck_assert_int_eq(matched(regions, pair, 0.6), 2);
+  for (const Region& r : regions) ck_assert_double_ge(r.confidence, 0.5);
+}
+END_TEST
+
+START_TEST(head_and_legs_without_a_trunk_are_one_person_once_people_are_known) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  const Box box = picture.person(150, 200);
+  for (int y = 160; y < 178; ++y)
+    for (int x = 0; x < 320; ++x) picture.mask.view().at(x, y) = 0;
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert_int_eq(matched(regions, {box}, 0.6), 1);
+}
+END_TEST
+
+START_TEST(a_car_among_people_is_not_cut_into_people_nor_lost) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.fill(60, 120, 220, 220);  // taller than two people are
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert_double_eq(regions[0].box.width, 160);
+  ck_assert_double_lt(regions[0].confidence, 0.5);
+}
+END_TEST
+
+START_TEST(a_dog_among_people_is_a_small_region) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.fill(100, 188, 118, 200);
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert_double_eq_tol(regions[0].box.width, 18, 1);
+  ck_assert_double_eq_tol(regions[0].box.height, 12, 1);
+}
+END_TEST
+
+START_TEST(what_never_walks_teaches_nothing) {
+  RegionFinder finder;
+  Picture picture;
+  for (int k = 0; k < 100; ++k) {
+    picture.clear();
+    picture.person(100, 170);
+    picture.person(200, 120);
+    picture.find(finder);
+  }
+  picture.clear();
+  picture.person(150, 170);
+  picture.person(166, 171);
+  ck_assert_uint_eq(picture.find(finder).size(), 1);
+}
+END_TEST
+
+START_TEST(people_off_and_reset_give_plain_components_again) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.person(150, 170);
+  picture.person(166, 171);
+  finder.set_options({.people = false});
+  ck_assert_uint_eq(picture.find(finder).size(), 1);
+  finder.set_options({});
+  finder.reset();
+  picture.clear();
+  picture.person(150, 170);
+  picture.person(166, 171);
+  ck_assert_uint_eq(picture.find(finder).size(), 1);
+}
+END_TEST
+
+START_TEST(what_was_learnt_follows_a_tilting_camera) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  // The camera tilts down by 40 rows: feet at 170 are now at 130, as tall as before.
+  for (int k = 0; k < 8; ++k) {
+    picture.clear();
+    picture.find(finder, Transform::translation(0, -5));
+  }
+  Picture upright;
+  const Box a = upright.person(150, 170), b = upright.person(166, 171);
+  picture.clear();
+  for (int y = 0; y < 200; ++y)
+    for (int x = 0; x < 320; ++x) picture.mask.view().at(x, y) = upright.mask.view().at(x, y + 40);
+  const auto regions = picture.find(finder, {});
+  ck_assert_uint_eq(regions.size(), 2);
+  ck_assert_int_eq(
+      matched(regions, {{a.x, a.y - 40, a.width, a.height}, {b.x, b.y - 40, b.width, b.height}}, 0.6), 2);
+}
+END_TEST
+
+START_TEST(a_mask_full_of_clutter_or_wholly_set_is_survived) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.mask.fill_bytes(255);
+  ck_assert_uint_le(picture.find(finder).size(), 1);
+  finder.set_options({.closing = 1, .minimum_area = 1});
+  picture.clear();
+  for (int y = 0; y < 240; y += 2)
+    for (int x = 0; x < 320; x += 2) picture.mask.view().at(x, y) = 255;
+  ck_assert_uint_eq(picture.find(finder).size(), 160 * 120);
+}
+END_TEST
+
+START_TEST(the_steady_state_allocates_nothing) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  let_people_walk_by(finder);
+  Picture picture;
+  const auto scene = [&](int k) {
+    picture.clear();
+    for (int i = 0; i < 4; ++i) picture.person(100 + 16 * i + k, 170 + i);
+    picture.person(30 + k, 200);
+    picture.find(finder);
+  };
+  for (int k = 0; k < 20; ++k) scene(k);
+  const std::size_t before = cerberus::tests::allocations();
+  for (int k = 0; k < 20; ++k) scene(k);
+  ck_assert_uint_eq(cerberus::tests::allocations(), before);
+  ck_assert_uint_lt(finder.bytes(), 6 * 320 * 240);
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("regions");
+  TCase* tests = tcase_create("regions");
+  tcase_add_test(tests, overlap_of_boxes_as_computed_by_hand);
+  tcase_add_test(tests, nothing_moving_gives_no_region_and_an_empty_label_picture);
+  tcase_add_test(tests, before_anything_is_known_components_are_regions_with_box_area_and_label);
+  tcase_add_test(tests, the_mask_comes_back_closed_and_without_specks);
+  tcase_add_test(tests, a_low_shadow_on_the_floor_is_not_part_of_the_box);
+  tcase_add_test(tests, two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen);
+  tcase_add_test(tests, head_and_legs_without_a_trunk_are_one_person_once_people_are_known);
+  tcase_add_test(tests, a_car_among_people_is_not_cut_into_people_nor_lost);
+  tcase_add_test(tests, a_dog_among_people_is_a_small_region);
+  tcase_add_test(tests, what_never_walks_teaches_nothing);
+  tcase_add_test(tests, people_off_and_reset_give_plain_components_again);
+  tcase_add_test(tests, what_was_learnt_follows_a_tilting_camera);
+  tcase_add_test(tests, a_mask_full_of_clutter_or_wholly_set_is_survived);
+  tcase_add_test(tests, the_steady_state_allocates_nothing);
+  suite_add_tcase(suite, tests);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
