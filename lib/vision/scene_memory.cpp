@@ -32,7 +32,6 @@ constexpr int kHold = 250;             // frames something that stopped is kept
 constexpr int kNow = 3, kLately = 25;  // frames
 constexpr double kStillShare = 0.1, kMovingShare = 0.25,
                  kFreshShare = 0.05;  // of a part that must have moved
-constexpr int kGlance = 8;           // frames a moving camera's memory is defended against what does not move
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
 constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
 // Share of pixels a change of light has to explain, else it is another scene.
@@ -455,15 +454,14 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
     const double area = components[r.component].area;
     const bool object = part.n > 0 && part.frame > 1.3 * part.memory + 2 * part.n;
     const bool ghost = part.n > 0 && part.memory > 1.3 * part.frame + 2 * part.n;
+    // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
     const double share = in.still ? kStillShare : kMovingShare;
-    const bool moving = part.lately >= std::max(4.0, share * area);
+    const bool moving = part.lately >= std::max(4.0, std::min<double>(share * area, part.n));
     const bool fresh = part.now >= std::max(4.0, kFreshShare * area);
     if (moving && (fresh || !ghost)) continue;  // a ghost needs its owner's motion, or it goes at once
     if (!(in.still && object)) clear_bits(seeds.row(r.row), r.first, r.end);
     for (int x = r.first; x < r.end; ++x) {
-      const int patience = in.still && object
-                               ? kHold
-                               : std::clamp<int>(age.view().at(x, r.row), 4, in.still ? kHold : kGlance);
+      const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
       if (ghost || quiet.view().at(x, r.row) > patience) set_bits(absorb.view().row(r.row), x, x + 1);
     }
   }
