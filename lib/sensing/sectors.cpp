@@ -29,18 +29,28 @@ Geometry::Geometry() {
 }
 
 bool Geometry::set(std::span<const double> bearings, double field_of_view) {
-  if (bearings.empty() || bearings.size() > kMaxSensors) return false;
-  if (!(field_of_view > 0) || !(field_of_view <= kTurn + kTouch)) return false;
+  std::array<double, kMaxSensors> fields{};
+  fields.fill(field_of_view);
+  return set(bearings, std::span(fields).first(std::min(bearings.size(), fields.size())));
+}
+
+bool Geometry::set(std::span<const double> bearings, std::span<const double> fields_of_view) {
+  if (bearings.empty() || bearings.size() > kMaxSensors || fields_of_view.size() != bearings.size())
+    return false;
+  const auto sees = [](double field) { return field > 0 && field <= kTurn + kTouch; };  // false for NaN
+  if (!std::ranges::all_of(fields_of_view, sees)) return false;
   if (!std::ranges::all_of(bearings, [](double bearing) { return std::isfinite(bearing); })) return false;
-  bearings_ = {};
+  bearings_ = fields_of_view_ = {};
   std::ranges::transform(bearings, bearings_.begin(), wrap);
+  std::ranges::transform(fields_of_view, fields_of_view_.begin(),
+                         [](double field) { return std::min(field, kTurn); });
   count_ = static_cast<int>(bearings.size());
-  field_of_view_ = std::min(field_of_view, kTurn);
   return true;
 }
 
 Arc Geometry::sector(int sensor) const {
-  return {wrap(bearing(sensor) - field_of_view_ / 2), field_of_view_};
+  const double width = field_of_view(sensor);
+  return {wrap(bearing(sensor) - width / 2), width};
 }
 
 // A part of the intersection begins where some sector begins, and there only: so each sector's start is tried.

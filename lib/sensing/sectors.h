@@ -53,17 +53,19 @@ class Geometry {
   // bearings: radians, 1 .. 16 of them, finite (wrapped here). field_of_view: radians, in (0, 2 pi].
   // Returns false and changes nothing when they are not that.
   bool set(std::span<const double> bearings, double field_of_view);
+  // The same for sensors of different make: as many fields of view as bearings.
+  bool set(std::span<const double> bearings, std::span<const double> fields_of_view);
 
   int count() const { return count_; }
   double bearing(int sensor) const { return bearings_[static_cast<unsigned>(sensor)]; }
-  double field_of_view() const { return field_of_view_; }
+  double field_of_view(int sensor) const { return fields_of_view_[static_cast<unsigned>(sensor)]; }
   Arc sector(int sensor) const;
   bool operator==(const Geometry&) const = default;
 
  private:
   std::array<double, kMaxSensors> bearings_{};
   int count_ = 0;
-  double field_of_view_ = 0;
+  std::array<double, kMaxSensors> fields_of_view_{};
 };
 
 // Arcs may meet in several places (two of 180 degrees, back to back, meet in two points).

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What one PIR pad said, by running time, and how far that goes. Knows no GStreamer; not thread-safe.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "sensing/sectors.h"
+#include "timeline.hpp"
+
+namespace cerberus::plugin {
+
+// What caps say of the sensors of one pad.
+struct SensorArray {
+  int count = 0;
+  std::array<double, sensing::kMaxSensors> bearings{};  // radians
+  double field_of_view = 0;                             // radians
+};
+
+// The sensors of one pad at one time.
+struct Reading {
+  std::shared_ptr<const SensorArray> array;               // nullptr: not known yet, nothing to tell
+  std::array<std::uint8_t, sensing::kMaxSensors> values;  // as in the PIR caps: 0, 1, 2 = invalid
+  bool operator==(const Reading&) const = default;
+};
+
+class SensorHistory {
+ public:
+  // The sensors of the readings to come; those that are there keep theirs.
+  void set_array(std::shared_ptr<const SensorArray> array) { array_ = std::move(array); }
+  // A reading of `time`: the truth from then on. Values that are missing are invalid.
+  void append(Time time, std::span<const std::uint8_t> values);
+  // Nothing changes before `until` (a GAP event).
+  void cover(Time until);
+  // Nothing more will come (EOS). append() and cover() take it back.
+  void end() { ended_ = true; }
+  bool ended() const { return ended_; }
+  void clear();
+
+  // True when no reading that matters at `time` can still come (from a stream in order).
+  bool covers(Time time) const { return ended_ || covered_ > time; }
+  // The newest reading not later than `time`; all invalid where there is none.
+  Reading at(Time time) const;
+  void forget_before(Time time) { readings_.forget_before(time); }
+  // Where a reading without a time belongs: as late as the newest one.
+  Time newest() const { return readings_.last() ? readings_.last()->time : Time::zero(); }
+  std::size_t size() const { return readings_.size(); }
+
+ private:
+  Timeline<Reading> readings_;
+  std::shared_ptr<const SensorArray> array_;
+  Time covered_ = Time::min();  // everything before it is known
+  bool ended_ = false;
+};
+
+}  // namespace cerberus::plugin

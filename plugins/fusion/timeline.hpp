@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What was said when: entries in the order of their running time, for "the newest one not later than the frame".
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <deque>
+#include <utility>
+
+namespace cerberus::plugin {
+
+using Time = std::chrono::nanoseconds;
+
+template <typename T>
+class Timeline {
+ public:
+  struct Entry {
+    Time time;
+    T value;
+  };
+  // Entries that come late by less than this are put where they belong. By more: running time began anew (a seek of a
+  // live pipeline), and what seems to lie in the future is of the time before.
+  static constexpr Time kDisorder = std::chrono::seconds(1);
+  // Nobody reads what was said so often; the oldest entry goes.
+  static constexpr std::size_t kMost = 4096;
+
+  // Of two entries of one time the later call counts.
+  void insert(Time time, T value) {
+    if (!entries_.empty() && time < entries_.back().time - kDisorder) entries_.clear();
+    const auto after = std::upper_bound(entries_.begin(), entries_.end(), time,
+                                        [](Time t, const Entry& entry) { return t < entry.time; });
+    if (after != entries_.begin() && std::prev(after)->time == time) {
+      std::prev(after)->value = std::move(value);
+      return;
+    }
+    entries_.insert(after, Entry{time, std::move(value)});
+    if (entries_.size() > kMost) entries_.pop_front();
+  }
+
+  // The newest entry not later than `time`; nullptr: there is none.
+  const T* at(Time time) const {
+    const auto after = std::upper_bound(entries_.begin(), entries_.end(), time,
+                                        [](Time t, const Entry& entry) { return t < entry.time; });
+    return after == entries_.begin() ? nullptr : &std::prev(after)->value;
+  }
+  const T* first() const { return entries_.empty() ? nullptr : &entries_.front().value; }
+  // The last entry, or one that many before it.
+  const Entry* last(std::size_t before = 0) const {
+    return entries_.size() > before ? &entries_[entries_.size() - 1 - before] : nullptr;
+  }
+  // The last entry was said again: later.
+  void postpone_last(Time time) { entries_.back().time = time; }
+
+  // Drops what no frame from `time` on can ask for.
+  void forget_before(Time time) {
+    while (entries_.size() > 1 && entries_[1].time <= time) entries_.pop_front();
+  }
+  void clear() { entries_.clear(); }
+  std::size_t size() const { return entries_.size(); }
+
+ private:
+  std::deque<Entry> entries_;
+};
+
+}  // namespace cerberus::plugin
