@@ -19,7 +19,6 @@ void Chain::begin(const LumaSource& frame, double seconds) {
   current_.resize(size);
   previous_.resize(size);
   mask_.resize(size);
-  labels_.resize(size);
 }
 
 void Chain::run_stage(std::size_t stage) {
@@ -56,7 +55,7 @@ void Chain::run_stage(std::size_t stage) {
                                   mask_.view());
       break;
     case 4: {
-      found_ = regions_.update(mask_.view(), labels_.view(), motion_result_.transform);
+      found_ = regions_.update(mask_.view(), {}, motion_result_.transform);
       const double sx = static_cast<double>(frame.width) / luma_.size().width;
       const double sy = static_cast<double>(frame.height) / luma_.size().height;
       scaled_.assign(found_.begin(), found_.end());
@@ -81,7 +80,7 @@ void Chain::step(const LumaSource& frame, double seconds) {
 
 std::size_t Chain::bytes() const {
   return motion_.bytes() + difference_.bytes() + area_.bytes() + regions_.bytes() + luma_.bytes() +
-         current_.bytes() + previous_.bytes() + mask_.bytes() + labels_.bytes();
+         current_.bytes() + previous_.bytes() + mask_.bytes();
 }
 
 }  // namespace cerberus::tests

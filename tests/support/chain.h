@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The whole vision chain without GStreamer, stage by stage, with the elements' defaults: for tests and
+// The whole vision chain without GStreamer, stage by stage, with the elements' defaults (no label picture: nobody asks
+// for it): for tests and
 // benches of lib.
 #pragma once
 
@@ -46,7 +47,6 @@ class Chain {
   vision::RegionFinder regions_;
   vision::Tracker tracker_;
   vision::Image<std::uint8_t> luma_, current_, previous_, mask_;
-  vision::Image<std::uint16_t> labels_;
   vision::Histogram histogram_{};
   vision::CameraMotionResult motion_result_;
   vision::DifferenceResult difference_result_;
