@@ -34,8 +34,6 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
   const Size size = mask.size();
   if (size != s.size) {
     s.size = size;
-    s.now.resize(bit_mask_size(size));
-    s.before.resize(bit_mask_size(size));
   }
   MovingAreaResult result;
   result.sigma = noise_sigma(*input.histogram);
@@ -53,9 +51,11 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
     for (int y = 0; y < mask.height; ++y) std::fill_n(mask.row(y), mask.width, std::uint8_t{0});
     return result;
   }
+  s.now.resize(bit_mask_size(size));
   // Eq. 3 with one Th for both differences, then M(k-1) and M(k).
   binarise(input.current, result.threshold, s.now.view());
   if (s.options.area != Area::all) {
+    s.before.resize(bit_mask_size(size));
     binarise(input.previous, result.threshold, s.before.view());
     if (s.options.area == Area::common)
       intersect(s.now.view(), s.before.view(), s.now.view());

@@ -48,7 +48,8 @@ class MovingArea {
 
   void set_options(const MovingAreaOptions& options);
   void reset();
-  // mask := 0 or 255 a pixel.
+  // mask := 0 or 255 a pixel. Not closed: RegionFinder closes it, once it has seen the gaps between people. With the
+  // memory, `area` does not count (what differs from the scene is where the object is now).
   MovingAreaResult update(const MovingAreaInput& input, MutableGrayView mask);
   std::size_t bytes() const;
 
