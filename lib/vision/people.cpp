@@ -14,7 +14,7 @@ namespace cerberus::vision {
 namespace {
 
 constexpr double kBodyAspect = 0.36;  // width of a walking body / its height
-constexpr int kRowsOfABody = 40;      // cells a body is cut into at least, if it has as many pixels
+constexpr int kRowsOfABody = 24;      // cells a body is cut into at least, if it has as many pixels
 // 64 ln(p / kOutside) and 64 ln((1 - p) / (1 - kOutside)) with kCore = .65, kSide = .35, kOutside = .04
 constexpr int kUnit = 64;
 constexpr int kCoreMoving = 178, kCoreStill = -65;
@@ -76,11 +76,12 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
   return true;
 }
 
-void PeopleFinder::add_up() {
+// From this row of cells down; what is above has not changed.
+void PeopleFinder::add_up(int from) {
   const int pitch = columns_ + 1;
   sums_.resize(static_cast<std::size_t>(pitch) * (rows_ + 1));
   std::fill_n(sums_.begin(), pitch, 0u);
-  for (int r = 0; r < rows_; ++r) {
+  for (int r = from; r < rows_; ++r) {
     const std::uint32_t* cells = &left_[static_cast<std::size_t>(r) * columns_];
     const std::uint32_t* above = &sums_[static_cast<std::size_t>(r) * pitch];
     std::uint32_t* here = &sums_[static_cast<std::size_t>(r + 1) * pitch];
@@ -150,17 +151,21 @@ void PeopleFinder::take(const Candidate& c) {
   for (int r = c.top; r < c.bottom; ++r)
     std::fill(&left_[static_cast<std::size_t>(r) * columns_ + c.left],
               &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
-  add_up();
+  add_up(c.top);
 }
 
 // Takes people one after another, the best first or always the leftmost one, and returns what is gained in all.
 int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
   left_ = cells_;
-  add_up();
+  add_up(0);
   const int width = std::max(1, shapes_[std::min(window_.bottom, rows_)].width);
   int total = 0, edge = window_.left;
+  const auto [height, body] = shapes_[std::min(window_.bottom, rows_)];
   while (chosen_.size() < kMostPeople) {
+    // What is left may be too little to pay for a third of a person.
+    const int moving = sum(0, 0, columns_, rows_) & 0xffff;
+    if (moving * kCoreMoving < kPrice * height * body / 3) break;
     Candidate c;
     if (from_the_left) {
       // The leftmost column that still holds something decides; a person's edge is near it.
@@ -193,7 +198,7 @@ void PeopleFinder::settle() {
       for (int r = c.top; r < c.bottom; ++r)
         std::fill(&left_[static_cast<std::size_t>(r) * columns_ + c.left],
                   &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
-    add_up();
+    add_up(0);
     const int w = old.right - old.left;
     const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1, -1);
     if (c.score > 0) chosen_.push_back(c);

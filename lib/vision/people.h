@@ -49,7 +49,7 @@ class PeopleFinder {
   };
 
   bool lay_grid(BitView pixels, const Window& window);
-  void add_up();
+  void add_up(int from);
   std::uint32_t sum(int left, int top, int right, int bottom) const;
   Candidate best(int from, int to, int anchor);
   void take(const Candidate& candidate);
