@@ -11,7 +11,6 @@ namespace cerberus::vision {
 
 struct MovingArea::State {
   MovingAreaOptions options;
-  Size size;
   BitMask now, before;
   Morphology morphology;
   SceneMemory memory;
@@ -32,9 +31,6 @@ void MovingArea::reset() {
 MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayView mask) {
   State& s = *state_;
   const Size size = mask.size();
-  if (size != s.size) {
-    s.size = size;
-  }
   MovingAreaResult result;
   result.sigma = noise_sigma(*input.histogram);
   result.fuzzy_threshold = fuzzy_threshold(*input.histogram, s.options.threshold);
