@@ -30,7 +30,7 @@
  * |[
  * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion ! fakesink
  * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion name=fusion ! fakesink \
- *     fakesrc num-buffers=1 sizetype=fixed sizemax=3 format=time do-timestamp=true ! \
+ *     fakesrc num-buffers=1 sizetype=fixed sizemax=3 filltype=zero format=time do-timestamp=true ! \
  *     "application/x-pir,format=presence,sensors=3,bearings=<0.0,-120.0,120.0>,field-of-view=120.0" ! fusion.pir_0
  * ]|
  *

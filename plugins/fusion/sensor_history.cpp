@@ -14,7 +14,8 @@ void SensorHistory::append(Time time, std::span<const std::uint8_t> values) {
   reading.array = array_;
   reading.values.fill(kInvalid);
   const auto count = static_cast<std::size_t>(array_ ? array_->count : 0);
-  std::ranges::copy(values.first(std::min(values.size(), count)), reading.values.begin());
+  std::ranges::transform(values.first(std::min(values.size(), count)), reading.values.begin(),
+                         [](std::uint8_t value) { return std::min(value, kInvalid); });
 
   const auto* last = readings_.last();
   if (last && time < last->time - Timeline<Reading>::kDisorder) covered_ = Time::min();  // time began anew

@@ -17,12 +17,14 @@
 static int
 boxed_types_copy_and_compare (void)
 {
-  const GType types[] = { CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_THRESHOLD, CERBERUS_TYPE_REGION };
+  const GType types[] = { CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_THRESHOLD, CERBERUS_TYPE_REGION,
+    CERBERUS_TYPE_POSE, CERBERUS_TYPE_FUSION };
   guint i;
 
   for (i = 0; i < G_N_ELEMENTS (types); ++i)
     CHECK (G_TYPE_IS_BOXED (types[i]));
   CHECK (G_TYPE_IS_ENUM (CERBERUS_TYPE_REGION_STATE) && G_TYPE_IS_ENUM (CERBERUS_TYPE_PLANE_KIND));
+  CHECK (G_TYPE_IS_ENUM (CERBERUS_TYPE_POSE_SOURCE) && G_TYPE_IS_ENUM (CERBERUS_TYPE_FUSION_ACTION));
   {
     g_autoptr (CerberusRegion) region = cerberus_region_new ();
     g_autoptr (CerberusRegion) copy = NULL;
@@ -65,6 +67,31 @@ a_buffer_carries_it_all (void)
 }
 
 static int
+a_head_and_its_sensors_are_told_of (void)
+{
+  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
+  g_autoptr (CerberusPose) pose = cerberus_pose_new ();
+  g_autoptr (CerberusPose) heard = NULL;
+  g_autoptr (CerberusFusion) fusion = cerberus_fusion_new ();
+  g_autoptr (GstEvent) event = NULL;
+  g_autoptr (GstCaps) caps = NULL;
+  CerberusPirInfo info;
+
+  pose->pan = 30;
+  event = cerberus_event_new_pose (pose);
+  heard = cerberus_event_parse_pose (event);
+  CHECK (heard != NULL && heard->pan == 30);
+  CHECK (cerberus_buffer_set_pose (buffer, pose) && cerberus_buffer_peek_pose (buffer)->pan == 30);
+  fusion->action = CERBERUS_FUSION_TURN_LEFT;
+  CHECK (cerberus_buffer_set_fusion (buffer, fusion));
+  CHECK (strcmp (cerberus_fusion_action_get_nick (cerberus_buffer_peek_fusion (buffer)->action), "turn-left") == 0);
+  cerberus_pir_info_init (&info);
+  caps = cerberus_pir_info_to_caps (&info);
+  CHECK (caps != NULL && cerberus_pir_info_from_caps (&info, caps, NULL) && info.sensors == 3);
+  return 0;
+}
+
+static int
 versions_agree (void)
 {
   guint major, minor, micro;
@@ -82,5 +109,5 @@ int
 main (int argc, char **argv)
 {
   gst_init (&argc, &argv);
-  return boxed_types_copy_and_compare () + a_buffer_carries_it_all () + versions_agree ();
+  return boxed_types_copy_and_compare () + a_buffer_carries_it_all () + a_head_and_its_sensors_are_told_of () + versions_agree ();
 }

@@ -65,6 +65,22 @@ START_TEST(a_geometry_that_cannot_be_is_refused_and_changes_nothing) {
 }
 END_TEST
 
+START_TEST(sensors_of_different_make_have_each_its_own_width) {
+  Geometry sensors;
+  const std::vector<double> bearings{radians(-40), radians(60)}, fields{radians(120), radians(90)};
+  ck_assert(sensors.set(bearings, fields));
+  assert_arc(sensors.sector(0), -100, 120);
+  assert_arc(sensors.sector(1), 15, 90);
+  const Arcs arcs = overlap(sensors, 0b11);
+  ck_assert_int_eq(arcs.count, 1);
+  assert_arc(arcs[0], 15, 5);
+  const Geometry before = sensors;
+  ck_assert(!sensors.set(bearings, std::vector<double>{1}));
+  ck_assert(!sensors.set(bearings, std::vector<double>{1, kNan}));
+  ck_assert(sensors == before);
+}
+END_TEST
+
 START_TEST(sectors_overlap_where_all_of_them_look) {
   const Geometry sensors = geometry({0, 45, 90, 170, -170}, 60);
   ck_assert_int_eq(overlap(sensors, 0).count, 0);
