@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The whole vision chain without GStreamer, stage by stage, with the elements' defaults (no label picture: nobody asks
-// for it): for tests and
-// benches of lib.
+// The whole vision chain without GStreamer, stage by stage, with the elements' defaults (no label picture:
+// nobody asks for it): for tests and benches of lib.
 #pragma once
 
 #include <array>
