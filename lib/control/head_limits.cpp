@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "control/head_limits.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numbers>
+
+namespace cerberus::control {
+
+namespace {
+
+constexpr double kTurn = 2 * std::numbers::pi;
+
+// Degrees as a person writes them, whatever the locale: 6 digits hide what radians did to them.
+std::string text(double radians) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), sensing::degrees(radians),
+                                 std::chars_format::general, 6);
+  return {digits.data(), end.ptr};
+}
+
+std::string check(const std::string& axis, const AxisLimits& limits) {
+  const std::string span = axis + "-min " + text(limits.from) + " and " + axis + "-max " + text(limits.to);
+  if (!(std::abs(limits.from) <= kMostPosition && std::abs(limits.to) <= kMostPosition))
+    return span + " are beyond any head (" + text(kMostPosition) + " degrees)";
+  if (limits.from > limits.to) return span + " are in the wrong order";
+  if (!limits.holds(0))
+    return span + " exclude 0: the head could not return to where it looks straight ahead";
+  if (!(limits.speed > 0 && limits.speed <= kMostSpeed))
+    return "a " + axis + " speed of " + text(limits.speed) +
+           " degrees a second is none: more than 0, at most " + text(kMostSpeed);
+  if (!(limits.acceleration > 0 && limits.acceleration <= kMostAcceleration))
+    return "a " + axis + " acceleration of " + text(limits.acceleration) +
+           " degrees a second squared is none: more than 0, at most " + text(kMostAcceleration);
+  return {};
+}
+
+}  // namespace
+
+double AxisLimits::clamp(double position) const {
+  return std::isnan(position) ? 0 : std::clamp(position, from, to);
+}
+
+std::string check(const Limits& limits) {
+  std::string wrong = check("pan", limits.pan);
+  return wrong.empty() ? check("tilt", limits.tilt) : wrong;
+}
+
+Reach reach(double bearing, double position, const AxisLimits& limits) {
+  const double here = limits.clamp(position);
+  if (!std::isfinite(bearing)) return {here, false};
+
+  // The candidate nearest to the head, moved into the stops by whole turns if it lies beyond them.
+  double candidate = here + sensing::wrap(bearing - here);
+  if (candidate < limits.from) candidate += kTurn * std::ceil((limits.from - candidate) / kTurn);
+  if (candidate > limits.to) candidate -= kTurn * std::ceil((candidate - limits.to) / kTurn);
+  if (limits.holds(candidate)) return {candidate, false};
+
+  const double from = std::abs(sensing::wrap(bearing - limits.from));
+  const double to = std::abs(sensing::wrap(bearing - limits.to));
+  constexpr double kSame = 1e-9;
+  const bool left = std::abs(from - to) > kSame ? from < to : here - limits.from <= limits.to - here;
+  return {left ? limits.from : limits.to, true};
+}
+
+}  // namespace cerberus::control

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "control/law.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cerberus::control {
+
+namespace {
+
+// As good as there.
+constexpr double kThere = sensing::radians(0.05);
+// Somebody beyond the stop is watched from it until the other side would see them by this much: going round takes
+// seconds, and on the edge it would never end.
+constexpr double kGoRound = sensing::radians(10);
+
+double positive(double value, double otherwise) {
+  return value > 0 && std::isfinite(value) ? value : otherwise;
+}
+
+AxisCommand go(double position, double speed) {
+  return {AxisCommand::Kind::position, position, speed};
+}
+
+}  // namespace
+
+void Law::set_options(const LawOptions& options) {
+  options_ = options;
+  const LawOptions standard;
+  options_.turn_speed = positive(options.turn_speed, standard.turn_speed);
+  options_.gain = positive(options.gain, standard.gain);
+  options_.dead_band_stop = options.dead_band_stop >= 0 ? options.dead_band_stop : standard.dead_band_stop;
+  options_.dead_band_start = std::max(options_.dead_band_stop, options.dead_band_start);  // the first, if NaN
+}
+
+void Law::reset() {
+  last_ = fusion::Action::hold;
+  pan_moving_ = tilt_moving_ = sweeping_right_ = false;
+}
+
+AxisCommand Law::approach(double target, double position, bool& moving) const {
+  const double error = std::abs(target - position);
+  moving = error > (moving ? options_.dead_band_stop : options_.dead_band_start);
+  return moving ? go(target, options_.gain * error) : AxisCommand{};
+}
+
+Order Law::track(vision::Point target, const vision::Lens& lens, const Pose& capture, const Pose& ahead) {
+  const vision::Direction seen = lens.direction(target, capture.pan.position, capture.tilt.position);
+  if (!std::isfinite(seen.bearing) || !std::isfinite(seen.elevation)) return {};
+  Order order;
+  order.doing = Doing::tracking;
+  const AxisLimits& pan = options_.limits.pan;
+  const double straight = capture.pan.position + sensing::wrap(seen.bearing - capture.pan.position);
+  double goal = straight;
+  if (!pan.holds(straight)) {
+    const double stop = pan.clamp(straight);
+    const Reach round = reach(seen.bearing, stop, pan);
+    const bool worth = !round.limited && std::abs(straight - stop) > kGoRound;
+    goal = worth ? round.position : stop;
+    order.limited = !worth;
+  }
+  const double height = options_.limits.tilt.clamp(seen.elevation);
+  order.limited = order.limited || std::abs(height - seen.elevation) > options_.dead_band_start;
+  order.pan = approach(goal, ahead.pan.position, pan_moving_);
+  order.tilt = approach(height, ahead.tilt.position, tilt_moving_);
+  return order;
+}
+
+Order Law::turn(double direction, const Pose& ahead) const {
+  Order order;
+  order.doing = Doing::turning;
+  order.pan = {AxisCommand::Kind::velocity, direction * options_.turn_speed, 0};
+  const AxisLimits& pan = options_.limits.pan;
+  order.limited =
+      direction > 0 ? ahead.pan.position >= pan.to - kThere : ahead.pan.position <= pan.from + kThere;
+  return order;
+}
+
+Order Law::search(const sensing::Interval& sector, const Pose& ahead) {
+  if (!std::isfinite(sector.from) || !std::isfinite(sector.to)) return {};
+  Order order;
+  order.doing = Doing::searching;
+  const AxisLimits& pan = options_.limits.pan;
+  const double from = pan.clamp(std::min(sector.from, sector.to));
+  const double to = pan.clamp(std::max(sector.from, sector.to));
+  order.limited = from != std::min(sector.from, sector.to) || to != std::max(sector.from, sector.to);
+  const double position = ahead.pan.position;
+  if (last_ != fusion::Action::search)
+    sweeping_right_ = to - position < position - from;  // the nearer edge first
+  if (position >= to - kThere) sweeping_right_ = false;
+  if (position <= from + kThere) sweeping_right_ = true;
+  order.pan = go(sweeping_right_ ? to : from, options_.turn_speed);
+  return order;
+}
+
+Order Law::zero() const {
+  Order order;
+  order.doing = Doing::zeroing;
+  order.pan = order.tilt = go(0, options_.turn_speed);
+  return order;
+}
+
+Order Law::update(const Wish& wish, const vision::Lens& lens, const Pose& capture, const Pose& ahead) {
+  using fusion::Action;
+  Order order;
+  if (wish.action == Action::track && wish.target) {
+    if (last_ != Action::track) pan_moving_ = tilt_moving_ = true;  // somebody new is brought into the middle
+    order = track(*wish.target, lens, capture, ahead);
+  } else if (wish.action == Action::turn_left || wish.action == Action::turn_right) {
+    order = turn(wish.action == Action::turn_right ? 1 : -1, ahead);
+  } else if (wish.action == Action::search) {
+    order = search(wish.sector, ahead);
+  } else if (wish.action == Action::zero) {
+    order = zero();
+  }
+  last_ = order.doing == Doing::holding ? Action::hold : wish.action;
+  return order;
+}
+
+}  // namespace cerberus::control

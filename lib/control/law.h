@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From what is wanted of a head (an action, a point of the picture) to what its axes are told.
+//
+// Here the law is proportional:
+//   target  = the pose when the frame was taken, turned by the angle under which the lens saw the point
+//   error   = target - where the head will be when the command reaches it, which is known: it only does what it is told
+//   command = go to the target, at no more than gain x |error|
+// so the delay of the loop is not in the loop, and a head that hears nothing more ends at the target. An axis at rest
+// starts when the error exceeds the dead band's start and rests again when it is below its stop: with one threshold for
+// both, noise on the boxes makes a head hunt (FACTS.md: 240 reversals a minute against 1).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "control/pose.h"
+#include "fusion/rules.h"
+#include "sensing/sectors.h"
+#include "vision/lens.h"
+
+namespace cerberus::control {
+
+struct LawOptions {
+  Limits limits;
+  double turn_speed = sensing::radians(40);       // radians a second, for turning, searching and returning
+  double gain = 4;                                // radians a second for each radian of error
+  double dead_band_start = sensing::radians(3);   // radians; never less than dead_band_stop
+  double dead_band_stop = sensing::radians(0.7);  // radians
+};
+
+// What is wanted, as of one frame.
+struct Wish {
+  fusion::Action action = fusion::Action::hold;
+  std::optional<vision::Point> target;  // of Action::track, frame pixels; none: hold
+  sensing::Interval sector{0, 0};       // of Action::search, pan angles
+};
+
+enum class Doing : std::uint8_t { holding, tracking, turning, searching, zeroing };
+
+struct Order {
+  AxisCommand pan, tilt;
+  Doing doing = Doing::holding;
+  bool limited = false;  // what is wanted lies beyond a stop, and the head is (or goes) as near as it can
+};
+
+class Law {
+ public:
+  void set_options(const LawOptions& options);
+  const LawOptions& options() const { return options_; }
+  // Forget what was being done.
+  void reset();
+
+  // capture: where the head looked when the frame was taken. ahead: where it will be when this command reaches it.
+  // Without a known lens nothing can be tracked: hold. The same calls give the same orders; nothing is allocated.
+  Order update(const Wish& wish, const vision::Lens& lens, const Pose& capture, const Pose& ahead);
+
+ private:
+  AxisCommand approach(double target, double position, bool& moving) const;
+  Order track(vision::Point target, const vision::Lens& lens, const Pose& capture, const Pose& ahead);
+  Order turn(double direction, const Pose& ahead) const;
+  Order search(const sensing::Interval& sector, const Pose& ahead);
+  Order zero() const;
+
+  LawOptions options_;
+  fusion::Action last_ = fusion::Action::hold;
+  bool pan_moving_ = false, tilt_moving_ = false;
+  bool sweeping_right_ = false;
+};
+
+}  // namespace cerberus::control

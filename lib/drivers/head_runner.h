@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A head on a thread of its own: whoever drives it waits as long as he wants to and not as long as the driver does.
+//
+// Requests do not queue up. Of what was asked for while the driver was busy the newest command counts, and a stop beats the
+// commands before it: nothing is caught up with. A driver that blocks for ever keeps its thread, its device and its lease
+// (whatever they are) until it returns, then stops, closes and ends by itself; the runner's owner may be long gone.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <thread>
+#include <vector>
+
+#include "drivers/head.h"
+
+namespace cerberus::drivers {
+
+class HeadRunner {
+ public:
+  using Patience = std::chrono::steady_clock::duration;
+  enum class Answer : std::uint8_t {
+    done,
+    failed,       // the driver said no; failure() tells why
+    late,         // no answer yet; it goes on
+    interrupted,  // somebody called interrupt(true)
+  };
+  // notify: called on the worker's thread when the head was opened, stopped or commanded; must not block nor call the
+  // runner.
+  HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> notify = {});
+  // Gives the driver close_patience to stop and close.
+  ~HeadRunner();
+  HeadRunner(const HeadRunner&) = delete;
+  HeadRunner& operator=(const HeadRunner&) = delete;
+  void set_close_patience(Patience patience) { close_patience_ = patience; }
+
+  bool simulated() const { return simulated_; }
+  Answer open(const HeadSetup& setup, Patience patience);
+  Answer stop(Time now, Patience patience);
+  // Hands over and returns.
+  void command(const HeadCommand& command);
+  // Carries out `command`, if there is one, then asks for the pieces of the way from `from` until `until` (one piece at
+  // least, 64 at most).
+  Answer ask(const std::optional<HeadCommand>& command, Time from, Time until,
+             std::vector<control::Pose>& poses, Patience patience);
+
+  // true: who waits in ask() returns at once, and so do all later calls of it.
+  void interrupt(bool on);
+  // What the driver complained of since the last call; empty: nothing.
+  std::string failure();
+  // False while a request is on its way.
+  bool idle() const;
+
+ private:
+  struct Core;
+  Answer wait(unsigned long ticket, Patience patience, bool interruptible);
+
+  std::shared_ptr<Core> core_;
+  std::thread worker_;
+  bool simulated_;
+  Patience close_patience_ = std::chrono::milliseconds(80);
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/simulated_head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace cerberus::drivers {
+
+namespace {
+
+using control::AxisCommand;
+using control::AxisLimits;
+using control::AxisState;
+using control::kNever;
+using control::Plan;
+
+// splitmix64 (Steele, Lea, Flood, OOPSLA 2014): a good number for every number.
+std::uint64_t scramble(std::uint64_t x) {
+  x += 0x9e3779b97f4a7c15U;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
+  return x ^ (x >> 31);
+}
+
+// (0, 1]
+double uniform(std::uint64_t x) {
+  return (static_cast<double>(x >> 11) + 1) * 0x1p-53;
+}
+
+// The camera after the motor went monotonously to `motor`.
+double dragged(double camera, double motor, double play) {
+  return std::clamp(camera, motor - play, motor + play);
+}
+
+// When the motor of a piece at `state` first stands at `position`, seconds from now; infinite: not in this piece.
+//   position - p = v t + a t^2 / 2
+double arrival(const AxisState& state, double position) {
+  const double way = position - state.position, v = state.speed, a = state.acceleration;
+  constexpr double kNone = HUGE_VAL;
+  if (a == 0) return v != 0 && way / v > 0 ? way / v : kNone;
+  const double root = v * v + 2 * a * way;
+  if (root < 0) return kNone;
+  double first = kNone;
+  for (const double t : {(-v - std::sqrt(root)) / a, (-v + std::sqrt(root)) / a})
+    if (t > 0 && t < first) first = t;
+  return first;
+}
+
+}  // namespace
+
+std::string SimulatedHead::open(const HeadSetup& setup) {
+  if (std::string wrong = control::check(setup.limits); !wrong.empty()) return wrong;
+  if (!(setup.step >= 0) || !(setup.backlash >= 0) || !(setup.noise >= 0) || setup.latency < Time::zero() ||
+      setup.latency > std::chrono::seconds(5))
+    return "step size, backlash and noise of a simulated head are not below 0, its latency is at most 5 s";
+  if (!setup.limits.pan.holds(setup.pan) || !setup.limits.tilt.holds(setup.tilt))
+    return "the simulated head would start beyond its limits";
+  setup_ = setup;
+  told_ = Time::zero();
+  next_ = count_ = 1;
+  chapters_[0] = {Time::min(), {Plan(setup.pan), setup.pan}, {Plan(setup.tilt), setup.tilt}, {}};
+  return {};
+}
+
+void SimulatedHead::close() noexcept {
+  count_ = 0;
+}
+
+void SimulatedHead::stop(Time now) noexcept {
+  if (count_ > 0) obey({std::max(now, told_), {}, {}});
+}
+
+std::string SimulatedHead::command(const HeadCommand& command) {
+  if (count_ == 0) return "the simulated head is not open";
+  if (command.time < told_) return "a stale command: it was given before the last one";
+  return obey(command);
+}
+
+// The chapter that holds at `time`, and when the next one begins.
+const SimulatedHead::Chapter& SimulatedHead::chapter_at(Time time, Time& end) const {
+  end = kNever;
+  unsigned n = 0;
+  const auto nth = [this](unsigned k) -> const Chapter& {
+    return chapters_[(next_ + kKept - 1 - k) % kKept];
+  };
+  while (n + 1 < count_ && nth(n).from > time) end = nth(n++).from;
+  return nth(n);
+}
+
+SimulatedHead::Leg SimulatedHead::follow(const Leg& leg, Time from, const AxisCommand& command,
+                                         const AxisLimits& limits) const {
+  Time until;
+  const double position = camera(leg, from, until).position;
+  return {Plan::make(from, leg.plan.at(from), command, limits, setup_.step), position};
+}
+
+std::string SimulatedHead::obey(const HeadCommand& command) {
+  told_ = command.time;
+  const Chapter& last = nth_last(0);
+  if (command.pan == last.command.pan && command.tilt == last.command.tilt) return {};  // it is doing so
+  const Time from = command.time + setup_.latency;
+  if (count_ == kKept && nth_last(kKept - 2).from > command.time)
+    return "too many commands on their way to the simulated head";
+  Time end;
+  const Chapter& before = chapter_at(from, end);
+  Chapter next{from, follow(before.pan, from, command.pan, setup_.limits.pan),
+               follow(before.tilt, from, command.tilt, setup_.limits.tilt), command};
+  if (before.from == from) {  // given at the same time: the later one counts
+    nth_last(0) = next;
+    return {};
+  }
+  chapters_[next_] = next;
+  next_ = (next_ + 1) % kKept;
+  count_ = std::min(count_ + 1, kKept);
+  return {};
+}
+
+// The camera behind the play. A plan turns round at most once, where its speed changes sign: the camera is dragged to that
+// place first.
+AxisState SimulatedHead::camera(const Leg& leg, Time time, Time& until) const {
+  const AxisState motor = leg.plan.at(time);
+  until = leg.plan.piece_end(time);
+  const double play = setup_.backlash / 2;
+  if (play == 0) return motor;
+  double position = leg.camera;
+  // The extremes of the way so far lie at the ends of its pieces.
+  for (Time end = leg.plan.start(); end < time; end = leg.plan.piece_end(end))
+    position = dragged(position, leg.plan.at(end).position, play);
+  position = dragged(position, motor.position, play);
+  const double direction = motor.speed != 0 ? motor.speed : motor.acceleration;
+  if (direction == 0) return {position, 0, 0};
+  const double contact = direction > 0 ? position + play : position - play;
+  constexpr double kTouching = 1e-12;
+  if (std::abs(contact - motor.position) < kTouching) return {position, motor.speed, motor.acceleration};
+  const double wait = arrival(motor, contact);
+  if (wait < 1e9) until = std::min(until, time + Time(static_cast<Time::rep>(std::ceil(wait * 1e9))));
+  return {position, 0, 0};
+}
+
+// Gaussian by Box and Muller, a new value every millisecond.
+double SimulatedHead::noise(Time time, unsigned axis) const {
+  if (setup_.noise == 0) return 0;
+  const auto tick = static_cast<std::uint64_t>(std::chrono::floor<std::chrono::milliseconds>(time).count());
+  const std::uint64_t x = scramble(scramble(setup_.seed) ^ (2 * tick + axis));
+  return setup_.noise * std::sqrt(-2 * std::log(uniform(x))) *
+         std::cos(2 * std::numbers::pi * uniform(scramble(x)));
+}
+
+std::string SimulatedHead::state(Time time, control::Pose& pose) {
+  if (count_ == 0) return "the simulated head is not open";
+  Time end, pan_end, tilt_end;
+  const Chapter& chapter = chapter_at(time, end);
+  pose = {};
+  pose.from = time;
+  pose.pan = camera(chapter.pan, time, pan_end);
+  pose.tilt = camera(chapter.tilt, time, tilt_end);
+  pose.until = std::min({end, pan_end, tilt_end});
+  pose.settled = pose.until == kNever && !pose.moving();
+  pose.measured = setup_.noise > 0;
+  if (pose.measured) {
+    pose.pan.position = setup_.limits.pan.clamp(pose.pan.position + noise(time, 0));
+    pose.tilt.position = setup_.limits.tilt.clamp(pose.tilt.position + noise(time, 1));
+  }
+  return {};
+}
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,639 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pantiltsink
+ * @title: pantiltsink
+ * @short_description: turns a pan-tilt head towards what the camera and the sensors found
+ * @see_also: pirfusion, virtualptz, motiontrack
+ *
+ * Reads from each video frame what the head is to do, and drives the head through a driver. The pixels are not looked at.
+ *
+ * What to do comes from the fusion meta (`pirfusion`): track, turn left or right, search a sector, return to zero, hold.
+ * Without it the head follows the tracked regions (`motiontrack`, `motiondetect`): the one it follows already, else the
+ * nearest, largest or newest (`target`); when nobody was there for `return-delay` it returns to zero.
+ *
+ * A pixel becomes an angle through the lens (`horizontal-fov`), with the pose that the head had when the frame was taken:
+ * the pose meta of the frame if it is this head's, else the element's own memory. The head follows proportionally (`gain`) and
+ * rests within a dead band that has two thresholds. It never passes `pan-min`, `pan-max`, `tilt-min`, `tilt-max`, which must
+ * include 0. Tilt holds unless a target is tracked or the head returns to zero.
+ *
+ * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits for
+ * the clock and asks nobody upstream to hurry.
+ *
+ * Each pose of the head goes upstream as the event `cerberus-pose`. In a live pipeline, or with a real head, it is sent at
+ * every change of plan and at 50 Hz while the head moves, 5 Hz while it rests, and when no frame comes for
+ * `watchdog-timeout` the head stops. In a pipeline that is not live a simulated head's time is the running time of the
+ * frames, never a clock: each frame is answered with the poses until its running time plus `latency` (or until the next
+ * frame, if that is later), so that a source upstream can keep in step with it and two runs give the same.
+ *
+ * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. Driver calls are
+ * made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
+ * opened is an error; one that fails later is a warning and the state `fault`, until it answers again: the video goes on.
+ *
+ * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`,
+ * `manual`, `limited`, `fault`) and `reason` at every change of either.
+ *
+ * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees; false
+ * if the head is not there or a number is none), `stop`, `home`, `auto`.
+ *
+ * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
+ * tests: what `script` says). One head has one name (`head`) and in a process one sink.
+ *
+ * ## Example launch lines
+ * |[
+ * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pantiltsink driver=simulated
+ * ]|
+ *
+ * Since: 0.1
+ */
+// The paper's II.D turns and tracks but does not say how; the law is lib/control/law.h, the heads are lib/drivers/. This file
+// only connects them with GStreamer: station.cpp holds what is decided and said.
+#include <cerberus/cerberus.h>
+#include <gst/base/gstbasesink.h>
+#include <gst/video/video.h>
+
+#include <atomic>
+#include <cmath>
+#include <thread>
+
+#include "cerberus/private/element.hpp"
+#include "head_names.hpp"
+#include "station.hpp"
+#include "vision/properties.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
+#define GST_CAT_DEFAULT pantiltsink_debug
+
+namespace cerberus::plugin {
+namespace {
+
+using control::Time;
+using sensing::degrees;
+using sensing::radians;
+using std::chrono::milliseconds;
+
+// A change of state takes at most these together, whatever the driver does (100 ms is promised).
+constexpr auto kOpenPatience = milliseconds(60);
+constexpr auto kHaltPatience = milliseconds(30);
+constexpr auto kClosePatience = milliseconds(30);
+
+constexpr double kMostDegrees = 3600;
+
+GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw(ANY)"));
+
+GType target_type() {
+  static const GEnumValue values[] = {
+      {static_cast<int>(fusion::TargetChoice::nearest), "The one whose feet are nearest", "nearest"},
+      {static_cast<int>(fusion::TargetChoice::largest), "The one that covers most of the picture", "largest"},
+      {static_cast<int>(fusion::TargetChoice::newest), "The one that came last", "newest"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPanTiltTarget", values);
+  return type;
+}
+
+constexpr GstClockTime clock_time(Time time) {
+  return static_cast<GstClockTime>(time.count());
+}
+Time time_of(GstClockTime time) {
+  return Time(static_cast<Time::rep>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
+}
+
+struct Settings {
+  std::string driver = "simulated";
+  std::string head = "head";
+  std::string script;
+  double horizontal_fov = 60;
+  double pan_min = -170, pan_max = 170, tilt_min = -45, tilt_max = 45;
+  double start_pan = 0, start_tilt = 0;
+  double turn_speed = 40, max_speed = 90, max_acceleration = 600;
+  double gain = control::LawOptions{}.gain;
+  double dead_band_start = 3, dead_band_stop = 0.7;
+  guint64 latency = 60 * GST_MSECOND;
+  double step_size = 0, backlash = 0, noise = 0;
+  int seed = 1;
+  int target = static_cast<int>(fusion::TargetChoice::nearest);
+  guint64 return_delay = 5 * GST_SECOND;
+  guint64 hold_stopped = 30 * GST_SECOND;
+  guint64 watchdog_timeout = 500 * GST_MSECOND;
+};
+
+const Property<Settings> kProperties[] = {
+    property("driver", &Settings::driver,
+             "What drives the head: simulated or scripted (read when the element starts)"),
+    property("head", &Settings::head,
+             "Name of the head, in pose events and messages; one sink a name (read when the element starts)"),
+    property("script", &Settings::script,
+             "What the scripted driver does, for tests: parts like 'record 7; command 3 fail no power; stop "
+             "wait 8' "
+             "with file descriptors (read when the element starts)"),
+    property(
+        "horizontal-fov", &Settings::horizontal_fov, 0, 179,
+        "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing can be "
+        "tracked"),
+    property("pan-min", &Settings::pan_min, -kMostDegrees, kMostDegrees,
+             "How far the head turns to the left, degrees, at most 0 (read when the element starts)"),
+    property("pan-max", &Settings::pan_max, -kMostDegrees, kMostDegrees,
+             "How far the head turns to the right, degrees, at least 0 (read when the element starts)"),
+    property("tilt-min", &Settings::tilt_min, -kMostDegrees, kMostDegrees,
+             "How far the head looks down, degrees, at most 0; as tilt-max 0: it does not tilt (read when "
+             "the element "
+             "starts)"),
+    property("tilt-max", &Settings::tilt_max, -kMostDegrees, kMostDegrees,
+             "How far the head looks up, degrees, at least 0 (read when the element starts)"),
+    property("start-pan", &Settings::start_pan, -kMostDegrees, kMostDegrees,
+             "Where a simulated head looks at the start, degrees, positive to the right"),
+    property("start-tilt", &Settings::start_tilt, -kMostDegrees, kMostDegrees,
+             "Where a simulated head looks at the start, degrees, positive up"),
+    property("turn-speed", &Settings::turn_speed, 0, kMostDegrees,
+             "Degrees a second at which the head turns, searches and returns to zero; 0 = the default"),
+    property("max-speed", &Settings::max_speed, 0, 1e9,
+             "Highest speed of the head in degrees a second (read when the element starts)"),
+    property("max-acceleration", &Settings::max_acceleration, 0, 1e9,
+             "Highest acceleration of the head in degrees a second squared (read when the element starts)"),
+    property("gain", &Settings::gain, 0, 100,
+             "Speed with which a target is followed, in degrees a second for each degree that it is off the "
+             "middle; "
+             "higher follows closer and passes on more noise; 0 = the default"),
+    property("dead-band-start", &Settings::dead_band_start, 0, 90,
+             "A head at rest starts to follow when the target is this many degrees off the middle"),
+    property("dead-band-stop", &Settings::dead_band_stop, 0, 90,
+             "A head that follows rests when the target is less than this many degrees off the middle"),
+    property("latency", &Settings::latency,
+             "Nanoseconds from a command until the head obeys, at most 5 s (read when the element starts)"),
+    property("step-size", &Settings::step_size, 0, 90,
+             "A simulated head rests at multiples of this many degrees; 0 = anywhere (read when the element "
+             "starts)"),
+    property("backlash", &Settings::backlash, 0, 90,
+             "Play in degrees between a simulated head's motor and camera (read when the element starts)"),
+    property("noise", &Settings::noise, 0, 90,
+             "Standard deviation in degrees of what a simulated head says of its own position (read when the "
+             "element "
+             "starts)"),
+    property("seed", &Settings::seed, 0, G_MAXINT,
+             "Seed of the noise: equal seeds give equal runs (read when the element starts)"),
+    property("target", &Settings::target, target_type,
+             "Whom to follow when nobody is followed yet, without pirfusion upstream"),
+    property("return-delay", &Settings::return_delay,
+             "Nanoseconds without anybody after which the head returns to zero, without pirfusion upstream"),
+    property("hold-stopped", &Settings::hold_stopped,
+             "Nanoseconds for which somebody who stopped is watched at least, without pirfusion upstream"),
+    property("watchdog-timeout", &Settings::watchdog_timeout,
+             "Nanoseconds without a frame after which the head stops; 0 = never"),
+};
+
+// The thread that lets the clock's time pass in a clock-driven element.
+class Ticker {
+ public:
+  ~Ticker() { stop(); }
+  // tick(): does what is due, returns the clock's time of the next call.
+  template <typename Tick>
+  void start(GstClock* clock, Tick tick) {
+    if (thread_.joinable()) return;
+    quit_ = false;
+    thread_ = std::thread([this, clock = GST_CLOCK(gst_object_ref(clock)), tick] {
+      while (!quit_) {
+        woken_ = false;
+        const GstClockTime next = tick();
+        GstClockID id = gst_clock_new_single_shot_id(clock, next);
+        {
+          const std::lock_guard guard(lock_);
+          id_ = id;
+        }
+        if (!quit_ && !woken_) gst_clock_id_wait(id, nullptr);
+        const std::lock_guard guard(lock_);
+        id_ = nullptr;
+        gst_clock_id_unref(id);
+      }
+      gst_object_unref(clock);
+    });
+  }
+  // The next call comes at once. From any thread; a wake-up before the wait is not lost.
+  void wake() {
+    woken_ = true;
+    const std::lock_guard guard(lock_);
+    if (id_) gst_clock_id_unschedule(id_);
+  }
+  void stop() {
+    if (!thread_.joinable()) return;
+    quit_ = true;
+    wake();
+    thread_.join();
+  }
+
+ private:
+  std::thread thread_;
+  std::mutex lock_;
+  GstClockID id_ = nullptr;
+  std::atomic<bool> quit_ = false, woken_ = false;
+};
+
+struct State {  // streaming thread only
+  GstVideoInfo info;
+  bool known = false;       // info
+  bool live_known = false;  // whether upstream is live was asked
+};
+
+struct Private {
+  GstBaseSink* sink = nullptr;
+  Adjustable<Settings> settings;
+  std::atomic<double> field_of_view = 0;
+  const char* head = nullptr;  // interned, while started
+  std::atomic<bool> clock_driven = false, playing = false;
+  bool real = false;  // the head has a clock of its own
+  State state;
+  Station station;
+  std::mutex ticker_lock;  // start and stop; never held by the ticker's own thread
+  Ticker ticker;
+};
+
+CERBERUS_DEFINE_TYPE(CerberusPanTiltSink, cerberus_pan_tilt_sink, GstBaseSink, GST_TYPE_BASE_SINK, Private)
+
+CerberusPose to_c(const Private& self, const control::Pose& pose) {
+  CerberusPose out;
+  cerberus_pose_init(&out);
+  if (self.head) out.head = self.head;
+  out.pan = degrees(pose.pan.position);
+  out.tilt = degrees(pose.tilt.position);
+  out.pan_speed = degrees(pose.pan.speed);
+  out.tilt_speed = degrees(pose.tilt.speed);
+  out.pan_acceleration = degrees(pose.pan.acceleration);
+  out.tilt_acceleration = degrees(pose.tilt.acceleration);
+  out.valid_from = clock_time(pose.from);
+  out.valid_until = pose.until == control::kNever ? GST_CLOCK_TIME_NONE : clock_time(pose.until);
+  out.source = pose.measured ? CERBERUS_POSE_MEASURED : CERBERUS_POSE_COMMANDED;
+  out.moving = pose.moving();
+  out.settled = pose.settled;
+  return out;
+}
+
+// Sends off what the station said. No lock held.
+void send(Private& self, const Outbox& out) {
+  for (const control::Pose& pose : out.poses) {
+    const CerberusPose event = to_c(self, pose);
+    gst_pad_push_event(GST_BASE_SINK_PAD(self.sink), cerberus_event_new_pose(&event));
+  }
+  for (const Status& status : out.statuses) {
+    const CerberusPose pose = to_c(self, status.pose);
+    gst_element_post_message(GST_ELEMENT(self.sink),
+                             cerberus_message_new_pantilt(GST_OBJECT(self.sink), clock_time(status.time),
+                                                          status.state, status.reason.c_str(), &pose));
+  }
+  if (!out.fault.empty())
+    GST_ELEMENT_WARNING(self.sink, RESOURCE, WRITE,
+                        ("The head \"%s\" fails: %s", self.head, out.fault.c_str()),
+                        ("driver %s", self.settings.snapshot().driver.c_str()));
+}
+
+// Running time by the clock, while there is one.
+std::optional<Time> now(const Private& self) {
+  const GstClockTime time = gst_element_get_current_running_time(GST_ELEMENT(self.sink));
+  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
+  return time_of(time);
+}
+
+void configure(Private& self, const Settings& s) {
+  control::LawOptions law;
+  law.limits.pan = {radians(s.pan_min), radians(s.pan_max), radians(s.max_speed),
+                    radians(s.max_acceleration)};
+  law.limits.tilt = {radians(s.tilt_min), radians(s.tilt_max), radians(s.max_speed),
+                     radians(s.max_acceleration)};
+  law.turn_speed = radians(s.turn_speed);
+  law.gain = s.gain;
+  law.dead_band_start = radians(s.dead_band_start);
+  law.dead_band_stop = radians(s.dead_band_stop);
+  fusion::FuserOptions fuser;
+  fuser.choice = static_cast<fusion::TargetChoice>(s.target);
+  fuser.return_delay = time_of(s.return_delay);
+  fuser.hold_stopped = time_of(s.hold_stopped);
+  self.field_of_view = s.horizontal_fov;
+  self.station.set_options(law, fuser, time_of(s.watchdog_timeout));
+}
+
+drivers::HeadSetup setup_of(const Settings& s) {
+  drivers::HeadSetup setup;
+  setup.limits.pan = {radians(s.pan_min), radians(s.pan_max), radians(s.max_speed),
+                      radians(s.max_acceleration)};
+  setup.limits.tilt = {radians(s.tilt_min), radians(s.tilt_max), radians(s.max_speed),
+                       radians(s.max_acceleration)};
+  setup.latency = time_of(s.latency);
+  setup.step = radians(s.step_size);
+  setup.backlash = radians(s.backlash);
+  setup.noise = radians(s.noise);
+  setup.seed = static_cast<unsigned>(s.seed);
+  setup.pan = radians(s.start_pan);
+  setup.tilt = radians(s.start_tilt);
+  setup.script = s.script;
+  return setup;
+}
+
+// Not GstBaseSink::start: that one adds an error message of its own.
+bool open_head(Private& self) {
+  GstBaseSink* sink = self.sink;
+  return guarded(sink, false, [&] {
+    const Settings s = self.settings.snapshot();
+    self.settings.refresh();
+    const drivers::HeadSetup setup = setup_of(s);
+    if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
+      GST_ELEMENT_ERROR(sink, LIBRARY, SETTINGS, ("%s.", wrong.c_str()), ("head %s", s.head.c_str()));
+      return false;
+    }
+    auto head = drivers::make_head(s.driver);
+    if (!head) {
+      GST_ELEMENT_ERROR(sink, LIBRARY, SETTINGS,
+                        ("There is no head driver \"%s\": take one of %s.", s.driver.c_str(),
+                         drivers::head_drivers().c_str()),
+                        ("head %s", s.head.c_str()));
+      return false;
+    }
+    auto lease = lease_head(s.head);
+    if (!lease) {
+      GST_ELEMENT_ERROR(
+          sink, RESOURCE, BUSY,
+          ("Another pantiltsink drives the head \"%s\" already: give each its own name (head=).",
+           s.head.c_str()),
+          (nullptr));
+      return false;
+    }
+    self.head = g_intern_string(s.head.c_str());
+    self.state = {};
+    self.real = !head->simulated();
+    self.clock_driven = self.real;
+    auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease),
+                                                        [&self] { self.ticker.wake(); });
+    runner->set_close_patience(kClosePatience);
+    if (runner->open(setup, kOpenPatience) == Station::Answer::failed) {
+      GST_ELEMENT_ERROR(sink, RESOURCE, OPEN_READ_WRITE,
+                        ("The head \"%s\" cannot be opened: %s.", s.head.c_str(), runner->failure().c_str()),
+                        ("driver %s", s.driver.c_str()));
+      return false;
+    }
+    self.station.open(std::move(runner), setup);
+    self.station.set_clock_driven(self.clock_driven);
+    configure(self, s);
+    return true;
+  });
+}
+
+void stop_ticker(Private& self) {
+  const std::lock_guard guard(self.ticker_lock);
+  self.ticker.stop();
+}
+
+void start_ticker(Private& self) {
+  if (!self.clock_driven || !self.playing) return;
+  GstClock* clock = gst_element_get_clock(GST_ELEMENT(self.sink));
+  if (!clock) return;
+  {
+    const std::lock_guard guard(self.ticker_lock);
+    if (self.playing)
+      self.ticker.start(clock, [&self, clock]() -> GstClockTime {
+        const GstClockTime time = gst_clock_get_time(clock);
+        Outbox out;
+        GstClockTime next = time + 20 * GST_MSECOND;
+        if (const auto running = now(self)) {
+          guarded(self.sink, [&] { next = time + clock_time(self.station.tick(*running, out) - *running); });
+        }
+        send(self, out);
+        return next;
+      });
+  }
+  gst_object_unref(clock);
+}
+
+void halt(Private& self, const char* reason, std::chrono::milliseconds patience = kHaltPatience) {
+  Outbox out;
+  self.station.halt(reason, now(self), patience, out);
+  send(self, out);
+}
+
+void close_head(Private& self) {
+  guarded(self.sink, [&] {
+    stop_ticker(self);
+    halt(self, "stopped");
+    self.station.close(kClosePatience);
+  });
+}
+
+gboolean cerberus_pan_tilt_sink_unlock(GstBaseSink* sink) {
+  cerberus_pan_tilt_sink_self(sink)->priv->station.interrupt(true);
+  return TRUE;
+}
+
+gboolean cerberus_pan_tilt_sink_unlock_stop(GstBaseSink* sink) {
+  cerberus_pan_tilt_sink_self(sink)->priv->station.interrupt(false);
+  return TRUE;
+}
+
+gboolean cerberus_pan_tilt_sink_set_caps(GstBaseSink* sink, GstCaps* caps) {
+  State& state = cerberus_pan_tilt_sink_self(sink)->priv->state;
+  // By hand: GstVideoInfo does not know the formats of every memory.
+  const GstStructure* structure = gst_caps_get_structure(caps, 0);
+  gst_video_info_init(&state.info);
+  state.known = gst_structure_get_int(structure, "width", &state.info.width) &&
+                gst_structure_get_int(structure, "height", &state.info.height);
+  gst_structure_get_fraction(structure, "framerate", &state.info.fps_n, &state.info.fps_d);
+  if (state.known) return TRUE;
+  GST_ELEMENT_ERROR(sink, CORE, NEGOTIATION, ("The video has no size."), ("caps %" GST_PTR_FORMAT, caps));
+  return FALSE;
+}
+
+// The frame ends here and its pixels are not looked at: any stride will do.
+gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query) {
+  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+  return TRUE;
+}
+
+// Live or not decides what drives the head's time. Asked when the stream begins: then everybody upstream knows.
+void ask_whether_live(Private& self) {
+  if (self.state.live_known) return;
+  self.state.live_known = true;
+  gboolean live = FALSE;
+  GstQuery* query = gst_query_new_latency();
+  if (gst_pad_peer_query(GST_BASE_SINK_PAD(self.sink), query))
+    gst_query_parse_latency(query, &live, nullptr, nullptr);
+  gst_query_unref(query);
+  self.clock_driven = live || self.real;
+  self.station.set_clock_driven(self.clock_driven);
+  start_ticker(self);
+}
+
+// Interrupted by a change of state: goes on where it was when PLAYING comes back.
+template <typename Ask>
+GstFlowReturn persist(Private& self, Ask ask) {
+  for (;;) {
+    Outbox out;
+    const Station::Answer answer = ask(out);
+    send(self, out);
+    if (answer != Station::Answer::interrupted) return GST_FLOW_OK;
+    const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink);
+    if (flow != GST_FLOW_OK) return flow;
+  }
+}
+
+GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
+  if (const auto changed = self.settings.changes()) configure(self, *changed);
+  ask_whether_live(self);
+  const GstClockTime running = gst_segment_to_running_time(&self.sink->segment, GST_FORMAT_TIME, pts);
+  const auto newest = self.station.newest();
+  if (!GST_CLOCK_TIME_IS_VALID(running) || (newest && time_of(running) <= *newest)) {
+    GST_DEBUG_OBJECT(self.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
+                     GST_TIME_ARGS(running));
+    return GST_FLOW_OK;
+  }
+  const GstVideoInfo& info = self.state.info;
+  if (!GST_CLOCK_TIME_IS_VALID(duration) && info.fps_n > 0)
+    duration = gst_util_uint64_scale_int(GST_SECOND, info.fps_d, info.fps_n);
+  Station::Frame frame{.buffer = buffer,
+                       .running = time_of(running),
+                       .length = time_of(GST_CLOCK_TIME_IS_VALID(duration) ? duration : 0),
+                       .now = now(self).value_or(time_of(running)),
+                       .lens = vision::Lens(radians(self.field_of_view), {info.width, info.height}),
+                       .capture = std::nullopt};
+  const CerberusPose* pose = buffer ? cerberus_buffer_peek_pose(buffer) : nullptr;
+  if (pose && g_strcmp0(pose->head, self.head) == 0) {
+    control::Pose& capture = frame.capture.emplace();
+    capture.pan.position = radians(pose->pan);
+    capture.tilt.position = radians(pose->tilt);
+  }
+  return persist(self, [&](Outbox& out) { return self.station.frame(frame, out); });
+}
+
+GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer) {
+  return guarded(sink, GST_FLOW_ERROR, [&] {
+    Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
+    return look(self, buffer, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer));
+  });
+}
+
+gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
+  Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
+  const GstEventType type = GST_EVENT_TYPE(event);
+  GstClockTime from = GST_CLOCK_TIME_NONE, length = GST_CLOCK_TIME_NONE;
+  if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
+  if (type == GST_EVENT_EOS) guarded(sink, [&] { halt(self, "end of the stream"); });
+  if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { halt(self, "flushed"); });
+  const gboolean done = cerberus_pan_tilt_sink_parent_class()->event(sink, event);
+  guarded(sink, [&] {
+    if (type == GST_EVENT_FLUSH_STOP) {
+      self.station.forget();
+      if (self.playing) self.station.resume();
+    }
+    if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
+    if (type != GST_EVENT_SEGMENT || !done) return;
+    ask_whether_live(self);
+    const GstClockTime begin =
+        gst_segment_to_running_time(&sink->segment, GST_FORMAT_TIME, sink->segment.start);
+    Outbox out;
+    self.station.announce(GST_CLOCK_TIME_IS_VALID(begin) ? time_of(begin) : Time::zero(), out);
+    send(self, out);
+  });
+  return done;
+}
+
+GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, GstStateChange change) {
+  Private& self = *cerberus_pan_tilt_sink_self(element)->priv;
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open_head(self)) return GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
+    self.playing = false;
+    stop_ticker(self);
+    guarded(element, [&] { halt(self, "paused"); });
+  }
+  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
+    self.playing = true;
+    self.station.resume();
+  }
+  const GstStateChangeReturn done =
+      GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->change_state(element, change);
+  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING && done != GST_STATE_CHANGE_FAILURE)
+    guarded(element, [&] { start_ticker(self); });
+  const bool failed = change == GST_STATE_CHANGE_READY_TO_PAUSED && done == GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) close_head(self);
+  return done;
+}
+
+// Action signals: the application's own hand.
+template <typename Act>
+gboolean by_hand(CerberusPanTiltSink* sink, Act act) {
+  Private& self = *sink->priv;
+  return guarded(sink, FALSE, [&]() -> gboolean {
+    Outbox out;
+    const bool done = act(self.station, now(self), out);
+    send(self, out);
+    return done;
+  });
+}
+gboolean move_to(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
+  return by_hand(sink, [=](Station& station, std::optional<Time> at, Outbox& out) {
+    return station.move(radians(pan), radians(tilt), false, at, out);
+  });
+}
+gboolean move_by(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
+  return by_hand(sink, [=](Station& station, std::optional<Time> at, Outbox& out) {
+    return station.move(radians(pan), radians(tilt), true, at, out);
+  });
+}
+gboolean stay(CerberusPanTiltSink* sink) {
+  return by_hand(sink, [](Station& station, auto at, Outbox& out) { return station.stay(at, out); });
+}
+gboolean home(CerberusPanTiltSink* sink) {
+  return move_to(sink, 0, 0);
+}
+gboolean automatic(CerberusPanTiltSink* sink) {
+  return by_hand(sink, [](Station& station, auto at, Outbox& out) { return station.automatic(at, out); });
+}
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  cerberus_pan_tilt_sink_self(object)->priv->settings.set(kProperties, id, value);
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_pan_tilt_sink_self(object)->priv->settings.get(kProperties, id, value);
+}
+
+void cerberus_pan_tilt_sink_init(CerberusPanTiltSink* self) {
+  GstBaseSink* sink = GST_BASE_SINK(self);
+  self->priv->sink = sink;
+  gst_base_sink_set_sync(sink, FALSE);
+  gst_base_sink_set_async_enabled(sink, FALSE);
+  gst_base_sink_set_qos_enabled(sink, FALSE);
+}
+
+void add_signal(GObjectClass* klass, const char* name, GCallback handler, guint numbers) {
+  g_signal_new_class_handler(name, G_TYPE_FROM_CLASS(klass),
+                             static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION), handler, nullptr,
+                             nullptr, nullptr, G_TYPE_BOOLEAN, numbers, G_TYPE_DOUBLE, G_TYPE_DOUBLE);
+}
+
+void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+  add_signal(object, "move-to", G_CALLBACK(move_to), 2);
+  add_signal(object, "move-by", G_CALLBACK(move_by), 2);
+  add_signal(object, "stop", G_CALLBACK(stay), 0);
+  add_signal(object, "home", G_CALLBACK(home), 0);
+  add_signal(object, "auto", G_CALLBACK(automatic), 0);
+
+  GstElementClass* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = cerberus_pan_tilt_sink_change_state;
+  gst_element_class_set_static_metadata(element, "Pan-tilt head", "Sink/Video/Device",
+                                        "Turns a pan-tilt head towards what camera and sensors found",
+                                        "The Cerberus developers");
+  gst_element_class_add_static_pad_template(element, &sink_template);
+
+  GstBaseSinkClass* sink = GST_BASE_SINK_CLASS(klass);
+  sink->unlock = cerberus_pan_tilt_sink_unlock;
+  sink->unlock_stop = cerberus_pan_tilt_sink_unlock_stop;
+  sink->set_caps = cerberus_pan_tilt_sink_set_caps;
+  sink->propose_allocation = cerberus_pan_tilt_sink_propose_allocation;
+  sink->event = cerberus_pan_tilt_sink_event;
+  sink->render = cerberus_pan_tilt_sink_render;
+  gst_type_mark_as_plugin_api(target_type(), static_cast<GstPluginAPIFlags>(0));
+}
+
+}  // namespace
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(pantiltsink, GST_RANK_NONE, cerberus::plugin::cerberus_pan_tilt_sink,
+                          pantiltsink_debug, "pan-tilt head")

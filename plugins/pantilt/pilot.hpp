@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a frame wants of the head: read from its fusion meta, or, where nobody fused, decided here by the two rules that
+// need no sensors (1: follow whom the camera sees; 7: nobody there, return to zero).
+#pragma once
+
+#include <cerberus/fusion.h>
+
+#include <string>
+#include <vector>
+
+#include "control/law.h"
+#include "fusion/fuser.h"
+
+namespace cerberus::plugin {
+
+class Pilot {
+ public:
+  struct Verdict {
+    control::Wish wish;
+    std::string reason;  // for a user
+  };
+  void set_options(const fusion::FuserOptions& options) { fuser_.set_options(options); }
+  void reset() { fuser_.reset(); }
+  // pan: radians, when the frame was taken.
+  Verdict look(GstBuffer* frame, control::Time time, double pan);
+
+ private:
+  Verdict obey(GstBuffer* frame, const CerberusFusion& fusion);
+  Verdict decide(GstBuffer* frame, control::Time time, double pan);
+
+  fusion::Fuser fuser_;
+  std::vector<fusion::Track> tracks_;
+};
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "station.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace cerberus::plugin {
+
+namespace {
+
+using control::AxisCommand;
+using control::Pose;
+using drivers::HeadCommand;
+using std::chrono::milliseconds;
+
+// So far ahead the head's way is asked for: a command changes it sooner than that.
+constexpr control::Time kAhead = std::chrono::seconds(1);
+constexpr control::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(200);
+// A driver that answers is asked every 20 ms; one that does not, in this time, is at fault.
+constexpr control::Time kSilence = std::chrono::seconds(1);
+constexpr auto kTickPatience = milliseconds(10);
+constexpr auto kFramePatience = std::chrono::seconds(1);
+
+const char* word(const control::Order& order) {
+  using control::Doing;
+  switch (order.doing) {
+    case Doing::holding:
+      return "holding";
+    case Doing::tracking:
+      return order.limited ? "limited" : "tracking";
+    case Doing::turning:
+      return order.limited ? "limited" : "turning";
+    case Doing::searching:
+      return "searching";
+    case Doing::zeroing:
+      return "zeroing";
+  }
+  return "holding";
+}
+
+}  // namespace
+
+void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::HeadSetup& setup) {
+  const std::lock_guard guard(lock_);
+  runner_ = std::move(runner);
+  setup_ = setup;
+  law_.reset();
+  pilot_.reset();
+  history_.clear();
+  watchdog_.rest();
+  manual_ = faulty_ = halted_ = false;
+  told_ = epoch_ = published_ = Time::zero();
+  newest_.reset();
+  late_since_ = control::kNever;
+  Pose start;
+  start.pan.position = setup.pan;
+  start.tilt.position = setup.tilt;
+  history_.add(start);
+  status_ = {};
+}
+
+void Station::close(drivers::HeadRunner::Patience patience) {
+  std::shared_ptr<drivers::HeadRunner> runner;
+  {
+    const std::lock_guard guard(lock_);
+    runner = std::move(runner_);
+  }
+  if (runner) runner->set_close_patience(patience);
+}
+
+void Station::set_options(const control::LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog) {
+  const std::lock_guard guard(lock_);
+  law_.set_options(law);
+  pilot_.set_options(fuser);
+  timeout_ = watchdog;
+  watchdog_.set_timeout(watchdog);
+}
+
+void Station::set_clock_driven(bool on) {
+  const std::lock_guard guard(lock_);
+  clock_driven_ = on;
+}
+
+void Station::forget() {
+  const std::lock_guard guard(lock_);
+  newest_.reset();
+  law_.reset();
+  pilot_.reset();
+}
+
+// A running time that went back (a flush, another base time) does not turn the head's time back.
+Station::Time Station::head_time(Time running) {
+  constexpr Time kJitter = milliseconds(100);
+  if (running + epoch_ + kJitter < told_) epoch_ = told_ - running;
+  told_ = std::max(told_, running + epoch_);
+  return told_;
+}
+
+Pose Station::running(Pose pose) const {
+  pose.from = std::max(Time::zero(), pose.from - epoch_);
+  if (pose.until != control::kNever) pose.until = std::max(pose.from, pose.until - epoch_);
+  return pose;
+}
+
+void Station::remember(const std::vector<Pose>& poses) {
+  for (const Pose& pose : poses) history_.add(pose);
+}
+
+// The pieces from `published_` on, the last one cut at `until` (kNever: only the first, as it is).
+void Station::publish(const std::vector<Pose>& poses, Time until, Outbox& out) {
+  if (poses.empty()) return;
+  if (until == control::kNever) {
+    out.poses.push_back(running(poses.front()));
+    return;
+  }
+  for (Pose pose : poses) {
+    pose.until = std::max(pose.from, std::min(pose.until, until));
+    out.poses.push_back(running(pose));
+    published_ = pose.until;
+    if (pose.until >= until) break;
+  }
+}
+
+void Station::say(const char* state, std::string reason, Time head, Outbox& out) {
+  if (g_str_equal(state, status_.state) && reason == status_.reason) return;
+  status_ = {state, std::move(reason), running(history_.at(head)), std::max(Time::zero(), head - epoch_)};
+  out.statuses.push_back(status_);
+}
+
+void Station::complain(const std::string& failure, Time head, Outbox& out) {
+  if (failure.empty()) return;
+  if (!std::exchange(faulty_, true)) out.fault = failure;
+  say("fault", failure, head, out);
+}
+
+Station::Answer Station::announce(Time at, Outbox& out) {
+  std::shared_ptr<drivers::HeadRunner> runner;
+  Time head;
+  {
+    const std::lock_guard guard(lock_);
+    if (!runner_) return Answer::failed;
+    runner = runner_;
+    head = head_time(at);
+  }
+  std::vector<Pose> poses;
+  const Answer answer = runner->ask({}, head, head + setup_.latency + kAhead, poses, kTickPatience);
+  const std::lock_guard guard(lock_);
+  if (answer != Answer::done) return answer;
+  remember(poses);
+  publish(poses, clock_driven_ ? control::kNever : head + setup_.latency, out);
+  return answer;
+}
+
+HeadCommand Station::decide(const Frame& frame, Time now, Outbox& out) {
+  HeadCommand command{now, {}, {}};
+  if (halted_) return command;
+  if (manual_) {
+    command.pan = wanted_.pan;
+    command.tilt = wanted_.tilt;
+    return command;
+  }
+  const Time taken = frame.running + epoch_;
+  const Pose capture = frame.capture ? *frame.capture : history_.at(taken);
+  const Pose ahead = history_.at(now + setup_.latency);
+  const Pilot::Verdict verdict = pilot_.look(frame.buffer, frame.running, capture.pan.position);
+  const control::Order order = law_.update(verdict.wish, frame.lens, capture, ahead);
+  command.pan = order.pan;
+  command.tilt = order.tilt;
+  if (!faulty_) say(word(order), verdict.reason, now, out);
+  return command;
+}
+
+Station::Answer Station::frame(const Frame& frame, Outbox& out) {
+  std::unique_lock guard(lock_);
+  const auto runner = runner_;
+  if (!runner) return Answer::failed;
+  if (clock_driven_) {
+    newest_ = frame.running;
+    if (!frame.buffer || halted_) return Answer::done;
+    const Time now = head_time(frame.now);
+    watchdog_.feed(now);
+    const HeadCommand command = decide(frame, now, out);
+    if (!manual_) runner->command(command);
+    return Answer::done;
+  }
+
+  if (!runner->idle()) {  // blocked: nothing is caught up with
+    newest_ = frame.running;
+    complain("the head does not answer", told_, out);
+    return Answer::late;
+  }
+  // What was told of the head's way stays true: nothing given now changes it before `published_`.
+  const Time now = std::max(head_time(frame.running), published_ - setup_.latency);
+  const Time horizon = now + std::max(setup_.latency, frame.length) + kAhead;
+  std::vector<Pose> poses;
+  if (const Time deadline = watchdog_.deadline(); !manual_ && deadline < now - frame.length) {
+    watchdog_.rest();
+    const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}};
+    guard.unlock();
+    const Answer answer = runner->ask(brake, brake.time, horizon, poses, kFramePatience);
+    guard.lock();
+    if (answer == Answer::interrupted) return answer;
+    remember(poses);
+  }
+  const HeadCommand command = decide(frame, now, out);
+  guard.unlock();
+  const Answer answer = runner->ask(frame.buffer ? std::optional(command) : std::nullopt, published_, horizon,
+                                    poses, kFramePatience);
+  guard.lock();
+  if (answer == Answer::interrupted) return answer;
+  newest_ = frame.running;
+  if (frame.buffer) watchdog_.feed(now);
+  if (answer == Answer::done) {
+    faulty_ = false;
+    remember(poses);
+    publish(poses, std::max(published_, now + std::max(setup_.latency, frame.length)), out);
+  } else {
+    const std::string failure = runner->failure();
+    complain(answer == Answer::late ? "the head does not answer" : failure, now, out);
+  }
+  return answer;
+}
+
+Station::Time Station::tick(Time at, Outbox& out) {
+  std::unique_lock guard(lock_);
+  const auto runner = runner_;
+  if (!runner) return at + kAtRest;
+  const Time now = head_time(at);
+  if (!manual_ && watchdog_.bites(now)) {
+    runner->command({now, {}, {}});
+    say("stopped", "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", now, out);
+  }
+  guard.unlock();
+  std::vector<Pose> poses;
+  const Answer answer = runner->ask({}, now, now + setup_.latency + kAhead, poses, kTickPatience);
+  guard.lock();
+  if (const std::string failure = runner->failure(); !failure.empty()) {
+    complain(failure, now, out);
+  } else if (answer == Answer::done) {
+    faulty_ = false;
+  }
+  if (answer != Answer::done) {
+    if (answer == Answer::late && late_since_ == control::kNever) late_since_ = now;
+    if (answer == Answer::late && now - late_since_ > kSilence)
+      complain("the head does not answer", now, out);
+    return at + kWhileMoving;
+  }
+  late_since_ = control::kNever;
+  remember(poses);
+  publish(poses, control::kNever, out);
+  const Pose& pose = poses.front();
+  Time next = now + (pose.moving() ? kWhileMoving : kAtRest);
+  next = std::max(now + milliseconds(1), std::min({next, pose.until, watchdog_.deadline()}));
+  return next - epoch_;
+}
+
+void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunner::Patience patience,
+                   Outbox& out) {
+  std::unique_lock guard(lock_);
+  const auto runner = runner_;
+  if (!runner || std::exchange(halted_, true)) return;
+  const Time now = at && clock_driven_ ? head_time(*at) : std::max(told_, published_ - setup_.latency);
+  told_ = now;
+  watchdog_.rest();
+  law_.reset();
+  guard.unlock();
+  const Answer answer = runner->stop(now, patience);
+  std::vector<Pose> poses;
+  if (answer == Answer::done && clock_driven_)
+    runner->ask({}, now, now + setup_.latency + kAhead, poses, kTickPatience);
+  guard.lock();
+  remember(poses);
+  if (!poses.empty()) publish(poses, control::kNever, out);
+  if (answer == Answer::late) complain("the head does not answer: it may not have stopped", now, out);
+  if (!faulty_) say("stopped", reason, now, out);
+}
+
+void Station::resume() {
+  const std::lock_guard guard(lock_);
+  halted_ = false;
+}
+
+bool Station::override(const char* reason, const HeadCommand& command, std::optional<Time> at, Outbox& out) {
+  manual_ = true;
+  wanted_ = command;
+  law_.reset();
+  const Time now = at && clock_driven_ ? head_time(*at) : told_;
+  if (clock_driven_ && !halted_) runner_->command({now, command.pan, command.tilt});
+  say("manual", reason, now, out);
+  return true;
+}
+
+bool Station::move(double pan, double tilt, bool relative, std::optional<Time> at, Outbox& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_ || !std::isfinite(pan) || !std::isfinite(tilt)) return false;
+  if (relative) {
+    const Time now = at && clock_driven_ ? head_time(*at) : std::max(told_, published_);
+    const Pose here = history_.at(now);
+    const auto base = [&](const AxisCommand& wanted, const control::AxisState& state) {
+      return manual_ && wanted.kind == AxisCommand::Kind::position ? wanted.value : state.position;
+    };
+    pan += base(wanted_.pan, here.pan);
+    tilt += base(wanted_.tilt, here.tilt);
+  }
+  const control::Limits& limits = setup_.limits;
+  const bool inside = limits.pan.holds(pan) && limits.tilt.holds(tilt);
+  HeadCommand command;
+  command.pan = {AxisCommand::Kind::position, limits.pan.clamp(pan), limits.pan.speed};
+  command.tilt = {AxisCommand::Kind::position, limits.tilt.clamp(tilt), limits.tilt.speed};
+  return override(inside ? "told to move" : "told to move beyond a limit: as far as it", command, at, out);
+}
+
+bool Station::stay(std::optional<Time> at, Outbox& out) {
+  const std::lock_guard guard(lock_);
+  return runner_ && override("told to stop", {}, at, out);
+}
+
+bool Station::automatic(std::optional<Time> at, Outbox& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_) return false;
+  if (!std::exchange(manual_, false)) return true;
+  const Time now = at && clock_driven_ ? head_time(*at) : told_;
+  if (clock_driven_ && !halted_) runner_->command({now, {}, {}});
+  say("holding", "told to go on by itself", now, out);
+  return true;
+}
+
+void Station::interrupt(bool on) {
+  const std::lock_guard guard(lock_);
+  if (runner_) runner_->interrupt(on);
+}
+
+std::optional<Station::Time> Station::newest() const {
+  const std::lock_guard guard(lock_);
+  return newest_;
+}
+
+}  // namespace cerberus::plugin

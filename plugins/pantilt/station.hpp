@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Between frames, the application's wishes and a head: decides, commands, remembers where the head looked, and says what
+// is to be told to others. Thread-safe; what it tells is put into an outbox, to be sent off without any lock held.
+//
+// Times in and out are running times. The head's own time never goes back: where running time does (a flush), it goes on.
+#pragma once
+
+#include <gst/gst.h>
+
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "control/law.h"
+#include "control/watchdog.h"
+#include "drivers/head_runner.h"
+#include "pilot.hpp"
+
+namespace cerberus::plugin {
+
+struct Status {
+  const char* state = "stopped";  // one of the words of cerberus-pantilt
+  std::string reason;
+  control::Pose pose;
+  control::Time time{};
+};
+
+struct Outbox {
+  std::vector<control::Pose> poses;
+  std::vector<Status> statuses;
+  std::string fault;  // new: for a warning
+};
+
+class Station {
+ public:
+  using Time = control::Time;
+  using Answer = drivers::HeadRunner::Answer;
+
+  // The head is open or being opened.
+  void open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::HeadSetup& setup);
+  // Gives the driver the rest of its patience, then leaves it to itself.
+  void close(drivers::HeadRunner::Patience patience);
+
+  void set_options(const control::LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
+  // clock_driven: the head moves while the clock runs, and tick() is called; otherwise its time is that of the frames.
+  void set_clock_driven(bool on);
+  // Forgets the frames so far (flush, new segment): the next one begins anew.
+  void forget();
+  // Where the head looks at the start, valid until its latency allows something else.
+  Answer announce(Time running, Outbox& out);
+
+  struct Frame {
+    GstBuffer* buffer;  // nullptr: a gap
+    Time running;       // when it was taken
+    Time length{};      // until the next one, as far as known
+    Time now{};         // clock-driven: running time by the clock
+    vision::Lens lens;
+    std::optional<control::Pose> capture;  // where the head looked then, if the frame says so
+  };
+  // interrupted: call again. Other answers: done with it.
+  Answer frame(const Frame& frame, Outbox& out);
+
+  // Lets the clock's time pass. Returns when it wants to be called again.
+  Time tick(Time now, Outbox& out);
+  // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.
+  void halt(const char* reason, std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
+  void resume();
+
+  // Manual override until automatic(). now: as for halt(). false: not possible.
+  bool move(double pan, double tilt, bool relative, std::optional<Time> now, Outbox& out);
+  bool stay(std::optional<Time> now, Outbox& out);
+  bool automatic(std::optional<Time> now, Outbox& out);
+
+  void interrupt(bool on);
+  // When the last frame was taken that counted.
+  std::optional<Time> newest() const;
+
+ private:
+  Time head_time(Time running);
+  void remember(const std::vector<control::Pose>& poses);
+  void publish(const std::vector<control::Pose>& poses, Time until, Outbox& out);
+  void say(const char* state, std::string reason, Time head, Outbox& out);
+  void complain(const std::string& failure, Time head, Outbox& out);
+  drivers::HeadCommand decide(const Frame& frame, Time now, Outbox& out);
+  bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,
+                Outbox& out);
+  control::Pose running(control::Pose pose) const;
+
+  mutable std::mutex lock_;
+  std::shared_ptr<drivers::HeadRunner> runner_;
+  drivers::HeadSetup setup_;
+  control::Law law_;
+  control::PoseHistory history_;  // of the head's time
+  control::Watchdog watchdog_;
+  Pilot pilot_;
+  bool clock_driven_ = false, halted_ = false, manual_ = false, faulty_ = false;
+  drivers::HeadCommand wanted_;  // by hand
+  Time told_{}, epoch_{};        // head time of the last command; head time = running time + epoch
+  Time published_{};             // head time until which poses were told
+  std::optional<Time> newest_;   // running
+  Time timeout_{};
+  Time late_since_ = control::kNever;
+  Status status_;
+  std::vector<control::Pose> poses_;  // tick() or frame(), whoever asks
+};
+
+}  // namespace cerberus::plugin
