@@ -46,11 +46,12 @@ class Adjustable {
  public:
   using Table = std::span<const Property<Settings>>;
 
-  // Property ids count from 1 in the table's order.
-  static void install(GObjectClass* klass, Table table) {
+  // Property ids count from 1 in the table's order. `when`: GST_PARAM_MUTABLE_...
+  static void install(GObjectClass* klass, Table table,
+                      GParamFlags when = GParamFlags(GST_PARAM_MUTABLE_PLAYING)) {
     const Settings defaults;
     guint id = 0;
-    for (const auto& entry : table) g_object_class_install_property(klass, ++id, spec(entry, defaults));
+    for (const auto& entry : table) g_object_class_install_property(klass, ++id, spec(entry, defaults, when));
   }
 
   void set(Table table, guint id, const GValue* value) {
@@ -63,6 +64,14 @@ class Adjustable {
     const auto& entry = table[id - 1];
     const std::lock_guard guard(lock_);
     std::visit([&](auto member) { write(value, settings_.*member, entry.choices != nullptr); }, entry.member);
+  }
+
+  // Several at once: change(settings) under the lock.
+  template <typename Change>
+  void adjust(Change change) {
+    const std::lock_guard guard(lock_);
+    change(settings_);
+    changed_ = true;
   }
 
   Settings snapshot() const {
@@ -84,9 +93,9 @@ class Adjustable {
 
  private:
   // noinline: GCC 12 otherwise follows each member pointer into each property and warns of what never happens.
-  [[gnu::noinline]] static GParamSpec* spec(const Property<Settings>& entry, const Settings& defaults) {
-    constexpr auto flags =
-        static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING);
+  [[gnu::noinline]] static GParamSpec* spec(const Property<Settings>& entry, const Settings& defaults,
+                                            GParamFlags when) {
+    const auto flags = static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | when);
     const auto* e = &entry;
     return std::visit(
         [&](auto member) -> GParamSpec* {

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/sensor_array.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cerberus::drivers {
+
+using sensing::kNever;
+using sensing::Presence;
+
+SensorError SensorArray::open(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
+                              const sensing::PirOptions& options, Time heartbeat) {
+  close();
+  const auto count = static_cast<std::size_t>(std::clamp(setup.sensors, 1, sensing::kMaxSensors));
+  if (SensorError error = sensor->open(setup)) return error;
+  sensor_ = std::move(sensor);
+  models_.assign(count, sensing::PirModel(options));
+  faults_.assign(count, sensing::PirFault::none);
+  edges_.reserve(1024);
+  heartbeat_ = std::max(heartbeat, Time(1));
+  // What the last line of a recording says shows only after the debounce time.
+  end_ = sensor_->end();
+  if (end_ < kNever) end_ += models_.front().options().debounce;
+  return {};
+}
+
+void SensorArray::close() noexcept {
+  if (sensor_) sensor_->close();
+  sensor_.reset();
+  models_.clear();
+  faults_.clear();
+  edges_.clear();
+  next_edge_ = 0;
+  last_ = {};
+  error_ = {};
+  beat_ = {};
+  begun_ = false;
+}
+
+Time SensorArray::deadline() const {
+  Time due = kNever;
+  for (const auto& model : models_) due = std::min(due, model.deadline());
+  return due;
+}
+
+Time SensorArray::due() const {
+  if (!sensor_) return kNever;
+  const Time queued = next_edge_ < edges_.size() ? edges_[next_edge_].time : kNever;
+  return std::max(last_.time, std::min({queued, sensor_->next(), deadline(), beat_}));
+}
+
+void SensorArray::let_pass(Time until) {
+  for (; next_edge_ < edges_.size() && edges_[next_edge_].time <= until; ++next_edge_) {
+    const SensorEdge& edge = edges_[next_edge_];
+    if (edge.sensor >= 0 && edge.sensor < count())
+      models_[static_cast<std::size_t>(edge.sensor)].edge(edge.time, edge.level);
+  }
+  if (next_edge_ == edges_.size()) {
+    edges_.clear();
+    next_edge_ = 0;
+  }
+  for (auto& model : models_) model.poll(until);
+}
+
+// Takes the models' state as the reading of `time`. True: it is news.
+bool SensorArray::look(Time time, SensorReading& reading) {
+  reading = {};
+  reading.time = std::max(time, last_.time);
+  for (std::size_t i = 0; i < models_.size(); ++i) {
+    const auto bit = static_cast<sensing::SensorBits>(1U << i);
+    reading.presence[i] = models_[i].presence();
+    if (models_[i].doubtful()) reading.doubtful |= bit;
+    if (models_[i].fault() != faults_[i]) reading.faulty |= bit;
+  }
+  reading.changed = !begun_ || reading.presence != last_.presence || reading.doubtful != last_.doubtful ||
+                    reading.faulty != 0;
+  return reading.changed;
+}
+
+bool SensorArray::fail(SensorError error) {
+  if (!error) return false;
+  error_ = std::move(error);
+  return true;
+}
+
+SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
+  if (!sensor_ || error_) return Step::failed;
+  if (fail(sensor_->read(now, edges_))) return Step::failed;
+  if (!begun_) {
+    let_pass(now);  // what was before is nobody's business
+    beat_ = now;
+  }
+  for (;;) {
+    const Time time = due();
+    if (recorded() && time > end_) return now >= end_ ? Step::ended : Step::wait;
+    if (time > now) return Step::wait;
+    let_pass(time);
+    if (!look(time, reading) && time < beat_) continue;
+    if (time >= beat_)
+      beat_ += ((now - beat_) / heartbeat_ + 1) * heartbeat_;  // those that were missed are not made up for
+    begun_ = true;
+    last_ = reading;
+    for (std::size_t i = 0; i < models_.size(); ++i) faults_[i] = models_[i].fault();
+    if (reading.changed && fail(sensor_->show(std::span(reading.presence).first(models_.size()))))
+      return Step::failed;
+    return Step::reading;
+  }
+}
+
+void SensorArray::base(Time time, double yaw_rate) {
+  for (auto& model : models_) model.base(time, yaw_rate);
+}
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sensors of one driver, each with its PirModel: what they say together, at the start, at every change and every
+// heartbeat, each with the time when it was so.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "drivers/sensor.h"
+
+namespace cerberus::drivers {
+
+struct SensorReading {
+  Time time{};  // on the driver's clock, never going back
+  std::array<sensing::Presence, sensing::kMaxSensors> presence{};
+  sensing::SensorBits doubtful = 0;  // detections that the robot's own turning may have caused
+  sensing::SensorBits faulty = 0;    // sensors whose fault() changed with this reading
+  bool changed = false;  // presence or doubtful differ from the last reading; true for the first one
+};
+
+// One thread at a time. Steady state allocates nothing.
+class SensorArray {
+ public:
+  enum class Step : std::uint8_t {
+    reading,  // here is one
+    wait,     // nothing more until `now`: come again at due(), or when the driver's fd has something
+    ended,    // of a recording
+    failed,   // see error(); final
+  };
+
+  // Takes the sensors and opens them. heartbeat > 0.
+  SensorError open(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
+                   const sensing::PirOptions& options, Time heartbeat);
+  void close() noexcept;
+
+  // The next reading not later than `now`. Readings begin with the time of the first call.
+  Step next(Time now, SensorReading& reading);
+  // When next() has something at the latest. A recording may be played by this alone: next(due()).
+  Time due() const;
+  const SensorError& error() const { return error_; }
+  // The base turns with `yaw_rate` radians a second from `time` on.
+  void base(Time time, double yaw_rate);
+
+  int count() const { return static_cast<int>(models_.size()); }
+  sensing::PirFault fault(int sensor) const { return models_[static_cast<std::size_t>(sensor)].fault(); }
+  std::string place(int sensor) const { return sensor_ ? sensor_->place(sensor) : std::string(); }
+  int fd() const { return sensor_ ? sensor_->fd() : -1; }
+  bool recorded() const { return sensor_ && sensor_->recorded(); }
+
+ private:
+  Time deadline() const;
+  void let_pass(Time until);
+  bool look(Time time, SensorReading& reading);
+  bool fail(SensorError error);
+
+  std::unique_ptr<Sensor> sensor_;
+  std::vector<sensing::PirModel> models_;
+  std::vector<SensorEdge> edges_;  // read, not yet told to the models from next_edge_ on
+  std::size_t next_edge_ = 0;
+  std::vector<sensing::PirFault> faults_;
+  SensorReading last_;
+  SensorError error_;
+  Time heartbeat_{}, beat_{}, end_{};
+  bool begun_ = false;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What sensor drivers are told at the start, and how they say that something is wrong.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sensing/pir_model.h"
+#include "sensing/sectors.h"
+
+namespace cerberus::drivers {
+
+using sensing::Time;
+
+enum class LineBias : std::uint8_t { as_is, none, pull_up, pull_down };
+
+struct SensorSetup {
+  int sensors = 3;  // 1 .. sensing::kMaxSensors
+
+  // gpio: a path, a name (gpiochip0), a number or a label; lines by name or offset, one a sensor. Red and blue: LEDs,
+  // one a sensor each, or none at all.
+  std::string chip;
+  std::vector<std::string> lines, red, blue;
+  LineBias bias = LineBias::as_is;
+
+  // iio: name (dummy) or id (iio:device0) of the converter, channel numbers, one a sensor. A line is high from
+  // threshold + hysteresis / 2 volts, low below threshold - hysteresis / 2.
+  std::string device;
+  std::vector<std::string> channels;
+  double threshold = 1.65, hysteresis = 0.3;
+  Time interval = std::chrono::milliseconds(10);  // between samples
+
+  std::string location;  // replay: a file, see recording.h
+  std::string script;    // scripted: see scripted_sensor.h
+};
+
+enum class SensorFault : std::uint8_t {
+  none,
+  settings,   // what was asked for makes no sense
+  not_found,  // no such chip, line, device, channel, file
+  busy,       // somebody else has it
+  denied,     // no permission
+  missing,    // this build has no such driver
+  data,       // a recording that cannot be used
+  gone,       // it was there and is no longer, or fails
+};
+
+struct SensorError {
+  SensorFault fault = SensorFault::none;
+  std::string text;    // for a user: names the thing and says what to do
+  std::string detail;  // for a developer
+  explicit operator bool() const { return fault != SensorFault::none; }
+};
+
+}  // namespace cerberus::drivers

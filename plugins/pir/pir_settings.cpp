@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "pir_settings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace cerberus::plugin {
+
+namespace {
+
+using sensing::Time;
+
+GType preset_type() {
+  static const auto values = [] {
+    std::vector<GEnumValue> list{{0, "No module in particular: what the properties say", "none"}};
+    for (const auto& preset : sensing::pir_presets()) {
+      const gchar* name = g_intern_string(std::string(preset.name).c_str());
+      list.push_back({static_cast<gint>(list.size()), name, name});
+    }
+    list.push_back({0, nullptr, nullptr});
+    return list;
+  }();
+  static const GType type = g_enum_register_static("CerberusPirPreset", values.data());
+  return type;
+}
+
+GType bias_type() {
+  using drivers::LineBias;
+  static const GEnumValue values[] = {
+      {static_cast<int>(LineBias::as_is), "As the kernel or the firmware left it", "as-is"},
+      {static_cast<int>(LineBias::none), "No resistor", "none"},
+      {static_cast<int>(LineBias::pull_up), "A resistor to the supply: for open collector modules",
+       "pull-up"},
+      {static_cast<int>(LineBias::pull_down), "A resistor to ground", "pull-down"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPirBias", values);
+  return type;
+}
+
+using S = PirSettings;
+constexpr double kVolts = 1000;
+
+const Property<PirSettings> kProperties[] = {
+    property(
+        "driver", &S::driver,
+        "Where the readings come from: gpio (lines of a GPIO chip), iio (an A/D converter), replay (a file), "
+        "scripted (the script property, for tests)"),
+    property(
+        "bearings", &S::bearings,
+        "Where each sensor looks: degrees, separated by commas, 0 ahead, positive to the right. As many as "
+        "there are sensors, 1 to 16"),
+    property("field-of-view", &S::field_of_view, 0.1, 360, "Angle in degrees that each sensor sees"),
+    property("heartbeat", &S::heartbeat,
+             "Nanoseconds between buffers when nothing changes, at least 1 ms; a change is sent at once in "
+             "any case"),
+    property("is-live", &S::is_live,
+             "Play replay and scripted readings in real time, as a live source; gpio and iio are live in any "
+             "case"),
+    property(
+        "preset", &S::preset, preset_type,
+        "The sensor module: sets active-low, warm-up and field-of-view. A property that was set itself wins"),
+    property("active-low", &S::active_low, "A line is low while its sensor detects (open collector)"),
+    property("retrigger", &S::retrigger, "A new pulse during hold extends it"),
+    property("debounce", &S::debounce,
+             "Nanoseconds that a line must be quiet before a detection ends, up to 50 ms; 0 = at once. A "
+             "detection "
+             "begins at once in any case"),
+    property("hold", &S::hold, "Least duration of a detection in nanoseconds; 0 = as long as the line says"),
+    property("block-time", &S::block_time,
+             "Nanoseconds after a detection in which nothing triggers; 0 = none"),
+    property("warm-up", &S::warm_up, "Nanoseconds after the start in which readings are invalid; 0 = none"),
+    property("stuck-after", &S::stuck_after,
+             "Nanoseconds of a line that never rests after which its sensor counts as stuck: a warning, and "
+             "invalid "
+             "readings until it rests; 0 = never"),
+    property(
+        "chatter-edges", &S::chatter_edges, 0, 256,
+        "So many pulses within chatter-window mean that a sensor chatters: a warning, and invalid readings "
+        "until it calms down; 0 = never"),
+    property("chatter-window", &S::chatter_window, "Nanoseconds in which chatter-edges are counted"),
+    property("chip", &S::chip, "gpio: the chip's path, name, number or label"),
+    property("lines", &S::lines, "gpio: a line for each sensor, by name or offset, separated by commas"),
+    property("leds-red", &S::leds_red,
+             "gpio: an output line for each sensor, high while it detects; empty = no such LEDs"),
+    property("leds-blue", &S::leds_blue,
+             "gpio: an output line for each sensor, high while it does not detect; empty = no such LEDs"),
+    property("bias", &S::bias, bias_type, "gpio: the resistor inside the chip on the sensors' lines"),
+    property("iio-device", &S::iio_device, "iio: the converter's name or id"),
+    property("channels", &S::channels,
+             "iio: the number of a voltage channel for each sensor, separated by commas"),
+    property("threshold", &S::threshold, -kVolts, kVolts, "iio: volts between low and high"),
+    property("hysteresis", &S::hysteresis, 0, kVolts,
+             "iio: volts between switching to high and switching to low, threshold in the middle; 0 = none"),
+    property("sample-interval", &S::sample_interval, "iio: nanoseconds between samples, at least 1 ms"),
+    property("location", &S::location,
+             "replay: the file, lines of seconds,level,level,... or JSON lines with time (or pts) and pir"),
+    property("script", &S::script, "scripted: lines as in a replayed file, separated by semicolons"),
+};
+
+Time duration(guint64 nanoseconds) {
+  return Time(static_cast<Time::rep>(std::min<guint64>(nanoseconds, std::numeric_limits<Time::rep>::max())));
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  if (list.empty()) return parts;
+  for (std::size_t at = 0;;) {
+    const auto end = list.find(',', at);
+    std::string part = list.substr(at, end == list.npos ? end : end - at);
+    part.erase(0, part.find_first_not_of(' '));
+    part.erase(part.find_last_not_of(' ') + 1);
+    parts.push_back(std::move(part));
+    if (end == list.npos) return parts;
+    at = end + 1;
+  }
+}
+
+guint id_of(std::string_view name) {
+  const auto found = std::ranges::find(kProperties, name, &Property<PirSettings>::name);
+  return static_cast<guint>(found - std::begin(kProperties)) + 1;
+}
+
+}  // namespace
+
+std::span<const Property<PirSettings>> pir_properties() {
+  return kProperties;
+}
+
+bool is_preset_property(guint id) {
+  return id == id_of("preset");
+}
+
+void apply_preset(PirSettings& settings, const PirChosen& chosen) {
+  const auto all = sensing::pir_presets();
+  const PirSettings defaults;
+  const auto number = static_cast<std::size_t>(settings.preset);
+  const sensing::PirPreset* preset = number > 0 && number <= all.size() ? &all[number - 1] : nullptr;
+  if (!chosen[id_of("active-low")])
+    settings.active_low = preset ? preset->options.active_low : defaults.active_low;
+  if (!chosen[id_of("warm-up")])
+    settings.warm_up = preset ? nanoseconds(preset->options.warm_up) : defaults.warm_up;
+  if (!chosen[id_of("field-of-view")])  // as somebody would write it: no 119.99999999999999
+    settings.field_of_view =
+        preset ? std::round(sensing::degrees(preset->field_of_view) * 1e6) / 1e6 : defaults.field_of_view;
+}
+
+std::string pir_info(const PirSettings& settings, CerberusPirInfo& info) {
+  cerberus_pir_info_init(&info);
+  info.field_of_view = settings.field_of_view;
+  const auto words = split(settings.bearings);
+  if (words.empty() || words.size() > CERBERUS_PIR_MAX_SENSORS)
+    return "bearings=\"" + settings.bearings + "\" must name 1 to 16 directions";
+  info.sensors = static_cast<guint>(words.size());
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    gchar* end = nullptr;
+    const double bearing = g_ascii_strtod(words[i].c_str(), &end);
+    if (words[i].empty() || *end || !(std::abs(bearing) <= 360))
+      return "bearings=\"" + settings.bearings + "\": \"" + words[i] + "\" is no direction in degrees";
+    info.bearings[i] =
+        bearing >= -180 && bearing < 180 ? bearing : bearing - 360 * std::floor((bearing + 180) / 360);
+  }
+  return "";
+}
+
+drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors) {
+  drivers::SensorSetup setup;
+  setup.sensors = static_cast<int>(sensors);
+  setup.chip = settings.chip;
+  setup.lines = split(settings.lines);
+  setup.red = split(settings.leds_red);
+  setup.blue = split(settings.leds_blue);
+  setup.bias = static_cast<drivers::LineBias>(settings.bias);
+  setup.device = settings.iio_device;
+  setup.channels = split(settings.channels);
+  setup.threshold = settings.threshold;
+  setup.hysteresis = settings.hysteresis;
+  setup.interval = std::max(duration(settings.sample_interval), Time(std::chrono::milliseconds(1)));
+  setup.location = settings.location;
+  setup.script = settings.script;
+  return setup;
+}
+
+sensing::PirOptions pir_options(const PirSettings& settings) {
+  sensing::PirOptions options;
+  options.active_low = settings.active_low;
+  options.retrigger = settings.retrigger;
+  options.debounce = duration(settings.debounce);
+  options.hold = duration(settings.hold);
+  options.block = duration(settings.block_time);
+  options.warm_up = duration(settings.warm_up);
+  options.stuck_after = duration(settings.stuck_after);
+  options.chatter_edges = static_cast<unsigned>(settings.chatter_edges);
+  options.chatter_window = duration(settings.chatter_window);
+  return options;
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The properties of pirsrc, and what they mean to lib/.
+#pragma once
+
+#include <cerberus/pir.h>
+#include <gst/gst.h>
+
+#include <bitset>
+#include <string>
+
+#include "drivers/sensor_setup.h"
+#include "properties.hpp"
+
+namespace cerberus::plugin {
+
+constexpr guint64 nanoseconds(sensing::Time time) {
+  return static_cast<guint64>(time.count());
+}
+
+struct PirSettings {
+  std::string driver = "scripted";
+  std::string bearings = "0,-120,120";
+  double field_of_view = 120;
+  guint64 heartbeat = 100 * GST_MSECOND;
+  bool is_live = false;
+
+  int preset = 0;  // 0: none, else 1 + its place in sensing::pir_presets()
+  bool active_low = sensing::PirOptions{}.active_low;
+  bool retrigger = sensing::PirOptions{}.retrigger;
+  guint64 debounce = nanoseconds(sensing::PirOptions{}.debounce);
+  guint64 hold = nanoseconds(sensing::PirOptions{}.hold);
+  guint64 block_time = nanoseconds(sensing::PirOptions{}.block);
+  guint64 warm_up = nanoseconds(sensing::PirOptions{}.warm_up);
+  guint64 stuck_after = nanoseconds(sensing::PirOptions{}.stuck_after);
+  int chatter_edges = static_cast<int>(sensing::PirOptions{}.chatter_edges);
+  guint64 chatter_window = nanoseconds(sensing::PirOptions{}.chatter_window);
+
+  std::string chip = "/dev/gpiochip0";
+  std::string lines, leds_red, leds_blue;
+  int bias = static_cast<int>(drivers::SensorSetup{}.bias);
+
+  std::string iio_device = "iio:device0";
+  std::string channels = "0,1,2";
+  double threshold = drivers::SensorSetup{}.threshold;
+  double hysteresis = drivers::SensorSetup{}.hysteresis;
+  guint64 sample_interval = nanoseconds(drivers::SensorSetup{}.interval);
+
+  std::string location, script;
+};
+
+std::span<const Property<PirSettings>> pir_properties();
+using PirChosen = std::bitset<64>;  // by property id: what the application set itself
+
+// Gives everything that a preset speaks of, and the application did not set, the preset's value.
+void apply_preset(PirSettings& settings, const PirChosen& chosen);
+bool is_preset_property(guint id);
+
+// What the stream's caps say; the empty text, or what is wrong, for a user.
+std::string pir_info(const PirSettings& settings, CerberusPirInfo& info);
+drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors);
+sensing::PirOptions pir_options(const PirSettings& settings);
+
+}  // namespace cerberus::plugin

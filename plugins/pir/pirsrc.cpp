@@ -1,0 +1,393 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-pirsrc
+ *
+ * Readings of passive infrared sensors as a stream: one byte a sensor, 0 = nothing, 1 = somebody, 2 = invalid (warm-up,
+ * stuck, chattering, or nothing known yet). A buffer comes at once at the start and at every change, and every
+ * `heartbeat` when nothing changes. Caps tell where the sensors look, so `pirfusion` need not be told again.
+ *
+ * Drivers (`driver`):
+ * - `gpio`: lines of a GPIO chip, edges with the kernel's time stamps; LEDs on output lines (`leds-red` while a sensor
+ *   detects, `leds-blue` while it does not). Live.
+ * - `iio`: channels of an A/D converter, compared with `threshold`. Live.
+ * - `replay`: a file of `seconds,level,level,...` lines or of JSON lines with `time` (or `pts`) and `pir`, as
+ *   `motionjson` writes them; ends with the file. Not live unless `is-live`.
+ * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
+ *
+ * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
+ * knows modules. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
+ * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, as an upstream event
+ * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message.
+ *
+ * ## Examples
+ * |[
+ * gst-launch-1.0 -m pirsrc driver=scripted script="0,0,0,0; 1,1,0,0; 3,0,0,0" ! fakesink
+ * gst-launch-1.0 pirsrc driver=gpio chip=gpiochip0 lines=17,27,22 leds-red=5,6,13 preset=am312 ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// The sensors are lib/drivers', the model of each is sensing::PirModel, what is told when is drivers::SensorArray's.
+// Live, the element sleeps on the device's fd until the next thing that can happen (an edge, a deadline of a model, a
+// heartbeat). A device's stamps are monotonic time: the distance from the stamp to now is taken off the clock's now.
+// Not live, the stream is made as fast as it is taken, from the recording alone.
+#include <cerberus/pir.h>
+#include <cerberus/pose.h>
+#include <gst/base/gstpushsrc.h>
+#include <cerberus/private/element.hpp>
+
+#include <chrono>
+
+#include "drivers/sensor_array.h"
+#include "pir_settings.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(pirsrc_debug);
+#define GST_CAT_DEFAULT pirsrc_debug
+
+namespace cerberus::plugin {
+namespace {
+
+using drivers::SensorArray;
+using drivers::SensorFault;
+using drivers::SensorReading;
+using sensing::Time;
+
+constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);
+
+GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS("application/x-pir, format = (string) presence, sensors = (int) [ 1, 16 ]"));
+
+struct Private {
+  Adjustable<PirSettings> settings;
+  GstPoll* poll = nullptr;
+
+  std::mutex lock;
+  PirChosen chosen;
+  CerberusPirInfo info{};
+  bool running = false;
+  bool live = false;
+  SensorArray sensors;
+  GstPollFD device = GST_POLL_FD_INIT;
+  GstClockTime last = 0;  // running time of the last buffer
+
+  Private() : poll(gst_poll_new(TRUE)) {}
+  ~Private() { gst_poll_free(poll); }
+};
+
+CERBERUS_DEFINE_TYPE(CerberusPirSrc, cerberus_pir_src, GstPushSrc, GST_TYPE_PUSH_SRC, Private)
+
+// ---- errors and warnings
+
+void post(CerberusPirSrc* self, const drivers::SensorError& error) {
+  const char* detail = error.detail.c_str();
+  const char* text = error.text.c_str();
+  switch (error.fault) {
+    case SensorFault::none:
+      return;
+    case SensorFault::settings:
+    case SensorFault::missing:
+      GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::not_found:
+      GST_ELEMENT_ERROR(self, RESOURCE, NOT_FOUND, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::busy:
+      GST_ELEMENT_ERROR(self, RESOURCE, BUSY, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::denied:
+      GST_ELEMENT_ERROR(self, RESOURCE, NOT_AUTHORIZED, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::data:
+      GST_ELEMENT_ERROR(self, STREAM, DECODE, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::gone:
+      GST_ELEMENT_ERROR(self, RESOURCE, READ, ("%s", text), ("%s", detail));
+      return;
+  }
+}
+
+void post_fault(CerberusPirSrc* self, int sensor, sensing::PirFault fault, double bearing,
+                const std::string& place) {
+  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + place + ", bearing " +
+                           std::to_string(std::lround(bearing)) + ")";
+  if (fault == sensing::PirFault::none) {
+    GST_ELEMENT_INFO(self, RESOURCE, READ, ("%s works again.", name.c_str()), (nullptr));
+    return;
+  }
+  const std::string what(sensing::describe(fault));
+  GST_ELEMENT_WARNING(
+      self, RESOURCE, READ,
+      ("%s is %s: its readings do not count until it is well again. Check its cable and supply, "
+       "and what is warm or moving before it.",
+       name.c_str(), what.c_str()),
+      (nullptr));
+}
+
+// ---- time
+
+Time monotonic_now() {
+  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, as the kernel stamps edges
+}
+
+// Running time; 0 before there is a clock.
+GstClockTime running_now(CerberusPirSrc* self) {
+  GstElement* element = GST_ELEMENT(self);
+  GstClock* clock = gst_element_get_clock(element);
+  if (!clock) return 0;
+  const GstClockTime now = gst_clock_get_time(clock), base = gst_element_get_base_time(element);
+  gst_object_unref(clock);
+  return now > base ? now - base : 0;
+}
+
+// What the sensors' clock says; lock held.
+Time sensors_now(CerberusPirSrc* self) {
+  const Private& priv = *self->priv;
+  if (!priv.live) return priv.sensors.due();
+  return priv.sensors.recorded() ? Time(static_cast<Time::rep>(running_now(self))) : monotonic_now();
+}
+
+// The running time of something that happened at `time` on the sensors' clock.
+GstClockTime running_time(CerberusPirSrc* self, Time time) {
+  const Private& priv = *self->priv;
+  if (priv.sensors.recorded()) return static_cast<GstClockTime>(time.count());
+  const GstClockTimeDiff ago = (monotonic_now() - time).count();
+  const GstClockTimeDiff then = static_cast<GstClockTimeDiff>(running_now(self)) - ago;
+  return static_cast<GstClockTime>(std::max<GstClockTimeDiff>(then, 0));
+}
+
+// ---- the stream
+
+GstStateChangeReturn change_state(GstElement* element, GstStateChange transition) {
+  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
+    const PirSettings settings = cerberus_pir_src_self(element)->priv->settings.snapshot();
+    gst_base_src_set_live(GST_BASE_SRC(element), settings.is_live || drivers::is_device(settings.driver));
+  }
+  return GST_ELEMENT_CLASS(cerberus_pir_src_parent_class())->change_state(element, transition);
+}
+
+bool open_sensors(CerberusPirSrc* self) {
+  Private& priv = *self->priv;
+  const PirSettings settings = priv.settings.snapshot();
+  CerberusPirInfo info;
+  if (const std::string why = pir_info(settings, info); !why.empty()) {
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("PIR sensors cannot be arranged so: %s.", why.c_str()),
+                      (nullptr));
+    return false;
+  }
+  auto sensor = drivers::make_sensor(settings.driver);
+  if (!sensor) {
+    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                      ("There is no PIR driver \"%s\". Drivers: %s.", settings.driver.c_str(),
+                       drivers::sensor_drivers().c_str()),
+                      (nullptr));
+    return false;
+  }
+  const Time heartbeat = std::max(
+      Time(static_cast<Time::rep>(std::min<guint64>(settings.heartbeat, G_MAXINT64 / 4))), kLeastHeartbeat);
+  std::unique_lock guard(priv.lock);
+  const drivers::SensorError error = priv.sensors.open(
+      std::move(sensor), sensor_setup(settings, info.sensors), pir_options(settings), heartbeat);
+  if (error) {
+    guard.unlock();
+    post(self, error);
+    return false;
+  }
+  priv.info = info;
+  priv.live = gst_base_src_is_live(GST_BASE_SRC(self));
+  priv.last = 0;
+  priv.device.fd = priv.sensors.fd();
+  if (priv.device.fd >= 0) {
+    gst_poll_add_fd(priv.poll, &priv.device);
+    gst_poll_fd_ctl_read(priv.poll, &priv.device, TRUE);
+  }
+  priv.running = true;
+  guard.unlock();
+  if (settings.driver == "scripted" && settings.script.empty())
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, SETTINGS,
+        ("driver=scripted without a script knows nothing. Set driver to gpio, iio or replay."), (nullptr));
+  return true;
+}
+
+gboolean start(GstBaseSrc* base) {
+  auto* self = cerberus_pir_src_self(base);
+  return guarded(self, FALSE, [&]() -> gboolean { return open_sensors(self); });
+}
+
+gboolean stop(GstBaseSrc* base) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  const std::lock_guard guard(priv.lock);
+  if (priv.device.fd >= 0) gst_poll_remove_fd(priv.poll, &priv.device);
+  gst_poll_fd_init(&priv.device);
+  priv.sensors.close();
+  priv.running = false;
+  return TRUE;
+}
+
+GstCaps* get_caps(GstBaseSrc* base, GstCaps* filter) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  GstCaps* caps = nullptr;
+  {
+    const std::lock_guard guard(priv.lock);
+    caps = priv.running ? cerberus_pir_info_to_caps(&priv.info)
+                        : gst_static_pad_template_get_caps(&src_template);
+  }
+  if (!filter) return caps;
+  GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(caps);
+  return both;
+}
+
+// What a step of the sensors left to be said, outside the lock.
+struct News {
+  SensorReading reading;
+  GstClockTime time = 0;
+  CerberusPirInfo info{};
+  std::array<sensing::PirFault, sensing::kMaxSensors> faults{};
+  std::array<std::string, sensing::kMaxSensors> places;
+};
+
+GstBuffer* publish(CerberusPirSrc* self, const News& news) {
+  const SensorReading& reading = news.reading;
+  guint8 bytes[CERBERUS_PIR_MAX_SENSORS] = {};
+  for (guint i = 0; i < news.info.sensors; ++i) bytes[i] = static_cast<guint8>(reading.presence[i]);
+  for (guint i = 0; i < news.info.sensors; ++i)
+    if (reading.faulty >> i & 1)
+      post_fault(self, static_cast<int>(i), news.faults[i], news.info.bearings[i], news.places[i]);
+  if (reading.changed) {
+    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), news.time, &news.info, bytes);
+    GstStructure* fields = gst_message_writable_structure(message);
+    gst_structure_set(fields, "doubtful", G_TYPE_UINT, static_cast<guint>(reading.doubtful), nullptr);
+    gst_element_post_message(GST_ELEMENT(self), message);
+  }
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, news.info.sensors, nullptr);
+  gst_buffer_fill(buffer, 0, bytes, news.info.sensors);
+  GST_BUFFER_PTS(buffer) = news.time;
+  return buffer;
+}
+
+GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
+  Private& priv = *self->priv;
+  for (;;) {
+    News news;
+    std::unique_lock guard(priv.lock);
+    const Time now = sensors_now(self);
+    const SensorArray::Step step = priv.sensors.next(now, news.reading);
+    if (step == SensorArray::Step::ended) return GST_FLOW_EOS;
+    if (step == SensorArray::Step::failed) {
+      const drivers::SensorError error = priv.sensors.error();
+      guard.unlock();
+      post(self, error);
+      return GST_FLOW_ERROR;
+    }
+    if (step == SensorArray::Step::reading) {
+      news.time = priv.last = std::max(priv.last, running_time(self, news.reading.time));
+      news.info = priv.info;
+      for (int i = 0; i < priv.sensors.count(); ++i) {
+        if (!(news.reading.faulty >> i & 1)) continue;
+        news.faults[static_cast<std::size_t>(i)] = priv.sensors.fault(i);
+        news.places[static_cast<std::size_t>(i)] = priv.sensors.place(i);
+      }
+      guard.unlock();
+      *buffer = publish(self, news);
+      return GST_FLOW_OK;
+    }
+    const Time due = priv.sensors.due();
+    guard.unlock();
+    if (!priv.live) continue;
+    const GstClockTime sleep =
+        due == sensing::kNever ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>((due - now).count());
+    if (gst_poll_wait(priv.poll, sleep) < 0 && errno == EBUSY) return GST_FLOW_FLUSHING;
+  }
+}
+
+GstFlowReturn create(GstPushSrc* push, GstBuffer** buffer) {
+  auto* self = cerberus_pir_src_self(push);
+  return guarded(self, GST_FLOW_ERROR, [&] { return next_buffer(self, buffer); });
+}
+
+gboolean unlock(GstBaseSrc* base) {
+  gst_poll_set_flushing(cerberus_pir_src_self(base)->priv->poll, TRUE);
+  return TRUE;
+}
+
+gboolean unlock_stop(GstBaseSrc* base) {
+  gst_poll_set_flushing(cerberus_pir_src_self(base)->priv->poll, FALSE);
+  return TRUE;
+}
+
+gboolean event(GstBaseSrc* base, GstEvent* event) {
+  auto* self = cerberus_pir_src_self(base);
+  Private& priv = *self->priv;
+  gdouble yaw_rate = 0;
+  if (cerberus_event_parse_base(event, &yaw_rate, nullptr)) {
+    const std::lock_guard guard(priv.lock);
+    if (priv.running)
+      priv.sensors.base(priv.live ? sensors_now(self) : Time(static_cast<Time::rep>(priv.last)),
+                        sensing::radians(yaw_rate));
+    gst_poll_restart(priv.poll);
+    return TRUE;
+  }
+  return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->event(base, event);
+}
+
+gboolean query(GstBaseSrc* base, GstQuery* query) {
+  // A reading leaves when it is made; whoever waits for slower streams may keep as many as it likes.
+  if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY) {
+    gst_query_set_latency(query, gst_base_src_is_live(base), 0, GST_CLOCK_TIME_NONE);
+    return TRUE;
+  }
+  return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->query(base, query);
+}
+
+// ---- properties
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
+  Private& priv = *cerberus_pir_src_self(object)->priv;
+  priv.settings.set(pir_properties(), id, value);
+  PirChosen chosen;
+  {
+    const std::lock_guard guard(priv.lock);
+    priv.chosen.set(id);
+    chosen = priv.chosen;
+  }
+  if (is_preset_property(id))
+    priv.settings.adjust([&](PirSettings& settings) { apply_preset(settings, chosen); });
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  cerberus_pir_src_self(object)->priv->settings.get(pir_properties(), id, value);
+}
+
+void cerberus_pir_src_init(CerberusPirSrc* self) {
+  gst_base_src_set_format(GST_BASE_SRC(self), GST_FORMAT_TIME);
+}
+
+void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<PirSettings>::install(object, pir_properties(), GParamFlags(GST_PARAM_MUTABLE_READY));
+  GST_ELEMENT_CLASS(klass)->change_state = change_state;
+  auto* src = GST_BASE_SRC_CLASS(klass);
+  src->start = start;
+  src->stop = stop;
+  src->get_caps = get_caps;
+  src->unlock = unlock;
+  src->unlock_stop = unlock_stop;
+  src->event = event;
+  src->query = query;
+  GST_PUSH_SRC_CLASS(klass)->create = create;
+  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src_template);
+  gst_element_class_set_static_metadata(
+      GST_ELEMENT_CLASS(klass), "PIR sensors", "Source/Sensor",
+      "Readings of passive infrared sensors from GPIO lines, an A/D converter or a file",
+      "The Cerberus developers");
+}
+
+}  // namespace
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(pirsrc, GST_RANK_NONE, cerberus::plugin::cerberus_pir_src, pirsrc_debug,
+                          "PIR sensors")
