@@ -16,8 +16,10 @@ namespace {
 constexpr int kLeastSide = 16;  // smaller pictures are not estimated
 constexpr float kFound = 0.7f;  // correlation of a patch that was found again
 constexpr float kFoundWell = 0.95f;
-constexpr int kLeastPatches = 8;   // fewer say nothing about a cut
-constexpr int kReferenceAge = 16;  // frames after which a standing camera's reference is renewed
+constexpr int kLeastPatches = 8;      // fewer say nothing about a cut
+constexpr int kReferenceAge = 16;     // frames after which a standing camera's reference is renewed
+constexpr double kMajority = 0.6;     // share of the patches that no other motion can outvote
+constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a camera that stood still does
 
 int search_level(Size size) {
   int level = 0;
@@ -59,6 +61,7 @@ struct CameraMotion::State {
   bool still = false;
   int scene_age = 0;
 
+  std::optional<CameraMotionResult> confirm_still();
   CameraMotionResult estimate(const std::optional<Transform>& prior);
   CameraMotionResult start_scene();
   PatchMatch look(const PatchFollower& patch, int level, const PatchSite& site, const Transform& guess,
@@ -223,7 +226,7 @@ bool CameraMotion::State::is_cut(const Shift& shift) const {
 
 bool CameraMotion::State::is_still(const MotionFit& fit) const {
   const double motion = mean_motion(fit.transform, reference.size());
-  if (motion < (still ? 0.2 : 0.1)) return true;
+  if (motion < (still ? kStillMotion : 0.1)) return true;
   if (share > 0.9 && motion > 0.5) return false;
   const MotionFit none = rate_motion(samples, {});
   // A large and lively object: the rest of the picture, in many places, says that nothing moves.
@@ -250,6 +253,30 @@ void CameraMotion::State::measure_noise() {
   if (count < kLeastPatches) return;
   std::nth_element(variances.begin(), variances.begin() + count / 3, variances.begin() + count);
   noise += 0.1 * (std::sqrt(0.5 * variances[count / 3]) - noise);  // both pictures have it
+}
+
+// A camera that stood mostly stands: where most patches are found again in their places, on the finest level alone, nothing
+// else can come out of the search, which costs five times as much. None where that is not so, or the reference is due.
+std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
+  if (!still || !sites_chosen || sites.count < kLeastPatches || reference_age + 1 >= kReferenceAge)
+    return std::nullopt;
+  const Size size = reference.size();
+  follow(0, {});
+  collect(0);
+  Transform motion;
+  refine_motion(samples, std::min(options.model, MotionModel::similarity), size, motion);
+  const MotionFit fit = rate_motion(samples, motion);
+  share = share_well = 0;
+  count_followers(fit);
+  if (share < kMajority || mean_motion(motion, size) >= kStillMotion || !is_known(fit)) return std::nullopt;
+  measure_noise();
+  next_reference(true);
+  CameraMotionResult result;
+  result.scene_age = ++scene_age;
+  result.confidence = share;
+  result.residual = rate_motion(samples, {}).residual;
+  result.still = true;
+  return result;
 }
 
 CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>& prior) {
@@ -291,7 +318,10 @@ CameraMotionResult CameraMotion::update(GrayView picture, const std::optional<Tr
   if (picture.empty()) return {};
   if (s.reference.size() != picture.size()) s.scene_age = 0;
   const int level = search_level(picture.size());
-  s.current.build(picture, level + 1);
+  s.current.build(picture, 1);
+  if (s.scene_age > 0)
+    if (const auto result = s.confirm_still()) return *result;
+  s.current.extend(level + 1);
   s.current_relief.build(s.current.level(std::min(level, s.current.levels() - 1)));
   if (s.scene_age == 0) return s.start_scene();
   if (std::min(picture.width, picture.height) < kLeastSide) {

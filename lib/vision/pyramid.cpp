@@ -12,6 +12,10 @@ void Pyramid::build(GrayView picture, int levels) {
   for (int y = 0; y < picture.height; ++y)
     std::memcpy(images_[0].view().row(y), picture.row(y), static_cast<std::size_t>(picture.width));
   levels_ = 1;
+  extend(levels);
+}
+
+void Pyramid::extend(int levels) {
   for (; levels_ < std::min(levels, kMaxLevels); ++levels_) {
     const GrayView from = images_[levels_ - 1].view();
     const Size half{from.width / 2, from.height / 2};

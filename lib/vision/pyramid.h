@@ -16,6 +16,8 @@ class Pyramid {
 
   // Allocates only when the size changes. `levels` at most kMaxLevels; stops earlier at an empty level.
   void build(GrayView picture, int levels);
+  // More levels of the same picture.
+  void extend(int levels);
   int levels() const { return levels_; }
   GrayView level(int l) const { return images_[l].view(); }
   Size size() const { return levels_ ? images_[0].size() : Size{}; }
