@@ -22,7 +22,7 @@ GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template) {
 void PirPad::reset() {
   history = {};
   sensors = 0;
-  given_up = complained = false;
+  given_up = complained = refused = false;
   live.reset();
   gst_segment_init(&segment, GST_FORMAT_UNDEFINED);
   cerberus_pir_info_init(&info);

@@ -26,6 +26,7 @@ struct PirPad {
   CerberusPirInfo info;
   std::optional<bool> live;  // of what it is linked to; nothing: not asked yet
   bool complained = false;   // of buffers of the wrong size
+  bool refused = false;      // its caps: they come again with the next buffer
 
   PirPad() { reset(); }
   void reset();  // READY

@@ -534,42 +534,43 @@ gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
 
 // ---- the PIR pads
 
-// The caps' sensors, or an error message.
-bool pir_caps(CerberusPirFusion* self, GstPad* pad, const GstCaps* caps) {
+// Takes over what the caps say; else the reason why they cannot be fused.
+std::string take_caps(Private& priv, PirPad& pir, const GstCaps* caps) {
   CerberusPirInfo info;
   g_autoptr(GError) error = nullptr;
-  if (!cerberus_pir_info_from_caps(&info, caps, &error)) {
-    GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), error->message), (nullptr));
-    return false;
-  }
-  if (info.format == CERBERUS_PIR_LEVEL) {
-    GST_ELEMENT_ERROR(
-        self, CORE, NEGOTIATION,
-        ("Pad %s: PIR readings in volts (format=level) cannot be fused: let the source compare them "
-         "with a threshold (format=presence).",
-         GST_PAD_NAME(pad)),
-        (nullptr));
-    return false;
-  }
-  PirPad& pir = pir_pad(pad);
-  int others = 0;
+  if (!cerberus_pir_info_from_caps(&info, caps, &error)) return error->message;
+  if (info.format == CERBERUS_PIR_LEVEL)
+    return "PIR readings in volts (format=level) cannot be fused: let the source compare them with a "
+           "threshold "
+           "(format=presence).";
   const auto count = static_cast<int>(info.sensors);
-  {
-    const std::lock_guard guard(self->priv->lock);
-    for (GstPad* each : self->priv->pir)
-      if (each != pad) others += pir_pad(each).sensors;
-    if (others + count <= sensing::kMaxSensors) {
-      pir.sensors = count;
-      pir.history.set_array(sensor_array(info));
-      pir.info = info;
-      return true;
-    }
+  const std::lock_guard guard(priv.lock);
+  int others = -pir.sensors;
+  for (GstPad* each : priv.pir) others += pir_pad(each).sensors;
+  if (others + count > sensing::kMaxSensors)
+    return std::to_string(count) + " PIR sensors are too many besides the other pads' " +
+           std::to_string(others) + ": " + std::to_string(sensing::kMaxSensors) + " in all can be fused.";
+  pir.sensors = count;
+  pir.history.set_array(sensor_array(info));
+  pir.info = info;
+  return {};
+}
+
+// What cannot be used comes again with the next buffer: said once.
+void refuse(CerberusPirFusion* self, GstPad* pad, const std::string& fault) {
+  if (std::exchange(pir_pad(pad).refused, true)) return;
+  GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), fault.c_str()), (nullptr));
+}
+
+bool pir_caps(CerberusPirFusion* self, GstPad* pad, const GstCaps* caps) {
+  PirPad& pir = pir_pad(pad);
+  const std::string fault = take_caps(*self->priv, pir, caps);
+  if (fault.empty()) {
+    pir.refused = false;
+    return true;
   }
-  GST_ELEMENT_ERROR(
-      self, CORE, NEGOTIATION,
-      ("Pad %s: its %d PIR sensors are too many besides the other pads' %d: %d in all can be fused.",
-       GST_PAD_NAME(pad), count, others, sensing::kMaxSensors),
-      (nullptr));
+  pir.info.sensors = 0;
+  refuse(self, pad, fault);
   return false;
 }
 
@@ -594,9 +595,7 @@ bool pir_segment(CerberusPirFusion* self, GstPad* pad, GstEvent* event) {
   const GstSegment* segment;
   gst_event_parse_segment(event, &segment);
   if (segment->format != GST_FORMAT_TIME) {
-    GST_ELEMENT_ERROR(self, STREAM, FORMAT,
-                      ("Pad %s: PIR readings need times, and their stream has none.", GST_PAD_NAME(pad)),
-                      ("segment in format %s", gst_format_get_name(segment->format)));
+    refuse(self, pad, "PIR readings need times, and their stream has none.");
     return false;
   }
   gst_segment_copy_into(segment, &pir_pad(pad).segment);
@@ -609,6 +608,9 @@ bool hear(CerberusPirFusion* self, GstPad* pad, GstEvent* event) {
   Private& priv = *self->priv;
   PirPad& pir = pir_pad(pad);
   switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_STREAM_START:
+      pir.refused = false;
+      break;
     case GST_EVENT_CAPS: {
       GstCaps* caps;
       gst_event_parse_caps(event, &caps);

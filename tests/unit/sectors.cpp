@@ -170,6 +170,7 @@ int main() {
   tcase_add_test(cases, directions_wrap_and_keep_their_meaning);
   tcase_add_test(cases, the_default_geometry_is_the_papers);
   tcase_add_test(cases, a_geometry_that_cannot_be_is_refused_and_changes_nothing);
+  tcase_add_test(cases, sensors_of_different_make_have_each_its_own_width);
   tcase_add_test(cases, sectors_overlap_where_all_of_them_look);
   tcase_add_test(cases, sectors_that_touch_meet_on_their_border);
   tcase_add_test(cases, wide_sectors_meet_twice);

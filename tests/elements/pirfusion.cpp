@@ -1,0 +1,794 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pirfusion's decisions: what it takes from which pad, event and meta, and what it says. (Who waits for whom is in
+// pirfusion_waiting.cpp.)
+#include "fusion_rig.h"
+
+#include <gst/video/video.h>
+
+namespace {
+
+using namespace rig;
+
+struct Expected {
+  int rule;
+  CerberusFusionAction action;
+};
+
+// The paper's rules as FACTS: order 1, 5, 6, 2, 3, 4, 7; rules 2-4 turn AT their edge, 5-6 track at it. "Camera
+// Tracking" without a target is standing still.
+Expected paper(bool camera, bool i1, bool i2, bool i3, double a) {
+  const auto turn = [](int rule, bool right, bool left) {
+    return Expected{rule, right  ? CERBERUS_FUSION_TURN_RIGHT
+                          : left ? CERBERUS_FUSION_TURN_LEFT
+                                 : CERBERUS_FUSION_HOLD};
+  };
+  if (camera) return {1, CERBERUS_FUSION_TRACK};
+  if (i1 && i2) return turn(5, a < -90, a > 0);
+  if (i1 && i3) return turn(6, a < 0, a > 120);
+  if (i1) return turn(2, a <= -45, a >= 45);
+  if (i2) return turn(3, a <= -120, a >= -60);
+  if (i3) return turn(4, a <= 60, a >= 120);
+  return {7, CERBERUS_FUSION_ZERO};
+}
+
+std::string with_sensors(int count, double first, double step, double field = 60) {
+  std::string bearings;
+  for (int i = 0; i < count; ++i)
+    bearings += (i ? "," : "") + std::string("(double)") + std::to_string(static_cast<int>(first + i * step));
+  return "application/x-pir,format=presence,sensors=" + std::to_string(count) + ",bearings=<" + bearings +
+         ">,field-of-view=(double)" + std::to_string(static_cast<int>(field));
+}
+
+// The events that came out at the source pad since the last call.
+std::vector<GstEventType> events_out(GstHarness* h) {
+  std::vector<GstEventType> types;
+  while (GstEvent* event = gst_harness_try_pull_event(h)) {
+    types.push_back(GST_EVENT_TYPE(event));
+    gst_event_unref(event);
+  }
+  return types;
+}
+
+// The upstream events that reached this harness' source.
+std::vector<std::string> events_up(GstHarness* h) {
+  std::vector<std::string> names;
+  while (GstEvent* event = gst_harness_try_pull_upstream_event(h)) {
+    const GstStructure* s = gst_event_get_structure(event);
+    if (GST_EVENT_TYPE(event) != GST_EVENT_RECONFIGURE && GST_EVENT_TYPE(event) != GST_EVENT_LATENCY)
+      names.push_back(GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM ? gst_structure_get_name(s)
+                                                                         : GST_EVENT_TYPE_NAME(event));
+    gst_event_unref(event);
+  }
+  return names;
+}
+
+void say(Rig& rig, GstEvent* event) {
+  gst_harness_push_upstream_event(rig.video, event);
+}
+void say(Rig& rig, const CerberusPose& where) {
+  say(rig, cerberus_event_new_pose(&where));
+}
+
+// The element's answer when its state is raised; its error message.
+std::string refusal(const std::string& properties) {
+  const std::string line = "pirfusion " + properties;
+  GstElement* element = gst_parse_launch(line.c_str(), nullptr);
+  gst_object_ref_sink(element);
+  g_autoptr(GstBus) bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  std::string text;
+  if (gst_element_set_state(element, GST_STATE_READY) == GST_STATE_CHANGE_FAILURE) {
+    g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    fail_unless(message, "refused without a word");
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    text = error->message;
+    fail_if(gst_bus_have_pending(bus) && gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR),
+            "one message a failure");
+  }
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(element);
+  return text;
+}
+
+const char kTwoSensors[] = R"(
+name = "mine"
+sensors = 2
+[[rule]]
+number = 40
+name = "somebody"
+camera = "found"
+action = "track"
+[[rule]]
+number = 41
+name = "gate"
+camera = "missing"
+any = [1, 2]
+action = "search"
+sweep = [-90, -45]
+[[rule]]
+number = 42
+name = "quiet"
+camera = "missing"
+none = [1, 2]
+action = "hold"
+)";
+
+}  // namespace
+
+GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_told) {
+  Rig rig;
+  for (int k = 0; k < 5; ++k) {
+    const CerberusFusion fusion = rig.at(k * 40 * kMs);
+    fail_unless_equals_int(fusion.action, CERBERUS_FUSION_ZERO);
+    fail_unless_equals_int(fusion.rule, 7);
+    fail_unless_equals_string(fusion.rule_name, "zero");
+    fail_unless_equals_int(fusion.n_sensors, 0);
+    fail_if(fusion.camera_found || fusion.limited || fusion.target);
+    fail_unless(std::isnan(fusion.pan) && std::isnan(fusion.sector_from));
+  }
+  for (int k = 5; k < 8; ++k) {
+    const CerberusFusion fusion = rig.show(frame_with(k * 40 * kMs, 9));
+    fail_unless(fusion.camera_found);
+    fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TRACK);
+    fail_unless_equals_int(fusion.target, 9);
+  }
+  const auto told = rig.told();
+  fail_unless_equals_int(told.size(), 2);
+  fail_unless_equals_string(told[0].c_str(), "0:7:zero");
+  fail_unless_equals_string(told[1].c_str(), "200:1:track");
+}
+GST_END_TEST
+
+// The pan angles of the issue, for all 16 states of camera and sensors: 416 cells.
+GST_START_TEST(the_papers_table_holds_through_the_element) {
+  Rig rig(true, "rules=paper camera-hold=0 hold-stopped=0");
+  rig.add_pir();
+  std::vector<double> angles = {-170, 170};
+  for (const double edge : {-120, -90, -60, -45, 0, 45, 60, 120})
+    for (const double off : {-0.1, 0.0, 0.1}) angles.push_back(edge + off);
+  GstClockTime time = 0;
+  int cells = 0;
+  for (const double angle : angles)
+    for (int state = 0; state < 16; ++state) {
+      const bool camera = state & 8, i1 = state & 1, i2 = state & 2, i3 = state & 4;
+      time += 40 * kMs;
+      rig.read(time, {guint8(i1), guint8(i2), guint8(i3)});
+      GstBuffer* buffer = camera ? frame_with(time, 3) : frame(time);
+      const CerberusPose where = pose(angle, time);
+      cerberus_buffer_set_pose(buffer, &where);
+      const CerberusFusion fusion = rig.show(buffer);
+      const Expected expected = paper(camera, i1, i2, i3, angle);
+      fail_unless(fusion.rule == expected.rule && fusion.action == expected.action,
+                  "camera %d, sensors %d%d%d, pan %g: rule %d, %s", camera, i1, i2, i3, angle, fusion.rule,
+                  cerberus_fusion_action_get_nick(fusion.action));
+      fail_unless(fusion.pan == angle && fusion.camera_found == camera);
+      fail_unless(sensors(fusion) == Bytes({guint8(i1), guint8(i2), guint8(i3)}));
+      ++cells;
+    }
+  fail_unless_equals_int(cells, 416);
+}
+GST_END_TEST
+
+GST_START_TEST(live_the_newest_reading_not_later_than_the_frame_counts) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(10 * kMs, {1, 0, 0});
+  rig.read(50 * kMs, {0, 1, 0});
+  rig.read(100 * kMs, {0, 0, 1});
+  const struct {
+    int time;
+    const char* values;
+  } cases[] = {{0, "222"},  {9, "222"},  {10, "100"},  {49, "100"},
+               {50, "010"}, {99, "010"}, {100, "001"}, {900, "001"}};
+  for (const auto& c : cases)
+    fail_unless_equals_string(text(sensors(rig.at(c.time * kMs))).c_str(), c.values);
+}
+GST_END_TEST
+
+GST_START_TEST(readings_out_of_order_are_put_where_they_belong) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {0, 0, 0});
+  rig.read(100 * kMs, {1, 0, 0});
+  rig.read(200 * kMs, {1, 0, 0});
+  rig.read(50 * kMs, {0, 1, 0});
+  const struct {
+    int time;
+    const char* values;
+  } cases[] = {{40, "000"}, {60, "010"}, {99, "010"}, {110, "100"}, {250, "100"}};
+  for (const auto& c : cases)
+    fail_unless_equals_string(text(sensors(rig.at(c.time * kMs))).c_str(), c.values);
+  // Later by much: running time began anew, and what was said of the time before is no future.
+  rig.read(10 * GST_SECOND, {0, 0, 1});
+  rig.read(300 * kMs, {1, 1, 0});
+  fail_unless_equals_string(text(sensors(rig.at(11 * GST_SECOND))).c_str(), "110");
+}
+GST_END_TEST
+
+GST_START_TEST(a_reading_of_unknown_value_or_wrong_size_is_invalid) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {1, 77, 2});
+  fail_unless_equals_string(text(sensors(rig.at(0))).c_str(), "122");
+  fail_unless(rig.warning().empty());
+  for (int k = 1; k < 4; ++k) {
+    rig.read(k * 40 * kMs, {1, 1});
+    fail_unless_equals_string(text(sensors(rig.at(k * 40 * kMs))).c_str(), "222");
+  }
+  const std::string warning = rig.warning();
+  fail_unless(
+      warning.find("pir_0") != std::string::npos && warning.find("2 bytes for 3") != std::string::npos, "%s",
+      warning.c_str());
+  fail_unless(rig.warning().empty());  // once is enough
+}
+GST_END_TEST
+
+// Without a time a reading is as late as the one before, a frame as late as the frame before.
+GST_START_TEST(readings_and_frames_without_a_time_are_taken_as_they_come) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(GST_CLOCK_TIME_NONE, {1, 0, 0});
+  fail_unless_equals_string(text(sensors(rig.at(GST_CLOCK_TIME_NONE))).c_str(), "100");
+  rig.read(GST_CLOCK_TIME_NONE, {0, 1, 0});
+  fail_unless_equals_string(text(sensors(rig.at(80 * kMs))).c_str(), "010");
+  rig.read(60 * kMs, {0, 0, 1});
+  fail_unless_equals_string(text(sensors(rig.at(GST_CLOCK_TIME_NONE))).c_str(), "001");
+}
+GST_END_TEST
+
+GST_START_TEST(several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_numbers) {
+  Rig rig;
+  rig.add_pir(with_sensors(2, 90, 60).c_str(), "pir_5");
+  rig.add_pir(with_sensors(1, -30, 0).c_str(), "pir_2");
+  rig.add_pir(with_sensors(1, -100, 0).c_str());  // the first free number
+  fail_unless(rig.pir.size() == 3 && static_pad(rig.element, "pir_0"));
+  rig.read(0, {1, 0}, 0);
+  rig.read(0, {2}, 1);
+  const CerberusFusion before = rig.show(frame_at(0, 0));
+  fail_unless_equals_string(text(sensors(before)).c_str(), "2210");
+  rig.read(40 * kMs, {0}, 2);
+  const CerberusFusion fusion = rig.show(frame_at(40 * kMs, 0));
+  fail_unless_equals_string(text(sensors(fusion)).c_str(), "0210");
+  // The third sensor looks at 90 +- 30.
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
+  fail_unless(std::abs(fusion.sector_from - 60) < 1e-9 && std::abs(fusion.sector_to - 120) < 1e-9);
+}
+GST_END_TEST
+
+GST_START_TEST(each_pad_has_its_own_field_of_view) {
+  Rig rig;
+  rig.add_pir(with_sensors(1, -90, 0, 40).c_str());
+  rig.add_pir(with_sensors(1, 90, 0, 100).c_str());
+  rig.read(0, {1}, 0);
+  rig.read(0, {0}, 1);
+  CerberusFusion fusion = rig.show(frame_at(0, 0));
+  fail_unless(std::abs(fusion.sector_from + 110) < 1e-9 && std::abs(fusion.sector_to + 70) < 1e-9);
+  rig.read(40 * kMs, {0}, 0);
+  rig.read(40 * kMs, {1}, 1);
+  fusion = rig.show(frame_at(40 * kMs, 0));
+  fail_unless(std::abs(fusion.sector_from - 40) < 1e-9 && std::abs(fusion.sector_to - 140) < 1e-9);
+}
+GST_END_TEST
+
+GST_START_TEST(new_pir_caps_count_from_their_first_reading_on) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {0, 0, 0});
+  rig.read(40 * kMs, {1, 0, 0});
+  gst_harness_set_src_caps_str(rig.pir[0], with_sensors(2, 100, 40).c_str());
+  rig.read(80 * kMs, {0, 1});
+  fail_unless_equals_string(text(sensors(rig.at(20 * kMs))).c_str(), "000");
+  fail_unless_equals_string(text(sensors(rig.at(60 * kMs))).c_str(), "100");
+  const CerberusFusion fusion = rig.show(frame_at(90 * kMs, 0));
+  fail_unless_equals_string(text(sensors(fusion)).c_str(), "01");
+  fail_unless(std::abs(fusion.sector_from - 110) < 1e-9);  // 140 +- 30
+}
+GST_END_TEST
+
+GST_START_TEST(what_happens_at_a_pir_pad_stays_there) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  rig.read(0, {1, 0, 0});
+  rig.at(0);
+  events_out(rig.video);
+  gst_harness_set_src_caps_str(pir, with_sensors(1, 0, 0).c_str());
+  rig.read(40 * kMs, {1});
+  fail_unless(gst_harness_push_event(pir, gst_event_new_tag(gst_tag_list_new_empty())));
+  fail_unless(gst_harness_push_event(
+      pir, gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM, gst_structure_new_empty("something"))));
+  fail_unless(gst_harness_push_event(pir, gst_event_new_flush_start()));
+  rig.at(80 * kMs);  // in the middle of the flush
+  fail_unless(gst_harness_push_event(pir, gst_event_new_flush_stop(TRUE)));
+  fail_unless_equals_string(text(sensors(rig.at(120 * kMs))).c_str(), "2");  // what was said is forgotten
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  fail_unless(gst_harness_push_event(pir, gst_event_new_segment(&segment)));
+  rig.read(160 * kMs, {1});
+  fail_unless_equals_string(text(sensors(rig.at(160 * kMs))).c_str(), "1");
+  fail_unless(gst_harness_push_event(pir, gst_event_new_eos()));
+  fail_unless_equals_string(text(sensors(rig.at(200 * kMs))).c_str(), "1");  // ended: its last word
+  for (const GstEventType type : events_out(rig.video))
+    ck_abort_msg("%s reached the source pad", gst_event_type_get_name(type));
+}
+GST_END_TEST
+
+GST_START_TEST(the_video_path_is_as_if_nothing_were_there) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  // Latency: the video's, whatever a PIR source says.
+  gst_harness_set_upstream_latency(rig.video, 30 * kMs);
+  gst_harness_set_upstream_latency(pir, 500 * kMs);
+  fail_unless_equals_uint64(gst_harness_query_latency(rig.video), 30 * kMs);
+  // Caps: what downstream takes, and any kind.
+  gst_harness_set_sink_caps_str(rig.video, "image/jpeg");
+  g_autoptr(GstCaps) caps = gst_pad_peer_query_caps(rig.video->srcpad, nullptr);
+  g_autoptr(GstCaps) jpeg = gst_caps_from_string("image/jpeg");
+  fail_unless(gst_caps_is_equal(caps, jpeg));
+  gst_harness_set_src_caps_str(rig.video, "image/jpeg");
+  fail_unless_equals_int(rig.at(0).rule, 7);
+  // Allocation: downstream's pool and metas.
+  gst_harness_add_propose_allocation_meta(rig.video, GST_VIDEO_META_API_TYPE, nullptr);
+  g_autoptr(GstQuery) query = gst_query_new_allocation(jpeg, FALSE);
+  fail_unless(gst_pad_peer_query(rig.video->srcpad, query));
+  fail_unless(gst_query_find_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr));
+  g_autoptr(GstQuery) other = gst_query_new_allocation(jpeg, FALSE);
+  fail_if(gst_pad_peer_query(pir->srcpad, other));
+  // EOS and buffers as they came: same memory, all metas.
+  GstBuffer* in = frame_with(40 * kMs, 4);
+  GstMemory* memory = gst_buffer_peek_memory(in, 0);
+  gst_harness_push(rig.video, in);
+  g_autoptr(GstBuffer) out = gst_harness_pull(rig.video);
+  fail_unless(gst_buffer_peek_memory(out, 0) == memory);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+  fail_unless_equals_int(regions->len, 1);
+  events_out(rig.video);
+  fail_unless(gst_harness_push_event(rig.video, gst_event_new_eos()));
+  const auto events = events_out(rig.video);
+  fail_unless(events.size() == 1 && events[0] == GST_EVENT_EOS);
+}
+GST_END_TEST
+
+// Another branch of a tee holds the same buffer: it must not see our meta, and the memory is not copied.
+GST_START_TEST(a_shared_frame_is_not_written_on) {
+  Rig rig;
+  GstBuffer* in = gst_buffer_ref(frame(0));
+  gst_harness_push(rig.video, in);
+  g_autoptr(GstBuffer) out = gst_harness_pull(rig.video);
+  fail_unless(out != in && cerberus_buffer_peek_fusion(out) && !cerberus_buffer_peek_fusion(in));
+  fail_unless(gst_buffer_peek_memory(out, 0) == gst_buffer_peek_memory(in, 0));
+  gst_buffer_unref(in);
+}
+GST_END_TEST
+
+GST_START_TEST(pan_comes_from_the_frame_else_from_the_events_that_passed) {
+  Rig rig;
+  fail_unless(std::isnan(rig.at(0).pan));
+  say(rig, pose(10, 100 * kMs, 50));  // 10 degrees at 0.1 s, 50 degrees a second
+  say(rig, pose(60, 900 * kMs));
+  fail_unless(rig.at(40 * kMs).pan == 10);  // before the first one: where it begins
+  fail_unless(std::abs(rig.at(100 * kMs).pan - 10) < 1e-9);
+  fail_unless(std::abs(rig.at(300 * kMs).pan - 20) < 1e-9);
+  fail_unless(rig.show(frame_at(500 * kMs, -77)).pan == -77);
+  fail_unless(std::abs(rig.at(700 * kMs).pan - 40) < 1e-9);
+  fail_unless(rig.at(900 * kMs).pan == 60);
+  fail_unless(rig.at(5 * GST_SECOND).pan == 60);
+}
+GST_END_TEST
+
+GST_START_TEST(a_strangers_pose_is_passed_on_and_not_listened_to) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  events_up(rig.video);
+  events_up(pir);
+  say(rig, pose(30));
+  say(rig, pose(90, 0, 0, "another"));
+  say(rig, gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_new_empty(CERBERUS_EVENT_POSE)));
+  say(rig, gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_new_empty("something")));
+  CerberusPose absurd = pose(80);
+  GstEvent* event = cerberus_event_new_pose(&absurd);
+  gst_structure_set(gst_event_writable_structure(event), "pan", G_TYPE_DOUBLE, HUGE_VAL, nullptr);
+  say(rig, event);
+  fail_unless(rig.at(0).pan == 30);
+  const std::vector<std::string> expected = {CERBERUS_EVENT_POSE, CERBERUS_EVENT_POSE, CERBERUS_EVENT_POSE,
+                                             "something", CERBERUS_EVENT_POSE};
+  fail_unless(events_up(rig.video) == expected);
+  fail_unless(events_up(pir) == expected);  // a PIR source listens as well
+  // On the frame it is a stranger's as well.
+  GstBuffer* buffer = frame(40 * kMs);
+  const CerberusPose strange = pose(-50, 40 * kMs, 0, "another");
+  cerberus_buffer_set_pose(buffer, &strange);
+  fail_unless(rig.show(buffer).pan == 30);
+  // Told to listen to the other: the first one's poses are nothing any more.
+  g_object_set(rig.element, "head", "another", nullptr);
+  fail_unless(std::isnan(rig.at(80 * kMs).pan));
+  say(rig, pose(91, 0, 0, "another"));
+  fail_unless(rig.at(120 * kMs).pan == 91);
+  g_object_set(rig.element, "head", "", nullptr);
+  say(rig, pose(92, 0, 0, "whoever"));
+  fail_unless(rig.at(160 * kMs).pan == 92);
+}
+GST_END_TEST
+
+GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {0, 0, 0});
+  say(rig, cerberus_event_new_base(-5.1, 100 * kMs));
+  say(rig, cerberus_event_new_base(4.9, 10 * GST_SECOND));
+  rig.show(frame_at(0, 0));
+  rig.read(200 * kMs, {0, 0, 1});
+  CerberusFusion fusion = rig.show(frame_at(240 * kMs, 0));
+  fail_unless_equals_int(fusion.doubtful, 0b100);
+  fail_unless_equals_string(text(sensors(fusion)).c_str(), "001");  // told as it was read
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_ZERO);
+  fail_unless_equals_int(rig.show(frame_at(10 * GST_SECOND, 0)).doubtful, 0b100);  // just after
+  fusion = rig.show(frame_at(14 * GST_SECOND, 0));                                 // calm for long
+  fail_unless_equals_int(fusion.doubtful, 0);
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
+}
+GST_END_TEST
+
+GST_START_TEST(only_confirmed_tracks_make_the_camera_found) {
+  Rig rig;
+  const CerberusFusion fusion = rig.show(frame_with(0, 0));  // a region without an identity
+  fail_if(fusion.camera_found || fusion.target);
+  fail_unless(rig.show(frame_with(40 * kMs, 8)).camera_found);
+  // Kept for camera-hold: held, not tracked.
+  const CerberusFusion gone = rig.at(500 * kMs);
+  fail_unless(gone.camera_found && gone.target == 0);
+  fail_unless_equals_int(gone.action, CERBERUS_FUSION_HOLD);
+  fail_if(rig.at(600 * kMs).camera_found);
+}
+GST_END_TEST
+
+GST_START_TEST(properties_count_while_playing) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {0, 1, 0});
+  CerberusFusion fusion = rig.show(frame_at(0, -90));
+  fail_unless_equals_string(fusion.rule_name, "sector");
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
+  // -180 .. -60 less half a lens at the right, the stop at the left.
+  fail_unless(std::abs(fusion.sector_from + 150) < 1e-9 && std::abs(fusion.sector_to + 90) < 1e-9, "%g %g",
+              fusion.sector_from, fusion.sector_to);
+  g_object_set(rig.element, "horizontal-fov", 0.0, "pan-min", -100.0, nullptr);
+  fusion = rig.show(frame_at(40 * kMs, -90));
+  fail_unless(std::abs(fusion.sector_from + 100) < 1e-9 && std::abs(fusion.sector_to + 60) < 1e-9, "%g %g",
+              fusion.sector_from, fusion.sector_to);
+  fail_unless(fusion.limited);
+  g_object_set(rig.element, "rules", 1, nullptr);
+  fail_unless_equals_int(rig.show(frame_at(80 * kMs, -90)).rule, 3);
+  g_object_set(rig.element, "rules", 0, "return-delay", guint64{200 * kMs}, nullptr);
+  rig.read(120 * kMs, {0, 0, 0});
+  fail_unless_equals_int(rig.show(frame_at(120 * kMs, -90)).rule, 0);
+  fail_unless_equals_int(rig.show(frame_at(400 * kMs, -90)).action, CERBERUS_FUSION_ZERO);
+  // Whom to follow: the larger, the newer; whoever is followed stays.
+  g_object_set(rig.element, "target", 1, "camera-hold", guint64{0}, nullptr);
+  const auto two = [](GstClockTime time) {
+    GstBuffer* buffer = frame_with(time, 5, 1);
+    CerberusRegion large;
+    cerberus_region_init(&large);
+    large.id = 6;
+    large.tracked = TRUE;
+    large.width = large.height = 8;
+    large.age = GST_SECOND;
+    cerberus_buffer_add_region(buffer, &large);
+    return buffer;
+  };
+  fail_unless_equals_int(rig.show(two(440 * kMs)).target, 6);
+  g_object_set(rig.element, "target", 2, nullptr);
+  fail_unless_equals_int(rig.show(two(480 * kMs)).target, 6);
+  rig.show(frame_with(520 * kMs, 7));
+  fail_unless_equals_int(rig.show(two(560 * kMs)).target, 5);
+  // Limits that cross: said, and the old ones stay.
+  g_object_set(rig.element, "pan-min", 200.0, nullptr);
+  rig.at(600 * kMs);
+  const std::string warning = rig.warning();
+  fail_unless(warning.find("pan-min (200") != std::string::npos, "%s", warning.c_str());
+}
+GST_END_TEST
+
+GST_START_TEST(hysteresis_and_hold_stopped_are_the_users) {
+  for (const double hysteresis : {0.0, 5.0}) {
+    Rig rig(true, "hysteresis=" + std::to_string(hysteresis));
+    rig.add_pir();
+    rig.read(0, {1, 0, 0});
+    fail_unless_equals_int(rig.show(frame_at(0, 59)).action, CERBERUS_FUSION_SEARCH);
+    fail_unless_equals_int(rig.show(frame_at(40 * kMs, 64)).action,
+                           hysteresis > 4 ? CERBERUS_FUSION_SEARCH : CERBERUS_FUSION_TURN_LEFT);
+  }
+  Rig rig(true, "camera-hold=0 return-delay=0 hold-stopped=" + std::to_string(GST_SECOND));
+  rig.show(frame_with(0, 3, 4, CERBERUS_REGION_STOPPED));
+  fail_unless_equals_string(rig.at(900 * kMs).rule_name, "stopped");
+  fail_unless_equals_int(rig.at(1100 * kMs).action, CERBERUS_FUSION_ZERO);
+}
+GST_END_TEST
+
+GST_START_TEST(a_users_own_rules_are_followed) {
+  const RuleFile file(kTwoSensors);
+  Rig rig(true, file.property());
+  rig.add_pir();
+  rig.read(0, {0, 0, 1});  // a third sensor of which the table does not speak
+  CerberusFusion fusion = rig.at(0);
+  fail_unless_equals_int(fusion.rule, 42);
+  fail_unless_equals_string(fusion.rule_name, "quiet");
+  rig.read(40 * kMs, {0, 1, 0});
+  fusion = rig.at(40 * kMs);
+  fail_unless_equals_string(fusion.rule_name, "gate");
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
+  fail_unless(std::abs(fusion.sector_from + 90) < 1e-9 && std::abs(fusion.sector_to + 45) < 1e-9);
+  fail_unless_equals_string(rig.show(frame_with(80 * kMs, 2)).rule_name, "somebody");
+}
+GST_END_TEST
+
+GST_START_TEST(rules_that_cannot_be_used_are_refused_and_the_case_is_named) {
+  const std::string whole = kTwoSensors;
+  const std::string found = whole.substr(0, whole.find("[[rule]]\nnumber = 41"));
+  const RuleFile gap(found +
+                     "[[rule]]\nnumber = 42\ncamera = \"missing\"\nnone = [1, 2]\naction = \"hold\"\n");
+  const RuleFile contradiction(whole + "[[rule]]\nnumber = 43\nall = [1, 2]\naction = \"zero\"\n");
+  const RuleFile unknown(whole + "[[rule]]\naction = \"left\"\n");
+  const RuleFile broken("sensors = = 2\n");
+  const struct {
+    const RuleFile& file;
+    std::vector<const char*> words;
+  } cases[] = {{gap, {"camera not found", "infer1", "no rule applies"}},
+               {contradiction,
+                {"camera found", "infer1 and infer2 fired", "somebody says track", "rule 43 says zero"}},
+               {unknown, {"unknown action \"left\""}},
+               {broken, {":1"}}};
+  for (const auto& c : cases) {
+    const std::string text = refusal(c.file.property());
+    fail_unless(text.find(g_path_get_basename(c.file.path().c_str())) != std::string::npos, "%s",
+                text.c_str());
+    for (const char* word : c.words)
+      fail_unless(text.find(word) != std::string::npos, "\"%s\" is not in: %s", word, text.c_str());
+  }
+  fail_unless(refusal("rules-file=/nowhere/rules.toml").find("/nowhere/rules.toml") != std::string::npos);
+  fail_unless(refusal("pan-min=20 pan-max=10").find("pan-min (20") != std::string::npos);
+  std::string gone;
+  {
+    const RuleFile temporary(whole);
+    gone = temporary.property();
+    fail_unless(refusal(gone).empty());
+  }
+  fail_if(refusal(gone).empty());
+  fail_unless(refusal("rules=paper").empty() && refusal("").empty());
+}
+GST_END_TEST
+
+GST_START_TEST(rules_may_change_while_playing_and_bad_ones_leave_the_old) {
+  RuleFile file(kTwoSensors);
+  Rig rig;
+  fail_unless_equals_int(rig.at(0).rule, 7);
+  g_object_set(rig.element, "rules-file", file.path().c_str(), nullptr);
+  fail_unless_equals_int(rig.at(40 * kMs).rule, 42);
+  file.write("sensors = 1\n");
+  g_object_set(rig.element, "rules-file", file.path().c_str(), nullptr);
+  const std::string warning = rig.warning();
+  fail_unless(warning.find(file.path()) != std::string::npos, "%s", warning.c_str());
+  fail_unless_equals_int(rig.at(80 * kMs).rule, 42);
+  g_object_set(rig.element, "rules-file", "", nullptr);
+  fail_unless_equals_int(rig.at(120 * kMs).rule, 7);
+  fail_unless(rig.warning().empty() && rig.error().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(pir_caps_that_cannot_be_fused_are_refused_by_the_name_of_the_pad) {
+  const struct {
+    std::string caps;
+    const char* why;
+  } cases[] = {
+      {"application/x-pir,format=level,sensors=1,bearings=<0.0>,field-of-view=90.0", "volts (format=level)"},
+      {"application/x-pir,format=presence,sensors=2,bearings=<0.0>,field-of-view=90.0", "bearings"},
+      {"application/x-pir,format=presence", "sensors must be 1 to 16"},
+      {with_sensors(14, 0, 10), "14 PIR sensors are too many besides the other pads' 3: 16"},
+  };
+  for (const auto& c : cases) {
+    Rig rig;
+    rig.add_pir();
+    GstHarness* pir = rig.add_pir(nullptr);
+    gst_harness_set_src_caps_str(pir, c.caps.c_str());
+    const std::string text = rig.error();
+    fail_unless(text.find("pir_1") != std::string::npos && text.find(c.why) != std::string::npos, "%s",
+                text.c_str());
+    fail_unless(rig.error().empty(), "one message a failure");
+    fail_unless_equals_int(gst_harness_push(pir, reading(0, {1})), GST_FLOW_NOT_NEGOTIATED);
+  }
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  GstSegment bytes;
+  gst_segment_init(&bytes, GST_FORMAT_BYTES);
+  gst_harness_push_event(pir, gst_event_new_segment(&bytes));
+  fail_if(gst_harness_push(pir, reading(0, {1, 0, 0})) == GST_FLOW_OK);
+  fail_unless(rig.error().find("pir_0") != std::string::npos);
+  fail_unless(rig.error().empty(), "one message a failure");
+}
+GST_END_TEST
+
+GST_START_TEST(pads_come_and_go_while_frames_pass) {
+  Rig rig;
+  rig.at(0);
+  rig.add_pir();
+  rig.read(40 * kMs, {1, 0, 0});
+  fail_unless_equals_int(rig.at(40 * kMs).n_sensors, 3);
+  rig.add_pir(with_sensors(1, 50, 0).c_str());
+  rig.read(80 * kMs, {1}, 1);
+  fail_unless_equals_string(text(sensors(rig.at(80 * kMs))).c_str(), "1001");
+  EXPECT_CRITICAL(fail_if(gst_element_request_pad_simple(rig.element, "pir_1")));  // taken
+  rig.remove_pir(0);
+  fail_unless_equals_string(text(sensors(rig.at(120 * kMs))).c_str(), "1");
+  rig.remove_pir(1);
+  fail_unless_equals_int(rig.at(160 * kMs).n_sensors, 0);
+  rig.add_pir();  // the first number is free again
+  fail_unless(static_pad(rig.element, "pir_0"));
+
+  // And while somebody else pushes.
+  std::thread frames([&] {
+    for (int k = 5; k < 400; ++k) rig.at(k * 40 * kMs);
+  });
+  for (int round = 0; round < 60; ++round) {
+    GstPad* pad = gst_element_request_pad_simple(rig.element, "pir_%u");
+    gst_element_release_request_pad(rig.element, pad);
+    gst_object_unref(pad);
+  }
+  frames.join();
+}
+GST_END_TEST
+
+// A pad that nothing is linked to is absent: its sensors are invalid, not what they once said.
+GST_START_TEST(a_pad_that_is_unlinked_says_nothing_any_more) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  rig.read(0, {1, 0, 0});
+  fail_unless_equals_string(text(sensors(rig.at(0))).c_str(), "100");
+  GstPad* pad = static_pad(rig.element, "pir_0");
+  fail_unless(gst_pad_unlink(pir->srcpad, pad));
+  fail_unless_equals_string(text(sensors(rig.at(40 * kMs))).c_str(), "222");
+  fail_unless_equals_int(gst_pad_link(pir->srcpad, pad), GST_PAD_LINK_OK);
+  fail_unless_equals_string(text(sensors(rig.at(80 * kMs))).c_str(), "100");
+}
+GST_END_TEST
+
+GST_START_TEST(a_flush_and_a_new_segment_forget_whom_we_followed) {
+  for (const bool flush : {true, false}) {
+    Rig rig;
+    rig.show(frame_with(0, 3));
+    fail_unless(rig.at(40 * kMs).camera_found);
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    if (flush) {
+      gst_harness_push_event(rig.video, gst_event_new_flush_start());
+      gst_harness_push_event(rig.video, gst_event_new_flush_stop(TRUE));
+    } else {
+      segment.base = 80 * kMs;
+      segment.start = segment.time = 10 * GST_SECOND;
+    }
+    gst_harness_push_event(rig.video, gst_event_new_segment(&segment));
+    fail_if(rig.at(segment.start).camera_found);
+  }
+  // The same segment again (a new link upstream) is no new one.
+  Rig rig;
+  rig.show(frame_with(0, 3));
+  GstSegment same;
+  gst_segment_init(&same, GST_FORMAT_TIME);
+  gst_harness_push_event(rig.video, gst_event_new_segment(&same));
+  fail_unless(rig.at(40 * kMs).camera_found);
+}
+GST_END_TEST
+
+GST_START_TEST(running_time_counts_not_the_timestamps) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  GstSegment late;
+  gst_segment_init(&late, GST_FORMAT_TIME);
+  late.start = late.time = 100 * GST_SECOND;  // running time 0 at 100 s
+  gst_harness_push_event(rig.video, gst_event_new_segment(&late));
+  late.start = 50 * GST_SECOND;
+  gst_harness_push_event(pir, gst_event_new_segment(&late));
+  rig.read(50 * GST_SECOND, {1, 0, 0});
+  rig.read(50 * GST_SECOND + 80 * kMs, {0, 1, 0});
+  say(rig, pose(15, 60 * kMs));
+  say(rig, pose(25, 100 * kMs));
+  CerberusFusion fusion = rig.at(100 * GST_SECOND + 79 * kMs);
+  fail_unless(text(sensors(fusion)) == "100" && fusion.pan == 15);
+  fusion = rig.at(100 * GST_SECOND + 100 * kMs);
+  fail_unless(text(sensors(fusion)) == "010" && fusion.pan == 25);
+}
+GST_END_TEST
+
+GST_START_TEST(a_seek_reaches_the_pir_sources_and_the_video_source) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  events_up(rig.video);
+  events_up(pir);
+  say(rig, gst_event_new_seek(1, GST_FORMAT_TIME, GST_SEEK_FLAG_NONE, GST_SEEK_TYPE_SET, 0,
+                              GST_SEEK_TYPE_NONE, 0));
+  say(rig, gst_event_new_qos(GST_QOS_TYPE_UNDERFLOW, 1, 0, 0));
+  const std::vector<std::string> video = {"seek", "qos"}, readings = {"seek"};
+  fail_unless(events_up(rig.video) == video);
+  fail_unless(events_up(pir) == readings);
+}
+GST_END_TEST
+
+GST_START_TEST(two_of_them_know_nothing_of_each_other) {
+  Rig one(true, "rules=paper"), two(true, "head=other");
+  one.add_pir();
+  two.add_pir(with_sensors(1, 0, 0).c_str());
+  one.read(0, {0, 1, 0});
+  two.read(0, {0});
+  say(one, pose(20));
+  say(two, pose(-20, 0, 0, "other"));
+  const CerberusFusion a = one.at(0), b = two.show(frame_with(0, 4));
+  fail_unless(a.pan == 20 && b.pan == -20);
+  fail_unless(a.rule == 3 && b.rule == 1);
+  fail_unless(text(sensors(a)) == "010" && text(sensors(b)) == "0");
+}
+GST_END_TEST
+
+GST_START_TEST(it_begins_anew_after_it_was_stopped) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {1, 0, 0});
+  say(rig, pose(33));
+  fail_unless(rig.show(frame_with(0, 5)).pan == 33);
+  gst_element_set_state(rig.element, GST_STATE_READY);
+  gst_element_set_state(rig.element, GST_STATE_PLAYING);
+  gst_harness_set_src_caps_str(rig.video, kVideo);
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(rig.video, gst_event_new_stream_start("again"));
+  gst_harness_push_event(rig.video, gst_event_new_segment(&segment));
+  const CerberusFusion fusion = rig.at(40 * kMs);
+  fail_unless(std::isnan(fusion.pan) && fusion.n_sensors == 0 && !fusion.camera_found);
+}
+GST_END_TEST
+
+static Suite* pirfusion_suite(void) {
+  watch_library_log();
+  Suite* s = suite_create("pirfusion");
+  TCase* tc = tcase_create("decisions");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, every_frame_carries_a_decision_and_only_changes_are_told);
+  tcase_add_test(tc, the_papers_table_holds_through_the_element);
+  tcase_add_test(tc, only_confirmed_tracks_make_the_camera_found);
+  tcase_add_test(tc, properties_count_while_playing);
+  tcase_add_test(tc, hysteresis_and_hold_stopped_are_the_users);
+  tcase_add_test(tc, two_of_them_know_nothing_of_each_other);
+  tcase_add_test(tc, it_begins_anew_after_it_was_stopped);
+  tc = tcase_create("readings");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, live_the_newest_reading_not_later_than_the_frame_counts);
+  tcase_add_test(tc, readings_out_of_order_are_put_where_they_belong);
+  tcase_add_test(tc, a_reading_of_unknown_value_or_wrong_size_is_invalid);
+  tcase_add_test(tc, readings_and_frames_without_a_time_are_taken_as_they_come);
+  tcase_add_test(tc, several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_numbers);
+  tcase_add_test(tc, each_pad_has_its_own_field_of_view);
+  tcase_add_test(tc, new_pir_caps_count_from_their_first_reading_on);
+  tcase_add_test(tc, what_happens_at_a_pir_pad_stays_there);
+  tcase_add_test(tc, pir_caps_that_cannot_be_fused_are_refused_by_the_name_of_the_pad);
+  tcase_add_test(tc, pads_come_and_go_while_frames_pass);
+  tcase_add_test(tc, a_pad_that_is_unlinked_says_nothing_any_more);
+  tc = tcase_create("video");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, the_video_path_is_as_if_nothing_were_there);
+  tcase_add_test(tc, a_shared_frame_is_not_written_on);
+  tcase_add_test(tc, a_flush_and_a_new_segment_forget_whom_we_followed);
+  tcase_add_test(tc, running_time_counts_not_the_timestamps);
+  tc = tcase_create("head");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, pan_comes_from_the_frame_else_from_the_events_that_passed);
+  tcase_add_test(tc, a_strangers_pose_is_passed_on_and_not_listened_to);
+  tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
+  tcase_add_test(tc, a_seek_reaches_the_pir_sources_and_the_video_source);
+  tc = tcase_create("rules");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_users_own_rules_are_followed);
+  tcase_add_test(tc, rules_that_cannot_be_used_are_refused_and_the_case_is_named);
+  tcase_add_test(tc, rules_may_change_while_playing_and_bad_ones_leave_the_old);
+  return s;
+}
+
+GST_CHECK_MAIN(pirfusion)

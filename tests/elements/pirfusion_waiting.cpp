@@ -1,0 +1,348 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Who waits for whom: a frame of a stream that is not live for its PIR sensors, a PIR file for the video, nobody in a
+// live pipeline; and what ends the waiting. No test sleeps: a frame that must wait is proven by the reading that it
+// comes out with, one that must not by coming out at all.
+#include "fusion_rig.h"
+
+namespace {
+
+using namespace rig;
+
+constexpr gint64 kUnlock = 100 * G_TIME_SPAN_MILLISECOND;
+const std::string kForEver = "max-wait=18446744073709551615";
+
+std::string values(Rig& rig, GstClockTime time) {
+  return text(sensors(rig.at(time)));
+}
+
+// How long `action` takes until the waiting push is back, and with what.
+template <typename Action>
+gint64 time_until_back(Pushing& pushing, GstFlowReturn expected, Action&& action) {
+  fail_unless(pushing.waits());
+  const gint64 begin = g_get_monotonic_time();
+  action();
+  fail_unless_equals_int(pushing.flow(), expected);
+  return g_get_monotonic_time() - begin;
+}
+
+// Frames every 40 ms and readings at odd times, each in a thread of its own; the decisions as text.
+std::string run(unsigned seed) {
+  Rig rig(false, kForEver);
+  rig.add_pir(kPaper, "pir_%u", false);
+  rig.add_pir("application/x-pir,format=presence,sensors=1,bearings=<60.0>,field-of-view=90.0", "pir_%u",
+              false);
+  std::vector<std::thread> threads;
+  for (std::size_t pad = 0; pad < 2; ++pad)
+    threads.emplace_back([&rig, pad, seed] {
+      std::uint32_t noise = seed + static_cast<std::uint32_t>(pad);  // when it yields, not what it says
+      for (int k = 0; k < 150; ++k) {
+        const auto bit = [&](int i) { return guint8(k * (7 + i) / 13 % 3 == 1); };
+        Bytes bytes = {bit(0)};
+        if (pad == 0) bytes = {bit(1), bit(2), bit(3)};
+        rig.read(static_cast<GstClockTime>(k * 27 + static_cast<int>(pad)) * kMs, bytes, pad);
+        noise = noise * 1664525 + 1013904223;
+        if (noise >> 30) std::this_thread::yield();
+      }
+      gst_harness_push_event(rig.pir[pad], gst_event_new_eos());
+    });
+  std::string result;
+  for (int k = 0; k < 120; ++k) {
+    const CerberusFusion f = rig.show(frame_at(k * 40 * kMs, k - 60));
+    result += text(sensors(f)) + " " + f.rule_name + " " + cerberus_fusion_action_get_nick(f.action) + "\n";
+  }
+  for (std::thread& thread : threads) thread.join();
+  return result;
+}
+
+}  // namespace
+
+GST_START_TEST(live_nobody_waits_for_a_pir_pad_that_never_speaks) {
+  Rig rig(true, kForEver);
+  rig.add_pir(nullptr);  // linked, and not a word
+  fail_unless_equals_string(values(rig, 0).c_str(), "");
+  gst_harness_set_src_caps_str(rig.pir[0], kPaper);
+  fail_unless_equals_string(values(rig, 40 * kMs).c_str(), "222");
+  gst_harness_push_event(rig.pir[0], gst_event_new_eos());
+  fail_unless_equals_string(values(rig, 80 * kMs).c_str(), "222");
+  fail_unless(rig.warning().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(live_nobody_waits_for_a_late_reading) {
+  Rig rig(true, kForEver);
+  rig.add_pir();
+  rig.read(0, {1, 0, 0});
+  fail_unless_equals_string(values(rig, 10 * GST_SECOND).c_str(), "100");
+  rig.read(5 * GST_SECOND, {0, 1, 0});
+  fail_unless_equals_string(values(rig, 11 * GST_SECOND).c_str(), "010");
+}
+GST_END_TEST
+
+GST_START_TEST(not_live_a_frame_waits_for_the_readings_of_its_time) {
+  Rig rig(false, kForEver);
+  rig.add_pir();
+  for (int round = 0; round < 20; ++round) {
+    const GstClockTime begin = round * GST_SECOND;
+    rig.read(begin, {0, 0, 0});
+    Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(begin + 100 * kMs));
+    rig.read(begin + 50 * kMs, {1, 0, 0});  // not yet up to the frame
+    rig.read(begin + 90 * kMs, {0, 1, 0});
+    rig.read(begin + 150 * kMs, {0, 0, 1});
+    fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+    fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "010");
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(not_live_every_linked_pad_is_waited_for) {
+  Rig rig(false, kForEver);
+  rig.add_pir();
+  rig.add_pir("application/x-pir,format=presence,sensors=1,bearings=<60.0>,field-of-view=90.0");
+  GstPad* unlinked = gst_element_request_pad_simple(rig.element, "pir_%u");
+  for (int round = 0; round < 20; ++round) {
+    const GstClockTime begin = round * GST_SECOND;
+    rig.read(begin, {0, 0, 0});
+    rig.read(begin, {0}, 1);
+    Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(begin + 100 * kMs));
+    rig.read(begin + 100 * kMs, {1, 0, 0});
+    rig.read(begin + 60 * kMs, {1}, 1);
+    rig.read(begin + 101 * kMs, {0}, 1);
+    fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+    fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "1001");
+  }
+  gst_element_release_request_pad(rig.element, unlinked);
+  gst_object_unref(unlinked);
+}
+GST_END_TEST
+
+// Each of these says that nothing more will come for the frame at 1 s.
+GST_START_TEST(readings_gaps_and_the_end_cover_a_frame) {
+  const auto covered_by = [](const std::function<void(Rig&, GstHarness*)>& action, const char* expected) {
+    for (const bool before : {true, false}) {  // as the frame comes, or while it waits
+      Rig rig(false, kForEver);
+      GstHarness* pir = rig.add_pir();
+      rig.read(0, {1, 0, 0});
+      if (before) action(rig, pir);
+      Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
+      if (!before) action(rig, pir);
+      fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+      fail_unless_equals_string(text(sensors(rig.decision())).c_str(), expected);
+    }
+  };
+  covered_by([](Rig& rig, GstHarness*) { rig.read(GST_SECOND, {1, 0, 0}); }, "100");  // a heartbeat
+  covered_by([](Rig& rig, GstHarness*) { rig.read(GST_SECOND, {0, 1, 0}); }, "010");
+  covered_by([](Rig& rig, GstHarness*) { rig.read(GST_SECOND + 1, {0, 1, 0}); }, "100");
+  covered_by([](Rig&, GstHarness* h) { gst_harness_push_event(h, gst_event_new_eos()); }, "100");
+  covered_by(
+      [](Rig&, GstHarness* h) { gst_harness_push_event(h, gst_event_new_segment_done(GST_FORMAT_TIME, 0)); },
+      "100");
+  covered_by([](Rig&, GstHarness* h) { gst_harness_push_event(h, gst_event_new_gap(900 * kMs, 200 * kMs)); },
+             "100");
+  covered_by(
+      [](Rig&, GstHarness* h) {
+        gst_harness_push_event(h, gst_event_new_gap(GST_SECOND, GST_CLOCK_TIME_NONE));
+      },
+      "100");
+  covered_by([](Rig& rig, GstHarness* h) { gst_pad_unlink(h->srcpad, static_pad(rig.element, "pir_0")); },
+             "222");
+}
+GST_END_TEST
+
+// A gap from 0.5 s to 1 s says nothing of 1 s itself.
+GST_START_TEST(a_gap_ends_before_its_end) {
+  Rig rig(false, "max-wait=20000000");
+  GstHarness* pir = rig.add_pir();
+  rig.read(0, {1, 0, 0});
+  gst_harness_push_event(pir, gst_event_new_gap(500 * kMs, 500 * kMs));
+  fail_unless_equals_string(values(rig, 999 * kMs).c_str(), "100");
+  fail_unless(rig.warning().empty());
+  fail_unless_equals_string(values(rig, GST_SECOND).c_str(), "222");
+  fail_if(rig.warning().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(a_pad_that_goes_away_is_not_waited_for) {
+  Rig rig(false, kForEver);
+  rig.add_pir();
+  Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
+  rig.remove_pir(0);
+  fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+  fail_unless_equals_int(rig.decision().n_sensors, 0);
+}
+GST_END_TEST
+
+GST_START_TEST(a_silent_pad_is_warned_of_and_ignored_until_it_speaks) {
+  Rig rig(false, "max-wait=20000000");
+  rig.add_pir();
+  rig.add_pir("application/x-pir,format=presence,sensors=1,bearings=<60.0>,field-of-view=90.0");
+  rig.read(0, {1, 0, 0});
+  rig.read(GST_SECOND, {0}, 1);
+  const gint64 begin = g_get_monotonic_time();
+  fail_unless_equals_string(values(rig, 500 * kMs).c_str(), "2222");
+  fail_unless(g_get_monotonic_time() - begin >= 20 * G_TIME_SPAN_MILLISECOND);
+  const std::string warning = rig.warning();
+  fail_unless(warning.find("pir_0") != std::string::npos && warning.find("0.02 s") != std::string::npos, "%s",
+              warning.c_str());
+  fail_unless(rig.warning().empty());  // pir_1 had spoken
+  // From now on a wait would be for ever.
+  g_object_set(rig.element, "max-wait", GST_CLOCK_TIME_NONE, nullptr);
+  for (int k = 0; k < 5; ++k) fail_unless_equals_string(values(rig, (600 + k) * kMs).c_str(), "2222");
+  // It speaks: counted again, and waited for again.
+  rig.read(700 * kMs, {0, 0, 0});
+  Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(800 * kMs));
+  rig.read(750 * kMs, {0, 1, 0});
+  rig.read(900 * kMs, {0, 0, 1});
+  fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+  fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "0102");
+}
+GST_END_TEST
+
+GST_START_TEST(with_max_wait_0_nobody_waits_and_nobody_complains) {
+  Rig rig(false, "max-wait=0");
+  rig.add_pir();
+  rig.read(0, {1, 0, 0});
+  fail_unless_equals_string(values(rig, 500 * kMs).c_str(), "100");
+  fail_unless(rig.warning().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(a_waiting_frame_lets_go_at_once) {
+  const struct {
+    const char* what;
+    std::function<void(Rig&)> action;
+  } cases[] = {
+      {"flush", [](Rig& rig) { gst_harness_push_event(rig.video, gst_event_new_flush_start()); }},
+      {"to READY", [](Rig& rig) { gst_element_set_state(rig.element, GST_STATE_READY); }},
+      {"to NULL", [](Rig& rig) { gst_element_set_state(rig.element, GST_STATE_NULL); }},
+      {"pad off", [](Rig& rig) { gst_pad_set_active(static_pad(rig.element, "sink"), FALSE); }},
+  };
+  for (const auto& c : cases) {
+    Rig rig(false, kForEver);
+    rig.add_pir();
+    Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
+    const gint64 took = time_until_back(frame_in, GST_FLOW_FLUSHING, [&] { c.action(rig); });
+    fail_unless(took < kUnlock, "%s: %" G_GINT64_FORMAT " us", c.what, took);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(after_a_flush_a_frame_waits_again) {
+  Rig rig(false, kForEver);
+  rig.add_pir();
+  Pushing stopped(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
+  gst_harness_push_event(rig.video, gst_event_new_flush_start());
+  fail_unless_equals_int(stopped.flow(), GST_FLOW_FLUSHING);
+  gst_harness_push_event(rig.video, gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(rig.video, gst_event_new_segment(&segment));
+  Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(100 * kMs));
+  rig.read(50 * kMs, {0, 1, 0});
+  rig.read(150 * kMs, {1, 0, 0});
+  fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+  fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "010");
+}
+GST_END_TEST
+
+GST_START_TEST(a_flush_of_a_pir_pad_takes_back_what_it_covered) {
+  Rig rig(false, kForEver);
+  GstHarness* pir = rig.add_pir();
+  rig.read(GST_SECOND, {1, 0, 0});
+  gst_harness_push_event(pir, gst_event_new_eos());
+  gst_harness_push_event(pir, gst_event_new_flush_start());
+  gst_harness_push_event(pir, gst_event_new_flush_stop(TRUE));
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  gst_harness_push_event(pir, gst_event_new_segment(&segment));
+  Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(100 * kMs));
+  rig.read(50 * kMs, {0, 1, 0});
+  rig.read(150 * kMs, {1, 0, 0});
+  fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
+  fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "010");
+}
+GST_END_TEST
+
+GST_START_TEST(a_pir_file_waits_for_the_video_and_no_frame_is_lost) {
+  Rig rig(false, kForEver);
+  GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
+  rig.read(0, {0, 0, 1});
+  rig.read(9 * GST_SECOND, {1, 0, 0});
+  Pushing ahead(pir, static_pad(rig.element, "pir_0"), reading(12 * GST_SECOND, {0, 1, 0}));
+  fail_unless_equals_string(values(rig, GST_SECOND).c_str(), "001");
+  fail_unless(ahead.waits());  // 11 s ahead
+  // The frame that needs it gets it.
+  fail_unless_equals_string(values(rig, 11 * GST_SECOND).c_str(), "100");
+  fail_unless_equals_int(ahead.flow(), GST_FLOW_OK);
+  fail_unless_equals_string(values(rig, 12 * GST_SECOND).c_str(), "010");
+}
+GST_END_TEST
+
+GST_START_TEST(a_live_pir_source_never_waits) {
+  Rig rig(true);
+  rig.add_pir();
+  for (int k = 0; k < 6000; ++k)
+    rig.read(k * GST_SECOND, {guint8(k & 1), 0, 0});  // and its history is bounded
+  fail_unless_equals_string(values(rig, 5999 * GST_SECOND).c_str(), "100");
+}
+GST_END_TEST
+
+GST_START_TEST(a_waiting_pir_file_lets_go_at_once) {
+  const struct {
+    const char* what;
+    GstFlowReturn flow;
+    std::function<void(Rig&)> action;
+  } cases[] = {
+      {"flush", GST_FLOW_FLUSHING,
+       [](Rig& rig) { gst_harness_push_event(rig.pir[0], gst_event_new_flush_start()); }},
+      {"to READY", GST_FLOW_FLUSHING, [](Rig& rig) { gst_element_set_state(rig.element, GST_STATE_READY); }},
+      {"to NULL", GST_FLOW_FLUSHING, [](Rig& rig) { gst_element_set_state(rig.element, GST_STATE_NULL); }},
+      {"released", GST_FLOW_FLUSHING,
+       [](Rig& rig) { gst_element_release_request_pad(rig.element, static_pad(rig.element, "pir_0")); }},
+      {"the video ended", GST_FLOW_EOS,
+       [](Rig& rig) { gst_harness_push_event(rig.video, gst_event_new_eos()); }},
+  };
+  for (const auto& c : cases) {
+    Rig rig(false, kForEver);
+    GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
+    Pushing ahead(pir, static_pad(rig.element, "pir_0"), reading(GST_SECOND * 60, {0, 1, 0}));
+    const gint64 took = time_until_back(ahead, c.flow, [&] { c.action(rig); });
+    fail_unless(took < kUnlock, "%s: %" G_GINT64_FORMAT " us", c.what, took);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(not_live_every_run_gives_the_same) {
+  const std::string first = run(1);
+  fail_unless(first.find("1") != std::string::npos && first.find("search") != std::string::npos, "%s",
+              first.c_str());
+  for (unsigned seed = 2; seed < 12; ++seed) fail_unless(run(seed) == first, "seed %u differs", seed);
+}
+GST_END_TEST
+
+static Suite* pirfusion_waiting_suite(void) {
+  watch_library_log();
+  Suite* s = suite_create("pirfusion_waiting");
+  TCase* tc = tcase_create("live");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, live_nobody_waits_for_a_pir_pad_that_never_speaks);
+  tcase_add_test(tc, live_nobody_waits_for_a_late_reading);
+  tcase_add_test(tc, a_live_pir_source_never_waits);
+  tc = tcase_create("not live");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, not_live_a_frame_waits_for_the_readings_of_its_time);
+  tcase_add_test(tc, not_live_every_linked_pad_is_waited_for);
+  tcase_add_test(tc, readings_gaps_and_the_end_cover_a_frame);
+  tcase_add_test(tc, a_gap_ends_before_its_end);
+  tcase_add_test(tc, a_pad_that_goes_away_is_not_waited_for);
+  tcase_add_test(tc, a_silent_pad_is_warned_of_and_ignored_until_it_speaks);
+  tcase_add_test(tc, with_max_wait_0_nobody_waits_and_nobody_complains);
+  tcase_add_test(tc, a_waiting_frame_lets_go_at_once);
+  tcase_add_test(tc, after_a_flush_a_frame_waits_again);
+  tcase_add_test(tc, a_flush_of_a_pir_pad_takes_back_what_it_covered);
+  tcase_add_test(tc, a_pir_file_waits_for_the_video_and_no_frame_is_lost);
+  tcase_add_test(tc, a_waiting_pir_file_lets_go_at_once);
+  tcase_add_test(tc, not_live_every_run_gives_the_same);
+  return s;
+}
+
+GST_CHECK_MAIN(pirfusion_waiting)
