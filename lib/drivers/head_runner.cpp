@@ -36,7 +36,7 @@ struct HeadRunner::Core {
     bool any() const { return open || command || stop || question || quit; }
   } todo;
   unsigned long asked = 0, answered = 0;  // tickets
-  bool interrupted = false, ended = false;
+  bool interrupted = false, ended = false, obeys = true, speaks = true;
   std::string failure, last_failure;  // not yet told; of the last batch
   std::vector<control::Pose> poses;   // of the last question
 
@@ -81,6 +81,10 @@ void HeadRunner::Core::run() {
     guard.lock();
     last_failure = failed;
     if (!failed.empty()) failure = failed;
+    if (batch.open || batch.command)
+      obeys = failed.empty();
+    else if (batch.question)
+      speaks = failed.empty();
     if (batch.question) poses.assign(found.begin(), found.end());
     answered = ticket;
     if (batch.quit) {
@@ -196,6 +200,11 @@ void HeadRunner::interrupt(bool on) {
 std::string HeadRunner::failure() {
   const std::lock_guard guard(core_->lock);
   return std::exchange(core_->failure, {});
+}
+
+bool HeadRunner::healthy() const {
+  const std::lock_guard guard(core_->lock);
+  return core_->obeys && core_->speaks;
 }
 
 bool HeadRunner::idle() const {

@@ -47,6 +47,8 @@ class HeadRunner {
   void interrupt(bool on);
   // What the driver complained of since the last call; empty: nothing.
   std::string failure();
+  // The driver carried out the last command, and told its state when last asked.
+  bool healthy() const;
   // False while a request is on its way.
   bool idle() const;
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <optional>
 
 namespace cerberus::drivers {
@@ -57,6 +58,7 @@ void write_all(int fd, std::string_view text) {
 }
 
 double follow(double position, const AxisCommand& command, const control::AxisLimits& limits) {
+  if (!std::isfinite(command.value)) return position;
   if (command.kind == AxisCommand::Kind::position) return limits.clamp(command.value);
   if (command.kind == AxisCommand::Kind::velocity && command.value != 0)
     return command.value > 0 ? limits.to : limits.from;

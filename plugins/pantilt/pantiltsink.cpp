@@ -470,23 +470,37 @@ GstFlowReturn persist(Private& self, Ask ask) {
   }
 }
 
+// When a frame was taken, in running time. Without a time stamp: now, or one frame after the last.
+std::optional<Time> running_time(const Private& self, GstClockTime pts, std::optional<Time> newest,
+                                 Time length) {
+  const GstSegment& segment = self.sink->segment;
+  if (segment.format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID(pts)) {
+    if (self.clock_driven) return now(self);
+    return newest ? *newest + length : Time::zero();
+  }
+  const GstClockTime running = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts);
+  if (!GST_CLOCK_TIME_IS_VALID(running)) return std::nullopt;
+  return time_of(running);
+}
+
 GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
   if (const auto changed = self.settings.changes()) configure(self, *changed);
   ask_whether_live(self);
-  const GstClockTime running = gst_segment_to_running_time(&self.sink->segment, GST_FORMAT_TIME, pts);
-  const auto newest = self.station.newest();
-  if (!GST_CLOCK_TIME_IS_VALID(running) || (newest && time_of(running) <= *newest)) {
-    GST_DEBUG_OBJECT(self.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
-                     GST_TIME_ARGS(running));
-    return GST_FLOW_OK;
-  }
   const GstVideoInfo& info = self.state.info;
   if (!GST_CLOCK_TIME_IS_VALID(duration) && info.fps_n > 0)
     duration = gst_util_uint64_scale_int(GST_SECOND, info.fps_d, info.fps_n);
+  const Time length = time_of(GST_CLOCK_TIME_IS_VALID(duration) ? duration : 0);
+  const auto newest = self.station.newest();
+  const auto taken = running_time(self, pts, newest, length);
+  if (!taken || (newest && *taken <= *newest)) {
+    GST_DEBUG_OBJECT(self.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
+                     GST_TIME_ARGS(pts));
+    return GST_FLOW_OK;
+  }
   Station::Frame frame{.buffer = buffer,
-                       .running = time_of(running),
-                       .length = time_of(GST_CLOCK_TIME_IS_VALID(duration) ? duration : 0),
-                       .now = now(self).value_or(time_of(running)),
+                       .running = *taken,
+                       .length = length,
+                       .now = now(self).value_or(*taken),
                        .lens = vision::Lens(radians(self.field_of_view), {info.width, info.height}),
                        .capture = std::nullopt};
   const CerberusPose* pose = buffer ? cerberus_buffer_peek_pose(buffer) : nullptr;
@@ -516,15 +530,13 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
       self.station.forget();
-      if (self.playing) self.station.resume();
+      if (self.playing) self.station.resume(now(self));
     }
     if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
-    const GstClockTime begin =
-        gst_segment_to_running_time(&sink->segment, GST_FORMAT_TIME, sink->segment.start);
     Outbox out;
-    self.station.announce(GST_CLOCK_TIME_IS_VALID(begin) ? time_of(begin) : Time::zero(), out);
+    self.station.announce(running_time(self, sink->segment.start, {}, {}).value_or(Time::zero()), out);
     send(self, out);
   });
   return done;
@@ -540,7 +552,7 @@ GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, Gs
   }
   if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
     self.playing = true;
-    self.station.resume();
+    guarded(element, [&] { self.station.resume(now(self)); });
   }
   const GstStateChangeReturn done =
       GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->change_state(element, change);

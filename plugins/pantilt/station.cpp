@@ -19,8 +19,10 @@ constexpr control::Time kAhead = std::chrono::seconds(1);
 constexpr control::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(200);
 // A driver that answers is asked every 20 ms; one that does not, in this time, is at fault.
 constexpr control::Time kSilence = std::chrono::seconds(1);
+constexpr char kSilent[] = "the head does not answer";
 constexpr auto kTickPatience = milliseconds(10);
-constexpr auto kFramePatience = std::chrono::seconds(1);
+// A loaded machine is no reason to decide otherwise than an idle one; who cannot wait interrupts.
+constexpr auto kFramePatience = std::chrono::seconds(10);
 
 const char* word(const control::Order& order) {
   using control::Doing;
@@ -49,7 +51,8 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
   pilot_.reset();
   history_.clear();
   watchdog_.rest();
-  manual_ = faulty_ = halted_ = false;
+  manual_ = faulty_ = false;
+  halted_ = fresh_ = true;
   told_ = epoch_ = published_ = Time::zero();
   newest_.reset();
   late_since_ = control::kNever;
@@ -85,6 +88,7 @@ void Station::set_clock_driven(bool on) {
 void Station::forget() {
   const std::lock_guard guard(lock_);
   newest_.reset();
+  fresh_ = true;
   law_.reset();
   pilot_.reset();
 }
@@ -134,21 +138,33 @@ void Station::complain(const std::string& failure, Time head, Outbox& out) {
   say("fault", failure, head, out);
 }
 
+// After an answer: is the head at fault, still or no longer?
+void Station::check(const std::string& failure, Time head, Outbox& out) {
+  if (runner_ && runner_->healthy())
+    faulty_ = false;
+  else
+    complain(failure, head, out);
+}
+
 Station::Answer Station::announce(Time at, Outbox& out) {
   std::shared_ptr<drivers::HeadRunner> runner;
-  Time head;
+  Time head, from;
+  bool clock_driven;
   {
     const std::lock_guard guard(lock_);
     if (!runner_) return Answer::failed;
     runner = runner_;
+    clock_driven = clock_driven_;
     head = head_time(at);
+    from = std::exchange(fresh_, false) ? head : std::max(head, published_);
   }
   std::vector<Pose> poses;
-  const Answer answer = runner->ask({}, head, head + setup_.latency + kAhead, poses, kTickPatience);
+  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses,
+                                    clock_driven ? kTickPatience : kFramePatience);
   const std::lock_guard guard(lock_);
   if (answer != Answer::done) return answer;
   remember(poses);
-  publish(poses, clock_driven_ ? control::kNever : head + setup_.latency, out);
+  publish(poses, clock_driven ? control::kNever : std::max(from, head + setup_.latency), out);
   return answer;
 }
 
@@ -187,7 +203,7 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
 
   if (!runner->idle()) {  // blocked: nothing is caught up with
     newest_ = frame.running;
-    complain("the head does not answer", told_, out);
+    complain(kSilent, told_, out);
     return Answer::late;
   }
   // What was told of the head's way stays true: nothing given now changes it before `published_`.
@@ -203,22 +219,22 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
     if (answer == Answer::interrupted) return answer;
     remember(poses);
   }
-  const HeadCommand command = decide(frame, now, out);
+  std::optional<HeadCommand> command;
+  if (frame.buffer) command = decide(frame, now, out);
+  const Time from = published_;
   guard.unlock();
-  const Answer answer = runner->ask(frame.buffer ? std::optional(command) : std::nullopt, published_, horizon,
-                                    poses, kFramePatience);
+  const Answer answer = runner->ask(command, from, horizon, poses, kFramePatience);
   guard.lock();
   if (answer == Answer::interrupted) return answer;
   newest_ = frame.running;
   if (frame.buffer) watchdog_.feed(now);
-  if (answer == Answer::done) {
-    faulty_ = false;
-    remember(poses);
-    publish(poses, std::max(published_, now + std::max(setup_.latency, frame.length)), out);
-  } else {
-    const std::string failure = runner->failure();
-    complain(answer == Answer::late ? "the head does not answer" : failure, now, out);
+  if (answer == Answer::late) {
+    complain(kSilent, now, out);
+    return answer;
   }
+  check(runner->failure(), now, out);
+  remember(poses);
+  publish(poses, std::max(from, now + std::max(setup_.latency, frame.length)), out);
   return answer;
 }
 
@@ -235,17 +251,13 @@ Station::Time Station::tick(Time at, Outbox& out) {
   std::vector<Pose> poses;
   const Answer answer = runner->ask({}, now, now + setup_.latency + kAhead, poses, kTickPatience);
   guard.lock();
-  if (const std::string failure = runner->failure(); !failure.empty()) {
-    complain(failure, now, out);
-  } else if (answer == Answer::done) {
-    faulty_ = false;
-  }
-  if (answer != Answer::done) {
-    if (answer == Answer::late && late_since_ == control::kNever) late_since_ = now;
-    if (answer == Answer::late && now - late_since_ > kSilence)
-      complain("the head does not answer", now, out);
+  if (answer == Answer::late) {
+    if (late_since_ == control::kNever) late_since_ = now;
+    if (now - late_since_ > kSilence) complain(kSilent, now, out);
     return at + kWhileMoving;
   }
+  if (answer != Answer::interrupted) check(runner->failure(), now, out);
+  if (poses.empty()) return at + kWhileMoving;
   late_since_ = control::kNever;
   remember(poses);
   publish(poses, control::kNever, out);
@@ -276,9 +288,11 @@ void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunn
   if (!faulty_) say("stopped", reason, now, out);
 }
 
-void Station::resume() {
+void Station::resume(std::optional<Time> at) {
   const std::lock_guard guard(lock_);
   halted_ = false;
+  if (runner_ && manual_ && clock_driven_ && at)
+    runner_->command({head_time(*at), wanted_.pan, wanted_.tilt});
 }
 
 bool Station::override(const char* reason, const HeadCommand& command, std::optional<Time> at, Outbox& out) {

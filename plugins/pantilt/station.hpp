@@ -66,7 +66,7 @@ class Station {
   Time tick(Time now, Outbox& out);
   // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.
   void halt(const char* reason, std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
-  void resume();
+  void resume(std::optional<Time> now);
 
   // Manual override until automatic(). now: as for halt(). false: not possible.
   bool move(double pan, double tilt, bool relative, std::optional<Time> now, Outbox& out);
@@ -83,6 +83,7 @@ class Station {
   void publish(const std::vector<control::Pose>& poses, Time until, Outbox& out);
   void say(const char* state, std::string reason, Time head, Outbox& out);
   void complain(const std::string& failure, Time head, Outbox& out);
+  void check(const std::string& failure, Time head, Outbox& out);
   drivers::HeadCommand decide(const Frame& frame, Time now, Outbox& out);
   bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,
                 Outbox& out);
@@ -99,6 +100,7 @@ class Station {
   drivers::HeadCommand wanted_;  // by hand
   Time told_{}, epoch_{};        // head time of the last command; head time = running time + epoch
   Time published_{};             // head time until which poses were told
+  bool fresh_ = true;            // nothing was told since running time may have begun anew
   std::optional<Time> newest_;   // running
   Time timeout_{};
   Time late_since_ = control::kNever;
