@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/mask.h"
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 
@@ -39,6 +41,14 @@ void pack_rows(GrayView picture, MutableBitView bits, Test&& test) {
   }
 }
 
+// The bits of a byte as eight bytes, 0 or 255, the lowest first.
+constexpr auto kSpread = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> table{};
+  for (unsigned bits = 0; bits < 256; ++bits)
+    for (unsigned i = 0; i < 8; ++i) table[bits][i] = bits >> i & 1 ? 255 : 0;
+  return table;
+}();
+
 template <typename Operation>
 void combine(BitView a, BitView b, MutableBitView out, Operation&& operation) {
   for (int y = 0; y < out.height; ++y) {
@@ -71,8 +81,8 @@ void unpack(BitView bits, MutableGrayView mask) {
       if (word == 0) {
         std::memset(out + begin, 0, static_cast<std::size_t>(count));
       } else {
-        for (int i = 0; i < count; ++i)
-          out[begin + i] = static_cast<std::uint8_t>(-static_cast<int>((word >> i) & 1));
+        for (int i = 0; i < count; i += 8)
+          std::memcpy(out + begin + i, kSpread[word >> i & 255].data(), std::min(count - i, 8));
       }
     }
   }

@@ -16,53 +16,50 @@ void copy(BitView from, MutableBitView to) {
     std::memcpy(to.row(y), from.row(y), static_cast<std::size_t>(to.width) * sizeof(Word));
 }
 
-// out := row moved by n pixels towards higher (n > 0) or lower x; zeros follow.
-void shift_row(const Word* row, int words, int n, Word* out) {
-  const int whole = (n < 0 ? -n : n) / 64, part = (n < 0 ? -n : n) % 64;
+// One row united with itself moved by -radius .. +radius, radius at most 64: the reach doubles with every step. What a
+// neighbouring word moves in needs to be right only as far as it reaches.
+void spread_row_near(Word* row, int words, int radius) {
+  Word before = 0;  // the word to the left, as it was
   for (int i = 0; i < words; ++i) {
-    Word value = 0;
-    if (n >= 0) {
-      const int from = i - whole;
-      if (from >= 0) value = row[from] << part;
-      if (part && from >= 1) value |= row[from - 1] >> (64 - part);
-    } else {
-      const int from = i + whole;
-      if (from < words) value = row[from] >> part;
-      if (part && from + 1 < words) value |= row[from + 1] << (64 - part);
+    const Word here = row[i], after = i + 1 < words ? row[i + 1] : 0;
+    if (here | before | after) {
+      Word up = here, from_below = before, down = here, from_above = after;
+      for (int reach = 0; reach < radius;) {
+        const int step = std::min(reach + 1, radius - reach);  // at most 32
+        up |= up << step | from_below >> (64 - step);
+        from_below |= from_below << step;
+        down |= down >> step | from_above << (64 - step);
+        from_above |= from_above >> step;
+        reach += step;
+      }
+      row[i] = up | down;
     }
-    out[i] = value;
+    before = here;
   }
 }
 
-// One row united with itself moved by -radius .. +radius: the reach doubles with every step.
-void spread_row(Word* row, Word* scratch, int words, int radius, Word last) {
-  for (int direction : {1, -1}) {
-    int reach = 0;
-    while (reach < radius) {
-      const int step = std::min(reach + 1, radius - reach);
-      shift_row(row, words, direction * step, scratch);
-      for (int i = 0; i < words; ++i) row[i] |= scratch[i];
-      reach += step;
-    }
-  }
+// The same for any radius.
+void spread_row(Word* row, int words, int radius, Word last) {
+  for (; radius > 0; radius -= 64) spread_row_near(row, words, std::min(radius, 64));
   row[words - 1] &= last;
 }
 
 // Rows united with their neighbours up to `radius` rows away, again by doubling: first upwards, then
 // downwards, in an order in which every row read is still the one of the step before.
 void spread_columns(MutableBitView bits, int radius) {
-  int reach = 0;
-  while (reach < radius) {
+  const auto unite_row = [&](int y, int other) {
+    Word* row = bits.row(y);
+    const Word* from = bits.row(other);
+    for (int i = 0; i < bits.width; ++i) row[i] |= from[i];
+  };
+  for (int reach = 0; reach < radius;) {
     const int step = std::min(reach + 1, radius - reach);
-    for (int y = 0; y + step < bits.height; ++y)
-      for (int i = 0; i < bits.width; ++i) bits.row(y)[i] |= bits.row(y + step)[i];
+    for (int y = 0; y + step < bits.height; ++y) unite_row(y, y + step);
     reach += step;
   }
-  reach = 0;
-  while (reach < radius) {
+  for (int reach = 0; reach < radius;) {
     const int step = std::min(reach + 1, radius - reach);
-    for (int y = bits.height - 1; y >= step; --y)
-      for (int i = 0; i < bits.width; ++i) bits.row(y)[i] |= bits.row(y - step)[i];
+    for (int y = bits.height - 1; y >= step; --y) unite_row(y, y - step);
     reach += step;
   }
 }
@@ -148,9 +145,8 @@ void grow(MutableBitView seeds, BitView within, Word* scratch, bool wide) {
 void Morphology::dilate(MutableBitView bits, int width, int side) {
   const int radius = side / 2;
   if (radius < 1 || bits.empty()) return;
-  a_.resize(bits.size());
   const Word last = last_word_bits(width);
-  for (int y = 0; y < bits.height; ++y) spread_row(bits.row(y), a_.view().row(0), bits.width, radius, last);
+  for (int y = 0; y < bits.height; ++y) spread_row(bits.row(y), bits.width, radius, last);
   spread_columns(bits, radius);
 }
 
@@ -180,6 +176,7 @@ void Morphology::vote(MutableBitView bits, int width, int least) {
   const MutableBitView in = a_.view();
   for (int y = 0; y < bits.height; ++y) {
     for (int i = 0; i < bits.width; ++i) {
+      if (in.row(y)[i] == 0) continue;  // most of a mask; only what is set can be kept
       Word ones = 0, twos = 0, fours = 0, eights = 0;
       const auto add = [&](Word value) {
         Word carry = ones & value;
