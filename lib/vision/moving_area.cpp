@@ -22,6 +22,8 @@ MovingArea::MovingArea(MovingArea&&) noexcept = default;
 MovingArea& MovingArea::operator=(MovingArea&&) noexcept = default;
 
 void MovingArea::set_options(const MovingAreaOptions& options) {
+  // A memory that was switched off has not seen where the camera went since.
+  if (options.memory != state_->options.memory) state_->memory.reset();
   state_->options = options;
 }
 void MovingArea::reset() {

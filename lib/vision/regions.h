@@ -46,9 +46,9 @@ class RegionFinder {
   void set_options(const RegionOptions& options);
   // Forget what was learnt of the scene (heights); a cut does that.
   void reset();
-  // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 =
-  // background, may be empty where nobody wants them. motion: frame k-1 to k, so that what was learnt moves with the camera. The span lives until
-  // the next call.
+  // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
+  // may be empty where nobody wants them. motion: frame k-1 to k, so that what was learnt moves with the camera. The
+  // span lives until the next call.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
   std::size_t bytes() const;
 

@@ -115,7 +115,7 @@ class NoiseSamples {
   }
   // 1.4826 x median of a class, none if there are too few samples.
   std::optional<double> sigma(int k) const {
-    int total = 0;
+    std::uint32_t total = 0;
     for (const auto c : counts_[k]) total += c;
     if (total < 40) return std::nullopt;
     double below = 0;
@@ -132,7 +132,8 @@ class NoiseSamples {
 
  private:
   static constexpr int kLevels = 64;
-  std::array<std::array<std::uint16_t, kLevels>, kBrightness> counts_{};
+  // 32 bits: a sixteenth of 3840 x 2160 pixels may all be alike.
+  std::array<std::array<std::uint32_t, kLevels>, kBrightness> counts_{};
 };
 
 // What is known of a connected part.
@@ -160,7 +161,6 @@ struct SceneMemory::State {
   Morphology morphology;
   Labeller labeller;
   std::vector<Part> parts;
-  std::vector<std::uint8_t> verdict;
   Warp warp;
   LightChange light;
   int columns = 0, rows = 0;  // of blocks
@@ -383,8 +383,9 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   for (int y = 0; y < size.height; ++y) {
     const int by = y / kSceneBlock;
     if (y % kSceneBlock == 0) {
-      // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its mean, since the tail counts. One pixel at least: interpolation and
-      // aliasing make that much. Whether the memory is still good there is judged by what noise alone does not explain.
+      // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its
+      // mean, since the tail counts. One pixel at least: interpolation and aliasing make that much. Whether the memory is
+      // still good there is judged by what noise alone does not explain.
       for (int bx = 0; bx < columns; ++bx) {
         double ge = 0, gg = 0, n = 0;
         for (int v = std::max(by - 1, 0); v <= std::min(by + 1, rows - 1); ++v)
@@ -527,7 +528,8 @@ std::size_t SceneMemory::bytes() const {
   std::size_t total = sizeof(State) + s.mean.bytes() + s.known.bytes() + s.tolerance.bytes() +
                       s.morphology.bytes() + s.labeller.bytes() + s.warp.bytes() + s.light.bytes();
   for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present, &s.scratch}) total += plane->bytes();
-  for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb}) total += bits->bytes();
+  for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
+    total += bits->bytes();
   return total + s.parts.capacity() * sizeof(Part) + s.blocks.capacity() * sizeof(BlockSums);
 }
 
