@@ -23,13 +23,10 @@ struct MovingAreaOptions {
 struct MovingAreaInput {
   GrayView picture;            // F(k), analysis pixels
   Transform motion;            // frame k-1 to k
-  double confidence = 1;       // of that motion
-  double residual = 0;         // RMS distance of the patches that follow it, analysis pixels
   bool still = false;          // the camera stands
   GrayView current, previous;  // D(k), D(k-1)
   const Histogram* histogram = nullptr;
   int frames = 0;  // DifferenceResult::frames
-  double gain = 1, offset = 0;
 };
 
 struct MovingAreaResult {

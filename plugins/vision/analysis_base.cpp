@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <iterator>
 #include <string>
 
@@ -59,10 +58,6 @@ AnalysisPrivate& priv_of(gpointer instance) {
 
 GstBaseTransformClass* parent_class();
 
-double finite(double value, double low, double high) {
-  return std::isfinite(value) ? std::clamp(value, low, high) : low;
-}
-
 // The camera's motion as the buffer tells it. Returns false when it starts from another frame than our last one.
 bool read_camera_motion(AnalysisPrivate& priv, Frame& frame) {
   const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(frame.buffer);
@@ -79,8 +74,7 @@ bool read_camera_motion(AnalysisPrivate& priv, Frame& frame) {
   std::copy(std::begin(motion.matrix), std::end(motion.matrix), transform.m.begin());
   // A stranger's numbers may be anything.
   if (!follows || !transform.is_sane(frame.size())) return false;
-  frame.motion = {transform, finite(motion.confidence, 0, 1), finite(motion.residual, 0, 1e6),
-                  motion.still != FALSE};
+  frame.motion = {transform, motion.still != FALSE};
   return true;
 }
 

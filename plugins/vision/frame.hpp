@@ -12,8 +12,6 @@ namespace cerberus::plugin {
 // the camera stands still.
 struct Motion {
   vision::Transform transform;
-  double confidence = 1;
-  double residual = 0;  // frame pixels
   bool still = true;
 
   // The same in analysis pixels. Standing still stays exactly the identity, whatever the rounding.

@@ -4,7 +4,6 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <new>
 #include <utility>
@@ -84,8 +83,6 @@ bool DifferenceStage::run(Frame& frame) {
   HistogramRecord record;
   std::memcpy(record.count, counts.data(), sizeof record.count);
   record.frames = result.frames;
-  record.gain = static_cast<float>(result.gain);
-  record.offset = static_cast<float>(result.offset);
   std::memcpy(histogram.writable<std::uint32_t>().data, &record, sizeof record);
 
   current.publish(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
@@ -115,15 +112,11 @@ bool MaskStage::run(Frame& frame) {
   vision::MovingAreaInput input;
   input.picture = picture.view<std::uint8_t>();
   input.motion = frame.motion.in(size, frame.size());
-  input.confidence = frame.motion.confidence;
-  input.residual = frame.motion.residual * size.width / frame.size().width;
   input.still = frame.motion.still;
   input.current = current.view<std::uint8_t>();
   input.previous = previous.view<std::uint8_t>();
   input.histogram = &counts;
   input.frames = std::clamp(record.frames, 0, 3);
-  input.gain = std::isfinite(record.gain) ? record.gain : 1;
-  input.offset = std::isfinite(record.offset) ? record.offset : 0;
 
   MappedPlane mask = acquire(pool_, size);
   const vision::MovingAreaResult result = area_.update(input, mask.writable<std::uint8_t>());

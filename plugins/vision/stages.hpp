@@ -36,11 +36,10 @@ class LumaStage {
   PlanePool pool_;
 };
 
-// What rides in a HISTOGRAM plane: 256 counts, then what the differences were made of.
+// What rides in a HISTOGRAM plane: 256 counts, then over how many frames the differences span.
 struct HistogramRecord {
   std::uint32_t count[256];
   std::int32_t frames;  // vision::DifferenceResult
-  float gain, offset;
 };
 
 // Registered differences and their histogram (Eq. 1, 2).

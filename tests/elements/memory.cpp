@@ -40,7 +40,7 @@ GST_START_TEST(a_stream_needs_at_most_24_bytes_an_analysis_pixel) {
     {
       const MappedPlane picture = luma.make(frame);
       const vision::CameraMotionResult motion = camera.update(picture.view<std::uint8_t>());
-      frame.motion = {motion.transform, motion.confidence, motion.residual, motion.still};
+      frame.motion = {motion.transform, motion.still};
     }
     fail_unless(regions.run(frame, false));
     gpointer position = nullptr;

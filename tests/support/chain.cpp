@@ -43,15 +43,11 @@ void Chain::run_stage(std::size_t stage) {
     case 3:
       area_result_ = area_.update({.picture = luma_.view(),
                                    .motion = motion_result_.transform,
-                                   .confidence = motion_result_.confidence,
-                                   .residual = motion_result_.residual,
                                    .still = motion_result_.still,
                                    .current = current_.view(),
                                    .previous = previous_.view(),
                                    .histogram = &histogram_,
-                                   .frames = difference_result_.frames,
-                                   .gain = difference_result_.gain,
-                                   .offset = difference_result_.offset},
+                                   .frames = difference_result_.frames},
                                   mask_.view());
       break;
     case 4: {

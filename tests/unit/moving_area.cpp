@@ -30,8 +30,6 @@ struct Chain {
     in.previous = previous.view();
     in.histogram = &histogram;
     in.frames = d.frames;
-    in.gain = d.gain;
-    in.offset = d.offset;
     return area.update(in, mask.view());
   }
   void reset() {
