@@ -210,7 +210,8 @@ void Tracker::State::give_birth() {
 // Somebody who ceased to move, rather than left or went behind something: well seen before, slower and slower until
 // nothing moved any more, in the open and with nobody else in the way.
 bool Tracker::State::has_stopped(const Body& b) const {
-  if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.45 || b.age - b.unseen < 1.5 || b.leaving) return false;
+  if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.45 || b.age - b.unseen < 1.5 || b.leaving)
+    return false;
   const Box box = b.box();
   return std::none_of(bodies.begin(), bodies.end(), [&](const Body& o) {
     return &o != &b && o.id != 0 && o.region >= 0 && overlap_area(o.box(), box) > 0.2 * box.area();
@@ -222,8 +223,10 @@ void Tracker::State::age() {
     if (b.region >= 0) {
       const bool enough = b.hits >= 3 || (b.hits >= 2 && b.age >= 3 * options.confirm_time);
       if (b.id == 0 && enough && b.travelled >= kLeastTravel && b.age >= 0.99 * options.confirm_time &&
-          b.hits >= 0.6 * b.frames)
+          b.hits >= 0.6 * b.frames) {
         b.id = ++last_id;
+        b.top_speed = b.speed();
+      }
       continue;
     }
     b.miss(seconds);

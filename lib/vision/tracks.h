@@ -26,7 +26,7 @@ struct Track {
   Box box;                // frame pixels, clamped to the frame
   double vx = 0, vy = 0;  // frame pixels a second relative to the scene, camera motion taken out
   double top_speed =
-      0;           // highest speed so far, frame pixels a second (what a lower limit of speed asks about)
+      0;           // highest speed since confirmed, frame pixels a second: what a lower limit asks about
   double age = 0;  // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
@@ -42,10 +42,8 @@ class Tracker {
   void set_options(const TrackOptions& options);
   // Forget all tracks (identities go on counting).
   void reset();
-  // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous
-  // frame
-  // (<= 0: unknown, taken as the last known distance). Returns confirmed tracks, by id; lives until the next
-  // call.
+  // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous frame
+  // (<= 0: unknown, taken as the last known distance). Returns confirmed tracks, by id; lives until the next call.
   std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
                                 Size frame);
 

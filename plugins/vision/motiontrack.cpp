@@ -91,30 +91,6 @@ const Property<Settings> kProperties[] = {
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
 };
 
-// The highest speed each track has shown; as many as there are tracks.
-class TopSpeeds {
- public:
-  double update(std::uint32_t id, double speed) {
-    const auto it = std::ranges::find(entries_, id, &Entry::id);
-    Entry& entry = it != entries_.end() ? *it : entries_.emplace_back(Entry{id, 0, false});
-    entry.alive = true;
-    return entry.top = std::max(entry.top, speed);
-  }
-  // Forgets the tracks that update() was not called for since the last sweep.
-  void sweep() {
-    std::erase_if(entries_, [](const Entry& entry) { return !entry.alive; });
-    for (Entry& entry : entries_) entry.alive = false;
-  }
-
- private:
-  struct Entry {
-    std::uint32_t id;
-    double top;
-    bool alive;
-  };
-  std::vector<Entry> entries_;
-};
-
 // Motion started or ended, with hysteresis.
 class Presence {
  public:
@@ -146,7 +122,6 @@ struct State {
   vision::Tracker tracker;
   std::vector<vision::Region> found;  // what the tracker is fed with
   std::vector<CerberusRegion> published;
-  TopSpeeds top_speeds;
   Presence presence;
   Settings settings;
   vision::SpeedGate gate;
@@ -232,7 +207,7 @@ void Private::publish(const Frame& frame, std::span<const vision::Track> tracks)
   for (const vision::Track& track : tracks) {
     const vision::Placement place = lens.place(track.box, 0, 0, s.mounting_height);
     const double speed = std::hypot(track.vx, track.vy);
-    if (!vision::passes(state->gate, speed, state->top_speeds.update(track.id, speed), place)) continue;
+    if (!vision::passes(state->gate, speed, track.top_speed, place)) continue;
     CerberusRegion& out = state->published.emplace_back();
     cerberus_region_init(&out);
     out.id = track.id;
@@ -250,7 +225,6 @@ void Private::publish(const Frame& frame, std::span<const vision::Track> tracks)
     out.distance = place.distance;
     cerberus_buffer_add_region(frame.buffer, &out);
   }
-  state->top_speeds.sweep();
 }
 
 void Private::announce(Presence::Change change, GstClockTime running_time) {
