@@ -57,7 +57,11 @@ void Plan::travel(double position, double speed, double target, double most, dou
     return;
   }
   const double peak = std::min(most, std::sqrt(std::max(0.0, acceleration * distance + u * u / 2)));
-  add((peak - u) / acceleration, s * acceleration, position, speed);
+  if (u < 0) {  // no piece turns round: what drags behind an axis may look at their ends alone
+    add(-u / acceleration, s * acceleration, position, speed);
+    speed = 0;
+  }
+  add((peak - std::max(0.0, u)) / acceleration, s * acceleration, position, speed);
   if (peak > 0) add((distance - (2 * peak * peak - u * u) / (2 * acceleration)) / peak, 0, position, speed);
   add(peak / acceleration, -s * acceleration, position, speed);
 }

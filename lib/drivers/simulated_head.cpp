@@ -117,15 +117,13 @@ std::string SimulatedHead::obey(const HeadCommand& command) {
   return {};
 }
 
-// The camera behind the play. A plan turns round at most once, where its speed changes sign: the camera is dragged to that
-// place first.
+// The camera behind the play. No piece of a plan turns round, so the extremes of the way so far lie at their ends.
 AxisState SimulatedHead::camera(const Leg& leg, Time time, Time& until) const {
   const AxisState motor = leg.plan.at(time);
   until = leg.plan.piece_end(time);
   const double play = setup_.backlash / 2;
   if (play == 0) return motor;
   double position = leg.camera;
-  // The extremes of the way so far lie at the ends of its pieces.
   for (Time end = leg.plan.start(); end < time; end = leg.plan.piece_end(end))
     position = dragged(position, leg.plan.at(end).position, play);
   position = dragged(position, motor.position, play);

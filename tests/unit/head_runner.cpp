@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A head that blocks must block nobody else. The scripted head blocks on pipes, so nothing here waits for a clock but the
+// patience that is tested.
+#include "drivers/head_runner.h"
+
+#include <check.h>
+#include <poll.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include "../support/suite.h"
+
+using namespace cerberus::control;
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using Answer = HeadRunner::Answer;
+using Clock = std::chrono::steady_clock;
+using Kind = AxisCommand::Kind;
+
+namespace {
+
+void assert_text(const std::string& text, const char* expected) {
+  ck_assert_str_eq(text.c_str(), expected);
+}
+
+struct Pipe {
+  int ends[2];
+  Pipe() { ck_assert_int_eq(::pipe(ends), 0); }
+  ~Pipe() {
+    close_writer();
+    ::close(ends[0]);
+  }
+  std::string reader() const { return std::to_string(ends[0]); }
+  std::string writer() const { return std::to_string(ends[1]); }
+  void close_writer() {
+    if (ends[1] >= 0) ::close(ends[1]);
+    ends[1] = -1;
+  }
+  // What was written so far; waits for the first of it.
+  std::string read() const {
+    char text[4096];
+    const ssize_t count = ::read(ends[0], text, sizeof text);
+    return count > 0 ? std::string(text, static_cast<std::size_t>(count)) : std::string();
+  }
+  std::string line() const {
+    std::string text;
+    for (char c = 0; ::read(ends[0], &c, 1) == 1 && c != '\n';) text += c;
+    return text;
+  }
+};
+
+std::unique_ptr<HeadRunner> runner_with(const std::string& script, std::shared_ptr<void> lease = {}) {
+  auto runner = std::make_unique<HeadRunner>(make_head("scripted"), std::move(lease));
+  HeadSetup setup;
+  setup.script = script;
+  ck_assert(runner->open(setup, 10s) == Answer::done);
+  return runner;
+}
+
+HeadCommand go(Time time, double pan) {
+  return {time, {Kind::position, pan, 1}, {}};
+}
+
+}  // namespace
+
+START_TEST(questions_are_answered_with_all_pieces_of_the_way) {
+  HeadRunner runner(make_head("simulated"), {});
+  HeadSetup setup;
+  setup.limits.pan = {-3, 3, 1, 2};
+  ck_assert(runner.open(setup, 10s) == Answer::done);
+  ck_assert(runner.simulated());
+  std::vector<Pose> poses;
+  ck_assert(runner.ask(go(0s, 2), 0s, 10s, poses, 10s) == Answer::done);
+  ck_assert_uint_eq(poses.size(), 4);  // up, cruise, down, rest
+  ck_assert_int_eq(poses[1].from.count(), Time(500ms).count());
+  ck_assert_double_eq_tol(poses[3].pan.position, 2, 1e-9);
+}
+END_TEST
+
+START_TEST(a_failure_is_told_once_and_healed_by_the_next_success) {
+  const auto runner = runner_with("command 2 fail no power");
+  std::vector<Pose> poses;
+  ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 10s) == Answer::done);
+  ck_assert(runner->healthy());
+  ck_assert(runner->ask(go(1s, 1), 1s, 1s, poses, 10s) == Answer::failed);
+  ck_assert(!runner->healthy());
+  assert_text(runner->failure(), "no power");
+  assert_text(runner->failure(), "");
+  // A question alone is answered, and heals nothing.
+  ck_assert(runner->ask({}, 1s, 1s, poses, 10s) == Answer::done);
+  ck_assert(!runner->healthy());
+}
+END_TEST
+
+START_TEST(a_head_that_fails_is_stopped) {
+  Pipe record;
+  const auto runner = runner_with("record " + record.writer() + "; command fail no power");
+  std::vector<Pose> poses;
+  runner->ask(go(5s, 1), 5s, 5s, poses, 10s);
+  assert_text(record.line(), "open 0");
+  assert_text(record.line(), "command 5000000000 position 1 1 hold 0 0");
+  assert_text(record.line(), "stop 5000000000");
+}
+END_TEST
+
+START_TEST(who_cannot_wait_is_not_kept) {
+  Pipe gate;
+  const auto runner = runner_with("command wait " + gate.reader());
+  std::vector<Pose> poses;
+  const auto start = Clock::now();
+  ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 20ms) == Answer::late);
+  ck_assert(runner->stop(0s, 20ms) == Answer::late);
+  ck_assert(!runner->idle());
+  ck_assert(Clock::now() - start < 1s);
+  gate.close_writer();
+  ck_assert(runner->stop(1s, 10s) == Answer::done);
+}
+END_TEST
+
+START_TEST(interrupt_wakes_who_waits) {
+  Pipe gate;
+  const auto runner = runner_with("command wait " + gate.reader());
+  std::atomic<bool> returned = false;
+  std::thread waiting([&] {
+    std::vector<Pose> poses;
+    ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 60s) == Answer::interrupted);
+    returned = true;
+  });
+  while (runner->idle()) std::this_thread::yield();
+  ck_assert(!returned);
+  runner->interrupt(true);
+  waiting.join();
+  std::vector<Pose> poses;
+  ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::interrupted);
+  runner->interrupt(false);
+  gate.close_writer();
+  ck_assert(runner->ask({}, 0s, 0s, poses, 10s) == Answer::done);
+}
+END_TEST
+
+START_TEST(of_commands_given_meanwhile_only_the_newest_counts) {
+  Pipe gate, record;
+  const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
+  assert_text(record.line(), "open 0");
+  runner->command(go(1s, 0.125));
+  assert_text(record.line(), "command 1000000000 position 0.125 1 hold 0 0");  // blocked in it now
+  runner->command(go(2s, 0.25));
+  runner->command(go(3s, 0.375));
+  gate.close_writer();
+  assert_text(record.line(), "command 3000000000 position 0.375 1 hold 0 0");
+}
+END_TEST
+
+START_TEST(a_stop_beats_the_commands_before_it) {
+  Pipe gate, record;
+  const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
+  record.line();
+  runner->command(go(1s, 0.125));
+  record.line();
+  runner->command(go(2s, 0.25));
+  runner->stop(3s, 1ms);
+  gate.close_writer();
+  assert_text(record.line(), "stop 3000000000");
+}
+END_TEST
+
+START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
+  Pipe gate, record;
+  std::weak_ptr<void> watch;
+  {
+    auto lease = std::make_shared<int>();
+    watch = lease;
+    auto runner =
+        runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
+    record.line();
+    runner->command(go(1s, 0.125));
+    record.line();
+    runner->set_close_patience(20ms);
+    const auto start = Clock::now();
+    runner.reset();
+    ck_assert(Clock::now() - start < 1s);
+  }
+  ck_assert(!watch.expired());
+  gate.close_writer();
+  assert_text(record.line(), "close 1000000000");
+  while (!watch.expired()) std::this_thread::yield();
+}
+END_TEST
+
+START_TEST(a_driver_that_does_not_open_says_why) {
+  HeadRunner runner(make_head("scripted"), {});
+  HeadSetup setup;
+  setup.script = "open fail no such device";
+  ck_assert(runner.open(setup, 10s) == Answer::failed);
+  assert_text(runner.failure(), "no such device");
+  for (const char* nonsense :
+       {"opn fail x", "record", "record x", "command", "command 3", "command wait", "stop jump 3"}) {
+    setup.script = nonsense;
+    ck_assert(runner.open(setup, 10s) == Answer::failed);
+    ck_assert(runner.failure().find("script: ") == 0);
+  }
+}
+END_TEST
+
+START_TEST(a_thousand_heads_come_and_go) {
+  for (int k = 0; k < 1000; ++k) {
+    HeadRunner runner(make_head("simulated"), {});
+    ck_assert(runner.open({}, 10s) == Answer::done);
+    runner.command(go(0s, 1));
+  }
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "head_runner", {questions_are_answered_with_all_pieces_of_the_way,
+                      a_failure_is_told_once_and_healed_by_the_next_success, a_head_that_fails_is_stopped,
+                      who_cannot_wait_is_not_kept, interrupt_wakes_who_waits,
+                      of_commands_given_meanwhile_only_the_newest_counts, a_stop_beats_the_commands_before_it,
+                      a_blocked_driver_keeps_its_lease_and_closes_by_itself,
+                      a_driver_that_does_not_open_says_why, a_thousand_heads_come_and_go});
+}

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What only a simulated head does: latency, steps, play, noise. 1 a second and 2 a second squared: 0.5 s and 0.25 of way to
+// full speed.
+#include "drivers/simulated_head.h"
+
+#include <check.h>
+
+#include <cmath>
+#include <string>
+
+#include "../support/allocations.h"
+#include "../support/suite.h"
+
+using namespace cerberus::control;
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using Kind = AxisCommand::Kind;
+
+namespace {
+
+HeadSetup setup() {
+  HeadSetup setup;
+  setup.limits.pan = {-3, 3, 1, 2};
+  setup.limits.tilt = {-1, 1, 1, 2};
+  return setup;
+}
+
+struct Opened {
+  SimulatedHead head;
+  explicit Opened(const HeadSetup& with) {
+    const std::string wrong = head.open(with);
+    ck_assert_str_eq(wrong.c_str(), "");
+  }
+  void send(Time time, const AxisCommand& pan) {
+    const std::string wrong = head.command({time, pan, {}});
+    ck_assert_str_eq(wrong.c_str(), "");
+  }
+  Pose at(Time time) {
+    Pose pose;
+    head.state(time, pose);
+    return pose;
+  }
+  double pan(Time time) { return at(time).pan.position; }
+};
+
+}  // namespace
+
+START_TEST(a_command_counts_after_the_latency) {
+  HeadSetup with = setup();
+  with.latency = 100ms;
+  Opened head(with);
+  head.send(1s, {Kind::position, 2, 1});
+  ck_assert_double_eq(head.pan(1100ms), 0);
+  ck_assert_double_eq_tol(head.pan(1350ms), 0.0625, 1e-9);  // 2 x 0.25^2 / 2
+  ck_assert_double_eq_tol(head.pan(1600ms), 0.25, 1e-9);
+  ck_assert_double_eq_tol(head.pan(2100ms), 0.75, 1e-9);
+  // What will hold until when is known before: rest, then the first piece.
+  ck_assert_int_eq(head.at(1s).until.count(), Time(1100ms).count());
+  ck_assert(!head.at(1s).settled);
+  ck_assert_int_eq(head.at(1100ms).until.count(), Time(1600ms).count());
+}
+END_TEST
+
+START_TEST(commands_on_their_way_are_not_lost) {
+  HeadSetup with = setup();
+  with.latency = 1s;
+  Opened head(with);
+  head.send(0s, {Kind::position, 2, 1});
+  head.send(500ms, {});
+  ck_assert_double_eq_tol(head.pan(1500ms), 0.25, 1e-9);  // the first one counts half a second
+  ck_assert_double_eq_tol(head.pan(9s), 0.5, 1e-9);       // and braking takes 0.25
+}
+END_TEST
+
+START_TEST(a_flood_of_commands_is_refused_not_forgotten) {
+  HeadSetup with = setup();
+  with.latency = 5s;
+  Opened head(with);
+  bool refused = false;
+  for (int k = 0; k < 1000 && !refused; ++k)
+    refused = !head.head.command({k * 1ms, {Kind::position, k * 0.001, 1}, {}}).empty();
+  ck_assert(refused);
+  with.latency = 100ms;
+  Opened quick(with);
+  for (int k = 0; k < 1000; ++k) quick.send(k * 1ms, {Kind::position, k * 0.001, 1});
+  ck_assert_double_eq_tol(quick.pan(60s), 0.999, 1e-9);
+}
+END_TEST
+
+START_TEST(it_rests_on_a_step) {
+  HeadSetup with = setup();
+  with.step = 0.3;
+  Opened head(with);
+  head.send(0s, {Kind::position, 1, 1});
+  ck_assert_double_eq_tol(head.pan(9s), 0.9, 1e-9);
+  head.send(10s, {Kind::velocity, 1, 0});
+  ck_assert_double_eq_tol(head.pan(60s), 3, 1e-9);
+}
+END_TEST
+
+// 0.2 of play: the camera waits while the motor turns 0.1 from the middle, and 0.2 after each reversal.
+START_TEST(the_camera_follows_the_motor_with_play) {
+  HeadSetup with = setup();
+  with.backlash = 0.2;
+  Opened head(with);
+  head.send(0s, {Kind::position, 1, 1});
+  const double contact = std::sqrt(0.1);  // 2 t^2 / 2 = 0.1
+  ck_assert_double_eq(head.pan(Time(static_cast<Time::rep>(contact * 0.99e9))), 0);
+  ck_assert_int_le(std::abs(head.at(0s).until.count() - static_cast<Time::rep>(contact * 1e9)), 2);
+  ck_assert_double_eq(head.at(0s).pan.speed, 0);
+  ck_assert_double_eq_tol(head.pan(500ms), 0.25 - 0.1, 1e-9);
+  ck_assert_double_eq_tol(head.at(600ms).pan.speed, 1, 1e-9);
+  ck_assert_double_eq_tol(head.pan(5s), 0.9, 1e-9);
+  head.send(5s, {Kind::position, 0, 1});
+  ck_assert_double_eq_tol(head.pan(5400ms), 0.9, 1e-9);  // 0.16 of the play
+  ck_assert_double_eq_tol(head.pan(9s), 0.1, 1e-9);
+  // Back and forth within one plan: told to return while it moves.
+  head.send(10s, {Kind::position, 2, 1});
+  head.send(11s, {Kind::position, 0.5, 1});
+  ck_assert_double_eq_tol(head.pan(60s), 0.6, 1e-9);
+}
+END_TEST
+
+// The pieces that state() tells, put together, are the way.
+START_TEST(pieces_meet_and_make_the_whole_way) {
+  HeadSetup with = setup();
+  with.backlash = 0.05;
+  with.latency = 60ms;
+  Opened head(with);
+  Time told{};
+  for (int k = 0; k < 100; ++k) {
+    const Time now = k * 100ms;
+    head.send(now, {Kind::position, k % 7 * 0.4 - 1, 1});
+    while (told < now) {
+      const Pose piece = head.at(told);
+      const Time end = std::min(piece.until, now);
+      for (int part = 0; part <= 4; ++part) {
+        const Time t = told + (end - told) * part / 4;
+        ck_assert_double_eq_tol(piece.at(t).pan.position, head.pan(t), 1e-7);
+      }
+      told = end;
+    }
+  }
+}
+END_TEST
+
+START_TEST(equal_seeds_give_equal_noise_and_others_other) {
+  HeadSetup with = setup();
+  with.noise = 0.01;
+  with.seed = 1;
+  Opened one(with), same(with);
+  with.seed = 2;
+  Opened other(with);
+  double sum = 0, squares = 0;
+  int equal = 0;
+  constexpr int kCount = 4000;
+  for (int k = 0; k < kCount; ++k) {
+    const double value = one.pan(k * 1ms);
+    ck_assert_double_eq(value, same.pan(k * 1ms));
+    equal += value == other.pan(k * 1ms);
+    sum += value;
+    squares += value * value;
+  }
+  ck_assert_int_eq(equal, 0);
+  ck_assert_double_eq_tol(sum / kCount, 0, 0.001);
+  ck_assert_double_eq_tol(std::sqrt(squares / kCount), 0.01, 0.001);
+  ck_assert(one.at(0s).measured);
+}
+END_TEST
+
+START_TEST(numbers_that_are_none_do_not_make_a_head) {
+  for (double HeadSetup::* number : {&HeadSetup::step, &HeadSetup::backlash, &HeadSetup::noise}) {
+    HeadSetup with = setup();
+    with.*number = -1;
+    SimulatedHead head;
+    ck_assert(!head.open(with).empty());
+    with.*number = std::nan("");
+    ck_assert(!head.open(with).empty());
+  }
+  HeadSetup with = setup();
+  with.latency = 6s;
+  SimulatedHead head;
+  ck_assert(!head.open(with).empty());
+}
+END_TEST
+
+START_TEST(steady_state_allocates_nothing) {
+  Opened head(setup());
+  const std::size_t before = cerberus::tests::allocations();
+  for (int k = 0; k < 1000; ++k) {
+    head.head.command({k * 1ms, {Kind::position, k * 0.001, 1}, {}});
+    head.pan(k * 1ms);
+  }
+  ck_assert_uint_eq(cerberus::tests::allocations(), before);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "simulated_head", {a_command_counts_after_the_latency, commands_on_their_way_are_not_lost,
+                         a_flood_of_commands_is_refused_not_forgotten, it_rests_on_a_step,
+                         the_camera_follows_the_motor_with_play, pieces_meet_and_make_the_whole_way,
+                         equal_seeds_give_equal_noise_and_others_other,
+                         numbers_that_are_none_do_not_make_a_head, steady_state_allocates_nothing});
+}
