@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <iterator>
 #include <string>
 
 #include "history.hpp"
 #include "properties.hpp"
+#include "room.hpp"
 #include "stages.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
@@ -78,6 +80,15 @@ bool read_camera_motion(AnalysisPrivate& priv, Frame& frame) {
   return true;
 }
 
+// What the pose on the buffer says of the camera's tilt, radians.
+double read_tilt(const Frame& frame) {
+  const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer);
+  if (!pose) return 0;
+  double tilt = 0;
+  cerberus_pose_evaluate(pose, frame.running_time, nullptr, &tilt);
+  return std::abs(tilt) <= 90 ? radians(tilt) : 0;  // a stranger's numbers may be anything
+}
+
 Frame begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
   Frame frame;
   frame.buffer = buffer;
@@ -94,6 +105,7 @@ Frame begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   frame.previous = step.previous;
   frame.number = ++priv.number;
   frame.planes_wanted = priv.planes_wanted;
+  frame.tilt = read_tilt(frame);
   if (!priv.analyser->measures_camera() && !read_camera_motion(priv, frame)) frame.fresh = true;
   if (frame.fresh) {
     frame.motion = {};

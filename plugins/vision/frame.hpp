@@ -29,6 +29,7 @@ struct Frame {
   guint64 number = 0;                           // counts analysed frames without holes
   bool fresh = true;                            // first frame of a scene
   Motion motion;
+  double tilt = 0;             // radians, of the head when the frame was taken; 0: level, or not known
   bool planes_wanted = false;  // somebody downstream reads the stages' planes
 
   vision::Size size() const { return {GST_VIDEO_INFO_WIDTH(info), GST_VIDEO_INFO_HEIGHT(info)}; }

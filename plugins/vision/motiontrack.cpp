@@ -6,7 +6,7 @@
  * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
  * replaced by the tracked ones; the frame goes through untouched. Without `motionregions` upstream the regions are found
  * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
- * camera's axis) and, where its feet are seen, a distance (metres).
+ * camera's axis) and, where its feet are seen, a distance (metres); where a head's pose is on the frame, its tilt counts.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops.
@@ -205,7 +205,7 @@ void Private::publish(const Frame& frame, std::span<const vision::Track> tracks)
   const Settings& s = state->settings;
   const vision::Lens lens(radians(s.horizontal_fov), frame.size());
   for (const vision::Track& track : tracks) {
-    const vision::Placement place = lens.place(track.box, 0, 0, s.mounting_height);
+    const vision::Placement place = lens.place(track.box, 0, frame.tilt, s.mounting_height);
     const double speed = std::hypot(track.vx, track.vy);
     if (!vision::passes(state->gate, speed, track.top_speed, place)) continue;
     CerberusRegion& out = state->published.emplace_back();

@@ -190,7 +190,7 @@ void RegionStage::publish(Frame& frame, std::span<const vision::Region> regions,
   for (const vision::Region& region : regions) {
     const vision::Box box{region.box.x * sx, region.box.y * sy, region.box.width * sx,
                           region.box.height * sy};
-    if (!vision::passes(gate_, box, lens.place(box, 0, 0, mounting_height_))) continue;
+    if (!vision::passes(gate_, box, lens.place(box, 0, frame.tilt, mounting_height_))) continue;
     CerberusRegion out;
     cerberus_region_init(&out);
     out.id = number++;

@@ -201,6 +201,37 @@ GST_START_TEST(bearing_and_distance_follow_from_the_lens) {
 }
 GST_END_TEST
 
+// The lens 0.8 m above the floor, pitched down by 10 degrees: the feet's ray falls steeper, so they are nearer.
+GST_START_TEST(the_tilt_of_a_pose_on_the_frame_counts_for_the_distance) {
+  const World world = entering();
+  Line line("motiondetect confirm-time=0 horizontal-fov=60 preset=traffic ! identity");
+  CerberusPose pose;
+  cerberus_pose_init(&pose);
+  pose.tilt = -10;
+  guint seen = 0;
+  for (int k = 0; k < 80; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    cerberus_buffer_set_pose(in, &pose);
+    GstBuffer* out = line.through(in);
+    const Regions regions(out);
+    for (guint i = 0; k >= 25 && i < regions.size(); ++i) {
+      ++seen;
+      const double f = 160 / std::tan(M_PI / 6), pitch = 10 * M_PI / 180;
+      const double right = (world.figure_left(k) + scene::kFigureWidth / 2.0 - 160) / f;
+      const double down = (world.figure_top() + scene::kFigureHeight - 120) / f;
+      // The ray (right, down, 1) turned about the horizontal axis.
+      const double falls = down * std::cos(pitch) + std::sin(pitch);
+      const double ahead = std::cos(pitch) - down * std::sin(pitch);
+      const double distance = 0.8 * std::hypot(right, ahead) / falls;
+      fail_unless(std::abs(regions[i].distance - distance) < 0.3, "distance %.2f, not %.2f",
+                  regions[i].distance, distance);
+    }
+    gst_buffer_unref(out);
+  }
+  fail_unless(seen > 5);
+}
+GST_END_TEST
+
 GST_START_TEST(limits_of_speed_drop_what_is_outside) {
   const auto found = [](const std::string& properties) {
     guint count = 0;
@@ -577,6 +608,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, zones_change_while_playing_and_a_typo_keeps_the_old_ones);
   tcase_add_test(tests, limits_of_size_drop_what_is_outside);
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
+  tcase_add_test(tests, the_tilt_of_a_pose_on_the_frame_counts_for_the_distance);
   tcase_add_test(tests, limits_of_speed_drop_what_is_outside);
   tcase_add_test(tests, tracks_have_identity_velocity_age_and_state);
   tcase_add_loop_test(tests, what_motionregions_dropped_is_not_found_again_downstream, 0, 4);
