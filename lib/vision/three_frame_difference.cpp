@@ -2,11 +2,11 @@
 #include "vision/three_frame_difference.h"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
 #include "vision/blur.h"
+#include "vision/difference_kernels.h"
 #include "vision/light.h"
 #include "vision/warp.h"
 
@@ -18,29 +18,6 @@ RowSpan both(RowSpan a, RowSpan b) {
   const RowSpan s{std::max(a.begin, b.begin), std::min(a.end, b.end)};
   return s.begin < s.end ? s : RowSpan{};
 }
-
-// |a - b| (Eq. 2).
-void difference_row(const std::uint8_t* a, const std::uint8_t* b, int count, std::uint8_t* out) {
-  for (int x = 0; x < count; ++x) out[x] = static_cast<std::uint8_t>(a[x] > b[x] ? a[x] - b[x] : b[x] - a[x]);
-}
-
-// Four tables side by side: equal neighbours do not wait for each other's increment.
-class Counter {
- public:
-  void add(const std::uint8_t* row, int count) {
-    int x = 0;
-    for (; x + 4 <= count; x += 4)
-      for (int i = 0; i < 4; ++i) ++tables_[i][row[x + i]];
-    for (; x < count; ++x) ++tables_[0][row[x]];
-  }
-  void store(Histogram& histogram) const {
-    for (int v = 0; v < 256; ++v)
-      histogram[v] = tables_[0][v] + tables_[1][v] + tables_[2][v] + tables_[3][v];
-  }
-
- private:
-  std::array<Histogram, 4> tables_{};
-};
 
 }  // namespace
 
@@ -137,7 +114,7 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   else
     s.light.clear();
 
-  Counter counter;
+  LevelCounter counter;
   for (int y = 0; y < size.height; ++y) {
     const RowSpan span = s.spans[static_cast<std::size_t>(y)];
     const int count = span.end - span.begin;

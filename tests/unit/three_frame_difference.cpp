@@ -12,6 +12,7 @@
 #include "support/pictures.h"
 #include "support/suite.h"
 #include "vision/blur.h"
+#include "vision/difference_kernels.h"
 #include "vision/light.h"
 
 using namespace cerberus::vision;
@@ -230,6 +231,23 @@ START_TEST(the_blur_is_the_rounded_mean_of_nine) {
 }
 END_TEST
 
+START_TEST(levels_are_counted_as_one_by_one) {
+  std::mt19937 random(5);
+  for (const int width : {1, 7, 15, 16, 63, 64, 65, 320, 1001}) {
+    LevelCounter counter;
+    Histogram expected{}, got{};
+    std::vector<std::uint8_t> row(static_cast<std::size_t>(width));
+    for (int y = 0; y < 300; ++y) {  // more vectors than a byte counts
+      for (auto& v : row)
+        v = static_cast<std::uint8_t>(y % 3 ? random() % 10 : y % 2 ? 0 : random() % 256), ++expected[v];
+      counter.add(row.data(), width);
+    }
+    counter.store(got);
+    for (std::size_t v = 0; v < 256; ++v) ck_assert_uint_eq(got[v], expected[v]);
+  }
+}
+END_TEST
+
 START_TEST(steady_state_allocates_nothing) {
   const Size size{96, 72};
   const Scene scene(4);
@@ -251,5 +269,5 @@ int main() {
        a_moving_camera_over_a_still_scene_shows_little, exposure_is_taken_out_and_reported,
        bands_of_a_rolling_shutter_are_taken_out_and_an_object_is_not, reset_and_a_new_size_begin_again,
        a_motion_that_cannot_be_begins_again, the_blur_is_the_rounded_mean_of_nine,
-       steady_state_allocates_nothing});
+       levels_are_counted_as_one_by_one, steady_state_allocates_nothing});
 }
