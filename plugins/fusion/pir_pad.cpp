@@ -2,8 +2,11 @@
 #include "pir_pad.hpp"
 
 #include <limits>
+#include <string>
+#include <utility>
 
 #include "sensing/angles.h"
+#include "settings.hpp"
 
 namespace cerberus::plugin {
 namespace {
@@ -12,12 +15,185 @@ CERBERUS_DEFINE_TYPE(CerberusPirPad, cerberus_pir_pad, GstPad, GST_TYPE_PAD, Pir
 void cerberus_pir_pad_init(CerberusPirPad*) {}
 void cerberus_pir_pad_class_init(CerberusPirPadClass*) {}
 
-}  // namespace
-
-GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template) {
-  return GST_PAD(g_object_new(cerberus_pir_pad_get_type(), "name", name, "direction", GST_PAD_SINK,
-                              "template", pad_template, nullptr));
+std::shared_ptr<const SensorArray> sensor_array(const CerberusPirInfo& info) {
+  auto array = std::make_shared<SensorArray>();
+  array->count = static_cast<int>(info.sensors);
+  array->field_of_view = sensing::radians(info.field_of_view);
+  for (guint i = 0; i < info.sensors; ++i) array->bearings[i] = sensing::radians(info.bearings[i]);
+  return array;
 }
+
+// ---- caps and segment
+
+// What cannot be used comes again with the next buffer: said once.
+bool refuse(GstElement* element, GstPad* pad, const std::string& fault) {
+  if (!std::exchange(pir_pad(pad).refused, true))
+    GST_ELEMENT_ERROR(element, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), fault.c_str()),
+                      (nullptr));
+  return false;
+}
+
+// Takes over what the caps say; else the reason why they cannot be fused.
+std::string take_caps(PirPad& pir, const GstCaps* caps) {
+  CerberusPirInfo info;
+  g_autoptr(GError) error = nullptr;
+  if (!cerberus_pir_info_from_caps(&info, caps, &error)) return error->message;
+  if (info.format == CERBERUS_PIR_LEVEL)
+    return "PIR readings in volts (format=level) cannot be fused: let the source compare them with a "
+           "threshold "
+           "(format=presence).";
+  const auto count = static_cast<int>(info.sensors);
+  const std::lock_guard guard(pir.inputs->lock());
+  const int others = pir.inputs->sensors() - pir.sensors;
+  if (others + count > sensing::kMaxSensors)
+    return std::to_string(count) + " PIR sensors are too many besides the other pads' " +
+           std::to_string(others) + ": " + std::to_string(sensing::kMaxSensors) + " in all can be fused.";
+  pir.sensors = count;
+  pir.history.set_array(sensor_array(info));
+  pir.info = info;
+  return {};
+}
+
+bool caps_event(GstElement* element, GstPad* pad, GstEvent* event) {
+  PirPad& pir = pir_pad(pad);
+  GstCaps* caps;
+  gst_event_parse_caps(event, &caps);
+  const std::string fault = take_caps(pir, caps);
+  if (fault.empty()) {
+    pir.refused = false;
+    return true;
+  }
+  pir.info.sensors = 0;
+  return refuse(element, pad, fault);
+}
+
+bool segment_event(GstElement* element, GstPad* pad, GstEvent* event) {
+  const GstSegment* segment;
+  gst_event_parse_segment(event, &segment);
+  if (segment->format != GST_FORMAT_TIME)
+    return refuse(element, pad, "PIR readings need times, and their stream has none.");
+  gst_segment_copy_into(segment, &pir_pad(pad).segment);
+  pir_pad(pad).live.reset();
+  return true;
+}
+
+// ---- what covers time without a reading
+
+void gap_event(PirPad& pir, GstEvent* event) {
+  GstClockTime begin, length;
+  gst_event_parse_gap(event, &begin, &length);
+  const auto from = running_time(pir.segment, begin);
+  if (!from) return;
+  const bool has_length = GST_CLOCK_TIME_IS_VALID(length) && length > 0;
+  const std::lock_guard guard(pir.inputs->lock());
+  pir.history.cover(*from + (has_length ? std::min(duration(length), Time::max() / 4) : Time(1)));
+  pir.inputs->tell(pir);
+}
+
+void end(PirPad& pir) {
+  const std::lock_guard guard(pir.inputs->lock());
+  pir.history.end();
+  pir.inputs->tell(pir);
+}
+
+void begin_again(PirPad& pir) {
+  const std::lock_guard guard(pir.inputs->lock());
+  pir.history.clear();
+  pir.flushing = pir.refused = false;
+  gst_segment_init(&pir.segment, GST_FORMAT_UNDEFINED);
+}
+
+gboolean event_function(GstPad* pad, GstObject* parent, GstEvent* event) {
+  GstElement* element = GST_ELEMENT(parent);
+  PirPad& pir = pir_pad(pad);
+  const bool good = guarded(element, false, [&] {
+    switch (GST_EVENT_TYPE(event)) {
+      case GST_EVENT_STREAM_START:
+        pir.refused = false;
+        return true;
+      case GST_EVENT_CAPS:
+        return caps_event(element, pad, event);
+      case GST_EVENT_SEGMENT:
+        return segment_event(element, pad, event);
+      case GST_EVENT_GAP:
+        gap_event(pir, event);
+        return true;
+      case GST_EVENT_SEGMENT_DONE:
+      case GST_EVENT_EOS:
+        end(pir);
+        return true;
+      case GST_EVENT_FLUSH_START:
+        pir.inputs->set(pir.flushing, true);
+        return true;
+      case GST_EVENT_FLUSH_STOP:
+        begin_again(pir);
+        return true;
+      default:
+        return true;
+    }
+  });
+  gst_event_unref(event);
+  return good;
+}
+
+// ---- readings
+
+GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) {
+  PirPad& pir = pir_pad(pad);
+  if (pir.info.sensors == 0) return GST_FLOW_NOT_NEGOTIATED;
+  std::array<std::uint8_t, sensing::kMaxSensors> values;
+  values.fill(2);
+  const gsize size = gst_buffer_get_size(buffer);
+  if (size == cerberus_pir_info_buffer_size(&pir.info))
+    gst_buffer_extract(buffer, 0, values.data(), size);
+  else if (!std::exchange(pir.complained, true))
+    GST_ELEMENT_WARNING(element, STREAM, FORMAT,
+                        ("Pad %s: a PIR reading of %" G_GSIZE_FORMAT " bytes for %u sensors is invalid.",
+                         GST_PAD_NAME(pad), size, pir.info.sensors),
+                        (nullptr));
+  if (!pir.live) pir.live = is_live(pad);
+  std::unique_lock guard(pir.inputs->lock());
+  // A reading without a time is as late as the one before.
+  const Time time = running_time(pir.segment, GST_BUFFER_PTS(buffer)).value_or(pir.history.newest());
+  const bool wanted = *pir.live || pir.inputs->wait_for_video(guard, pir, time);
+  if (pir.flushing) return GST_FLOW_FLUSHING;
+  if (!wanted) return GST_FLOW_EOS;
+  pir.history.append(time, std::span(values).first(pir.info.sensors));
+  pir.inputs->tell(pir);
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn chain_function(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
+  GstElement* element = GST_ELEMENT(parent);
+  const GstFlowReturn flow =
+      guarded(element, GST_FLOW_ERROR, [&] { return take_reading(element, pad, buffer); });
+  gst_buffer_unref(buffer);
+  return flow;
+}
+
+// ---- links and activation
+
+// Links come with the pad's lock held: nothing but our own flag here. A pad without a parent was released, and its element
+// may be gone.
+GstPadLinkReturn link_function(GstPad* pad, GstObject* parent, GstPad*) {
+  if (parent) pir_pad(pad).inputs->set(pir_pad(pad).linked, true);
+  return GST_PAD_LINK_OK;
+}
+void unlink_function(GstPad* pad, GstObject* parent) {
+  if (parent) pir_pad(pad).inputs->set(pir_pad(pad).linked, false);
+}
+
+gboolean activate_function(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active) {
+  if (mode != GST_PAD_MODE_PUSH) return FALSE;
+  if (parent) pir_pad(pad).inputs->set(pir_pad(pad).flushing, !active);
+  return TRUE;
+}
+
+GstIterator* no_internal_links(GstPad*, GstObject*) {
+  return nullptr;
+}
+
+}  // namespace
 
 void PirPad::reset() {
   history = {};
@@ -29,22 +205,27 @@ void PirPad::reset() {
   info.sensors = 0;
 }
 
+GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template, Inputs* inputs) {
+  auto* pad = GST_PAD(g_object_new(cerberus_pir_pad_get_type(), "name", name, "direction", GST_PAD_SINK,
+                                   "template", pad_template, nullptr));
+  pir_pad(pad).inputs = inputs;
+  gst_pad_set_chain_function(pad, chain_function);
+  gst_pad_set_event_function(pad, event_function);
+  gst_pad_set_link_function(pad, link_function);
+  gst_pad_set_unlink_function(pad, unlink_function);
+  gst_pad_set_activatemode_function(pad, activate_function);
+  gst_pad_set_iterate_internal_links_function(pad, no_internal_links);
+  return pad;
+}
+
 std::optional<Time> running_time(const GstSegment& segment, GstClockTime position) {
   if (segment.format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID(position)) return std::nullopt;
   guint64 time = 0;
   const gint sign = gst_segment_to_running_time_full(&segment, GST_FORMAT_TIME, position, &time);
   if (sign == 0) return std::nullopt;
-  // The last nanoseconds of 292 years are left for "just after".
+  // Half of what fits: sums of two times stay times.
   constexpr auto latest = static_cast<guint64>(std::numeric_limits<Time::rep>::max() / 2);
   return Time(sign < 0 ? 0 : static_cast<Time::rep>(MIN(time, latest)));
-}
-
-std::shared_ptr<const SensorArray> sensor_array(const CerberusPirInfo& info) {
-  auto array = std::make_shared<SensorArray>();
-  array->count = static_cast<int>(info.sensors);
-  array->field_of_view = sensing::radians(info.field_of_view);
-  for (guint i = 0; i < info.sensors; ++i) array->bearings[i] = sensing::radians(info.bearings[i]);
-  return array;
 }
 
 bool is_live(GstPad* sinkpad) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A request pad of pirfusion: reads caps, segment and buffers of PIR readings, and knows what it heard.
+// A request pad of pirfusion: takes caps, segments and buffers of PIR readings and keeps what it heard. Nothing of it goes
+// anywhere else; what cannot be used is an error message of the element, which names the pad.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -8,14 +9,17 @@
 #include <optional>
 
 #include "cerberus/private/element.hpp"
+#include "inputs.hpp"
 #include "sensor_history.hpp"
 
 namespace cerberus::plugin {
 
 struct PirPad {
-  // Guarded by the element's lock.
+  Inputs* inputs = nullptr;
+
+  // Guarded by the inputs' lock.
   SensorHistory history;
-  guint index = 0;  // of its name: sensors are counted in this order
+  guint index = 0;  // of its name
   int sensors = 0;  // of its caps
   bool linked = false;
   bool flushing = true;   // also while it is not active
@@ -23,28 +27,24 @@ struct PirPad {
 
   // Of the pad's own streaming thread.
   GstSegment segment;
-  CerberusPirInfo info;
+  CerberusPirInfo info;      // without sensors: no caps
   std::optional<bool> live;  // of what it is linked to; nothing: not asked yet
   bool complained = false;   // of buffers of the wrong size
-  bool refused = false;      // its caps: they come again with the next buffer
+  bool refused = false;      // its caps or segment: they come again with the next buffer
 
   PirPad() { reset(); }
   void reset();  // READY
 };
 
-GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template);  // floating
+GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template, Inputs* inputs);  // floating
 // Of a pad that pir_pad_new() made.
 inline PirPad& pir_pad(GstPad* pad) {
   return *reinterpret_cast<detail::Instance<GstPad, PirPad>*>(pad)->priv;
 }
 
-// Running time of a position; nothing without one. Before the segment's start it is its start.
+// Running time of a position; nothing without one. What lies before the segment is as old as can be.
 std::optional<Time> running_time(const GstSegment& segment, GstClockTime position);
-
-// The caps' sensors as the library wants them.
-std::shared_ptr<const SensorArray> sensor_array(const CerberusPirInfo& info);
-
-// Whether a source upstream of a sink pad is live; false where nobody answers.
+// Whether the source upstream of a sink pad is live; false where nobody answers.
 bool is_live(GstPad* sinkpad);
 
 }  // namespace cerberus::plugin

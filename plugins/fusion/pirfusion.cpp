@@ -29,20 +29,18 @@
  * ## Example
  * |[
  * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion ! fakesink
- * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion name=fusion ! fakesink \
- *     fakesrc num-buffers=1 sizetype=fixed sizemax=3 filltype=zero format=time do-timestamp=true ! \
- *     "application/x-pir,format=presence,sensors=3,bearings=<0.0,-120.0,120.0>,field-of-view=120.0" ! fusion.pir_0
+ * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pirfusion name=fusion rules=paper ! \
+ *     fakesink pirsrc driver=scripted script="0,0,0,0; 1,0,1,0" ! fusion.pir_0
  * ]|
  *
  * Since: 0.1
  */
 // The rules are the paper's II.D, the state machine is lib/fusion. The shape is textoverlay's: a GstAggregator waits
-// where it must not (DESIGN.md). Locks: one, `Private::lock`, for what the pads share; nothing is pushed, queried or
-// posted while it is held, and no GStreamer object's lock is taken under it.
+// where it must not (DESIGN.md). What the pads share is in Inputs, what happens at a PIR pad in pir_pad.cpp; here is the
+// video's path.
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
-#include <condition_variable>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -50,10 +48,10 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
-#include "fusion/fuser.h"
 #include "fusion/rule_file.h"
+#include "inputs.hpp"
 #include "pir_pad.hpp"
-#include "properties.hpp"
+#include "settings.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 #define GST_CAT_DEFAULT pirfusion_debug
@@ -61,103 +59,12 @@ GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 namespace cerberus::plugin {
 namespace {
 
-// A PIR source that is not live waits when it is so far ahead of the video: a file is not read into memory as a whole.
-constexpr Time kAhead = std::chrono::seconds(10);
-constexpr fusion::FuserOptions kDefaults{};
-
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS_ANY);
 GstStaticPadTemplate pir_template =
     GST_STATIC_PAD_TEMPLATE("pir_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS(CERBERUS_PIR_CAPS));
-
-enum Rules { RULES_COMPLETE, RULES_PAPER };
-
-GType rules_type() {
-  static const GEnumValue values[] = {
-      {RULES_COMPLETE, "Computed from the sensors' bearings, the lens and the head's limits", "complete"},
-      {RULES_PAPER, "The seven rules of the paper, literally, for three sensors", "paper"},
-      {0, nullptr, nullptr}};
-  static const GType type = g_enum_register_static("CerberusFusionRules", values);
-  return type;
-}
-
-GType target_type() {
-  using fusion::TargetChoice;
-  static const GEnumValue values[] = {
-      {static_cast<int>(TargetChoice::nearest), "The nearest (without distances: feet lowest in the picture)",
-       "nearest"},
-      {static_cast<int>(TargetChoice::largest), "The largest in the picture", "largest"},
-      {static_cast<int>(TargetChoice::newest), "The one that came last", "newest"},
-      {0, nullptr, nullptr}};
-  static const GType type = g_enum_register_static("CerberusFusionTarget", values);
-  return type;
-}
-
-constexpr guint64 nanoseconds(Time time) {
-  return static_cast<guint64>(time.count());
-}
-constexpr Time duration(guint64 nanoseconds) {
-  return Time(static_cast<Time::rep>(std::min<guint64>(nanoseconds, std::numeric_limits<Time::rep>::max())));
-}
-
-struct Settings {
-  int rules = RULES_COMPLETE;
-  std::string rules_file;
-  int target = static_cast<int>(kDefaults.choice);
-  guint64 return_delay = nanoseconds(kDefaults.return_delay);
-  guint64 hold_stopped = nanoseconds(kDefaults.hold_stopped);
-  guint64 camera_hold = nanoseconds(kDefaults.camera_hold);
-  double hysteresis = 2;
-  double horizontal_fov = 60;
-  double pan_minimum = -170, pan_maximum = 170;
-  guint64 max_wait = 5 * GST_SECOND;
-  std::string head = "head";
-};
-
-const Property<Settings> kProperties[] = {
-    property("rules", &Settings::rules, rules_type, "The rule set; rules-file goes before it"),
-    property(
-        "rules-file", &Settings::rules_file,
-        "Path of a rule table of your own (TOML); empty = none. A table with a gap or a contradiction is "
-        "refused; given while the element runs, the old rules stay"),
-    property("target", &Settings::target, target_type,
-             "Whom to follow when nobody is followed yet; whoever is followed stays the target"),
-    property(
-        "return-delay", &Settings::return_delay,
-        "Nanoseconds without any detection after which the head returns to zero; 0 = at once. rules=paper "
-        "has none"),
-    property(
-        "hold-stopped", &Settings::hold_stopped,
-        "Nanoseconds for which a followed person who stopped moving is watched at least; 0 = not at all"),
-    property(
-        "camera-hold", &Settings::camera_hold,
-        "Nanoseconds for which the camera counts as having found somebody after the last track; 0 = only "
-        "while there is one"),
-    property("hysteresis", &Settings::hysteresis, 0, 90,
-             "Degrees by which pan must leave a sector or a band of angles before it counts as outside; 0 = "
-             "edges are sharp. rules=paper has none"),
-    property(
-        "horizontal-fov", &Settings::horizontal_fov, 0, 179,
-        "Angle in degrees that the lens sees over the frame's whole width: searches stop half of it before "
-        "a sector's edge; 0 = not known, searches go to the edge"),
-    property("pan-min", &Settings::pan_minimum, -3600, 3600, "Leftmost pan angle of the head in degrees"),
-    property("pan-max", &Settings::pan_maximum, -3600, 3600, "Rightmost pan angle of the head in degrees"),
-    property(
-        "max-wait", &Settings::max_wait,
-        "Nanoseconds of real time that a frame of a stream that is not live waits for a PIR pad, which is "
-        "then warned of and not waited for until it speaks; 0 = never wait"),
-    property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
-};
-
-// What is known of a frame before the fuser is asked.
-struct Moment {
-  std::array<std::uint8_t, sensing::kMaxSensors> sensors{};
-  std::array<double, sensing::kMaxSensors> bearings{}, fields_of_view{};
-  std::size_t count = 0;
-  double pan_degrees = fusion::kUnknown, base_degrees = fusion::kUnknown;
-};
 
 struct State {  // video thread only
   fusion::Fuser fuser;
@@ -176,15 +83,9 @@ struct Private {
   GstPad* src = nullptr;
   Adjustable<Settings> settings;
   std::unique_ptr<State> state = std::make_unique<State>();
+  Inputs inputs;
 
   std::mutex lock;
-  std::condition_variable news;  // of anything below
-  std::vector<GstPad*> pir;      // by number; the element owns them
-  Timeline<CerberusPose> poses;
-  Timeline<double> base;  // yaw rate, degrees a second
-  Time video{};           // newest frame that came
-  bool flushing = true;   // also while the sink pad is not active
-  bool video_ended = false;
   std::shared_ptr<const fusion::RuleTable> table;  // of rules-file
 };
 
@@ -194,8 +95,6 @@ struct BufferDeleter {
   void operator()(GstBuffer* buffer) const { gst_buffer_unref(buffer); }
 };
 using Buffer = std::unique_ptr<GstBuffer, BufferDeleter>;
-
-// ---- rules and options
 
 // Reads rules-file; false with the reason when its table cannot be used. The old one stays then.
 bool load_rules(CerberusPirFusion* self, std::string& error) {
@@ -217,12 +116,6 @@ bool load_rules(CerberusPirFusion* self, std::string& error) {
   return true;
 }
 
-std::string limits_fault(const Settings& settings) {
-  if (settings.pan_minimum <= settings.pan_maximum) return {};
-  return "pan-min (" + std::to_string(settings.pan_minimum) + ") is above pan-max (" +
-         std::to_string(settings.pan_maximum) + ").";
-}
-
 void apply_settings(CerberusPirFusion* self) {
   const auto changed = self->priv->settings.changes();
   if (!changed) return;
@@ -233,86 +126,13 @@ void apply_settings(CerberusPirFusion* self) {
     table = self->priv->table;
   }
   fusion::Fuser& fuser = self->priv->state->fuser;
-  fusion::FuserOptions options;
-  const bool paper = !table && s.rules == RULES_PAPER;
-  if (paper) options = fusion::paper_options();
-  options.rules = paper || table ? fusion::RuleSet::table : fusion::RuleSet::complete;
-  options.choice = static_cast<fusion::TargetChoice>(s.target);
-  options.camera_hold = duration(s.camera_hold);
-  options.hold_stopped = duration(s.hold_stopped);
-  if (!paper) {
-    options.return_delay = duration(s.return_delay);
-    options.hysteresis = sensing::radians(s.hysteresis);
-  }
-  options.lens = sensing::radians(s.horizontal_fov);
-  options.limits = {sensing::radians(s.pan_minimum), sensing::radians(s.pan_maximum)};
+  fusion::FuserOptions options = fuser_options(s, table != nullptr);
   if (const std::string fault = limits_fault(s); !fault.empty()) {
     options.limits = fuser.options().limits;
     GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s The old limits stay.", fault.c_str()), (nullptr));
   }
-  if (paper || table) fuser.set_table(table ? *table : fusion::paper_rules());
+  fuser.set_table(table ? *table : fusion::paper_rules());
   fuser.set_options(options);
-}
-
-// ---- a frame
-
-// Waits until every linked PIR pad covers `time`; false when the video is flushed meanwhile. Names of pads that kept
-// silent for max-wait are added to `silent`. The lock is held, and let go while waiting.
-bool wait_for_sensors(Private& priv, std::unique_lock<std::mutex>& guard, Time time, guint64 max_wait,
-                      std::vector<std::string>& silent) {
-  const auto begin = std::chrono::steady_clock::now();
-  const auto missing = [&](GstPad* pad) {
-    const PirPad& pir = pir_pad(pad);
-    return pir.linked && !pir.given_up && !pir.history.covers(time);
-  };
-  const auto ready = [&] { return priv.flushing || std::ranges::none_of(priv.pir, missing); };
-  if (max_wait == GST_CLOCK_TIME_NONE) {
-    priv.news.wait(guard, ready);
-  } else if (max_wait > 0 &&
-             !priv.news.wait_until(
-                 guard, begin + std::min<Time>(duration(max_wait), std::chrono::hours(24 * 365)), ready)) {
-    for (GstPad* pad : priv.pir)
-      if (missing(pad)) {
-        pir_pad(pad).given_up = true;
-        silent.emplace_back(GST_PAD_NAME(pad));
-      }
-  }
-  return !priv.flushing;
-}
-
-// The lock is held.
-void read_sensors(Private& priv, Time time, Moment& moment) {
-  for (GstPad* pad : priv.pir) {
-    PirPad& pir = pir_pad(pad);
-    Reading reading = pir.history.at(time);
-    pir.history.forget_before(time);
-    if (!reading.array) continue;
-    if (!pir.linked || pir.given_up) reading.values.fill(2);
-    for (std::size_t i = 0; i < static_cast<std::size_t>(reading.array->count); ++i) {
-      if (moment.count == moment.sensors.size()) return;
-      moment.sensors[moment.count] = reading.values[i];
-      moment.bearings[moment.count] = reading.array->bearings[i];
-      moment.fields_of_view[moment.count++] = reading.array->field_of_view;
-    }
-  }
-}
-
-bool is_our_head(const Settings& settings, const gchar* head) {
-  return settings.head.empty() || settings.head == head;
-}
-
-// Where the head looked then: what the buffer carries goes before what was heard. The lock is held.
-void read_pose(Private& priv, const Settings& settings, GstBuffer* buffer, Time time, Moment& moment) {
-  const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
-  if (!pose || !is_our_head(settings, pose->head)) {
-    pose = priv.poses.at(time);
-    if (!pose) pose = priv.poses.first();
-    if (pose && !is_our_head(settings, pose->head)) pose = nullptr;
-  }
-  if (pose) cerberus_pose_evaluate(pose, nanoseconds(time), &moment.pan_degrees, nullptr);
-  if (const double* rate = priv.base.at(time)) moment.base_degrees = *rate;
-  priv.poses.forget_before(time);
-  priv.base.forget_before(time);
 }
 
 void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
@@ -406,39 +226,18 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     state.time = running_time(state.segment, GST_BUFFER_PTS(buffer.get())).value_or(state.time);
     if (!state.live) state.live = is_live(pad);
 
-    Moment moment;
     std::vector<std::string> silent;
-    {
-      std::unique_lock guard(priv.lock);
-      priv.video = state.time;
-      priv.news.notify_all();
-      if (!*state.live && !wait_for_sensors(priv, guard, state.time, settings.max_wait, silent))
-        return GST_FLOW_FLUSHING;
-      read_sensors(priv, state.time, moment);
-      read_pose(priv, settings, buffer.get(), state.time, moment);
-    }
+    const auto max_wait = *state.live ? std::nullopt : std::optional(settings.max_wait);
+    if (!priv.inputs.frame_came(state.time, max_wait, silent)) return GST_FLOW_FLUSHING;
     for (const std::string& name : silent)
       GST_ELEMENT_WARNING(
           self, RESOURCE, READ,
           ("No reading of the PIR sensors came at pad %s for %.3g s; it is not waited for any more.",
            name.c_str(), static_cast<double>(settings.max_wait) / GST_SECOND),
           ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(nanoseconds(state.time))));
+    const Moment moment = priv.inputs.at(state.time, settings.head, cerberus_buffer_peek_pose(buffer.get()));
     return decide_and_push(self, std::move(buffer), state.time, moment);
   });
-}
-
-// ---- the video's events
-
-void set_flushing(Private& priv, bool& flag, bool flushing) {
-  const std::lock_guard guard(priv.lock);
-  flag = flushing;
-  priv.news.notify_all();
-}
-
-void begin_video(Private& priv) {
-  const std::lock_guard guard(priv.lock);
-  priv.video_ended = false;
-  priv.video = Time::zero();
 }
 
 gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -447,7 +246,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
       state.live.reset();
-      set_flushing(priv, priv.video_ended, false);
+      priv.inputs.begin_video();
       break;
     case GST_EVENT_SEGMENT: {
       // Another piece of the material is another scene. (What comes again after a new link is the same.)
@@ -460,17 +259,17 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
       break;
     }
     case GST_EVENT_FLUSH_START:
-      set_flushing(priv, priv.flushing, true);
+      priv.inputs.set_flushing(true);
       break;
     case GST_EVENT_FLUSH_STOP:
       state.fuser.reset();
       state.time = Time::zero();
       gst_segment_init(&state.segment, GST_FORMAT_UNDEFINED);
-      begin_video(priv);
-      set_flushing(priv, priv.flushing, false);
+      priv.inputs.begin_video();
+      priv.inputs.set_flushing(false);
       break;
     case GST_EVENT_EOS:
-      set_flushing(priv, priv.video_ended, true);
+      priv.inputs.end_video();
       break;
     default:
       break;
@@ -489,32 +288,15 @@ GstIterator* internal_links(GstPad* pad, GstObject* parent) {
   return iterator;
 }
 
-GstIterator* no_internal_links(GstPad*, GstObject*) {
-  return nullptr;
-}
-
-// ---- events from downstream
-
 void listen(Private& priv, GstEvent* event) {
   g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
+  const std::string head = priv.settings.snapshot().head;
   double rate = 0;
   GstClockTime from = 0;
-  if (pose && is_our_head(priv.settings.snapshot(), pose->head)) {
-    const std::lock_guard guard(priv.lock);
-    if (priv.poses.last() && priv.poses.last()->value.head != pose->head) priv.poses.clear();
-    priv.poses.insert(duration(pose->valid_from), *pose);
-  } else if (cerberus_event_parse_base(event, &rate, &from)) {
-    const std::lock_guard guard(priv.lock);
-    priv.base.insert(duration(from), rate);
-  }
-}
-
-// The PIR pads, with a reference each.
-std::vector<GstPad*> pir_pads(Private& priv) {
-  const std::lock_guard guard(priv.lock);
-  std::vector<GstPad*> pads = priv.pir;
-  for (GstPad* pad : pads) gst_object_ref(pad);
-  return pads;
+  if (pose && (head.empty() || head == pose->head))
+    priv.inputs.hear(*pose);
+  else if (cerberus_event_parse_base(event, &rate, &from))
+    priv.inputs.hear_base(rate, duration(from));
 }
 
 gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -524,7 +306,7 @@ gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
     if (type == GST_EVENT_CUSTOM_UPSTREAM) listen(*self->priv, event);
     // First to the PIR pads: after a flushing seek no frame must meet readings of the time before.
     if (type == GST_EVENT_CUSTOM_UPSTREAM || type == GST_EVENT_SEEK)
-      for (GstPad* pir : pir_pads(*self->priv)) {
+      for (GstPad* pir : self->priv->inputs.pads()) {
         gst_pad_push_event(pir, gst_event_ref(event));
         gst_object_unref(pir);
       }
@@ -532,218 +314,11 @@ gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
   return gst_pad_event_default(pad, parent, event);
 }
 
-// ---- the PIR pads
-
-// Takes over what the caps say; else the reason why they cannot be fused.
-std::string take_caps(Private& priv, PirPad& pir, const GstCaps* caps) {
-  CerberusPirInfo info;
-  g_autoptr(GError) error = nullptr;
-  if (!cerberus_pir_info_from_caps(&info, caps, &error)) return error->message;
-  if (info.format == CERBERUS_PIR_LEVEL)
-    return "PIR readings in volts (format=level) cannot be fused: let the source compare them with a "
-           "threshold "
-           "(format=presence).";
-  const auto count = static_cast<int>(info.sensors);
-  const std::lock_guard guard(priv.lock);
-  int others = -pir.sensors;
-  for (GstPad* each : priv.pir) others += pir_pad(each).sensors;
-  if (others + count > sensing::kMaxSensors)
-    return std::to_string(count) + " PIR sensors are too many besides the other pads' " +
-           std::to_string(others) + ": " + std::to_string(sensing::kMaxSensors) + " in all can be fused.";
-  pir.sensors = count;
-  pir.history.set_array(sensor_array(info));
-  pir.info = info;
-  return {};
-}
-
-// What cannot be used comes again with the next buffer: said once.
-void refuse(CerberusPirFusion* self, GstPad* pad, const std::string& fault) {
-  if (std::exchange(pir_pad(pad).refused, true)) return;
-  GST_ELEMENT_ERROR(self, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), fault.c_str()), (nullptr));
-}
-
-bool pir_caps(CerberusPirFusion* self, GstPad* pad, const GstCaps* caps) {
-  PirPad& pir = pir_pad(pad);
-  const std::string fault = take_caps(*self->priv, pir, caps);
-  if (fault.empty()) {
-    pir.refused = false;
-    return true;
-  }
-  pir.info.sensors = 0;
-  refuse(self, pad, fault);
-  return false;
-}
-
-// Something was heard. The lock is held.
-void spoke(Private& priv, PirPad& pir) {
-  pir.given_up = false;
-  priv.news.notify_all();
-}
-
-void pir_gap(Private& priv, PirPad& pir, GstEvent* event) {
-  GstClockTime begin, length;
-  gst_event_parse_gap(event, &begin, &length);
-  const auto from = running_time(pir.segment, begin);
-  if (!from) return;
-  const std::lock_guard guard(priv.lock);
-  const bool has_length = GST_CLOCK_TIME_IS_VALID(length) && length > 0;
-  pir.history.cover(*from + (has_length ? std::min(duration(length), Time::max() / 4) : Time(1)));
-  spoke(priv, pir);
-}
-
-bool pir_segment(CerberusPirFusion* self, GstPad* pad, GstEvent* event) {
-  const GstSegment* segment;
-  gst_event_parse_segment(event, &segment);
-  if (segment->format != GST_FORMAT_TIME) {
-    refuse(self, pad, "PIR readings need times, and their stream has none.");
-    return false;
-  }
-  gst_segment_copy_into(segment, &pir_pad(pad).segment);
-  pir_pad(pad).live.reset();
-  return true;
-}
-
-// Nothing of it ever reaches the source pad.
-bool hear(CerberusPirFusion* self, GstPad* pad, GstEvent* event) {
-  Private& priv = *self->priv;
-  PirPad& pir = pir_pad(pad);
-  switch (GST_EVENT_TYPE(event)) {
-    case GST_EVENT_STREAM_START:
-      pir.refused = false;
-      break;
-    case GST_EVENT_CAPS: {
-      GstCaps* caps;
-      gst_event_parse_caps(event, &caps);
-      return pir_caps(self, pad, caps);
-    }
-    case GST_EVENT_SEGMENT:
-      return pir_segment(self, pad, event);
-    case GST_EVENT_GAP:
-      pir_gap(priv, pir, event);
-      break;
-    case GST_EVENT_FLUSH_START:
-      set_flushing(priv, pir.flushing, true);
-      break;
-    case GST_EVENT_FLUSH_STOP: {
-      const std::lock_guard guard(priv.lock);
-      pir.history.clear();
-      gst_segment_init(&pir.segment, GST_FORMAT_UNDEFINED);
-      pir.flushing = false;
-      break;
-    }
-    case GST_EVENT_SEGMENT_DONE:
-    case GST_EVENT_EOS: {
-      const std::lock_guard guard(priv.lock);
-      pir.history.end();
-      spoke(priv, pir);
-      break;
-    }
-    default:
-      break;
-  }
-  return true;
-}
-
-gboolean pir_event(GstPad* pad, GstObject* parent, GstEvent* event) {
-  auto* self = cerberus_pir_fusion_self(parent);
-  const bool good = guarded(self, false, [&] { return hear(self, pad, event); });
-  gst_event_unref(event);
-  return good;
-}
-
-GstFlowReturn take_reading(CerberusPirFusion* self, GstPad* pad, GstBuffer* buffer) {
-  Private& priv = *self->priv;
-  PirPad& pir = pir_pad(pad);
-  if (pir.info.sensors == 0) return GST_FLOW_NOT_NEGOTIATED;
-  std::array<std::uint8_t, sensing::kMaxSensors> values;
-  values.fill(2);
-  const gsize wanted = cerberus_pir_info_buffer_size(&pir.info);
-  if (gst_buffer_get_size(buffer) == wanted) {
-    gst_buffer_extract(buffer, 0, values.data(), wanted);
-  } else if (!std::exchange(pir.complained, true)) {
-    GST_ELEMENT_WARNING(self, STREAM, FORMAT,
-                        ("Pad %s: a PIR reading of %" G_GSIZE_FORMAT " bytes for %u sensors is invalid.",
-                         GST_PAD_NAME(pad), gst_buffer_get_size(buffer), pir.info.sensors),
-                        (nullptr));
-  }
-  if (!pir.live) pir.live = is_live(pad);
-  const auto time = running_time(pir.segment, GST_BUFFER_PTS(buffer));
-  std::unique_lock guard(priv.lock);
-  const Time when = time.value_or(pir.history.newest());
-  if (!*pir.live)
-    priv.news.wait(guard, [&] { return pir.flushing || priv.video_ended || when - priv.video < kAhead; });
-  if (pir.flushing) return GST_FLOW_FLUSHING;
-  if (priv.video_ended && !*pir.live) return GST_FLOW_EOS;
-  pir.history.append(when, std::span(values).first(pir.info.sensors));
-  spoke(priv, pir);
-  return GST_FLOW_OK;
-}
-
-GstFlowReturn pir_chain(GstPad* pad, GstObject* parent, GstBuffer* buffer) {
-  auto* self = cerberus_pir_fusion_self(parent);
-  const GstFlowReturn flow = guarded(self, GST_FLOW_ERROR, [&] { return take_reading(self, pad, buffer); });
-  gst_buffer_unref(buffer);
-  return flow;
-}
-
-// Linking calls come with the pad's lock held: nothing but our own flag here.
-void set_linked(GstPad* pad, GstObject* parent, bool linked) {
-  if (!parent) return;
-  set_flushing(*cerberus_pir_fusion_self(parent)->priv, pir_pad(pad).linked, linked);
-}
-GstPadLinkReturn pir_link(GstPad* pad, GstObject* parent, GstPad*) {
-  set_linked(pad, parent, true);
-  return GST_PAD_LINK_OK;
-}
-void pir_unlink(GstPad* pad, GstObject* parent) {
-  set_linked(pad, parent, false);
-}
-
-// A sink pad that is switched off lets go of whoever waits in its chain function.
-gboolean activate(GstPad* pad, GstObject* parent, GstPadMode mode, gboolean active) {
-  if (mode != GST_PAD_MODE_PUSH) return FALSE;
-  Private& priv = *cerberus_pir_fusion_self(parent)->priv;
-  set_flushing(priv, pad == priv.sink ? priv.flushing : pir_pad(pad).flushing, !active);
-  return TRUE;
-}
-
-// ---- request and release
-
-// The number in a name that was asked for, or the next free one; nothing when it is taken. The lock is held.
-std::optional<guint> free_index(const Private& priv, const gchar* name) {
-  const auto taken = [&](guint index) {
-    return std::ranges::any_of(priv.pir, [&](GstPad* pad) { return pir_pad(pad).index == index; });
-  };
-  guint64 index = 0;
-  if (name && g_str_has_prefix(name, "pir_") &&
-      g_ascii_string_to_unsigned(name + 4, 10, 0, G_MAXUINT, &index, nullptr))
-    return taken(static_cast<guint>(index)) ? std::nullopt : std::optional(static_cast<guint>(index));
-  guint next = 0;
-  while (taken(next)) ++next;
-  return next;
-}
-
 GstPad* request_new_pad(GstElement* element, GstPadTemplate* pad_template, const gchar* name,
                         const GstCaps*) {
-  Private& priv = *cerberus_pir_fusion_self(element)->priv;
   return guarded(element, nullptr, [&]() -> GstPad* {
-    GstPad* pad = nullptr;
-    {
-      const std::lock_guard guard(priv.lock);
-      const auto index = free_index(priv, name);
-      if (!index) return nullptr;
-      pad = pir_pad_new(("pir_" + std::to_string(*index)).c_str(), pad_template);
-      pir_pad(pad).index = *index;
-      const auto after =
-          std::ranges::find_if(priv.pir, [&](GstPad* each) { return pir_pad(each).index > *index; });
-      priv.pir.insert(after, pad);
-    }
-    gst_pad_set_chain_function(pad, pir_chain);
-    gst_pad_set_event_function(pad, pir_event);
-    gst_pad_set_link_function(pad, pir_link);
-    gst_pad_set_unlink_function(pad, pir_unlink);
-    gst_pad_set_activatemode_function(pad, activate);
-    gst_pad_set_iterate_internal_links_function(pad, no_internal_links);
+    GstPad* pad = cerberus_pir_fusion_self(element)->priv->inputs.add_pad(name, pad_template);
+    if (!pad) return nullptr;
     gst_element_add_pad(element, pad);
     if (GST_STATE(element) >= GST_STATE_PAUSED || GST_STATE_TARGET(element) >= GST_STATE_PAUSED)
       gst_pad_set_active(pad, TRUE);
@@ -752,17 +327,10 @@ GstPad* request_new_pad(GstElement* element, GstPadTemplate* pad_template, const
 }
 
 void release_pad(GstElement* element, GstPad* pad) {
-  Private& priv = *cerberus_pir_fusion_self(element)->priv;
-  {
-    const std::lock_guard guard(priv.lock);
-    std::erase(priv.pir, pad);
-    priv.news.notify_all();
-  }
+  cerberus_pir_fusion_self(element)->priv->inputs.drop_pad(pad);
   gst_pad_set_active(pad, FALSE);
   gst_element_remove_pad(element, pad);
 }
-
-// ---- states
 
 bool check_settings(CerberusPirFusion* self) {
   std::string fault = limits_fault(self->priv->settings.snapshot());
@@ -774,12 +342,14 @@ bool check_settings(CerberusPirFusion* self) {
 void forget_everything(Private& priv) {
   priv.state = std::make_unique<State>();
   priv.settings.refresh();
-  const std::lock_guard guard(priv.lock);
-  for (GstPad* pad : priv.pir) pir_pad(pad).reset();
-  priv.poses.clear();
-  priv.base.clear();
-  priv.video = Time::zero();
-  priv.video_ended = false;
+  priv.inputs.forget();
+}
+
+// A sink pad that is switched off lets go of the frame that waits in its chain function.
+gboolean activate(GstPad*, GstObject* parent, GstPadMode mode, gboolean active) {
+  if (mode != GST_PAD_MODE_PUSH) return FALSE;
+  cerberus_pir_fusion_self(parent)->priv->inputs.set_flushing(!active);
+  return TRUE;
 }
 
 GstStateChangeReturn change_state(GstElement* element, GstStateChange transition) {
@@ -791,8 +361,6 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange transition
   if (transition == GST_STATE_CHANGE_PAUSED_TO_READY) guarded(self, [&] { forget_everything(*self->priv); });
   return result;
 }
-
-// ---- properties
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec* spec) {
   auto* self = cerberus_pir_fusion_self(object);

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "inputs.hpp"
+
+#include <algorithm>
+
+#include "pir_pad.hpp"
+#include "settings.hpp"
+
+namespace cerberus::plugin {
+namespace {
+
+// A PIR file is not read into memory as a whole: it stays so far ahead of the video at most.
+constexpr Time kAhead = std::chrono::seconds(10);
+constexpr Time kLongest = std::chrono::hours(24 * 365);  // the clock's own time must not overflow
+
+bool is_named(const CerberusPose& pose, const std::string& head) {
+  return head.empty() || head == pose.head;
+}
+
+bool is_missing(GstPad* pad, Time time) {
+  const PirPad& pir = pir_pad(pad);
+  return pir.linked && !pir.given_up && !pir.history.covers(time);
+}
+
+}  // namespace
+
+void Inputs::set(bool& flag, bool value) {
+  const std::lock_guard guard(lock_);
+  flag = value;
+  news_.notify_all();
+}
+
+void Inputs::begin_video() {
+  const std::lock_guard guard(lock_);
+  video_ended_ = false;
+  video_ = Time::zero();
+}
+
+bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<std::string>& silent) {
+  std::unique_lock guard(lock_);
+  video_ = time;
+  news_.notify_all();
+  if (!max_wait || *max_wait == 0) return true;
+  const auto ready = [&] {
+    return flushing_ || std::ranges::none_of(pads_, [&](GstPad* pad) { return is_missing(pad, time); });
+  };
+  if (*max_wait == GST_CLOCK_TIME_NONE) {
+    news_.wait(guard, ready);
+  } else if (!news_.wait_for(guard, std::min(duration(*max_wait), kLongest), ready)) {
+    for (GstPad* pad : pads_)
+      if (is_missing(pad, time)) {
+        pir_pad(pad).given_up = true;
+        silent.emplace_back(GST_PAD_NAME(pad));
+      }
+  }
+  return !flushing_;
+}
+
+Moment Inputs::at(Time time, const std::string& head, const CerberusPose* on_frame) {
+  Moment moment;
+  const std::lock_guard guard(lock_);
+  for (GstPad* pad : pads_) {
+    PirPad& pir = pir_pad(pad);
+    Reading reading = pir.history.at(time);
+    pir.history.forget_before(time);
+    if (!reading.array) continue;
+    if (!pir.linked || pir.given_up) reading.values.fill(2);
+    const auto known =
+        std::min(static_cast<std::size_t>(reading.array->count), moment.sensors.size() - moment.count);
+    for (std::size_t i = 0; i < known; ++i, ++moment.count) {
+      moment.sensors[moment.count] = reading.values[i];
+      moment.bearings[moment.count] = reading.array->bearings[i];
+      moment.fields_of_view[moment.count] = reading.array->field_of_view;
+    }
+  }
+
+  const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
+  if (!pose) {
+    pose = poses_.at(time) ? poses_.at(time) : poses_.first();  // before the first one: where it begins
+    if (pose && !is_named(*pose, head)) pose = nullptr;
+  }
+  if (pose) cerberus_pose_evaluate(pose, nanoseconds(time), &moment.pan_degrees, nullptr);
+  if (const double* rate = base_.at(time)) moment.base_degrees = *rate;
+  poses_.forget_before(time);
+  base_.forget_before(time);
+  return moment;
+}
+
+void Inputs::hear(const CerberusPose& pose) {
+  const std::lock_guard guard(lock_);
+  if (poses_.last() && poses_.last()->value.head != pose.head) poses_.clear();
+  poses_.insert(duration(pose.valid_from), pose);
+}
+
+void Inputs::hear_base(double degrees_a_second, Time from) {
+  const std::lock_guard guard(lock_);
+  base_.insert(from, degrees_a_second);
+}
+
+GstPad* Inputs::add_pad(const char* name, GstPadTemplate* pad_template) {
+  const std::lock_guard guard(lock_);
+  const auto taken = [&](guint64 index) {
+    return std::ranges::any_of(pads_, [&](GstPad* pad) { return pir_pad(pad).index == index; });
+  };
+  guint64 index = 0;
+  if (name && g_str_has_prefix(name, "pir_") &&
+      g_ascii_string_to_unsigned(name + 4, 10, 0, G_MAXUINT, &index, nullptr)) {
+    if (taken(index)) return nullptr;
+  } else {
+    for (index = 0; taken(index);) ++index;
+  }
+  GstPad* pad = pir_pad_new(("pir_" + std::to_string(index)).c_str(), pad_template, this);
+  pir_pad(pad).index = static_cast<guint>(index);
+  const auto after = std::ranges::find_if(pads_, [&](GstPad* each) { return pir_pad(each).index > index; });
+  pads_.insert(after, pad);
+  return pad;
+}
+
+void Inputs::drop_pad(GstPad* pad) {
+  const std::lock_guard guard(lock_);
+  std::erase(pads_, pad);
+  news_.notify_all();
+}
+
+std::vector<GstPad*> Inputs::pads() {
+  const std::lock_guard guard(lock_);
+  std::vector<GstPad*> pads = pads_;
+  for (GstPad* pad : pads) gst_object_ref(pad);
+  return pads;
+}
+
+void Inputs::forget() {
+  const std::lock_guard guard(lock_);
+  for (GstPad* pad : pads_) pir_pad(pad).reset();
+  poses_.clear();
+  base_.clear();
+  video_ = Time::zero();
+  video_ended_ = false;
+}
+
+void Inputs::tell(PirPad& pad) {
+  pad.given_up = false;
+  news_.notify_all();
+}
+
+int Inputs::sensors() const {
+  int sum = 0;
+  for (GstPad* pad : pads_) sum += pir_pad(pad).sensors;
+  return sum;
+}
+
+bool Inputs::wait_for_video(std::unique_lock<std::mutex>& guard, const PirPad& pad, Time time) {
+  news_.wait(guard, [&] { return pad.flushing || video_ended_ || time - video_ < kAhead; });
+  return !video_ended_;
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What pirfusion's pads share: what was heard of sensors, head and base, by running time, and who waits for whom. PIR
+// threads and upstream events write, the video thread reads.
+#pragma once
+
+#include <cerberus/cerberus.h>
+
+#include <array>
+#include <condition_variable>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sensing/sectors.h"
+#include "timeline.hpp"
+
+namespace cerberus::plugin {
+
+struct PirPad;
+
+// What is known of a frame before the fuser is asked. Degrees as they were told; NaN: not known.
+struct Moment {
+  std::array<std::uint8_t, sensing::kMaxSensors> sensors{};
+  std::array<double, sensing::kMaxSensors> bearings{}, fields_of_view{};  // radians
+  std::size_t count = 0;
+  double pan_degrees = std::numeric_limits<double>::quiet_NaN();
+  double base_degrees = std::numeric_limits<double>::quiet_NaN();  // a second
+};
+
+// The lock is never held while something is pushed, queried or posted, and no GStreamer object's lock is taken under it.
+class Inputs {
+ public:
+  // ---- video thread
+  // A frame of `time` is here; with `max_wait` it waits until every linked PIR pad covers `time` or has been silent for
+  // so long (the names of those are added to `silent`). False: the video was flushed meanwhile.
+  bool frame_came(Time time, std::optional<guint64> max_wait, std::vector<std::string>& silent);
+  // Sensors, pan of the head of this name (empty: any) and base then. `on_frame`: the pose that the frame carries, or
+  // nullptr; it goes before what was heard. Forgets what no later frame can ask for.
+  Moment at(Time time, const std::string& head, const CerberusPose* on_frame);
+  void begin_video();  // a new stream, or after a flush
+  void end_video() { set(video_ended_, true); }
+  void set_flushing(bool flushing) { set(flushing_, flushing); }  // also while the sink pad is not active
+
+  // ---- upstream events
+  void hear(const CerberusPose& pose);
+  void hear_base(double degrees_a_second, Time from);
+
+  // ---- PIR pads (those of pir_pad.hpp), counted in the order of their numbers
+  // A new one with the number in `name`, or the next free one; nullptr when it is taken. Floating.
+  GstPad* add_pad(const char* name, GstPadTemplate* pad_template);
+  void drop_pad(GstPad* pad);
+  std::vector<GstPad*> pads();  // with a reference each
+  void forget();                // everything but the pads
+
+  // ---- for the PIR pads, whose state the lock guards too
+  std::mutex& lock() { return lock_; }
+  void tell(PirPad& pad);            // something was heard there; the lock is held
+  int sensors() const;               // of all pads' caps; the lock is held
+  void set(bool& flag, bool value);  // and wake whoever waits
+  // Waits while a PIR source is so far ahead of the video that it can do so later; false: the video has ended.
+  bool wait_for_video(std::unique_lock<std::mutex>& guard, const PirPad& pad, Time time);
+
+ private:
+  std::mutex lock_;
+  std::condition_variable news_;  // of anything below, and of the pads
+  std::vector<GstPad*> pads_;     // by number; the element owns them
+  Timeline<CerberusPose> poses_;
+  Timeline<double> base_;  // yaw rate, degrees a second
+  Time video_{};           // newest frame that came
+  bool flushing_ = true;
+  bool video_ended_ = false;
+};
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "settings.hpp"
+
+#include "sensing/angles.h"
+
+namespace cerberus::plugin {
+namespace {
+
+GType rules_type() {
+  static const GEnumValue values[] = {
+      {RULES_COMPLETE, "Computed from the sensors' bearings, the lens and the head's limits", "complete"},
+      {RULES_PAPER, "The seven rules of the paper, literally, for three sensors", "paper"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusFusionRules", values);
+  return type;
+}
+
+GType target_type() {
+  using fusion::TargetChoice;
+  static const GEnumValue values[] = {
+      {static_cast<int>(TargetChoice::nearest), "The nearest (without distances: feet lowest in the picture)",
+       "nearest"},
+      {static_cast<int>(TargetChoice::largest), "The largest in the picture", "largest"},
+      {static_cast<int>(TargetChoice::newest), "The one that came last", "newest"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusFusionTarget", values);
+  return type;
+}
+
+const Property<Settings> kTable[] = {
+    property("rules", &Settings::rules, rules_type, "The rule set; rules-file goes before it"),
+    property(
+        "rules-file", &Settings::rules_file,
+        "Path of a rule table of your own (TOML); empty = none. A table with a gap or a contradiction is "
+        "refused; given while the element runs, the old rules stay"),
+    property("target", &Settings::target, target_type,
+             "Whom to follow when nobody is followed yet; whoever is followed stays the target"),
+    property(
+        "return-delay", &Settings::return_delay,
+        "Nanoseconds without any detection after which the head returns to zero; 0 = at once. rules=paper "
+        "has none"),
+    property(
+        "hold-stopped", &Settings::hold_stopped,
+        "Nanoseconds for which a followed person who stopped moving is watched at least; 0 = not at all"),
+    property(
+        "camera-hold", &Settings::camera_hold,
+        "Nanoseconds for which the camera counts as having found somebody after the last track; 0 = only "
+        "while there is one"),
+    property("hysteresis", &Settings::hysteresis, 0, 90,
+             "Degrees by which pan must leave a sector or a band of angles before it counts as outside; 0 = "
+             "edges are sharp. rules=paper has none"),
+    property(
+        "horizontal-fov", &Settings::horizontal_fov, 0, 179,
+        "Angle in degrees that the lens sees over the frame's whole width: searches stop half of it before "
+        "a sector's edge; 0 = not known, searches go to the edge"),
+    property("pan-min", &Settings::pan_minimum, -3600, 3600, "Leftmost pan angle of the head in degrees"),
+    property("pan-max", &Settings::pan_maximum, -3600, 3600, "Rightmost pan angle of the head in degrees"),
+    property(
+        "max-wait", &Settings::max_wait,
+        "Nanoseconds of real time that a frame of a stream that is not live waits for a PIR pad, which is "
+        "then warned of and not waited for until it speaks; 0 = never wait"),
+    property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
+};
+
+}  // namespace
+
+const std::span<const Property<Settings>> kProperties = kTable;
+
+std::string limits_fault(const Settings& settings) {
+  if (settings.pan_minimum <= settings.pan_maximum) return {};
+  return "pan-min (" + std::to_string(settings.pan_minimum) + ") is above pan-max (" +
+         std::to_string(settings.pan_maximum) + ").";
+}
+
+fusion::FuserOptions fuser_options(const Settings& s, bool own_table) {
+  const bool paper = !own_table && s.rules == RULES_PAPER;
+  fusion::FuserOptions options;
+  if (paper) options = fusion::paper_options();
+  options.rules = paper || own_table ? fusion::RuleSet::table : fusion::RuleSet::complete;
+  options.choice = static_cast<fusion::TargetChoice>(s.target);
+  options.camera_hold = duration(s.camera_hold);
+  options.hold_stopped = duration(s.hold_stopped);
+  if (!paper) {
+    options.return_delay = duration(s.return_delay);
+    options.hysteresis = sensing::radians(s.hysteresis);
+  }
+  options.lens = sensing::radians(s.horizontal_fov);
+  options.limits = {sensing::radians(s.pan_minimum), sensing::radians(s.pan_maximum)};
+  return options;
+}
+
+}  // namespace cerberus::plugin

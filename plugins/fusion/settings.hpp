@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What pirfusion can be told, and what that means to the fuser.
+#pragma once
+
+#include <limits>
+#include <string>
+
+#include "fusion/fuser.h"
+#include "properties.hpp"
+
+namespace cerberus::plugin {
+
+using Time = std::chrono::nanoseconds;
+
+constexpr guint64 nanoseconds(Time time) {
+  return static_cast<guint64>(time.count());
+}
+constexpr Time duration(guint64 nanoseconds) {
+  return Time(static_cast<Time::rep>(std::min<guint64>(nanoseconds, std::numeric_limits<Time::rep>::max())));
+}
+
+enum Rules { RULES_COMPLETE, RULES_PAPER };
+
+struct Settings {
+  int rules = RULES_COMPLETE;
+  std::string rules_file;
+  int target = static_cast<int>(fusion::FuserOptions{}.choice);
+  guint64 return_delay = nanoseconds(fusion::FuserOptions{}.return_delay);
+  guint64 hold_stopped = nanoseconds(fusion::FuserOptions{}.hold_stopped);
+  guint64 camera_hold = nanoseconds(fusion::FuserOptions{}.camera_hold);
+  double hysteresis = 2;
+  double horizontal_fov = 60;
+  double pan_minimum = -170, pan_maximum = 170;
+  guint64 max_wait = 5 * GST_SECOND;
+  std::string head = "head";
+};
+
+extern const std::span<const Property<Settings>> kProperties;
+
+// Why these cannot be; empty: they can.
+std::string limits_fault(const Settings& settings);
+// `own_table`: a table of the user's goes before `rules`.
+fusion::FuserOptions fuser_options(const Settings& settings, bool own_table);
+
+}  // namespace cerberus::plugin
