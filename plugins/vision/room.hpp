@@ -14,9 +14,8 @@ inline constexpr char kFieldOfViewBlurb[] =
     "and bearing "
     "and distance of objects are known; 0 = unknown";
 inline constexpr char kMountingHeightBlurb[] =
-    "Height in metres of the lens above the floor on which people walk; the camera looks level unless a "
-    "head's "
-    "pose on the frame says otherwise";
+    "Height in metres of the lens above the floor on which people walk; the camera looks level unless "
+    "a head's pose on the frame says otherwise";
 
 constexpr double radians(double degrees) {
   return degrees * std::numbers::pi / 180;

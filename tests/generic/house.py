@@ -26,10 +26,9 @@ def complain(path, text):
     complaints.append(f'{path.relative_to(TOP)}: {text}')
 
 
-# Every file of ours says its licence in its first lines. Pictures and Markdown are prose; launch files begin with what
-# they do, and say it below.
+# Every file of ours says its licence in its first lines. Pictures and Markdown are prose.
 def check_licence(path):
-    if path.suffix in SOURCES - {'.launch'}:
+    if path.suffix in SOURCES:
         head = path.read_text('utf-8', errors='replace').splitlines()[:3]
         if not any('SPDX-License-Identifier: LGPL-2.1-or-later' in line for line in head):
             complain(path, 'no SPDX-License-Identifier: LGPL-2.1-or-later in its first lines')
