@@ -111,11 +111,13 @@ SensorError GpioSensor::offsets_of(const std::vector<std::string>& names,
   return {};
 }
 
-SensorError GpioSensor::line_error(int error, std::span<const unsigned> offsets) const {
+// Why the chip does not give these lines. Lets go of all that it gave.
+SensorError GpioSensor::refused(int error, std::span<const unsigned> offsets) {
+  lines_.open(chip_);  // what is taken now, is taken by others
   std::string list;
   for (const unsigned offset : offsets) {
     const std::string user = lines_.user(offset);
-    if (error == EBUSY && !user.empty() && user != "cerberus") {
+    if (error == EBUSY && !user.empty()) {
       return {SensorFault::busy,
               "Line " + std::to_string(offset) + " of GPIO chip " + chip_ + " is in use by \"" + user +
                   "\": end that, or take another line.",
@@ -132,7 +134,7 @@ SensorError GpioSensor::line_error(int error, std::span<const unsigned> offsets)
             errno_text(error)};
   return {SensorFault::gone,
           "GPIO chip " + chip_ + " does not give lines " + list + " (" + std::strerror(error) +
-              "): perhaps it has no interrupts or no bias.",
+              "): perhaps it has no interrupts, or no such bias.",
           errno_text(error)};
 }
 
@@ -141,10 +143,10 @@ SensorError GpioSensor::request(const SensorSetup& setup) {
   std::vector<std::string> leds = setup.red;
   leds.insert(leds.end(), setup.blue.begin(), setup.blue.end());
   if (SensorError error = offsets_of(leds, outputs_)) return error;
-  if (const int error = lines_.request_inputs(inputs_, setup.bias)) return line_error(error, inputs_);
+  if (const int error = lines_.request_inputs(inputs_, setup.bias)) return refused(error, inputs_);
   if (outputs_.empty()) return {};
   const int error = lines_.request_outputs(outputs_);
-  return error ? line_error(error, outputs_) : SensorError{};
+  return error ? refused(error, outputs_) : SensorError{};
 }
 
 SensorError GpioSensor::open(const SensorSetup& setup) {

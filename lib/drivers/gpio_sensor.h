@@ -24,7 +24,7 @@ class GpioSensor final : public Sensor {
   SensorError open_chip(const std::string& wanted);
   SensorError offsets_of(const std::vector<std::string>& names, std::vector<unsigned>& offsets) const;
   SensorError request(const SensorSetup& setup);
-  SensorError line_error(int error, std::span<const unsigned> offsets) const;
+  SensorError refused(int error, std::span<const unsigned> offsets);
   SensorError gone(int error) const;
   void begin(Time now, std::vector<SensorEdge>& edges);
   SensorError take(std::vector<SensorEdge>& edges, Time now);

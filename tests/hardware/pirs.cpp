@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pirsrc on hardware that the kernel simulates: real character devices, real interrupts, real time stamps.
+#include "simulated.h"  // before gst-check, whose macros C++ streams cannot bear
+
+#include <cerberus/pir.h>
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <sys/mount.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+namespace {
+
+using simulated::Chip;
+using simulated::Converter;
+using Bytes = std::vector<int>;
+
+// A pirsrc with a pad that takes what it sends.
+class Source {
+ public:
+  explicit Source(const std::string& properties) {
+    const std::string line = "pirsrc " + properties;
+    element_ = gst_parse_launch(line.c_str(), nullptr);
+    fail_unless(element_ != nullptr, "%s cannot be made", line.c_str());
+    harness_ = gst_harness_new_with_element(element_, nullptr, "src");
+    gst_harness_use_systemclock(harness_);
+    bus_ = gst_bus_new();
+    gst_element_set_bus(element_, bus_);
+  }
+  ~Source() {
+    gst_element_set_state(element_, GST_STATE_NULL);
+    gst_element_set_bus(element_, nullptr);
+    gst_harness_teardown(harness_);
+    gst_object_unref(bus_);
+    gst_object_unref(element_);
+  }
+  Source(const Source&) = delete;
+
+  GstElement* element() const { return element_; }
+  void play() { gst_harness_play(harness_); }
+  GstClockTime now() const {
+    GstClock* clock = gst_element_get_clock(element_);
+    const GstClockTime time = gst_clock_get_time(clock) - gst_element_get_base_time(element_);
+    gst_object_unref(clock);
+    return time;
+  }
+  // The next buffer's readings; `when` = its time.
+  Bytes reading(GstClockTime* when = nullptr) {
+    GstBuffer* buffer = gst_harness_pull(harness_);
+    fail_unless(buffer != nullptr, "no buffer came");
+    if (when) *when = GST_BUFFER_PTS(buffer);
+    guint8 bytes[CERBERUS_PIR_MAX_SENSORS];
+    const gsize size = gst_buffer_extract(buffer, 0, bytes, sizeof bytes);
+    gst_buffer_unref(buffer);
+    return Bytes(bytes, bytes + size);
+  }
+  // Waits for these readings, which must come with the next change.
+  GstClockTime expect(const Bytes& expected) {
+    const Bytes before = last_;
+    GstClockTime when = 0;
+    do last_ = reading(&when);
+    while (last_ == before && last_ != expected);
+    fail_unless(last_ == expected, "%s came, not %s", text(last_).c_str(), text(expected).c_str());
+    return when;
+  }
+  std::string message(GstMessageType type, GQuark domain = 0, gint code = 0) {
+    GstMessage* message = gst_bus_timed_pop_filtered(bus_, 5 * GST_SECOND, type);
+    fail_unless(message != nullptr, "no message");
+    GError* error = nullptr;
+    type == GST_MESSAGE_ERROR ? gst_message_parse_error(message, &error, nullptr)
+                              : gst_message_parse_warning(message, &error, nullptr);
+    const std::string said = error->message;
+    if (domain) fail_unless(g_error_matches(error, domain, code), "code %d: %s", error->code, said.c_str());
+    g_error_free(error);
+    gst_message_unref(message);
+    return said;
+  }
+  // Starting fails; what it said.
+  std::string refusal(gint code) {
+    fail_unless_equals_int(gst_element_set_state(element_, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+    return message(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, code);
+  }
+
+ private:
+  static std::string text(const Bytes& bytes) {
+    std::string all;
+    for (const int byte : bytes) all += std::to_string(byte);
+    return all;
+  }
+  GstElement* element_ = nullptr;
+  GstHarness* harness_ = nullptr;
+  GstBus* bus_ = nullptr;
+  Bytes last_;
+};
+
+bool says(const std::string& text, const std::string& what) {
+  if (text.find(what) != std::string::npos) return true;
+  g_printerr("\"%s\" does not say \"%s\"\n", text.c_str(), what.c_str());
+  return false;
+}
+
+// Long heartbeats: what comes, comes because of an edge.
+std::string gpio(const Chip& chip, const std::string& more = "lines=0,1,2") {
+  return "driver=gpio heartbeat=5000000000 chip=" + chip.path() + " " + more;
+}
+
+GST_START_TEST(a_rise_comes_at_once_with_the_kernels_time) {
+  Chip chip;
+  Source source(gpio(chip));
+  source.play();
+  source.expect({0, 0, 0});
+  for (int line = 0; line < 3; ++line) {
+    Bytes expected{0, 0, 0};
+    expected[line] = 1;
+    const GstClockTime before = source.now();
+    chip.pull(line, true);
+    const GstClockTime after = source.now();
+    const GstClockTime when = source.expect(expected);
+    const GstClockTime came = source.now();
+    fail_unless(when >= before && when <= after, "stamped %" GST_TIME_FORMAT ", pulled %" GST_TIME_FORMAT,
+                GST_TIME_ARGS(when), GST_TIME_ARGS(before));
+    g_print("edge to buffer: %.1f ms\n", static_cast<double>(came - when) / 1e6);
+    fail_unless(came - when < 60 * GST_MSECOND);
+    chip.pull(line, false);
+    const GstClockTime fell = source.now();
+    const GstClockTime ended = source.expect({0, 0, 0});
+    fail_unless(ended >= before + 20 * GST_MSECOND && ended <= fell + 20 * GST_MSECOND);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(edges_that_nobody_waited_for_keep_their_times) {
+  Chip chip;
+  Source source(gpio(chip, "lines=0,1,2 debounce=0"));
+  source.play();
+  source.expect({0, 0, 0});
+  std::vector<GstClockTime> pulled;
+  for (int i = 0; i < 6; ++i) {
+    chip.pull(0, i % 2 == 0);
+    pulled.push_back(source.now());
+    g_usleep(3000);
+  }
+  GstClockTime last = 0;
+  for (int i = 0; i < 6; ++i) {
+    const GstClockTime when = source.expect({i % 2 == 0, 0, 0});
+    fail_unless(when > last && when <= pulled[i] && when + 3 * GST_MSECOND > pulled[i]);
+    last = when;
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(lines_go_by_name_and_the_chip_by_label_number_or_name) {
+  Chip chip;
+  const std::string number = chip.name().substr(std::string("gpiochip").size());
+  for (const std::string& name : {chip.label(), number, chip.name(), chip.path()}) {
+    chip.pull(1, true);
+    Source source("driver=gpio heartbeat=5000000000 bearings=0 lines=door chip=" + name);
+    source.play();
+    source.expect({1});
+    chip.pull(1, false);
+    source.expect({0});
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(bias_pulls_an_open_line) {
+  Chip chip;
+  {
+    Source up(gpio(chip, "lines=3,4,5 bias=pull-up"));
+    up.play();
+    up.expect({1, 1, 1});
+  }
+  {
+    Source as_is(gpio(chip, "lines=3,4,5"));  // still up
+    as_is.play();
+    as_is.expect({1, 1, 1});
+  }
+  Source down(gpio(chip, "lines=3,4,5 bias=pull-down"));
+  down.play();
+  down.expect({0, 0, 0});
+}
+GST_END_TEST
+
+GST_START_TEST(an_open_collector_module_is_active_low) {
+  Chip chip;
+  Source source(gpio(chip, "lines=0,1,2 bias=pull-up active-low=true"));
+  source.play();
+  source.expect({0, 0, 0});
+  chip.pull(2, false);
+  source.expect({0, 0, 1});
+}
+GST_END_TEST
+
+GST_START_TEST(leds_are_red_while_a_sensor_detects_and_blue_while_it_does_not) {
+  Chip chip;
+  const auto leds = [&] {
+    std::string all;
+    for (int line = 3; line < 9; ++line) all += std::to_string(chip.value(line));
+    return all;
+  };
+  {
+    Source source(gpio(chip, "lines=0,1,2 leds-red=3,4,5 leds-blue=6,7,8"));
+    source.play();
+    source.expect({0, 0, 0});
+    ck_assert_str_eq(leds().c_str(), "000111");
+    chip.pull(1, true);
+    source.expect({0, 1, 0});
+    ck_assert_str_eq(leds().c_str(), "010101");
+    chip.pull(1, false);
+    source.expect({0, 0, 0});
+    ck_assert_str_eq(leds().c_str(), "000111");
+    gst_element_set_state(source.element(), GST_STATE_READY);
+    ck_assert_str_eq(leds().c_str(), "000000");
+  }
+  Source warming(gpio(chip, "lines=0,1,2 leds-red=3,4,5 warm-up=3600000000000"));
+  warming.play();
+  warming.expect({2, 2, 2});
+  ck_assert_str_eq(leds().c_str(), "000000");
+}
+GST_END_TEST
+
+GST_START_TEST(a_line_in_use_is_named_with_its_user) {
+  Chip chip;
+  Source first(gpio(chip));
+  first.play();
+  first.expect({0, 0, 0});
+  {
+    Source second(gpio(chip, "lines=6,7,2"));
+    const std::string why = second.refusal(GST_RESOURCE_ERROR_BUSY);
+    fail_unless(says(why, "Line 2 of GPIO chip " + chip.path()) && says(why, "in use by \"cerberus\""));
+  }
+  {
+    Source leds(gpio(chip, "lines=6,7,8 leds-red=9,10,0"));
+    fail_unless(says(leds.refusal(GST_RESOURCE_ERROR_BUSY), "Line 0 of"));
+  }
+  Source third(gpio(chip, "lines=6,7,8"));  // the refused ones left nothing behind
+  third.play();
+  third.expect({0, 0, 0});
+  chip.pull(0, true);
+  first.expect({1, 0, 0});
+}
+GST_END_TEST
+
+GST_START_TEST(what_is_not_there_is_named) {
+  Chip chip;
+  fail_unless(
+      says(Source("driver=gpio chip=/dev/gpiochip77 lines=0,1,2").refusal(GST_RESOURCE_ERROR_NOT_FOUND),
+           "no GPIO chip \"/dev/gpiochip77\". There are: " + chip.path()));
+  fail_unless(
+      says(Source("driver=gpio chip=attic lines=0,1,2").refusal(GST_RESOURCE_ERROR_NOT_FOUND), "\"attic\""));
+  fail_unless(says(Source("driver=gpio chip=/dev/null lines=0,1,2").refusal(GST_RESOURCE_ERROR_NOT_FOUND),
+                   "/dev/null"));
+  fail_unless(says(Source(gpio(chip, "lines=0,1,12")).refusal(GST_RESOURCE_ERROR_NOT_FOUND),
+                   "no line 12: its lines are 0 to 11"));
+  fail_unless(
+      says(Source(gpio(chip, "lines=0,window,2")).refusal(GST_RESOURCE_ERROR_NOT_FOUND), "\"window\""));
+  fail_unless(says(Source(gpio(chip, "lines=0,door,1")).refusal(GST_RESOURCE_ERROR_SETTINGS), "named twice"));
+  fail_unless(says(Source(gpio(chip, "lines=0,1")).refusal(GST_RESOURCE_ERROR_SETTINGS), "2 are named"));
+  fail_unless(
+      says(Source(gpio(chip, "lines=0,1,2 leds-blue=3,4")).refusal(GST_RESOURCE_ERROR_SETTINGS), "LED"));
+}
+GST_END_TEST
+
+GST_START_TEST(without_permission_the_group_is_named) {
+  Chip chip;
+  fail_unless(seteuid(65534) == 0);
+  Source source(gpio(chip));
+  const std::string why = source.refusal(GST_RESOURCE_ERROR_NOT_AUTHORIZED);
+  fail_unless(seteuid(0) == 0);
+  fail_unless(says(why, chip.path()) && says(why, "group gpio"));
+}
+GST_END_TEST
+
+GST_START_TEST(a_chip_that_is_unplugged_while_running_is_an_error_that_names_it) {
+  Chip chip;
+  Source source("driver=gpio lines=0,1,2 leds-red=3,4,5 chip=" + chip.path());  // the usual heartbeat
+  source.play();
+  source.expect({0, 0, 0});
+  const GstClockTime before = source.now();
+  chip.unplug();
+  fail_unless(says(source.message(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ),
+                   "GPIO chip " + chip.path()));
+  fail_unless(source.now() - before < GST_SECOND);
+}
+GST_END_TEST
+
+GST_START_TEST(a_chip_that_comes_back_is_usable_again) {
+  for (int round = 0; round < 3; ++round) {
+    Chip chip;
+    Source source("driver=gpio lines=0,1,2 chip=" + chip.path());
+    source.play();
+    source.expect({0, 0, 0});
+    chip.unplug();
+    source.message(GST_MESSAGE_ERROR);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(stopping_takes_no_time_while_it_waits_for_an_edge) {
+  Chip chip;
+  Source source("driver=gpio heartbeat=3600000000000 lines=0,1,2 chip=" + chip.path());
+  for (int round = 0; round < 5; ++round) {
+    source.play();
+    source.reading();
+    const gint64 before = g_get_monotonic_time();
+    gst_element_set_state(source.element(), GST_STATE_NULL);
+    const gint64 took = g_get_monotonic_time() - before;
+    fail_unless(took < 100000, "%d ms", static_cast<int>(took / 1000));
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_sensor_that_chatters_is_named_with_its_line) {
+  Chip chip;
+  Source source(gpio(chip, "lines=4,5,6 debounce=0 chatter-edges=10"));
+  source.play();
+  source.expect({0, 0, 0});
+  for (int i = 0; i < 10; ++i) {
+    chip.pull(5, true);
+    chip.pull(5, false);
+    g_usleep(5000);  // the kernel keeps 16 edges of a line
+  }
+  const std::string warning = source.message(GST_MESSAGE_WARNING);
+  fail_unless(says(warning, "infer2 (line 5 of " + chip.path()) && says(warning, "is chattering"));
+}
+GST_END_TEST
+
+// The kernel keeps 16 edges of a line; what is lost must not leave the sensor wrong.
+GST_START_TEST(a_flood_of_edges_ends_with_the_right_level) {
+  Chip chip;
+  Source source("driver=gpio debounce=0 chatter-edges=0 lines=0,1,2 chip=" + chip.path());
+  source.play();
+  source.expect({0, 0, 0});
+  for (int i = 0; i < 501; ++i) chip.pull(0, i % 2 == 0);
+  const GstClockTime calm = source.now();
+  GstClockTime when = 0;
+  Bytes last;
+  while (when < calm + 200 * GST_MSECOND) last = source.reading(&when);
+  fail_unless(last == Bytes({1, 0, 0}));
+}
+GST_END_TEST
+
+constexpr char kRaw[] = "/sys/bus/iio/devices/iio:device0/in_voltage0_raw";
+
+// The dummy's voltage never changes: a file of our own takes the place of the attribute.
+class Voltage {
+ public:
+  Voltage() {
+    set(73);
+    simulated::must(mount(kFile, kRaw, nullptr, MS_BIND, nullptr) == 0, "mount");
+  }
+  ~Voltage() { umount(kRaw); }
+  void set(int raw) { simulated::write_text(kFile, std::to_string(raw) + "\n"); }
+
+ private:
+  static constexpr char kFile[] = "/run/raw";
+};
+
+std::string iio(const std::string& more) {
+  return "driver=iio heartbeat=5000000000 bearings=0 channels=0 " + more;
+}
+
+GST_START_TEST(a_converters_voltage_is_compared_in_volts) {
+  Converter converter;
+  // 80 x 0.001333 mV = 0.00010664 V
+  for (const char* device : {"iio:device0", "pirs"}) {
+    Source below(iio("hysteresis=0 threshold=0.000107 iio-device=" + std::string(device)));
+    below.play();
+    below.expect({0});
+    Source above(iio("hysteresis=0 threshold=0.000106 iio-device=" + std::string(device)));
+    above.play();
+    above.expect({1});
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_voltage_that_rises_and_falls_is_a_detection_with_hysteresis) {
+  Converter converter;
+  Voltage voltage;
+  // on at 0.003 V: raw 2244; off below 0.001 V: raw 743
+  Source source(iio("debounce=0 threshold=0.002 hysteresis=0.002"));
+  source.play();
+  source.expect({0});
+  for (int round = 0; round < 2; ++round) {
+    voltage.set(2200);  // 0.00294 V: not yet
+    g_usleep(50000);
+    const GstClockTime before = source.now();
+    voltage.set(2300);
+    const GstClockTime rose = source.expect({1});
+    fail_unless(rose >= before && source.now() - before < 60 * GST_MSECOND);
+    voltage.set(800);  // 0.00108 V: not yet
+    g_usleep(50000);
+    const GstClockTime falling = source.now();
+    voltage.set(700);
+    fail_unless(source.expect({0}) >= falling);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_channel_or_a_converter_that_is_missing_is_named) {
+  Converter converter;
+  const std::string channel = Source(iio("channels=9")).refusal(GST_RESOURCE_ERROR_NOT_FOUND);
+  fail_unless(says(channel, "voltage9") && says(channel, "iio:device0") && says(channel, "It has: voltage0"));
+  const std::string device = Source(iio("iio-device=adc")).refusal(GST_RESOURCE_ERROR_NOT_FOUND);
+  fail_unless(says(device, "\"adc\"") && says(device, "iio:device0 (pirs)"));
+  converter.unplug();
+  fail_unless(says(Source(iio("")).refusal(GST_RESOURCE_ERROR_NOT_FOUND), "no IIO device"));
+}
+GST_END_TEST
+
+GST_START_TEST(a_converter_that_is_unplugged_while_running_is_an_error_that_names_it) {
+  Converter converter;
+  Source source(iio(""));
+  source.play();
+  source.expect({0});
+  converter.unplug();
+  const std::string why = source.message(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ);
+  fail_unless(says(why, "voltage0 of iio:device0"));
+}
+GST_END_TEST
+
+Suite* pirs_suite() {
+  Suite* suite = suite_create("pirs");
+  TCase* tests = tcase_create("pirs");
+  tcase_set_timeout(tests, 60);
+  tcase_add_test(tests, a_rise_comes_at_once_with_the_kernels_time);
+  tcase_add_test(tests, edges_that_nobody_waited_for_keep_their_times);
+  tcase_add_test(tests, lines_go_by_name_and_the_chip_by_label_number_or_name);
+  tcase_add_test(tests, bias_pulls_an_open_line);
+  tcase_add_test(tests, an_open_collector_module_is_active_low);
+  tcase_add_test(tests, leds_are_red_while_a_sensor_detects_and_blue_while_it_does_not);
+  tcase_add_test(tests, a_line_in_use_is_named_with_its_user);
+  tcase_add_test(tests, what_is_not_there_is_named);
+  tcase_add_test(tests, without_permission_the_group_is_named);
+  tcase_add_test(tests, a_chip_that_is_unplugged_while_running_is_an_error_that_names_it);
+  tcase_add_test(tests, a_chip_that_comes_back_is_usable_again);
+  tcase_add_test(tests, stopping_takes_no_time_while_it_waits_for_an_edge);
+  tcase_add_test(tests, a_sensor_that_chatters_is_named_with_its_line);
+  tcase_add_test(tests, a_flood_of_edges_ends_with_the_right_level);
+  tcase_add_test(tests, a_converters_voltage_is_compared_in_volts);
+  tcase_add_test(tests, a_voltage_that_rises_and_falls_is_a_detection_with_hysteresis);
+  tcase_add_test(tests, a_channel_or_a_converter_that_is_missing_is_named);
+  tcase_add_test(tests, a_converter_that_is_unplugged_while_running_is_an_error_that_names_it);
+  suite_add_tcase(suite, tests);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(pirs)

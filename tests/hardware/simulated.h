@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Hardware that the kernel simulates, made and unmade through configfs and sysfs. Inside the virtual machine only.
+#pragma once
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+namespace simulated {
+
+inline void must(bool good, const std::string& what) {
+  if (good) return;
+  std::perror(what.c_str());
+  std::abort();
+}
+
+inline void write_text(const std::string& path, const std::string& text) {
+  std::ofstream file(path);
+  file << text << std::flush;
+  must(file.good(), "write " + path);
+}
+
+inline std::string read_text(const std::string& path) {
+  std::ifstream file(path);
+  std::string text;
+  must(static_cast<bool>(std::getline(file, text)), "read " + path);
+  return text;
+}
+
+inline void make_folder(const std::string& path) {
+  must(mkdir(path.c_str(), 0755) == 0, "mkdir " + path);
+}
+
+// A gpio-sim chip. Lines 0 .. lines - 1; line 1 is named "door".
+class Chip {
+ public:
+  // Tests run in processes of their own: one that died leaves its chip to itself.
+  explicit Chip(int lines = 12)
+      : label_("chip-" + std::to_string(getpid())), config_("/sys/kernel/config/gpio-sim/" + label_) {
+    make_folder(config_);
+    make_folder(config_ + "/bank0");
+    write_text(config_ + "/bank0/num_lines", std::to_string(lines));
+    write_text(config_ + "/bank0/label", label_);
+    make_folder(config_ + "/bank0/line1");
+    write_text(config_ + "/bank0/line1/name", "door");
+    write_text(config_ + "/live", "1");
+    device_ = read_text(config_ + "/dev_name");
+    name_ = read_text(config_ + "/bank0/chip_name");
+  }
+  ~Chip() {
+    unplug();
+    rmdir((config_ + "/bank0/line1").c_str());
+    rmdir((config_ + "/bank0").c_str());
+    must(rmdir(config_.c_str()) == 0, "rmdir " + config_);
+  }
+  Chip(const Chip&) = delete;
+
+  const std::string& name() const { return name_; }  // gpiochip0
+  const std::string& label() const { return label_; }
+  std::string path() const { return "/dev/" + name_; }
+  void pull(int line, bool up) { write_text(attribute(line, "pull"), up ? "pull-up" : "pull-down"); }
+  int value(int line) const { return std::stoi(read_text(attribute(line, "value"))); }
+  void unplug() {
+    if (plugged_) write_text(config_ + "/live", "0");
+    plugged_ = false;
+  }
+
+ private:
+  std::string attribute(int line, const char* which) const {
+    return "/sys/devices/platform/" + device_ + "/" + name_ + "/sim_gpio" + std::to_string(line) + "/" +
+           which;
+  }
+
+  std::string label_, config_, device_, name_;
+  bool plugged_ = true;
+};
+
+// The IIO dummy: in_voltage0 measures (73 + 7) x 0.001333 mV, for ever (drivers/iio/dummy/iio_simple_dummy.c).
+class Converter {
+ public:
+  Converter() : config_("/sys/kernel/config/iio/devices/dummy/pirs") { make_folder(config_); }
+  ~Converter() { unplug(); }
+  Converter(const Converter&) = delete;
+
+  void unplug() {
+    if (plugged_) must(rmdir(config_.c_str()) == 0, "rmdir " + config_);
+    plugged_ = false;
+  }
+
+ private:
+  std::string config_;
+  bool plugged_ = true;
+};
+
+}  // namespace simulated
