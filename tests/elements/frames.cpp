@@ -139,8 +139,10 @@ START_TEST(the_caps_name_exactly_the_supported_formats) {
   g_autoptr(GstCaps) caps = gst_caps_from_string(CERBERUS_VIDEO_CAPS);
   const GValue* formats = gst_structure_get_value(gst_caps_get_structure(caps, 0), "format");
   int listed = 0, supported = 0;
-  for (int f = GST_VIDEO_FORMAT_I420; gst_video_format_to_string(static_cast<GstVideoFormat>(f)); ++f) {
-    const auto format = static_cast<GstVideoFormat>(f);
+  guint known = 0;
+  const GstVideoFormat* all = gst_video_formats_raw(&known);
+  for (guint f = 0; f < known; ++f) {
+    const GstVideoFormat format = all[f];
     bool in_list = false;
     for (guint i = 0; i < gst_value_list_get_size(formats); ++i)
       in_list |= g_str_equal(g_value_get_string(gst_value_list_get_value(formats, i)),
