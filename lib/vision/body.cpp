@@ -45,12 +45,6 @@ Residual compare_extents(double expected_from, double expected_to, double from, 
   return {low > 0 ? low : std::min(high, 0.0), false};
 }
 
-double overlap_area(const Box& a, const Box& b) {
-  const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
-  const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
-  return w > 0 && h > 0 ? w * h : 0;
-}
-
 Body Body::first_seen(const Region& region) {
   Body b;
   b.adopt(region.box);

@@ -26,8 +26,6 @@ struct Residual {
 };
 Residual compare_extents(double expected_from, double expected_to, double from, double to);
 
-double overlap_area(const Box& a, const Box& b);
-
 struct Body {
   std::uint32_t id = 0;            // 0: not confirmed yet
   MovingValue x, y;                // centre

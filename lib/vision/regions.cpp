@@ -36,16 +36,16 @@ Box box_of(const Window& w) {
           static_cast<double>(w.height())};
 }
 
-double overlap(const Box& a, const Box& b) {
+}  // namespace
+
+double overlap_area(const Box& a, const Box& b) {
   const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
   return w > 0 && h > 0 ? w * h : 0;
 }
 
-}  // namespace
-
 double intersection_over_union(const Box& a, const Box& b) {
-  const double both = overlap(a, b);
+  const double both = overlap_area(a, b);
   return both > 0 ? both / (a.area() + b.area() - both) : 0;
 }
 
@@ -245,7 +245,7 @@ void RegionFinder::State::explain(int g) {
     if (group[i] != g) continue;
     const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});
     double covered = 0;
-    for (const Person& p : found) covered += overlap(p.box, box);
+    for (const Person& p : found) covered += overlap_area(p.box, box);
     if (covered < 0.4 * box.area()) add_plain(i);
   }
 }

@@ -18,6 +18,7 @@ struct Box {
   double bottom() const { return y + height; }
   double area() const { return width * height; }
 };
+double overlap_area(const Box& a, const Box& b);
 double intersection_over_union(const Box& a, const Box& b);
 
 struct RegionOptions {
