@@ -202,7 +202,8 @@ void cerberus_motion_json_class_init(CerberusMotionJsonClass* klass) {
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(
       element, "Motion to JSON lines", "Filter/Analyzer/Video",
-      "Writes one line of JSON for every video frame: objects, camera motion, threshold", "Cerberus");
+      "Writes one line of JSON for every video frame: objects, camera motion, threshold",
+      "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
 

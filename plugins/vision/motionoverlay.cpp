@@ -342,7 +342,7 @@ void cerberus_motion_overlay_class_init(CerberusMotionOverlayClass* klass) {
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element, "Motion overlay", "Filter/Effect/Video",
                                         "Draws boxes, identities, speeds and trails of what moves",
-                                        "Cerberus");
+                                        "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
 

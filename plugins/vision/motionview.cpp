@@ -49,6 +49,7 @@
 #include "enums.hpp"
 #include "figures.hpp"
 #include "properties.hpp"
+#include "stages.hpp"
 #include "vision/luma.h"
 
 namespace {
@@ -62,8 +63,6 @@ namespace vision = cerberus::vision;
 
 GST_DEBUG_CATEGORY_STATIC(motionview_debug);
 #define GST_CAT_DEFAULT motionview_debug
-
-constexpr int kAnalysisWidth = 320;  // where luma is made here
 
 // Cairo's 24-bit pixels: x in the high byte of a word.
 #if G_BYTE_ORDER == G_LITTLE_ENDIAN
@@ -193,7 +192,8 @@ bool show_own_luma(State& state, GstBuffer* in, const draw::Canvas& canvas) {
   cerberus::VideoFrame frame(state.in, in, GST_MAP_READ);
   if (!frame) return false;
   const vision::LumaSource source = cerberus::luma_source(*frame.get());
-  state.luma.resize(vision::analysis_size({source.width, source.height}, kAnalysisWidth));
+  state.luma.resize(
+      vision::analysis_size({source.width, source.height}, cerberus::plugin::kDefaultAnalysisWidth));
   state.scaler.scale(source, state.luma.view());
   state.enlarger.show(state.luma.view(), 1, canvas);
   return true;
@@ -353,7 +353,7 @@ void cerberus_motion_view_class_init(CerberusMotionViewClass* klass) {
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element, "Motion view", "Filter/Analyzer/Video",
                                         "Replaces the picture by what one stage of motion detection made",
-                                        "Cerberus");
+                                        "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
   gst_type_mark_as_plugin_api(stage_type(), static_cast<GstPluginAPIFlags>(0));
