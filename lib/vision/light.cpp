@@ -21,12 +21,12 @@ RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
 // Interpolated median of counted levels (index 0 stands for `first`); levels are as wide as they are apart.
 template <typename Counts>
 double median(const Counts& counts, int total, int first) {
-  const double half = total / 2.0;
-  double below = 0;
+  int below = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] && below + counts[i] >= half)
-      return first + static_cast<double>(i) - 0.5 + (half - below) / counts[i];
-    below += counts[i];
+    const auto n = static_cast<int>(counts[i]);
+    if (n && 2 * (below + n) >= total)
+      return first + static_cast<double>(i) - 0.5 + (total / 2.0 - below) / n;
+    below += n;
   }
   return 0;
 }
@@ -52,17 +52,20 @@ void LightChange::estimate(GrayView reference, GrayView present, std::span<const
 
 void LightChange::estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
   for (auto& c : counts_) c.fill(0);
-  std::array<int, kClasses> number{};
-  std::array<std::int64_t, kClasses> sum{};
+  std::array<std::uint32_t, 256> seen{};  // samples by level of the reference
   for (int y = 0; y < present.height; y += kRowStep) {
     const RowSpan s = span_of(spans, y, present.width);
     const std::uint8_t *a = reference.row(y), *b = present.row(y);
     for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
-      const int k = a[x] >> 4;
-      ++counts_[k][std::clamp(b[x] - a[x], -kReach, kReach) + kReach];
-      ++number[k];
-      sum[k] += a[x];
+      ++counts_[a[x] >> 4][std::clamp(b[x] - a[x], -kReach, kReach) + kReach];
+      ++seen[a[x]];
     }
+  }
+  std::array<int, kClasses> number{};
+  std::array<std::int64_t, kClasses> sum{};
+  for (int level = 0; level < 256; ++level) {
+    number[level >> 4] += static_cast<int>(seen[level]);
+    sum[level >> 4] += std::int64_t{level} * seen[level];
   }
   int total = 0;
   for (const int n : number) total += n;
@@ -120,10 +123,46 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   std::fill(rows_.begin(), rows_.end(), light);
 }
 
+// Calls each(third, value of the reference under the light so far, present value) for the samples of a band of rows.
+template <typename Each>
+void LightChange::sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,
+                              Each&& each) const {
+  for (int y = band * kBand; y < std::min((band + 1) * kBand, present.height); y += kRowStep) {
+    const RowSpan s = span_of(spans, y, present.width);
+    const std::uint8_t *a = reference.row(y), *b = present.row(y);
+    const RowLight light = rows_[y];
+    const bool lit = !(light == RowLight{});
+    for (int third = 0; third < 3; ++third) {
+      const int end = std::min(s.end, (third + 1) * present.width / 3);
+      for (int x = std::max(s.begin, third * present.width / 3) + (y / kRowStep) % kColumnStep; x < end;
+           x += kColumnStep)
+        each(third, lit ? std::clamp((a[x] * light.gain + light.offset + 128) >> 8, 0, 255) : a[x], b[x]);
+    }
+  }
+}
+
+// Whether more than half of what two thirds of a band show is at least one level brighter, or darker: no median is
+// as far from 0 as kLeastBand otherwise.
+bool LightChange::may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans,
+                             int band) const {
+  std::array<int, 3> number{}, brighter{}, darker{};
+  sample_band(reference, present, spans, band, [&](int third, int now, int value) {
+    ++number[third];
+    brighter[third] += value > now;
+    darker[third] += value < now;
+  });
+  int thirds = 0;
+  for (int i = 0; i < 3; ++i) thirds += 2 * std::max(brighter[i], darker[i]) > number[i];
+  return thirds >= 2;
+}
+
 void LightChange::estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
   const int bands = (present.height + kBand - 1) / kBand;
   constexpr int kMaximumBands = 512;
   if (bands < 4 || bands > kMaximumBands) return;
+  int first = 0;
+  while (first < bands && !may_differ(reference, present, spans, first)) ++first;
+  if (first == bands) return;
   std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
   double strongest = 0;
   for (int band = 0; band < bands; ++band) {
@@ -131,21 +170,11 @@ void LightChange::estimate_bands(GrayView reference, GrayView present, std::span
     std::array<std::array<std::uint16_t, 2 * kBandReach + 1>, 3> counts{};
     std::array<int, 3> number{};
     std::int64_t sum = 0;
-    for (int y = band * kBand; y < std::min((band + 1) * kBand, present.height); y += kRowStep) {
-      const RowSpan s = span_of(spans, y, present.width);
-      const std::uint8_t *a = reference.row(y), *b = present.row(y);
-      const RowLight light = rows_[y];
-      for (int third = 0; third < 3; ++third) {
-        const int end = std::min(s.end, (third + 1) * present.width / 3);
-        for (int x = std::max(s.begin, third * present.width / 3) + (y / kRowStep) % kColumnStep; x < end;
-             x += kColumnStep) {
-          const int now = std::clamp((a[x] * light.gain + light.offset + 128) >> 8, 0, 255);
-          ++counts[third][std::clamp(b[x] - now, -kBandReach, kBandReach) + kBandReach];
-          sum += now;
-          ++number[third];
-        }
-      }
-    }
+    sample_band(reference, present, spans, band, [&](int third, int now, int value) {
+      ++counts[third][std::clamp(value - now, -kBandReach, kBandReach) + kBandReach];
+      sum += now;
+      ++number[third];
+    });
     const int total = number[0] + number[1] + number[2];
     const double bright = total ? std::max(static_cast<double>(sum) / total, 16.0) : 16.0;
     std::array<double, 3> middle{};

@@ -43,6 +43,10 @@ class LightChange {
   static constexpr int kClasses = 16, kReach = 127, kLevels = 2 * kReach + 1;
   void estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans);
   void estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  bool may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band) const;
+  template <typename Each>
+  void sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,
+                   Each&& each) const;
 
   bool none_ = true;
   double gain_ = 1, offset_ = 0, agreement_ = 1;
