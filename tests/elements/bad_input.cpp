@@ -23,6 +23,15 @@ GstBuffer* sized(gsize bytes, GstClockTime pts) {
   return buffer;
 }
 
+GstBuffer* aligned(gsize bytes) {
+  GstAllocationParams params;
+  gst_allocation_params_init(&params);
+  params.align = 63;
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, bytes, &params);
+  gst_buffer_memset(buffer, 0, 90, bytes);
+  return buffer;
+}
+
 // The same frame with a video meta: any stride, any offset.
 GstBuffer* strided(const World& world, int frame, gint stride, gsize offset) {
   const std::vector<std::uint8_t> grey = world.picture(frame);
@@ -186,9 +195,12 @@ GST_START_TEST(metas_from_strangers_do_no_harm) {
     for (const CerberusPlaneKind kind :
          {CERBERUS_PLANE_LUMA, CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_PREVIOUS_DIFFERENCE,
           CERBERUS_PLANE_HISTOGRAM, CERBERUS_PLANE_MASK, CERBERUS_PLANE_LABELS}) {
-      const int side = 1 + (k * 7 + kind * 13) % 60;  // planes that do not even agree with each other
-      const int row = side * cerberus_plane_kind_sample_size(kind);
-      cerberus_buffer_add_plane_meta(in, kind, sized(static_cast<gsize>(row) * side, 0), side, side, row);
+      // Planes that mostly do not even agree with each other.
+      const int side = 1 + (k * 7 + (k % 4 == 3 ? 0 : kind * 13)) % 60;
+      // Every other frame's rows are padded and aligned as our own pools do it, so that the planes are believed.
+      int row = side * cerberus_plane_kind_sample_size(kind);
+      if (k % 2) row = (row + 63) / 64 * 64;
+      cerberus_buffer_add_plane_meta(in, kind, aligned(static_cast<gsize>(row) * side), side, side, row);
     }
     CerberusRegion region;
     cerberus_region_init(&region);
