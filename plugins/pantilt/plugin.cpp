@@ -3,9 +3,11 @@
 #include <gst/gst.h>
 
 GST_ELEMENT_REGISTER_DECLARE(pantiltsink)
+GST_ELEMENT_REGISTER_DECLARE(virtualptz)
 
 static gboolean plugin_init(GstPlugin* plugin) {
-  return GST_ELEMENT_REGISTER(pantiltsink, plugin);
+  const gboolean sink = GST_ELEMENT_REGISTER(pantiltsink, plugin);
+  return GST_ELEMENT_REGISTER(virtualptz, plugin) && sink;
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberuspantilt,

@@ -1,0 +1,538 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-virtualptz
+ * @title: virtualptz
+ * @short_description: a pan-tilt camera made of a wide picture
+ * @see_also: pantiltsink, motiondetect, pirfusion
+ *
+ * Gives the part of a wide picture that a camera on a pan-tilt head would see: a window that moves with the head's pose,
+ * resampled with sub-pixel precision. With a `pantiltsink driver=simulated` downstream a fixed 4K camera becomes a pan-tilt
+ * camera without a motor, and the whole loop can be closed on recorded footage.
+ *
+ * The head tells its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are passed on. On
+ * each frame is the pose meta with which it was made. The wide picture counts as a pinhole camera's that looks straight ahead and sees
+ * `wide-fov`; the window sees `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
+ * what downstream takes. It ends at the picture's edges: `pan-min`, `pan-max`, `tilt-min`, `tilt-max` tell how far it
+ * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know.
+ *
+ * In a pipeline that is not live, each frame but the first waits until the head's way is known up to its running time
+ * (`lockstep`), so that every run gives the same, whatever queues there are; when no pose comes for `lockstep-timeout` the
+ * element gives up with an error. The first frame (also after a flush) shows where the head looked last, `start-pan` and
+ * `start-tilt` at the start. In a live pipeline nothing waits: the newest pose counts.
+ *
+ * Pads: raw progressive video in system memory, in and out in the same format. Regions that lie on the wide picture are
+ * dropped: stages that look for motion belong behind the window.
+ *
+ * ## Example launch lines
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! video/x-raw,width=640,height=480 ! \
+ *     virtualptz width=320 height=240 ! motiondetect ! pantiltsink driver=simulated horizontal-fov=32.2
+ * gst-launch-1.0 videotestsrc num-buffers=60 ! virtualptz lockstep=off start-pan=-10 width=160 height=120 ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// Where the window lies and how its pixels come about is lib/vision/window.h; when a pose is known, pose_feed.hpp.
+#include <cerberus/cerberus.h>
+#include <gst/base/gstbasetransform.h>
+#include <gst/video/video.h>
+
+#include <atomic>
+#include <optional>
+
+#include "cerberus/private/element.hpp"
+#include "cerberus/private/video.hpp"
+#include "pose_feed.hpp"
+#include "vision/properties.hpp"
+#include "vision/window.h"
+
+GST_DEBUG_CATEGORY_STATIC(virtualptz_debug);
+#define GST_CAT_DEFAULT virtualptz_debug
+
+namespace cerberus::plugin {
+namespace {
+
+using control::Time;
+using sensing::degrees;
+using sensing::radians;
+using vision::Samples;
+
+constexpr int kMostPixels = 16384;
+
+GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+
+enum Lockstep { LOCKSTEP_AUTO, LOCKSTEP_ON, LOCKSTEP_OFF };
+
+GType lockstep_type() {
+  static const GEnumValue values[] = {{LOCKSTEP_AUTO, "In pipelines that are not live", "auto"},
+                                      {LOCKSTEP_ON, "Every frame waits for its pose", "on"},
+                                      {LOCKSTEP_OFF, "No frame waits", "off"},
+                                      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusVirtualPtzLockstep", values);
+  return type;
+}
+
+struct Settings {
+  int width = 0, height = 0;
+  double wide_fov = 60, horizontal_fov = 0;
+  double start_pan = 0, start_tilt = 0;
+  std::string head = "head";
+  int lockstep = LOCKSTEP_AUTO;
+  guint64 lockstep_timeout = 10 * GST_SECOND;
+};
+
+const Property<Settings> kProperties[] = {
+    property("width", &Settings::width, 0, kMostPixels,
+             "Width of the window in pixels; 0 = what downstream takes, nearest to half the picture's"),
+    property("height", &Settings::height, 0, kMostPixels,
+             "Height of the window in pixels; 0 = what downstream takes, nearest to half the picture's"),
+    property("wide-fov", &Settings::wide_fov, 1, 170,
+             "Angle in degrees that the wide picture shows over its width"),
+    property(
+        "horizontal-fov", &Settings::horizontal_fov, 0, 170,
+        "Angle in degrees that the window shows over its width, at most the picture's; 0 = a pixel of the "
+        "picture is a pixel of the window"),
+    property(
+        "start-pan", &Settings::start_pan, -90, 90,
+        "Where the window looks until a head tells, degrees, positive to the right (read when the element "
+        "starts)"),
+    property(
+        "start-tilt", &Settings::start_tilt, -90, 90,
+        "Where the window looks until a head tells, degrees, positive up (read when the element starts)"),
+    property("head", &Settings::head, "Name of the head that moves the window; empty = any"),
+    property("lockstep", &Settings::lockstep, lockstep_type,
+             "Whether a frame waits until the head's pose at its running time is known"),
+    property(
+        "lockstep-timeout", &Settings::lockstep_timeout,
+        "Nanoseconds of real time without any pose after which a waiting frame ends in an error; 0 = wait "
+        "for ever"),
+};
+
+// After the table's: what can be read only.
+enum {
+  PROP_PAN_MIN = std::size(kProperties) + 1,
+  PROP_PAN_MAX,
+  PROP_TILT_MIN,
+  PROP_TILT_MAX,
+  PROP_WINDOW_FOV
+};
+
+struct State {  // streaming thread, and state changes while it does not run
+  GstVideoInfo in, out;
+  vision::WindowGeometry geometry;
+  vision::WindowResampler resampler;
+  Settings settings;
+  std::optional<bool> live;    // nothing: not asked yet
+  std::optional<Time> newest;  // running time of the last frame
+  std::string complaint;       // about the caps, once said
+  bool warned = false;         // about an unusable buffer, once a stream
+};
+
+struct Private {
+  Adjustable<Settings> settings;
+  State state;
+  PoseFeed feed;
+  std::atomic<double> pan_reach = 0, tilt_reach = 0, window_fov = 0;  // degrees
+};
+
+CERBERUS_DEFINE_TYPE(CerberusVirtualPtz, cerberus_virtual_ptz, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
+                     Private)
+
+// ---- caps
+
+GstCaps* transform_caps(GstBaseTransform* trans, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
+  const Settings s = cerberus_virtual_ptz_self(trans)->priv->settings.snapshot();
+  GstCaps* others = gst_caps_copy(caps);
+  for (guint i = 0; i < gst_caps_get_size(others); ++i) {
+    GstStructure* structure = gst_caps_get_structure(others, i);
+    const auto size = [&](const char* field, int fixed) {
+      if (fixed > 0 && direction == GST_PAD_SINK)
+        gst_structure_set(structure, field, G_TYPE_INT, fixed, nullptr);
+      else
+        gst_structure_set(structure, field, GST_TYPE_INT_RANGE, 1, G_MAXINT, nullptr);
+    };
+    size("width", s.width);
+    size("height", s.height);
+  }
+  if (filter) {
+    GstCaps* common = gst_caps_intersect_full(filter, others, GST_CAPS_INTERSECT_FIRST);
+    gst_caps_unref(others);
+    others = common;
+  }
+  return others;
+}
+
+GstCaps* fixate_caps(GstBaseTransform* trans, GstPadDirection direction, GstCaps* caps, GstCaps* others) {
+  int width = 0, height = 0;
+  const GstStructure* structure = gst_caps_get_structure(caps, 0);
+  if (direction == GST_PAD_SINK && gst_structure_get_int(structure, "width", &width) &&
+      gst_structure_get_int(structure, "height", &height)) {
+    others = gst_caps_make_writable(gst_caps_truncate(others));
+    GstStructure* other = gst_caps_get_structure(others, 0);
+    gst_structure_fixate_field_nearest_int(other, "width", std::max(1, width / 2));
+    gst_structure_fixate_field_nearest_int(other, "height", std::max(1, height / 2));
+  }
+  return cerberus_virtual_ptz_parent_class()->fixate_caps(trans, direction, caps, others);
+}
+
+gboolean get_unit_size(GstBaseTransform*, GstCaps* caps, gsize* size) {
+  GstVideoInfo info;
+  if (!gst_video_info_from_caps(&info, caps)) return FALSE;
+  *size = GST_VIDEO_INFO_SIZE(&info);
+  return TRUE;
+}
+
+// Whatever a buffer holds: make_frame() looks at it.
+gboolean transform_size(GstBaseTransform* trans, GstPadDirection, GstCaps*, gsize, GstCaps* others,
+                        gsize* size) {
+  return get_unit_size(trans, others, size);
+}
+
+vision::WindowGeometry geometry_of(const State& state, const Settings& s) {
+  return {radians(s.wide_fov),
+          {GST_VIDEO_INFO_WIDTH(&state.in), GST_VIDEO_INFO_HEIGHT(&state.in)},
+          {GST_VIDEO_INFO_WIDTH(&state.out), GST_VIDEO_INFO_HEIGHT(&state.out)},
+          radians(s.horizontal_fov)};
+}
+
+std::string size_text(const GstVideoInfo& info) {
+  return std::to_string(GST_VIDEO_INFO_WIDTH(&info)) + " x " + std::to_string(GST_VIDEO_INFO_HEIGHT(&info));
+}
+
+std::string does_not_fit(const State& state, const Settings& s) {
+  const bool natural = s.horizontal_fov == 0;
+  return "A window of " + size_text(state.out) + " pixels" +
+         (natural ? std::string() : " that sees " + std::to_string(s.horizontal_fov) + " degrees") +
+         " does not fit into the picture of " + size_text(state.in) + " pixels" +
+         (natural ? "" : " that sees " + std::to_string(s.wide_fov) + " degrees") + ".";
+}
+
+void tell_reach(GstBaseTransform* trans, Private& self) {
+  const auto& geometry = self.state.geometry;
+  self.pan_reach = degrees(geometry.pan_reach());
+  self.tilt_reach = degrees(geometry.tilt_reach());
+  self.window_fov = degrees(geometry.fov());
+  for (const char* name : {"pan-min", "pan-max", "tilt-min", "tilt-max", "window-fov"})
+    g_object_notify(G_OBJECT(trans), name);
+}
+
+gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
+  return guarded(trans, FALSE, [&]() -> gboolean {
+    Private& self = *cerberus_virtual_ptz_self(trans)->priv;
+    State& state = self.state;
+    std::string wrong;
+    state.settings = self.settings.snapshot();
+    if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out))
+      wrong = "These video caps cannot be used.";
+    else if (GST_VIDEO_INFO_IS_INTERLACED(&state.in))
+      wrong = "A window cannot move over interlaced video: put the element `deinterlace` in front.";
+    else if (const auto geometry = geometry_of(state, state.settings); geometry.fits())
+      state.geometry = geometry;
+    else
+      wrong = does_not_fit(state, state.settings);
+    if (!wrong.empty()) {
+      // Upstream tries again with every frame: one message a failure.
+      if (wrong != state.complaint)
+        GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION, ("%s", wrong.c_str()),
+                          ("%" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
+      state.complaint = wrong;
+      return FALSE;
+    }
+    state.complaint.clear();
+    state.warned = false;
+    tell_reach(trans, self);
+    return TRUE;
+  });
+}
+
+// Angles that changed while running: those that do not fit are not taken.
+void apply_settings(GstBaseTransform* trans, Private& self) {
+  const auto changed = self.settings.changes();
+  if (!changed) return;
+  State& state = self.state;
+  const bool moved = changed->wide_fov != state.settings.wide_fov ||
+                     changed->horizontal_fov != state.settings.horizontal_fov;
+  state.settings = *changed;
+  if (!moved) return;
+  const auto geometry = geometry_of(state, *changed);
+  if (geometry.fits()) {
+    state.geometry = geometry;
+    tell_reach(trans, self);
+  } else {
+    GST_ELEMENT_WARNING(trans, RESOURCE, SETTINGS,
+                        ("%s The old angles stay.", does_not_fit(state, *changed).c_str()), (nullptr));
+  }
+}
+
+// Any stride will do.
+gboolean propose_allocation(GstBaseTransform* trans, GstQuery* decide, GstQuery* query) {
+  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
+  return cerberus_virtual_ptz_parent_class()->propose_allocation(trans, decide, query);
+}
+
+// What lies in pixels of the wide picture has no place in the window.
+gboolean transform_meta(GstBaseTransform*, GstBuffer*, GstMeta* meta, GstBuffer*) {
+  const gchar* const* tags = gst_meta_api_type_get_tags(meta->info->api);
+  if (!tags) return meta->info->api != CERBERUS_POSE_META_API_TYPE;
+  for (; *tags; ++tags)
+    if (!g_str_equal(*tags, GST_META_TAG_VIDEO_STR)) return FALSE;
+  return meta->info->api != CERBERUS_POSE_META_API_TYPE;
+}
+
+// ---- a frame
+
+bool wants_lockstep(GstBaseTransform* trans, State& state) {
+  if (state.settings.lockstep != LOCKSTEP_AUTO) return state.settings.lockstep == LOCKSTEP_ON;
+  if (!state.live) {
+    gboolean live = FALSE;
+    GstQuery* query = gst_query_new_latency();
+    if (gst_pad_peer_query(GST_BASE_TRANSFORM_SINK_PAD(trans), query))
+      gst_query_parse_latency(query, &live, nullptr, nullptr);
+    gst_query_unref(query);
+    state.live = live != FALSE;
+  }
+  return !*state.live;
+}
+
+// Without a time stamp: one frame after the last, as pantiltsink counts.
+Time running_time(GstBaseTransform* trans, const State& state, GstBuffer* buffer) {
+  const int n = GST_VIDEO_INFO_FPS_N(&state.in), d = GST_VIDEO_INFO_FPS_D(&state.in);
+  const Time length(n > 0 ? gst_util_uint64_scale_int(GST_SECOND, d, n) : 0);
+  GstClockTime running = GST_CLOCK_TIME_NONE;
+  if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
+    running = gst_segment_to_running_time(&trans->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  if (GST_CLOCK_TIME_IS_VALID(running))
+    return Time(static_cast<Time::rep>(std::min<GstClockTime>(running, G_MAXINT64 / 4)));
+  return state.newest ? *state.newest + length : Time::zero();
+}
+
+Samples<guint8> samples(GstVideoFrame& frame, guint component, bool pixels) {
+  const guint plane = GST_VIDEO_FRAME_COMP_PLANE(&frame, component);
+  const int step = GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component);
+  // Bytes that lie together are drawn together: whole RGB pixels, pairs of U and V.
+  auto* data = static_cast<guint8*>(pixels ? GST_VIDEO_FRAME_PLANE_DATA(&frame, plane)
+                                           : GST_VIDEO_FRAME_COMP_DATA(&frame, component));
+  return {data,
+          GST_VIDEO_FRAME_COMP_WIDTH(&frame, component),
+          GST_VIDEO_FRAME_COMP_HEIGHT(&frame, component),
+          GST_VIDEO_FRAME_COMP_STRIDE(&frame, component),
+          step,
+          pixels ? step : 1};
+}
+
+void draw(State& state, GstVideoFrame& in, GstVideoFrame& out, const vision::WindowGeometry::Place& place) {
+  const GstVideoFormatInfo* format = in.info.finfo;
+  const bool rgb = GST_VIDEO_FORMAT_INFO_IS_RGB(format);
+  for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS(&in); ++c) {
+    // U and V in one plane of their own, as NV12 has them.
+    const bool pair = c > 0 && GST_VIDEO_FRAME_N_PLANES(&in) == 2;
+    if (c > 0 && (rgb || (pair && c > 1))) break;
+    const auto from = samples(in, c, rgb || pair);
+    const double sub_x = 1 << GST_VIDEO_FORMAT_INFO_W_SUB(format, c),
+                 sub_y = 1 << GST_VIDEO_FORMAT_INFO_H_SUB(format, c);
+    state.resampler.draw(
+        {from.data, from.width, from.height, from.stride, from.step, from.channels},
+        samples(out, c, rgb || pair),
+        {place.left / sub_x, place.top / sub_y, state.geometry.scale(), state.geometry.scale()});
+  }
+}
+
+void attach_pose(const State& state, control::Pose pose, const vision::WindowGeometry::Place& place,
+                 GstBuffer* out) {
+  pose.pan.position = place.pan;
+  pose.tilt.position = place.tilt;
+  CerberusPose meta = to_c(pose);
+  if (!state.settings.head.empty()) meta.head = g_intern_string(state.settings.head.c_str());
+  cerberus_buffer_set_pose(out, &meta);
+}
+
+GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out) {
+  Private& self = *cerberus_virtual_ptz_self(trans)->priv;
+  State& state = self.state;
+  apply_settings(trans, self);
+  const Time time = running_time(trans, state, in);
+  if (wants_lockstep(trans, state)) {
+    const Time patience(
+        static_cast<Time::rep>(std::min<guint64>(state.settings.lockstep_timeout, G_MAXINT64)));
+    switch (self.feed.wait(time, patience)) {
+      case PoseFeed::Answer::known:
+        break;
+      case PoseFeed::Answer::interrupted:
+        return GST_FLOW_FLUSHING;
+      case PoseFeed::Answer::silent:
+        GST_ELEMENT_ERROR(
+            trans, RESOURCE, READ,
+            ("The head \"%s\" does not tell where it looks at %.3f s: for %.1f s no pose came. Is there a "
+             "pantiltsink of that name downstream? Without one, set lockstep=off.",
+             state.settings.head.c_str(), control::seconds(time),
+             static_cast<double>(state.settings.lockstep_timeout) / GST_SECOND),
+            ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(static_cast<GstClockTime>(time.count()))));
+        return GST_FLOW_ERROR;
+    }
+  }
+  state.newest = time;
+  const control::Pose pose = self.feed.at(time);
+  const auto place = state.geometry.at(pose.pan.position, pose.tilt.position);
+  GST_LOG_OBJECT(trans, "%" GST_TIME_FORMAT ": pan %.3f tilt %.3f, window at %.2f %.2f%s",
+                 GST_TIME_ARGS(static_cast<GstClockTime>(time.count())), degrees(place.pan),
+                 degrees(place.tilt), place.left, place.top, place.limited ? ", at the edge" : "");
+  attach_pose(state, pose, place, out);
+
+  VideoFrame source(state.in, in, GST_MAP_READ), target(state.out, out, GST_MAP_WRITE);
+  if (source && target) {
+    draw(state, *source.get(), *target.get(), place);
+    return GST_FLOW_OK;
+  }
+  // The picture is not there: whoever follows is told by the flag.
+  const bool told = GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_CORRUPTED) || state.warned;
+  gst_buffer_memset(out, 0, 0, gst_buffer_get_size(out));
+  GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_CORRUPTED);
+  if (!told) {
+    state.warned = true;
+    GST_ELEMENT_WARNING(
+        trans, STREAM, DECODE, ("A buffer does not hold the picture that its caps promise."),
+        ("%" G_GSIZE_FORMAT " bytes for %s", gst_buffer_get_size(in), size_text(state.in).c_str()));
+  }
+  return GST_FLOW_OK;
+}
+
+GstFlowReturn transform(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out) {
+  return guarded(trans, GST_FLOW_ERROR, [&] { return make_frame(trans, in, out); });
+}
+
+// ---- events and states
+
+gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
+  g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
+  if (pose) {
+    Private& self = *cerberus_virtual_ptz_self(trans)->priv;
+    const std::string head = self.settings.snapshot().head;
+    if (head.empty() || head == pose->head) self.feed.tell(from_c(*pose));
+  }
+  return cerberus_virtual_ptz_parent_class()->src_event(trans, event);
+}
+
+gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
+  Private& self = *cerberus_virtual_ptz_self(trans)->priv;
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_START) self.feed.interrupt(true);
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
+    // Before the others hear of it: what they tell from now on is of the new time.
+    self.feed.forget();
+    self.feed.interrupt(false);
+    self.state.newest.reset();
+  }
+  return cerberus_virtual_ptz_parent_class()->sink_event(trans, event);
+}
+
+GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
+  Private& self = *cerberus_virtual_ptz_self(element)->priv;
+  switch (change) {
+    case GST_STATE_CHANGE_READY_TO_PAUSED: {
+      const Settings s = self.settings.snapshot();
+      self.settings.refresh();
+      self.state.live.reset();
+      self.state.newest.reset();
+      self.state.complaint.clear();
+      self.state.settings = s;
+      control::Pose start;
+      start.pan.position = radians(s.start_pan);
+      start.tilt.position = radians(s.start_tilt);
+      self.feed.begin(start);
+      self.feed.interrupt(false);
+      break;
+    }
+    case GST_STATE_CHANGE_PAUSED_TO_PLAYING:
+    case GST_STATE_CHANGE_PLAYING_TO_PAUSED:
+      self.feed.play(change == GST_STATE_CHANGE_PAUSED_TO_PLAYING);
+      break;
+    case GST_STATE_CHANGE_PAUSED_TO_READY:
+      self.feed.interrupt(true);
+      break;
+    default:
+      break;
+  }
+  return GST_ELEMENT_CLASS(cerberus_virtual_ptz_parent_class())->change_state(element, change);
+}
+
+void set_property(GObject* object, guint id, const GValue* value, GParamSpec* spec) {
+  cerberus_virtual_ptz_self(object)->priv->settings.set(kProperties, id, value);
+  const std::string_view name = spec->name;
+  if (name == "width" || name == "height") gst_base_transform_reconfigure_src(GST_BASE_TRANSFORM(object));
+}
+
+void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
+  Private& self = *cerberus_virtual_ptz_self(object)->priv;
+  switch (id) {
+    case PROP_PAN_MIN:
+      return g_value_set_double(value, -self.pan_reach);
+    case PROP_PAN_MAX:
+      return g_value_set_double(value, self.pan_reach);
+    case PROP_TILT_MIN:
+      return g_value_set_double(value, -self.tilt_reach);
+    case PROP_TILT_MAX:
+      return g_value_set_double(value, self.tilt_reach);
+    case PROP_WINDOW_FOV:
+      return g_value_set_double(value, self.window_fov);
+    default:
+      self.settings.get(kProperties, id, value);
+  }
+}
+
+void cerberus_virtual_ptz_init(CerberusVirtualPtz* self) {
+  gst_video_info_init(&self->priv->state.in);
+  gst_video_info_init(&self->priv->state.out);
+}
+
+void cerberus_virtual_ptz_class_init(CerberusVirtualPtzClass* klass) {
+  GObjectClass* object = G_OBJECT_CLASS(klass);
+  object->set_property = set_property;
+  object->get_property = get_property;
+  Adjustable<Settings>::install(object, kProperties);
+  const auto readable = [&](guint id, const char* name, double low, double high, const char* blurb) {
+    g_object_class_install_property(
+        object, id,
+        g_param_spec_double(name, nullptr, blurb, low, high, 0,
+                            GParamFlags(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
+  };
+  readable(PROP_PAN_MIN, "pan-min", -90, 0,
+           "How far to the left the window reaches, degrees; 0 before the first frame");
+  readable(PROP_PAN_MAX, "pan-max", 0, 90,
+           "How far to the right the window reaches, degrees; 0 before the first frame");
+  readable(PROP_TILT_MIN, "tilt-min", -90, 0,
+           "How far down the window reaches, degrees; 0 before the first frame");
+  readable(PROP_TILT_MAX, "tilt-max", 0, 90,
+           "How far up the window reaches, degrees; 0 before the first frame");
+  readable(PROP_WINDOW_FOV, "window-fov", 0, 180,
+           "Angle that the window shows over its width, degrees: the horizontal-fov of those behind; 0 "
+           "before the first "
+           "frame");
+
+  GstElementClass* element = GST_ELEMENT_CLASS(klass);
+  element->change_state = change_state;
+  gst_element_class_set_static_metadata(element, "Virtual pan-tilt camera", "Filter/Effect/Video",
+                                        "Shows the part of a wide picture at which a pan-tilt head looks",
+                                        "The Cerberus developers");
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+
+  GstBaseTransformClass* trans = GST_BASE_TRANSFORM_CLASS(klass);
+  trans->transform_caps = transform_caps;
+  trans->fixate_caps = fixate_caps;
+  trans->get_unit_size = get_unit_size;
+  trans->transform_size = transform_size;
+  trans->set_caps = set_caps;
+  trans->propose_allocation = propose_allocation;
+  trans->transform_meta = transform_meta;
+  trans->transform = transform;
+  trans->src_event = src_event;
+  trans->sink_event = sink_event;
+}
+
+}  // namespace
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(virtualptz, GST_RANK_NONE, cerberus::plugin::cerberus_virtual_ptz, virtualptz_debug,
+                          "a window over a wide picture")
