@@ -51,7 +51,7 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
   pilot_.reset();
   history_.clear();
   watchdog_.rest();
-  manual_ = faulty_ = false;
+  manual_ = faulty_ = silent_ = false;
   halted_ = fresh_ = true;
   told_ = epoch_ = published_ = Time::zero();
   newest_.reset();
@@ -89,6 +89,7 @@ void Station::forget() {
   const std::lock_guard guard(lock_);
   newest_.reset();
   fresh_ = true;
+  told_ = std::max(told_, published_);  // what was told happens before whatever comes now
   law_.reset();
   pilot_.reset();
 }
@@ -201,7 +202,7 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
     return Answer::done;
   }
 
-  if (!runner->idle()) {  // blocked: nothing is caught up with
+  if (silent_ && !runner->idle()) {  // blocked since a frame before: nothing is caught up with
     newest_ = frame.running;
     complain(kSilent, told_, out);
     return Answer::late;
@@ -228,7 +229,8 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
   if (answer == Answer::interrupted) return answer;
   newest_ = frame.running;
   if (frame.buffer) watchdog_.feed(now);
-  if (answer == Answer::late) {
+  silent_ = answer == Answer::late;
+  if (silent_) {
     complain(kSilent, now, out);
     return answer;
   }

@@ -96,7 +96,7 @@ class Station {
   control::PoseHistory history_;  // of the head's time
   control::Watchdog watchdog_;
   Pilot pilot_;
-  bool clock_driven_ = false, halted_ = false, manual_ = false, faulty_ = false;
+  bool clock_driven_ = false, halted_ = false, manual_ = false, faulty_ = false, silent_ = false;
   drivers::HeadCommand wanted_;  // by hand
   Time told_{}, epoch_{};        // head time of the last command; head time = running time + epoch
   Time published_{};             // head time until which poses were told

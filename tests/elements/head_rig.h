@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A pantiltsink in a harness, and frames for it.
+#pragma once
+
+#include <cerberus/cerberus.h>
+#include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
+#include <gst/check/gsttestclock.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support.h"
+
+namespace head_rig {
+
+inline constexpr GstClockTime kFrame = 40 * GST_MSECOND;
+inline constexpr int kWidth = 320, kHeight = 240;
+
+enum class Source { stored, live };
+
+struct Person {
+  guint id;
+  double x, y, width, height;
+  GstClockTime age = GST_SECOND;
+  double distance = NAN;
+};
+
+// A frame with nothing on it.
+inline GstBuffer* frame_at(GstClockTime pts, GstClockTime duration = kFrame) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, kWidth * kHeight, nullptr);
+  GST_BUFFER_PTS(buffer) = pts;
+  GST_BUFFER_DURATION(buffer) = duration;
+  return buffer;
+}
+
+inline void add(GstBuffer* buffer, const Person& person) {
+  CerberusRegion region;
+  cerberus_region_init(&region);
+  region.id = person.id;
+  region.tracked = TRUE;
+  region.x = person.x;
+  region.y = person.y;
+  region.width = person.width;
+  region.height = person.height;
+  region.age = person.age;
+  region.distance = person.distance;
+  cerberus_buffer_add_region(buffer, &region);
+}
+
+inline void add(GstBuffer* buffer, CerberusFusionAction action, guint target = 0, double from = NAN,
+                double to = NAN) {
+  CerberusFusion fusion;
+  cerberus_fusion_init(&fusion);
+  fusion.action = action;
+  fusion.target = target;
+  fusion.sector_from = from;
+  fusion.sector_to = to;
+  cerberus_buffer_set_fusion(buffer, &fusion);
+}
+
+// A person of 20x60 pixels whose middle is this many degrees right of the camera's axis, behind 60 degrees.
+inline Person somebody(guint id, double degrees_right) {
+  const double focal = kWidth / 2 / std::tan(30 * std::numbers::pi / 180);
+  const double middle = kWidth / 2.0 + focal * std::tan(degrees_right * std::numbers::pi / 180);
+  return {.id = id, .x = middle - 10, .y = kHeight / 2 - 30, .width = 20, .height = 60};
+}
+
+struct Pipe {
+  int ends[2];
+  Pipe() { fail_unless(::pipe(ends) == 0); }
+  ~Pipe() {
+    close_writer();
+    ::close(ends[0]);
+  }
+  std::string reader() const { return std::to_string(ends[0]); }
+  std::string writer() const { return std::to_string(ends[1]); }
+  void close_writer() {
+    if (ends[1] >= 0) ::close(ends[1]);
+    ends[1] = -1;
+  }
+  std::string line() const {
+    std::string text;
+    for (char c = 0; ::read(ends[0], &c, 1) == 1 && c != '\n';) text += c;
+    return text;
+  }
+};
+
+struct Message {
+  std::string state, reason;
+  double pan;
+};
+
+class Rig {
+ public:
+  explicit Rig(const std::string& properties = "", Source source = Source::stored, bool at_once = true) {
+    GError* error = nullptr;
+    element = gst_parse_launch(("pantiltsink name=head " + properties).c_str(), &error);
+    fail_unless(element && !error, "%s", error ? error->message : "");
+    gst_object_ref_sink(element);
+    bus = gst_bus_new();
+    gst_element_set_bus(element, bus);
+    harness = gst_harness_new_with_element(element, "sink", nullptr);
+    if (source == Source::stored) gst_pad_set_query_function(harness->srcpad, not_live);
+    if (at_once) begin();
+  }
+  // Stream start, caps, segment.
+  void begin() {
+    gst_harness_set_src_caps_str(harness, "video/x-raw,format=GRAY8,width=320,height=240,framerate=25/1");
+  }
+  ~Rig() {
+    gst_harness_teardown(harness);
+    gst_element_set_bus(element, nullptr);
+    gst_object_unref(bus);
+    gst_object_unref(element);
+  }
+  Rig(const Rig&) = delete;
+
+  void push(GstBuffer* buffer) { fail_unless_equals_int(gst_harness_push(harness, buffer), GST_FLOW_OK); }
+  // The poses that have gone upstream since the last call.
+  std::vector<CerberusPose> poses() {
+    std::vector<CerberusPose> found;
+    while (GstEvent* event = gst_harness_try_pull_upstream_event(harness)) take(event, found);
+    return found;
+  }
+  CerberusPose next_pose() {
+    std::vector<CerberusPose> found;
+    while (found.empty()) {
+      GstEvent* event = gst_harness_pull_upstream_event(harness);
+      fail_unless(event != nullptr);
+      take(event, found);
+    }
+    return found[0];
+  }
+  std::vector<Message> messages() {
+    std::vector<Message> found;
+    while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT)) {
+      const GstStructure* s = gst_message_get_structure(message);
+      if (gst_structure_has_name(s, CERBERUS_MESSAGE_PANTILT)) {
+        Message& m = found.emplace_back();
+        m.state = gst_structure_get_string(s, "state");
+        m.reason = gst_structure_get_string(s, "reason");
+        gst_structure_get_double(s, "pan", &m.pan);
+      }
+      gst_message_unref(message);
+    }
+    return found;
+  }
+  std::string states() {
+    std::string all;
+    for (const Message& message : messages()) all += (all.empty() ? "" : " ") + message.state;
+    return all;
+  }
+  gboolean call(const char* signal) {
+    gboolean done = FALSE;
+    g_signal_emit_by_name(element, signal, &done);
+    return done;
+  }
+  gboolean call(const char* signal, double pan, double tilt) {
+    gboolean done = FALSE;
+    g_signal_emit_by_name(element, signal, pan, tilt, &done);
+    return done;
+  }
+  GstTestClock* clock() const { return gst_harness_get_testclock(harness); }
+
+  GstElement* element;
+  GstBus* bus;
+  GstHarness* harness;
+
+ private:
+  static void take(GstEvent* event, std::vector<CerberusPose>& found) {
+    if (CerberusPose* pose = cerberus_event_parse_pose(event)) {
+      found.push_back(*pose);
+      cerberus_pose_free(pose);
+    }
+    gst_event_unref(event);
+  }
+  static gboolean not_live(GstPad* pad, GstObject* parent, GstQuery* query) {
+    if (GST_QUERY_TYPE(query) != GST_QUERY_LATENCY) return gst_pad_query_default(pad, parent, query);
+    gst_query_set_latency(query, FALSE, 0, GST_CLOCK_TIME_NONE);
+    return TRUE;
+  }
+};
+
+}  // namespace head_rig

@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pantiltsink with a clock: poses by the clock, the watchdog, drivers that block or fail, and every way of asking for what
+// cannot be.
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+#include "head_rig.h"
+
+namespace {
+
+using namespace head_rig;
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+// What is promised for any change of state, whatever the driver does.
+constexpr auto kPromised = milliseconds(100);
+
+GstBuffer* frame_with(CerberusFusionAction action, GstClockTime pts) {
+  GstBuffer* buffer = frame_at(pts);
+  add(buffer, action);
+  return buffer;
+}
+
+// Lets the clock go to the time that the element waits for.
+void crank(Rig& rig) {
+  GstTestClock* clock = rig.clock();
+  fail_unless(gst_test_clock_crank(clock));
+  gst_test_clock_wait_for_next_pending_id(clock, nullptr);  // it has done its work and waits again
+  gst_object_unref(clock);
+}
+GstClockTime time_of(Rig& rig) {
+  GstTestClock* clock = rig.clock();
+  const GstClockTime time = gst_clock_get_time(GST_CLOCK(clock));
+  gst_object_unref(clock);
+  return time;
+}
+// Waits for a pose that says so; the clock stands still.
+template <typename Says>
+CerberusPose wait_for_pose(Rig& rig, Says says) {
+  for (;;) {
+    const CerberusPose pose = rig.next_pose();
+    if (says(pose)) return pose;
+  }
+}
+
+GST_START_TEST(at_rest_poses_come_five_times_a_second) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  rig.next_pose();
+  rig.push(frame_with(CERBERUS_FUSION_HOLD, 0));
+  crank(rig);
+  rig.poses();
+  const GstClockTime start = time_of(rig);
+  int poses = 0;
+  while (time_of(rig) < start + GST_SECOND) {
+    crank(rig);
+    const auto told = rig.poses();
+    poses += told.size();
+    for (const CerberusPose& pose : told) {
+      fail_if(pose.moving);
+      fail_unless_equals_uint64(pose.valid_until, GST_CLOCK_TIME_NONE);
+    }
+  }
+  fail_unless_equals_int(poses, 5);
+}
+GST_END_TEST
+
+GST_START_TEST(a_moving_head_tells_where_it_is_fifty_times_a_second) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
+  // At once: the plan has changed, its first piece ends when the latency has passed.
+  wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
+  while (time_of(rig) < 200 * GST_MSECOND) crank(rig);
+  rig.poses();
+  const GstClockTime start = time_of(rig);
+  int poses = 0;
+  while (time_of(rig) < start + GST_SECOND) {
+    crank(rig);
+    for (const CerberusPose& pose : rig.poses()) {
+      fail_unless(pose.moving);
+      fail_unless(std::fabs(pose.pan_speed - 40) < 1e-9);
+      ++poses;
+    }
+  }
+  fail_unless_equals_int(poses, 50);
+}
+GST_END_TEST
+
+GST_START_TEST(a_piece_that_ends_is_followed_by_the_next_at_that_time) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
+  CerberusPose last =
+      wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
+  bool accelerated = false;
+  for (int k = 0; k < 12; ++k) {
+    crank(rig);
+    for (const CerberusPose& pose : rig.poses()) {
+      fail_unless(pose.valid_from <= last.valid_until);
+      if (pose.valid_from == 60 * GST_MSECOND) {
+        fail_unless(std::fabs(pose.pan_acceleration - 600) < 1e-6);
+        accelerated = true;
+      }
+      last = pose;
+    }
+  }
+  fail_unless(accelerated);
+}
+GST_END_TEST
+
+GST_START_TEST(when_frames_stay_away_the_head_stops) {
+  Rig rig("watchdog-timeout=300000000", Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
+  wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
+  while (time_of(rig) < 800 * GST_MSECOND) crank(rig);
+  const auto poses = rig.poses();
+  fail_if(poses.back().moving);
+  // 40 degrees a second from 60 + 33 ms on until the stop of 300 ms is obeyed at 360.
+  const double expected = 40 * (0.36 - 0.06 - 1 / 30.0) + 40 * 40 / 1200.0;
+  fail_unless(std::fabs(poses.back().pan - expected) < 0.1, "%g %g", poses.back().pan, expected);
+  const auto messages = rig.messages();
+  fail_unless_equals_string(messages.back().state.c_str(), "stopped");
+  fail_unless(messages.back().reason.find("no frame came for 300 ms") != std::string::npos);
+  // The next frame is obeyed.
+  rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, 900 * GST_MSECOND));
+  const std::string states = rig.states();
+  fail_unless_equals_string(states.c_str(), "turning");
+}
+GST_END_TEST
+
+GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
+  wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
+  while (time_of(rig) < 500 * GST_MSECOND) crank(rig);
+  const auto start = Clock::now();
+  fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
+  fail_unless(Clock::now() - start < kPromised);
+  const auto messages = rig.messages();
+  fail_unless_equals_string(messages.back().reason.c_str(), "paused");
+  // What the application wants meanwhile is done afterwards.
+  fail_unless(rig.call("move-to", -30, 0));
+  fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PLAYING), GST_STATE_CHANGE_SUCCESS);
+  while (time_of(rig) < 4 * GST_SECOND) crank(rig);
+  fail_unless(std::fabs(rig.poses().back().pan + 30) < 1e-9);
+}
+GST_END_TEST
+
+GST_START_TEST(a_blocked_driver_delays_no_change_of_state) {
+  for (const char* call : {"open", "command", "state", "stop", "close"})
+    for (const Source source : {Source::stored, Source::live}) {
+      Pipe gate;
+      {
+        auto start = Clock::now();
+        Rig rig(std::string("driver=scripted head=") + call + (source == Source::live ? "live" : "") +
+                    " script=\"" + call + " wait " + gate.reader() + "\"",
+                source, false);
+        // Setting up a harness is three changes of state and more.
+        fail_unless(Clock::now() - start < 3 * kPromised, "%s: start", call);
+        std::atomic<bool> through = false;
+        std::thread pusher([&] {
+          rig.begin();
+          gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
+          through = true;
+        });
+        if (source == Source::live) pusher.join();  // never waits
+        for (const GstState state :
+             {GST_STATE_PAUSED, GST_STATE_PLAYING, GST_STATE_PAUSED, GST_STATE_READY}) {
+          start = Clock::now();
+          fail_if(gst_element_set_state(rig.element, state) == GST_STATE_CHANGE_FAILURE);
+          const auto took = std::chrono::duration_cast<milliseconds>(Clock::now() - start).count();
+          fail_unless(took < kPromised.count(), "%s: %s took %d ms", call, gst_element_state_get_name(state),
+                      static_cast<int>(took));
+        }
+        if (pusher.joinable()) pusher.join();
+        fail_unless(through);
+      }
+      // The head is still its driver's; nobody else may have it until the driver is through.
+      gate.close_writer();
+    }
+}
+GST_END_TEST
+
+GST_START_TEST(a_driver_that_fails_warns_once_and_the_video_goes_on) {
+  for (const Source source : {Source::stored, Source::live}) {
+    Pipe record;
+    Rig rig("driver=scripted script=\"record " + record.writer() + "; command 2 fail no power\"", source);
+    for (int k = 0; k < 10; ++k) {
+      rig.push(frame_with(k % 2 ? CERBERUS_FUSION_TURN_LEFT : CERBERUS_FUSION_TURN_RIGHT, k * kFrame));
+      while (!record.line().starts_with("command")) {
+      }
+      if (k > 0) fail_unless(record.line().starts_with("stop"));
+    }
+    GstMessage* warning = gst_bus_timed_pop_filtered(rig.bus, 10 * GST_SECOND, GST_MESSAGE_WARNING);
+    fail_unless(warning != nullptr);
+    GError* error = nullptr;
+    gst_message_parse_warning(warning, &error, nullptr);
+    fail_unless(strstr(error->message, "\"head\"") && strstr(error->message, "no power"), "%s",
+                error->message);
+    g_error_free(error);
+    gst_message_unref(warning);
+    fail_unless(gst_bus_pop_filtered(rig.bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING |
+                                                                          GST_MESSAGE_ERROR)) == nullptr);
+  }
+}
+GST_END_TEST
+
+// What the element says when it does not start; it says it once.
+std::string refusal(const std::string& properties) {
+  GstElement* element = gst_parse_launch(("pantiltsink " + properties).c_str(), nullptr);
+  gst_object_ref_sink(element);
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  fail_unless_equals_int(gst_element_set_state(element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  std::string text;
+  while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    fail_unless(text.empty(), "and also: %s", error->message);
+    text = error->message;
+    g_error_free(error);
+    gst_message_unref(message);
+  }
+  gst_element_set_state(element, GST_STATE_NULL);
+  gst_element_set_bus(element, nullptr);
+  gst_object_unref(bus);
+  gst_object_unref(element);
+  return text;
+}
+
+GST_START_TEST(what_cannot_be_is_refused_with_its_name) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"driver=nonsense", "no head driver \"nonsense\": take one of simulated, scripted"},
+      {"pan-min=10", "pan-min 10 and pan-max 170 exclude 0"},
+      {"tilt-max=-1", "tilt-min -45 and tilt-max -1 exclude 0"},
+      {"max-speed=0", "speed of 0"},
+      {"max-speed=1e9", "speed of 1e+09"},
+      {"max-acceleration=1e9", "acceleration of 1e+09"},
+      {"start-pan=171", "beyond its limits"},
+      {"latency=6000000000", "at most 5 s"},
+      {"driver=scripted head=cellar script=\"open fail no such device\"",
+       "head \"cellar\" cannot be opened: no such device"},
+      {"driver=scripted script=nonsense", "script: 'nonsense'"},
+  };
+  for (const auto& [properties, expected] : cases) {
+    const std::string text = refusal(properties);
+    fail_unless(text.find(expected) != std::string::npos, "%s: '%s'", properties, text.c_str());
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(one_head_has_one_sink) {
+  {
+    Rig first("head=door");
+    fail_unless(refusal("head=door").find("Another pantiltsink drives the head \"door\"") !=
+                std::string::npos);
+    Rig other("head=gate");
+  }
+  Rig again("head=door");
+}
+GST_END_TEST
+
+GST_START_TEST(a_head_whose_driver_blocks_is_not_free) {
+  Pipe gate;
+  {
+    Rig rig("driver=scripted head=door script=\"close wait " + gate.reader() + "\"", Source::stored);
+  }
+  fail_unless(refusal("head=door").find("door") != std::string::npos);
+  gate.close_writer();
+}
+GST_END_TEST
+
+GST_START_TEST(a_strangers_pose_event_passes_and_changes_nothing) {
+  Rig rig;
+  rig.poses();
+  CerberusPose pose;
+  cerberus_pose_init(&pose);
+  pose.pan = 77;
+  fail_unless(gst_element_send_event(rig.element, cerberus_event_new_pose(&pose)));
+  fail_unless(rig.next_pose().pan == 77);
+  rig.push(frame_with(CERBERUS_FUSION_HOLD, 0));
+  fail_unless(rig.poses().back().pan == 0);
+}
+GST_END_TEST
+
+GST_START_TEST(caps_without_a_size_are_refused) {
+  GstHarness* harness = gst_harness_new("pantiltsink");
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(harness->element, bus);
+  gst_harness_set_src_caps_str(harness, "video/x-raw,format=GRAY8");
+  gst_harness_push(harness, frame_at(0));
+  GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+  fail_unless(message != nullptr);
+  gst_message_unref(message);
+  gst_element_set_bus(harness->element, nullptr);
+  gst_object_unref(bus);
+  gst_harness_teardown(harness);
+}
+GST_END_TEST
+
+int threads() {
+  int count = 0;
+  GDir* dir = g_dir_open("/proc/self/task", 0, nullptr);
+  while (dir && g_dir_read_name(dir)) ++count;
+  if (dir) g_dir_close(dir);
+  return count;
+}
+
+GST_START_TEST(many_starts_and_stops_leave_no_thread) {
+  const int before = threads();
+  GstElement* element = gst_element_factory_make("pantiltsink", nullptr);
+  for (int k = 0; k < 1000; ++k) {
+    fail_if(gst_element_set_state(element, GST_STATE_PLAYING) == GST_STATE_CHANGE_FAILURE);
+    fail_if(gst_element_set_state(element, GST_STATE_NULL) == GST_STATE_CHANGE_FAILURE);
+  }
+  gst_object_unref(element);
+  fail_unless_equals_int(threads(), before);
+}
+GST_END_TEST
+
+Suite* pantiltsink_live_suite() {
+  Suite* suite = suite_create("pantiltsink with a clock");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 60);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_test(tests, at_rest_poses_come_five_times_a_second);
+  tcase_add_test(tests, a_moving_head_tells_where_it_is_fifty_times_a_second);
+  tcase_add_test(tests, a_piece_that_ends_is_followed_by_the_next_at_that_time);
+  tcase_add_test(tests, when_frames_stay_away_the_head_stops);
+  tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
+  tcase_add_test(tests, a_blocked_driver_delays_no_change_of_state);
+  tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
+  tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
+  tcase_add_test(tests, one_head_has_one_sink);
+  tcase_add_test(tests, a_head_whose_driver_blocks_is_not_free);
+  tcase_add_test(tests, a_strangers_pose_event_passes_and_changes_nothing);
+  tcase_add_test(tests, caps_without_a_size_are_refused);
+  tcase_add_test(tests, many_starts_and_stops_leave_no_thread);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(pantiltsink_live);
