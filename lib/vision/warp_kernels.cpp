@@ -105,6 +105,10 @@ HWY_INLINE void sample(View<const T> source, const std::int32_t* x, const std::i
   const int lanes = static_cast<int>(hn::Lanes(d));
   int i = 0;
   for (; i + lanes <= count; i += lanes) sample_vector(d, source, x + i, y + i, out + i);
+  if (i < count && count >= lanes) {  // the last vector overlaps the one before
+    i = count - lanes;
+    return sample_vector(d, source, x + i, y + i, out + i);
+  }
   const hn::CappedTag<std::int32_t, 1> one;
   for (; i < count; ++i) sample_vector(one, source, x + i, y + i, out + i);
 }
