@@ -493,8 +493,8 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   GrayView blurred = mask;
   if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);
   s.draw_known(false);
-  if (!s.draw_present(
-          in, blurred)) {  // a perspective whose inverse is beyond reason: the mask held the blurred picture
+  // False for a perspective whose inverse is beyond reason. The mask holds the blurred picture then.
+  if (!s.draw_present(in, blurred)) {
     s.frames = 0;
     for (int y = 0; y < mask.height; ++y) std::fill_n(mask.row(y), mask.width, std::uint8_t{0});
     return;
