@@ -87,6 +87,11 @@ inline std::string text(const Bytes& values) {
   return result;
 }
 
+// (GStreamer's macro for strings keeps a pointer into a temporary.)
+inline void assert_says(const std::string& found, const char* expected) {
+  fail_unless(found == expected, "\"%s\" is not \"%s\"", found.c_str(), expected);
+}
+
 struct Rig {
   GstElement* element;
   GstBus* bus = gst_bus_new();

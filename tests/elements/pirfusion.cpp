@@ -136,8 +136,8 @@ GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_told) {
   }
   const auto told = rig.told();
   fail_unless_equals_int(told.size(), 2);
-  fail_unless_equals_string(told[0].c_str(), "0:7:zero");
-  fail_unless_equals_string(told[1].c_str(), "200:1:track");
+  assert_says(told[0], "0:7:zero");
+  assert_says(told[1], "200:1:track");
 }
 GST_END_TEST
 
@@ -182,8 +182,7 @@ GST_START_TEST(live_the_newest_reading_not_later_than_the_frame_counts) {
     const char* values;
   } cases[] = {{0, "222"},  {9, "222"},  {10, "100"},  {49, "100"},
                {50, "010"}, {99, "010"}, {100, "001"}, {900, "001"}};
-  for (const auto& c : cases)
-    fail_unless_equals_string(text(sensors(rig.at(c.time * kMs))).c_str(), c.values);
+  for (const auto& c : cases) assert_says(text(sensors(rig.at(c.time * kMs))), c.values);
 }
 GST_END_TEST
 
@@ -198,17 +197,16 @@ GST_START_TEST(readings_out_of_order_are_put_where_they_belong) {
     int time;
     const char* values;
   } cases[] = {{40, "000"}, {60, "010"}, {99, "010"}, {110, "100"}, {250, "100"}};
-  for (const auto& c : cases)
-    fail_unless_equals_string(text(sensors(rig.at(c.time * kMs))).c_str(), c.values);
+  for (const auto& c : cases) assert_says(text(sensors(rig.at(c.time * kMs))), c.values);
   // What was heard last is repeated by heartbeats: one of before them does not undo it.
   for (const int time : {300, 400, 500}) rig.read(time * kMs, {1, 0, 0});
   rig.read(450 * kMs, {0, 0, 1});
-  fail_unless_equals_string(text(sensors(rig.at(470 * kMs))).c_str(), "001");
-  fail_unless_equals_string(text(sensors(rig.at(500 * kMs))).c_str(), "100");
+  assert_says(text(sensors(rig.at(470 * kMs))), "001");
+  assert_says(text(sensors(rig.at(500 * kMs))), "100");
   // Later by much: running time began anew, and what was said of the time before is no future.
   rig.read(10 * GST_SECOND, {0, 0, 1});
   rig.read(300 * kMs, {1, 1, 0});
-  fail_unless_equals_string(text(sensors(rig.at(11 * GST_SECOND))).c_str(), "110");
+  assert_says(text(sensors(rig.at(11 * GST_SECOND))), "110");
 }
 GST_END_TEST
 
@@ -216,11 +214,11 @@ GST_START_TEST(a_reading_of_unknown_value_or_wrong_size_is_invalid) {
   Rig rig;
   rig.add_pir();
   rig.read(0, {1, 77, 2});
-  fail_unless_equals_string(text(sensors(rig.at(0))).c_str(), "122");
+  assert_says(text(sensors(rig.at(0))), "122");
   fail_unless(rig.warning().empty());
   for (int k = 1; k < 4; ++k) {
     rig.read(k * 40 * kMs, {1, 1});
-    fail_unless_equals_string(text(sensors(rig.at(k * 40 * kMs))).c_str(), "222");
+    assert_says(text(sensors(rig.at(k * 40 * kMs))), "222");
   }
   const std::string warning = rig.warning();
   fail_unless(
@@ -235,11 +233,11 @@ GST_START_TEST(readings_and_frames_without_a_time_are_taken_as_they_come) {
   Rig rig;
   rig.add_pir();
   rig.read(GST_CLOCK_TIME_NONE, {1, 0, 0});
-  fail_unless_equals_string(text(sensors(rig.at(GST_CLOCK_TIME_NONE))).c_str(), "100");
+  assert_says(text(sensors(rig.at(GST_CLOCK_TIME_NONE))), "100");
   rig.read(GST_CLOCK_TIME_NONE, {0, 1, 0});
-  fail_unless_equals_string(text(sensors(rig.at(80 * kMs))).c_str(), "010");
+  assert_says(text(sensors(rig.at(80 * kMs))), "010");
   rig.read(60 * kMs, {0, 0, 1});
-  fail_unless_equals_string(text(sensors(rig.at(GST_CLOCK_TIME_NONE))).c_str(), "001");
+  assert_says(text(sensors(rig.at(GST_CLOCK_TIME_NONE))), "001");
 }
 GST_END_TEST
 
@@ -252,10 +250,10 @@ GST_START_TEST(several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_num
   rig.read(0, {1, 0}, 0);
   rig.read(0, {2}, 1);
   const CerberusFusion before = rig.show(frame_at(0, 0));
-  fail_unless_equals_string(text(sensors(before)).c_str(), "2210");
+  assert_says(text(sensors(before)), "2210");
   rig.read(40 * kMs, {0}, 2);
   const CerberusFusion fusion = rig.show(frame_at(40 * kMs, 0));
-  fail_unless_equals_string(text(sensors(fusion)).c_str(), "0210");
+  assert_says(text(sensors(fusion)), "0210");
   // The third sensor looks at 90 +- 30.
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
   fail_unless(std::abs(fusion.sector_from - 60) < 1e-9 && std::abs(fusion.sector_to - 120) < 1e-9);
@@ -284,10 +282,10 @@ GST_START_TEST(new_pir_caps_count_from_their_first_reading_on) {
   rig.read(40 * kMs, {1, 0, 0});
   gst_harness_set_src_caps_str(rig.pir[0], with_sensors(2, 100, 40).c_str());
   rig.read(80 * kMs, {0, 1});
-  fail_unless_equals_string(text(sensors(rig.at(20 * kMs))).c_str(), "000");
-  fail_unless_equals_string(text(sensors(rig.at(60 * kMs))).c_str(), "100");
+  assert_says(text(sensors(rig.at(20 * kMs))), "000");
+  assert_says(text(sensors(rig.at(60 * kMs))), "100");
   const CerberusFusion fusion = rig.show(frame_at(90 * kMs, 0));
-  fail_unless_equals_string(text(sensors(fusion)).c_str(), "01");
+  assert_says(text(sensors(fusion)), "01");
   fail_unless(std::abs(fusion.sector_from - 110) < 1e-9);  // 140 +- 30
 }
 GST_END_TEST
@@ -306,14 +304,14 @@ GST_START_TEST(what_happens_at_a_pir_pad_stays_there) {
   fail_unless(gst_harness_push_event(pir, gst_event_new_flush_start()));
   rig.at(80 * kMs);  // in the middle of the flush
   fail_unless(gst_harness_push_event(pir, gst_event_new_flush_stop(TRUE)));
-  fail_unless_equals_string(text(sensors(rig.at(120 * kMs))).c_str(), "2");  // what was said is forgotten
+  assert_says(text(sensors(rig.at(120 * kMs))), "2");  // what was said is forgotten
   GstSegment segment;
   gst_segment_init(&segment, GST_FORMAT_TIME);
   fail_unless(gst_harness_push_event(pir, gst_event_new_segment(&segment)));
   rig.read(160 * kMs, {1});
-  fail_unless_equals_string(text(sensors(rig.at(160 * kMs))).c_str(), "1");
+  assert_says(text(sensors(rig.at(160 * kMs))), "1");
   fail_unless(gst_harness_push_event(pir, gst_event_new_eos()));
-  fail_unless_equals_string(text(sensors(rig.at(200 * kMs))).c_str(), "1");  // ended: its last word
+  assert_says(text(sensors(rig.at(200 * kMs))), "1");  // ended: its last word
   for (const GstEventType type : events_out(rig.video))
     ck_abort_msg("%s reached the source pad", gst_event_type_get_name(type));
 }
@@ -426,7 +424,7 @@ GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
   rig.read(200 * kMs, {0, 0, 1});
   CerberusFusion fusion = rig.show(frame_at(240 * kMs, 0));
   fail_unless_equals_int(fusion.doubtful, 0b100);
-  fail_unless_equals_string(text(sensors(fusion)).c_str(), "001");  // told as it was read
+  assert_says(text(sensors(fusion)), "001");  // told as it was read
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_ZERO);
   fail_unless_equals_int(rig.show(frame_at(10 * GST_SECOND, 0)).doubtful, 0b100);  // just after
   fusion = rig.show(frame_at(14 * GST_SECOND, 0));                                 // calm for long
@@ -546,8 +544,7 @@ GST_START_TEST(rules_that_cannot_be_used_are_refused_and_the_case_is_named) {
                {broken, {":1"}}};
   for (const auto& c : cases) {
     const std::string text = refusal(c.file.property());
-    fail_unless(text.find(g_path_get_basename(c.file.path().c_str())) != std::string::npos, "%s",
-                text.c_str());
+    fail_unless(text.find(c.file.path()) != std::string::npos, "%s", text.c_str());
     for (const char* word : c.words)
       fail_unless(text.find(word) != std::string::npos, "\"%s\" is not in: %s", word, text.c_str());
   }
@@ -621,10 +618,10 @@ GST_START_TEST(pads_come_and_go_while_frames_pass) {
   fail_unless_equals_int(rig.at(40 * kMs).n_sensors, 3);
   rig.add_pir(with_sensors(1, 50, 0).c_str());
   rig.read(80 * kMs, {1}, 1);
-  fail_unless_equals_string(text(sensors(rig.at(80 * kMs))).c_str(), "1001");
+  assert_says(text(sensors(rig.at(80 * kMs))), "1001");
   EXPECT_CRITICAL(fail_if(gst_element_request_pad_simple(rig.element, "pir_1")));  // taken
   rig.remove_pir(0);
-  fail_unless_equals_string(text(sensors(rig.at(120 * kMs))).c_str(), "1");
+  assert_says(text(sensors(rig.at(120 * kMs))), "1");
   rig.remove_pir(1);
   fail_unless_equals_int(rig.at(160 * kMs).n_sensors, 0);
   rig.add_pir();  // the first number is free again
@@ -648,12 +645,12 @@ GST_START_TEST(a_pad_that_is_unlinked_says_nothing_any_more) {
   Rig rig;
   GstHarness* pir = rig.add_pir();
   rig.read(0, {1, 0, 0});
-  fail_unless_equals_string(text(sensors(rig.at(0))).c_str(), "100");
+  assert_says(text(sensors(rig.at(0))), "100");
   GstPad* pad = static_pad(rig.element, "pir_0");
   fail_unless(gst_pad_unlink(pir->srcpad, pad));
-  fail_unless_equals_string(text(sensors(rig.at(40 * kMs))).c_str(), "222");
+  assert_says(text(sensors(rig.at(40 * kMs))), "222");
   fail_unless_equals_int(gst_pad_link(pir->srcpad, pad), GST_PAD_LINK_OK);
-  fail_unless_equals_string(text(sensors(rig.at(80 * kMs))).c_str(), "100");
+  assert_says(text(sensors(rig.at(80 * kMs))), "100");
 }
 GST_END_TEST
 

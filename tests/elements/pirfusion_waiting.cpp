@@ -59,11 +59,11 @@ std::string run(unsigned seed) {
 GST_START_TEST(live_nobody_waits_for_a_pir_pad_that_never_speaks) {
   Rig rig(true, kForEver);
   rig.add_pir(nullptr);  // linked, and not a word
-  fail_unless_equals_string(values(rig, 0).c_str(), "");
+  assert_says(values(rig, 0), "");
   gst_harness_set_src_caps_str(rig.pir[0], kPaper);
-  fail_unless_equals_string(values(rig, 40 * kMs).c_str(), "222");
+  assert_says(values(rig, 40 * kMs), "222");
   gst_harness_push_event(rig.pir[0], gst_event_new_eos());
-  fail_unless_equals_string(values(rig, 80 * kMs).c_str(), "222");
+  assert_says(values(rig, 80 * kMs), "222");
   fail_unless(rig.warning().empty());
 }
 GST_END_TEST
@@ -72,9 +72,9 @@ GST_START_TEST(live_nobody_waits_for_a_late_reading) {
   Rig rig(true, kForEver);
   rig.add_pir();
   rig.read(0, {1, 0, 0});
-  fail_unless_equals_string(values(rig, 10 * GST_SECOND).c_str(), "100");
+  assert_says(values(rig, 10 * GST_SECOND), "100");
   rig.read(5 * GST_SECOND, {0, 1, 0});
-  fail_unless_equals_string(values(rig, 11 * GST_SECOND).c_str(), "010");
+  assert_says(values(rig, 11 * GST_SECOND), "010");
 }
 GST_END_TEST
 
@@ -89,7 +89,7 @@ GST_START_TEST(not_live_a_frame_waits_for_the_readings_of_its_time) {
     rig.read(begin + 90 * kMs, {0, 1, 0});
     rig.read(begin + 150 * kMs, {0, 0, 1});
     fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
-    fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "010");
+    assert_says(text(sensors(rig.decision())), "010");
   }
 }
 GST_END_TEST
@@ -108,7 +108,7 @@ GST_START_TEST(not_live_every_linked_pad_is_waited_for) {
     rig.read(begin + 60 * kMs, {1}, 1);
     rig.read(begin + 101 * kMs, {0}, 1);
     fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
-    fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "1001");
+    assert_says(text(sensors(rig.decision())), "1001");
   }
   gst_element_release_request_pad(rig.element, unlinked);
   gst_object_unref(unlinked);
@@ -126,7 +126,7 @@ GST_START_TEST(readings_gaps_and_the_end_cover_a_frame) {
       Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
       if (!before) action(rig, pir);
       fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
-      fail_unless_equals_string(text(sensors(rig.decision())).c_str(), expected);
+      assert_says(text(sensors(rig.decision())), expected);
     }
   };
   covered_by([](Rig& rig, GstHarness*) { rig.read(GST_SECOND, {1, 0, 0}); }, "100");  // a heartbeat
@@ -154,9 +154,9 @@ GST_START_TEST(a_gap_ends_before_its_end) {
   GstHarness* pir = rig.add_pir();
   rig.read(0, {1, 0, 0});
   gst_harness_push_event(pir, gst_event_new_gap(500 * kMs, 500 * kMs));
-  fail_unless_equals_string(values(rig, 999 * kMs).c_str(), "100");
+  assert_says(values(rig, 999 * kMs), "100");
   fail_unless(rig.warning().empty());
-  fail_unless_equals_string(values(rig, GST_SECOND).c_str(), "222");
+  assert_says(values(rig, GST_SECOND), "222");
   fail_if(rig.warning().empty());
 }
 GST_END_TEST
@@ -178,7 +178,7 @@ GST_START_TEST(a_silent_pad_is_warned_of_and_ignored_until_it_speaks) {
   rig.read(0, {1, 0, 0});
   rig.read(GST_SECOND, {0}, 1);
   const gint64 begin = g_get_monotonic_time();
-  fail_unless_equals_string(values(rig, 500 * kMs).c_str(), "2222");
+  assert_says(values(rig, 500 * kMs), "2222");
   fail_unless(g_get_monotonic_time() - begin >= 20 * G_TIME_SPAN_MILLISECOND);
   const std::string warning = rig.warning();
   fail_unless(warning.find("pir_0") != std::string::npos && warning.find("0.02 s") != std::string::npos, "%s",
@@ -186,14 +186,14 @@ GST_START_TEST(a_silent_pad_is_warned_of_and_ignored_until_it_speaks) {
   fail_unless(rig.warning().empty());  // pir_1 had spoken
   // From now on a wait would be for ever.
   g_object_set(rig.element, "max-wait", GST_CLOCK_TIME_NONE, nullptr);
-  for (int k = 0; k < 5; ++k) fail_unless_equals_string(values(rig, (600 + k) * kMs).c_str(), "2222");
+  for (int k = 0; k < 5; ++k) assert_says(values(rig, (600 + k) * kMs), "2222");
   // It speaks: counted again, and waited for again.
   rig.read(700 * kMs, {0, 0, 0});
   Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(800 * kMs));
   rig.read(750 * kMs, {0, 1, 0});
   rig.read(900 * kMs, {0, 0, 1});
   fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
-  fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "0102");
+  assert_says(text(sensors(rig.decision())), "0102");
 }
 GST_END_TEST
 
@@ -201,7 +201,7 @@ GST_START_TEST(with_max_wait_0_nobody_waits_and_nobody_complains) {
   Rig rig(false, "max-wait=0");
   rig.add_pir();
   rig.read(0, {1, 0, 0});
-  fail_unless_equals_string(values(rig, 500 * kMs).c_str(), "100");
+  assert_says(values(rig, 500 * kMs), "100");
   fail_unless(rig.warning().empty());
 }
 GST_END_TEST
@@ -240,7 +240,7 @@ GST_START_TEST(after_a_flush_a_frame_waits_again) {
   rig.read(50 * kMs, {0, 1, 0});
   rig.read(150 * kMs, {1, 0, 0});
   fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
-  fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "010");
+  assert_says(text(sensors(rig.decision())), "010");
 }
 GST_END_TEST
 
@@ -258,7 +258,7 @@ GST_START_TEST(a_flush_of_a_pir_pad_takes_back_what_it_covered) {
   rig.read(50 * kMs, {0, 1, 0});
   rig.read(150 * kMs, {1, 0, 0});
   fail_unless_equals_int(frame_in.flow(), GST_FLOW_OK);
-  fail_unless_equals_string(text(sensors(rig.decision())).c_str(), "010");
+  assert_says(text(sensors(rig.decision())), "010");
 }
 GST_END_TEST
 
@@ -268,12 +268,12 @@ GST_START_TEST(a_pir_file_waits_for_the_video_and_no_frame_is_lost) {
   rig.read(0, {0, 0, 1});
   rig.read(9 * GST_SECOND, {1, 0, 0});
   Pushing ahead(pir, static_pad(rig.element, "pir_0"), reading(12 * GST_SECOND, {0, 1, 0}));
-  fail_unless_equals_string(values(rig, GST_SECOND).c_str(), "001");
+  assert_says(values(rig, GST_SECOND), "001");
   fail_unless(ahead.waits());  // 11 s ahead
   // The frame that needs it gets it.
-  fail_unless_equals_string(values(rig, 11 * GST_SECOND).c_str(), "100");
+  assert_says(values(rig, 11 * GST_SECOND), "100");
   fail_unless_equals_int(ahead.flow(), GST_FLOW_OK);
-  fail_unless_equals_string(values(rig, 12 * GST_SECOND).c_str(), "010");
+  assert_says(values(rig, 12 * GST_SECOND), "010");
 }
 GST_END_TEST
 
@@ -282,7 +282,7 @@ GST_START_TEST(a_live_pir_source_never_waits) {
   rig.add_pir();
   for (int k = 0; k < 6000; ++k)
     rig.read(k * GST_SECOND, {guint8(k & 1), 0, 0});  // and its history is bounded
-  fail_unless_equals_string(values(rig, 5999 * GST_SECOND).c_str(), "100");
+  assert_says(values(rig, 5999 * GST_SECOND), "100");
 }
 GST_END_TEST
 
