@@ -289,6 +289,8 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   MotionFit fit;
   share = share_well = 0;
   for (int level = top; level >= 0; --level) {
+    // Where the coarsest level agreed, the finest one finds its patches without those in between.
+    if (level < top && level > 0 && share > kMajority) continue;
     if (level < top) follow(level, motion);
     collect(level);
     const std::array guesses{Transform{}, motion};
