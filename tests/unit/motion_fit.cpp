@@ -19,14 +19,15 @@ constexpr Size kSize{320, 240};
 
 // A grid of 16 x 12 honest samples of standard deviation 0.1.
 MotionSamples samples_of(const Transform& motion, std::mt19937& random, double sigma = 0.1) {
-  std::normal_distribution<double> normal(0, sigma);
+  std::normal_distribution<double> normal;  // of deviation 1: 0 is not allowed there
   MotionSamples s;
   for (int y = 0; y < 12; ++y)
     for (int x = 0; x < 16; ++x) {
       const int n = s.count++;
       s.x[n] = static_cast<float>(10 + 20 * x), s.y[n] = static_cast<float>(10 + 20 * y);
       const Point p = motion.apply({s.x[n], s.y[n]});
-      s.u[n] = static_cast<float>(p.x + normal(random)), s.v[n] = static_cast<float>(p.y + normal(random));
+      s.u[n] = static_cast<float>(p.x + sigma * normal(random)),
+      s.v[n] = static_cast<float>(p.y + sigma * normal(random));
       s.wxx[n] = s.wyy[n] = 100, s.wxy[n] = 0;
       s.evidence[n] = 1;
       s.region[n] = static_cast<std::uint8_t>(y / 3 * 4 + x / 4);
