@@ -15,6 +15,15 @@ std::string values(Rig& rig, GstClockTime time) {
   return text(sensors(rig.at(time)));
 }
 
+// A loaded machine may take its time once, not three times.
+template <typename Round>
+void assert_lets_go(const char* what, Round&& round) {
+  gint64 took = 0;
+  for (int i = 0; i < 3; ++i)
+    if ((took = round()) < kUnlock) return;
+  ck_abort_msg("%s: %" G_GINT64_FORMAT " us", what, took);
+}
+
 // How long `action` takes until the waiting push is back, and with what.
 template <typename Action>
 gint64 time_until_back(Pushing& pushing, GstFlowReturn expected, Action&& action) {
@@ -216,13 +225,13 @@ GST_START_TEST(a_waiting_frame_lets_go_at_once) {
       {"to NULL", [](Rig& rig) { gst_element_set_state(rig.element, GST_STATE_NULL); }},
       {"pad off", [](Rig& rig) { gst_pad_set_active(static_pad(rig.element, "sink"), FALSE); }},
   };
-  for (const auto& c : cases) {
-    Rig rig(false, kForEver);
-    rig.add_pir();
-    Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
-    const gint64 took = time_until_back(frame_in, GST_FLOW_FLUSHING, [&] { c.action(rig); });
-    fail_unless(took < kUnlock, "%s: %" G_GINT64_FORMAT " us", c.what, took);
-  }
+  for (const auto& c : cases)
+    assert_lets_go(c.what, [&] {
+      Rig rig(false, kForEver);
+      rig.add_pir();
+      Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(GST_SECOND));
+      return time_until_back(frame_in, GST_FLOW_FLUSHING, [&] { c.action(rig); });
+    });
 }
 GST_END_TEST
 
@@ -301,13 +310,13 @@ GST_START_TEST(a_waiting_pir_file_lets_go_at_once) {
       {"the video ended", GST_FLOW_EOS,
        [](Rig& rig) { gst_harness_push_event(rig.video, gst_event_new_eos()); }},
   };
-  for (const auto& c : cases) {
-    Rig rig(false, kForEver);
-    GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
-    Pushing ahead(pir, static_pad(rig.element, "pir_0"), reading(GST_SECOND * 60, {0, 1, 0}));
-    const gint64 took = time_until_back(ahead, c.flow, [&] { c.action(rig); });
-    fail_unless(took < kUnlock, "%s: %" G_GINT64_FORMAT " us", c.what, took);
-  }
+  for (const auto& c : cases)
+    assert_lets_go(c.what, [&] {
+      Rig rig(false, kForEver);
+      GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
+      Pushing ahead(pir, static_pad(rig.element, "pir_0"), reading(GST_SECOND * 60, {0, 1, 0}));
+      return time_until_back(ahead, c.flow, [&] { c.action(rig); });
+    });
 }
 GST_END_TEST
 
