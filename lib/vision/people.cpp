@@ -7,20 +7,17 @@
 #include "vision/people.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
+
+#include "vision/people_kernels.h"
 
 namespace cerberus::vision {
 namespace {
 
 constexpr double kBodyAspect = 0.36;  // width of a walking body / its height
 constexpr int kRowsOfABody = 24;      // cells a body is cut into at least, if it has as many pixels
-// 64 ln(p / kOutside) and 64 ln((1 - p) / (1 - kOutside)) with kCore = .65, kSide = .35, kOutside = .04
-constexpr int kUnit = 64;
-constexpr int kCoreMoving = 178, kCoreStill = -65;
-constexpr int kSideMoving = 139, kSideStill = -25;
-constexpr int kPrice = 26;       // 0.4 for each cell of the box; a whole person brings 1 to 1.7
-constexpr double kSolid = 0.88;  // share of the boxes that moves: people leave more gaps
+constexpr int kUnit = 64;             // of the logarithms in people_kernels.h
+constexpr double kSolid = 0.88;       // share of the boxes that moves: people leave more gaps
 constexpr std::size_t kMostPeople = 12;
 constexpr int kMostCells = 65535;  // both packed sums stay below 65536
 
@@ -116,31 +113,23 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
     const int end = std::min({to, columns_ - w + 1, inside_.right - (w + 2) / 3 + 1});
     if (first >= end) continue;
     const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
-    const std::uint32_t* t = &sums_[(foot - h) * pitch];
-    const std::uint32_t* b = &sums_[foot * pitch];
+    const BoxRow row{
+        &sums_[(foot - h) * pitch], &sums_[foot * pitch], w, q, inside_.left, inside_.right, high};
     int* scores = scores_.data();
-    const int in_left = inside_.left, in_right = inside_.right;
-    for (int l = first; l < end; ++l) {
-      const std::uint32_t all = b[l + w] - b[l] - t[l + w] + t[l];
-      const std::uint32_t core = b[l + w - q] - b[l + q] - t[l + w - q] + t[l + q];
-      const std::uint32_t side = all - core;
-      const int core_moving = core & 0xffff, core_still = static_cast<int>(core >> 16) - core_moving;
-      const int side_moving = side & 0xffff, side_still = static_cast<int>(side >> 16) - side_moving;
-      const int seen = (std::min(l + w, in_right) - std::max(l, in_left)) * high;
-      scores[l] = core_moving * kCoreMoving + core_still * kCoreStill + side_moving * kSideMoving +
-                  side_still * kSideStill - seen * kPrice;
-    }
+    int highest = score_boxes(row, first, end, scores);
+    if (highest <= best_value) continue;
     const auto lost = [&](int l) {
       return anchor >= 0 && l > anchor ? static_cast<int>((whole[l] - whole[anchor]) & 0xffff) * kSideMoving
                                        : 0;
     };
-    if (anchor >= 0)
+    if (anchor >= 0) {
       for (int l = first; l < end; ++l) scores[l] -= lost(l);
-    const int* top = std::max_element(scores + first, scores + end);
-    if (*top <= best_value) continue;
-    best_value = *top;
-    const int l = static_cast<int>(top - scores), score = *top + lost(l);
-    const int seen = (std::min(l + w, in_right) - std::max(l, in_left)) * high;
+      highest = *std::max_element(scores + first, scores + end);
+      if (highest <= best_value) continue;
+    }
+    best_value = highest;
+    const int l = static_cast<int>(std::find(scores + first, scores + end, highest) - scores);
+    const int score = highest + lost(l), seen = row.columns(l) * high;
     best = {l, foot - h, l + w, foot, score, score / std::max(seen, 1) + kPrice};
   }
   return best;
