@@ -42,6 +42,22 @@ Direction Lens::direction(Point p, double pan, double tilt) const {
   return {wrap_angle(pan + std::atan2(r.right, r.ahead)), std::atan2(r.up, std::hypot(r.right, r.ahead))};
 }
 
+Transform Lens::turn(double pan_before, double tilt_before, double pan_after, double tilt_after) const {
+  if (!known()) return {};
+  // Axes of the camera: right, down, ahead.
+  const auto rotation = [](double pan, double tilt) {
+    const double cp = std::cos(pan), sp = std::sin(pan), ct = std::cos(tilt), st = std::sin(tilt);
+    return Transform{{cp, sp * st, sp * ct, 0, ct, -st, -sp, cp * st, cp * ct}};
+  };
+  const auto transposed = [](const Transform& t) {
+    const auto& m = t.m;
+    return Transform{{m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]}};
+  };
+  const double f = focal_, x = 0.5 * (frame_.width - 1), y = 0.5 * (frame_.height - 1);
+  const Transform camera{{f, 0, x, 0, f, y, 0, 0, 1}}, back{{1 / f, 0, -x / f, 0, 1 / f, -y / f, 0, 0, 1}};
+  return camera * (transposed(rotation(pan_after, tilt_after)) * rotation(pan_before, tilt_before)) * back;
+}
+
 double Lens::floor_distance(Point p, double tilt, double mounting_height) const {
   if (!known() || !(mounting_height > 0)) return kNan;
   const Ray r = ray(p, tilt);

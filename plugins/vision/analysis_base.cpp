@@ -187,6 +187,7 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
 gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
   // Sent, among others, when somebody is linked downstream.
   if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask_for_planes = true;
+  guarded(trans, [&] { priv_of(trans).analyser->upstream_event(event); });
   return parent_class()->src_event(trans, event);
 }
 

@@ -30,6 +30,8 @@ class Analyser {
   virtual bool analyse(Frame& frame) = 0;
   // The last frame of the stream was seen.
   virtual void end_of_stream() {}
+  // An event on its way upstream, which goes on whatever is done here. From any thread.
+  virtual void upstream_event(GstEvent*) {}
   // True for the one element that measures the camera itself.
   virtual bool measures_camera() const { return false; }
 };

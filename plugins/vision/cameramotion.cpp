@@ -6,6 +6,10 @@
  * #CerberusCameraMotion (transform, confidence, residual, scene age) and the small luma plane that the following
  * stages analyse. The frame goes through untouched and is never copied. A cut starts a new scene (scene age 1).
  *
+ * Where a head's pose is known (its meta on the buffer, else the events `cerberus-pose` that pass upstream), the pose at the
+ * frame's own running time is attached too, and with `horizontal-fov` the head's turn is the first guess. The
+ * events are passed on.
+ *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
  *
  * ## Example
@@ -21,15 +25,21 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
+#include <mutex>
 #include <optional>
+#include <string>
 
 #include "analysis_base.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
+#include "fusion/timeline.hpp"
 #include "properties.hpp"
+#include "room.hpp"
 #include "stages.hpp"
 #include "vision/camera_motion.h"
+#include "vision/lens.h"
 
 GST_DEBUG_CATEGORY_STATIC(cameramotion_debug);
 #define GST_CAT_DEFAULT cameramotion_debug
@@ -39,6 +49,8 @@ namespace {
 
 struct Settings {
   int model = static_cast<int>(vision::CameraMotionOptions{}.model);
+  double horizontal_fov = 0;
+  std::string head = "head";
 };
 
 const Property<Settings> kProperties[] = {
@@ -46,39 +58,99 @@ const Property<Settings> kProperties[] = {
              "How the camera may have moved between two frames: a richer model follows more kinds of motion "
              "and needs a "
              "picture with more structure; none = it stands still"),
+    property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView,
+             "Angle in degrees that the lens sees over the frame's whole width: with it a head's turn is the "
+             "first guess; "
+             "0 = not known"),
+    property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
+};
+
+// Where the head looked when a frame was taken, radians.
+struct Look {
+  double pan, tilt;
 };
 
 struct State {
   LumaStage luma;
   vision::CameraMotion motion;
+  Settings settings;
+  std::optional<Look> before;  // of the previous frame
 };
 
 struct Private final : Analyser {
   CerberusAnalysis* base = nullptr;
   Adjustable<Settings> settings;
   std::optional<State> state;
+  std::mutex lock;  // of the poses: they come in any thread
+  Timeline<CerberusPose> poses;
 
   bool measures_camera() const override { return true; }
   bool start() override {
     state.emplace();
     settings.refresh();
+    const std::lock_guard guard(lock);
+    poses.clear();
     return true;
   }
   void stop() override { state.reset(); }
   bool analyse(Frame& frame) override;
+  void upstream_event(GstEvent* event) override;
+  std::optional<Look> look(Frame& frame);
 };
 
 CERBERUS_DEFINE_TYPE(CerberusCameraMotionElement, cerberus_camera_motion_element, CerberusAnalysis,
                      cerberus_analysis_get_type(), Private)
 
+void Private::upstream_event(GstEvent* event) {
+  g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
+  if (!pose) return;
+  if (const std::string head = settings.snapshot().head; head.empty() || head == pose->head) {
+    const std::lock_guard guard(lock);
+    poses.insert(Time(static_cast<Time::rep>(std::min<GstClockTime>(pose->valid_from, G_MAXINT64))), *pose);
+  }
+}
+
+// What the buffer carries goes before what was heard; that is put on the buffer.
+std::optional<Look> Private::look(Frame& frame) {
+  CerberusPose pose;
+  if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
+    const std::string& head = state->settings.head;
+    if (!head.empty() && head != carried->head) return std::nullopt;
+    pose = *carried;
+    cerberus_pose_evaluate(carried, frame.running_time, &pose.pan, &pose.tilt);
+  } else {
+    if (!GST_CLOCK_TIME_IS_VALID(frame.running_time)) return std::nullopt;
+    const Time time(static_cast<Time::rep>(std::min<GstClockTime>(frame.running_time, G_MAXINT64)));
+    const std::lock_guard guard(lock);
+    const CerberusPose* heard = poses.at(time);
+    if (!heard) return std::nullopt;
+    pose = *heard;
+    cerberus_pose_evaluate(heard, frame.running_time, &pose.pan, &pose.tilt);
+    pose.valid_from = frame.running_time;
+    if (pose.valid_until < pose.valid_from) pose.valid_until = pose.valid_from;
+    cerberus_buffer_set_pose(frame.buffer, &pose);
+    poses.forget_before(time);
+  }
+  if (!std::isfinite(pose.pan) || std::abs(pose.tilt) > 90) return std::nullopt;  // a stranger's
+  return Look{radians(pose.pan), radians(pose.tilt)};
+}
+
 bool Private::analyse(Frame& frame) {
-  if (const auto changed = settings.changes())
+  if (const auto changed = settings.changes()) {
     state->motion.set_options({static_cast<vision::MotionModel>(changed->model)});
+    state->settings = *changed;
+  }
   state->luma.set_analysis_width(cerberus_analysis_width(base));
   const MappedPlane picture = state->luma.make(frame);
   if (!picture) return false;
   if (frame.fresh) state->motion.reset();
-  const vision::CameraMotionResult result = state->motion.update(picture.view<std::uint8_t>());
+  const auto before = std::exchange(state->before, look(frame));
+  std::optional<vision::Transform> prior;
+  const vision::Lens lens(radians(state->settings.horizontal_fov), frame.size());
+  if (before && state->before && lens.known())
+    prior = lens.turn(before->pan, before->tilt, state->before->pan, state->before->tilt)
+                .rescaled(frame.size(), picture.size());
+  const vision::CameraMotionResult result = state->motion.update(picture.view<std::uint8_t>(), prior);
 
   CerberusCameraMotion motion;
   cerberus_camera_motion_init(&motion);

@@ -46,6 +46,7 @@ class JsonLine {
   }
 
   JsonLine& null() { return raw("null"); }
+  JsonLine& boolean(bool value) { return raw(value ? "true" : "false"); }
   JsonLine& integer(std::integral auto value) {
     char digits[24];
     return raw({digits, std::to_chars(digits, digits + sizeof digits, value).ptr});

@@ -57,6 +57,7 @@ struct Taken {
   const char* name;
   Stage stage;
   Stage also = STAGES;  // a second stage that must agree
+  Stage too = STAGES;   // and one more
 };
 
 constexpr Taken kTaken[] = {
@@ -84,7 +85,8 @@ constexpr Taken kTaken[] = {
     {"minimum-height-metres", REGIONS},
     {"maximum-height-metres", REGIONS},
     {"keep-planes", REGIONS},
-    {"horizontal-fov", REGIONS, TRACK},
+    {"head", CAMERA},
+    {"horizontal-fov", REGIONS, TRACK, CAMERA},
     {"mounting-height", REGIONS, TRACK},
     {"confirm-time", TRACK},
     {"coast-time", TRACK},
@@ -137,7 +139,8 @@ CERBERUS_DEFINE_TYPE(CerberusMotionDetect, cerberus_motion_detect, GstBin, GST_T
 
 void forward(const Private& priv, const Taken& taken, const GValue* value) {
   g_object_set_property(G_OBJECT(priv.stages[taken.stage]), taken.name, value);
-  if (taken.also != STAGES) g_object_set_property(G_OBJECT(priv.stages[taken.also]), taken.name, value);
+  for (const Stage also : {taken.also, taken.too})
+    if (also != STAGES) g_object_set_property(G_OBJECT(priv.stages[also]), taken.name, value);
 }
 
 // Sets everything that the application left alone to what the preset says, or to the stage's default.

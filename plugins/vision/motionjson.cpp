@@ -29,11 +29,19 @@
  *   `person`; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`: pixels of the frame; `vx`, `vy`:
  *   pixels a second, camera motion taken out; `bearing`: degrees, positive to the right; `distance`: metres.
  *
+ *
+ * Keys that are there only where an element told, after `objects`:
+ * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
+ *   `moving` true or false.
+ * - `pir`: the sensors' readings, 0 nothing, 1 somebody, 2 invalid; and `fusion`: what `pirfusion` decided: `rule` (number,
+ *   0 for one without), `action` (`track`, `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's
+ *   identity or null).
+ *
  * Numbers have a point whatever the locale. Pixels, speeds, degrees and metres are rounded to 2 decimals,
  * confidences to 3, `camera` to 9 significant digits. What is unknown, not a number or infinite is null.
- * Later stages add keys (`pose`, `pir`, `fusion`): readers ignore keys that they do not know.
+ * Readers ignore keys that they do not know.
  *
- * Reads the camera-motion, threshold and region metas of motiondetect's stages. Posts no messages.
+ * Reads the camera-motion, threshold and region metas of motiondetect's stages, the pose and the fusion meta. Posts no messages.
  *
  * ## Example launch lines
  * |[
@@ -51,6 +59,7 @@
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -106,6 +115,30 @@ void write_object(cerberus::JsonLine& line, const CerberusRegion& region) {
   line.key("distance").fixed(region.distance, kPixelDecimals).close('}');
 }
 
+// Facts that only a system with a head and sensors knows.
+void write_system(cerberus::JsonLine& line, GstBuffer* buffer) {
+  if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
+    line.key("pose").open('{').key("pan").fixed(pose->pan, kPixelDecimals);
+    line.key("tilt")
+        .fixed(pose->tilt, kPixelDecimals)
+        .key("moving")
+        .boolean(pose->moving != FALSE)
+        .close('}');
+  }
+  const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
+  if (!fusion) return;
+  line.key("pir").open('[');
+  for (guint i = 0; i < std::min<guint>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i)
+    line.integer(fusion->sensors[i]);
+  line.close(']').key("fusion").open('{').key("rule").integer(fusion->rule);
+  line.key("action").string(cerberus_fusion_action_get_nick(fusion->action)).key("target");
+  if (fusion->target)
+    line.integer(fusion->target);
+  else
+    line.null();
+  line.close('}');
+}
+
 std::string_view write_line(State& state, GstBuffer* buffer) {
   cerberus::JsonLine& line = state.line;
   line.clear();
@@ -139,7 +172,9 @@ std::string_view write_line(State& state, GstBuffer* buffer) {
   const Regions regions(cerberus_buffer_get_regions(buffer));
   for (guint i = 0; i < regions->len; ++i)
     write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions.get(), i)));
-  return line.close(']').close('}').finish();
+  line.close(']');
+  write_system(line, buffer);
+  return line.close('}').finish();
 }
 
 gboolean cerberus_motion_json_start(GstBaseTransform* transform) {

@@ -102,6 +102,33 @@ GST_START_TEST(everything_attached_is_on_the_line) {
 }
 GST_END_TEST
 
+GST_START_TEST(pose_sensors_and_decision_are_there_where_somebody_told) {
+  Harness h = started();
+  GstBuffer* buffer = frame(info_of(kCaps));
+  CerberusPose pose;
+  cerberus_pose_init(&pose);
+  pose.pan = -12.346, pose.tilt = 3;
+  pose.moving = TRUE;
+  cerberus_buffer_set_pose(buffer, &pose);
+  std::string line = empty_line("0", 0);
+  line.resize(line.rfind('}'));
+  expect(line_of(h.get(), buffer), line + R"(,"pose":{"pan":-12.35,"tilt":3,"moving":true}})" + "\n");
+
+  buffer = frame(info_of(kCaps), 1);
+  CerberusFusion fusion;
+  cerberus_fusion_init(&fusion);
+  fusion.rule = 3;
+  fusion.action = CERBERUS_FUSION_TURN_LEFT;
+  fusion.n_sensors = 3;
+  fusion.sensors[1] = 1, fusion.sensors[2] = 2;
+  cerberus_buffer_set_fusion(buffer, &fusion);
+  line = empty_line("40000000", 1);
+  line.resize(line.rfind('}'));
+  expect(line_of(h.get(), buffer),
+         line + R"(,"pir":[0,1,2],"fusion":{"rule":3,"action":"turn-left","target":null}})" + "\n");
+}
+GST_END_TEST
+
 GST_START_TEST(a_locale_with_a_decimal_comma_changes_nothing) {
   // Made here where none is installed (the source of the locale comes with libc).
   gchar* folder = g_dir_make_tmp("cerberus-XXXXXX", nullptr);
@@ -300,6 +327,7 @@ static Suite* motionjson_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_frame_without_metas_gives_a_line_of_unknowns);
   tcase_add_test(tc, everything_attached_is_on_the_line);
+  tcase_add_test(tc, pose_sensors_and_decision_are_there_where_somebody_told);
   tcase_add_test(tc, a_locale_with_a_decimal_comma_changes_nothing);
   tcase_add_test(tc, a_threshold_that_is_not_ready_is_none);
   tcase_add_test(tc, a_frame_without_a_time_has_a_null_pts);

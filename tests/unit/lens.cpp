@@ -115,6 +115,23 @@ START_TEST(feet_that_are_not_in_the_picture_give_no_distance) {
 }
 END_TEST
 
+// direction() is the oracle: a far point is seen in the same direction before and after.
+START_TEST(what_is_far_stays_where_it_is_when_the_camera_turns) {
+  const Lens lens(1, {640, 480});
+  for (const double pan : {-0.2, 0.0, 0.15})
+    for (const double tilt : {-0.1, 0.0, 0.12})
+      for (const Point p : {Point{320, 240}, Point{30, 400}, Point{600, 20}}) {
+        const Transform moved = lens.turn(0.3, 0.05, 0.3 + pan, 0.05 + tilt);
+        const Point q = moved.apply({p.x - 0.5, p.y - 0.5});
+        const Direction before = lens.direction(p, 0.3, 0.05);
+        const Direction after = lens.direction({q.x + 0.5, q.y + 0.5}, 0.3 + pan, 0.05 + tilt);
+        ck_assert_double_eq_tol(after.bearing, before.bearing, 1e-9);
+        ck_assert_double_eq_tol(after.elevation, before.elevation, 1e-9);
+      }
+  ck_assert(Lens().turn(0, 0, 1, 1).is_identity());
+}
+END_TEST
+
 START_TEST(a_lens_nobody_described_knows_nothing) {
   for (const double fov : {0.0, -1.0, std::numbers::pi, 4.0, std::numeric_limits<double>::quiet_NaN()}) {
     const Lens lens(fov, {640, 480});
@@ -140,6 +157,7 @@ int main() {
   tcase_add_test(tests, a_person_four_metres_away_has_the_size_it_had_when_drawn);
   tcase_add_test(tests, a_tilted_camera_measures_the_same_person);
   tcase_add_test(tests, feet_that_are_not_in_the_picture_give_no_distance);
+  tcase_add_test(tests, what_is_far_stays_where_it_is_when_the_camera_turns);
   tcase_add_test(tests, a_lens_nobody_described_knows_nothing);
   suite_add_tcase(suite, tests);
   SRunner* runner = srunner_create(suite);

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What cameramotion makes of a head's pose.
+#include "scene.h"
+#include "support.h"
+
+namespace {
+
+CerberusPose pose(double pan, GstClockTime from, GstClockTime until = GST_CLOCK_TIME_NONE) {
+  CerberusPose p;
+  cerberus_pose_init(&p);
+  p.pan = pan;
+  p.valid_from = from, p.valid_until = until;
+  return p;
+}
+
+void tell(scene::Line& line, const CerberusPose& p) {
+  gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&p));
+}
+
+double pan_on(GstBuffer* buffer) {
+  const CerberusPose* p = cerberus_buffer_peek_pose(buffer);
+  const double pan = p ? p->pan : NAN;
+  gst_buffer_unref(buffer);
+  return pan;
+}
+
+constexpr scene::World kWorld;
+
+}  // namespace
+
+GST_START_TEST(a_frame_gets_the_pose_of_its_own_time) {
+  scene::Line line("cameramotion");
+  fail_unless(std::isnan(pan_on(line.through(scene::grey_buffer(kWorld, 0)))));
+  CerberusPose moving = pose(10, scene::kStep, 3 * scene::kStep);
+  moving.pan_speed = 50;  // 2 degrees a frame
+  tell(line, moving);
+  tell(line, pose(14, 3 * scene::kStep));
+  for (const double expected : {10.0, 12.0, 14.0, 14.0}) {
+    static int number = 0;
+    const double pan = pan_on(line.through(scene::grey_buffer(kWorld, ++number)));
+    fail_unless(std::abs(pan - expected) < 1e-9, "frame %d: %g", number, pan);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_pose_on_the_frame_wins_over_what_was_told) {
+  scene::Line line("cameramotion");
+  tell(line, pose(10, 0));
+  GstBuffer* buffer = scene::grey_buffer(kWorld, 0);
+  const CerberusPose carried = pose(-5, 0);
+  cerberus_buffer_set_pose(buffer, &carried);
+  fail_unless(pan_on(line.through(buffer)) == -5);
+}
+GST_END_TEST
+
+GST_START_TEST(another_head_is_not_listened_to_and_every_event_goes_on) {
+  scene::Line line("cameramotion");
+  CerberusPose stranger = pose(10, 0);
+  cerberus_pose_set_head(&stranger, "another");
+  tell(line, stranger);
+  fail_unless(std::isnan(pan_on(line.through(scene::grey_buffer(kWorld, 0)))));
+  tell(line, pose(7, 0));
+  fail_unless(pan_on(line.through(scene::grey_buffer(kWorld, 1))) == 7);
+  int passed = 0;
+  while (GstEvent* event = gst_harness_try_pull_upstream_event(line.harness)) {
+    passed += gst_event_has_name(event, CERBERUS_EVENT_POSE);
+    gst_event_unref(event);
+  }
+  fail_unless_equals_int(passed, 2);
+}
+GST_END_TEST
+
+GST_START_TEST(poses_of_the_run_before_are_forgotten) {
+  scene::Line line("cameramotion");
+  tell(line, pose(10, 0));
+  line.restart();
+  fail_unless(std::isnan(pan_on(line.through(scene::grey_buffer(kWorld, 0)))));
+}
+GST_END_TEST
+
+// A blank wall says nothing of the camera: then the head does. F = 160 / tan 30; a turn of atan(40 / F) to the right moves
+// the middle of the picture by 40 pixels to the left.
+GST_START_TEST(a_heads_turn_counts_where_the_picture_says_nothing) {
+  const double pan = std::atan(40 * std::tan(30 * M_PI / 180) / 160) * 180 / M_PI;
+  for (const bool known : {true, false}) {
+    scene::Line line(known ? "cameramotion horizontal-fov=60" : "cameramotion");
+    const std::vector<std::uint8_t> grey(scene::kWidth * scene::kHeight, 90);
+    tell(line, pose(0, 0, scene::kStep - 1));
+    tell(line, pose(pan, scene::kStep));
+    double x = 0;
+    for (int number = 0; number < 2; ++number) {
+      GstBuffer* out =
+          line.through(scene::buffer("GRAY8", scene::kWidth, scene::kHeight, grey, number * scene::kStep));
+      const double* m = cerberus_buffer_get_camera_motion_meta(out)->motion.matrix;
+      x = (m[0] * 159.5 + m[1] * 119.5 + m[2]) / (m[6] * 159.5 + m[7] * 119.5 + m[8]);
+      gst_buffer_unref(out);
+    }
+    const double expected = known ? 119.5 : 159.5;
+    fail_unless(std::abs(x - expected) < 0.01, "the middle goes to %g, not to %g", x, expected);
+  }
+}
+GST_END_TEST
+
+static Suite* head_pose_suite() {
+  watch_library_log();
+  Suite* s = suite_create("head_pose");
+  TCase* tc = tcase_create("cameramotion");
+  suite_add_tcase(s, tc);
+  tcase_add_test(tc, a_frame_gets_the_pose_of_its_own_time);
+  tcase_add_test(tc, a_pose_on_the_frame_wins_over_what_was_told);
+  tcase_add_test(tc, another_head_is_not_listened_to_and_every_event_goes_on);
+  tcase_add_test(tc, poses_of_the_run_before_are_forgotten);
+  tcase_add_test(tc, a_heads_turn_counts_where_the_picture_says_nothing);
+  return s;
+}
+
+GST_CHECK_MAIN(head_pose)
