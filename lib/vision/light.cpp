@@ -2,6 +2,7 @@
 #include "vision/light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace cerberus::vision {
@@ -51,13 +52,14 @@ void LightChange::estimate(GrayView reference, GrayView present, std::span<const
 }
 
 void LightChange::estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
-  for (auto& c : counts_) c.fill(0);
+  // 32 bits: a sixteenth of 3840 x 2160 pixels may all be alike.
+  std::array<std::array<std::uint32_t, kLevels>, kClasses> counts{};
   std::array<std::uint32_t, 256> seen{};  // samples by level of the reference
   for (int y = 0; y < present.height; y += kRowStep) {
     const RowSpan s = span_of(spans, y, present.width);
     const std::uint8_t *a = reference.row(y), *b = present.row(y);
     for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
-      ++counts_[a[x] >> 4][std::clamp(b[x] - a[x], -kReach, kReach) + kReach];
+      ++counts[a[x] >> 4][std::clamp(b[x] - a[x], -kReach, kReach) + kReach];
       ++seen[a[x]];
     }
   }
@@ -78,7 +80,7 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   int used = 0;
   for (int k = 0; k < kClasses; ++k) {
     if (number[k] * 100 < total) continue;
-    const double a = static_cast<double>(sum[k]) / number[k], e = median(counts_[k], number[k], -kReach);
+    const double a = static_cast<double>(sum[k]) / number[k], e = median(counts[k], number[k], -kReach);
     if (a + e > 250 || a + e < 4 || a > 250) continue;  // clipped: says nothing about gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
@@ -111,7 +113,7 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
     if (!number[k]) continue;
     const double a = static_cast<double>(sum[k]) / number[k];
     const int e = static_cast<int>(std::lround(std::clamp(a + at_zero + slope * a, 0.0, 255.0) - a));
-    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d) agree += counts_[k][d + kReach];
+    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d) agree += counts[k][d + kReach];
   }
   agreement_ = static_cast<double>(agree) / total;
   // What is hardly visible between dark grey and light grey is not worth a correction.

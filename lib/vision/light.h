@@ -4,7 +4,6 @@
 // before pictures are compared.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -51,8 +50,6 @@ class LightChange {
   bool none_ = true;
   double gain_ = 1, offset_ = 0, agreement_ = 1;
   std::vector<RowLight> rows_;
-  // 32 bits: a sixteenth of 3840 x 2160 pixels may all be alike.
-  std::array<std::array<std::uint32_t, kLevels>, kClasses> counts_{};
 };
 
 // out := the row of the reference under the present light, clamped to 0..255.
