@@ -155,7 +155,7 @@ GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) 
   std::unique_lock guard(pir.inputs->lock());
   // A reading without a time is as late as the one before.
   const Time time = running_time(pir.segment, GST_BUFFER_PTS(buffer)).value_or(pir.history.newest());
-  const bool wanted = *pir.live || pir.inputs->wait_for_video(guard, pir, time);
+  const bool wanted = pir.live.value_or(true) || pir.inputs->wait_for_video(guard, pir, time);
   if (pir.flushing) return GST_FLOW_FLUSHING;
   if (!wanted) return GST_FLOW_EOS;
   pir.history.append(time, std::span(values).first(pir.info.sensors));
@@ -228,10 +228,14 @@ std::optional<Time> running_time(const GstSegment& segment, GstClockTime positio
   return Time(sign < 0 ? 0 : static_cast<Time::rep>(MIN(time, latest)));
 }
 
-bool is_live(GstPad* sinkpad) {
-  gboolean live = FALSE;
+std::optional<bool> is_live(GstPad* sinkpad) {
   GstQuery* query = gst_query_new_latency();
-  if (gst_pad_peer_query(sinkpad, query)) gst_query_parse_latency(query, &live, nullptr, nullptr);
+  std::optional<bool> live;
+  if (gst_pad_peer_query(sinkpad, query)) {
+    gboolean answer = FALSE;
+    gst_query_parse_latency(query, &answer, nullptr, nullptr);
+    live = answer;
+  }
   gst_query_unref(query);
   return live;
 }

@@ -28,7 +28,7 @@ struct PirPad {
   // Of the pad's own streaming thread.
   GstSegment segment;
   CerberusPirInfo info;      // without sensors: no caps
-  std::optional<bool> live;  // of what it is linked to; nothing: not asked yet
+  std::optional<bool> live;  // of what it is linked to; nothing: not known
   bool complained = false;   // of buffers of the wrong size
   bool refused = false;      // its caps or segment: they come again with the next buffer
 
@@ -44,7 +44,8 @@ inline PirPad& pir_pad(GstPad* pad) {
 
 // Running time of a position; nothing without one. What lies before the segment is as old as can be.
 std::optional<Time> running_time(const GstSegment& segment, GstClockTime position);
-// Whether the source upstream of a sink pad is live; false where nobody answers.
-bool is_live(GstPad* sinkpad);
+// Whether the source upstream of a sink pad is live; nothing where nobody answers (v4l2src without a frame rate): then
+// nobody may wait, and may ask again.
+std::optional<bool> is_live(GstPad* sinkpad);
 
 }  // namespace cerberus::plugin

@@ -69,7 +69,7 @@ GstStaticPadTemplate pir_template =
 struct State {  // video thread only
   fusion::Fuser fuser;
   GstSegment segment;
-  std::optional<bool> live;  // nothing: not asked yet
+  std::optional<bool> live;  // nothing: not known
   Time time{};               // of the last frame
   std::vector<fusion::Track> tracks;
   std::string rule_name;  // what interned_name belongs to
@@ -227,7 +227,7 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     if (!state.live) state.live = is_live(pad);
 
     std::vector<std::string> silent;
-    const auto max_wait = *state.live ? std::nullopt : std::optional(settings.max_wait);
+    const auto max_wait = state.live.value_or(true) ? std::nullopt : std::optional(settings.max_wait);
     if (!priv.inputs.frame_came(state.time, max_wait, silent)) return GST_FLOW_FLUSHING;
     for (const std::string& name : silent)
       GST_ELEMENT_WARNING(

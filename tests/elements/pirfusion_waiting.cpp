@@ -87,6 +87,25 @@ GST_START_TEST(live_nobody_waits_for_a_late_reading) {
 }
 GST_END_TEST
 
+// As v4l2src does without a frame rate.
+GST_START_TEST(where_nobody_knows_whether_it_is_live_nobody_waits) {
+  Rig rig(false, kForEver);
+  GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
+  for (GstPad* pad : {rig.video->srcpad, pir->srcpad})
+    gst_pad_add_probe(
+        pad, GST_PAD_PROBE_TYPE_QUERY_UPSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer) {
+          const bool latency = GST_QUERY_TYPE(GST_PAD_PROBE_INFO_QUERY(info)) == GST_QUERY_LATENCY;
+          return latency ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
+        },
+        nullptr, nullptr);
+  rig.read(0, {1, 0, 0});
+  assert_says(values(rig, 500 * kMs), "100");
+  rig.read(60 * GST_SECOND, {0, 1, 0});
+  assert_says(values(rig, 61 * GST_SECOND), "010");
+}
+GST_END_TEST
+
 GST_START_TEST(not_live_a_frame_waits_for_the_readings_of_its_time) {
   Rig rig(false, kForEver);
   rig.add_pir();
@@ -336,6 +355,7 @@ static Suite* pirfusion_waiting_suite(void) {
   tcase_add_test(tc, live_nobody_waits_for_a_pir_pad_that_never_speaks);
   tcase_add_test(tc, live_nobody_waits_for_a_late_reading);
   tcase_add_test(tc, a_live_pir_source_never_waits);
+  tcase_add_test(tc, where_nobody_knows_whether_it_is_live_nobody_waits);
   tc = tcase_create("not live");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, not_live_a_frame_waits_for_the_readings_of_its_time);
