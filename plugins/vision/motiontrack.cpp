@@ -25,7 +25,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "analysis_base.hpp"
@@ -33,6 +32,7 @@
 #include "properties.hpp"
 #include "room.hpp"
 #include "stages.hpp"
+#include "vision/presence.h"
 #include "vision/tracks.h"
 
 GST_DEBUG_CATEGORY_STATIC(motiontrack_debug);
@@ -91,31 +91,16 @@ const Property<Settings> kProperties[] = {
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
 };
 
-// Motion started or ended, with hysteresis.
-class Presence {
- public:
-  enum class Change { none, started, ended };
-  Change update(bool present, const Frame& frame, GstClockTime hold) {
-    if (present) {
-      quiet_ = 0;
-      return std::exchange(active_, true) ? Change::none : Change::started;
-    }
-    // Running time tells the length of a gap as well; a stream without timestamps has only its frame rate.
-    if (GST_CLOCK_TIME_IS_VALID(frame.running_time) && GST_CLOCK_TIME_IS_VALID(last_))
-      quiet_ += frame.running_time > last_ ? frame.running_time - last_ : 0;
-    else
-      quiet_ += clock_time(frame.seconds);
-    return active_ && quiet_ >= hold ? end() : Change::none;
-  }
-  void passed(const Frame& frame) { last_ = frame.running_time; }
-  GstClockTime last() const { return last_; }
-  Change end() { return std::exchange(active_, false) ? Change::ended : Change::none; }
+using vision::Presence;
 
- private:
-  bool active_ = false;
-  GstClockTime quiet_ = 0;  // without any object
-  GstClockTime last_ = GST_CLOCK_TIME_NONE;
-};
+// A time of GStreamer's as the library has it; far times are all the same.
+constexpr Presence::Time nanoseconds(GstClockTime time) {
+  return Presence::Time(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64)));
+}
+constexpr std::optional<Presence::Time> known(GstClockTime time) {
+  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
+  return nanoseconds(time);
+}
 
 struct State {
   RegionStage regions;  // where no motionregions is upstream
@@ -142,7 +127,9 @@ struct Private final : Analyser {
     state.reset();
   }
   void end_of_stream() override {
-    if (state) announce(state->presence.end(), state->presence.last());
+    if (!state) return;
+    const auto last = state->presence.last();
+    announce(state->presence.end(), last ? static_cast<GstClockTime>(last->count()) : GST_CLOCK_TIME_NONE);
   }
   bool analyse(Frame& frame) override;
 
@@ -194,8 +181,9 @@ bool Private::analyse(Frame& frame) {
   if (frame.fresh) state->tracker.reset();
   publish(frame, state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size()));
   const bool present = !state->published.empty();
-  announce(state->presence.update(present, frame, state->settings.hold_time), frame.running_time);
-  state->presence.passed(frame);
+  announce(state->presence.update(present, known(frame.running_time), nanoseconds(clock_time(frame.seconds)),
+                                  nanoseconds(state->settings.hold_time)),
+           frame.running_time);
   return true;
 }
 

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Motion started or ended: told from frames with and without objects, with hysteresis. It starts with the first object
+// and ends when none was there for a while; an object that comes back in that while is the same motion.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace cerberus::vision {
+
+class Presence {
+ public:
+  using Time = std::chrono::nanoseconds;
+  enum class Change { none, started, ended };
+
+  // One frame. `present`: there is an object on it. `time`: the frame's time where it is known; `step`: from the frame
+  // before to this one, which counts where one of the two has no time. `hold`: without any object, before the end;
+  // 0 = the first frame without one ends it. The time before the first frame without an object counts: it was last
+  // seen on the frame before.
+  Change update(bool present, std::optional<Time> time, Time step, Time hold);
+  // No frame comes any more: ended, if it was not before.
+  Change end();
+  // The last frame's time.
+  std::optional<Time> last() const { return last_; }
+
+ private:
+  bool active_ = false;
+  Time quiet_{};  // without any object
+  std::optional<Time> last_;
+};
+
+}  // namespace cerberus::vision

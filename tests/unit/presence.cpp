@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/presence.h"
+
+#include <check.h>
+
+#include <cstdlib>
+
+using namespace cerberus::vision;
+using namespace std::chrono_literals;
+using Change = Presence::Change;
+
+// Frames every 40 ms, the first at 0.
+struct Stream {
+  Presence presence;
+  Presence::Time now = -40ms;
+  Change next(bool present, Presence::Time hold, Presence::Time gap = 40ms) {
+    now += gap;
+    return presence.update(present, now, 40ms, hold);
+  }
+};
+
+START_TEST(nothing_is_told_before_the_first_object) {
+  Stream stream;
+  for (int k = 0; k < 100; ++k) ck_assert(stream.next(false, 100ms) == Change::none);
+}
+END_TEST
+
+START_TEST(it_starts_once_with_the_first_object) {
+  Stream stream;
+  ck_assert(stream.next(true, 100ms) == Change::started);
+  ck_assert(stream.next(true, 100ms) == Change::none);
+}
+END_TEST
+
+START_TEST(it_ends_once_when_the_hold_is_over) {
+  Stream stream;
+  stream.next(true, 120ms);
+  ck_assert(stream.next(false, 120ms) == Change::none);   // 40 ms
+  ck_assert(stream.next(false, 120ms) == Change::none);   // 80 ms
+  ck_assert(stream.next(false, 120ms) == Change::ended);  // 120 ms
+  ck_assert(stream.next(false, 120ms) == Change::none);
+  ck_assert(stream.next(true, 120ms) == Change::started);
+}
+END_TEST
+
+START_TEST(an_object_that_comes_back_is_the_same_motion_and_the_hold_begins_anew) {
+  Stream stream;
+  stream.next(true, 120ms);
+  for (int k = 0; k < 10; ++k) {
+    ck_assert(stream.next(false, 120ms) == Change::none);
+    ck_assert(stream.next(false, 120ms) == Change::none);
+    ck_assert(stream.next(true, 120ms) == Change::none);
+  }
+}
+END_TEST
+
+START_TEST(without_a_hold_the_first_empty_frame_ends_it) {
+  Stream stream;
+  stream.next(true, 0ms);
+  ck_assert(stream.next(false, 0ms, 0ms) == Change::ended);
+}
+END_TEST
+
+START_TEST(a_gap_in_the_stream_counts_as_long_as_it_was) {
+  Stream stream;
+  stream.next(true, 10s);
+  ck_assert(stream.next(false, 10s, 9s) == Change::none);
+  ck_assert(stream.next(false, 10s, 1s) == Change::ended);
+}
+END_TEST
+
+START_TEST(time_that_runs_backwards_is_no_silence) {
+  Stream stream;
+  stream.next(true, 100ms, 10s);
+  ck_assert(stream.next(false, 100ms, -5s) == Change::none);
+  ck_assert(stream.next(false, 100ms, 99ms) == Change::none);
+  ck_assert(stream.next(false, 100ms, 1ms) == Change::ended);
+}
+END_TEST
+
+START_TEST(without_times_the_frames_are_counted) {
+  Presence presence;
+  ck_assert(presence.update(true, std::nullopt, 40ms, 80ms) == Change::started);
+  ck_assert(presence.update(false, std::nullopt, 40ms, 80ms) == Change::none);
+  ck_assert(presence.update(false, 7h, 40ms, 80ms) == Change::ended);  // 7 h after what?
+}
+END_TEST
+
+START_TEST(the_end_of_the_stream_ends_it_once_and_knows_when) {
+  Stream stream;
+  ck_assert(stream.presence.end() == Change::none);
+  stream.next(true, 1s);
+  stream.next(true, 1s);
+  ck_assert(stream.presence.last() == Presence::Time(40ms));
+  ck_assert(stream.presence.end() == Change::ended);
+  ck_assert(stream.presence.end() == Change::none);
+}
+END_TEST
+
+START_TEST(silence_before_an_object_does_not_shorten_the_hold_after_it) {
+  Stream stream;
+  for (int k = 0; k < 50; ++k) stream.next(false, 120ms);
+  stream.next(true, 120ms);
+  ck_assert(stream.next(false, 120ms) == Change::none);
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("presence");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_add_test(tests, nothing_is_told_before_the_first_object);
+  tcase_add_test(tests, it_starts_once_with_the_first_object);
+  tcase_add_test(tests, it_ends_once_when_the_hold_is_over);
+  tcase_add_test(tests, an_object_that_comes_back_is_the_same_motion_and_the_hold_begins_anew);
+  tcase_add_test(tests, without_a_hold_the_first_empty_frame_ends_it);
+  tcase_add_test(tests, a_gap_in_the_stream_counts_as_long_as_it_was);
+  tcase_add_test(tests, time_that_runs_backwards_is_no_silence);
+  tcase_add_test(tests, without_times_the_frames_are_counted);
+  tcase_add_test(tests, the_end_of_the_stream_ends_it_once_and_knows_when);
+  tcase_add_test(tests, silence_before_an_object_does_not_shorten_the_hold_after_it);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_NORMAL);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
