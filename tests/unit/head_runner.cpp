@@ -156,7 +156,7 @@ END_TEST
 
 START_TEST(a_stop_beats_the_commands_before_it) {
   Pipe gate, record;
-  const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
+  auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
   record.line();
   runner->command(go(1s, 0.125));
   record.line();
@@ -164,6 +164,8 @@ START_TEST(a_stop_beats_the_commands_before_it) {
   runner->stop(3s, 1ms);
   gate.close_writer();
   assert_text(record.line(), "stop 3000000000");
+  runner.reset();
+  assert_text(record.line(), "close 3000000000");  // and no command in between
 }
 END_TEST
 
