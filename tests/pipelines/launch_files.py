@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the launch files of pipelines/, with a test source in place of the camera and files in place of screens.
 
-    launch_files.py NAME live|file
+    launch_files.py NAME live|file|444
 
 The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
 objects are found. Networks are the loopback, on ports that were free a moment ago.
@@ -43,6 +43,8 @@ def finish(process):
 def source(kind):
     if kind == 'live':
         return ball(frames=FRAMES, live=True)
+    if kind == '444':  # a camera or a file with colour at full resolution, which most players cannot play as H.264
+        return f'{ball(frames=FRAMES)} ! videoconvert ! video/x-raw,format=Y444'
     if not os.path.exists('ball.mp4'):
         video('ball.mp4', 'mp4mux', frames=FRAMES)
     return 'filesrc location=ball.mp4 ! decodebin'
@@ -60,6 +62,13 @@ def frames(path, size):
     data = pathlib.Path(path).read_bytes()
     assert len(data) % size == 0, f'{path}: {len(data)} bytes are no whole number of frames of {size}'
     return [data[k:k + size] for k in range(0, len(data), size)]
+
+
+def check_players_can_play(path, demuxer):
+    """The H.264 in a file is 8 bits, 4:2:0: the only one that browsers and hardware decoders play."""
+    status, said = gst_launch(f'filesrc location={path} ! {demuxer} ! h264parse ! '
+                              'video/x-h264,chroma-format=4:2:0,bit-depth-luma=(uint)8 ! fakesink')
+    assert status == 0, f'{path} is not H.264 of 8 bits, 4:2:0:\n{said}'
 
 
 def coloured(frame):
@@ -84,6 +93,7 @@ def check_lines(path):
 def test_annotate(kind):
     finish(start('annotate', SOURCE=source(kind), MP4='out.mp4', JSON='out.jsonl'))
     count = check_lines('out.jsonl')
+    check_players_can_play('out.mp4', 'qtdemux')
     pictures = decode('out.mp4')
     assert len(pictures) == count, f'{len(pictures)} frames in the MP4, {count} lines'
     assert sum(map(coloured, pictures)) > FRAMES // 3, 'no boxes were drawn'
@@ -99,6 +109,7 @@ def test_live(kind):
 def test_record(kind):
     finish(start('record', SOURCE=source(kind), FILE='out.mkv', JSON='out.jsonl'))
     count = check_lines('out.jsonl')
+    check_players_can_play('out.mkv', 'matroskademux')
     pictures = decode('out.mkv')
     assert len(pictures) == count, f'{len(pictures)} frames in the recording, {count} lines'
     assert not any(map(coloured, pictures)), 'the recording is not the original picture'
@@ -116,6 +127,43 @@ def test_stages(kind):
         shows = sum(len(set(b''.join(picture[y * 3 * width + left:y * 3 * width + left + width] for y in rows))) > 1
                     for picture in pictures)
         assert shows > len(pictures) // 3, f'stage {stage} shows something in {shows} of {len(pictures)} frames'
+
+
+def test_virtualptz(kind):
+    size = 160 * 120 * 3 // 2
+    finish(start('virtualptz', SOURCE=source(kind), WIDE=60, VIEW=32.2, WIDTH=160, HEIGHT=120, PAN=16, TILT=12,
+                 SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
+    pictures = frames('out.raw', size)
+    assert len(pictures) >= FRAMES // 10, f'{len(pictures)} frames were shown'  # it may drop late ones
+    # The wall stands still: where most of the border changes, the window has moved.
+    border = [picture[:160 * 8] for picture in pictures]
+    changed = max(sum(a != b for a, b in zip(border[0], other)) for other in border)
+    assert changed > len(border[0]) // 3, f'the window stands: {changed} of {len(border[0])} pixels change'
+
+
+def test_closed_loop(kind):
+    pathlib.Path('pir.csv').write_text('0,0,0,0\n0.2,0,0,1\n0.8,0,0,0\n9,0,0,0\n', 'ascii')
+    runs = []
+    for run in ('a', 'b'):
+        finish(start('closed-loop', SOURCE=source(kind), PIR='pir.csv', MP4=f'{run}.mp4', JSON=f'{run}.jsonl',
+                     WIDTH=160, HEIGHT=120, VIEW=32.2, PAN=16, TILT=12))
+        runs.append(pathlib.Path(f'{run}.jsonl').read_bytes())
+    assert runs[0] == runs[1], 'two runs differ'
+    lines = json_lines('a.jsonl')
+    assert len(lines) == FRAMES, f'{len(lines)} lines'
+    assert all(line.keys() >= {'pose', 'pir', 'fusion'} for line in lines), 'a line without pose, sensors or decision'
+    assert lines[0]['pose'] == {'pan': 0, 'tilt': 0, 'moving': False}
+    assert lines[10]['pir'] == [0, 0, 1] and lines[30]['pir'] == [0, 0, 0], 'the sensors are not those of the file'
+    actions = {line['fusion']['action'] for line in lines}
+    assert 'track' in actions, f'nobody was tracked: {actions}'
+    pans = [line['pose']['pan'] for line in lines]
+    assert max(pans) - min(pans) > 3, f'the head turned from {min(pans)} to {max(pans)} degrees only'
+    # Towards the target: where it is seen to the right of the middle, the head is further to the right soon after.
+    ways = [(each['bearing'], pans[k + 4] - pans[k]) for k, line in enumerate(lines[:-4]) for each in line['objects']
+            if line['fusion']['action'] == 'track' and each['id'] == line['fusion']['target'] and abs(pans[k]) < 14
+            and abs(each['bearing']) > 5]
+    towards = sum(bearing * turned > 0 for bearing, turned in ways)
+    assert len(ways) > 5 and towards > 0.8 * len(ways), f'the head turned towards its target {towards} times of {len(ways)}'
 
 
 def free_port():
