@@ -49,6 +49,7 @@ void project_positions(const float (&m)[9], int x0, int y, int count, std::int32
   const int lanes = static_cast<int>(hn::Lanes(d));
   int i = 0;
   for (; i + lanes <= count; i += lanes) run(d, i);
+  if (i < count && count >= lanes) return run(d, count - lanes);  // overlaps the one before
   const hn::CappedTag<float, 1> one;
   for (; i < count; ++i) run(one, i);
 }
