@@ -220,20 +220,20 @@ GST_START_TEST(leds_are_red_while_a_sensor_detects_and_blue_while_it_does_not) {
     Source source(gpio(chip, "lines=0,1,2 leds-red=3,4,5 leds-blue=6,7,8"));
     source.play();
     source.expect({0, 0, 0});
-    ck_assert_str_eq(leds().c_str(), "000111");
+    fail_unless(leds() == "000111", "%s", leds().c_str());
     chip.pull(1, true);
     source.expect({0, 1, 0});
-    ck_assert_str_eq(leds().c_str(), "010101");
+    fail_unless(leds() == "010101", "%s", leds().c_str());
     chip.pull(1, false);
     source.expect({0, 0, 0});
-    ck_assert_str_eq(leds().c_str(), "000111");
+    fail_unless(leds() == "000111", "%s", leds().c_str());
     gst_element_set_state(source.element(), GST_STATE_READY);
-    ck_assert_str_eq(leds().c_str(), "000000");
+    fail_unless(leds() == "000000", "%s", leds().c_str());
   }
   Source warming(gpio(chip, "lines=0,1,2 leds-red=3,4,5 warm-up=3600000000000"));
   warming.play();
   warming.expect({2, 2, 2});
-  ck_assert_str_eq(leds().c_str(), "000000");
+  fail_unless(leds() == "000000", "%s", leds().c_str());
 }
 GST_END_TEST
 

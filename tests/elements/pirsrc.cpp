@@ -1,0 +1,400 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pirsrc with recorded readings. What needs hardware is in tests/hardware.
+#include <cerberus/pir.h>
+#include <cerberus/pose.h>
+#include <glib/gstdio.h>
+#include <gst/check/gstharness.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "support.h"
+
+namespace {
+
+constexpr char kWalk[] = "script=\"0,0,0,0; 0.25,1,0,0; 0.4,1,1,1; 0.45,0,1,1\"";
+
+struct Buffer {
+  GstClockTime pts;
+  std::string readings;
+};
+
+std::string digits(gconstpointer bytes, gsize size) {
+  std::string text;
+  for (gsize i = 0; i < size; ++i) text += static_cast<char>('0' + static_cast<const guint8*>(bytes)[i]);
+  return text;
+}
+
+class Source {
+ public:
+  explicit Source(const std::string& properties) {
+    element_ = gst_parse_launch(("pirsrc " + properties).c_str(), nullptr);
+    fail_unless(element_ != nullptr, "pirsrc %s cannot be made", properties.c_str());
+    harness_ = gst_harness_new_with_element(element_, nullptr, "src");
+    bus_ = gst_bus_new();
+    gst_element_set_bus(element_, bus_);
+  }
+  ~Source() {
+    gst_element_set_state(element_, GST_STATE_NULL);
+    gst_element_set_bus(element_, nullptr);
+    gst_harness_teardown(harness_);
+    gst_object_unref(bus_);
+    gst_object_unref(element_);
+  }
+  Source(const Source&) = delete;
+
+  GstElement* element() const { return element_; }
+  GstHarness* harness() const { return harness_; }
+  void play() { gst_harness_play(harness_); }
+  Buffer pull() {
+    GstBuffer* buffer = gst_harness_pull(harness_);
+    fail_unless(buffer != nullptr, "no buffer came");
+    GstMapInfo map;
+    gst_buffer_map(buffer, &map, GST_MAP_READ);
+    const Buffer result{GST_BUFFER_PTS(buffer), digits(map.data, map.size)};
+    gst_buffer_unmap(buffer, &map);
+    gst_buffer_unref(buffer);
+    return result;
+  }
+  // All until EOS, as "0.250 100".
+  std::vector<std::string> all() {
+    std::vector<std::string> lines;
+    play();
+    wait_for(GST_MESSAGE_EOS);
+    while (GstBuffer* buffer = gst_harness_try_pull(harness_)) {
+      gchar bytes[16];
+      const gsize size = gst_buffer_extract(buffer, 0, bytes, sizeof bytes);
+      gchar* time = g_strdup_printf("%" G_GUINT64_FORMAT " ", GST_BUFFER_PTS(buffer) / GST_MSECOND);
+      lines.push_back(time + digits(bytes, size));
+      g_free(time);
+      gst_buffer_unref(buffer);
+    }
+    return lines;
+  }
+  GstMessage* wait_for(GstMessageType type) {
+    GstMessage* message = nullptr;
+    if (type == GST_MESSAGE_EOS) {  // an element alone posts none: its EOS event comes to the pad
+      while (GstEvent* event = gst_harness_pull_event(harness_)) {
+        const bool ended = GST_EVENT_TYPE(event) == GST_EVENT_EOS;
+        gst_event_unref(event);
+        if (ended) return nullptr;
+      }
+      ck_abort_msg("no EOS came");
+    }
+    message = gst_bus_timed_pop_filtered(bus_, 10 * GST_SECOND, type);
+    fail_unless(message != nullptr, "no such message came");
+    return message;
+  }
+  std::string error(GQuark domain, gint code) { return words(GST_MESSAGE_ERROR, domain, code); }
+  std::string warning() { return words(GST_MESSAGE_WARNING, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ); }
+  GstMessage* pop(GstMessageType type) { return gst_bus_pop_filtered(bus_, type); }
+  std::string refusal(GQuark domain, gint code) {
+    fail_unless_equals_int(gst_element_set_state(element_, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+    return error(domain, code);
+  }
+
+ private:
+  std::string words(GstMessageType type, GQuark domain, gint code) {
+    GstMessage* message = wait_for(type);
+    GError* error = nullptr;
+    type == GST_MESSAGE_ERROR ? gst_message_parse_error(message, &error, nullptr)
+                              : gst_message_parse_warning(message, &error, nullptr);
+    fail_unless(g_error_matches(error, domain, code), "%s", error->message);
+    const std::string text = error->message;
+    g_error_free(error);
+    gst_message_unref(message);
+    return text;
+  }
+
+  GstElement* element_ = nullptr;
+  GstHarness* harness_ = nullptr;
+  GstBus* bus_ = nullptr;
+};
+
+bool says(const std::string& text, const std::string& what) {
+  if (text.find(what) != std::string::npos) return true;
+  g_printerr("\"%s\" does not say \"%s\"\n", text.c_str(), what.c_str());
+  return false;
+}
+
+GST_START_TEST(a_recording_becomes_a_stream_of_its_own_times) {
+  const std::vector<std::string> expected = {"0 000",   "100 000", "200 000", "250 100",
+                                             "300 100", "400 111", "470 011"};
+  for (int run = 0; run < 2; ++run) fail_unless(Source(kWalk).all() == expected);
+  Source again(kWalk);
+  fail_unless(again.all() == expected);
+  gst_element_set_state(again.element(), GST_STATE_NULL);  // and once more from the beginning
+  fail_unless_equals_int(gst_harness_events_in_queue(again.harness()), 0);
+  fail_unless(again.all() == expected);
+}
+GST_END_TEST
+
+GST_START_TEST(caps_tell_where_the_sensors_look) {
+  Source source("bearings=\"-90, 0, 90, 270\" field-of-view=100 script=\"0,0,0,0,1\"");
+  source.play();
+  fail_unless(source.pull().readings == "0001");
+  GstCaps* caps = gst_pad_get_current_caps(source.harness()->sinkpad);
+  CerberusPirInfo info;
+  fail_unless(cerberus_pir_info_from_caps(&info, caps, nullptr));
+  fail_unless_equals_int(info.format, CERBERUS_PIR_PRESENCE);
+  fail_unless_equals_int(info.sensors, 4);
+  const double bearings[] = {-90, 0, 90, -90};
+  for (int i = 0; i < 4; ++i) fail_unless_equals_float(info.bearings[i], bearings[i]);
+  fail_unless_equals_float(info.field_of_view, 100);
+  gst_caps_unref(caps);
+}
+GST_END_TEST
+
+GST_START_TEST(every_change_is_a_message_and_a_heartbeat_is_none) {
+  Source source(kWalk);
+  source.all();
+  const struct {
+    GstClockTime time;
+    const char* readings;
+  } expected[] = {{0, "000"}, {250, "100"}, {400, "111"}, {470, "011"}};
+  for (const auto& one : expected) {
+    GstMessage* message = source.pop(GST_MESSAGE_ELEMENT);
+    fail_unless(message != nullptr);
+    GstClockTime time = 0;
+    GBytes* readings = cerberus_message_parse_pir(message, &time);
+    fail_unless(readings != nullptr);
+    fail_unless_equals_uint64(time, one.time * GST_MSECOND);
+    fail_unless(digits(g_bytes_get_data(readings, nullptr), g_bytes_get_size(readings)) == one.readings);
+    guint doubtful = 7;
+    fail_unless(gst_structure_get_uint(gst_message_get_structure(message), "doubtful", &doubtful));
+    fail_unless_equals_int(doubtful, 0);
+    g_bytes_unref(readings);
+    gst_message_unref(message);
+  }
+  fail_unless(source.pop(GST_MESSAGE_ELEMENT) == nullptr);
+}
+GST_END_TEST
+
+GST_START_TEST(the_model_follows_the_properties) {
+  const struct {
+    const char* properties;
+    std::vector<std::string> expected;
+  } cases[] = {
+      {"active-low=true script=\"0,1;1,0;2,1\"", {"0 0", "1000 1", "2020 0"}},
+      {"debounce=0 script=\"0,0;1,1;2,0\"", {"0 0", "1000 1", "2000 0"}},
+      {"hold=3000000000 script=\"0,0;1,1;2,0;9,0\"", {"0 0", "1000 1", "4000 0"}},
+      {"hold=3000000000 script=\"0,0;1,1;1.5,0;2,1;3,0;9,0\"", {"0 0", "1000 1", "5000 0"}},
+      {"hold=3000000000 retrigger=false script=\"0,0;1,1;1.5,0;2,1;3,0;9,0\"", {"0 0", "1000 1", "4000 0"}},
+      {"block-time=2000000000 script=\"0,0;1,1;2,0;3,1;3.5,0;9,0\"", {"0 0", "1000 1", "2020 0"}},
+      {"warm-up=5000000000 script=\"0,0;1,1;9,1\"", {"0 2", "5000 1"}},
+      {"stuck-after=5000000000 script=\"0,0;1,1;9,1\"", {"0 0", "1000 1", "6000 2"}},
+      {"chatter-edges=2 chatter-window=1000000000 script=\"0,0;1,1;1.1,0;1.2,1;1.3,0;9,0\"",
+       {"0 0", "1000 1", "1120 0", "1200 2", "2200 0"}},
+      {"preset=sk-11 warm-up=0 script=\"0,1;1,0\"", {"0 0", "1000 1"}},
+      {"preset=am312 script=\"0,0;40,1\"", {"0 2", "30000 0", "40000 1"}},
+  };
+  for (const auto& one : cases) {
+    const std::string line = std::string("bearings=0 heartbeat=3600000000000 ") + one.properties;
+    const std::vector<std::string> told = Source(line).all();
+    std::string text;
+    for (const std::string& each : told) text += each + "; ";
+    fail_unless(told == one.expected, "%s: %s", line.c_str(), text.c_str());
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_property_that_was_set_wins_over_the_preset_in_any_order) {
+  for (const char* line : {"pirsrc preset=sk-11 warm-up=7", "pirsrc warm-up=7 preset=sk-11"}) {
+    GstElement* element = gst_parse_launch(line, nullptr);
+    guint64 warm_up = 0;
+    gboolean active_low = FALSE;
+    gdouble fov = 0;
+    g_object_get(element, "warm-up", &warm_up, "active-low", &active_low, "field-of-view", &fov, nullptr);
+    fail_unless_equals_uint64(warm_up, 7);
+    fail_unless(active_low);
+    fail_unless_equals_float(fov, 120);
+    gst_util_set_object_arg(G_OBJECT(element), "preset", "none");
+    g_object_get(element, "warm-up", &warm_up, "active-low", &active_low, nullptr);
+    fail_unless_equals_uint64(warm_up, 7);
+    fail_unless(!active_low);
+    gst_object_unref(element);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_sensor_that_is_stuck_or_chatters_is_named_and_so_is_its_recovery) {
+  Source stuck(
+      "bearings=0,-120,120 script=\"0,0,0,0; 1,0,1,0; 700,0,0,0; 701,0,0,0\" heartbeat=1000000000000");
+  stuck.all();
+  const std::string warning = stuck.warning();
+  fail_unless(says(warning, "PIR sensor infer2 (reading 2 of script, bearing -120) is stuck on"));
+  GstMessage* info = stuck.pop(static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_INFO));
+  fail_unless(info && GST_MESSAGE_TYPE(info) == GST_MESSAGE_INFO);  // not warned of twice
+  GError* error = nullptr;
+  gst_message_parse_info(info, &error, nullptr);
+  fail_unless(says(error->message, "infer2") && says(error->message, "works again"));
+  g_error_free(error);
+  gst_message_unref(info);
+
+  Source chattering(
+      "chatter-edges=3 script=\"0,0,0,0; 1,0,0,1; 1.1,0,0,0; 1.2,0,0,1; 1.3,0,0,0; 1.4,0,0,1\"");
+  chattering.all();
+  fail_unless(says(chattering.warning(), "infer3 (reading 3 of script, bearing 120) is chattering"));
+}
+GST_END_TEST
+
+GST_START_TEST(a_wrong_setting_is_an_error_that_names_it) {
+  const GQuark resource = GST_RESOURCE_ERROR;
+  const gint settings = GST_RESOURCE_ERROR_SETTINGS, not_found = GST_RESOURCE_ERROR_NOT_FOUND;
+  fail_unless(says(Source("driver=radar").refusal(resource, settings),
+                   "no PIR driver \"radar\". Drivers: gpio, iio, replay, scripted"));
+  fail_unless(says(Source("bearings=\"\"").refusal(resource, settings), "1 to 16"));
+  fail_unless(says(Source("bearings=0,north").refusal(resource, settings), "\"north\" is no direction"));
+  fail_unless(says(Source("bearings=0,,1").refusal(resource, settings), "\"\" is no direction"));
+  fail_unless(says(Source("bearings=nan").refusal(resource, settings), "\"nan\" is no direction"));
+  fail_unless(says(Source("bearings=0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16").refusal(resource, settings),
+                   "1 to 16"));
+  fail_unless(says(Source("driver=replay").refusal(resource, settings), "name the file"));
+  fail_unless(
+      says(Source("driver=replay location=/nowhere.csv").refusal(resource, not_found), "/nowhere.csv"));
+  fail_unless(
+      says(Source("script=\"open fail the shed burnt down\"").refusal(resource, GST_RESOURCE_ERROR_READ),
+           "the shed burnt down"));
+  // Without hardware, and without the libraries: a clear word, and nothing hangs.
+  for (const char* line : {"driver=gpio chip=/dev/attic lines=0,1,2", "driver=iio iio-device=attic"}) {
+    Source source(line);
+    fail_unless_equals_int(gst_element_set_state(source.element(), GST_STATE_PAUSED),
+                           GST_STATE_CHANGE_FAILURE);
+    GstMessage* message = source.wait_for(GST_MESSAGE_ERROR);
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    fail_unless(g_error_matches(error, resource, settings) ? says(error->message, "build again")
+                                                           : says(error->message, "attic"));
+    g_error_free(error);
+    gst_message_unref(message);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_bad_recording_is_named_with_its_line) {
+  gchar* path = nullptr;
+  const gint file = g_file_open_tmp("cerberus-pir-XXXXXX", &path, nullptr);
+  g_close(file, nullptr);
+  const std::string properties = std::string("driver=replay location=") + path;
+  for (const char* text : {"0,0,0,0\n1,1,0", "0,0,0,0\n\n5,1,0,0\n4,0,0,0\n"}) {
+    g_file_set_contents(path, text, -1, nullptr);
+    const std::string why = Source(properties).refusal(GST_STREAM_ERROR, GST_STREAM_ERROR_DECODE);
+    fail_unless(says(why, path) && says(why, text[10] == '1' ? "line 2" : "line 4"));
+  }
+  g_file_set_contents(path, "{\"pts\":0,\"pir\":[0,0,0]}\n{\"pts\":50000000,\"pir\":[0,0,1]}\n", -1, nullptr);
+  fail_unless(Source(properties).all() == std::vector<std::string>({"0 000", "50 001"}));
+  g_unlink(path);
+  g_free(path);
+}
+GST_END_TEST
+
+GST_START_TEST(a_driver_that_fails_ends_the_stream_with_its_words) {
+  Source source("script=\"0,0,0,0; 0.15 fail the cable broke\"");
+  source.play();
+  fail_unless(says(source.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ), "the cable broke"));
+  fail_unless_equals_uint64(source.pull().pts, 0);
+  Source leds("script=\"0,0,0,0; show fail no light\"");
+  leds.play();
+  fail_unless(says(leds.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ), "no light"));
+}
+GST_END_TEST
+
+GST_START_TEST(live_it_keeps_the_clocks_time) {
+  Source source(std::string("is-live=true ") + kWalk);
+  source.play();
+  Buffer buffer = source.pull();  // at once
+  fail_unless_equals_uint64(buffer.pts, 0);
+  ck_assert_str_eq(buffer.readings.c_str(), "000");
+  fail_unless(gst_harness_try_pull(source.harness()) == nullptr);
+  const std::pair<GstClockTime, const char*> expected[] = {{100, "000"}, {200, "000"}, {250, "100"}};
+  for (const auto& [time, readings] : expected) {
+    gst_harness_set_time(source.harness(), time * GST_MSECOND);
+    buffer = source.pull();
+    fail_unless_equals_uint64(buffer.pts, time * GST_MSECOND);
+    ck_assert_str_eq(buffer.readings.c_str(), readings);
+  }
+  GstQuery* query = gst_query_new_latency();
+  fail_unless(gst_pad_peer_query(source.harness()->sinkpad, query));
+  gboolean live = FALSE;
+  GstClockTime least = 1, most = 1;
+  gst_query_parse_latency(query, &live, &least, &most);
+  fail_unless(live);
+  fail_unless_equals_uint64(least, 0);
+  fail_unless_equals_uint64(most, GST_CLOCK_TIME_NONE);
+  gst_query_unref(query);
+}
+GST_END_TEST
+
+GST_START_TEST(stopping_takes_no_time_while_it_waits) {
+  Source source("is-live=true heartbeat=3600000000000 script=\"0,0,0,0; 3600,1,0,0\"");
+  for (const GstState down : {GST_STATE_PAUSED, GST_STATE_READY, GST_STATE_NULL}) {
+    gint64 least = G_MAXINT64;  // of three: the machine may be busy
+    for (int round = 0; round < 3; ++round) {
+      source.play();
+      source.pull();
+      const gint64 before = g_get_monotonic_time();
+      gst_element_set_state(source.element(), down);
+      least = std::min(least, g_get_monotonic_time() - before);
+      gst_element_set_state(source.element(), GST_STATE_NULL);
+    }
+    fail_unless(least < 100000, "%d ms", static_cast<int>(least / 1000));
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(while_the_base_turns_a_detection_is_doubtful) {
+  Source source("is-live=true heartbeat=3600000000000 script=\"0,0,0,0; 1,0,1,0; 3600,0,1,0\"");
+  source.play();
+  fail_unless(source.pull().readings == "000");
+  fail_unless(gst_harness_push_upstream_event(source.harness(), cerberus_event_new_base(-20, 0)));
+  gst_harness_set_time(source.harness(), GST_SECOND);
+  gst_harness_push_upstream_event(source.harness(), cerberus_event_new_base(-20, GST_SECOND));  // wakes it
+  fail_unless(source.pull().readings == "010");
+  guint doubtful = 0;
+  for (int i = 0; i < 2; ++i) {
+    GstMessage* message = source.wait_for(GST_MESSAGE_ELEMENT);
+    gst_structure_get_uint(gst_message_get_structure(message), "doubtful", &doubtful);
+    gst_message_unref(message);
+  }
+  fail_unless_equals_int(doubtful, 2);
+  // A stranger's event is not for us, and does no harm.
+  gst_harness_push_upstream_event(
+      source.harness(),
+      gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
+                           gst_structure_new("cerberus-base", "yaw-rate", G_TYPE_STRING, "x", nullptr)));
+}
+GST_END_TEST
+
+GST_START_TEST(two_of_them_know_nothing_of_each_other) {
+  Source one(kWalk), two("bearings=0,180 script=\"0,1,1\"");
+  fail_unless(two.all() == std::vector<std::string>({"0 11"}));
+  fail_unless_equals_int(one.all().size(), 7);
+}
+GST_END_TEST
+
+Suite* pirsrc_suite() {
+  watch_library_log();
+  Suite* suite = suite_create("pirsrc");
+  TCase* tests = tcase_create("pirsrc");
+  tcase_set_timeout(tests, 60);
+  tcase_add_test(tests, a_recording_becomes_a_stream_of_its_own_times);
+  tcase_add_test(tests, caps_tell_where_the_sensors_look);
+  tcase_add_test(tests, every_change_is_a_message_and_a_heartbeat_is_none);
+  tcase_add_test(tests, the_model_follows_the_properties);
+  tcase_add_test(tests, a_property_that_was_set_wins_over_the_preset_in_any_order);
+  tcase_add_test(tests, a_sensor_that_is_stuck_or_chatters_is_named_and_so_is_its_recovery);
+  tcase_add_test(tests, a_wrong_setting_is_an_error_that_names_it);
+  tcase_add_test(tests, a_bad_recording_is_named_with_its_line);
+  tcase_add_test(tests, a_driver_that_fails_ends_the_stream_with_its_words);
+  tcase_add_test(tests, live_it_keeps_the_clocks_time);
+  tcase_add_test(tests, stopping_takes_no_time_while_it_waits);
+  tcase_add_test(tests, while_the_base_turns_a_detection_is_doubtful);
+  tcase_add_test(tests, two_of_them_know_nothing_of_each_other);
+  suite_add_tcase(suite, tests);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(pirsrc)
