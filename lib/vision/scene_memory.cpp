@@ -382,7 +382,9 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   row.tolerance = tolerance.view().data;
   for (int y = 0; y < size.height; ++y) {
     const int by = y / kSceneBlock;
-    if (y % kSceneBlock == 0) {
+    if (in.still && y == 0) {
+      std::fill_n(tolerance.view().data, size.width, std::uint8_t{16});  // a pixel
+    } else if (!in.still && y % kSceneBlock == 0) {
       // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its
       // mean, since the tail counts. One pixel at least: interpolation and aliasing make that much. Whether the memory is
       // still good there is judged by what noise alone does not explain.
@@ -396,10 +398,10 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
             n += b.n;
           }
         // Gradients are doubled: |e| / g = 2 ge / gg.
-        const double error = in.still ? 1 : std::clamp(2 * 2 * ge / (gg + 400), 1.0, 3.0);
+        const double error = std::clamp(2 * 2 * ge / (gg + 400), 1.0, 3.0);
         // sum of g <= sqrt(n x sum of g^2)
         const double beyond_noise = 2 * 2 * (ge - noise * std::sqrt(gg * n)) / (gg + 400);
-        if (!in.still && beyond_noise > kUnreliable) {
+        if (beyond_noise > kUnreliable) {
           for (int v = y; v < std::min(y + kSceneBlock, size.height); ++v)
             for (int u = bx * kSceneBlock; u < std::min((bx + 1) * kSceneBlock, size.width); ++u)
               age.view().at(u, v) = std::min(age.view().at(u, v), kRelearn);
