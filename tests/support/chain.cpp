@@ -14,7 +14,7 @@ const char* Chain::stage_name(std::size_t stage) {
 void Chain::begin(const LumaSource& frame, double seconds) {
   frame_ = frame;
   seconds_ = seconds;
-  const Size size = vision::analysis_size({frame.width, frame.height}, 320);
+  const Size size = vision::analysis_size({frame.width, frame.height}, analysis_width_);
   luma_.resize(size);
   current_.resize(size);
   previous_.resize(size);
@@ -30,10 +30,7 @@ void Chain::run_stage(std::size_t stage) {
     case 1:
       motion_result_ = motion_.update(luma_.view());
       if (motion_result_.scene_age == 1) {
-        difference_.reset();
-        area_.reset();
-        regions_.reset();
-        tracker_.reset();
+        forget();
       }
       break;
     case 2:
@@ -72,6 +69,18 @@ void Chain::run_stage(std::size_t stage) {
 void Chain::step(const LumaSource& frame, double seconds) {
   begin(frame, seconds);
   for (std::size_t s = 0; s < kStages; ++s) run_stage(s);
+}
+
+void Chain::reset() {
+  motion_.reset();
+  forget();
+}
+
+void Chain::forget() {
+  difference_.reset();
+  area_.reset();
+  regions_.reset();
+  tracker_.reset();
 }
 
 std::size_t Chain::bytes() const {

@@ -27,18 +27,26 @@ class Chain {
   void begin(const vision::LumaSource& frame, double seconds);
   void run_stage(std::size_t stage);
   void step(const vision::LumaSource& frame, double seconds);
+  // Forget all, as a seek does.
+  void reset();
+  // Default 320; 0: the frame's own size.
+  void set_analysis_width(int width) { analysis_width_ = width; }
 
   vision::Size analysis_size() const { return luma_.size(); }
   vision::GrayView mask() const { return mask_.view(); }
   const vision::CameraMotionResult& motion() const { return motion_result_; }
   const vision::MovingAreaResult& area() const { return area_result_; }
+  std::span<const vision::Region> regions() const { return scaled_; }  // frame pixels
   std::span<const vision::Track> tracks() const { return tracks_; }
   // Bytes that all stages hold, planes included.
   std::size_t bytes() const;
 
  private:
+  void forget();
+
   vision::LumaSource frame_;
   double seconds_ = 0;
+  int analysis_width_ = 320;
   vision::LumaScaler scaler_;
   vision::CameraMotion motion_;
   vision::ThreeFrameDifference difference_;
