@@ -133,6 +133,7 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
   if (scene.ids)
     for (const Object& object : objects_) paint_label(object, patches);
   if (scene.crosshair) paint_crosshair(patches);
+  if (scene.system.pose || scene.system.decision) paint_system(patches);
   std::erase_if(labels_, [](const auto& entry) { return !entry.second.used; });
   scene_ = nullptr;
 }
@@ -379,6 +380,59 @@ void Painter::paint_crosshair(std::vector<Patch>& patches) {
     cairo_fill(cr);
   };
   add_patch(patches, frame_, around(cx - arm, cy - arm, cx + arm, cy + arm, reach), draw);
+}
+
+// A panel in the corner: the head's angles, the sensors as the paper's LEDs (red: detects, blue: does not, grey: says nothing),
+// the rule and the action.
+void Painter::paint_system(std::vector<Patch>& patches) {
+  const System& system = scene_->system;
+  const auto degrees = [](double value) {
+    // Not by the locale; what is no angle of a head does not fit either.
+    if (!std::isfinite(value) || std::abs(value) > 1e4) return std::string("?");
+    char digits[24];
+    value += 0.0;
+    const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, 1).ptr;
+    return std::string(digits, end);
+  };
+  std::string lines[2];
+  if (system.pose) lines[0] = "pan " + degrees(system.pan) + "  tilt " + degrees(system.tilt);
+  if (system.decision)
+    lines[1] =
+        (system.rule > 0 ? "rule " + std::to_string(system.rule) + ": " : std::string()) + system.action;
+
+  const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  const ContextPtr measure(cairo_create(scratch.get()));
+  select_font(measure.get(), font_);
+  const double pad = 0.5 * font_, led = 0.38 * font_, step = 2.6 * led, row = 1.35 * font_,
+               edge = 0.6 * font_;
+  const double leds = step * static_cast<double>(system.sensors.size());
+  const double width = 2 * pad + std::max(text_width(measure.get(), lines[0].c_str()),
+                                          leds + text_width(measure.get(), lines[1].c_str()));
+  const double height = pad + row * (!lines[0].empty() + !lines[1].empty());
+  add_patch(patches, frame_, around(edge, edge, edge + width, edge + height, 1), [&](cairo_t* cr) {
+    rounded_rectangle(cr, edge, edge, width, height, 0.35 * font_);
+    source(cr, {}, 0.6);
+    cairo_fill(cr);
+    select_font(cr, font_);
+    double y = edge + 0.5 * pad;
+    for (const std::string& line : lines) {
+      if (line.empty()) continue;
+      double x = edge + pad;
+      if (&line == &lines[1])
+        for (const std::uint8_t sensor : system.sensors) {
+          cairo_arc(cr, x + led, y + row / 2, led, 0, 2 * std::numbers::pi);
+          source(cr, sensor == 1   ? Color{1, 0.15, 0.1}
+                     : sensor == 0 ? Color{0.15, 0.35, 1}
+                                   : Color{0.5, 0.5, 0.5});
+          cairo_fill(cr);
+          x += step;
+        }
+      source(cr, {1, 1, 1});
+      cairo_move_to(cr, x, y + row / 2 + 0.36 * font_);
+      cairo_show_text(cr, line.c_str());
+      y += row;
+    }
+  });
 }
 
 }  // namespace cerberus::draw

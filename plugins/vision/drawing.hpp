@@ -60,8 +60,18 @@ struct Object {
   Look look = Look::seen;
 };
 
+// Where a head looks, and what it was told to do.
+struct System {
+  bool pose = false, decision = false;  // what of the following is known
+  double pan = 0, tilt = 0;             // degrees
+  int rule = 0;                         // 0: one without a number
+  const char* action = "";
+  std::span<const std::uint8_t> sensors;  // 0 nothing, 1 somebody, else invalid
+};
+
 struct Scene {
   vision::Size frame;
+  System system;
   std::span<const Object> objects;
   std::span<const vision::Trails::Trail> trails;
   double time = 0;        // s, of this frame
@@ -92,6 +102,7 @@ class Painter {
   void paint_box(const Object& object, std::vector<Patch>& patches);
   void paint_label(const Object& object, std::vector<Patch>& patches);
   void paint_crosshair(std::vector<Patch>& patches);
+  void paint_system(std::vector<Patch>& patches);
 
   const Scene* scene_ = nullptr;  // during paint()
   Area frame_;

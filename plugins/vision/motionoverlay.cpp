@@ -15,7 +15,10 @@
  * the frame is not touched; otherwise they are blended into a writable copy of what they cover. A frame in
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
  *
- * Reads the region and camera-motion metas. Posts no messages. Regions that no tracker has seen are drawn in
+ * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor (red:
+ * detects, blue: does not, grey: no valid reading), the rule that fired and the action.
+ *
+ * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn in
  * white, without identity and trail. What reaches beyond the frame is cut at its edge.
  *
  * ## Example launch lines
@@ -72,7 +75,7 @@ GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(OVERLAY_CAPS));
 
 struct Settings {
-  bool boxes = true, ids = true, speeds = true, trails = true, crosshair = false;
+  bool boxes = true, ids = true, speeds = true, trails = true, crosshair = false, system = true;
   guint64 trail_time = 2 * GST_SECOND;
   double line_width = 0;
 };
@@ -93,6 +96,10 @@ const Property<Settings> kProperties[] = {
     property("line-width", &Settings::line_width, 0, kWidestLine,
              "Width of the lines in pixels of the frame: 0 chooses one that reads well at the frame's size"),
     property("crosshair", &Settings::crosshair, "Mark the centre of the picture"),
+    property("show-system", &Settings::system,
+             "Show, where they are known, the head's pan and tilt, the PIR sensors as red and blue lights, "
+             "and the rule and "
+             "the action of the fusion"),
 };
 
 struct State {  // streaming thread only
@@ -280,6 +287,23 @@ void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
     state.trails.reset();
 }
 
+// Borrows from the buffer's metas.
+draw::System read_system(GstBuffer* buffer) {
+  draw::System system;
+  if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
+    system.pose = true;
+    system.pan = pose->pan;
+    system.tilt = pose->tilt;
+  }
+  if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer)) {
+    system.decision = true;
+    system.rule = fusion->rule;
+    system.action = cerberus_fusion_action_get_nick(fusion->action);
+    system.sensors = {fusion->sensors, std::min<std::size_t>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS)};
+  }
+  return system;
+}
+
 GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, GstBuffer* buffer) {
   return cerberus::guarded(transform, GST_FLOW_ERROR, [&]() -> GstFlowReturn {
     Private& self = *cerberus_motion_overlay_self(transform)->priv;
@@ -299,6 +323,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     scene.ids = settings.ids;
     scene.speeds = settings.speeds;
     scene.crosshair = settings.crosshair;
+    if (settings.system) scene.system = read_system(buffer);
     state.patches.clear();
     state.painter.paint(scene, state.patches);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -207,6 +208,46 @@ GST_START_TEST(tiny_and_odd_frames_are_drawn_on) {
     fail_unless(std::any_of(all.begin(), all.end(), [](guint8 b) { return b != 100; }), "%s", format);
     gst_buffer_unref(out);
   }
+}
+GST_END_TEST
+
+GST_START_TEST(head_sensors_and_decision_are_shown_in_the_corner) {
+  const std::string caps = caps_string("RGBx", kWidth, kHeight);
+  CerberusPose pose;
+  cerberus_pose_init(&pose);
+  pose.pan = NAN, pose.tilt = 1e300;
+  CerberusFusion fusion;
+  cerberus_fusion_init(&fusion);
+  fusion.rule = 2;
+  fusion.n_sensors = 3;
+  // Lights of each kind that some sensors give, in the panel's corner: pixels clearly red, clearly blue.
+  const auto lights = [&](const char* line, std::array<guint8, 3> sensors, bool head) {
+    std::copy(sensors.begin(), sensors.end(), fusion.sensors);
+    Harness h = started(line, caps);
+    GstBuffer* in = frame(info_of(caps));
+    if (head) cerberus_buffer_set_pose(in, &pose);
+    cerberus_buffer_set_fusion(in, &fusion);
+    GstBuffer* out = through(h.get(), in);
+    const auto all = bytes(out);
+    gst_buffer_unref(out);
+    int red = 0, blue = 0, dark = 0;
+    for (std::size_t i = 0; i + 3 < all.size(); i += 4) {
+      red += all[i] > 200 && all[i + 2] < 80;
+      blue += all[i + 2] > 200 && all[i] < 80;
+      dark += all[i] < 80 && all[i + 1] < 80 && all[i + 2] < 80;
+      const std::size_t x = i / 4 % kWidth, y = i / 4 / kWidth;
+      if (x > 200 || y > 60) fail_unless(all[i] == 100 && all[i + 2] == 100);
+    }
+    return std::array{red, blue, dark};
+  };
+  const auto one = lights("motionoverlay", {1, 2, 2}, true);
+  fail_unless(one[0] > 10 && one[1] == 0);
+  const auto all = lights("motionoverlay", {1, 0, 0}, false);
+  // Discs of one size, up to how their edges fall on pixels.
+  fail_unless(std::abs(all[0] - one[0]) <= one[0] / 3 && std::abs(all[1] - 2 * all[0]) <= all[0] / 3,
+              "red %d and %d, blue %d", one[0], all[0], all[1]);
+  fail_unless(one[2] > all[2], "two lines need more room than one");
+  fail_unless((lights("motionoverlay show-system=false", {1, 0, 0}, true) == std::array{0, 0, 0}));
 }
 GST_END_TEST
 
@@ -566,6 +607,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, frames_without_time_stamps_have_trails_too);
   tc = tcase_create("stream");
   suite_add_tcase(s, tc);
+  tcase_add_test(tc, head_sensors_and_decision_are_shown_in_the_corner);
   tcase_add_test(tc, the_other_branch_of_a_tee_keeps_its_pixels);
   tcase_add_test(tc, drawings_are_attached_where_downstream_draws_them);
   tcase_add_test(tc, the_caps_feature_is_used_only_where_downstream_draws);
