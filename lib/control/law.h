@@ -7,7 +7,7 @@
 //   command = go to the target, at no more than gain x |error|
 // so the delay of the loop is not in the loop, and a head that hears nothing more ends at the target. An axis at rest
 // starts when the error exceeds the dead band's start and rests again when it is below its stop: with one threshold for
-// both, noise on the boxes makes a head hunt (FACTS.md: 240 reversals a minute against 1).
+// both, noise on the boxes makes a head hunt (the test in tests/unit/law.cpp counts the reversals).
 #pragma once
 
 #include <cstdint>

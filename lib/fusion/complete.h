@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The rule set computed from where the sensors look, how wide the lens is and where the head's stops are (DESIGN.md,
-// "Fusion"): any number of sensors, no case left open. Radians; pan angles are a line, nothing wraps on it.
+// The rule set computed from where the sensors look, how wide the lens is and where the head's stops are: any
+// number of sensors, no case left open. Radians; pan angles are a line, nothing wraps on it.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace cerberus::fusion {
 using sensing::Geometry;
 using sensing::Interval;
 
-// A head of +-170 degrees, DESIGN.md's default.
+// A head of +-170 degrees unless somebody says otherwise.
 constexpr Interval kDefaultLimits{sensing::radians(-170), sensing::radians(170)};
 
 // A place worth looking at: turn until pan is within `wanted`, then sweep `sweep` (never wider than `wanted`).
@@ -28,7 +28,7 @@ constexpr int kMaxPlaces = 40;  // two for each of 16 sensors, and some that the
 using Places = sensing::FixedList<Place, kMaxPlaces>;
 
 // Where to look when the sensors `fired` detect and the head stands at `pan`, best first; empty for no sensor.
-//   1 what all of them cover together (DESIGN.md: the wanted interval), nearest to the head first
+//   1 what all of them cover together (the wanted interval), nearest to the head first
 //   2 each fired sector, nearest to the head first; equally near: the one of the higher `order` (the later it fired),
 //     then the lower number
 // Within each of the two, what the head can turn to goes before what it cannot. Each is cut to the limits; a sector cut

@@ -41,7 +41,7 @@ struct PirOptions {
   Time chatter_window = std::chrono::seconds(10);  // ... within this: chattering; 0 edges: never
 };
 
-// Modules as data (FACTS.md, "PIR modules"; the paper's Table 1). What the module does to its own output line (hold,
+// Modules as data (the makers' data sheets; the paper's Table 1). What the module does to its own output line (hold,
 // block) the model need not do again; it is told here because a user should know. Equal ends: not adjustable; 0: not known.
 struct PirPreset {
   struct Span {
@@ -107,7 +107,7 @@ class PirModel {
   unsigned rise_count_ = 0;  // of all rises since start; the last kRises of them are kept
 };
 
-// A body that turns faster than this trips its own PIR sensors (5 degrees a second, DESIGN.md "Base").
+// A body that turns faster than this trips its own PIR sensors: 5 degrees a second, an assumption.
 constexpr double kDoubtfulTurn = radians(5);
 // A module holds its output for some seconds after the turn that tripped it.
 constexpr Time kDoubtLinger = std::chrono::seconds(3);

@@ -48,7 +48,7 @@ struct FixedList {
 // Where the sensors look. As pirsrc's caps give it: nothing is configured twice.
 class Geometry {
  public:
-  // The paper's: ahead, left, right, 120 degrees each (II.A; DESIGN.md: 0, -120, +120).
+  // The paper's: ahead, left, right, 120 degrees each (II.A): 0, -120, +120 degrees.
   Geometry();
   // bearings: radians, 1 .. 16 of them, finite (wrapped here). field_of_view: radians, in (0, 2 pi].
   // Returns false and changes nothing when they are not that.

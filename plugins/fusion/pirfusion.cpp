@@ -36,7 +36,7 @@
  * Since: 0.1
  */
 // The rules are the paper's II.D, the state machine is lib/fusion. The shape is textoverlay's: a GstAggregator waits
-// where it must not (DESIGN.md). What the pads share is in Inputs, what happens at a PIR pad in pir_pad.cpp; here is the
+// where it must not. What the pads share is in Inputs, what happens at a PIR pad in pir_pad.cpp; here is the
 // video's path.
 #include <cerberus/cerberus.h>
 

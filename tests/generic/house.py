@@ -106,12 +106,24 @@ def check_links(path):
                 complain(path, f'points to {target}, which is not there')
 
 
+PAGES = {page.name for folder in (*FOLDERS, '.') for page in (TOP / folder).glob('*.md' if folder == '.' else '**/*.md')}
+
+
+def check_named_pages(path):
+    """A page that a source names is one that its reader has, too."""
+    if path.suffix in SOURCES:
+        for name in re.findall(r'(?<![*<\w])\w[\w-]*\.md\b', path.read_text('utf-8', errors='replace')):
+            if name not in PAGES:
+                complain(path, f'names {name}, which is not in the project')
+
+
 for each in files():
     check_licence(each)
     check_direction(each)
     check_installed_header(each)
     check_launch_file(each)
     check_links(each)
+    check_named_pages(each)
 for each in TOP.glob('*.md'):
     check_links(each)
 check_commands()

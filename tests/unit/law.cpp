@@ -90,7 +90,7 @@ START_TEST(the_dead_band_has_two_thresholds) {
 END_TEST
 
 // A person who stands still, boxes with a noise of 1 degree, 33 frames a second, a minute: a plain band of 0.5 degrees
-// reverses hundreds of times (FACTS.md), this one hardly ever.
+// reverses hundreds of times, this one hardly ever.
 START_TEST(a_head_before_somebody_who_stands_rests) {
   for (const bool plain : {false, true}) {
     LawOptions options;

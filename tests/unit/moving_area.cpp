@@ -130,7 +130,7 @@ Histogram histogram_of(GrayView d) {
 }  // namespace
 
 START_TEST(the_paper_s_sets_are_formed_from_one_threshold) {
-  // The histogram of FACTS' kind: its linear threshold is 4 (computed by hand), so 5 and more moves (Eq. 3).
+  // The linear threshold of these counts is 4 (computed by hand), so 5 and more moves (Eq. 3).
   const int counts[] = {30, 60, 5, 4, 1, 5, 20, 12};
   Image<std::uint8_t> now({137, 1}), before({137, 1}), mask({137, 1}), picture({137, 1});
   for (int v = 0, x = 0; v < 8; ++v)
