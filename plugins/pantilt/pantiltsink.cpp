@@ -532,7 +532,9 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
       self.station.forget();
       if (self.playing) self.station.resume(now(self));
     }
-    if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
+    // As for a frame, nothing is done in PAUSED. (The base class holds the preroll lock here.)
+    if (type == GST_EVENT_GAP && done && (self.playing || gst_base_sink_wait_preroll(sink) == GST_FLOW_OK))
+      look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
     Outbox out;

@@ -20,6 +20,8 @@ constexpr control::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(
 // A driver that answers is asked every 20 ms; one that does not, in this time, is at fault.
 constexpr control::Time kSilence = std::chrono::seconds(1);
 constexpr char kSilent[] = "the head does not answer";
+// The base class holds a lock over events that a change of state waits for.
+constexpr auto kEventPatience = milliseconds(50);
 constexpr auto kTickPatience = milliseconds(10);
 // A loaded machine is no reason to decide otherwise than an idle one; who cannot wait interrupts.
 constexpr auto kFramePatience = std::chrono::seconds(10);
@@ -147,26 +149,22 @@ void Station::check(const std::string& failure, Time head, Outbox& out) {
     complain(failure, head, out);
 }
 
-Station::Answer Station::announce(Time at, Outbox& out) {
-  std::shared_ptr<drivers::HeadRunner> runner;
-  Time head, from;
-  bool clock_driven;
-  {
-    const std::lock_guard guard(lock_);
-    if (!runner_) return Answer::failed;
-    runner = runner_;
-    clock_driven = clock_driven_;
-    head = head_time(at);
-    from = std::exchange(fresh_, false) ? head : std::max(head, published_);
-  }
+void Station::announce(Time at, Outbox& out) {
+  std::unique_lock guard(lock_);
+  const auto runner = runner_;
+  if (!runner) return;
+  const Time head = head_time(at);
+  const Time from = std::exchange(fresh_, false) ? head : std::max(head, published_);
+  const Time until = clock_driven_ ? control::kNever : std::max(from, head + setup_.latency);
+  guard.unlock();
   std::vector<Pose> poses;
-  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses,
-                                    clock_driven ? kTickPatience : kFramePatience);
-  const std::lock_guard guard(lock_);
-  if (answer != Answer::done) return answer;
+  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses, kEventPatience);
+  guard.lock();
+  // A driver that does not answer yet: then what is known of it.
+  if (answer != Answer::done) poses.assign(1, history_.at(from));
+  if (answer != Answer::done) poses[0].from = from;
   remember(poses);
-  publish(poses, clock_driven ? control::kNever : std::max(from, head + setup_.latency), out);
-  return answer;
+  publish(poses, until, out);
 }
 
 HeadCommand Station::decide(const Frame& frame, Time now, Outbox& out) {

@@ -49,7 +49,7 @@ class Station {
   // Forgets the frames so far (flush, new segment): the next one begins anew.
   void forget();
   // Where the head looks at the start, valid until its latency allows something else.
-  Answer announce(Time running, Outbox& out);
+  void announce(Time running, Outbox& out);
 
   struct Frame {
     GstBuffer* buffer;  // nullptr: a gap
