@@ -129,13 +129,35 @@ constexpr PresetValue kPresets[] = {
 };
 
 struct Private {
-  std::mutex lock;
+  // Held while a property or a preset is on its way to the stages (see Setting), so that no preset overwrites what
+  // another thread chose meanwhile. Taken before `lock`.
+  std::mutex setting;
+  std::mutex lock;  // of `preset` and `chosen`
   int preset = PRESET_DEFAULT;
   std::bitset<std::size(kTaken)> chosen;     // properties that the application set itself
   std::array<GstElement*, STAGES> stages{};  // owned by the bin
 };
 
 CERBERUS_DEFINE_TYPE(CerberusMotionDetect, cerberus_motion_detect, GstBin, GST_TYPE_BIN, Private)
+
+// Alone with the stages' properties. The stages notify when it is over: whoever is notified may set properties too, in
+// whichever thread.
+class Setting {
+ public:
+  explicit Setting(Private& priv) : priv_(priv) {
+    for (GstElement* stage : priv_.stages) g_object_freeze_notify(G_OBJECT(stage));
+    priv_.setting.lock();
+  }
+  ~Setting() {
+    priv_.setting.unlock();
+    for (GstElement* stage : priv_.stages) g_object_thaw_notify(G_OBJECT(stage));
+  }
+  Setting(const Setting&) = delete;
+  Setting& operator=(const Setting&) = delete;
+
+ private:
+  Private& priv_;
+};
 
 void forward(const Private& priv, const Taken& taken, const GValue* value) {
   g_object_set_property(G_OBJECT(priv.stages[taken.stage]), taken.name, value);
@@ -183,6 +205,7 @@ GParamSpec* copy_of(GParamSpec* spec) {
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
   Private& priv = *cerberus_motion_detect_self(object)->priv;
+  const Setting alone(priv);
   std::unique_lock guard(priv.lock);
   if (id == kPropPreset) {
     priv.preset = g_value_get_enum(value);
