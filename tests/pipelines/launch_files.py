@@ -159,10 +159,10 @@ def test_closed_loop(kind):
     pans = [line['pose']['pan'] for line in lines]
     assert max(pans) - min(pans) > 3, f'the head turned from {min(pans)} to {max(pans)} degrees only'
     # Towards the target: where it is seen to the right of the middle, the head is further to the right soon after.
-    ways = [(each['bearing'], pans[k + 4] - pans[k]) for k, line in enumerate(lines[:-4]) for each in line['objects']
+    ways = [(each['x'] + each['w'] / 2 - 80, pans[k + 4] - pans[k]) for k, line in enumerate(lines[:-4]) for each in line['objects']
             if line['fusion']['action'] == 'track' and each['id'] == line['fusion']['target'] and abs(pans[k]) < 14
-            and abs(each['bearing']) > 5]
-    towards = sum(bearing * turned > 0 for bearing, turned in ways)
+            and abs(each['x'] + each['w'] / 2 - 80) > 25]
+    towards = sum(right * turned > 0 for right, turned in ways)
     assert len(ways) > 5 and towards > 0.8 * len(ways), f'the head turned towards its target {towards} times of {len(ways)}'
 
 
