@@ -15,6 +15,7 @@
 #include "frames.h"
 #include "support/allocations.h"
 #include "support/chain.h"
+#include "support/data.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
@@ -205,16 +206,16 @@ void against_gstreamer(const Frames& frames) {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   cv::setNumThreads(1);
-  const auto source = vtest_source();
+  const auto source = tests::vtest_source();
   if (!source) {
-    std::printf("bench: no vtest.avi (Debian package opencv-doc, or ../shared/data): skipped\n");
+    std::printf("skipped: %s\n", tests::kNoVtest);
     return 77;
   }
   const auto grey = load_frames(*source, "GRAY8", 320, 240, 90);
   if (!grey) return 1;
   stages(*grey, "still camera (vtest.avi)");
   against_opencv(*grey, "Still camera (vtest.avi)");
-  if (const auto data = data_folder()) {
+  if (const auto data = tests::data_folder()) {
     const std::string frames = (*data / "davis_tennis" / "frames" / "%05d.jpg").string();
     const auto tennis =
         load_frames("multifilesrc location=" + frames +
@@ -225,7 +226,7 @@ int main(int argc, char** argv) {
       against_opencv(*tennis, "Moving camera (tennis)");
     }
   } else {
-    std::printf("\n../shared/data is not there: the moving camera is left out\n");
+    std::printf("\n%s: the moving camera is left out\n", tests::kNoData);
   }
   for (const auto& [width, height, count] : {std::array{320, 240, 90}, {768, 576, 60}, {1920, 1080, 40}})
     if (const auto frames = load_frames(*source, "I420", width, height, count)) against_gstreamer(*frames);

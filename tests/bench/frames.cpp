@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 
 namespace cerberus::bench {
 
@@ -64,26 +63,6 @@ std::optional<Frames> load_frames(const std::string& source, const char* format,
     return std::nullopt;
   }
   return frames;
-}
-
-std::optional<std::filesystem::path> data_folder() {
-  if (const char* named = std::getenv("CERBERUS_DATA")) {
-    if (std::filesystem::is_directory(named)) return std::filesystem::path(named);
-    std::fprintf(stderr, "bench: CERBERUS_DATA=%s is no folder\n", named);
-    return std::nullopt;
-  }
-  const std::filesystem::path beside = std::filesystem::path(CERBERUS_SOURCE_ROOT) / ".." / "shared" / "data";
-  if (std::filesystem::is_directory(beside)) return std::filesystem::canonical(beside);
-  return std::nullopt;
-}
-
-std::optional<std::string> vtest_source() {
-  std::vector<std::filesystem::path> places;
-  if (const auto data = data_folder()) places.push_back(*data / "pets09_s2l1_view1" / "vtest.avi");
-  places.emplace_back("/usr/share/doc/opencv-doc/examples/data/vtest.avi");
-  for (const auto& place : places)
-    if (std::filesystem::exists(place)) return "filesrc location=" + place.string() + " ! decodebin";
-  return std::nullopt;
 }
 
 double thread_seconds() {

@@ -5,7 +5,6 @@
 #include <gst/gst.h>
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,12 +24,6 @@ struct Frames {
 // it is). Prints what went wrong and returns nothing on failure.
 std::optional<Frames> load_frames(const std::string& source, const char* format, int width, int height,
                                   int count);
-
-// The folder with research data (environment CERBERUS_DATA, or ../shared/data beside the checkout), if it is
-// there.
-std::optional<std::filesystem::path> data_folder();
-// vtest.avi from that folder or from Debian's opencv-doc, if it is there.
-std::optional<std::string> vtest_source();
 
 // CPU seconds that the calling thread has used.
 double thread_seconds();

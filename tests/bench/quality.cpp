@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How right the results are: pixel F on masked sequences and box precision / recall on vtest.avi, through
-// GStreamer and with no property set, under the scoring of ../shared/data/README.md. OpenCV's MOG2 and KNN
+// GStreamer and with no property set, under the scoring of the data folder's README. OpenCV's MOG2 and KNN
 // are scored in the same run by the same code, as a check of the scoring itself.
 #include <cerberus/cerberus.h>
 #include <gst/app/gstappsink.h>
@@ -18,6 +18,7 @@
 #include <sstream>
 
 #include "frames.h"
+#include "support/data.h"
 
 using namespace cerberus::bench;
 namespace fs = std::filesystem;
@@ -231,9 +232,9 @@ void box_quality(const fs::path& data, const std::string& detector) {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   cv::setNumThreads(1);
-  const auto data = data_folder();
+  const auto data = cerberus::tests::data_folder();
   if (!data) {
-    std::printf("bench: ../shared/data is not there (set CERBERUS_DATA to its place): skipped\n");
+    std::printf("skipped: %s\n", cerberus::tests::kNoData);
     return 77;
   }
   std::vector<std::string> detectors{"motiondetect", "motiondetect preset=paper"};

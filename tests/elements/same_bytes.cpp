@@ -7,6 +7,7 @@
 #include <string>
 
 #include "support.h"
+#include "support/data.h"
 
 namespace {
 
@@ -42,22 +43,13 @@ std::string digest(const std::string& launch) {
   return text;
 }
 
-std::string data_folder() {
-  const char* set = std::getenv("CERBERUS_DATA");
-  return set ? set : (std::filesystem::path(CERBERUS_SOURCE_ROOT) / "../shared/data").string();
-}
-
 // What decodes the sequence, or nothing where it is missing.
 std::string sequence(const std::string& name) {
-  if (name == "vtest") {
-    for (const std::string& file : {data_folder() + "/pets09_s2l1_view1/vtest.avi",
-                                    std::string("/usr/share/doc/opencv-doc/examples/data/vtest.avi")})
-      if (std::filesystem::exists(file)) return "filesrc location=" + file + " ! decodebin";
-    return {};
-  }
-  const std::string frames = data_folder() + "/davis_tennis/frames/";
-  if (!std::filesystem::exists(frames + "00000.jpg")) return {};
-  return "multifilesrc location=" + frames + "%05d.jpg caps=image/jpeg,framerate=24/1 ! jpegdec";
+  if (name == "vtest") return cerberus::tests::vtest_source().value_or("");
+  const auto data = cerberus::tests::data_folder();
+  if (!data || !std::filesystem::exists(*data / "davis_tennis/frames/00000.jpg")) return {};
+  return "multifilesrc location=\"" + (*data / "davis_tennis/frames/%05d.jpg").string() +
+         "\" caps=image/jpeg,framerate=24/1 ! jpegdec";
 }
 
 std::string asked_for() {
@@ -90,7 +82,8 @@ Suite* same_bytes_suite() {
 
 int main(int argc, char** argv) {
   if (sequence(asked_for()).empty()) {
-    std::printf("the sequence %s is not there (%s)\n", asked_for().c_str(), data_folder().c_str());
+    std::printf("skipped: %s\n",
+                asked_for() == "vtest" ? cerberus::tests::kNoVtest : cerberus::tests::kNoData);
     return 77;
   }
   gst_check_init(&argc, &argv);

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Where real video is that tests and benches may use. None of it is part of the project: who finds nothing skips, and
+// says what is missing. The one place that knows the places.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace cerberus::tests {
+
+// The folder of research data with ground truth: the environment's CERBERUS_DATA; else ../shared/data beside the
+// checkout.
+std::optional<std::filesystem::path> data_folder();
+
+// vtest.avi, people on a campus seen by a still camera: the environment's CERBERUS_VIDEO; else what `pipelines/setup`
+// put into the build folder; else the one of the data folder or of Debian's package opencv-doc.
+std::optional<std::filesystem::path> vtest();
+// What decodes it, for gst_parse_launch.
+std::optional<std::string> vtest_source();
+
+// What to tell who has to do without.
+inline constexpr char kNoVtest[] =
+    "no vtest.avi (`pipelines/setup video FOLDER` fetches it; CERBERUS_VIDEO names its place)";
+inline constexpr char kNoData[] = "no research data (CERBERUS_DATA names its folder)";
+
+}  // namespace cerberus::tests
