@@ -484,6 +484,10 @@ std::optional<Time> running_time(const Private& self, GstClockTime pts, std::opt
 }
 
 GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
+  // In PAUSED nothing is done; here the base class would let a gap through, and a frame that just came too late. Its preroll
+  // lock is held, and PLAYING needs it: nobody would interrupt a driver that is waited for.
+  while (!self.playing)
+    if (const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink); flow != GST_FLOW_OK) return flow;
   if (const auto changed = self.settings.changes()) configure(self, *changed);
   ask_whether_live(self);
   const GstVideoInfo& info = self.state.info;
@@ -532,9 +536,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
       self.station.forget();
       if (self.playing) self.station.resume(now(self));
     }
-    // As for a frame, nothing is done in PAUSED. (The base class holds the preroll lock here.)
-    if (type == GST_EVENT_GAP && done && (self.playing || gst_base_sink_wait_preroll(sink) == GST_FLOW_OK))
-      look(self, nullptr, from, length);
+    if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
     Outbox out;

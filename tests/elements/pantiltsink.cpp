@@ -366,7 +366,7 @@ GST_START_TEST(strangers_metas_do_no_harm) {
     GstBuffer* buffer = frame_at(k * kFrame);
     CerberusFusion fusion;
     cerberus_fusion_init(&fusion);
-    fusion.action = static_cast<CerberusFusionAction>(k % 9);
+    fusion.action = static_cast<CerberusFusionAction>(k % 8);
     fusion.target = 1;
     fusion.sector_from = k % 2 ? NAN : -1e300;
     fusion.sector_to = INFINITY;
