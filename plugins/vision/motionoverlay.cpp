@@ -41,6 +41,7 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <vector>
@@ -117,6 +118,7 @@ struct State {  // streaming thread only
 
 struct Private {
   Adjustable<Settings> settings;
+  std::atomic<bool> undecided = true;  // whether to attach: downstream is to be asked before the next frame
   State state;
 };
 
@@ -213,7 +215,7 @@ GstCaps* cerberus_motion_overlay_fixate_caps(GstBaseTransform* transform, GstPad
   return result;
 }
 
-gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps* out) {
+gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
   State& state = cerberus_motion_overlay_self(transform)->priv->state;
   if (!gst_video_info_from_caps(&state.info, in)) {
     GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video's description is incomplete."),
@@ -221,14 +223,32 @@ gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* 
     return FALSE;
   }
   forget(state);
-  state.attach = has_composition_feature(out) || downstream_draws(transform, out);
-  GST_INFO_OBJECT(transform, "drawing is %s", state.attach ? "attached" : "blended");
+  cerberus_motion_overlay_self(transform)->priv->undecided = true;
   return TRUE;
+}
+
+// Before the first frame, and whenever downstream changes (another sink was linked, a window was opened): the caps may
+// stay the same while who draws does not. The base class asks nobody for memory where it works in place, so its
+// decide_allocation would not come.
+void decide(GstBaseTransform* transform, State& state) {
+  GstCaps* caps = gst_pad_get_current_caps(transform->srcpad);
+  if (!caps) return;
+  state.attach = has_composition_feature(caps) || downstream_draws(transform, caps);
+  GST_INFO_OBJECT(transform, "drawing is %s", state.attach ? "attached" : "blended");
+  gst_caps_unref(caps);
+}
+
+gboolean cerberus_motion_overlay_src_event(GstBaseTransform* transform, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE)
+    cerberus_motion_overlay_self(transform)->priv->undecided = true;
+  return cerberus_motion_overlay_parent_class()->src_event(transform, event);
 }
 
 gboolean cerberus_motion_overlay_sink_event(GstBaseTransform* transform, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_FLUSH_STOP:
+      cerberus_motion_overlay_self(transform)->priv->undecided = true;  // nobody answers while flushing
+      [[fallthrough]];
     case GST_EVENT_SEGMENT:
     case GST_EVENT_STREAM_START:
       forget(cerberus_motion_overlay_self(transform)->priv->state);
@@ -309,6 +329,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     Private& self = *cerberus_motion_overlay_self(transform)->priv;
     State& state = self.state;
     const Settings settings = self.settings.snapshot();
+    if (self.undecided.exchange(false)) decide(transform, state);
     read_objects(state, buffer);
     update_trails(state, buffer, settings);
 
@@ -377,6 +398,7 @@ void cerberus_motion_overlay_class_init(CerberusMotionOverlayClass* klass) {
   transform->transform_caps = cerberus_motion_overlay_transform_caps;
   transform->fixate_caps = cerberus_motion_overlay_fixate_caps;
   transform->set_caps = cerberus_motion_overlay_set_caps;
+  transform->src_event = cerberus_motion_overlay_src_event;
   transform->sink_event = cerberus_motion_overlay_sink_event;
   transform->transform_ip = cerberus_motion_overlay_transform_ip;
 }

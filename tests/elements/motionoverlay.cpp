@@ -548,6 +548,18 @@ GST_START_TEST(a_downstream_that_begins_to_draw_is_noticed) {
 }
 GST_END_TEST
 
+// The same where downstream leaves no choice of caps, so that they stay what they are.
+GST_START_TEST(a_downstream_that_begins_to_draw_is_noticed_though_the_caps_stay) {
+  Harness h = harness("motionoverlay");
+  gst_harness_set_sink_caps_str(h.get(), kCaps.c_str());
+  gst_harness_set_src_caps_str(h.get(), kCaps.c_str());
+  fail_unless(drawn(h.get(), with_region(info_of(kCaps), region(1, 100, 80, 60, 90))).empty());
+  gst_harness_add_propose_allocation_meta(h.get(), GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE, nullptr);
+  fail_unless(gst_harness_push_upstream_event(h.get(), gst_event_new_reconfigure()));
+  fail_if(drawn(h.get(), with_region(info_of(kCaps), region(1, 100, 80, 60, 90), 1)).empty());
+}
+GST_END_TEST
+
 GST_START_TEST(a_buffer_without_a_picture_passes_with_one_warning) {
   Harness h = started();
   Bus bus(h.get());
@@ -617,6 +629,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, properties_change_while_playing);
   tcase_add_test(tc, a_new_frame_size_is_drawn_in);
   tcase_add_test(tc, a_downstream_that_begins_to_draw_is_noticed);
+  tcase_add_test(tc, a_downstream_that_begins_to_draw_is_noticed_though_the_caps_stay);
   tcase_add_test(tc, a_buffer_without_a_picture_passes_with_one_warning);
   tcase_add_test(tc, two_instances_and_eos);
   return s;
