@@ -2,6 +2,7 @@
 // Hardware that the kernel simulates, made and unmade through configfs and sysfs. Inside the virtual machine only.
 #pragma once
 
+#include <sys/mount.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -97,6 +98,29 @@ class Converter {
  private:
   std::string config_;
   bool plugged_ = true;
+};
+
+// What the kernel records of one of its events while this lives.
+class Trace {
+ public:
+  explicit Trace(const std::string& event) : enable_(kFolder + ("/events/" + event + "/enable")) {
+    mount("tracefs", kFolder, "tracefs", 0, nullptr);  // it may be there already
+    write_text(std::string(kFolder) + "/trace", "");
+    write_text(enable_, "1");
+  }
+  ~Trace() { write_text(enable_, "0"); }
+  Trace(const Trace&) = delete;
+
+  int count(const std::string& what) const {
+    std::ifstream file(std::string(kFolder) + "/trace");
+    int found = 0;
+    for (std::string line; std::getline(file, line);) found += line.find(what) != line.npos;
+    return found;
+  }
+
+ private:
+  static constexpr const char* kFolder = "/sys/kernel/tracing";
+  std::string enable_;
 };
 
 }  // namespace simulated
