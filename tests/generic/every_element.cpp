@@ -194,8 +194,7 @@ void run_to_the_end(const std::string& name, GstElement* pipeline, const std::st
 GstElement* pipeline_with(const std::string& name) {
   const std::string line =
       "videotestsrc num-buffers=6 pattern=ball ! video/x-raw,format=I420,width=64,height=48 ! " + name +
-      // Nobody moves its window here: it would wait for a head until its time-out.
-      (name == "virtualptz" ? " lockstep=off" : "") + " name=tested ! fakesink";
+      " name=tested ! fakesink";
   GstElement* pipeline = gst_parse_launch(line.c_str(), nullptr);
   GstElement* tested = gst_bin_get_by_name(GST_BIN(pipeline), "tested");
   // Nobody turns a head here: what would wait for one does not, or not for long.
