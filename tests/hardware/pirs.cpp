@@ -355,17 +355,19 @@ GST_START_TEST(a_flood_of_edges_ends_with_the_right_level) {
   Source source("driver=gpio debounce=0 chatter-edges=0 lines=0,1,2 chip=" + chip.path());
   source.play();
   source.expect({0, 0, 0});
-  gst_element_set_state(source.element(), GST_STATE_PAUSED);  // nobody reads
-  for (int i = 0; i < 101; ++i) {
-    chip.pull(0, i % 2 == 0);
-    g_usleep(500);
+  for (int round = 0; round < 4; ++round) {  // now the kernel's last edge is the right one by chance, now not
+    gst_element_set_state(source.element(), GST_STATE_PAUSED);  // nobody reads
+    for (int i = 0; i < 101; ++i) {
+      chip.pull(0, i % 2 == round % 2);
+      g_usleep(500);
+    }
+    source.play();
+    const GstClockTime calm = source.now();
+    GstClockTime when = 0;
+    Bytes last;
+    while (when < calm + 200 * GST_MSECOND) last = source.reading(&when);
+    fail_unless(last == Bytes({round % 2 == 0, 0, 0}));
   }
-  source.play();
-  const GstClockTime calm = source.now();
-  GstClockTime when = 0;
-  Bytes last;
-  while (when < calm + 200 * GST_MSECOND) last = source.reading(&when);
-  fail_unless(last == Bytes({1, 0, 0}));
 }
 GST_END_TEST
 
