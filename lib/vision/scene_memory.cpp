@@ -34,6 +34,7 @@ constexpr double kStillShare = 0.1, kMovingShare = 0.25,
                  kFreshShare = 0.05;  // of a part that must have moved
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
 constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
+constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
 
@@ -178,7 +179,8 @@ struct SceneMemory::State {
   bool draw_present(const SceneMemoryInput& in, GrayView blurred);
   void measure_blocks();
   void align(const SceneMemoryInput& in, GrayView blurred);
-  void compensate(bool still);
+  bool compensate(bool still);
+  void forgive_step();
   void learn_noise(const SceneMemoryInput& in);
   void compare(const SceneMemoryInput& in);
   void decide(const SceneMemoryInput& in);
@@ -314,14 +316,15 @@ void SceneMemory::State::align(const SceneMemoryInput& in, GrayView blurred) {
   measure_blocks();
 }
 
-// Takes a change of light out: a strong one for good, a weak one or bands (flicker) for this comparison only.
-void SceneMemory::State::compensate(bool still) {
+// Takes a change of light out: a strong one for good, a weak one or bands (flicker) for this comparison only. True if it
+// was a step.
+bool SceneMemory::State::compensate(bool still) {
   light.estimate(known_view(), present.view(), warp.spans());
-  if (light.none()) return;
+  if (light.none()) return false;
   if (light.agreement() < kAgreement && still) {  // not a change of light: another scene
     age.fill_bytes(0);
     light.clear();
-    return;
+    return false;
   }
   const double at_middle = light.gain() * 128 + light.offset() - 128;
   if (std::abs(at_middle) > 3) {
@@ -334,9 +337,32 @@ void SceneMemory::State::compensate(bool still) {
     }
     draw_known(false);
     light.estimate(known_view(), present.view(), warp.spans());
-    if (light.none()) return;
+    if (light.none()) return std::abs(at_middle) > kStep;
   }
   draw_known(true);
+  return std::abs(at_middle) > kStep;
+}
+
+// A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what a
+// line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the foreground one
+// frame ago, neither is motion, and where the memory is wrong now it starts anew.
+void SceneMemory::State::forgive_step() {
+  const auto k = known_view();
+  for (int y = 0; y < size.height; ++y) {
+    const std::uint64_t* foreground = weak.view().row(y);
+    std::uint64_t* now = moved.view().row(y);
+    for (int word = 0; word < moved.view().width; ++word) now[word] &= foreground[word];
+    const std::uint8_t* f = present.view().row(y);
+    std::uint8_t* m = k.row(y);
+    std::uint8_t* a = age.view().row(y);
+    for (int x = 0; x < size.width; ++x) {
+      const bool free = !(foreground[x / 64] >> (x % 64) & 1);
+      if (!free || std::abs(f[x] - m[x]) <= 2 * sigma[m[x] >> 4]) continue;
+      mean.view().at(x, y) = static_cast<std::uint16_t>(f[x] << 8);
+      m[x] = f[x];
+      a[x] = std::min<std::uint8_t>(a[x], kRelearn);
+    }
+  }
 }
 
 // sigma of frame - memory by brightness. While the memory is young its own noise and the frame's cannot be told apart
@@ -508,13 +534,14 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
     set_bits(s.valid.view().row(y), span.begin, span.end);
   }
   s.light.clear();
-  if (s.frames > 1) s.compensate(in.still);
+  const bool step = s.frames > 1 && s.compensate(in.still);
   if (s.warp.is_identity()) {
     binarise(in.difference, in.threshold, s.moved.view());
   } else {
     binarise(in.difference, in.threshold, s.absorb.view());
     map_bits(s.absorb.view(), s.to_frame, s.moved.view(), s.size.width);
   }
+  if (step && in.still) s.forgive_step();
   s.learn_noise(in);
   s.compare(in);
   s.decide(in);

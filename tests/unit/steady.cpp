@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The complete chain over long stretches in which nothing moves, over cuts and seeks, and over the largest frames: no
+// region that is not a moving object.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "support/chain.h"
+#include "support/pictures.h"
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+constexpr Size kSize{320, 240};
+constexpr double kFrame = 1.0 / 25;
+
+// Normal deviates, 1/64, from a table whose place every row chooses anew: cheap, and no two frames alike.
+class Noise {
+ public:
+  Noise() : table_(kTable) {
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal;
+    for (auto& t : table_) t = static_cast<std::int16_t>(std::lround(64 * normal(random)));
+  }
+  const std::int16_t* row(int width) {
+    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+    return table_.data() + (state_ >> 33) % static_cast<std::uint64_t>(kTable - width);
+  }
+
+ private:
+  static constexpr int kTable = 1 << 18;
+  std::vector<std::int16_t> table_;
+  std::uint64_t state_ = 1;
+};
+
+// A wall: smooth texture, panels with sharp edges, all brightnesses, no two frames of it needed.
+std::vector<float> wall(Size size, std::uint32_t seed) {
+  const Scene scene(seed, 30);
+  std::vector<float> out(static_cast<std::size_t>(size.area()));
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x)
+      out[static_cast<std::size_t>(y) * size.width + x] = static_cast<float>(scene.at(x, y));
+  std::mt19937 random(seed);
+  const auto any = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  for (int panel = 0; panel < size.area() / 4000; ++panel) {
+    const int x0 = any(size.width), y0 = any(size.height), w = 12 + any(50), h = 12 + any(50);
+    const auto level = static_cast<float>(any(160) - 80);
+    for (int y = y0; y < std::min(y0 + h, size.height); ++y)
+      for (int x = x0; x < std::min(x0 + w, size.width); ++x)
+        out[static_cast<std::size_t>(y) * size.width + x] += level;
+  }
+  for (float& v : out) v = std::clamp(v, 5.0f, 250.0f);
+  return out;
+}
+
+// Light of a frame: the exposure, mains light that beats against the frame rate, and its bands under a rolling shutter.
+struct Light {
+  double exposure = 1, global = 0, bands = 0, period = 80;
+  double phase = 0;
+  double at(int y) const {
+    return exposure * (1 + global * std::sin(phase)) *
+           (1 + bands * std::sin(2 * std::numbers::pi * y / period + 1.7 * phase));
+  }
+};
+
+// What the sensor makes of it: noise of sigma 2 in the dark to 6 in the bright, clipped.
+void expose(const float* scene, std::ptrdiff_t stride, const Light& light, Noise& noise,
+            MutableGrayView out) {
+  for (int y = 0; y < out.height; ++y) {
+    const auto gain = static_cast<float>(light.at(y));
+    const float* s = scene + y * stride;
+    const std::int16_t* n = noise.row(out.width);
+    std::uint8_t* to = out.row(y);
+    for (int x = 0; x < out.width; ++x) {
+      const float value = std::min(gain * s[x], 255.0f);
+      const float seen = value + (2 + value * (4 / 255.0f)) * n[x] * (1 / 64.0f) + 0.5f;
+      to[x] = static_cast<std::uint8_t>(std::clamp(seen, 0.0f, 255.0f));
+    }
+  }
+}
+
+LumaSource source(GrayView v) {
+  LumaSource s;
+  s.data = v.data, s.width = v.width, s.height = v.height, s.stride = v.stride;
+  return s;
+}
+
+struct Count {
+  int regions = 0, tracks = 0;  // frames with any
+  std::string first;
+};
+
+// 1000 frames of a wall; `light_of` says how it is lit. Frames within 3 of a step may have regions, never tracks.
+template <typename LightOf>
+Count watch(std::uint32_t seed, LightOf&& light_of) {
+  const std::vector<float> scene = wall(kSize, seed);
+  Noise noise;
+  Chain chain;
+  Image<std::uint8_t> frame(kSize);
+  Count count;
+  double exposure = 1;
+  int since_step = 100;
+  for (int k = 0; k < 1000; ++k) {
+    const Light light = light_of(k);
+    ++since_step;
+    if (light.exposure != exposure) since_step = 0;
+    exposure = light.exposure;
+    expose(scene.data(), kSize.width, light, noise, frame.view());
+    chain.step(source(frame.view()), kFrame);
+    const bool wrong = !chain.regions().empty() && since_step >= 3;
+    count.regions += wrong;
+    count.tracks += !chain.tracks().empty();
+    if (std::getenv("STEADY_VERBOSE"))
+      for (const Region& r : chain.regions())
+        std::printf("frame %d (%d) age %d: %.0f,%.0f %.0fx%.0f\n", k, since_step, chain.motion().scene_age,
+                    r.box.x, r.box.y, r.box.width, r.box.height);
+    if ((wrong || !chain.tracks().empty()) && count.first.empty()) {
+      count.first = "frame " + std::to_string(k);
+      for (const Region& r : chain.regions())
+        count.first += " region " + std::to_string(r.box.x) + "," + std::to_string(r.box.y) + " " +
+                       std::to_string(r.box.width) + "x" + std::to_string(r.box.height);
+    }
+  }
+  return count;
+}
+
+void nothing(const Count& count) {
+  ck_assert_msg(count.regions == 0 && count.tracks == 0,
+                "%d frames with regions, %d with tracks; the first: %s", count.regions, count.tracks,
+                count.first.c_str());
+}
+
+// A scene with two textured things that walk to and fro before a wall.
+class Street {
+ public:
+  Street(std::uint32_t seed, Size size, double pan)
+      : size_(size), pan_(pan), wall_size_{size.width * 2, size.height}, wall_(wall(wall_size_, seed)) {
+    picture_.resize(static_cast<std::size_t>(size.area()));
+    const double w = size.width / 320.0, h = size.height / 240.0;
+    walkers_[0] = {40 * w, 60 * h, 30 * w, 70 * h, 2.5 * w, seed + 100, {}};
+    walkers_[1] = {220 * w, 120 * h, 36 * w, 80 * h, -2 * w, seed + 200, {}};
+    for (Walker& walker : walkers_)
+      walker.coat = wall({static_cast<int>(walker.width), static_cast<int>(walker.height)}, walker.seed);
+  }
+  // Frame k of it; boxes() are where the walkers are then.
+  const std::vector<float>& draw(int k) {
+    const int shift = static_cast<int>(pan_ * k);
+    for (int y = 0; y < size_.height; ++y)
+      std::copy_n(wall_.begin() + static_cast<std::ptrdiff_t>(y) * wall_size_.width + shift, size_.width,
+                  picture_.begin() + static_cast<std::ptrdiff_t>(y) * size_.width);
+    boxes_.clear();
+    for (const Walker& walker : walkers_) {
+      const int w = static_cast<int>(walker.width), h = static_cast<int>(walker.height);
+      const double room = size_.width - walker.width;
+      double at = std::fmod(walker.x + walker.step * k + 20 * room, 2 * room);
+      if (at > room) at = 2 * room - at;
+      const int x0 = static_cast<int>(at), y0 = static_cast<int>(walker.y);
+      for (int y = 0; y < h; ++y)
+        std::copy_n(walker.coat.begin() + static_cast<std::ptrdiff_t>(y) * w, w,
+                    picture_.begin() + static_cast<std::ptrdiff_t>(y0 + y) * size_.width + x0);
+      boxes_.push_back(
+          {static_cast<double>(x0), static_cast<double>(y0), static_cast<double>(w), static_cast<double>(h)});
+    }
+    return picture_;
+  }
+  const std::vector<Box>& boxes() const { return boxes_; }
+
+ private:
+  struct Walker {
+    double x = 0, y = 0, width = 0, height = 0, step = 0;
+    std::uint32_t seed = 0;
+    std::vector<float> coat{};
+  };
+  Size size_;
+  double pan_;
+  Size wall_size_;
+  std::vector<float> wall_, picture_;
+  Walker walkers_[2];
+  std::vector<Box> boxes_;
+};
+
+// Frames of streets through one chain; what the regions are worth is counted on the way.
+struct Walk {
+  explicit Walk(Size size) : size(size), frame(size) {}
+  void see(Street& street, int k, double exposure = 1) {
+    Light light;
+    light.exposure = exposure;
+    expose(street.draw(k).data(), size.width, light, noise, frame.view());
+    chain.step(source(frame.view()), kFrame);
+    regions = static_cast<int>(chain.regions().size());
+    wrong = 0;
+    std::size_t found = 0;
+    for (const Region& r : chain.regions()) {
+      const bool right = std::ranges::any_of(
+          street.boxes(), [&](const Box& truth) { return overlap_area(r.box, truth) > 0; });
+      wrong += !right;
+      if (!right && std::getenv("STEADY_VERBOSE"))
+        std::printf("wrong in frame %d age %d still %d: %.0f,%.0f %.0fx%.0f\n", k, chain.motion().scene_age,
+                    chain.motion().still, r.box.x, r.box.y, r.box.width, r.box.height);
+    }
+    for (const Box& truth : street.boxes())
+      found += std::ranges::any_of(chain.regions(),
+                                   [&](const Region& r) { return overlap_area(r.box, truth) > 0; });
+    all_found = found == street.boxes().size();
+  }
+  Size size;
+  Image<std::uint8_t> frame;
+  Noise noise;
+  Chain chain;
+  int regions = 0, wrong = 0;
+  bool all_found = false;
+};
+
+struct Entered {
+  int complete = 0, wrong = 0;  // frames in which both walkers are seen; regions that overlap none
+};
+
+// The first 60 frames of a street that nothing has been seen of: `start` is its frame to begin with. No region before
+// the third.
+Entered enter(Walk& walk, Street& street, int start) {
+  Entered result;
+  for (int k = 0; k < 60; ++k) {
+    walk.see(street, start + k);
+    ck_assert_int_eq(walk.chain.motion().scene_age, k + 1);
+    if (k < 2) ck_assert_msg(walk.regions == 0, "a region in frame %d of the scene", k + 1);
+    result.wrong += walk.wrong;
+    result.complete += walk.all_found;
+  }
+  if (std::getenv("STEADY_VERBOSE"))
+    std::printf("60 frames: %d regions wrong, %d complete\n", result.wrong, result.complete);
+  return result;
+}
+
+// Where somebody stood in the first frame of a scene, the memory has his picture: it is taken back only some time after
+// he left, so regions there are printed (STEADY_VERBOSE), not judged.
+void enter_standing(Walk& walk, Street& street, int start) {
+  const Entered result = enter(walk, street, start);
+  ck_assert_msg(result.complete >= 45, "both seen in only %d of 60 frames", result.complete);
+}
+
+}  // namespace
+
+START_TEST(noise_makes_no_region) {
+  nothing(watch(1, [](int) { return Light{}; }));
+}
+END_TEST
+
+START_TEST(flicker_of_the_whole_picture_makes_no_region) {
+  nothing(watch(2, [](int k) {
+    Light light;
+    light.global = 0.05;
+    light.phase = 0.35 * k;
+    return light;
+  }));
+}
+END_TEST
+
+START_TEST(bands_of_flicker_make_no_region) {
+  nothing(watch(3, [](int k) {
+    Light light;
+    light.bands = 0.05;
+    light.phase = 0.21 * k;
+    return light;
+  }));
+}
+END_TEST
+
+START_TEST(steps_of_exposure_make_no_region) {
+  nothing(watch(4, [](int k) {
+    static constexpr double kSteps[] = {1, 1.25, 0.9, 1.1, 0.7, 1.3, 1};
+    Light light;
+    light.exposure = kSteps[k / 75 % 7];
+    return light;
+  }));
+}
+END_TEST
+
+START_TEST(all_of_it_together_makes_no_region) {
+  nothing(watch(5, [](int k) {
+    static constexpr double kSteps[] = {1, 0.8, 1.15, 0.9};
+    Light light;
+    light.exposure = kSteps[k / 125 % 4];
+    light.global = 0.02;
+    light.bands = 0.03;
+    light.phase = 0.27 * k;
+    return light;
+  }));
+}
+END_TEST
+
+START_TEST(what_moves_is_seen_through_steps_of_exposure) {
+  Walk walk(kSize);
+  Street street(11, kSize, 0);
+  int complete = 0, wrong = 0;
+  for (int k = 0; k < 240; ++k) {
+    static constexpr double kSteps[] = {1, 1.25, 0.85, 1.1, 0.8, 1};
+    walk.see(street, k, kSteps[k / 40]);
+    if (k < 3) continue;
+    if (k % 40 >= 3) {
+      wrong += walk.wrong;
+      complete += walk.all_found;
+    }
+  }
+  if (std::getenv("STEADY_VERBOSE")) std::printf("steps: wrong %d, complete %d\n", wrong, complete);
+  ck_assert_msg(complete >= 200, "both seen in only %d of 222 frames", complete);
+}
+END_TEST
+
+START_TEST(after_a_cut_regions_begin_with_the_third_frame) {
+  Walk walk(kSize);
+  Street here(21, kSize, 0), there(22, kSize, 0);
+  enter_standing(walk, here, 0);
+  enter_standing(walk, there, 100);
+  enter_standing(walk, here, 300);
+}
+END_TEST
+
+START_TEST(after_a_cut_to_a_camera_that_pans_regions_are_right) {
+  Walk walk(kSize);
+  Street here(31, kSize, 0), there(32, kSize, 2);
+  enter_standing(walk, here, 0);
+  ck_assert_int_eq(enter(walk, there, 0).wrong, 0);
+  enter_standing(walk, here, 200);
+}
+END_TEST
+
+START_TEST(after_a_seek_regions_begin_with_the_third_frame) {
+  Walk walk(kSize);
+  Street street(41, kSize, 0);
+  enter_standing(walk, street, 0);
+  walk.chain.reset();
+  enter_standing(walk, street, 500);
+  walk.chain.reset();
+  enter_standing(walk, street, 90);
+}
+END_TEST
+
+// One pixel of a frame of this size counts up to 8.3 million in one class.
+START_TEST(what_moves_is_seen_in_the_largest_frame_at_its_own_size) {
+  constexpr Size kLargest{3840, 2160};
+  Walk walk(kLargest);
+  walk.chain.set_analysis_width(0);
+  Street street(51, kLargest, 0);
+  for (int k = 0; k < 8; ++k) {
+    walk.see(street, k);
+    ck_assert(walk.chain.analysis_size() == kLargest);
+    if (k < 2) ck_assert_int_eq(walk.regions, 0);
+    if (k >= 4) ck_assert_msg(walk.all_found, "one is not seen in frame %d", k);
+  }
+}
+END_TEST
+
+int main() {
+  return run_suite(
+      "steady",
+      {noise_makes_no_region, flicker_of_the_whole_picture_makes_no_region, bands_of_flicker_make_no_region,
+       steps_of_exposure_make_no_region, all_of_it_together_makes_no_region,
+       what_moves_is_seen_through_steps_of_exposure, after_a_cut_regions_begin_with_the_third_frame,
+       after_a_cut_to_a_camera_that_pans_regions_are_right, after_a_seek_regions_begin_with_the_third_frame,
+       what_moves_is_seen_in_the_largest_frame_at_its_own_size},
+      120);
+}
