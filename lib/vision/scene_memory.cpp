@@ -30,6 +30,7 @@ constexpr double kLeastSigma = 0.7;    // grey levels: rounding alone makes 0.3,
 constexpr int kClosing = 9;            // side of the closing at 320 columns
 constexpr int kHold = 250;             // frames something that stopped is kept
 constexpr int kNow = 3, kLately = 25;  // frames
+constexpr int kYoung = kLately;        // frames; what was learnt for less may be an object's
 constexpr double kStillShare = 0.1, kMovingShare = 0.25,
                  kFreshShare = 0.05;  // of a part that must have moved
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
@@ -140,6 +141,7 @@ class NoiseSamples {
 // What is known of a connected part.
 struct Part {
   int now = 0, lately = 0;  // pixels that moved in the last frames, and for some time back
+  int young = 0;            // pixels that the memory has seen for moments only
   int frame = 0, memory = 0,
       n = 0;  // contrast across its outline in frame and memory, and over how many places
 };
@@ -465,7 +467,10 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
     Part& part = parts[r.component];
     const std::uint8_t* q = quiet.view().row(r.row);
     int now = 0, before = 0;
-    for (int x = r.first; x < r.end; ++x) now += q[x] < kNow, before += q[x] < lately;
+    const std::uint8_t* a = age.view().row(r.row);
+    int young = 0;
+    for (int x = r.first; x < r.end; ++x) now += q[x] < kNow, before += q[x] < lately, young += a[x] < kYoung;
+    part.young += young;
     part.now += now;
     part.lately += before;
     const auto contrast = [&](int outside, int inside) {
@@ -487,11 +492,14 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
     const double share = in.still ? kStillShare : kMovingShare;
     const bool moving = part.lately >= std::max(4.0, std::min<double>(share * area, part.n));
     const bool fresh = part.now >= std::max(4.0, kFreshShare * area);
-    if (moving && (fresh || !ghost)) continue;  // a ghost needs its owner's motion, or it goes at once
-    if (!(in.still && object)) clear_bits(seeds.row(r.row), r.first, r.end);
+    // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
+    // textured: like a ghost it needs its owner's motion, or it goes at once.
+    const bool doubtful = ghost || (in.still && part.young > area / 2);
+    if (moving && (fresh || !doubtful)) continue;
+    if (!(in.still && object) || doubtful) clear_bits(seeds.row(r.row), r.first, r.end);
     for (int x = r.first; x < r.end; ++x) {
       const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
-      if (ghost || quiet.view().at(x, r.row) > patience) set_bits(absorb.view().row(r.row), x, x + 1);
+      if (doubtful || quiet.view().at(x, r.row) > patience) set_bits(absorb.view().row(r.row), x, x + 1);
     }
   }
   const int side = std::max(3, kClosing * size.width / 320 | 1);
