@@ -227,7 +227,9 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     if (!state.live) state.live = is_live(pad);
 
     std::vector<std::string> silent;
-    const auto max_wait = state.live.value_or(true) ? std::nullopt : std::optional(settings.max_wait);
+    // Not by ?: with nullopt, which GCC 12 gets wrong here under the sanitizers.
+    std::optional<guint64> max_wait;
+    if (state.live == false) max_wait = settings.max_wait;
     if (!priv.inputs.frame_came(state.time, max_wait, silent)) return GST_FLOW_FLUSHING;
     for (const std::string& name : silent)
       GST_ELEMENT_WARNING(
