@@ -42,13 +42,13 @@ struct View {
 using GrayView = View<const std::uint8_t>;
 using MutableGrayView = View<std::uint8_t>;
 
-// An owned picture. Rows start on 64-byte boundaries and every row is padded to a multiple of 64 bytes, so a
-// kernel may read whole vectors inside a row. `resize` to the present size does nothing: the steady state
+// An owned picture. Rows start on 64-byte boundaries and every row is padded to a multiple of 64 bytes (or of kRowAlign),
+// so a kernel may read whole vectors inside a row. `resize` to the present size does nothing: the steady state
 // allocates nothing.
-template <typename T>
+template <typename T, std::size_t kRowAlign = 64>
 class Image {
  public:
-  static constexpr std::size_t kAlign = 64;
+  static constexpr std::size_t kAlign = kRowAlign;
 
   Image() = default;
   explicit Image(Size size) { resize(size); }

@@ -4,57 +4,74 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <limits>
+
+#include "vision/morphology.h"
+#include "vision/room.h"
 
 namespace cerberus::vision {
 namespace {
 
-constexpr std::uint64_t kOnes = 0x0101010101010101ULL;
-constexpr std::uint64_t kHighs = 0x8080808080808080ULL;
+constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
 
-std::uint64_t load8(const std::uint8_t* p) {
-  std::uint64_t v;
-  std::memcpy(&v, p, sizeof v);
-  return v;
+// One run for 32 pixels and one component for 256: at 320x240, ten runs in every row, and 300 components. One run a row
+// there must be: opening goes no further.
+Labeller::Limits usual_limits(Size picture) {
+  const auto area = static_cast<std::size_t>(picture.area()), rows = static_cast<std::size_t>(picture.height);
+  return {std::min(std::max<std::size_t>({area / 32, rows, 256}), kMost),
+          std::clamp<std::size_t>(area / 256, 64, kMost)};
 }
 
-// Both searches look at eight pixels a step; the lowest byte that answers is the first pixel only on
-// little-endian machines, the others take the plain loop below.
-int find_moving(const std::uint8_t* row, int x, int width) {
-  if constexpr (std::endian::native == std::endian::little) {
-    for (; x + 8 <= width; x += 8)
-      if (const std::uint64_t v = load8(row + x)) return x + std::countr_zero(v) / 8;
-  }
-  while (x < width && row[x] == 0) ++x;
-  return x;
-}
-
-int find_still(const std::uint8_t* row, int x, int width) {
-  if constexpr (std::endian::native == std::endian::little) {
-    for (; x + 8 <= width; x += 8) {
-      const std::uint64_t v = load8(row + x);
-      // Marks zero bytes; marks above the lowest one may be wrong (borrow), the lowest never is.
-      if (const std::uint64_t zero = (v - kOnes) & ~v & kHighs) return x + std::countr_zero(zero) / 8;
+// A run begins at every bit whose left neighbour is not set.
+std::size_t count_runs(BitView bits) {
+  std::size_t runs = 0;
+  for (int y = 0; y < bits.height; ++y) {
+    std::uint64_t before = 0;
+    for (int i = 0; i < bits.width; ++i) {
+      const std::uint64_t word = bits.row(y)[i];
+      runs += static_cast<std::size_t>(std::popcount(word & ~(word << 1 | before >> 63)));
+      before = word;
     }
   }
-  while (x < width && row[x] != 0) ++x;
-  return x;
+  return runs;
+}
+
+// The first column from x on whose bit is (not) set, 64 * words if there is none.
+template <bool set>
+int search(const std::uint64_t* row, int words, int x) {
+  for (int i = x / 64, skip = x % 64; i < words; ++i, skip = 0) {
+    const std::uint64_t wanted = (set ? row[i] : ~row[i]) >> skip << skip;
+    if (wanted) return 64 * i + std::countr_zero(wanted);
+  }
+  return 64 * words;
 }
 
 }  // namespace
 
-std::uint32_t Labeller::root(std::uint32_t i) {
-  while (parent_[i] != i) {
-    parent_[i] = parent_[parent_[i]];  // path halving
-    i = parent_[i];
+void Labeller::make_room(Size picture) {
+  if (picture == size_) return;
+  size_ = picture;
+  limits_ = fixed_ ? *fixed_ : usual_limits(picture);
+  vision::make_room(runs_, limits_.runs);
+  vision::make_room(forest_, limits_.runs);
+  vision::make_room(components_, limits_.components);
+}
+
+std::int32_t Labeller::root(std::int32_t i) {
+  while (forest_[i] >= 0) {
+    if (forest_[forest_[i]] >= 0) forest_[i] = forest_[forest_[i]];  // path halving
+    i = forest_[i];
   }
   return i;
 }
 
-void Labeller::cut_row(const std::uint8_t* row, int width, int y) {
-  for (int x = find_moving(row, 0, width); x < width; x = find_moving(row, x, width)) {
-    const int end = find_still(row, x + 1, width);
-    parent_.push_back(static_cast<std::uint32_t>(runs_.size()));
-    runs_.push_back({y, x, end, 0});
+void Labeller::cut_row(const std::uint64_t* row, int words, int y) {
+  const int width = 64 * words;
+  for (int x = search<true>(row, words, 0); x < width; x = search<true>(row, words, x)) {
+    const int end = search<false>(row, words, x);
+    runs_.push_back(
+        {static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(end), 0});
+    forest_.push_back(x - end);
     x = end;
   }
 }
@@ -66,83 +83,80 @@ void Labeller::join_rows(std::size_t above, std::size_t here, std::size_t end) {
   for (std::size_t b = here; b < end; ++b) {
     while (a < here && runs_[a].end < runs_[b].first) ++a;
     for (std::size_t i = a; i < here && runs_[i].first <= runs_[b].end; ++i) {
-      const std::uint32_t p = root(static_cast<std::uint32_t>(i));
-      const std::uint32_t q = root(static_cast<std::uint32_t>(b));
-      parent_[std::max(p, q)] = std::min(p, q);
+      const std::int32_t p = root(static_cast<std::int32_t>(i)), q = root(static_cast<std::int32_t>(b));
+      if (p == q) continue;
+      const auto [early, late] = std::minmax(p, q);
+      forest_[early] += forest_[late];
+      forest_[late] = early;
     }
   }
 }
 
-std::span<const Component> Labeller::find(GrayView mask) {
+std::span<const Component> Labeller::find(MutableBitView bits, int width, std::uint32_t least) {
+  make_room({width, bits.height});
+  Morphology morphology;  // opening needs no memory of its own
+  for (int side = 3; count_runs(bits) > limits_.runs && side < 2 * width; side += 2)
+    morphology.open(bits, width, side);
+
   runs_.clear();
-  parent_.clear();
+  forest_.clear();
   components_.clear();
   std::size_t above = 0;
-  for (int y = 0; y < mask.height; ++y) {
+  for (int y = 0; y < bits.height; ++y) {
     const std::size_t here = runs_.size();
-    cut_row(mask.row(y), mask.width, y);
+    cut_row(bits.row(y), bits.width, y);
     join_rows(above, here, runs_.size());
     above = here;
   }
-  // A root is its component's first run, so it is met before the others and numbers are given in reading
-  // order.
-  for (std::size_t i = 0; i < runs_.size(); ++i) {
-    Run& run = runs_[i];
-    const std::uint32_t r = root(static_cast<std::uint32_t>(i));
-    if (r == i) {
-      run.component = static_cast<std::uint32_t>(components_.size());
-      components_.push_back({run.first, run.row, run.end, run.row + 1, 0, 0, 0});
-    } else {
-      run.component = runs_[r].component;
-    }
-    Component& c = components_[run.component];
-    const auto length = static_cast<std::uint32_t>(run.end - run.first);
-    c.left = std::min(c.left, run.first);
-    c.right = std::max(c.right, run.end);
-    c.bottom = run.row + 1;
-    c.area += length;
-    // Sum of first .. end-1; the product is even because the factors' parities differ or both are even.
-    c.sum_x += static_cast<std::uint64_t>(run.first + run.end - 1) * length / 2;
-    c.sum_y += static_cast<std::uint64_t>(run.row) * length;
-  }
-  return components_;
-}
 
-std::span<const Component> Labeller::drop_smaller(std::uint32_t least, MutableGrayView mask) {
-  constexpr std::uint32_t gone = ~0u;
-  std::vector<std::uint32_t>& renumbered =
-      parent_;  // the forest has served; at least as many runs as components
-  std::uint32_t kept = 0;
-  for (std::size_t i = 0; i < components_.size(); ++i) {
-    const bool keep = components_[i].area >= least;
-    renumbered[i] = keep ? kept : gone;
-    if (keep) components_[kept++] = components_[i];
+  const auto area = [&](std::size_t i) {
+    return forest_[i] < 0 ? static_cast<std::uint32_t>(-forest_[i]) : 0;
+  };
+  const auto fits = [&] {
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < forest_.size(); ++i) n += area(i) >= least;
+    return n <= limits_.components;
+  };
+  for (least = std::max(least, 1u); !fits(); least *= 2) {
   }
-  components_.resize(kept);
-  std::size_t end = 0;
-  for (Run run : runs_) {
-    run.component = renumbered[run.component];
-    if (run.component == gone)
-      std::fill(mask.row(run.row) + run.first, mask.row(run.row) + run.end, std::uint8_t{0});
-    else
-      runs_[end++] = run;
+
+  // A root is its component's first run, so it is met before the others and numbers are given in reading order. Its area
+  // has then been read: in the forest, the component's number takes its place.
+  constexpr std::int32_t gone = std::numeric_limits<std::int32_t>::min();
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < forest_.size(); ++i) {
+    Run run = runs_[i];
+    const std::int32_t r = root(static_cast<std::int32_t>(i));
+    if (static_cast<std::size_t>(r) == i) {
+      const std::uint32_t pixels = area(i);
+      forest_[i] = pixels < least ? gone : -1 - static_cast<std::int32_t>(components_.size());
+      if (pixels >= least) components_.push_back({run.first, run.row, run.end, run.row + 1, pixels});
+    }
+    if (forest_[r] == gone) {
+      clear_bits(bits.row(run.row), run.first, run.end);
+      continue;
+    }
+    run.component = static_cast<std::uint16_t>(-1 - forest_[r]);
+    Component& c = components_[run.component];
+    c.left = std::min<int>(c.left, run.first);
+    c.right = std::max<int>(c.right, run.end);
+    c.bottom = run.row + 1;
+    runs_[kept++] = run;
   }
-  runs_.resize(end);
+  runs_.resize(kept);
   return components_;
 }
 
 void Labeller::write(View<std::uint16_t> labels) const {
   for (int y = 0; y < labels.height; ++y)
     std::memset(labels.row(y), 0, static_cast<std::size_t>(labels.width) * sizeof(std::uint16_t));
-  for (const Run& run : runs_) {
-    const auto label = static_cast<std::uint16_t>(std::min<std::uint32_t>(run.component + 1, 65535));
-    std::fill(labels.row(run.row) + run.first, labels.row(run.row) + run.end, label);
-  }
+  for (const Run& run : runs_)
+    std::fill(labels.row(run.row) + run.first, labels.row(run.row) + run.end,
+              static_cast<std::uint16_t>(run.component + 1));
 }
 
 std::size_t Labeller::bytes() const {
-  return runs_.capacity() * sizeof(Run) + parent_.capacity() * sizeof(std::uint32_t) +
-         components_.capacity() * sizeof(Component);
+  return bytes_of(runs_) + bytes_of(forest_) + bytes_of(components_);
 }
 
 }  // namespace cerberus::vision

@@ -11,8 +11,8 @@ namespace cerberus::vision {
 
 // Pixel x of a row is bit x % 64 of word x / 64. Bits beyond the width are 0 after every function of this
 // header and of morphology.h (they read as "outside the picture").
-using BitMask = Image<std::uint64_t>;
-using BitView = View<const std::uint64_t>;  // width counts words
+using BitMask = Image<std::uint64_t, sizeof(std::uint64_t)>;  // rows of whole words, not of whole vectors
+using BitView = View<const std::uint64_t>;                    // width counts words
 using MutableBitView = View<std::uint64_t>;
 
 // The size, in words, of the mask of a picture.
@@ -22,6 +22,24 @@ inline Size bit_mask_size(Size picture) {
 // The bits of the last word of a row that are pixels.
 inline std::uint64_t last_word_bits(int width) {
   return width % 64 ? (std::uint64_t{1} << (width % 64)) - 1 : ~std::uint64_t{0};
+}
+
+// Calls each(word, ones) with the bits first..end-1 of a row, word by word.
+template <typename Each>
+void for_words(int first, int end, Each&& each) {
+  for (int x = first; x < end;) {
+    const int word = x / 64, stop = end < (word + 1) * 64 ? end : (word + 1) * 64;
+    const std::uint64_t ones =
+        stop - x == 64 ? ~std::uint64_t{0} : ((std::uint64_t{1} << (stop - x)) - 1) << (x % 64);
+    each(word, ones);
+    x = stop;
+  }
+}
+inline void set_bits(std::uint64_t* row, int first, int end) {
+  for_words(first, end, [row](int word, std::uint64_t ones) { row[word] |= ones; });
+}
+inline void clear_bits(std::uint64_t* row, int first, int end) {
+  for_words(first, end, [row](int word, std::uint64_t ones) { row[word] &= ~ones; });
 }
 
 // d = 1 where the difference is above the threshold (paper Eq. 3): bits := picture > threshold (0..255).

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "vision/people_kernels.h"
+#include "vision/room.h"
 
 namespace cerberus::vision {
 namespace {
@@ -19,28 +20,47 @@ constexpr int kRowsOfABody = 24;      // cells a body is cut into at least, if i
 constexpr int kUnit = 64;             // of the logarithms in people_kernels.h
 constexpr double kSolid = 0.88;       // share of the boxes that moves: people leave more gaps
 constexpr std::size_t kMostPeople = 12;
-constexpr int kMostCells = 65535;  // both packed sums stay below 65536
-
-// One cell carries two numbers: moving in the lower 16 bits, counted at all in the upper. Sums of up to 65535 cells,
-// and differences of sums, are exact in both halves.
-constexpr std::uint32_t kCounted = 0x10000, kMoving = 1;
+constexpr int kMostCells = 16384;  // in a grid; both packed sums stay below 65536
 
 }  // namespace
+
+void PeopleFinder::make_room(Size picture) {
+  picture_ = picture;
+  // A cell a pixel is for people below 2 kRowsOfABody pixels; around the picture there are then at most so many columns
+  // and rows, and fewer cells at every larger step.
+  const int tallest = 2 * kRowsOfABody;
+  const auto columns = static_cast<std::size_t>(picture.width + 2 * (kBodyAspect * tallest + 2));
+  const auto rows = static_cast<std::size_t>(picture.height + 1.3 * tallest + 2);
+  vision::make_room(cells_, std::min<std::size_t>(columns * rows, kMostCells));
+  vision::make_room(shapes_, rows + 1);
+  for (auto* sums : {&moving_, &band_, &sums_}) vision::make_room(*sums, columns + 1);
+  vision::make_room(scores_, columns + 1);
+  vision::make_room(chosen_, kMostPeople);
+  vision::make_room(other_, kMostPeople);
+  vision::make_room(people_, kMostPeople);
+}
+
+std::size_t PeopleFinder::bytes() const {
+  return bytes_of(cells_) + bytes_of(shapes_) + bytes_of(moving_) + bytes_of(band_) + bytes_of(sums_) +
+         bytes_of(scores_) + bytes_of(chosen_) + bytes_of(other_) + bytes_of(people_);
+}
 
 // Cells around the window, wide enough that every place a person may be judged at lies on the grid. Outside the picture
 // nothing is counted; inside the picture but outside the window nothing moves.
 bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
   const double tallest = prior_->height(window.bottom);
   if (tallest <= 0) return false;
-  step_ = std::max(1, static_cast<int>(tallest / kRowsOfABody));
-  const int around = static_cast<int>(kBodyAspect * tallest) + 2 * step_;
-  const int above = static_cast<int>(0.7 * tallest);
-  const int below = window.bottom >= picture_.height ? static_cast<int>(0.6 * tallest) : 2 * step_;
-  x0_ = window.left - around;
-  y0_ = window.top - above;
-  columns_ = (window.width() + 2 * around + step_ - 1) / step_;
-  rows_ = (window.height() + above + below + step_ - 1) / step_;
-  if (static_cast<long>(columns_) * rows_ > kMostCells) return false;
+  // A crowd all across the picture is looked at more coarsely.
+  for (step_ = std::max(1, static_cast<int>(tallest / kRowsOfABody));; ++step_) {
+    const int around = static_cast<int>(kBodyAspect * tallest) + 2 * step_;
+    const int above = static_cast<int>(0.7 * tallest);
+    const int below = window.bottom >= picture_.height ? static_cast<int>(0.6 * tallest) : 2 * step_;
+    x0_ = window.left - around;
+    y0_ = window.top - above;
+    columns_ = (window.width() + 2 * around + step_ - 1) / step_;
+    rows_ = (window.height() + above + below + step_ - 1) / step_;
+    if (static_cast<long>(columns_) * rows_ <= kMostCells) break;
+  }
   const auto cell = [&](int pixel, int origin) { return (pixel - origin + step_ - 1) / step_; };
   inside_ = {std::clamp(cell(0, x0_), 0, columns_), std::clamp(cell(0, y0_), 0, rows_),
              std::clamp(cell(picture_.width, x0_), 0, columns_),
@@ -49,7 +69,7 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
              std::min(cell(window.bottom, y0_), rows_)};
   cells_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
   for (int r = inside_.top; r < inside_.bottom; ++r)
-    std::fill_n(&cells_[static_cast<std::size_t>(r) * columns_ + inside_.left], inside_.width(), kCounted);
+    std::fill_n(cells(r) + inside_.left, inside_.width(), kCellCounted);
   // A cell moves when at least half of its pixels do (of one pixel: when it does).
   const int half = std::max(1, step_ * step_ / 2);
   for (int r = window_.top; r < window_.bottom; ++r)
@@ -60,7 +80,7 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
         for (int x = std::max(window.left, x0_ + c * step_);
              x < std::min(window.right, x0_ + (c + 1) * step_); ++x)
           moving += static_cast<int>(pixels.row(y)[x / 64] >> (x % 64) & 1);
-      if (moving >= half) cells_[static_cast<std::size_t>(r) * columns_ + c] |= kMoving;
+      if (moving >= half) cells(r)[c] |= kCellMoving;
     }
   shapes_.assign(static_cast<std::size_t>(rows_) + 1, {});
   for (int r = 0; r <= rows_; ++r) {
@@ -69,32 +89,39 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
       shapes_[r] = {std::max(2, static_cast<int>(std::lround(height))),
                     std::max(1, static_cast<int>(std::lround(kBodyAspect * height)))};
   }
+  for (auto* sums : {&moving_, &band_, &sums_}) sums->resize(static_cast<std::size_t>(columns_) + 1);
   scores_.resize(static_cast<std::size_t>(columns_) + 1);
   return true;
 }
 
-// From this row of cells down; what is above has not changed.
-void PeopleFinder::add_up(int from) {
-  const int pitch = columns_ + 1;
-  sums_.resize(static_cast<std::size_t>(pitch) * (rows_ + 1));
-  std::fill_n(sums_.begin(), pitch, 0u);
-  for (int r = from; r < rows_; ++r) {
-    const std::uint32_t* cells = &left_[static_cast<std::size_t>(r) * columns_];
-    const std::uint32_t* above = &sums_[static_cast<std::size_t>(r) * pitch];
-    std::uint32_t* here = &sums_[static_cast<std::size_t>(r + 1) * pitch];
-    std::uint32_t row = here[0] = 0;
-    for (int c = 0; c < columns_; ++c) {
-      row += cells[c];
-      here[c + 1] = above[c + 1] + row;
-    }
-  }
+void PeopleFinder::forget_explained() {
+  for (std::uint8_t& cell : cells_) cell &= static_cast<std::uint8_t>(~kCellExplained);
 }
 
-std::uint32_t PeopleFinder::sum(int left, int top, int right, int bottom) const {
-  const std::size_t pitch = static_cast<std::size_t>(columns_) + 1;
-  const std::uint32_t* t = &sums_[top * pitch];
-  const std::uint32_t* b = &sums_[bottom * pitch];
-  return b[right] - b[left] - t[right] + t[left];
+// What lies in the box is explained: it counts for nobody else.
+void PeopleFinder::mark_explained(const Candidate& c) {
+  for (int r = c.top; r < c.bottom; ++r)
+    for (int x = c.left; x < c.right; ++x) cells(r)[x] |= kCellExplained;
+}
+
+// After every change of what is explained.
+void PeopleFinder::add_up_window() {
+  std::fill(band_.begin(), band_.end(), 0u);
+  for (int r = window_.top; r < window_.bottom; ++r) add_cells(cells(r), columns_, band_.data());
+  moving_[0] = 0;
+  for (int c = 0; c < columns_; ++c) moving_[c + 1] = moving_[c] + (band_[c] & 0xffff);
+  band_top_ = window_.top;
+  band_bottom_ = window_.bottom;
+}
+
+// Moves the band to these rows and sums its columns up.
+void PeopleFinder::slide(int top, int bottom) {
+  while (band_bottom_ < bottom) add_cells(cells(band_bottom_++), columns_, band_.data());
+  while (band_top_ > top) add_cells(cells(--band_top_), columns_, band_.data());
+  while (band_bottom_ > bottom) subtract_cells(cells(--band_bottom_), columns_, band_.data());
+  while (band_top_ < top) subtract_cells(cells(band_top_++), columns_, band_.data());
+  std::uint32_t sum = sums_[0] = 0;
+  for (int c = 0; c < columns_; ++c) sums_[c + 1] = sum += band_[c];
 }
 
 // The best place for one more person whose left edge lies in [from, to). Score 0: nowhere. With an anchor, a column,
@@ -102,8 +129,6 @@ std::uint32_t PeopleFinder::sum(int left, int top, int right, int bottom) const 
 PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   Candidate best;
   int best_value = 0;
-  const std::size_t pitch = static_cast<std::size_t>(columns_) + 1;
-  const std::uint32_t* whole = &sums_[static_cast<std::size_t>(window_.bottom) * pitch];
   for (int foot = rows_; foot > window_.top; --foot) {
     const auto [h, w] = shapes_[foot];
     if (h == 0 || foot - h < 0) continue;
@@ -113,14 +138,13 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
     const int end = std::min({to, columns_ - w + 1, inside_.right - (w + 2) / 3 + 1});
     if (first >= end) continue;
     const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
-    const BoxRow row{
-        &sums_[(foot - h) * pitch], &sums_[foot * pitch], w, q, inside_.left, inside_.right, high};
+    slide(foot - h, foot);
+    const BoxRow row{sums_.data(), w, q, inside_.left, inside_.right, high};
     int* scores = scores_.data();
     int highest = score_boxes(row, first, end, scores);
     if (highest <= best_value) continue;
     const auto lost = [&](int l) {
-      return anchor >= 0 && l > anchor ? static_cast<int>((whole[l] - whole[anchor]) & 0xffff) * kSideMoving
-                                       : 0;
+      return anchor >= 0 && l > anchor ? static_cast<int>(moving_[l] - moving_[anchor]) * kSideMoving : 0;
     };
     if (anchor >= 0) {
       for (int l = first; l < end; ++l) scores[l] -= lost(l);
@@ -135,30 +159,22 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   return best;
 }
 
-// What lies in the box is explained: it counts for nobody else.
-void PeopleFinder::take(const Candidate& c) {
-  for (int r = c.top; r < c.bottom; ++r)
-    std::fill(&left_[static_cast<std::size_t>(r) * columns_ + c.left],
-              &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
-  add_up(c.top);
-}
-
 // Takes people one after another, the best first or always the leftmost one, and returns what is gained in all.
 int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
-  left_ = cells_;
-  add_up(0);
+  forget_explained();
+  add_up_window();
   const int width = std::max(1, shapes_[std::min(window_.bottom, rows_)].width);
   int total = 0, edge = window_.left;
   const auto [height, body] = shapes_[std::min(window_.bottom, rows_)];
   while (chosen_.size() < kMostPeople) {
     // What is left may be too little to pay for a third of a person.
-    const int moving = sum(0, 0, columns_, rows_) & 0xffff;
+    const auto moving = static_cast<int>(moving_[columns_]);
     if (moving * kCoreMoving < kPrice * height * body / 3) break;
     Candidate c;
     if (from_the_left) {
       // The leftmost column that still holds something decides; a person's edge is near it.
-      while (edge < window_.right && (sum(edge, window_.top, edge + 1, window_.bottom) & 0xffff) == 0) ++edge;
+      while (edge < window_.right && moving_[edge + 1] == moving_[edge]) ++edge;
       if (edge >= window_.right) break;
       c = best(edge - width / 3, edge + width / 3 + 1, edge);
       if (c.score <= 0) {
@@ -171,7 +187,8 @@ int PeopleFinder::explain(bool from_the_left) {
     }
     total += c.score;
     chosen_.push_back(c);
-    take(c);
+    mark_explained(c);
+    add_up_window();
   }
   return total;
 }
@@ -182,12 +199,9 @@ void PeopleFinder::settle() {
   for (std::size_t i = 0; i < n && n > 1; ++i) {
     const Candidate old = chosen_.front();
     chosen_.erase(chosen_.begin());
-    left_ = cells_;
-    for (const Candidate& c : chosen_)
-      for (int r = c.top; r < c.bottom; ++r)
-        std::fill(&left_[static_cast<std::size_t>(r) * columns_ + c.left],
-                  &left_[static_cast<std::size_t>(r) * columns_ + c.right], 0u);
-    add_up(0);
+    forget_explained();
+    for (const Candidate& c : chosen_) mark_explained(c);
+    add_up_window();
     const int w = old.right - old.left;
     const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1, -1);
     if (c.score > 0) chosen_.push_back(c);
@@ -196,23 +210,22 @@ void PeopleFinder::settle() {
 
 // Share of the cells in the chosen boxes that move.
 double PeopleFinder::filled() {
-  left_ = cells_;
+  forget_explained();
   int moving = 0, all = 0;
   for (const Candidate& c : chosen_)
     for (int r = c.top; r < c.bottom; ++r)
       for (int x = c.left; x < c.right; ++x) {
-        std::uint32_t& cell = left_[static_cast<std::size_t>(r) * columns_ + x];
+        std::uint8_t& cell = cells(r)[x];
+        if (cell & kCellExplained) continue;
         all += cell != 0;
-        moving += (cell & kMoving) != 0;
-        cell = 0;
+        moving += (cell & kCellMoving) != 0;
+        cell |= kCellExplained;
       }
   return all > 0 ? static_cast<double>(moving) / all : 0;
 }
 
-std::span<const Person> PeopleFinder::find(BitView pixels, Size picture, const Window& window,
-                                           const HeightPrior& prior) {
+std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window, const HeightPrior& prior) {
   people_.clear();
-  picture_ = picture;
   prior_ = &prior;
   if (!lay_grid(pixels, window)) return people_;
   // The leftmost first is right for people side by side, where the best first may stand in their middle; the best first

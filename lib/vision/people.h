@@ -28,14 +28,14 @@ struct Person {
 
 class PeopleFinder {
  public:
-  // pixels: one bit a pixel of the picture. Looks at the window only. Returns nobody when the prior does not know the
-  // heights there, or the window is too large to be judged. Deterministic; the span lives until the next call.
-  std::span<const Person> find(BitView pixels, Size picture, const Window& window, const HeightPrior& prior);
+  // Takes the memory for pictures of this size; find() takes none.
+  void make_room(Size picture);
 
-  std::size_t bytes() const {
-    return (cells_.capacity() + left_.capacity() + sums_.capacity()) * sizeof(std::uint32_t) +
-           scores_.capacity() * sizeof(int);
-  }
+  // pixels: one bit a pixel of the picture that make_room() was told. Looks at the window only. Returns nobody when the
+  // prior does not know the heights there. Deterministic; the span lives until the next call.
+  std::span<const Person> find(BitView pixels, const Window& window, const HeightPrior& prior);
+
+  std::size_t bytes() const;
 
  private:
   // All in cells of the grid; `right` and `bottom` exclusive.
@@ -49,10 +49,12 @@ class PeopleFinder {
   };
 
   bool lay_grid(BitView pixels, const Window& window);
-  void add_up(int from);
-  std::uint32_t sum(int left, int top, int right, int bottom) const;
+  std::uint8_t* cells(int row) { return &cells_[static_cast<std::size_t>(row) * columns_]; }
+  void forget_explained();
+  void mark_explained(const Candidate& candidate);
+  void add_up_window();
+  void slide(int top, int bottom);
   Candidate best(int from, int to, int anchor);
-  void take(const Candidate& candidate);
   int explain(bool from_the_left);
   void settle();
   double filled();
@@ -62,8 +64,12 @@ class PeopleFinder {
   // The grid: cells of step_ x step_ pixels, the first one's corner at (x0_, y0_); the picture and the window in it.
   int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
   Window inside_, window_;
-  std::vector<Shape> shapes_;                       // of each foot row 0..rows_
-  std::vector<std::uint32_t> cells_, left_, sums_;  // as seen; less what is explained; summed up
+  std::vector<Shape> shapes_;          // of each foot row 0..rows_
+  std::vector<std::uint8_t> cells_;    // kCell... of people_kernels.h
+  std::vector<std::uint32_t> moving_;  // moving cells not yet explained in the columns before each
+  // Sums of the cells in the rows [band_top_, band_bottom_): of each column, and of the columns before each.
+  int band_top_ = 0, band_bottom_ = 0;
+  std::vector<std::uint32_t> band_, sums_;
   std::vector<int> scores_;
   std::vector<Candidate> chosen_, other_;
   std::vector<Person> people_;

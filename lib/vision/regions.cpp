@@ -11,6 +11,7 @@
 #include "vision/mask.h"
 #include "vision/morphology.h"
 #include "vision/people.h"
+#include "vision/room.h"
 
 namespace cerberus::vision {
 namespace {
@@ -19,6 +20,7 @@ constexpr double kLeastShare = 4e-4;     // of the picture: smaller blobs are no
 constexpr double kTallest = 2.2;         // heights of a person: what is taller is something else
 constexpr double kSkirt = 0.3;           // columns lower than this share of the highest are a shadow
 constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
+constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
 
 // One person seen alone is upright and reasonably filled.
 bool looks_like_one_person(const Component& c, const Window& body, Size picture) {
@@ -65,14 +67,14 @@ struct RegionFinder::State {
   std::vector<Walker> walkers, walkers_before;
   std::vector<int> group;      // of each component
   std::vector<Window> bodies;  // of each component: its box without the shadow it casts
-  std::vector<int> columns;
-  std::vector<std::size_t> first_column;
+  std::vector<int> columns;    // scratch: moving pixels of a component in each of its columns
   std::vector<Region> regions;
 
   std::uint32_t least() const {
     return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
                                                                : kLeastShare * size.area());
   }
+  void make_room(Size picture);
   void trim();
   void learn(const Transform& motion);
   void group_components();
@@ -82,32 +84,41 @@ struct RegionFinder::State {
   Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
 };
 
+void RegionFinder::State::make_room(Size picture) {
+  size = picture;
+  for (BitMask* bits : {&moving, &closed}) bits->resize(bit_mask_size(size));
+  labeller.make_room(size);
+  people.make_room(size);
+  const std::size_t parts = labeller.limits().components;
+  vision::make_room(walkers, kMostParts);
+  vision::make_room(walkers_before, kMostParts);
+  vision::make_room(group, kMostParts);
+  vision::make_room(bodies, parts);
+  vision::make_room(columns, static_cast<std::size_t>(size.width) + 1);
+  vision::make_room(regions, std::max(parts, kMostRegions));
+}
+
 // A shadow on the floor is wide and low: a component's box ends where its columns become low.
 void RegionFinder::State::trim() {
-  const auto parts = labeller.components();
-  first_column.clear();
-  std::size_t total = 0;
-  for (const Component& c : parts) {
-    first_column.push_back(total);
-    total += static_cast<std::size_t>(c.width()) + 1;
-  }
-  // Each run adds one to its columns: steps up and down first, summed up afterwards.
-  columns.assign(total, 0);
-  for (const Run& r : labeller.runs()) {
-    int* at = &columns[first_column[r.component]] - parts[r.component].left;
-    ++at[r.first];
-    --at[r.end];
-  }
+  const auto runs = labeller.runs();
   bodies.clear();
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    int* at = &columns[first_column[i]];
-    const int width = parts[i].width();
-    int highest = at[0];
-    for (int x = 1; x < width; ++x) highest = std::max(highest, at[x] += at[x - 1]);
+  for (std::size_t i = 0; const Component& c : labeller.components()) {
+    // Each run adds one to its columns: steps up and down first, summed up afterwards.
+    const int width = c.width();
+    columns.assign(static_cast<std::size_t>(width) + 1, 0);
+    auto run = std::ranges::lower_bound(runs, c.top, {}, &Run::row);
+    for (; run != runs.end() && run->row < c.bottom; ++run) {
+      if (run->component != i) continue;
+      ++columns[run->first - c.left];
+      --columns[run->end - c.left];
+    }
+    int highest = columns[0];
+    for (int x = 1; x < width; ++x) highest = std::max(highest, columns[x] += columns[x - 1]);
     int left = 0, right = width;
-    while (at[left] < kSkirt * highest) ++left;
-    while (at[right - 1] < kSkirt * highest) --right;
-    bodies.push_back({parts[i].left + left, parts[i].top, parts[i].left + right, parts[i].bottom});
+    while (columns[left] < kSkirt * highest) ++left;
+    while (columns[right - 1] < kSkirt * highest) --right;
+    bodies.push_back({c.left + left, c.top, c.left + right, c.bottom});
+    ++i;
   }
 }
 
@@ -172,9 +183,10 @@ void RegionFinder::State::group_components() {
 void RegionFinder::State::add_plain(std::size_t i, bool person) {
   const Component& c = labeller.components()[i];
   const Box box = box_of(bodies[i]);
-  regions.push_back({box, static_cast<double>(c.area), c.centroid(),
+  if (regions.size() == regions.capacity()) return;
+  regions.push_back({box, static_cast<double>(c.area),
                      std::min(1.0, person ? 0.5 + 0.5 * c.area / box.area() : 0.45 * c.area / box.area()),
-                     static_cast<int>(std::min<std::size_t>(i + 1, 65535))});
+                     static_cast<int>(i) + 1});
 }
 
 // Pulls the edges of an expected box to the moving pixels around it that no other person explains better, a quarter
@@ -231,15 +243,10 @@ void RegionFinder::State::explain(int g) {
       if (group[i] == g) add_plain(i, usual);
     return;
   }
-  const auto found = people.find(moving.view(), size, window, prior);
-  for (std::size_t k = 0; k < found.size(); ++k) {
-    const Box box = fit(found[k].box, window, k, found);
-    regions.push_back({box,
-                       0,
-                       {box.x + box.width / 2, box.y + box.height / 2},
-                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0),
-                       static_cast<int>(std::min<std::size_t>(first + 1, 65535))});
-  }
+  const auto found = people.find(moving.view(), window, prior);
+  for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
+    regions.push_back({fit(found[k].box, window, k, found), 0,
+                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1});
   // What no person explains stays what it is.
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (group[i] != g) continue;
@@ -268,7 +275,8 @@ void RegionFinder::reset() {
 std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
-         s.people.bytes() + s.regions.capacity() * sizeof(Region) + s.group.capacity() * sizeof(int);
+         s.people.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) + bytes_of(s.group) +
+         bytes_of(s.bodies) + bytes_of(s.columns) + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -276,9 +284,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   State& s = *state_;
   s.regions.clear();
   if (mask.size() != s.size) {
-    s.size = mask.size();
-    s.moving.resize(bit_mask_size(s.size));
-    s.closed.resize(bit_mask_size(s.size));
+    s.make_room(mask.size());
     reset();
   }
   s.prior.advance(motion, s.size);
@@ -286,9 +292,8 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());
   const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));
   s.morphology.close(s.closed.view(), mask.width, side);
+  const auto parts = s.labeller.find(s.closed.view(), mask.width, s.least());
   unpack(s.closed.view(), mask);
-  s.labeller.find(mask);
-  const auto parts = s.labeller.drop_smaller(s.least(), mask);
   if (!labels.empty()) s.labeller.write(labels);  // empty: nobody wants them
   s.trim();
   if (!s.options.people || parts.size() > kMostParts) {

@@ -30,7 +30,6 @@ struct RegionOptions {
 struct Region {
   Box box;          // analysis pixels
   double area = 0;  // moving pixels inside
-  Point centroid;   // of the moving pixels
   // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below: moving
   // pixels that hang together and may be a piece of an object or several objects.
   double confidence = 0;
@@ -49,7 +48,8 @@ class RegionFinder {
   void reset();
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
   // may be empty where nobody wants them. motion: frame k-1 to k, so that what was learnt moves with the camera. The
-  // span lives until the next call.
+  // span lives until the next call. Memory is bounded, and taken at the first picture of a size; what is beyond it is
+  // clutter, see Labeller.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
   std::size_t bytes() const;
 

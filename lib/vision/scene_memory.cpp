@@ -65,23 +65,6 @@ void shift_content(View<T> v, int dx, int dy, T fill) {
     for (int y = 0; y < v.height; ++y) move_row(y);
 }
 
-// Bits first..end-1 of a row.
-template <typename Each>
-void for_words(int first, int end, Each&& each) {
-  for (int x = first; x < end;) {
-    const int word = x / 64, stop = std::min(end, (word + 1) * 64);
-    const std::uint64_t ones =
-        stop - x == 64 ? ~std::uint64_t{0} : ((std::uint64_t{1} << (stop - x)) - 1) << (x % 64);
-    each(word, ones);
-    x = stop;
-  }
-}
-void set_bits(std::uint64_t* row, int first, int end) {
-  for_words(first, end, [&](int word, std::uint64_t ones) { row[word] |= ones; });
-}
-void clear_bits(std::uint64_t* row, int first, int end) {
-  for_words(first, end, [&](int word, std::uint64_t ones) { row[word] &= ~ones; });
-}
 // 64 bits of a row from x on, zeros outside the row.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
   const int word = x >> 6, part = x & 63;  // floor, also for negative x
@@ -157,7 +140,6 @@ struct SceneMemory::State {
   Image<std::uint8_t> spread, age, quiet;
   Image<std::uint8_t> present;    // the frame in memory coordinates, blurred
   Image<std::uint8_t> known;      // the mean as compared: 8 bits, under the present light; with margins
-  Image<std::uint8_t> scratch;    // bytes of whatever needs them
   Image<std::uint8_t> tolerance;  // one row of blocks, per pixel
   BitMask weak, strong, moved, valid, absorb;
   BitMask plain;  // the mask before it is closed: who makes regions of it needs the gaps between people
@@ -202,7 +184,7 @@ void SceneMemory::State::prepare(Size to) {
   if (to != size) {
     size = to;
     mean.resize(to);
-    for (auto* plane : {&spread, &age, &quiet, &present, &scratch}) plane->resize(to);
+    for (auto* plane : {&spread, &age, &quiet, &present}) plane->resize(to);
     known.resize({to.width + 2 * kMargin, to.height + 2});
     tolerance.resize({to.width, 1});
     for (auto* bits : {&weak, &strong, &moved, &valid, &absorb, &plain}) bits->resize(bit_mask_size(to));
@@ -255,8 +237,8 @@ void SceneMemory::State::redraw() {
     for (int x = 0; x < size.width; ++x)
       mean.view().at(x, y) = static_cast<std::uint16_t>(present.view().at(x, y) << 8);
   for (auto* plane : {&spread, &age, &quiet}) {
-    warp.nearest(plane->view(), scratch.view());
-    plane->swap(scratch);
+    warp.nearest(plane->view(), present.view());
+    plane->swap(present);
   }
   to_frame = {};
   standing = 0;
@@ -456,9 +438,9 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   morphology.vote(weak.view(), w, 4);  // four of nine: noise is lonely
   morphology.vote(seeds, w, 4);
   morphology.reconstruct(seeds, weak.view(), w);
-  unpack(seeds, scratch.view());
-  labeller.find(scratch.view());
+  labeller.find(seeds, w);
   const auto components = labeller.components();
+  parts.reserve(labeller.limits().components);
   parts.assign(components.size(), {});
   const GrayView f = present.view(), m = known_view();
   // A memory that has to be registered is believed less: what does not move now is not believed.
@@ -566,7 +548,7 @@ std::size_t SceneMemory::bytes() const {
   const State& s = *state_;
   std::size_t total = sizeof(State) + s.mean.bytes() + s.known.bytes() + s.tolerance.bytes() +
                       s.morphology.bytes() + s.labeller.bytes() + s.warp.bytes() + s.light.bytes();
-  for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present, &s.scratch}) total += plane->bytes();
+  for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
   for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
     total += bits->bytes();
   return total + s.parts.capacity() * sizeof(Part) + s.blocks.capacity() * sizeof(BlockSums);

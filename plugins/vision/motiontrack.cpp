@@ -163,7 +163,6 @@ void Private::read_regions(GstBuffer* buffer) {
     vision::Region& r = state->found.emplace_back();
     r.box = {region->x, region->y, region->width, region->height};
     r.area = r.box.area();
-    r.centroid = {region->x + region->width / 2, region->y + region->height / 2};
     r.confidence = region->confidence;
   }
   g_ptr_array_unref(regions);

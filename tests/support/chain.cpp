@@ -55,7 +55,6 @@ void Chain::run_stage(std::size_t stage) {
       for (Region& r : scaled_) {
         r.box = {r.box.x * sx, r.box.y * sy, r.box.width * sx, r.box.height * sy};
         r.area *= sx * sy;
-        r.centroid = {(r.centroid.x + 0.5) * sx - 0.5, (r.centroid.y + 0.5) * sy - 0.5};
       }
       break;
     }

@@ -53,7 +53,8 @@ struct Scene {
         }
     if (window.width() <= 0) window = {0, 0, 10, 10};
     pack(mask.view(), bits.view());
-    return finder.find(bits.view(), size, window, prior);
+    finder.make_room(size);
+    return finder.find(bits.view(), window, prior);
   }
 };
 
