@@ -9,4 +9,7 @@ namespace cerberus::tests {
 // Calls of operator new, in any form, made by the calling thread so far.
 std::size_t allocations();
 
+// Bytes that the calling thread has taken and not given back, as the heap rounds them.
+std::ptrdiff_t held_bytes();
+
 }  // namespace cerberus::tests

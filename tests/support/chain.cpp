@@ -18,7 +18,7 @@ void Chain::begin(const LumaSource& frame, double seconds) {
   luma_.resize(size);
   current_.resize(size);
   previous_.resize(size);
-  mask_.resize(size);
+  if (mask_.resize(size)) scaled_.reserve(static_cast<std::size_t>(size.area() / 256) + 256);  // more than there are
 }
 
 void Chain::run_stage(std::size_t stage) {
