@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cerberus/api.h>
+#include <cerberus/base.h>
 #include <cerberus/camera-motion.h>
 #include <cerberus/caps.h>
 #include <cerberus/fusion.h>

@@ -4,12 +4,10 @@
 #include <cmath>
 #include <utility>
 
+#include "private/event.hpp"
 #include "private/meta.hpp"
 
 namespace {
-
-// No head turns further (many turns of cable) or faster; what claims to is garbage.
-constexpr double kMostDegrees = 1e6;
 
 struct PoseMeta {
   GstMeta meta;
@@ -40,10 +38,6 @@ constexpr std::pair<const char*, double CerberusPose::*> kNumbers[] = {
     {"pan-acceleration", &CerberusPose::pan_acceleration},
     {"tilt-acceleration", &CerberusPose::tilt_acceleration},
 };
-
-bool is_custom_upstream(GstEvent* event, const char* name) {
-  return GST_EVENT_TYPE(event) == GST_EVENT_CUSTOM_UPSTREAM && gst_event_has_name(event, name);
-}
 
 }  // namespace
 
@@ -123,7 +117,7 @@ GstEvent* cerberus_event_new_pose(const CerberusPose* pose) {
 
 CerberusPose* cerberus_event_parse_pose(GstEvent* event) {
   g_return_val_if_fail(GST_IS_EVENT(event), nullptr);
-  if (!is_custom_upstream(event, CERBERUS_EVENT_POSE)) return nullptr;
+  if (!cerberus::is_custom_upstream(event, CERBERUS_EVENT_POSE)) return nullptr;
   const GstStructure* structure = gst_event_get_structure(event);
   CerberusPose pose;
   cerberus_pose_init(&pose);
@@ -140,35 +134,13 @@ CerberusPose* cerberus_event_parse_pose(GstEvent* event) {
   for (const auto& [name, member] : kNumbers) {
     double& number = pose.*member;
     if (!gst_structure_get_double(structure, name, &number)) return nullptr;
-    if (!(std::fabs(number) <= kMostDegrees)) return nullptr;  // NaN fails too
+    if (!(std::fabs(number) <= cerberus::kMostDegrees)) return nullptr;  // NaN fails too
   }
   pose.head = g_intern_string(head);
   pose.valid_from = from;
   pose.valid_until = until;
   pose.source = static_cast<CerberusPoseSource>(source);
   return cerberus_pose_copy(&pose);
-}
-
-GstEvent* cerberus_event_new_base(gdouble yaw_rate, GstClockTime running_time) {
-  return gst_event_new_custom(
-      GST_EVENT_CUSTOM_UPSTREAM,
-      gst_structure_new(CERBERUS_EVENT_BASE, "yaw-rate", G_TYPE_DOUBLE, yaw_rate, "running-time",
-                        G_TYPE_UINT64, static_cast<guint64>(running_time), nullptr));
-}
-
-gboolean cerberus_event_parse_base(GstEvent* event, gdouble* yaw_rate, GstClockTime* running_time) {
-  g_return_val_if_fail(GST_IS_EVENT(event), FALSE);
-  if (!is_custom_upstream(event, CERBERUS_EVENT_BASE)) return FALSE;
-  const GstStructure* structure = gst_event_get_structure(event);
-  gdouble rate = 0;
-  guint64 time = 0;
-  if (!gst_structure_get_double(structure, "yaw-rate", &rate) || !(std::fabs(rate) <= kMostDegrees))
-    return FALSE;
-  if (!gst_structure_get_uint64(structure, "running-time", &time) || !GST_CLOCK_TIME_IS_VALID(time))
-    return FALSE;
-  if (yaw_rate) *yaw_rate = rate;
-  if (running_time) *running_time = time;
-  return TRUE;
 }
 
 gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose) {

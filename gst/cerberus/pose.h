@@ -17,17 +17,6 @@ G_BEGIN_DECLS
 #define CERBERUS_EVENT_POSE "cerberus-pose"
 
 /**
- * CERBERUS_EVENT_BASE:
- *
- * Name of the structure of the custom upstream event by which an application (or a simulator) tells how fast the body
- * that carries head and sensors turns. Fields: `yaw-rate` (double, degrees a second, positive to the right),
- * `running-time` (uint64, nanoseconds).
- *
- * Since: 0.1
- */
-#define CERBERUS_EVENT_BASE "cerberus-base"
-
-/**
  * CerberusPoseSource:
  * @CERBERUS_POSE_COMMANDED: what the head was told
  * @CERBERUS_POSE_MEASURED: what the head said of itself
@@ -187,35 +176,6 @@ GstEvent *cerberus_event_new_pose (const CerberusPose *pose);
  */
 CERBERUS_API
 CerberusPose *cerberus_event_parse_pose (GstEvent *event);
-
-/**
- * cerberus_event_new_base:
- * @yaw_rate: how fast the body turns, degrees a second, positive to the right
- * @running_time: from when on
- *
- * Makes the custom upstream event %CERBERUS_EVENT_BASE.
- *
- * Returns: (transfer full): a new event.
- *
- * Since: 0.1
- */
-CERBERUS_API
-GstEvent *cerberus_event_new_base (gdouble yaw_rate, GstClockTime running_time);
-
-/**
- * cerberus_event_parse_base:
- * @event: an event
- * @yaw_rate: (out) (optional): degrees a second, positive to the right
- * @running_time: (out) (optional): from when on
- *
- * Reads a %CERBERUS_EVENT_BASE.
- *
- * Returns: %FALSE (and nothing is written) if @event is no well-formed one.
- *
- * Since: 0.1
- */
-CERBERUS_API
-gboolean cerberus_event_parse_base (GstEvent *event, gdouble *yaw_rate, GstClockTime *running_time);
 
 /**
  * cerberus_buffer_set_pose:

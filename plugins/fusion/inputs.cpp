@@ -56,8 +56,10 @@ bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<
   return !flushing_;
 }
 
-Moment Inputs::at(Time time, const std::string& head, const CerberusPose* on_frame) {
+Moment Inputs::at(Time time, const std::string& head, GstBuffer* frame) {
   Moment moment;
+  const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
+  const CerberusBase* seen = cerberus_buffer_peek_base(frame);
   const std::lock_guard guard(lock_);
   for (GstPad* pad : pads_) {
     PirPad& pir = pir_pad(pad);
@@ -80,7 +82,12 @@ Moment Inputs::at(Time time, const std::string& head, const CerberusPose* on_fra
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }
   if (pose) cerberus_pose_evaluate(pose, nanoseconds(time), &moment.pan_degrees, nullptr);
-  if (const double* rate = base_.at(time)) moment.base_degrees = *rate;
+  if (const double* rate = base_.at(time)) {
+    moment.base_degrees = *rate;
+    moment.base_heard = true;
+  } else if (seen) {
+    moment.base_degrees = seen->yaw_rate;
+  }
   poses_.forget_before(time);
   base_.forget_before(time);
   return moment;

@@ -27,6 +27,7 @@ struct Moment {
   std::size_t count = 0;
   double pan_degrees = std::numeric_limits<double>::quiet_NaN();
   double base_degrees = std::numeric_limits<double>::quiet_NaN();  // a second
+  bool base_heard = false;  // by an event, which the PIR pads have got too
 };
 
 // The lock is never held while something is pushed, queried or posted, and no GStreamer object's lock is taken under it.
@@ -36,9 +37,9 @@ class Inputs {
   // A frame of `time` is here; with `max_wait` it waits until every linked PIR pad covers `time` or has been silent for
   // so long (the names of those are added to `silent`). False: the video was flushed meanwhile.
   bool frame_came(Time time, std::optional<guint64> max_wait, std::vector<std::string>& silent);
-  // Sensors, pan of the head of this name (empty: any) and base then. `on_frame`: the pose that the frame carries, or
-  // nullptr; it goes before what was heard. Forgets what no later frame can ask for.
-  Moment at(Time time, const std::string& head, const CerberusPose* on_frame);
+  // Sensors, pan of the head of this name (empty: any) and base then. What `frame` carries goes before a pose that was
+  // heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
+  Moment at(Time time, const std::string& head, GstBuffer* frame);
   void begin_video();  // a new stream, or after a flush
   void end_video() { set(video_ended_, true); }
   void set_flushing(bool flushing) { set(flushing_, flushing); }  // also while the sink pad is not active

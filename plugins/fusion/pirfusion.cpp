@@ -20,8 +20,9 @@
  *
  * The pan angle comes from the pose on the buffer, else from the head's `cerberus-pose` events passing upstream,
  * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
- * come while a `cerberus-base` event says that the robot turns faster than 5 degrees a second are doubtful and do not
- * count. Both events, and seeks, are passed on to the video and to the PIR pads.
+ * come while the robot turns faster than 5 degrees a second are doubtful and do not count: a `cerberus-base` event says so, or, where
+ * none came, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are told by that event. Both events, and seeks,
+ * are passed on to the video and to the PIR pads.
  *
  * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
  * described in the manual (rules); one that leaves a case open or contradicts itself is refused and the case named.
@@ -41,6 +42,7 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -51,6 +53,7 @@
 #include "fusion/rule_file.h"
 #include "inputs.hpp"
 #include "pir_pad.hpp"
+#include "sensing/pir_model.h"
 #include "settings.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
@@ -72,6 +75,7 @@ struct State {  // video thread only
   std::optional<bool> live;  // nothing: not known
   Time time{};               // of the last frame
   std::vector<fusion::Track> tracks;
+  double base_told = 0;   // to the PIR pads, degrees a second
   std::string rule_name;  // what interned_name belongs to
   const gchar* interned_name = nullptr;
 
@@ -214,6 +218,26 @@ GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time,
   return gst_pad_push(self->priv->src, buffer.release());
 }
 
+void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
+  for (GstPad* pir : self->priv->inputs.pads()) {
+    gst_pad_push_event(pir, gst_event_ref(event));
+    gst_object_unref(pir);
+  }
+}
+
+// The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter.
+void pass_base_on(CerberusPirFusion* self, Time time, const Moment& moment) {
+  constexpr double kMatters = 1;  // degrees a second
+  const auto doubtful = [](double rate) { return std::abs(sensing::radians(rate)) > sensing::kDoubtfulTurn; };
+  double& told = self->priv->state->base_told;
+  const double rate = std::isfinite(moment.base_degrees) ? moment.base_degrees : 0;
+  if (moment.base_heard || rate == told) return;
+  if (std::abs(rate - told) < kMatters && doubtful(rate) == doubtful(told) && rate != 0) return;
+  told = rate;
+  g_autoptr(GstEvent) event = cerberus_event_new_base(rate, nanoseconds(time));
+  push_to_pirs(self, event);
+}
+
 GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
   auto* self = cerberus_pir_fusion_self(parent);
   return guarded(self, GST_FLOW_ERROR, [&] {
@@ -237,7 +261,8 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
           ("No reading of the PIR sensors came at pad %s for %.3g s; it is not waited for any more.",
            name.c_str(), static_cast<double>(settings.max_wait) / GST_SECOND),
           ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(nanoseconds(state.time))));
-    const Moment moment = priv.inputs.at(state.time, settings.head, cerberus_buffer_peek_pose(buffer.get()));
+    const Moment moment = priv.inputs.at(state.time, settings.head, buffer.get());
+    pass_base_on(self, state.time, moment);
     return decide_and_push(self, std::move(buffer), state.time, moment);
   });
 }
@@ -307,11 +332,7 @@ gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {
     const GstEventType type = GST_EVENT_TYPE(event);
     if (type == GST_EVENT_CUSTOM_UPSTREAM) listen(*self->priv, event);
     // First to the PIR pads: after a flushing seek no frame must meet readings of the time before.
-    if (type == GST_EVENT_CUSTOM_UPSTREAM || type == GST_EVENT_SEEK)
-      for (GstPad* pir : self->priv->inputs.pads()) {
-        gst_pad_push_event(pir, gst_event_ref(event));
-        gst_object_unref(pir);
-      }
+    if (type == GST_EVENT_CUSTOM_UPSTREAM || type == GST_EVENT_SEEK) push_to_pirs(self, event);
   });
   return gst_pad_event_default(pad, parent, event);
 }

@@ -10,6 +10,13 @@
  * frame's own running time is attached too, and with `horizontal-fov` the head's turn is the first guess. The
  * events are passed on.
  *
+ * With `horizontal-fov` it tells two more things. How fast the body turns that carries the camera (a robot) is attached as a
+ * #CerberusBase: the picture's rotation without the head's. An event `cerberus-base` from the application, or what
+ * the buffer carries already, goes before it. And the picture is compared with the head: where in 20 degrees of travel it does not follow the
+ * changes of the commanded speed, a warning says whether the head slips, turns the wrong way, or by another angle (a
+ * wrong lens or gear); once for each fault. The message's details: `head`, `axis` (`pan`, `tilt`), `fault`
+ * (`slips`, `reversed`, `scale`), `gain`, `travel` (degrees). Poses that came on the frames are not compared: who made the frames knew.
+ *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
  *
  * ## Example
@@ -25,16 +32,14 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "analysis_base.hpp"
+#include "carrier.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
-#include "fusion/timeline.hpp"
 #include "properties.hpp"
 #include "room.hpp"
 #include "stages.hpp"
@@ -65,91 +70,46 @@ const Property<Settings> kProperties[] = {
     property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
 };
 
-// Where the head looked when a frame was taken, radians.
-struct Look {
-  double pan, tilt;
-};
-
 struct State {
   LumaStage luma;
   vision::CameraMotion motion;
   Settings settings;
-  std::optional<Look> before;  // of the previous frame
 };
 
 struct Private final : Analyser {
   CerberusAnalysis* base = nullptr;
   Adjustable<Settings> settings;
   std::optional<State> state;
-  std::mutex lock;  // of the poses: they come in any thread
-  Timeline<CerberusPose> poses;
+  Carrier carrier;
 
   bool measures_camera() const override { return true; }
   bool start() override {
     state.emplace();
     settings.refresh();
-    const std::lock_guard guard(lock);
-    poses.clear();
+    carrier.forget();
     return true;
   }
   void stop() override { state.reset(); }
   bool analyse(Frame& frame) override;
-  void upstream_event(GstEvent* event) override;
-  std::optional<Look> look(Frame& frame);
+  void upstream_event(GstEvent* event) override { carrier.hear(event, settings.snapshot().head); }
 };
 
 CERBERUS_DEFINE_TYPE(CerberusCameraMotionElement, cerberus_camera_motion_element, CerberusAnalysis,
                      cerberus_analysis_get_type(), Private)
 
-void Private::upstream_event(GstEvent* event) {
-  g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
-  if (!pose) return;
-  if (const std::string head = settings.snapshot().head; head.empty() || head == pose->head) {
-    const std::lock_guard guard(lock);
-    poses.insert(Time(static_cast<Time::rep>(std::min<GstClockTime>(pose->valid_from, G_MAXINT64))), *pose);
-  }
-}
-
-// What the buffer carries goes before what was heard; that is put on the buffer.
-std::optional<Look> Private::look(Frame& frame) {
-  CerberusPose pose;
-  if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
-    const std::string& head = state->settings.head;
-    if (!head.empty() && head != carried->head) return std::nullopt;
-    pose = *carried;
-    cerberus_pose_evaluate(carried, frame.running_time, &pose.pan, &pose.tilt);
-  } else {
-    if (!GST_CLOCK_TIME_IS_VALID(frame.running_time)) return std::nullopt;
-    const Time time(static_cast<Time::rep>(std::min<GstClockTime>(frame.running_time, G_MAXINT64)));
-    const std::lock_guard guard(lock);
-    const CerberusPose* heard = poses.at(time);
-    if (!heard) return std::nullopt;
-    pose = *heard;
-    cerberus_pose_evaluate(heard, frame.running_time, &pose.pan, &pose.tilt);
-    pose.valid_from = frame.running_time;
-    if (pose.valid_until < pose.valid_from) pose.valid_until = pose.valid_from;
-    cerberus_buffer_set_pose(frame.buffer, &pose);
-    poses.forget_before(time);
-  }
-  if (!std::isfinite(pose.pan) || std::abs(pose.tilt) > 90) return std::nullopt;  // a stranger's
-  return Look{radians(pose.pan), radians(pose.tilt)};
-}
-
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
     state->motion.set_options({static_cast<vision::MotionModel>(changed->model)});
     state->settings = *changed;
+    carrier.begin_comparison();
   }
   state->luma.set_analysis_width(cerberus_analysis_width(base));
   const MappedPlane picture = state->luma.make(frame);
   if (!picture) return false;
   if (frame.fresh) state->motion.reset();
-  const auto before = std::exchange(state->before, look(frame));
-  std::optional<vision::Transform> prior;
   const vision::Lens lens(radians(state->settings.horizontal_fov), frame.size());
-  if (before && state->before && lens.known())
-    prior = lens.turn(before->pan, before->tilt, state->before->pan, state->before->tilt)
-                .rescaled(frame.size(), picture.size());
+  std::optional<vision::Transform> prior = carrier.look(frame, state->settings.head, lens);
+  if (prior) prior = prior->rescaled(frame.size(), picture.size());
   const vision::CameraMotionResult result = state->motion.update(picture.view<std::uint8_t>(), prior);
 
   CerberusCameraMotion motion;
@@ -165,6 +125,7 @@ bool Private::analyse(Frame& frame) {
   cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
   GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
                  motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);
+  carrier.compare(GST_ELEMENT(base), frame, lens, transform, result.scene_age > 1 ? result.confidence : 0);
   return true;
 }
 

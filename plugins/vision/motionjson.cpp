@@ -33,6 +33,8 @@
  * Keys that are there only where an element told, after `objects`:
  * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
  *   `moving` true or false.
+ * - `base`: `yaw-rate`, how fast the body turned that carries the camera (a robot), degrees a second, positive to the
+ *   right (`cameramotion` with `horizontal-fov`, or the application).
  * - `pir`: the sensors' readings, 0 nothing, 1 somebody, 2 invalid; and `fusion`: what `pirfusion` decided: `rule` (number,
  *   0 for one without), `action` (`track`, `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's
  *   identity or null).
@@ -41,7 +43,7 @@
  * confidences to 3, `camera` to 9 significant digits. What is unknown, not a number or infinite is null.
  * Readers ignore keys that they do not know.
  *
- * Reads the camera-motion, threshold and region metas of motiondetect's stages, the pose and the fusion meta. Posts no messages.
+ * Reads the camera-motion, threshold and region metas of motiondetect's stages, the pose, base and fusion metas. Posts no messages.
  *
  * ## Example launch lines
  * |[
@@ -125,6 +127,8 @@ void write_system(cerberus::JsonLine& line, GstBuffer* buffer) {
         .boolean(pose->moving != FALSE)
         .close('}');
   }
+  if (const CerberusBase* base = cerberus_buffer_peek_base(buffer))
+    line.key("base").open('{').key("yaw-rate").fixed(base->yaw_rate, kPixelDecimals).close('}');
   const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
   if (!fusion) return;
   line.key("pir").open('[');

@@ -433,6 +433,39 @@ GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
 }
 GST_END_TEST
 
+// Without an event, what cameramotion saw counts, and the sensors' sources hear of it: they see no frames.
+GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
+  const auto turning = [](GstClockTime time, double rate) {
+    GstBuffer* buffer = frame_at(time, 0);
+    CerberusBase base;
+    cerberus_base_init(&base);
+    base.yaw_rate = rate;
+    cerberus_buffer_set_base(buffer, &base);
+    return buffer;
+  };
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  rig.read(0, {0, 1, 0});
+  fail_unless_equals_int(rig.show(turning(0, 4.9)).doubtful, 0);
+  fail_unless_equals_int(rig.show(turning(40 * kMs, 5.1)).doubtful, 0b010);
+  fail_unless_equals_int(rig.show(turning(80 * kMs, -20)).doubtful, 0b010);
+  fail_unless_equals_int(rig.show(turning(120 * kMs, -20.5)).doubtful, 0b010);
+  fail_unless_equals_int(rig.show(frame_at(160 * kMs, 0)).doubtful, 0b010);  // just after
+  std::vector<double> heard;
+  while (GstEvent* event = gst_harness_try_pull_upstream_event(pir)) {
+    double rate = 0;
+    if (cerberus_event_parse_base(event, &rate, nullptr)) heard.push_back(rate);
+    gst_event_unref(event);
+  }
+  // Not each small change, but always what makes a doubt or ends it.
+  fail_unless(heard == std::vector<double>({4.9, 5.1, -20, 0}));
+  // An application knows better.
+  say(rig, cerberus_event_new_base(0, 200 * kMs));
+  rig.read(5 * GST_SECOND, {1, 0, 0});
+  fail_unless_equals_int(rig.show(turning(5 * GST_SECOND, 40)).doubtful, 0);
+}
+GST_END_TEST
+
 GST_START_TEST(only_confirmed_tracks_make_the_camera_found) {
   Rig rig;
   const CerberusFusion fusion = rig.show(frame_with(0, 0));  // a region without an identity
@@ -783,6 +816,7 @@ static Suite* pirfusion_suite(void) {
   tcase_add_test(tc, pan_comes_from_the_frame_else_from_the_events_that_passed);
   tcase_add_test(tc, a_strangers_pose_is_passed_on_and_not_listened_to);
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
+  tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);
   tcase_add_test(tc, a_seek_reaches_the_pir_sources_and_the_video_source);
   tc = tcase_create("rules");
   suite_add_tcase(s, tc);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pirsrc with recorded readings. What needs hardware is in tests/hardware.
+#include <cerberus/base.h>
 #include <cerberus/pir.h>
-#include <cerberus/pose.h>
 #include <glib/gstdio.h>
 #include <gst/check/gstharness.h>
 

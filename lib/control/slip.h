@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Does the picture follow the head? For one axis: what the head was told against what the picture shows.
+//
+// A robot's own turning moves the picture too, so speeds say nothing; only their changes do: in a moment in which the
+// head's speed was told to change, the picture's must change by as much, whatever the robot does besides.
+//
+//   bins of kBin; of each the mean speeds h (head, as told) and r (picture)
+//   pairs of bins with one between them: e = h(j) - h(j-2), d = r(j) - r(j-2); counted where |e| >= kLeastChange
+//   episode: pairs in a row; gain = sum d e / sum e^2, misfit^2 = sum (d - gain e)^2 / sum e^2
+//
+// A head that is some frames late shifts d against e; over the pairs before and after a change that evens out.
+//
+// One case looks like a head that slips and is none: a head that holds a target while the robot turns below it moves, and
+// the picture stands. It cannot do so without being late, though (it sees the robot turn before it answers), and
+// the picture jerks at every change. So a picture that jerks (r - gain h is not steady during the episode) is no evidence
+// but of a head that follows or turns the wrong way, which no robot's turning looks like.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "sensing/angles.h"
+
+namespace cerberus::control {
+
+enum class SlipFault : std::uint8_t {
+  none,
+  slips,     // the picture stands: the head does not turn at all
+  reversed,  // the picture turns the other way
+  scale,     // it turns by another angle: the lens or the gear is not what was said
+};
+
+struct SlipFinding {
+  SlipFault fault = SlipFault::none;
+  double gain = 1;    // what the picture turns for each degree that was told
+  double travel = 0;  // what was told while this was seen, radians
+};
+
+class SlipWatch {
+ public:
+  static constexpr double kBin = 0.2;                           // seconds
+  static constexpr double kLeastChange = sensing::radians(15);  // a second
+  static constexpr double kLeastTravel = sensing::radians(20);  // of evidence before anything is said
+
+  // Forgets everything.
+  void reset() { *this = {}; }
+  // The next frame: `seconds` after the one before it, in which the picture turned by `picture` and the head was told to
+  // turn by `head`, radians. NaN: the picture does not say. Returns a fault when it is found, once; it is found anew only
+  // after the head has followed again.
+  std::optional<SlipFinding> add(double seconds, double picture, double head);
+  SlipFault fault() const { return fault_; }  // that stands
+
+ private:
+  struct Bin {
+    double picture = 0, head = 0;  // radians a second
+    double travel = 0;             // radians, until an episode counted it
+    bool abrupt = false;
+  };
+  struct Episode {
+    static constexpr int kMost = 8;
+    std::array<Bin, kMost> bin;
+    int bins = 0, pairs = 0;
+    double de = 0, ee = 0, dd = 0, largest = 0;
+    double travel = 0;
+    bool abrupt = false;
+    void see(Bin& seen);
+    void add(double d, double e);
+    // Between which speeds the picture went, were the head's part (the gain's share of what it was told) not there.
+    double stir(double gain) const;
+  };
+  // Episodes in a row that say the same.
+  struct Run {
+    SlipFault fault = SlipFault::none;
+    int episodes = 0;
+    double gains = 0, travel = 0;
+  };
+
+  void forget_frames();
+  std::optional<SlipFinding> close_bin();
+  std::optional<SlipFinding> close_episode();
+  static std::optional<SlipFault> judge(const Episode& episode);
+
+  std::array<Bin, 4> bins_{};  // the newest first
+  int bin_count_ = 0;
+  Episode episode_;
+  Run run_;
+  SlipFault fault_ = SlipFault::none;
+
+  // The bin that is being filled.
+  double span_ = 0, seen_ = 0, picture_ = 0, head_ = 0, travel_ = 0;
+  double head_rate_ = 0;
+  bool abrupt_ = false, has_rate_ = false;
+};
+
+}  // namespace cerberus::control
