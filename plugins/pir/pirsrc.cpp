@@ -6,16 +6,12 @@
  * stuck, chattering, or nothing known yet). A buffer comes at once at the start and at every change, and every
  * `heartbeat` when nothing changes. Caps tell where the sensors look, so `pirfusion` need not be told again.
  *
- * Where volts are measured, downstream may take those instead, with the caps `application/x-pir,format=level`: a 32-bit
- * float a sensor in this machine's byte order, at every sample, NaN before the first one. Whoever takes both gets presence.
- *
  * Drivers (`driver`):
  * - `gpio`: lines of a GPIO chip, edges with the kernel's time stamps; LEDs on output lines (`leds-red` while a sensor
  *   detects, `leds-blue` while it does not). Live.
  * - `iio`: channels of an A/D converter, compared with `threshold`. Live.
  * - `replay`: a file of `seconds,level,level,...` lines or of JSON lines with `time` (or `pts`) and `pir`, as
- *   `motionjson` writes them; ends with the file. What was measured is written with its unit, `seconds,0.1V,3.2V,...` (in
- *   JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
+ *   `motionjson` writes them; ends with the file. Not live unless `is-live`.
  * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
  *
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
@@ -26,7 +22,6 @@
  * ## Examples
  * |[
  * gst-launch-1.0 -m pirsrc driver=scripted script="0,0,0,0; 1,1,0,0; 3,0,0,0" ! fakesink
- * gst-launch-1.0 pirsrc script="0,0.1V,0V,0V; 1,3.2V,0V,0V; 2,0V,0V,0V" ! application/x-pir,format=level ! fakesink
  * gst-launch-1.0 pirsrc driver=gpio chip=gpiochip0 lines=17,27,22 leds-red=5,6,13 preset=am312 ! fakesink
  * ]|
  *
@@ -45,7 +40,6 @@
 
 #include "drivers/sensor_array.h"
 #include "pir_settings.hpp"
-#include "reports.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirsrc_debug);
 #define GST_CAT_DEFAULT pirsrc_debug
@@ -54,13 +48,15 @@ namespace cerberus::plugin {
 namespace {
 
 using drivers::SensorArray;
+using drivers::SensorFault;
 using drivers::SensorReading;
 using sensing::Time;
 
 constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);
 
 GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_PIR_CAPS ", sensors = (int) [ 1, 16 ]"));
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
+    GST_STATIC_CAPS("application/x-pir, format = (string) presence, sensors = (int) [ 1, 16 ]"));
 
 struct Private {
   Adjustable<PirSettings> settings;
@@ -80,6 +76,53 @@ struct Private {
 };
 
 CERBERUS_DEFINE_TYPE(CerberusPirSrc, cerberus_pir_src, GstPushSrc, GST_TYPE_PUSH_SRC, Private)
+
+// ---- errors and warnings
+
+void post(CerberusPirSrc* self, const drivers::SensorError& error) {
+  const char* detail = error.detail.c_str();
+  const char* text = error.text.c_str();
+  switch (error.fault) {
+    case SensorFault::none:
+      return;
+    case SensorFault::settings:
+    case SensorFault::missing:
+      GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::not_found:
+      GST_ELEMENT_ERROR(self, RESOURCE, NOT_FOUND, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::busy:
+      GST_ELEMENT_ERROR(self, RESOURCE, BUSY, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::denied:
+      GST_ELEMENT_ERROR(self, RESOURCE, NOT_AUTHORIZED, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::data:
+      GST_ELEMENT_ERROR(self, STREAM, DECODE, ("%s", text), ("%s", detail));
+      return;
+    case SensorFault::gone:
+      GST_ELEMENT_ERROR(self, RESOURCE, READ, ("%s", text), ("%s", detail));
+      return;
+  }
+}
+
+void post_fault(CerberusPirSrc* self, int sensor, sensing::PirFault fault, double bearing,
+                const std::string& place) {
+  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + place + ", bearing " +
+                           std::to_string(std::lround(bearing)) + ")";
+  if (fault == sensing::PirFault::none) {
+    GST_ELEMENT_INFO(self, RESOURCE, READ, ("%s works again.", name.c_str()), (nullptr));
+    return;
+  }
+  const std::string what(sensing::describe(fault));
+  GST_ELEMENT_WARNING(
+      self, RESOURCE, READ,
+      ("%s is %s: its readings do not count until it is well again. Check its cable and supply, "
+       "and what is warm or moving before it.",
+       name.c_str(), what.c_str()),
+      (nullptr));
+}
 
 // ---- time
 
@@ -160,7 +203,7 @@ bool open_sensors(CerberusPirSrc* self) {
       std::move(sensor), sensor_setup(settings, info.sensors), pir_options(settings), heartbeat);
   if (error) {
     guard.unlock();
-    report_error(GST_ELEMENT(self), error);
+    post(self, error);
     return false;
   }
   priv.info = info;
@@ -180,53 +223,9 @@ bool open_sensors(CerberusPirSrc* self) {
   return true;
 }
 
-// What the sensors can give, presence first; lock held.
-GstCaps* possible_caps(const Private& priv) {
-  CerberusPirInfo info = priv.info;
-  info.format = CERBERUS_PIR_PRESENCE;
-  GstCaps* caps = cerberus_pir_info_to_caps(&info);
-  info.format = CERBERUS_PIR_LEVEL;
-  if (priv.sensors.measures()) gst_caps_append(caps, cerberus_pir_info_to_caps(&info));
-  return caps;
-}
-
-GstCaps* get_caps(GstBaseSrc* base, GstCaps* filter) {
-  Private& priv = *cerberus_pir_src_self(base)->priv;
-  GstCaps* caps = nullptr;
-  {
-    const std::lock_guard guard(priv.lock);
-    caps = priv.running ? possible_caps(priv) : gst_static_pad_template_get_caps(&src_template);
-  }
-  if (!filter) return caps;
-  GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
-  gst_caps_unref(caps);
-  return both;
-}
-
-gboolean set_caps(GstBaseSrc* base, GstCaps* caps) {
-  Private& priv = *cerberus_pir_src_self(base)->priv;
-  CerberusPirInfo info;
-  if (!cerberus_pir_info_from_caps(&info, caps, nullptr)) return FALSE;
-  const std::lock_guard guard(priv.lock);
-  priv.info.format = info.format;
-  priv.sensors.tell_samples(info.format == CERBERUS_PIR_LEVEL);
-  return TRUE;
-}
-
-// Said before anything flows: else all that a user would see is "not-negotiated".
-bool fits_downstream(CerberusPirSrc* self) {
-  g_autoptr(GstCaps) wanted = gst_pad_peer_query_caps(GST_BASE_SRC_PAD(self), nullptr);
-  g_autoptr(GstCaps) given = get_caps(GST_BASE_SRC(self), nullptr);
-  if (gst_caps_can_intersect(wanted, given)) return true;
-  g_autofree gchar* wish = gst_caps_to_string(wanted);
-  g_autofree gchar* gift = gst_caps_to_string(given);
-  GST_ELEMENT_ERROR(
-      self, CORE, NEGOTIATION,
-      ("What follows pirsrc wants %s, and the sensors give %s. Volts (format=level) come from driver=iio "
-       "and from recordings in volts only.",
-       wish, gift),
-      (nullptr));
-  return false;
+gboolean start(GstBaseSrc* base) {
+  auto* self = cerberus_pir_src_self(base);
+  return guarded(self, FALSE, [&]() -> gboolean { return open_sensors(self); });
 }
 
 gboolean stop(GstBaseSrc* base) {
@@ -239,14 +238,18 @@ gboolean stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-gboolean start(GstBaseSrc* base) {
-  auto* self = cerberus_pir_src_self(base);
-  return guarded(self, FALSE, [&]() -> gboolean {
-    if (!open_sensors(self)) return FALSE;
-    if (fits_downstream(self)) return TRUE;
-    stop(base);
-    return FALSE;
-  });
+GstCaps* get_caps(GstBaseSrc* base, GstCaps* filter) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  GstCaps* caps = nullptr;
+  {
+    const std::lock_guard guard(priv.lock);
+    caps = priv.running ? cerberus_pir_info_to_caps(&priv.info)
+                        : gst_static_pad_template_get_caps(&src_template);
+  }
+  if (!filter) return caps;
+  GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(caps);
+  return both;
 }
 
 // What a step of the sensors left to be said, outside the lock.
@@ -260,23 +263,19 @@ struct News {
 
 GstBuffer* publish(CerberusPirSrc* self, const News& news) {
   const SensorReading& reading = news.reading;
-  const guint count = news.info.sensors;
-  guint8 presence[CERBERUS_PIR_MAX_SENSORS] = {};
-  for (guint i = 0; i < count; ++i) presence[i] = static_cast<guint8>(reading.presence[i]);
-  for (guint i = 0; i < count; ++i)
+  guint8 bytes[CERBERUS_PIR_MAX_SENSORS] = {};
+  for (guint i = 0; i < news.info.sensors; ++i) bytes[i] = static_cast<guint8>(reading.presence[i]);
+  for (guint i = 0; i < news.info.sensors; ++i)
     if (reading.faulty >> i & 1)
-      report_fault(GST_ELEMENT(self), static_cast<int>(i), news.faults[i], news.info.bearings[i],
-                   news.places[i]);
+      post_fault(self, static_cast<int>(i), news.faults[i], news.info.bearings[i], news.places[i]);
   if (reading.changed) {
-    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), news.time, &news.info, presence);
+    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), news.time, &news.info, bytes);
     GstStructure* fields = gst_message_writable_structure(message);
     gst_structure_set(fields, "doubtful", G_TYPE_UINT, static_cast<guint>(reading.doubtful), nullptr);
     gst_element_post_message(GST_ELEMENT(self), message);
   }
-  const gsize size = cerberus_pir_info_buffer_size(&news.info);
-  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
-  const bool volts = news.info.format == CERBERUS_PIR_LEVEL;
-  gst_buffer_fill(buffer, 0, volts ? static_cast<const void*>(reading.volts.data()) : presence, size);
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, news.info.sensors, nullptr);
+  gst_buffer_fill(buffer, 0, bytes, news.info.sensors);
   GST_BUFFER_PTS(buffer) = news.time;
   return buffer;
 }
@@ -292,7 +291,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     if (step == SensorArray::Step::failed) {
       const drivers::SensorError error = priv.sensors.error();
       guard.unlock();
-      report_error(GST_ELEMENT(self), error);
+      post(self, error);
       return GST_FLOW_ERROR;
     }
     if (step == SensorArray::Step::reading) {
@@ -388,7 +387,6 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   src->start = start;
   src->stop = stop;
   src->get_caps = get_caps;
-  src->set_caps = set_caps;
   src->unlock = unlock;
   src->unlock_stop = unlock_stop;
   src->event = event;
