@@ -252,6 +252,24 @@ CERBERUS_API
 GstMessage *cerberus_message_new_pantilt (GstObject *src, GstClockTime running_time, const gchar *state,
                                           const gchar *reason, const CerberusPose *pose);
 
+/**
+ * cerberus_message_parse_pantilt:
+ * @message: a message
+ * @running_time: (out) (optional): when
+ * @state: (out) (optional) (transfer full): what the head does, one of the words of %CERBERUS_MESSAGE_PANTILT
+ * @reason: (out) (optional) (transfer full): why, in words for a user; may be empty
+ *
+ * Reads a %CERBERUS_MESSAGE_PANTILT.
+ *
+ * Returns: (transfer full) (nullable): where the head looked at @running_time: its name, pan and tilt, and nothing more;
+ *     %NULL (and nothing is written) if @message is no well-formed one.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusPose *cerberus_message_parse_pantilt (GstMessage *message, GstClockTime *running_time, gchar **state,
+                                              gchar **reason);
+
 G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusFusion, cerberus_fusion_free)
 
 G_END_DECLS

@@ -358,6 +358,7 @@ START_TEST(a_pir_message_tells_every_reading) {
   for (GstMessage* other : {stranger, empty, eos}) {
     fail_if(cerberus_message_parse_pir(other, &time));
     fail_if(cerberus_message_parse_fusion(other, &time));
+    fail_if(cerberus_message_parse_pantilt(other, &time, nullptr, nullptr));
   }
   fail_unless_equals_uint64(time, 5 * GST_SECOND);
 }
@@ -416,6 +417,27 @@ START_TEST(a_pantilt_message_tells_what_the_head_does) {
   fail_unless_equals_string(gst_structure_get_string(s, "head"), "left eye");
   double pan = 0;
   fail_unless(gst_structure_get_double(s, "pan", &pan) && pan == -30.5);
+
+  GstClockTime time = 0;
+  g_autofree gchar* state = nullptr;
+  g_autofree gchar* reason = nullptr;
+  g_autoptr(CerberusPose) back = cerberus_message_parse_pantilt(message, &time, &state, &reason);
+  fail_unless(back);
+  fail_unless_equals_string(state, "fault");
+  fail_unless_equals_string(reason, "it does not answer");
+  fail_unless_equals_string(back->head, "left eye");
+  fail_unless(back->pan == -30.5 && back->tilt == pose.tilt);
+  fail_unless(time == GST_SECOND && back->valid_from == GST_SECOND);
+  g_autoptr(CerberusPose) alone = cerberus_message_parse_pantilt(message, nullptr, nullptr, nullptr);
+  fail_unless(alone);
+
+  for (const char* field : {"state", "reason", "head", "pan", "tilt", "running-time"}) {
+    g_autoptr(GstMessage) lacking = cerberus_message_new_pantilt(nullptr, 0, "stopped", nullptr, &pose);
+    g_autoptr(CerberusPose) whole = cerberus_message_parse_pantilt(lacking, nullptr, nullptr, nullptr);
+    fail_unless(whole);
+    gst_structure_remove_field(gst_message_writable_structure(lacking), field);
+    fail_if(cerberus_message_parse_pantilt(lacking, nullptr, nullptr, nullptr), "without %s", field);
+  }
 }
 END_TEST
 
@@ -447,6 +469,7 @@ START_TEST(nothing_crashes_on_null) {
   EXPECT_CRITICAL(cerberus_message_new_fusion(nullptr, 0, nullptr));
   EXPECT_CRITICAL(cerberus_message_parse_fusion(nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_message_new_pantilt(nullptr, 0, nullptr, nullptr, pose));
+  EXPECT_CRITICAL(cerberus_message_parse_pantilt(nullptr, nullptr, nullptr, nullptr));
 }
 END_TEST
 

@@ -2,65 +2,14 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reads regions, tracks, threshold and camera motion from Python, through GObject introspection.
 
-Run by the test suite, which sets GI_TYPELIB_PATH and LD_LIBRARY_PATH to the build (an installed Cerberus needs neither).
-It is also the example to start from: the class at the end shows how a program gets at each frame's metadata.
+It is also the example to start from: the class at the end shows how a program gets at each frame's metadata. What sensors,
+fusion and head attach and post is read by reads_the_loop.py beside it.
 """
 import math
 import sys
 import unittest
 
-SKIPPED = 77
-
-if sys.argv[1:] and sys.argv[1] == "no-introspection":
-    print("skipped: built without introspection (option introspection, packages libgirepository1.0-dev and "
-          "gobject-introspection; off in sanitizer builds)")
-    sys.exit(SKIPPED)
-
-try:
-    import gi
-    gi.require_version("Gst", "1.0")
-    gi.require_version("GstApp", "1.0")
-    gi.require_version("GstVideo", "1.0")
-    from gi.repository import Gst, GstApp, GstVideo  # noqa: F401 (GstApp gives appsink its methods)
-except (ImportError, ValueError) as missing:
-    print(f"skipped: {missing} (packages python3-gi, gir1.2-gst-plugins-base-1.0)")
-    sys.exit(SKIPPED)
-
-gi.require_version("Cerberus", "1.0")  # built, so it must be found: no skip
-from gi.repository import Cerberus  # noqa: E402
-
-Gst.init(None)
-TIMEOUT = 30 * Gst.SECOND
-
-
-def region(**fields):
-    """A Cerberus.Region with some fields set."""
-    result = Cerberus.Region.new()
-    for name, value in fields.items():
-        setattr(result, name, value)
-    return result
-
-
-def frames(description, probe=None):
-    """Runs a pipeline that ends in `appsink name=sink`; yields each buffer. `probe` may annotate what leaves `mark`."""
-    pipeline = Gst.parse_launch(description)
-    if probe:
-        def on_buffer(_pad, info):
-            probe(info.get_buffer())
-            return Gst.PadProbeReturn.OK
-        pipeline.get_by_name("mark").get_static_pad("src").add_probe(Gst.PadProbeType.BUFFER, on_buffer)
-    sink = pipeline.get_by_name("sink")
-    pipeline.set_state(Gst.State.PLAYING)
-    try:
-        while sample := sink.try_pull_sample(TIMEOUT):
-            yield sample.get_buffer()
-        error = pipeline.get_bus().pop_filtered(Gst.MessageType.ERROR)
-        if error:
-            raise RuntimeError(error.parse_error())
-        if not sink.is_eos():
-            raise RuntimeError("the pipeline does not go on")
-    finally:
-        pipeline.set_state(Gst.State.NULL)
+from support import BALL, CAPS, Cerberus, Gst, GstVideo, TIMEOUT, frames, region
 
 
 class OnAPlainBuffer(unittest.TestCase):
@@ -193,10 +142,6 @@ class ThroughAPipeline(unittest.TestCase):
         self.assertEqual(found.vx, 20)
         self.assertEqual(list(Cerberus.buffer_get_camera_motion(out).matrix), [1, 0, 6, 0, 1, -4, 0, 0, 1])
         pipeline.set_state(Gst.State.NULL)
-
-
-CAPS = "video/x-raw,format=GRAY8,width=320,height=240,framerate=30/1"
-BALL = f"videotestsrc pattern=ball num-buffers=60 ! {CAPS}"
 
 
 def ball_centre(buffer):
