@@ -172,24 +172,6 @@ int fuzzy_threshold(const Histogram& histogram, const FuzzyThresholdOptions& opt
   return choose(options, c);
 }
 
-double noise_sigma(const Histogram& histogram) {
-  double total = 0;
-  for (const auto count : histogram) total += count;
-  if (total <= 0) return 0;
-  double below = 0;
-  for (int x = 0; x < 256; ++x) {
-    const double count = histogram[x];
-    if (below + count >= total / 2) {
-      // A level stands for the values that round to it; level 0 of an absolute difference for half that
-      // width.
-      const double low = x == 0 ? 0 : x - 0.5, width = x == 0 ? 0.5 : 1.0;
-      return 1.4826 * (low + width * (total / 2 - below) / count);
-    }
-    below += count;
-  }
-  return 0;
-}
-
 int clamp_to_noise(int threshold, double sigma, double minimum) {
   const double floor = std::max(minimum, 4 * sigma);
   const int low = static_cast<int>(std::lround(std::min(floor, 255.0)));

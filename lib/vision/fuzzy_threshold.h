@@ -36,9 +36,6 @@ struct FuzzyThresholdCurves {
 int fuzzy_threshold(const Histogram& histogram, const FuzzyThresholdOptions& options,
                     FuzzyThresholdCurves* curves = nullptr);
 
-// sigma = 1.4826 x the interpolated median of the histogram's levels (median absolute deviation).
-double noise_sigma(const Histogram& histogram);
-
 // Th held inside [floor, 1.5 floor], floor = max(minimum, 4 sigma): the guard rail of preset `default`.
 int clamp_to_noise(int threshold, double sigma, double minimum = 6.0);
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "vision/median.h"
+
 namespace cerberus::vision {
 
 namespace {
@@ -17,19 +19,6 @@ constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
 
 RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
   return spans.empty() ? RowSpan{0, width} : spans[static_cast<std::size_t>(y)];
-}
-
-// Interpolated median of counted levels (index 0 stands for `first`); levels are as wide as they are apart.
-template <typename Counts>
-double median(const Counts& counts, int total, int first) {
-  int below = 0;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    const auto n = static_cast<int>(counts[i]);
-    if (n && 2 * (below + n) >= total)
-      return first + static_cast<double>(i) - 0.5 + (total / 2.0 - below) / n;
-    below += n;
-  }
-  return 0;
 }
 
 }  // namespace
@@ -80,7 +69,7 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   int used = 0;
   for (int k = 0; k < kClasses; ++k) {
     if (number[k] * 100 < total) continue;
-    const double a = static_cast<double>(sum[k]) / number[k], e = median(counts[k], number[k], -kReach);
+    const double a = static_cast<double>(sum[k]) / number[k], e = median_of_levels(counts[k], number[k], -kReach);
     if (a + e > 250 || a + e < 4 || a > 250) continue;  // clipped: says nothing about gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
@@ -181,7 +170,7 @@ void LightChange::estimate_bands(GrayView reference, GrayView present, std::span
     const double bright = total ? std::max(static_cast<double>(sum) / total, 16.0) : 16.0;
     std::array<double, 3> middle{};
     for (int third = 0; third < 3; ++third)
-      if (number[third] >= 16) middle[third] = median(counts[third], number[third], -kBandReach);
+      if (number[third] >= 16) middle[third] = median_of_levels(counts[third], number[third], -kBandReach);
     std::sort(middle.begin(), middle.end());
     excess[band] = middle[1] / bright;
     strongest = std::max(strongest, std::abs(middle[1]));

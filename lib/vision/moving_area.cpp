@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "vision/mask.h"
+#include "vision/median.h"
 #include "vision/morphology.h"
 #include "vision/scene_memory.h"
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "vision/labelling.h"
 #include "vision/light.h"
 #include "vision/mask.h"
+#include "vision/median.h"
 #include "vision/morphology.h"
 #include "vision/scene_alignment.h"
 #include "vision/scene_kernels.h"
@@ -98,21 +100,10 @@ class NoiseSamples {
   void add(int brightness, int difference) {
     if (difference < kLevels) ++counts_[brightness >> 4][difference];
   }
-  // 1.4826 x median of a class, none if there are too few samples.
+  // None if there are too few samples.
   std::optional<double> sigma(int k) const {
-    std::uint32_t total = 0;
-    for (const auto c : counts_[k]) total += c;
-    if (total < 40) return std::nullopt;
-    double below = 0;
-    for (int v = 0; v < kLevels; ++v) {
-      const double c = counts_[k][v];
-      if (c && below + c >= total / 2.0) {
-        const double low = v == 0 ? 0 : v - 0.5, width = v == 0 ? 0.5 : 1;
-        return 1.4826 * (low + width * (total / 2.0 - below) / c);
-      }
-      below += c;
-    }
-    return std::nullopt;
+    if (std::accumulate(counts_[k].begin(), counts_[k].end(), 0u) < 40) return std::nullopt;
+    return noise_sigma(counts_[k]);
   }
 
  private:
