@@ -10,8 +10,9 @@
  * camera without a motor, and the whole loop can be closed on recorded footage.
  *
  * The head tells its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are passed on. On
- * each frame is the pose meta with which it was made. The wide picture counts as a pinhole camera's that looks straight ahead and sees
- * `wide-fov`; the window sees `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
+ * each frame is the pose meta with which it was made, and what upstream said of the base (that it stands, where nobody did).
+ * The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window sees
+ * `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
  * what downstream takes. It ends at the picture's edges: `pan-min`, `pan-max`, `tilt-min`, `tilt-max` tell how far it
  * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know.
  *
@@ -349,6 +350,16 @@ void attach_pose(const State& state, control::Pose pose, const vision::WindowGeo
   cerberus_buffer_set_pose(out, &meta);
 }
 
+// The wide camera stands, unless somebody upstream says otherwise: that the window moves a little otherwise than a head
+// turns (see lib/vision/window.h) must not look like a robot that does.
+void attach_base(GstBuffer* in, GstBuffer* out) {
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.told = TRUE;
+  if (const CerberusBase* known = cerberus_buffer_peek_base(in)) base = *known;
+  cerberus_buffer_set_base(out, &base);
+}
+
 GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out) {
   Private& self = *cerberus_virtual_ptz_self(trans)->priv;
   State& state = self.state;
@@ -380,6 +391,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
                  GST_TIME_ARGS(static_cast<GstClockTime>(time.count())), degrees(place.pan),
                  degrees(place.tilt), place.left, place.top, place.limited ? ", at the edge" : "");
   attach_pose(state, pose, place, out);
+  attach_base(in, out);
 
   VideoFrame source(state.in, in, GST_MAP_READ), target(state.out, out, GST_MAP_WRITE);
   if (source && target) {

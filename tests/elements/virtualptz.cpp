@@ -232,6 +232,27 @@ GST_START_TEST(a_pose_and_regions_of_the_wide_picture_do_not_come_through) {
 }
 GST_END_TEST
 
+// A window does not move quite as a head turns; nobody must take the difference for a robot that does.
+GST_START_TEST(its_base_stands_unless_somebody_upstream_knows) {
+  Ptz ptz;
+  GstBuffer* out = ptz.through(0);
+  const CerberusBase* base = cerberus_buffer_peek_base(out);
+  fail_unless(base && base->told && base->yaw_rate == 0);
+  gst_buffer_unref(out);
+  GstBuffer* in = noise(ptz.in, 1);
+  CerberusBase turning;
+  cerberus_base_init(&turning);
+  turning.yaw_rate = -8;
+  cerberus_buffer_set_base(in, &turning);
+  tell(ptz.h.get(), pose(0, 0));
+  gst_harness_push(ptz.h.get(), in);
+  out = gst_harness_pull(ptz.h.get());
+  base = cerberus_buffer_peek_base(out);
+  fail_unless(base && !base->told && base->yaw_rate == -8);
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
 GST_START_TEST(it_says_how_far_it_reaches) {
   Ptz ptz;
   gst_buffer_unref(ptz.through(0));
@@ -399,6 +420,7 @@ static Suite* virtualptz_suite() {
   tcase_add_test(tc, poses_are_passed_on_and_only_those_of_the_own_head_count);
   tcase_add_test(tc, a_frame_carries_the_pose_it_was_made_with);
   tcase_add_test(tc, a_pose_and_regions_of_the_wide_picture_do_not_come_through);
+  tcase_add_test(tc, its_base_stands_unless_somebody_upstream_knows);
   tcase_add_test(tc, it_says_how_far_it_reaches);
   tcase_add_test(tc, downstream_may_choose_the_size);
   tcase_add_test(tc, the_picture_may_change_its_size_on_the_way);
