@@ -225,21 +225,10 @@ gboolean stop(GstBaseTransform* trans) {
   return TRUE;
 }
 
-void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  priv_of(object).settings.set(kProperties, id, value);
-}
-
-void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  priv_of(object).settings.get(kProperties, id, value);
-}
-
 void class_init(CerberusAnalysisClass* klass) {
   GST_DEBUG_CATEGORY_INIT(cerberus_analysis_debug, "cerberusanalysis", 0,
                           "what all analysing elements share");
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = set_property;
-  object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
+  install_properties<CerberusAnalysis, kProperties>(G_OBJECT_CLASS(klass));
 
   static GstStaticPadTemplate sink =
       GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));

@@ -36,11 +36,10 @@
 #include <optional>
 #include <string>
 
-#include "analysis_base.hpp"
+#include "analysis_element.hpp"
 #include "carrier.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
-#include "properties.hpp"
 #include "room.hpp"
 #include "stages.hpp"
 #include "vision/camera_motion.h"
@@ -76,26 +75,17 @@ struct State {
   Settings settings;
 };
 
-struct Private final : Analyser {
-  CerberusAnalysis* base = nullptr;
-  Adjustable<Settings> settings;
-  std::optional<State> state;
+struct Private final : StatefulAnalyser<Settings, State> {
   Carrier carrier;
 
   bool measures_camera() const override { return true; }
   bool start() override {
-    state.emplace();
-    settings.refresh();
     carrier.forget();
-    return true;
+    return StatefulAnalyser::start();
   }
-  void stop() override { state.reset(); }
   bool analyse(Frame& frame) override;
   void upstream_event(GstEvent* event) override { carrier.hear(event, settings.snapshot().head); }
 };
-
-CERBERUS_DEFINE_TYPE(CerberusCameraMotionElement, cerberus_camera_motion_element, CerberusAnalysis,
-                     cerberus_analysis_get_type(), Private)
 
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
@@ -129,36 +119,16 @@ bool Private::analyse(Frame& frame) {
   return true;
 }
 
-void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_camera_motion_element_self(object)->priv->settings.set(kProperties, id, value);
-}
-
-void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_camera_motion_element_self(object)->priv->settings.get(kProperties, id, value);
-}
-
-void cerberus_camera_motion_element_init(CerberusCameraMotionElement* self) {
-  self->priv->base = &self->parent;
-  cerberus_analysis_init_with(&self->parent, self->priv);
-}
-
-void cerberus_camera_motion_element_class_init(CerberusCameraMotionElementClass* klass) {
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = set_property;
-  object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
-  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "Camera motion", "Filter/Analyzer/Video",
-                                        "Measures how the camera itself moved since the previous frame",
-                                        "The Cerberus developers");
-}
+constexpr AnalysisInfo kInfo{"CerberusCameraMotionElement", "Camera motion",
+                             "Measures how the camera itself moved since the previous frame"};
 
 }  // namespace
 
-GType cameramotion_type() {
-  return cerberus_camera_motion_element_get_type();
+GType cameramotion_get_type() {
+  return analysis_type<Private, kProperties, kInfo>();
 }
 
 }  // namespace cerberus::plugin
 
-CERBERUS_REGISTER_ELEMENT(cameramotion, GST_RANK_NONE, cerberus::plugin::cerberus_camera_motion_element,
-                          cameramotion_debug, "the camera's own motion")
+CERBERUS_REGISTER_ELEMENT(cameramotion, GST_RANK_NONE, cerberus::plugin::cameramotion, cameramotion_debug,
+                          "the camera's own motion")

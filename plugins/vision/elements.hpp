@@ -6,10 +6,10 @@
 
 namespace cerberus::plugin {
 
-GType cameramotion_type();
-GType threeframediff_type();
-GType fuzzythreshold_type();
-GType motionregions_type();
-GType motiontrack_type();
+GType cameramotion_get_type();
+GType threeframediff_get_type();
+GType fuzzythreshold_get_type();
+GType motionregions_get_type();
+GType motiontrack_get_type();
 
 }  // namespace cerberus::plugin

@@ -20,12 +20,10 @@
 // lib/vision/fuzzy_threshold.h and moving_area.h. Deviations of the defaults, each a property: Th is held near the
 // measured noise (`noise-floor`), lone bright pixels do not count (`clip`), and a registered memory of the scene completes
 // what two neighbouring frames cannot see (`memory`).
-#include <optional>
 
-#include "analysis_base.hpp"
+#include "analysis_element.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
-#include "properties.hpp"
 #include "stages.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(fuzzythreshold_debug);
@@ -76,57 +74,24 @@ vision::MovingAreaOptions options(const Settings& s) {
   return options;
 }
 
-struct Private final : Analyser {
-  CerberusAnalysis* base = nullptr;
-  Adjustable<Settings> settings;
-  std::optional<MaskStage> stage;
-
-  bool start() override {
-    stage.emplace();
-    settings.refresh();
-    return true;
-  }
-  void stop() override { stage.reset(); }
+struct Private final : StatefulAnalyser<Settings, MaskStage> {
   bool analyse(Frame& frame) override {
-    if (const auto changed = settings.changes()) stage->set_options(options(*changed));
-    stage->luma().set_analysis_width(cerberus_analysis_width(base));
-    return stage->run(frame);
+    if (const auto changed = settings.changes()) state->set_options(options(*changed));
+    state->luma().set_analysis_width(cerberus_analysis_width(base));
+    return state->run(frame);
   }
 };
 
-CERBERUS_DEFINE_TYPE(CerberusFuzzyThreshold, cerberus_fuzzy_threshold, CerberusAnalysis,
-                     cerberus_analysis_get_type(), Private)
-
-void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_fuzzy_threshold_self(object)->priv->settings.set(kProperties, id, value);
-}
-
-void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_fuzzy_threshold_self(object)->priv->settings.get(kProperties, id, value);
-}
-
-void cerberus_fuzzy_threshold_init(CerberusFuzzyThreshold* self) {
-  self->priv->base = &self->parent;
-  cerberus_analysis_init_with(&self->parent, self->priv);
-}
-
-void cerberus_fuzzy_threshold_class_init(CerberusFuzzyThresholdClass* klass) {
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = set_property;
-  object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
-  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "Fuzzy threshold", "Filter/Analyzer/Video",
-                                        "Moving area by a threshold that the indices of fuzziness choose",
-                                        "The Cerberus developers");
-}
+constexpr AnalysisInfo kInfo{"CerberusFuzzyThreshold", "Fuzzy threshold",
+                             "Moving area by a threshold that the indices of fuzziness choose"};
 
 }  // namespace
 
-GType fuzzythreshold_type() {
-  return cerberus_fuzzy_threshold_get_type();
+GType fuzzythreshold_get_type() {
+  return analysis_type<Private, kProperties, kInfo>();
 }
 
 }  // namespace cerberus::plugin
 
-CERBERUS_REGISTER_ELEMENT(fuzzythreshold, GST_RANK_NONE, cerberus::plugin::cerberus_fuzzy_threshold,
+CERBERUS_REGISTER_ELEMENT(fuzzythreshold, GST_RANK_NONE, cerberus::plugin::fuzzythreshold,
                           fuzzythreshold_debug, "threshold and moving area")

@@ -47,8 +47,9 @@ constexpr const char* kStageNames[STAGES] = {"cameramotion", "threeframediff", "
                                              "motionregions", "motiontrack"};
 
 GType stage_type(Stage stage) {
-  static constexpr GType (*types[STAGES])() = {cameramotion_type, threeframediff_type, fuzzythreshold_type,
-                                               motionregions_type, motiontrack_type};
+  static constexpr GType (*types[STAGES])() = {cameramotion_get_type, threeframediff_get_type,
+                                               fuzzythreshold_get_type, motionregions_get_type,
+                                               motiontrack_get_type};
   return types[stage]();
 }
 

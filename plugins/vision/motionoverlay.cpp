@@ -365,14 +365,6 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
   });
 }
 
-void cerberus_motion_overlay_set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_motion_overlay_self(object)->priv->settings.set(kProperties, id, value);
-}
-
-void cerberus_motion_overlay_get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_motion_overlay_self(object)->priv->settings.get(kProperties, id, value);
-}
-
 void cerberus_motion_overlay_init(CerberusMotionOverlay* self) {
   gst_video_info_init(&self->priv->state.info);
   gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
@@ -380,10 +372,7 @@ void cerberus_motion_overlay_init(CerberusMotionOverlay* self) {
 }
 
 void cerberus_motion_overlay_class_init(CerberusMotionOverlayClass* klass) {
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = cerberus_motion_overlay_set_property;
-  object->get_property = cerberus_motion_overlay_get_property;
-  Adjustable<Settings>::install(object, kProperties);
+  cerberus::plugin::install_properties<CerberusMotionOverlay, kProperties>(G_OBJECT_CLASS(klass));
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element, "Motion overlay", "Filter/Effect/Video",

@@ -21,13 +21,11 @@
 // use the body width of 48 cm (III) and count only while `horizontal-fov` is known.
 #include <cerberus/cerberus.h>
 
-#include <optional>
 #include <string>
 
-#include "analysis_base.hpp"
+#include "analysis_element.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
-#include "properties.hpp"
 #include "room.hpp"
 #include "stages.hpp"
 
@@ -94,37 +92,29 @@ const Property<Settings> kProperties[] = {
              "Whether the stages' planes stay on the frame after they were read here"),
 };
 
-struct Private final : Analyser {
-  CerberusAnalysis* base = nullptr;
-  Adjustable<Settings> settings;
-  std::optional<RegionStage> stage;
+struct Private final : StatefulAnalyser<Settings, RegionStage> {
   KeepPlanes keep = KEEP_PLANES_AUTO;
 
   bool start() override;
-  void stop() override { stage.reset(); }
   bool analyse(Frame& frame) override;
   void apply(const Settings& s);
 };
 
-CERBERUS_DEFINE_TYPE(CerberusMotionRegions, cerberus_motion_regions, CerberusAnalysis,
-                     cerberus_analysis_get_type(), Private)
-
 void Private::apply(const Settings& s) {
-  stage->set_options({s.closing, s.people, s.minimum_area});
+  state->set_options({s.closing, s.people, s.minimum_area});
   vision::SizeGate gate;
   gate.width = {s.minimum_width, s.maximum_width};
   gate.height = {s.minimum_height, s.maximum_height};
   gate.metres_wide = {s.minimum_width_metres, s.maximum_width_metres};
   gate.metres_high = {s.minimum_height_metres, s.maximum_height_metres};
-  stage->set_gate(gate, radians(s.horizontal_fov), s.mounting_height);
+  state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height);
   keep = static_cast<KeepPlanes>(s.keep_planes);
 }
 
 // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
 bool Private::start() {
-  stage.emplace();
-  settings.refresh();
-  const std::string wrong = stage->zones().parse(settings.snapshot().zones);
+  StatefulAnalyser::start();
+  const std::string wrong = state->zones().parse(settings.snapshot().zones);
   if (wrong.empty()) return true;
   GST_ELEMENT_ERROR(base, LIBRARY, SETTINGS, ("The property zones cannot be used: %s", wrong.c_str()),
                     (nullptr));
@@ -134,46 +124,26 @@ bool Private::start() {
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
     apply(*changed);
-    if (const std::string wrong = stage->zones().parse(changed->zones); !wrong.empty())
+    if (const std::string wrong = state->zones().parse(changed->zones); !wrong.empty())
       GST_ELEMENT_WARNING(base, LIBRARY, SETTINGS, ("%s", wrong.c_str()), ("the zones that were there stay"));
   }
-  stage->luma().set_analysis_width(cerberus_analysis_width(base));
+  state->luma().set_analysis_width(cerberus_analysis_width(base));
   const bool keep_planes = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);
-  const bool found = stage->run(frame, keep_planes);
+  const bool found = state->run(frame, keep_planes);
   if (!keep_planes) cerberus_buffer_remove_plane_metas(frame.buffer);
   return found;
 }
 
-void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_motion_regions_self(object)->priv->settings.set(kProperties, id, value);
-}
-
-void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_motion_regions_self(object)->priv->settings.get(kProperties, id, value);
-}
-
-void cerberus_motion_regions_init(CerberusMotionRegions* self) {
-  self->priv->base = &self->parent;
-  cerberus_analysis_init_with(&self->parent, self->priv);
-}
-
-void cerberus_motion_regions_class_init(CerberusMotionRegionsClass* klass) {
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = set_property;
-  object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
-  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "Motion regions", "Filter/Analyzer/Video",
-                                        "Regions of interest from the moving area",
-                                        "The Cerberus developers");
-}
+constexpr AnalysisInfo kInfo{"CerberusMotionRegions", "Motion regions",
+                             "Regions of interest from the moving area"};
 
 }  // namespace
 
-GType motionregions_type() {
-  return cerberus_motion_regions_get_type();
+GType motionregions_get_type() {
+  return analysis_type<Private, kProperties, kInfo>();
 }
 
 }  // namespace cerberus::plugin
 
-CERBERUS_REGISTER_ELEMENT(motionregions, GST_RANK_NONE, cerberus::plugin::cerberus_motion_regions,
-                          motionregions_debug, "regions of interest from the moving area")
+CERBERUS_REGISTER_ELEMENT(motionregions, GST_RANK_NONE, cerberus::plugin::motionregions, motionregions_debug,
+                          "regions of interest from the moving area")

@@ -27,9 +27,8 @@
 #include <optional>
 #include <vector>
 
-#include "analysis_base.hpp"
+#include "analysis_element.hpp"
 #include "elements.hpp"
-#include "properties.hpp"
 #include "room.hpp"
 #include "stages.hpp"
 #include "vision/presence.h"
@@ -112,19 +111,10 @@ struct State {
   vision::SpeedGate gate;
 };
 
-struct Private final : Analyser {
-  CerberusAnalysis* base = nullptr;
-  Adjustable<Settings> settings;
-  std::optional<State> state;
-
-  bool start() override {
-    state.emplace();
-    settings.refresh();
-    return true;
-  }
+struct Private final : StatefulAnalyser<Settings, State> {
   void stop() override {
     end_of_stream();
-    state.reset();
+    StatefulAnalyser::stop();
   }
   void end_of_stream() override {
     if (!state) return;
@@ -139,9 +129,6 @@ struct Private final : Analyser {
   void publish(const Frame& frame, std::span<const vision::Track> tracks);
   void announce(Presence::Change change, GstClockTime running_time);
 };
-
-CERBERUS_DEFINE_TYPE(CerberusMotionTrack, cerberus_motion_track, CerberusAnalysis,
-                     cerberus_analysis_get_type(), Private)
 
 void Private::apply(const Settings& s) {
   vision::TrackOptions options;
@@ -186,6 +173,9 @@ bool Private::analyse(Frame& frame) {
   return true;
 }
 
+static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
+              static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED);
+
 void Private::publish(const Frame& frame, std::span<const vision::Track> tracks) {
   cerberus_buffer_remove_regions(frame.buffer);
   state->published.clear();
@@ -225,38 +215,16 @@ void Private::announce(Presence::Change change, GstClockTime running_time) {
   g_ptr_array_unref(objects);
 }
 
-void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_motion_track_self(object)->priv->settings.set(kProperties, id, value);
-}
-
-void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_motion_track_self(object)->priv->settings.get(kProperties, id, value);
-}
-
-void cerberus_motion_track_init(CerberusMotionTrack* self) {
-  self->priv->base = &self->parent;
-  cerberus_analysis_init_with(&self->parent, self->priv);
-}
-
-void cerberus_motion_track_class_init(CerberusMotionTrackClass* klass) {
-  static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
-                static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED);
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = set_property;
-  object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
-  gst_element_class_set_static_metadata(
-      GST_ELEMENT_CLASS(klass), "Motion tracks", "Filter/Analyzer/Video",
-      "Stable identities and velocities for the regions, camera motion taken out", "The Cerberus developers");
-}
+constexpr AnalysisInfo kInfo{"CerberusMotionTrack", "Motion tracks",
+                             "Stable identities and velocities for the regions, camera motion taken out"};
 
 }  // namespace
 
-GType motiontrack_type() {
-  return cerberus_motion_track_get_type();
+GType motiontrack_get_type() {
+  return analysis_type<Private, kProperties, kInfo>();
 }
 
 }  // namespace cerberus::plugin
 
-CERBERUS_REGISTER_ELEMENT(motiontrack, GST_RANK_NONE, cerberus::plugin::cerberus_motion_track,
-                          motiontrack_debug, "identities and velocities of moving objects")
+CERBERUS_REGISTER_ELEMENT(motiontrack, GST_RANK_NONE, cerberus::plugin::motiontrack, motiontrack_debug,
+                          "identities and velocities of moving objects")

@@ -9,6 +9,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 
 namespace cerberus::plugin {
@@ -143,5 +144,22 @@ class Adjustable {
   Settings settings_;
   bool changed_ = true;
 };
+
+template <typename Self>
+auto& settings_of(GObject* object) {
+  return static_cast<Self*>(static_cast<gpointer>(object))->priv->settings;
+}
+
+// In class_init: the table's properties for the type Self, whose private object has them as its member `settings`.
+template <typename Self, const auto& table>
+void install_properties(GObjectClass* klass) {
+  klass->set_property = [](GObject* object, guint id, const GValue* value, GParamSpec*) {
+    settings_of<Self>(object).set(table, id, value);
+  };
+  klass->get_property = [](GObject* object, guint id, GValue* value, GParamSpec*) {
+    settings_of<Self>(object).get(table, id, value);
+  };
+  std::decay_t<decltype(settings_of<Self>(nullptr))>::install(klass, table);
+}
 
 }  // namespace cerberus::plugin

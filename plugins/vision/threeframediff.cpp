@@ -19,11 +19,9 @@
 // there, never an old difference), a 3x3 blur goes before (`blur`), a change of light of the whole picture is taken out
 // (`compensate-light`), and what is not visible in all three frames does not move. See
 // lib/vision/three_frame_difference.h.
-#include <optional>
 
-#include "analysis_base.hpp"
+#include "analysis_element.hpp"
 #include "elements.hpp"
-#include "properties.hpp"
 #include "stages.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(threeframediff_debug);
@@ -45,58 +43,24 @@ const Property<Settings> kProperties[] = {
         "Take a change of brightness and contrast of the whole picture out before the difference is taken"),
 };
 
-struct Private final : Analyser {
-  CerberusAnalysis* base = nullptr;
-  Adjustable<Settings> settings;
-  std::optional<DifferenceStage> stage;
-
-  bool start() override {
-    stage.emplace();
-    settings.refresh();
-    return true;
-  }
-  void stop() override { stage.reset(); }
+struct Private final : StatefulAnalyser<Settings, DifferenceStage> {
   bool analyse(Frame& frame) override {
-    if (const auto s = settings.changes()) stage->set_options({s->blur ? 3 : 1, s->compensate_light});
-    stage->luma().set_analysis_width(cerberus_analysis_width(base));
-    return stage->run(frame);
+    if (const auto s = settings.changes()) state->set_options({s->blur ? 3 : 1, s->compensate_light});
+    state->luma().set_analysis_width(cerberus_analysis_width(base));
+    return state->run(frame);
   }
 };
 
-CERBERUS_DEFINE_TYPE(CerberusThreeFrameDiff, cerberus_three_frame_diff, CerberusAnalysis,
-                     cerberus_analysis_get_type(), Private)
-
-void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_three_frame_diff_self(object)->priv->settings.set(kProperties, id, value);
-}
-
-void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_three_frame_diff_self(object)->priv->settings.get(kProperties, id, value);
-}
-
-void cerberus_three_frame_diff_init(CerberusThreeFrameDiff* self) {
-  self->priv->base = &self->parent;
-  cerberus_analysis_init_with(&self->parent, self->priv);
-}
-
-void cerberus_three_frame_diff_class_init(CerberusThreeFrameDiffClass* klass) {
-  GObjectClass* object = G_OBJECT_CLASS(klass);
-  object->set_property = set_property;
-  object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
-  gst_element_class_set_static_metadata(
-      GST_ELEMENT_CLASS(klass), "Three-frame difference", "Filter/Analyzer/Video",
-      "Differences of three consecutive frames with the camera's motion taken out",
-      "The Cerberus developers");
-}
+constexpr AnalysisInfo kInfo{"CerberusThreeFrameDiff", "Three-frame difference",
+                             "Differences of three consecutive frames with the camera's motion taken out"};
 
 }  // namespace
 
-GType threeframediff_type() {
-  return cerberus_three_frame_diff_get_type();
+GType threeframediff_get_type() {
+  return analysis_type<Private, kProperties, kInfo>();
 }
 
 }  // namespace cerberus::plugin
 
-CERBERUS_REGISTER_ELEMENT(threeframediff, GST_RANK_NONE, cerberus::plugin::cerberus_three_frame_diff,
+CERBERUS_REGISTER_ELEMENT(threeframediff, GST_RANK_NONE, cerberus::plugin::threeframediff,
                           threeframediff_debug, "registered differences of three frames")

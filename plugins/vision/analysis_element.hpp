@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An analysing element from three things: an Analyser, a table of properties, and what it is called.
+//
+//   struct Private final : StatefulAnalyser<Settings, State> { bool analyse(Frame& frame) override; };
+//   constexpr AnalysisInfo kInfo{"CerberusThing", "Thing", "What it does"};
+//   GType thing_get_type() { return analysis_type<Private, kProperties, kInfo>(); }
+//   CERBERUS_REGISTER_ELEMENT(thing, GST_RANK_NONE, cerberus::plugin::thing, thing_debug, "what it does")
+#pragma once
+
+#include <optional>
+
+#include "analysis_base.hpp"
+#include "properties.hpp"
+
+namespace cerberus::plugin {
+
+// Holds its State, which is what it learns of a stream, from start to stop.
+template <typename Settings, typename State>
+struct StatefulAnalyser : Analyser {
+  CerberusAnalysis* base = nullptr;
+  Adjustable<Settings> settings;
+  std::optional<State> state;  // streaming thread
+
+  bool start() override {
+    state.emplace();
+    settings.refresh();
+    return true;
+  }
+  void stop() override { state.reset(); }
+};
+
+struct AnalysisInfo {
+  const char* type;  // of the GType
+  const char *name, *description;
+};
+
+namespace detail {
+
+template <typename Private, const auto& table, const AnalysisInfo& info>
+struct AnalysisTraits {
+  struct Self : cerberus::detail::Instance<CerberusAnalysis, Private> {};
+  struct Class {
+    CerberusAnalysisClass parent_class;
+  };
+  using Object = Private;
+  static const char* name() { return info.type; }
+  static GType parent() { return cerberus_analysis_get_type(); }
+  static void init(Self* self) {
+    self->priv->base = &self->parent;
+    cerberus_analysis_init_with(&self->parent, self->priv);
+  }
+  static void class_init(Class* klass) {
+    install_properties<Self, table>(G_OBJECT_CLASS(klass));
+    gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), info.name, "Filter/Analyzer/Video",
+                                          info.description, "The Cerberus developers");
+  }
+  static void interfaces(GType) {}
+};
+
+}  // namespace detail
+
+template <typename Private, const auto& table, const AnalysisInfo& info>
+GType analysis_type() {
+  return cerberus::detail::TypeBuilder<detail::AnalysisTraits<Private, table, info>>::get();
+}
+
+}  // namespace cerberus::plugin
