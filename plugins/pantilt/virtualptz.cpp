@@ -21,13 +21,19 @@
  * element gives up with an error. The first frame (also after a flush) shows where the head looked last, `start-pan` and
  * `start-tilt` at the start. In a live pipeline nothing waits: the newest pose counts.
  *
- * Pads: raw progressive video in system memory, in and out in the same format. Regions that lie on the wide picture are
- * dropped: stages that look for motion belong behind the window.
+ * With `inset` each frame carries a small picture of the whole scene, with the window's place in it, as a
+ * GstVideoOverlayComposition for the upper right corner: `motionoverlay` draws it, and so do most sinks that draw with a
+ * graphics card. The frame's own pixels stay as they are for those who look for motion in them.
+ *
+ * Pads: raw progressive video in system memory, in and out in the same format. Regions and overlays that lie on the wide
+ * picture are dropped: stages that look for motion belong behind the window.
  *
  * ## Example launch lines
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! video/x-raw,width=640,height=480 ! \
  *     virtualptz width=320 height=240 ! motiondetect ! pantiltsink driver=simulated horizontal-fov=32.2
+ * gst-launch-1.0 videotestsrc ! video/x-raw,width=640,height=480 ! virtualptz lockstep=off inset=true ! \
+ *     motiondetect ! motionoverlay ! videoconvert ! autovideosink
  * gst-launch-1.0 videotestsrc num-buffers=60 ! virtualptz lockstep=off start-pan=-10 width=160 height=120 ! fakesink
  * ]|
  *
@@ -36,6 +42,7 @@
 // Where the window lies and how its pixels come about is lib/vision/window.h; when a pose is known, pose_feed.hpp.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
+#include <gst/video/video-overlay-composition.h>
 #include <gst/video/video.h>
 
 #include <atomic>
@@ -43,6 +50,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/video.hpp"
+#include "inset.hpp"
 #include "pose_feed.hpp"
 #include "vision/properties.hpp"
 #include "vision/window.h"
@@ -80,6 +88,7 @@ struct Settings {
   int width = 0, height = 0;
   double wide_fov = 60, horizontal_fov = 0;
   double start_pan = 0, start_tilt = 0;
+  bool inset = false;
   std::string head = "head";
   int lockstep = LOCKSTEP_AUTO;
   guint64 lockstep_timeout = 10 * GST_SECOND;
@@ -103,6 +112,9 @@ const Property<Settings> kProperties[] = {
     property(
         "start-tilt", &Settings::start_tilt, -90, 90,
         "Where the window looks until a head tells, degrees, positive up (read when the element starts)"),
+    property("inset", &Settings::inset,
+             "Attach to each frame a small picture of the whole scene with the window's place in it, for "
+             "motionoverlay and sinks that draw overlays"),
     property("head", &Settings::head, "Name of the head that moves the window; empty = any"),
     property("lockstep", &Settings::lockstep, lockstep_type,
              "Whether a frame waits until the head's pose at its running time is known"),
@@ -125,6 +137,7 @@ struct State {  // streaming thread, and state changes while it does not run
   GstVideoInfo in, out;
   vision::WindowGeometry geometry;
   vision::WindowResampler resampler;
+  Inset inset;
   Settings settings;
   std::optional<bool> live;    // nothing: not asked yet
   std::optional<Time> newest;  // running time of the last frame
@@ -244,6 +257,7 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
     }
     state.complaint.clear();
     state.warned = false;
+    state.inset.begin(state.in, state.out);
     tell_reach(trans, self);
     return TRUE;
   });
@@ -276,6 +290,7 @@ gboolean propose_allocation(GstBaseTransform* trans, GstQuery* decide, GstQuery*
 
 // What lies in pixels of the wide picture has no place in the window.
 gboolean transform_meta(GstBaseTransform*, GstBuffer*, GstMeta* meta, GstBuffer*) {
+  if (meta->info->api == GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE) return FALSE;  // has no tags
   const gchar* const* tags = gst_meta_api_type_get_tags(meta->info->api);
   if (!tags) return meta->info->api != CERBERUS_POSE_META_API_TYPE;
   for (; *tags; ++tags)
@@ -396,6 +411,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   VideoFrame source(state.in, in, GST_MAP_READ), target(state.out, out, GST_MAP_WRITE);
   if (source && target) {
     draw(state, *source.get(), *target.get(), place);
+    if (state.settings.inset) state.inset.attach(source.get(), state.geometry, place, out);
     return GST_FLOW_OK;
   }
   // The picture is not there: whoever follows is told by the flag.
