@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The program behind pipelines/demo: what it writes and says, and what it says when it cannot."""
+# A window of 5/12 of the ball's 320 x 240 pixels, enlarged to what can be read: 640 x 480.
 import os
 import pathlib
 import re
@@ -11,11 +12,17 @@ import time
 
 from support import TOP, all_tests, ball, gst_launch, json_lines, must, run, video
 
-ANNOTATE = pathlib.Path(sys.argv[1]).resolve()
+PROGRAM = pathlib.Path(sys.argv[1]).resolve()
+WINDOW = 640 * 480
 
 
-def annotate(file, output='out', **more):
-    return run([ANNOTATE, '--output', output, file], **more)
+def line(file, output='out', sensors='SENSORS='):
+    return [TOP / 'pipelines' / 'run', '--with', PROGRAM, 'closed-loop', f'FILE={file}', f'MP4={output}/annotated.mp4',
+            f'JSON={output}/objects.jsonl', sensors]
+
+
+def annotate(file, output='out', sensors='SENSORS=', **more):
+    return run(line(file, output, sensors), **more)
 
 
 def refuses(file, *words, output='out'):
@@ -39,7 +46,31 @@ def test_a_video_gives_an_mp4_a_json_line_a_frame_and_a_summary():
                      r'out/annotated.mp4 and out/objects.jsonl$', said, re.MULTILINE), said
     lines = json_lines('out/objects.jsonl')
     assert len(lines) == 60 and any(line['objects'] for line in lines)
-    assert decoded('out/annotated.mp4') == 60 * 320 * 240
+    assert decoded('out/annotated.mp4') == 60 * WINDOW
+
+
+def test_the_whole_system_is_in_its_lines():
+    pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,1,0,0\n', 'ascii')
+    must(annotate(video('ball.mp4', 'mp4mux'), sensors='PIR=pir.csv'))
+    lines = json_lines('out/objects.jsonl')
+    assert [each['pir'] for each in lines] == [[0, 0, 0]] * 10 + [[1, 0, 0]] * 50
+    assert {'track'} <= {each['fusion']['action'] for each in lines}
+    pans = [each['pose']['pan'] for each in lines]
+    assert max(pans) - min(pans) > 3, f'the head turned from {min(pans)} to {max(pans)} degrees only'
+
+
+def test_the_view_has_the_shape_of_the_video():
+    # 5/12 of 1920 x 1080 are 800 x 450 pixels, enough to be read; of 640 x 270 they are 266.7 x 112.5, enlarged to 640 x 270.
+    for name, size, view in (('wide', (1920, 1080), (800, 450)), ('flat', (640, 270), (640, 270))):
+        video(f'{name}.mp4', 'mp4mux', frames=4, width=size[0], height=size[1])
+        must(annotate(f'{name}.mp4'))
+        assert {(each['width'], each['height']) for each in json_lines('out/objects.jsonl')} == {view}, name
+
+
+def test_a_recording_of_sensors_that_is_none_is_called_by_its_name():
+    pathlib.Path('pir.csv').write_text('0,0,0\n', 'ascii')  # two sensors, not three
+    status, said = annotate(video('ball.mp4', 'mp4mux'), sensors='PIR=pir.csv')
+    assert status == 1 and 'sensors' in said and 'pir.csv' in said, said
 
 
 def test_the_summary_counts_the_identities_in_the_lines():
@@ -57,8 +88,9 @@ def test_it_is_run_twice_with_the_same_result():
 
 
 def test_a_file_name_with_spaces_and_a_folder_that_is_not_there_yet():
-    video('ball.mp4', 'mp4mux').rename('a ball, "rolling".mp4')
-    must(annotate('a ball, "rolling".mp4', 'a/b c'))
+    name = 'a ball, "rolling" \\ bouncing & more.mp4'
+    video('ball.mp4', 'mp4mux').rename(name)
+    must(annotate(name, 'a/b c'))
     assert len(json_lines('a/b c/objects.jsonl')) == 60
 
 
@@ -141,7 +173,7 @@ def test_a_display_that_cannot_be_opened_does_not_stop_it():
 
 def test_ctrl_c_finishes_the_files():
     file = video('long.mp4', 'mp4mux', frames=3000)
-    process = subprocess.Popen([ANNOTATE, '--output', 'out', file], stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(line(file), stderr=subprocess.DEVNULL)
     until = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < until:
         if os.path.exists('out/objects.jsonl') and os.path.getsize('out/objects.jsonl') > 0:
@@ -153,15 +185,15 @@ def test_ctrl_c_finishes_the_files():
     lines = json_lines('out/objects.jsonl')
     assert 0 < len(lines) < 3000, f'{len(lines)} lines'
     # Read back, the very last frame may fall outside the length that the muxer wrote.
-    count = decoded('out/annotated.mp4') // (320 * 240)
+    count = decoded('out/annotated.mp4') // WINDOW
     assert 0 <= len(lines) - count <= 1, f'{len(lines)} lines, {count} frames'
 
 
 def test_the_command_explains_itself_and_its_mistakes():
     demo = TOP / 'pipelines' / 'demo'
-    assert './pipelines/demo [--output DIR] [FILE]' in must(run([demo, '--help']))
+    assert './pipelines/demo [--output DIR] [--pir CSV] [FILE]' in must(run([demo, '--help']))
     for wrong, word in ((['nothing.avi'], 'no file nothing.avi'), (['--fast'], '--fast'), (['a', 'b'], 'one file'),
-                        (['--output', '/proc/here', __file__], '/proc/here')):
+                        (['--output', '/proc/here', __file__], '/proc/here'), (['--pir', 'no.csv'], 'no file no.csv')):
         status, said = run([demo, *wrong])
         assert status == 2 and word in said, said
 
