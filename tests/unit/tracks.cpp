@@ -21,7 +21,7 @@ constexpr Size kFrame{640, 480};
 
 // A person 100 pixels tall; whole = known to be one.
 Region person(double x, double y, double confidence = 0.9, double width = 40, double height = 100) {
-  return {{x - width / 2, y - height / 2, width, height}, width * height / 2, {x, y}, confidence, 1};
+  return {{x - width / 2, y - height / 2, width, height}, width * height / 2, confidence, 1};
 }
 
 const Track* with_id(std::span<const Track> tracks, std::uint32_t id) {
@@ -221,7 +221,7 @@ START_TEST(two_who_meet_in_one_blob_come_out_with_the_identities_they_had) {
       seen = {person(a, 240, 0.4), person(b, 250, 0.4, 44, 110)};
     } else {
       const double from = std::min(a - 20, b - 22), to = std::max(a + 20, b + 22);
-      seen = {{{from, 190, to - from, 115}, 4000, {(from + to) / 2, 247}, 0.4, 1}};
+      seen = {{{from, 190, to - from, 115}, 4000, 0.4, 1}};
     }
     const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
     if (k == 10) {
@@ -310,7 +310,7 @@ END_TEST
 
 START_TEST(boxes_are_clamped_to_the_frame_and_identities_never_come_again) {
   Tracker tracker;
-  Region seen{{-10, -20, 60, 120}, 3000, {20, 40}, 0.9, 1};
+  Region seen{{-10, -20, 60, 120}, 3000, 0.9, 1};
   const auto walk = [&] {
     for (int k = 0; k < 5; ++k) {
       seen.box.y += k % 2 ? -25 : 25;
