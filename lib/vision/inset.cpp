@@ -32,7 +32,7 @@ void mark_place(View<std::uint32_t> picture, const InsetPlace& place, double lin
       const double inner = inner_row * share(x, place.left, place.right);
       const double outer = outer_row * share(x, place.left - line, place.right + line);
       const double kept = inner + (1 - outer) * kInsetDimming, white = 255 * (outer - inner);
-      std::uint32_t word = row[x] & 0xff000000u;
+      std::uint32_t word = 0xff000000u;
       for (int shift = 0; shift < 24; shift += 8) {
         const double color = kept * ((row[x] >> shift) & 0xffu) + white;
         word |= static_cast<std::uint32_t>(std::lround(color)) << shift;

@@ -18,11 +18,11 @@ struct InsetPlace {
 Size inset_size(Size scene, Size frame);
 
 // Outside `place` the picture is dimmed, inside it is as it was, and round it runs a white line, `line` pixels wide. Samples are
-// words of alpha, red, green, blue from the highest byte down; alpha stays. With a = the share of a pixel that lies in the
+// words of alpha, red, green, blue from the highest byte down; alpha becomes 255. With a = the share of a pixel that lies in the
 // place, and b = the share that lies in the place grown by the line to all sides, a colour becomes
 //   c (a + (1 - b) kInsetDimming) + 255 (b - a)
 // so that the rectangle moves by less than a pixel, too.
-inline constexpr double kInsetDimming = 0.55;
+inline constexpr double kInsetDimming = 0.65;
 void mark_place(View<std::uint32_t> picture, const InsetPlace& place, double line);
 
 }  // namespace cerberus::vision

@@ -16,9 +16,7 @@ GstVideoConverter* converter(const GstVideoInfo& from, const GstVideoInfo& to) {
   return gst_video_converter_new(
       &from, &to,
       gst_structure_new("config", GST_VIDEO_CONVERTER_OPT_RESAMPLER_METHOD, GST_TYPE_VIDEO_RESAMPLER_METHOD,
-                        GST_VIDEO_RESAMPLER_METHOD_LINEAR, GST_VIDEO_CONVERTER_OPT_ALPHA_MODE,
-                        GST_TYPE_VIDEO_ALPHA_MODE, GST_VIDEO_ALPHA_MODE_SET,
-                        GST_VIDEO_CONVERTER_OPT_ALPHA_VALUE, G_TYPE_DOUBLE, 1.0, nullptr));
+                        GST_VIDEO_RESAMPLER_METHOD_LINEAR, nullptr));
 }
 
 bool convert(GstVideoConverter* converter, GstVideoFrame* from, const GstVideoInfo& to, GstBuffer* buffer) {
