@@ -15,13 +15,11 @@ using sensing::radians;
 constexpr int kLeastEpisodes = 3, kLeastEpisodesOfScale = 5;  // of evidence, as well as kLeastTravel
 constexpr double kMostGain = 1.4, kLeastGain = 0.7;           // a head that follows
 constexpr double kSlipGain = 0.2, kReversedGain = -0.45;      // at most
-constexpr double kMisfit = 0.35, kMisfitOfSteady = 0.15;      // of abrupt changes, of slow ones
 constexpr double kAbrupt = radians(150);                      // a second squared
 constexpr double kStirs = radians(1);                         // a second: a picture that jerks
 constexpr double kLongestFrame = 0.5;    // seconds: between frames further apart too much can happen
 constexpr int kLongestEpisode = 5;       // pairs: a speed that changes all the time is several episodes
 constexpr double kRounding = 1e-3;       // seconds, of a sum of frame distances
-constexpr double kSameScale = 0.2;       // by which gains of one wrong scale differ
 constexpr double kSeenShare = 0.5;       // of a bin, that it counts
 constexpr double kStirsOfChange = 0.03;  // how much a picture may stir more when the head changes more
 constexpr double kLateShare = 0.35;      // of the picture's own change, when that comes a little late
@@ -36,7 +34,7 @@ void SlipWatch::Episode::see(Bin& seen) {
 
 void SlipWatch::Episode::add(double d, double e) {
   ++pairs;
-  de += d * e, ee += e * e, dd += d * d;
+  de += d * e, ee += e * e;
   largest = std::max(largest, std::abs(e));
 }
 
@@ -102,8 +100,6 @@ std::optional<SlipFinding> SlipWatch::close_bin() {
 // Nothing: cannot be told.
 std::optional<SlipFault> SlipWatch::judge(const Episode& e) {
   const double gain = e.de / e.ee;
-  const double misfit = std::sqrt(std::max(0.0, e.dd - gain * e.de) / e.ee);
-  if (misfit > (e.abrupt ? kMisfit : kMisfitOfSteady)) return std::nullopt;
   if (gain >= kLeastGain && gain <= kMostGain) return SlipFault::none;
   if (gain <= kReversedGain) return SlipFault::reversed;
   if (gain < -kSlipGain) return std::nullopt;
@@ -117,10 +113,7 @@ std::optional<SlipFinding> SlipWatch::close_episode() {
   const auto verdict = judge(episode);
   if (!verdict) return std::nullopt;
   const double gain = episode.de / episode.ee;
-  const bool same = run_.episodes > 0 && run_.fault == *verdict &&
-                    (*verdict != SlipFault::scale ||
-                     std::abs(gain - run_.gains / run_.episodes) <= kSameScale * std::abs(gain));
-  if (!same) run_ = {*verdict};
+  if (run_.episodes == 0 || run_.fault != *verdict) run_ = {*verdict};
   ++run_.episodes;
   run_.gains += gain;
   run_.travel += episode.travel;

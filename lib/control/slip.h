@@ -6,7 +6,7 @@
 //
 //   bins of kBin; of each the mean speeds h (head, as told) and r (picture)
 //   pairs of bins with one between them: e = h(j) - h(j-2), d = r(j) - r(j-2); counted where |e| >= kLeastChange
-//   episode: pairs in a row; gain = sum d e / sum e^2, misfit^2 = sum (d - gain e)^2 / sum e^2
+//   episode: pairs in a row; gain = sum d e / sum e^2
 //
 // A head that is some frames late shifts d against e; over the pairs before and after a change that evens out.
 //
@@ -61,7 +61,7 @@ class SlipWatch {
     static constexpr int kMost = 8;
     std::array<Bin, kMost> bin;
     int bins = 0, pairs = 0;
-    double de = 0, ee = 0, dd = 0, largest = 0;
+    double de = 0, ee = 0, largest = 0;
     double travel = 0;
     bool abrupt = false;
     void see(Bin& seen);

@@ -246,6 +246,8 @@ END_TEST
 START_TEST(a_picture_that_says_nothing_does_not_count) {
   assert_silent(findings(sweep(40, 1.3), {.gain = 0, .noise = 0, .seen = [](int) { return false; }}, 60),
                 "blank");
+  // Too few of them say something.
+  assert_silent(findings(sweep(40, 1.3), {.gain = -1, .seen = [](int k) { return k % 4 == 0; }}, 60), "few");
   // One frame of three is not sure.
   const auto some = [](int k) { return k % 3 != 0; };
   assert_silent(findings(sweep(40, 1.3), {.seen = some}, 60), "some");
