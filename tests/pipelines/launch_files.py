@@ -225,6 +225,29 @@ def test_rtp(kind):
     assert sum(map(coloured, pictures)) > FRAMES // 3, 'the received picture has no boxes'
 
 
+def test_robot(kind):
+    """With a recording in place of the sensors. The stream drops what is late, so all that is sure of it is that it begins."""
+    pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,0,0,1\n', 'ascii')
+    sensors = f'pirsrc driver=replay location=pir.csv is-live={kind == "live"}'
+    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as stream:
+        stream.bind(('127.0.0.1', 0))
+        stream.settimeout(LIMIT)
+        finish(start('robot', SOURCE=source(kind), SENSORS=sensors, FILE='out.mkv', JSON='out.jsonl', HOST='127.0.0.1',
+                     PORT=stream.getsockname()[1]))
+        packet = stream.recv(65536)
+    assert packet[0] >> 6 == 2 and packet[1] & 127 == 96, f'no RTP of a dynamic type: {packet[:12].hex()}'
+    count = check_lines('out.jsonl')
+    check_players_can_play('out.mkv', 'matroskademux')
+    recorded = decode('out.mkv')
+    assert len(recorded) == count, f'{len(recorded)} frames in the recording, {count} lines'
+    assert not any(map(coloured, recorded)), 'the recording is not the original picture'
+    lines = json_lines('out.jsonl')
+    assert all(line.keys() >= {'pir', 'fusion'} for line in lines), 'a line without sensors or decision'
+    assert lines[-1]['pir'] == [0, 0, 1], 'the sensors are not those of the file'
+    actions = {line['fusion']['action'] for line in lines}
+    assert actions & {'track', 'turn-right'}, f'nobody looked at what was found: {actions}'
+
+
 def main():
     name, kind = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
