@@ -19,6 +19,7 @@ constexpr float kFoundWell = 0.95f;
 constexpr int kLeastPatches = 8;      // fewer say nothing about a cut
 constexpr int kReferenceAge = 16;     // frames after which a standing camera's reference is renewed
 constexpr double kMajority = 0.6;     // share of the patches that no other motion can outvote
+constexpr double kBent = 0.2;         // pixels: less is nothing
 constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a camera that stood still does
 
 int search_level(Size size) {
@@ -39,6 +40,12 @@ double mean_motion(const Transform& t, Size size) {
   return std::sqrt(squares / (kGrid * kGrid));
 }
 
+// By how many pixels, at most, a homography bends the picture: what a simpler model cannot follow.
+double bend(const Transform& t, Size size) {
+  return 0.25 * (std::abs(t.m[6]) * size.width + std::abs(t.m[7]) * size.height) *
+         std::max(size.width, size.height);
+}
+
 }  // namespace
 
 // The reference is frame k-1 while the camera moves. While it stands, the reference stays for a while: a motion too
@@ -53,6 +60,7 @@ struct CameraMotion::State {
   Image<std::int32_t> scratch;
   std::array<PatchMatch, MotionSamples::kMax> matches;
   MotionSamples samples;
+  MotionSamples beyond;                                 // see fit_beyond()
   std::array<float, MotionSamples::kMax> correlations;  // of the samples
   double share = 0, share_well = 0;  // see count_followers(); on the level where they are highest
   int looked_for = 0;                // patches whose place lies in the current picture
@@ -70,6 +78,7 @@ struct CameraMotion::State {
                                 const std::optional<Transform>& prior);
   void follow(int level, const Transform& guess);
   void collect(int level);
+  MotionFit fit_beyond(const Transform& prior, MotionModel model, const Transform& guess, int hypotheses);
   void count_followers(const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
   bool is_still(const MotionFit& fit) const;
@@ -199,6 +208,20 @@ Transform CameraMotion::State::follow_from_guesses(int level, const std::array<S
   return guesses[best];
 }
 
+// What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a simple
+// model then only has to follow by how much the head's word is wrong.
+MotionFit CameraMotion::State::fit_beyond(const Transform& prior, MotionModel model, const Transform& guess,
+                                          int hypotheses) {
+  beyond = samples;
+  for (int i = 0; i < beyond.count; ++i) {
+    const Point p = prior.apply({samples.x[i], samples.y[i]});
+    beyond.x[i] = static_cast<float>(p.x), beyond.y[i] = static_cast<float>(p.y);
+  }
+  const std::array guesses{Transform{}, guess * prior.inverse()};
+  const MotionFit fit = fit_motion(beyond, model, reference.size(), guesses, hypotheses);
+  return rate_motion(samples, fit.transform * prior);
+}
+
 // Of the patches whose place can be seen, the share that was found and follows the fit; and the same with each counted
 // by how well it was found.
 void CameraMotion::State::count_followers(const MotionFit& fit) {
@@ -286,6 +309,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const int top = std::max(0, search_level(size) - 1);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
   Transform motion = follow_from_guesses(top, shifts, prior);
+  const bool bent = prior && prior->is_sane(size) && bend(*prior, size) > kBent;
   MotionFit fit;
   share = share_well = 0;
   for (int level = top; level >= 0; --level) {
@@ -295,7 +319,12 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
     collect(level);
     const std::array guesses{Transform{}, motion};
     const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
-    fit = fit_motion(samples, model, size, guesses, level == top ? 96 : 24);
+    const int hypotheses = level == top ? 96 : 24;
+    fit = fit_motion(samples, model, size, guesses, hypotheses);
+    if (bent && model != MotionModel::none)
+      if (const MotionFit turned = fit_beyond(*prior, model, motion, hypotheses);
+          turned.support > fit.support)
+        fit = turned;
     motion = fit.transform;
     count_followers(fit);
   }

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -74,7 +75,8 @@ constexpr Turns kTurns[] = {{"a camera that shakes", 0.1, 0.1, 0.1, 0},
                             {"the same, a quarter of it somebody close", 3, 0.3, 0.3, 0.25},
                             {"the same, 40 % of it", 3, 0.3, 0.3, 0.4}};
 
-void synthetic(const Turns& turns, MotionModel model, const char* name) {
+// `told`: what share of the turn (but for its roll) a head said beforehand; 0: there is none.
+void synthetic(const Turns& turns, MotionModel model, const char* name, double told = 0) {
   constexpr Size size{320, 240};
   const Lens lens(radians(60), size);
   Errors pixels, angle;
@@ -104,7 +106,9 @@ void synthetic(const Turns& turns, MotionModel model, const char* name) {
     CameraMotion camera;
     camera.set_options({model});
     camera.update(earlier.view());
-    const CameraMotionResult result = camera.update(later.view());
+    std::optional<Transform> prior;
+    if (told != 0) prior = lens.turn(0, 0, told * pan, told * tilt);
+    const CameraMotionResult result = camera.update(later.view(), prior);
     pixels.add(distance(result.transform, truth, size));
     angle.add(std::abs(degrees(control::base_turn(result.transform, lens, size, {}, {}).yaw - pan)));
   }
@@ -181,6 +185,8 @@ int main(int argc, char** argv) {
     std::printf("%s\n", turns.name);
     for (const auto& [name, model] : kModels)
       if (model != MotionModel::affine) synthetic(turns, model, name);
+    synthetic(turns, MotionModel::similarity, "..., a head", 1);
+    synthetic(turns, MotionModel::similarity, "..., 90 %", 0.9);
   }
   real();
 }
