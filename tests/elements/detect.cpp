@@ -27,14 +27,15 @@ long moving_pixels(GstBuffer* buffer) {
   fail_unless(plane != nullptr);
   GstMapInfo map;
   fail_unless(gst_buffer_map(plane->buffer, &map, GST_MAP_READ));
-  long pixels = 0;
+  long pixels = 0, neither = 0;  // counted: an assertion for each pixel costs more than the detection
   for (int y = 0; y < plane->height; ++y)
     for (int x = 0; x < plane->width; ++x) {
       const guint8 value = map.data[y * plane->stride + x];
-      fail_unless(value == 0 || value == 255);
       pixels += value != 0;
+      neither += value != 0 && value != 255;
     }
   gst_buffer_unmap(plane->buffer, &map);
+  fail_unless_equals_int(neither, 0);
   return pixels;
 }
 

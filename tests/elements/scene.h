@@ -7,7 +7,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <cerberus/cerberus.h>
@@ -51,15 +53,24 @@ struct World {
     return figure && x >= left && x < left + kFigureWidth && y >= figure_top() &&
            y < figure_top() + kFigureHeight;
   }
-  std::uint8_t grey(int x, int y, int frame) const {
-    const double level = on_figure(x, y, frame) ? 150 + 0.35 * texture(x - figure_left(frame), y, 5, 77)
-                                                : 30 + 0.35 * texture(x + pan * frame, y, 9, wall);
-    return static_cast<std::uint8_t>(level);
-  }
   std::vector<std::uint8_t> picture(int frame) const {
-    std::vector<std::uint8_t> p(static_cast<std::size_t>(width) * height);
+    std::vector<std::uint8_t> p = wall_from(pan * frame);
     for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) p[static_cast<std::size_t>(y) * width + x] = grey(x, y, frame);
+      for (int x = 0; x < width; ++x)
+        if (on_figure(x, y, frame))
+          p[static_cast<std::size_t>(y) * width + x] =
+              static_cast<std::uint8_t>(150 + 0.35 * texture(x - figure_left(frame), y, 5, 77));
+    return p;
+  }
+  // The wall alone, seen by a camera that has turned so far. Kept: texture costs more than all that looks at it.
+  const std::vector<std::uint8_t>& wall_from(double turned) const {
+    static std::map<std::tuple<std::uint32_t, int, int, double>, std::vector<std::uint8_t>> seen;
+    std::vector<std::uint8_t>& p = seen[{wall, width, height, turned}];
+    if (!p.empty()) return p;
+    p.reserve(static_cast<std::size_t>(width) * height);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        p.push_back(static_cast<std::uint8_t>(30 + 0.35 * texture(x + turned, y, 9, wall)));
     return p;
   }
 };
