@@ -2,31 +2,17 @@
 // Scoring places for people: by hand, against the obvious loop for every processor's code, and to the last byte.
 #include "vision/people_kernels.h"
 
-#include <hwy/targets.h>
-
 #include <climits>
 #include <random>
 #include <vector>
 
 #include "support/pictures.h"
-#include "support/suite.h"
+#include "support/targets.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
 
 namespace {
-
-// Runs `test` with the code of every processor that this one can stand in for.
-template <typename Test>
-void on_every_target(Test&& test) {
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-    hwy::SetSupportedTargetsForTest(target);
-    hwy::GetChosenTarget().DeInit();
-    test();
-  }
-  hwy::SetSupportedTargetsForTest(0);
-  hwy::GetChosenTarget().DeInit();
-}
 
 // sums[x] of columns that hold (moving, counted) cells.
 std::vector<std::uint32_t> sums_of(const std::vector<std::pair<unsigned, unsigned>>& columns) {
@@ -43,14 +29,12 @@ START_TEST(a_place_gains_what_its_core_and_sides_say_less_its_price) {
   const auto sums = sums_of({{0, 10}, {3, 10}, {10, 10}, {7, 9}, {1, 10}, {0, 10}});
   const BoxRow row{sums.data(), 4, 1, 0, 6, 10};
   int scores[3];
-  on_every_target([&] {
-    const int core = (10 + 7) * kCoreMoving + (0 + 2) * kCoreStill,
-              sides = (3 + 1) * kSideMoving + (7 + 9) * kSideStill;
-    const int highest = score_boxes(row, 0, 3, scores);
-    ck_assert_int_eq(scores[1], core + sides - 4 * 10 * kPrice);
-    ck_assert_int_eq(highest, std::max({scores[0], scores[1], scores[2]}));
-    ck_assert_int_eq(highest, scores[1]);
-  });
+  const int core = (10 + 7) * kCoreMoving + (0 + 2) * kCoreStill,
+            sides = (3 + 1) * kSideMoving + (7 + 9) * kSideStill;
+  const int highest = score_boxes(row, 0, 3, scores);
+  ck_assert_int_eq(scores[1], core + sides - 4 * 10 * kPrice);
+  ck_assert_int_eq(highest, std::max({scores[0], scores[1], scores[2]}));
+  ck_assert_int_eq(highest, scores[1]);
 }
 END_TEST
 
@@ -59,10 +43,8 @@ START_TEST(columns_outside_the_picture_cost_nothing) {
   const auto sums = sums_of({{0, 0}, {0, 0}, {10, 10}, {10, 10}, {0, 10}});
   const BoxRow row{sums.data(), 4, 1, 2, 5, 10};
   int score = 0;
-  on_every_target([&] {
-    score_boxes(row, 0, 1, &score);
-    ck_assert_int_eq(score, 10 * kCoreMoving + 10 * kSideMoving - 2 * 10 * kPrice);
-  });
+  score_boxes(row, 0, 1, &score);
+  ck_assert_int_eq(score, 10 * kCoreMoving + 10 * kSideMoving - 2 * 10 * kPrice);
 }
 END_TEST
 
@@ -71,8 +53,8 @@ START_TEST(random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touch
   const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n + 1)); };
   for (int round = 0; round < 300; ++round) {
     const int columns = 1 + upto(90), width = 1 + upto(columns - 1), rows = 1 + upto(120);
-    GuardedBytes memory((static_cast<std::size_t>(columns) + 1) *
-                        4);  // the last sum is the last readable thing
+    // The last sum is the last readable thing.
+    GuardedBytes memory((static_cast<std::size_t>(columns) + 1) * 4);
     auto* sums = reinterpret_cast<std::uint32_t*>(memory.data());
     sums[0] = 0;
     for (int c = 0; c < columns; ++c) {
@@ -84,11 +66,9 @@ START_TEST(random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touch
     const int first = upto(columns - width), end = first + 1 + upto(columns - width - first);
     std::vector<int> expected(static_cast<std::size_t>(columns) + 1, 77), scores = expected;
     const int highest = score_boxes_reference(row, first, end, expected.data());
-    on_every_target([&] {
-      std::fill(scores.begin(), scores.end(), 77);
-      ck_assert_int_eq(score_boxes(row, first, end, scores.data()), highest);
-      ck_assert(scores == expected);
-    });
+    std::fill(scores.begin(), scores.end(), 77);
+    ck_assert_int_eq(score_boxes(row, first, end, scores.data()), highest);
+    ck_assert(scores == expected);
   }
 }
 END_TEST
@@ -101,27 +81,26 @@ START_TEST(cells_add_up_and_are_taken_away_again_unless_explained) {
     const std::uint8_t kinds[] = {0, kCellCounted, kCellCounted | kCellMoving,
                                   kCellCounted | kCellMoving | kCellExplained, kCellCounted | kCellExplained};
     for (int c = 0; c < columns; ++c) cells[c] = kinds[random() % 5];
-    on_every_target([&] {
-      std::vector<std::uint32_t> sums(static_cast<std::size_t>(columns) + 1, 5 * kCounted + 3 * kMoving);
-      const auto before = sums;
-      add_cells(cells, columns, sums.data());
-      for (int c = 0; c < columns; ++c) {
-        const std::uint32_t one = cells[c] == kCellCounted                   ? kCounted
-                                  : cells[c] == (kCellCounted | kCellMoving) ? kCounted + kMoving
-                                                                             : 0;
-        ck_assert_uint_eq(sums[c], before[c] + one);
-      }
-      ck_assert_uint_eq(sums[columns], before[columns]);
-      subtract_cells(cells, columns, sums.data());
-      ck_assert(sums == before);
-    });
+    std::vector<std::uint32_t> sums(static_cast<std::size_t>(columns) + 1, 5 * kCounted + 3 * kMoving);
+    const auto before = sums;
+    add_cells(cells, columns, sums.data());
+    for (int c = 0; c < columns; ++c) {
+      const std::uint32_t one = cells[c] == kCellCounted                   ? kCounted
+                                : cells[c] == (kCellCounted | kCellMoving) ? kCounted + kMoving
+                                                                           : 0;
+      ck_assert_uint_eq(sums[c], before[c] + one);
+    }
+    ck_assert_uint_eq(sums[columns], before[columns]);
+    subtract_cells(cells, columns, sums.data());
+    ck_assert(sums == before);
   }
 }
 END_TEST
 
 int main() {
-  return run_suite("people_kernels", {a_place_gains_what_its_core_and_sides_say_less_its_price,
-                                      columns_outside_the_picture_cost_nothing,
-                                      random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touched,
-                                      cells_add_up_and_are_taken_away_again_unless_explained});
+  return run_suite_on_every_target(
+      "people_kernels",
+      {a_place_gains_what_its_core_and_sides_say_less_its_price, columns_outside_the_picture_cost_nothing,
+       random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touched,
+       cells_add_up_and_are_taken_away_again_unless_explained});
 }
