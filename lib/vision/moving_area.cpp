@@ -42,7 +42,7 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
   result.ready = input.frames >= 3;
   if (s.options.memory) {
     if (input.frames <= 1) s.memory.reset();
-    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still},
+    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still, input.seconds},
                     mask);
     if (result.ready) return result;
   }

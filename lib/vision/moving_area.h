@@ -26,7 +26,8 @@ struct MovingAreaInput {
   bool still = false;          // the camera stands
   GrayView current, previous;  // D(k), D(k-1)
   const Histogram* histogram = nullptr;
-  int frames = 0;  // DifferenceResult::frames
+  int frames = 0;      // DifferenceResult::frames
+  double seconds = 0;  // since frame k-1; 0: unknown
 };
 
 struct MovingAreaResult {

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "vision/blur.h"
-#include "vision/labelling.h"
 #include "vision/light.h"
 #include "vision/mask.h"
 #include "vision/median.h"
 #include "vision/morphology.h"
 #include "vision/scene_alignment.h"
 #include "vision/scene_kernels.h"
+#include "vision/scene_parts.h"
 #include "vision/warp.h"
 
 namespace cerberus::vision {
@@ -30,13 +30,11 @@ constexpr double kRedo = 1;   // pixels: a smaller correction is used from the n
 constexpr int kStanding = 5;  // frames after which a standing camera's memory is redrawn to fit it exactly
 constexpr double kLeastSigma = 0.7;    // grey levels: rounding alone makes 0.3, compression more
 constexpr int kClosing = 9;            // side of the closing at 320 columns
-constexpr int kHold = 250;             // frames something that stopped is kept
-constexpr int kNow = 3, kLately = 25;  // frames
-constexpr int kYoung = kLately;        // frames; what was learnt for less may be an object's
-constexpr double kStillShare = 0.1, kMovingShare = 0.25,
-                 kFreshShare = 0.05;  // of a part that must have moved
+constexpr double kUsualPeriod = 0.04;  // seconds, where nobody knows
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
 constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
+constexpr int kUnsettled =
+    12;  // frames in which a memory has not averaged its own errors of registration out yet
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
@@ -112,14 +110,6 @@ class NoiseSamples {
   std::array<std::array<std::uint32_t, kLevels>, kBrightness> counts_{};
 };
 
-// What is known of a connected part.
-struct Part {
-  int now = 0, lately = 0;  // pixels that moved in the last frames, and for some time back
-  int young = 0;            // pixels that the memory has seen for moments only
-  int frame = 0, memory = 0,
-      n = 0;  // contrast across its outline in frame and memory, and over how many places
-};
-
 }  // namespace
 
 struct SceneMemory::State {
@@ -135,8 +125,9 @@ struct SceneMemory::State {
   BitMask weak, strong, moved, valid, absorb;
   BitMask plain;  // the mask before it is closed: who makes regions of it needs the gaps between people
   Morphology morphology;
-  Labeller labeller;
-  std::vector<Part> parts;
+  SceneParts parts;
+  SceneWindows windows;
+  double period = 0;  // seconds from frame to frame, smoothed
   Warp warp;
   LightChange light;
   int columns = 0, rows = 0;  // of blocks
@@ -144,6 +135,7 @@ struct SceneMemory::State {
   std::array<double, kBrightness> sigma{};  // of frame - memory by brightness, grey levels
 
   void prepare(Size to);
+  void measure_time(double seconds);
   void follow(const SceneMemoryInput& in);
   void redraw();
   View<std::uint8_t> known_view() {
@@ -179,6 +171,7 @@ void SceneMemory::State::prepare(Size to) {
     known.resize({to.width + 2 * kMargin, to.height + 2});
     tolerance.resize({to.width, 1});
     for (auto* bits : {&weak, &strong, &moved, &valid, &absorb, &plain}) bits->resize(bit_mask_size(to));
+    parts.make_room(to);
     columns = (to.width + kSceneBlock - 1) / kSceneBlock;
     rows = (to.height + kSceneBlock - 1) / kSceneBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
@@ -190,6 +183,13 @@ void SceneMemory::State::prepare(Size to) {
     to_frame = {};
   }
   ++frames;
+}
+
+// Frame rates vary, and frames come late: the usual time between them counts.
+void SceneMemory::State::measure_time(double seconds) {
+  if (!(seconds > 0)) seconds = period > 0 ? period : kUsualPeriod;
+  period = period > 0 ? period + 0.1 * (seconds - period) : seconds;
+  windows = SceneWindows::of(period);
 }
 
 // The memory goes along with the camera by whole pixels.
@@ -377,6 +377,7 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
     limits.noise[c] = static_cast<std::uint8_t>(std::min(std::lround(16 * sigma[c]), 255L));
   // Mean of |e| of normal noise: 0.8 sigma.
   const double noise = 0.8 * std::max(in.sigma * std::sqrt(0.5), kLeastSigma);
+  const bool unsettled = frames < kUnsettled;
   const auto k = known_view();
   CompareRow row;
   row.width = size.width;
@@ -387,7 +388,7 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
       std::fill_n(tolerance.view().data, size.width, std::uint8_t{16});  // a pixel
     } else if (!in.still && y % kSceneBlock == 0) {
       // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its
-      // mean, since the tail counts. One pixel at least: interpolation and aliasing make that much. Whether the memory is
+      // mean, since the tail counts (twice that while the memory has errors of its own). One pixel at least: interpolation and aliasing make that much. Whether the memory is
       // still good there is judged by what noise alone does not explain.
       for (int bx = 0; bx < columns; ++bx) {
         double ge = 0, gg = 0, n = 0;
@@ -399,7 +400,8 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
             n += b.n;
           }
         // Gradients are doubled: |e| / g = 2 ge / gg.
-        const double error = std::clamp(2 * 2 * ge / (gg + 400), 1.0, 3.0);
+        const double error = unsettled ? std::clamp(4 * 2 * ge / (gg + 400), 2.0, 4.0)
+                                       : std::clamp(2 * 2 * ge / (gg + 400), 1.0, 3.0);
         // sum of g <= sqrt(n x sum of g^2)
         const double beyond_noise = 2 * 2 * (ge - noise * std::sqrt(gg * n)) / (gg + 400);
         if (beyond_noise > kUnreliable) {
@@ -422,65 +424,23 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   intersect(strong.view(), valid.view(), strong.view());
 }
 
-// strong := the mask. weak := what must not be learnt. absorb := what is to be taken over.
+// strong := the mask, closed; plain: as it is published. weak := what must not be learnt. absorb := what is to be taken over.
 void SceneMemory::State::decide(const SceneMemoryInput& in) {
   const int w = size.width;
   const MutableBitView seeds = strong.view();
   morphology.vote(weak.view(), w, 4);  // four of nine: noise is lonely
   morphology.vote(seeds, w, 4);
   morphology.reconstruct(seeds, weak.view(), w);
-  labeller.find(seeds, w);
-  const auto components = labeller.components();
-  parts.reserve(labeller.limits().components);
-  parts.assign(components.size(), {});
-  const GrayView f = present.view(), m = known_view();
-  // A memory that has to be registered is believed less: what does not move now is not believed.
-  const int lately = in.still ? kLately : kNow;
-  for (const Run& r : labeller.runs()) {
-    Part& part = parts[r.component];
-    const std::uint8_t* q = quiet.view().row(r.row);
-    int now = 0, before = 0;
-    const std::uint8_t* a = age.view().row(r.row);
-    int young = 0;
-    for (int x = r.first; x < r.end; ++x) now += q[x] < kNow, before += q[x] < lately, young += a[x] < kYoung;
-    part.young += young;
-    part.now += now;
-    part.lately += before;
-    const auto contrast = [&](int outside, int inside) {
-      part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
-      part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
-      ++part.n;
-    };
-    if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
-    if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
-  }
   std::memcpy(weak.view().data, seeds.data, weak.bytes());
-  absorb.fill_bytes(0);
-  for (const Run& r : labeller.runs()) {
-    const Part& part = parts[r.component];
-    const double area = components[r.component].area;
-    const bool object = part.n > 0 && part.frame > 1.3 * part.memory + 2 * part.n;
-    const bool ghost = part.n > 0 && part.memory > 1.3 * part.frame + 2 * part.n;
-    // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
-    const double share = in.still ? kStillShare : kMovingShare;
-    const bool moving = part.lately >= std::max(4.0, std::min<double>(share * area, part.n));
-    const bool fresh = part.now >= std::max(4.0, kFreshShare * area);
-    // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
-    // textured: like a ghost it needs its owner's motion, or it goes at once.
-    const bool doubtful = ghost || (in.still && part.young > area / 2);
-    if (moving && (fresh || !doubtful)) continue;
-    if (!(in.still && object) || doubtful) clear_bits(seeds.row(r.row), r.first, r.end);
-    for (int x = r.first; x < r.end; ++x) {
-      const int patience = in.still && object ? kHold : std::clamp<int>(age.view().at(x, r.row), 4, kHold);
-      if (doubtful || quiet.view().at(x, r.row) > patience) set_bits(absorb.view().row(r.row), x, x + 1);
-    }
-  }
-  const int side = std::max(3, kClosing * size.width / 320 | 1);
+  const ScenePlanes planes{present.view(), known_view(), age.view(), quiet.view(), in.still};
+  const bool young = parts.judge(planes, windows, seeds, absorb.view());
+  const int side = std::max(3, kClosing * w / 320 | 1);
   std::memcpy(plain.view().data, seeds.data, plain.bytes());
   morphology.close(seeds, w, side);
   intersect(seeds, valid.view(), seeds);
   unite(weak.view(), seeds, weak.view());
   morphology.dilate(weak.view(), w, 3);
+  if (young) parts.join(planes, windows, seeds, plain.view());
 }
 
 void SceneMemory::State::learn() {
@@ -498,6 +458,7 @@ void SceneMemory::State::learn() {
 void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
+  s.measure_time(in.seconds);
   s.follow(in);
   GrayView blurred = mask;
   if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);
@@ -538,11 +499,11 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
 std::size_t SceneMemory::bytes() const {
   const State& s = *state_;
   std::size_t total = sizeof(State) + s.mean.bytes() + s.known.bytes() + s.tolerance.bytes() +
-                      s.morphology.bytes() + s.labeller.bytes() + s.warp.bytes() + s.light.bytes();
+                      s.morphology.bytes() + s.parts.bytes() + s.warp.bytes() + s.light.bytes();
   for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
   for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
     total += bits->bytes();
-  return total + s.parts.capacity() * sizeof(Part) + s.blocks.capacity() * sizeof(BlockSums);
+  return total + s.blocks.capacity() * sizeof(BlockSums);
 }
 
 }  // namespace cerberus::vision

@@ -17,6 +17,7 @@ struct SceneMemoryInput {
   double sigma = 0;     // noise of D(k)
   Transform motion;     // frame k-1 to k
   bool still = false;   // the camera stands
+  double seconds = 0;   // since frame k-1; 0: unknown
 };
 
 // Per pixel 5 bytes: mean (8.8 fixed point), spread, age, frames since it moved. The memory has coordinates of its own,
@@ -31,7 +32,8 @@ struct SceneMemoryInput {
 // - a connected part stays only if enough of it has really moved lately, or if, the camera standing, its outline is an
 //   edge of the frame (something that stopped) and not one of the memory (a ghost: something that left).
 // Foreground is never learnt; parts that do not move are taken over as one: ghosts at once, things of unclear origin when
-// they have been there longer than what they replaced, things that stopped after kHold frames.
+// they have been there longer than what they replaced, things that stopped after
+// ten seconds (scene_parts.h).
 class SceneMemory {
  public:
   SceneMemory();

@@ -6,12 +6,16 @@
  * stuck, chattering, or nothing known yet). A buffer comes at once at the start and at every change, and every
  * `heartbeat` when nothing changes. Caps tell where the sensors look, so `pirfusion` need not be told again.
  *
+ * Where volts are measured, downstream may take those instead, with the caps `application/x-pir,format=level`: a 32-bit
+ * float a sensor in this machine's byte order, at every sample, NaN before the first one. Whoever takes both gets presence.
+ *
  * Drivers (`driver`):
  * - `gpio`: lines of a GPIO chip, edges with the kernel's time stamps; LEDs on output lines (`leds-red` while a sensor
  *   detects, `leds-blue` while it does not). Live.
  * - `iio`: channels of an A/D converter, compared with `threshold`. Live.
  * - `replay`: a file of `seconds,level,level,...` lines or of JSON lines with `time` (or `pts`) and `pir`, as
- *   `motionjson` writes them; ends with the file. Not live unless `is-live`.
+ *   `motionjson` writes them; ends with the file. What was measured is written with its unit, `seconds,0.1V,3.2V,...` (in
+ *   JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
  * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
  *
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
@@ -22,6 +26,7 @@
  * ## Examples
  * |[
  * gst-launch-1.0 -m pirsrc driver=scripted script="0,0,0,0; 1,1,0,0; 3,0,0,0" ! fakesink
+ * gst-launch-1.0 pirsrc script="0,0.1V,0V,0V; 1,3.2V,0V,0V; 2,0V,0V,0V" ! application/x-pir,format=level ! fakesink
  * gst-launch-1.0 pirsrc driver=gpio chip=gpiochip0 lines=17,27,22 leds-red=5,6,13 preset=am312 ! fakesink
  * ]|
  *
@@ -38,8 +43,10 @@
 
 #include <chrono>
 
+#include "clocks.hpp"
 #include "drivers/sensor_array.h"
 #include "pir_settings.hpp"
+#include "reports.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirsrc_debug);
 #define GST_CAT_DEFAULT pirsrc_debug
@@ -48,15 +55,13 @@ namespace cerberus::plugin {
 namespace {
 
 using drivers::SensorArray;
-using drivers::SensorFault;
 using drivers::SensorReading;
 using sensing::Time;
 
 constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);
 
 GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
-    "src", GST_PAD_SRC, GST_PAD_ALWAYS,
-    GST_STATIC_CAPS("application/x-pir, format = (string) presence, sensors = (int) [ 1, 16 ]"));
+    "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_PIR_CAPS ", sensors = (int) [ 1, 16 ]"));
 
 struct Private {
   Adjustable<PirSettings> settings;
@@ -77,96 +82,20 @@ struct Private {
 
 CERBERUS_DEFINE_TYPE(CerberusPirSrc, cerberus_pir_src, GstPushSrc, GST_TYPE_PUSH_SRC, Private)
 
-// ---- errors and warnings
-
-void post(CerberusPirSrc* self, const drivers::SensorError& error) {
-  const char* detail = error.detail.c_str();
-  const char* text = error.text.c_str();
-  switch (error.fault) {
-    case SensorFault::none:
-      return;
-    case SensorFault::settings:
-    case SensorFault::missing:
-      GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", text), ("%s", detail));
-      return;
-    case SensorFault::not_found:
-      GST_ELEMENT_ERROR(self, RESOURCE, NOT_FOUND, ("%s", text), ("%s", detail));
-      return;
-    case SensorFault::busy:
-      GST_ELEMENT_ERROR(self, RESOURCE, BUSY, ("%s", text), ("%s", detail));
-      return;
-    case SensorFault::denied:
-      GST_ELEMENT_ERROR(self, RESOURCE, NOT_AUTHORIZED, ("%s", text), ("%s", detail));
-      return;
-    case SensorFault::data:
-      GST_ELEMENT_ERROR(self, STREAM, DECODE, ("%s", text), ("%s", detail));
-      return;
-    case SensorFault::gone:
-      GST_ELEMENT_ERROR(self, RESOURCE, READ, ("%s", text), ("%s", detail));
-      return;
-  }
-}
-
-void post_fault(CerberusPirSrc* self, int sensor, sensing::PirFault fault, double bearing,
-                const std::string& place) {
-  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + place + ", bearing " +
-                           std::to_string(std::lround(bearing)) + ")";
-  if (fault == sensing::PirFault::none) {
-    GST_ELEMENT_INFO(self, RESOURCE, READ, ("%s works again.", name.c_str()), (nullptr));
-    return;
-  }
-  const std::string what(sensing::describe(fault));
-  GST_ELEMENT_WARNING(
-      self, RESOURCE, READ,
-      ("%s is %s: its readings do not count until it is well again. Check its cable and supply, "
-       "and what is warm or moving before it.",
-       name.c_str(), what.c_str()),
-      (nullptr));
-}
-
 // ---- time
-
-Time monotonic_now() {
-  return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC, as the kernel stamps edges
-}
-
-// Running time; 0 before there is a clock.
-GstClockTime running_now(CerberusPirSrc* self) {
-  GstElement* element = GST_ELEMENT(self);
-  GstClock* clock = gst_element_get_clock(element);
-  if (!clock) return 0;
-  const GstClockTime now = gst_clock_get_time(clock), base = gst_element_get_base_time(element);
-  gst_object_unref(clock);
-  return now > base ? now - base : 0;
-}
 
 // What the sensors' clock says; lock held.
 Time sensors_now(CerberusPirSrc* self) {
   const Private& priv = *self->priv;
   if (!priv.live) return priv.sensors.due();
-  return priv.sensors.recorded() ? Time(static_cast<Time::rep>(running_now(self))) : monotonic_now();
-}
-
-// How far running time is ahead of monotonic time. The two cannot be read at once: of some tries the one that was
-// interrupted least counts, or a busy machine would shift a reading by a time slice.
-GstClockTimeDiff clock_distance(CerberusPirSrc* self) {
-  Time least = Time::max();
-  GstClockTimeDiff distance = 0;
-  for (int i = 0; i < 5 && least > std::chrono::microseconds(20); ++i) {
-    const Time before = monotonic_now();
-    const auto running = static_cast<GstClockTimeDiff>(running_now(self));
-    const Time took = monotonic_now() - before;
-    if (took >= least) continue;
-    least = took;
-    distance = running - (before + took / 2).count();
-  }
-  return distance;
+  return priv.sensors.recorded() ? Time(static_cast<Time::rep>(running_now(GST_ELEMENT(self))))
+                                 : monotonic_now();
 }
 
 // The running time of something that happened at `time` on the sensors' clock.
 GstClockTime running_time(CerberusPirSrc* self, Time time) {
   if (self->priv->sensors.recorded()) return static_cast<GstClockTime>(time.count());
-  return static_cast<GstClockTime>(std::max<GstClockTimeDiff>(time.count() + clock_distance(self), 0));
+  return running_time_of(GST_ELEMENT(self), time);
 }
 
 // ---- the stream
@@ -203,7 +132,7 @@ bool open_sensors(CerberusPirSrc* self) {
       std::move(sensor), sensor_setup(settings, info.sensors), pir_options(settings), heartbeat);
   if (error) {
     guard.unlock();
-    post(self, error);
+    report_error(GST_ELEMENT(self), error);
     return false;
   }
   priv.info = info;
@@ -223,9 +152,53 @@ bool open_sensors(CerberusPirSrc* self) {
   return true;
 }
 
-gboolean start(GstBaseSrc* base) {
-  auto* self = cerberus_pir_src_self(base);
-  return guarded(self, FALSE, [&]() -> gboolean { return open_sensors(self); });
+// What the sensors can give, presence first; lock held.
+GstCaps* possible_caps(const Private& priv) {
+  CerberusPirInfo info = priv.info;
+  info.format = CERBERUS_PIR_PRESENCE;
+  GstCaps* caps = cerberus_pir_info_to_caps(&info);
+  info.format = CERBERUS_PIR_LEVEL;
+  if (priv.sensors.measures()) gst_caps_append(caps, cerberus_pir_info_to_caps(&info));
+  return caps;
+}
+
+GstCaps* get_caps(GstBaseSrc* base, GstCaps* filter) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  GstCaps* caps = nullptr;
+  {
+    const std::lock_guard guard(priv.lock);
+    caps = priv.running ? possible_caps(priv) : gst_static_pad_template_get_caps(&src_template);
+  }
+  if (!filter) return caps;
+  GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(caps);
+  return both;
+}
+
+gboolean set_caps(GstBaseSrc* base, GstCaps* caps) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  CerberusPirInfo info;
+  if (!cerberus_pir_info_from_caps(&info, caps, nullptr)) return FALSE;
+  const std::lock_guard guard(priv.lock);
+  priv.info.format = info.format;
+  priv.sensors.tell_samples(info.format == CERBERUS_PIR_LEVEL);
+  return TRUE;
+}
+
+// Said before anything flows: else all that a user would see is "not-negotiated".
+bool fits_downstream(CerberusPirSrc* self) {
+  g_autoptr(GstCaps) wanted = gst_pad_peer_query_caps(GST_BASE_SRC_PAD(self), nullptr);
+  g_autoptr(GstCaps) given = get_caps(GST_BASE_SRC(self), nullptr);
+  if (gst_caps_can_intersect(wanted, given)) return true;
+  g_autofree gchar* wish = gst_caps_to_string(wanted);
+  g_autofree gchar* gift = gst_caps_to_string(given);
+  GST_ELEMENT_ERROR(
+      self, CORE, NEGOTIATION,
+      ("What follows pirsrc wants %s, and the sensors give %s. Volts (format=level) come from driver=iio "
+       "and from recordings in volts only.",
+       wish, gift),
+      (nullptr));
+  return false;
 }
 
 gboolean stop(GstBaseSrc* base) {
@@ -238,18 +211,14 @@ gboolean stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-GstCaps* get_caps(GstBaseSrc* base, GstCaps* filter) {
-  Private& priv = *cerberus_pir_src_self(base)->priv;
-  GstCaps* caps = nullptr;
-  {
-    const std::lock_guard guard(priv.lock);
-    caps = priv.running ? cerberus_pir_info_to_caps(&priv.info)
-                        : gst_static_pad_template_get_caps(&src_template);
-  }
-  if (!filter) return caps;
-  GstCaps* both = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
-  gst_caps_unref(caps);
-  return both;
+gboolean start(GstBaseSrc* base) {
+  auto* self = cerberus_pir_src_self(base);
+  return guarded(self, FALSE, [&]() -> gboolean {
+    if (!open_sensors(self)) return FALSE;
+    if (fits_downstream(self)) return TRUE;
+    stop(base);
+    return FALSE;
+  });
 }
 
 // What a step of the sensors left to be said, outside the lock.
@@ -263,19 +232,23 @@ struct News {
 
 GstBuffer* publish(CerberusPirSrc* self, const News& news) {
   const SensorReading& reading = news.reading;
-  guint8 bytes[CERBERUS_PIR_MAX_SENSORS] = {};
-  for (guint i = 0; i < news.info.sensors; ++i) bytes[i] = static_cast<guint8>(reading.presence[i]);
-  for (guint i = 0; i < news.info.sensors; ++i)
+  const guint count = news.info.sensors;
+  guint8 presence[CERBERUS_PIR_MAX_SENSORS] = {};
+  for (guint i = 0; i < count; ++i) presence[i] = static_cast<guint8>(reading.presence[i]);
+  for (guint i = 0; i < count; ++i)
     if (reading.faulty >> i & 1)
-      post_fault(self, static_cast<int>(i), news.faults[i], news.info.bearings[i], news.places[i]);
+      report_fault(GST_ELEMENT(self), static_cast<int>(i), news.faults[i], news.info.bearings[i],
+                   news.places[i]);
   if (reading.changed) {
-    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), news.time, &news.info, bytes);
+    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), news.time, &news.info, presence);
     GstStructure* fields = gst_message_writable_structure(message);
     gst_structure_set(fields, "doubtful", G_TYPE_UINT, static_cast<guint>(reading.doubtful), nullptr);
     gst_element_post_message(GST_ELEMENT(self), message);
   }
-  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, news.info.sensors, nullptr);
-  gst_buffer_fill(buffer, 0, bytes, news.info.sensors);
+  const gsize size = cerberus_pir_info_buffer_size(&news.info);
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
+  const bool volts = news.info.format == CERBERUS_PIR_LEVEL;
+  gst_buffer_fill(buffer, 0, volts ? static_cast<const void*>(reading.volts.data()) : presence, size);
   GST_BUFFER_PTS(buffer) = news.time;
   return buffer;
 }
@@ -291,7 +264,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     if (step == SensorArray::Step::failed) {
       const drivers::SensorError error = priv.sensors.error();
       guard.unlock();
-      post(self, error);
+      report_error(GST_ELEMENT(self), error);
       return GST_FLOW_ERROR;
     }
     if (step == SensorArray::Step::reading) {
@@ -387,6 +360,7 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   src->start = start;
   src->stop = stop;
   src->get_caps = get_caps;
+  src->set_caps = set_caps;
   src->unlock = unlock;
   src->unlock_stop = unlock_stop;
   src->event = event;

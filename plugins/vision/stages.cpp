@@ -116,6 +116,7 @@ bool MaskStage::run(Frame& frame) {
   input.current = current.view<std::uint8_t>();
   input.previous = previous.view<std::uint8_t>();
   input.histogram = &counts;
+  input.seconds = frame.seconds;
   input.frames = std::clamp(record.frames, 0, 3);
 
   MappedPlane mask = acquire(pool_, size);

@@ -44,7 +44,8 @@ void Chain::run_stage(std::size_t stage) {
                                    .current = current_.view(),
                                    .previous = previous_.view(),
                                    .histogram = &histogram_,
-                                   .frames = difference_result_.frames},
+                                   .frames = difference_result_.frames,
+                                   .seconds = seconds_},
                                   mask_.view());
       break;
     case 4: {

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which connected parts of what differs from the scene's memory are objects: by how much of them has moved, and by whether
+// their outline is an edge of the frame or one of the memory.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "vision/image.h"
+#include "vision/labelling.h"
+#include "vision/mask.h"
+
+namespace cerberus::vision {
+
+// How many frames of this rate things take. Limits are those of the planes' 8 bits.
+struct SceneWindows {
+  int now = 3;      // what moved so lately moves: 3 frames, 0.12 s
+  int lately = 25;  // 1 s: what moved so lately may have stopped for a moment
+  int young = 50;   // 2 s: what the memory has learnt for less may be an object's place
+  int hold = 250;   // 10 s: how long something that stopped is kept
+  // seconds: from frame to frame, > 0.
+  static SceneWindows of(double seconds);
+};
+
+struct ScenePlanes {
+  GrayView present, memory;  // the frame and the memory, blurred alike, under the same light
+  GrayView age;              // frames the memory has learnt a pixel for
+  GrayView quiet;            // frames since a pixel moved
+  bool still = false;        // the camera stands
+};
+
+class SceneParts {
+ public:
+  void make_room(Size picture);
+  // mask: what differs in; out, the objects. absorb := what the memory shall take over. True if the memory is young under
+  // one of the objects: then join() is due.
+  bool judge(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView mask,
+             MutableBitView absorb);
+  // A place that somebody leaves who stood there when the scene began looks like an object: the memory has his picture, a
+  // moving edge goes along it, and from a few frames nobody can tell which is which. So where the memory is young, what
+  // lies close together is one: two fronts with a gap between them (the gap belongs to it), or a big part and its pieces
+  // (which are dropped). closed: the mask with its gaps closed, used as scratch; mask: in and out.
+  void join(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView closed,
+            MutableBitView mask);
+  std::size_t bytes() const;
+
+ private:
+  // What is known of a connected part.
+  struct Part {
+    int now = 0, lately = 0;    // pixels that moved in the last frames, and for some time back
+    int young = 0;              // pixels that the memory has seen for moments only
+    int frame = 0, memory = 0;  // contrast across its outline in frame and memory ...
+    int outline = 0;            // ... and over how many places
+    bool whole = false;         // has been joined with another one
+    bool piece = false;         // of another one
+  };
+  Labeller labeller_;
+  std::vector<Part> parts_;
+};
+
+}  // namespace cerberus::vision

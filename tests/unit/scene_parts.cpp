@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Which parts of a difference are objects. Pictures here are 320 x 240, the scene is 100 everywhere, what stands before it
+// 200; expectations follow from the header's rules by hand.
+#include "vision/scene_parts.h"
+
+#include <algorithm>
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr Size kSize{320, 240};
+constexpr SceneWindows kWindows;  // of 25 frames a second
+
+struct Rect {
+  int x, y, width, height;
+};
+
+struct Scene {
+  Image<std::uint8_t> present{kSize}, memory{kSize}, age{kSize}, quiet{kSize};
+  BitMask mask, absorb;
+  SceneParts parts;
+
+  explicit Scene(int scene_age) {
+    for (auto* picture : {&present, &memory}) picture->fill_bytes(100);
+    age.fill_bytes(scene_age);
+    quiet.fill_bytes(200);
+    for (auto* bits : {&mask, &absorb}) bits->resize(bit_mask_size(kSize));
+    parts.make_room(kSize);
+  }
+  static void paint(Image<std::uint8_t>& picture, const Rect& r, int value) {
+    for (int y = r.y; y < r.y + r.height; ++y)
+      std::fill_n(picture.view().row(y) + r.x, r.width, static_cast<std::uint8_t>(value));
+  }
+  // Differs, and moved `since` frames ago.
+  void differs(const Rect& r, int since) {
+    for (int y = r.y; y < r.y + r.height; ++y) set_bits(mask.view().row(y), r.x, r.x + r.width);
+    paint(quiet, r, since);
+  }
+  ScenePlanes planes(bool still = true) const {
+    return {present.view(), memory.view(), age.view(), quiet.view(), still};
+  }
+  bool judge(bool still = true) { return parts.judge(planes(still), kWindows, mask.view(), absorb.view()); }
+  void join() {
+    BitMask closed;
+    closed.resize(bit_mask_size(kSize));
+    std::copy_n(mask.view().data, mask.bytes() / sizeof(std::uint64_t), closed.view().data);
+    parts.join(planes(), kWindows, closed.view(), mask.view());
+  }
+};
+
+int count(const BitMask& bits, const Rect& r) {
+  int n = 0;
+  for (int y = r.y; y < r.y + r.height; ++y)
+    for (int x = r.x; x < r.x + r.width; ++x) n += bits.view().row(y)[x / 64] >> (x % 64) & 1;
+  return n;
+}
+int all(const Rect& r) {
+  return r.width * r.height;
+}
+
+constexpr Rect kPerson{100, 80, 30, 80};
+
+}  // namespace
+
+START_TEST(windows_are_times_not_frames) {
+  const SceneWindows usual = SceneWindows::of(1 / 25.0), slow = SceneWindows::of(1 / 5.0),
+                     fast = SceneWindows::of(1 / 100.0);
+  ck_assert_int_eq(usual.now, kWindows.now);
+  ck_assert_int_eq(usual.lately, kWindows.lately);
+  ck_assert_int_eq(usual.young, kWindows.young);
+  ck_assert_int_eq(usual.hold, kWindows.hold);
+  ck_assert_int_eq(slow.hold, 50);   // 10 s
+  ck_assert_int_eq(slow.young, 10);  // 2 s
+  ck_assert_int_eq(slow.now, 3);     // never fewer than three frames
+  ck_assert_int_eq(fast.now, 12);
+  ck_assert_int_eq(fast.lately, 100);
+  ck_assert_int_eq(fast.hold, 250);  // as far as 8 bits count
+}
+END_TEST
+
+START_TEST(what_moves_is_an_object) {
+  Scene s(200);
+  Scene::paint(s.present, kPerson, 200);
+  s.differs(kPerson, 0);
+  ck_assert(!s.judge());  // an old memory
+  ck_assert_int_eq(count(s.mask, kPerson), all(kPerson));
+  ck_assert_int_eq(count(s.absorb, kPerson), 0);
+}
+END_TEST
+
+START_TEST(who_stopped_is_kept_for_ten_seconds) {
+  for (const int since : {100, 249, 250, 251}) {
+    Scene s(255);
+    Scene::paint(s.present, kPerson, 200);
+    s.differs(kPerson, since);
+    s.judge();
+    ck_assert_int_eq(count(s.mask, kPerson), all(kPerson));
+    ck_assert_int_eq(count(s.absorb, kPerson), since > 250 ? all(kPerson) : 0);
+  }
+}
+END_TEST
+
+START_TEST(whose_place_is_empty_is_forgotten_at_once) {
+  for (const bool young : {false, true}) {
+    Scene s(young ? 10 : 255);
+    Scene::paint(s.memory, kPerson, 200);  // he stood there, the memory says
+    s.differs(kPerson, 20);
+    ck_assert(!s.judge());
+    ck_assert_int_eq(count(s.mask, kPerson), 0);
+    ck_assert_int_eq(count(s.absorb, kPerson), all(kPerson));
+  }
+}
+END_TEST
+
+START_TEST(what_the_memory_saw_for_moments_needs_motion_now) {
+  for (const int since : {2, 3}) {
+    Scene s(49);
+    Scene::paint(s.present, kPerson, 200);
+    s.differs(kPerson, since);
+    ck_assert(s.judge() == (since < 3));
+    ck_assert_int_eq(count(s.mask, kPerson), since < 3 ? all(kPerson) : 0);
+    ck_assert_int_eq(count(s.absorb, kPerson), since < 3 ? 0 : all(kPerson));
+  }
+}
+END_TEST
+
+START_TEST(before_a_camera_that_moves_only_what_moves_now_counts) {
+  for (const int since : {2, 3}) {
+    Scene s(255);
+    Scene::paint(s.present, kPerson, 200);
+    s.differs(kPerson, since);
+    s.judge(false);
+    ck_assert_int_eq(count(s.mask, kPerson), since < 3 ? all(kPerson) : 0);
+  }
+}
+END_TEST
+
+START_TEST(two_fronts_are_one_where_the_memory_is_young) {
+  // A body of 40 x 80 that has moved by 6: a strip before it, a strip behind it.
+  constexpr Rect kBehind{100, 80, 6, 80}, kBetween{106, 80, 34, 80}, kBefore{140, 80, 6, 80};
+  for (const int age : {10, 100}) {
+    Scene s(age);
+    s.differs(kBehind, 1);
+    s.differs(kBefore, 1);
+    s.join();
+    ck_assert_int_eq(count(s.mask, kBetween), age < 50 ? all(kBetween) : 0);
+    ck_assert_int_eq(count(s.mask, kBehind), all(kBehind));
+    ck_assert_int_eq(count(s.mask, kBefore), all(kBefore));
+  }
+}
+END_TEST
+
+START_TEST(fronts_far_apart_or_of_other_heights_are_two) {
+  Scene apart(10);
+  apart.differs({100, 80, 6, 80}, 1);
+  apart.differs({190, 80, 6, 80}, 1);  // 84 between them, 80 high
+  apart.join();
+  ck_assert_int_eq(count(apart.mask, {106, 80, 84, 80}), 0);
+  Scene heights(10);
+  heights.differs({100, 20, 6, 80}, 1);
+  heights.differs({130, 80, 6, 80}, 1);  // only 20 of 80 beside each other
+  heights.join();
+  ck_assert_int_eq(count(heights.mask, {106, 20, 24, 140}), 0);
+}
+END_TEST
+
+START_TEST(a_piece_near_a_big_part_is_dropped_where_the_memory_is_young) {
+  constexpr Rect kPiece{150, 100, 10, 20};  // 20 away: a quarter of the person's height
+  for (const int age : {10, 100}) {
+    Scene s(age);
+    s.differs(kPerson, 1);
+    s.differs(kPiece, 1);
+    s.join();
+    ck_assert_int_eq(count(s.mask, kPerson), all(kPerson));
+    ck_assert_int_eq(count(s.mask, kPiece), age < 50 ? 0 : all(kPiece));
+  }
+  Scene far(10);
+  constexpr Rect kFar{175, 100, 10, 20};  // 45 away: more than half of the person's height
+  far.differs(kPerson, 1);
+  far.differs(kFar, 1);
+  far.join();
+  ck_assert_int_eq(count(far.mask, kFar), all(kFar));
+}
+END_TEST
+
+START_TEST(two_people_stay_two) {
+  // 20 away: more than a fifth of their height. The child has 0.42 of the other's area: more than a piece.
+  constexpr Rect kOther{150, 80, 30, 80}, kChild{150, 110, 20, 50};
+  for (const Rect& other : {kOther, kChild}) {
+    Scene s(10);
+    s.differs(kPerson, 1);
+    s.differs(other, 1);
+    s.join();
+    ck_assert_int_eq(count(s.mask, {0, 0, 320, 240}), all(kPerson) + all(other));
+  }
+}
+END_TEST
+
+START_TEST(a_tiny_part_says_nothing_while_the_memory_is_young) {
+  constexpr Rect kTiny{200, 100, 7, 8}, kSmall{200, 200, 8, 8};  // 60 pixels are 1 / 1280
+  Scene s(10);
+  s.differs(kTiny, 1);
+  s.differs(kSmall, 1);
+  s.join();
+  ck_assert_int_eq(count(s.mask, kTiny), 0);
+  ck_assert_int_eq(count(s.mask, kSmall), all(kSmall));
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "scene_parts",
+      {windows_are_times_not_frames, what_moves_is_an_object, who_stopped_is_kept_for_ten_seconds,
+       whose_place_is_empty_is_forgotten_at_once, what_the_memory_saw_for_moments_needs_motion_now,
+       before_a_camera_that_moves_only_what_moves_now_counts, two_fronts_are_one_where_the_memory_is_young,
+       fronts_far_apart_or_of_other_heights_are_two,
+       a_piece_near_a_big_part_is_dropped_where_the_memory_is_young, two_people_stay_two,
+       a_tiny_part_says_nothing_while_the_memory_is_young});
+}
