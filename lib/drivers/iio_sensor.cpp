@@ -79,8 +79,7 @@ SensorError IioSensor::find_channels(const SensorSetup& setup) {
               "IIO device " + device_ + " (" + name_of(device) + ") has no channel " + id + " to read. " +
                   channels_of(device),
               ""};
-    const double on = setup.threshold + setup.hysteresis / 2, off = setup.threshold - setup.hysteresis / 2;
-    Input input{channel, 1, 0, sensing::LevelSwitch(on, off), false};
+    Input input{channel, 1, 0, sensing::LevelSwitch(setup.level)};
     // A converter without a scale counts in millivolts.
     if (iio_channel_find_attr(channel, "scale")) iio_channel_attr_read_double(channel, "scale", &input.scale);
     if (iio_channel_find_attr(channel, "offset"))
@@ -144,10 +143,7 @@ SensorError IioSensor::read(Time now, std::vector<SensorEdge>& edges) {
     Input& input = inputs_[i];
     double measured = 0;
     if (const int error = volts(input, measured)) return gone(i, error);
-    const bool high = input.level.update(measured);
-    if (begun_ && high == input.high) continue;
-    input.high = high;
-    edges.push_back({now, static_cast<int>(i), high});
+    edges.push_back({now, static_cast<int>(i), input.level.update(measured), static_cast<float>(measured)});
   }
   begun_ = true;
   return {};

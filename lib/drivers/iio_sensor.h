@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Analogue sensors on an A/D converter of Linux' IIO: (in_voltageY_raw + offset) x scale = millivolts, compared with a
-// threshold that has a hysteresis. Sampled at an interval, by a timer that fd() is.
+// threshold that has a hysteresis. Sampled at an interval, by a timer that fd() is; every sample is told.
 #pragma once
 
 #include "drivers/sensor.h"
@@ -19,13 +19,13 @@ class IioSensor final : public Sensor {
   int fd() const override { return timer_; }
   SensorError read(Time now, std::vector<SensorEdge>& edges) override;
   std::string place(int sensor) const override;
+  bool measures() const override { return true; }
 
  private:
   struct Input {
     iio_channel* channel;
     double scale, offset;  // to millivolts
     sensing::LevelSwitch level;
-    bool high;
   };
   SensorError find_channels(const SensorSetup& setup);
   SensorError gone(std::size_t input, int error) const;

@@ -1,14 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/recorded_sensor.h"
 
+#include <array>
 #include <utility>
 
 namespace cerberus::drivers {
 
-void RecordedSensor::play(Recording recording, std::string name) {
+void RecordedSensor::play(Recording recording, std::string name, const sensing::LevelOptions& level) {
   recording_ = std::move(recording);
   name_ = std::move(name);
   next_ = 0;
+  if (!recording_.volts) return;
+  std::array<sensing::LevelSwitch, sensing::kMaxSensors> switches;
+  switches.fill(sensing::LevelSwitch(level));
+  for (SensorEdge& edge : recording_.edges)
+    edge.level = switches[static_cast<std::size_t>(edge.sensor)].update(static_cast<double>(edge.volts));
 }
 
 void RecordedSensor::close() noexcept {

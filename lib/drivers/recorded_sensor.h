@@ -14,12 +14,13 @@ class RecordedSensor : public Sensor {
   void stop() noexcept override {}
   SensorError read(Time now, std::vector<SensorEdge>& edges) override;
   std::string place(int sensor) const override;
+  bool measures() const override { return recording_.volts; }
   bool recorded() const override { return true; }
   Time next() const override;
   Time end() const override { return recording_.end; }
 
  protected:
-  void play(Recording recording, std::string name);
+  void play(Recording recording, std::string name, const sensing::LevelOptions& level);
 
  private:
   Recording recording_;

@@ -8,6 +8,7 @@
 //
 // CSV: seconds, then a level (0, 1) a sensor; a heading, empty lines and lines that begin with # do not count. JSON lines:
 // `time` in seconds or `pts` in nanoseconds, and `pir`. 2 (no valid reading) leaves the line as it was. Times never go back.
+// What an analogue sensor said is written in volts, on all lines or on none: 0,0.1V,3.2V,0V or {"time": 0, "volts": [...]}.
 #pragma once
 
 #include <string_view>
@@ -20,6 +21,7 @@ namespace cerberus::drivers {
 struct Recording {
   std::vector<SensorEdge> edges;  // in order of time; those of one line of text have one time
   Time end{};                     // of the last line
+  bool volts = false;             // it says volts, and no levels: each edge's `level` is still to be found
 };
 
 // `name`: of the file, for error messages. The error names it and the line (from 1); `recording` is then what went before.

@@ -63,7 +63,7 @@ SensorError ReplaySensor::open(const SensorSetup& setup) {
   if (SensorError error = parse_recording(text, setup.location, setup.sensors, recording)) return error;
   if (recording.edges.empty())
     return {SensorFault::data, "The PIR recording " + setup.location + " holds no readings.", ""};
-  play(std::move(recording), setup.location);
+  play(std::move(recording), setup.location, setup.level);
   return {};
 }
 

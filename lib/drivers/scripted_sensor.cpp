@@ -45,7 +45,7 @@ SensorError ScriptedSensor::open(const SensorSetup& setup) {
   }
   Recording recording;
   if (SensorError error = parse_recording(levels, "script", setup.sensors, recording)) return error;
-  play(std::move(recording), "script");
+  play(std::move(recording), "script", setup.level);
   return {};
 }
 

@@ -2,7 +2,7 @@
 // Sensors for tests: a recording in one line, which may end in a failure.
 //
 //   script = line {";" line}
-//   line   = SECONDS "," LEVEL {"," LEVEL}     as in recording.h: "0,0,0,0; 2.5,1,0,0"
+//   line   = SECONDS "," LEVEL {"," LEVEL}     as in recording.h: "0,0,0,0; 2.5,1,0,0", or volts: "0,0.1V,3V,0V"
 //          | "open fail" TEXT                  opening fails
 //          | SECONDS "fail" TEXT               from then on reading fails
 //          | "show fail" TEXT                  the LEDs fail

@@ -6,6 +6,7 @@
 // told, 0 = its begin, however slow or fast that runs: read() when next() has come.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <string>
@@ -19,7 +20,8 @@ namespace cerberus::drivers {
 struct SensorEdge {
   Time time{};  // a device: CLOCK_MONOTONIC, the kernel's own stamp where it has one
   int sensor = 0;
-  bool level = false;  // of the line, before polarity; may repeat
+  bool level = false;                                     // of the line, before polarity; may repeat
+  float volts = std::numeric_limits<float>::quiet_NaN();  // what was measured; NaN: nothing is
 };
 
 class Sensor {
@@ -39,6 +41,8 @@ class Sensor {
 
   // Where a sensor is connected, for messages: "line 17 of gpiochip0".
   virtual std::string place(int sensor) const = 0;
+  // Every edge has its volts, and there is one for each sample.
+  virtual bool measures() const { return false; }
   virtual bool recorded() const { return false; }
   virtual Time next() const { return sensing::kNever; }  // of a recording: time of the next edge
   virtual Time end() const { return sensing::kNever; }   // of a recording: nothing is known of later times

@@ -2,6 +2,8 @@
 #include "drivers/sensor_array.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace cerberus::drivers {
@@ -19,6 +21,7 @@ SensorError SensorArray::open(std::unique_ptr<Sensor> sensor, const SensorSetup&
   faults_.assign(count, sensing::PirFault::none);
   edges_.reserve(1024);
   heartbeat_ = std::max(heartbeat, Time(1));
+  volts_.fill(std::numeric_limits<float>::quiet_NaN());
   // What the last line of a recording says shows only after the debounce time.
   end_ = sensor_->end();
   if (end_ < kNever) end_ += models_.front().options().debounce;
@@ -35,6 +38,7 @@ void SensorArray::close() noexcept {
   last_ = {};
   error_ = {};
   beat_ = {};
+  tell_samples_ = sampled_ = false;
   begun_ = false;
 }
 
@@ -53,8 +57,11 @@ Time SensorArray::due() const {
 void SensorArray::let_pass(Time until) {
   for (; next_edge_ < edges_.size() && edges_[next_edge_].time <= until; ++next_edge_) {
     const SensorEdge& edge = edges_[next_edge_];
-    if (edge.sensor >= 0 && edge.sensor < count())
-      models_[static_cast<std::size_t>(edge.sensor)].edge(edge.time, edge.level);
+    if (edge.sensor < 0 || edge.sensor >= count()) continue;
+    models_[static_cast<std::size_t>(edge.sensor)].edge(edge.time, edge.level);
+    if (std::isnan(edge.volts)) continue;
+    volts_[static_cast<std::size_t>(edge.sensor)] = edge.volts;
+    sampled_ = true;
   }
   if (next_edge_ == edges_.size()) {
     edges_.clear();
@@ -67,6 +74,7 @@ void SensorArray::let_pass(Time until) {
 bool SensorArray::look(Time time, SensorReading& reading) {
   reading = {};
   reading.time = std::max(time, last_.time);
+  reading.volts = volts_;
   for (std::size_t i = 0; i < models_.size(); ++i) {
     const auto bit = static_cast<sensing::SensorBits>(1U << i);
     reading.presence[i] = models_[i].presence();
@@ -96,7 +104,8 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
     if (recorded() && time > end_) return now >= end_ ? Step::ended : Step::wait;
     if (time > now) return Step::wait;
     let_pass(time);
-    if (!look(time, reading) && time < beat_) continue;
+    const bool sampled = std::exchange(sampled_, false) && tell_samples_;
+    if (!look(time, reading) && time < beat_ && !sampled) continue;
     if (time >= beat_)
       beat_ += ((now - beat_) / heartbeat_ + 1) * heartbeat_;  // those that were missed are not made up for
     begun_ = true;

@@ -14,8 +14,9 @@ namespace cerberus::drivers {
 struct SensorReading {
   Time time{};  // on the driver's clock, never going back
   std::array<sensing::Presence, sensing::kMaxSensors> presence{};
-  sensing::SensorBits doubtful = 0;  // detections that the robot's own turning may have caused
-  sensing::SensorBits faulty = 0;    // sensors whose fault() changed with this reading
+  std::array<float, sensing::kMaxSensors> volts{};  // of the newest samples; NaN: there is none
+  sensing::SensorBits doubtful = 0;                 // detections that the robot's own turning may have caused
+  sensing::SensorBits faulty = 0;                   // sensors whose fault() changed with this reading
   bool changed = false;  // presence or doubtful differ from the last reading; true for the first one
 };
 
@@ -36,6 +37,9 @@ class SensorArray {
 
   // The next reading not later than `now`. Readings begin with the time of the first call.
   Step next(Time now, SensorReading& reading);
+  // Of drivers that measure: a reading for each sample, whatever changes; false at the begin.
+  void tell_samples(bool all) { tell_samples_ = all; }
+  bool measures() const { return sensor_ && sensor_->measures(); }
   // When next() has something at the latest. A recording may be played by this alone: next(due()).
   Time due() const;
   const SensorError& error() const { return error_; }
@@ -60,6 +64,8 @@ class SensorArray {
   std::size_t next_edge_ = 0;
   std::vector<sensing::PirFault> faults_;
   SensorReading last_;
+  std::array<float, sensing::kMaxSensors> volts_{};
+  bool tell_samples_ = false, sampled_ = false;  // sampled_: since the last reading
   SensorError error_;
   Time heartbeat_{}, beat_{}, end_{};
   bool begun_ = false;

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "sensing/pir_model.h"
+#include "sensing/levels.h"
 #include "sensing/sectors.h"
 
 namespace cerberus::drivers {
@@ -25,15 +25,15 @@ struct SensorSetup {
   std::vector<std::string> lines, red, blue;
   LineBias bias = LineBias::as_is;
 
-  // iio: name (dummy) or id (iio:device0) of the converter, channel numbers, one a sensor. A line is high from
-  // threshold + hysteresis / 2 volts, low below threshold - hysteresis / 2.
+  // iio: name (dummy) or id (iio:device0) of the converter, channel numbers, one a sensor.
   std::string device;
   std::vector<std::string> channels;
-  double threshold = 1.65, hysteresis = 0.3;
   Time interval = std::chrono::milliseconds(10);  // between samples
 
   std::string location;  // replay: a file, see recording.h
   std::string script;    // scripted: see scripted_sensor.h
+
+  sensing::LevelOptions level;  // of what is measured in volts: by iio, in recordings
 };
 
 enum class SensorFault : std::uint8_t {

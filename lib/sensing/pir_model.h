@@ -112,22 +112,4 @@ constexpr double kDoubtfulTurn = radians(5);
 // A module holds its output for some seconds after the turn that tripped it.
 constexpr Time kDoubtLinger = std::chrono::seconds(3);
 
-// A voltage as a line level: high from `on` volts, low again below `off` (off <= on); between them it stays. NaN
-// changes nothing.
-class LevelSwitch {
- public:
-  LevelSwitch(double on, double off) : on_(on), off_(off < on ? off : on) {}
-  bool update(double volts) {
-    if (volts >= on_)
-      high_ = true;
-    else if (volts < off_)
-      high_ = false;
-    return high_;
-  }
-
- private:
-  double on_, off_;
-  bool high_ = false;
-};
-
 }  // namespace cerberus::sensing

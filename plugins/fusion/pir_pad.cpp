@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "pir_pad.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <utility>
@@ -33,15 +35,19 @@ bool refuse(GstElement* element, GstPad* pad, const std::string& fault) {
   return false;
 }
 
+// Of sensors that tell volts nothing is known any more.
+void begin_levels(PirPad& pir) {
+  pir.levels.begin(pir.info.format == CERBERUS_PIR_LEVEL ? pir.info.sensors : 0, pir.level);
+  pir.faults.fill(sensing::PirFault::none);
+}
+
 // Takes over what the caps say; else the reason why they cannot be fused.
-std::string take_caps(PirPad& pir, const GstCaps* caps) {
+std::string take_caps(GstElement* element, PirPad& pir, const GstCaps* caps) {
   CerberusPirInfo info;
   g_autoptr(GError) error = nullptr;
   if (!cerberus_pir_info_from_caps(&info, caps, &error)) return error->message;
-  if (info.format == CERBERUS_PIR_LEVEL)
-    return "PIR readings in volts (format=level) cannot be fused: let the source compare them with a "
-           "threshold "
-           "(format=presence).";
+  g_object_get(element, "level-threshold", &pir.level.threshold, "level-hysteresis", &pir.level.hysteresis,
+               nullptr);
   const auto count = static_cast<int>(info.sensors);
   const std::lock_guard guard(pir.inputs->lock());
   const int others = pir.inputs->sensors() - pir.sensors;
@@ -51,6 +57,7 @@ std::string take_caps(PirPad& pir, const GstCaps* caps) {
   pir.sensors = count;
   pir.history.set_array(sensor_array(info));
   pir.info = info;
+  begin_levels(pir);
   return {};
 }
 
@@ -58,7 +65,7 @@ bool caps_event(GstElement* element, GstPad* pad, GstEvent* event) {
   PirPad& pir = pir_pad(pad);
   GstCaps* caps;
   gst_event_parse_caps(event, &caps);
-  const std::string fault = take_caps(pir, caps);
+  const std::string fault = take_caps(element, pir, caps);
   if (fault.empty()) {
     pir.refused = false;
     return true;
@@ -74,6 +81,7 @@ bool segment_event(GstElement* element, GstPad* pad, GstEvent* event) {
     return refuse(element, pad, "PIR readings need times, and their stream has none.");
   gst_segment_copy_into(segment, &pir_pad(pad).segment);
   pir_pad(pad).live.reset();
+  begin_levels(pir_pad(pad));
   return true;
 }
 
@@ -101,6 +109,7 @@ void begin_again(PirPad& pir) {
   pir.history.clear();
   pir.flushing = pir.refused = false;
   gst_segment_init(&pir.segment, GST_FORMAT_UNDEFINED);
+  begin_levels(pir);
 }
 
 gboolean event_function(GstPad* pad, GstObject* parent, GstEvent* event) {
@@ -138,28 +147,90 @@ gboolean event_function(GstPad* pad, GstObject* parent, GstEvent* event) {
 
 // ---- readings
 
-GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) {
+// One of presence or volts, as the caps say; what is missing is invalid.
+struct Sample {
+  std::array<std::uint8_t, sensing::kMaxSensors> presence;
+  std::array<float, sensing::kMaxSensors> volts;
+};
+
+Sample sample_of(GstElement* element, GstPad* pad, GstBuffer* buffer) {
   PirPad& pir = pir_pad(pad);
-  if (pir.info.sensors == 0) return GST_FLOW_NOT_NEGOTIATED;
-  std::array<std::uint8_t, sensing::kMaxSensors> values;
-  values.fill(2);
+  Sample sample;
+  sample.presence.fill(2);
+  sample.volts.fill(std::numeric_limits<float>::quiet_NaN());
   const gsize size = gst_buffer_get_size(buffer);
+  const bool volts = pir.info.format == CERBERUS_PIR_LEVEL;
   if (size == cerberus_pir_info_buffer_size(&pir.info))
-    gst_buffer_extract(buffer, 0, values.data(), size);
+    gst_buffer_extract(
+        buffer, 0,
+        volts ? static_cast<void*>(sample.volts.data()) : static_cast<void*>(sample.presence.data()), size);
   else if (!std::exchange(pir.complained, true))
     GST_ELEMENT_WARNING(element, STREAM, FORMAT,
                         ("Pad %s: a PIR reading of %" G_GSIZE_FORMAT " bytes for %u sensors is invalid.",
                          GST_PAD_NAME(pad), size, pir.info.sensors),
                         (nullptr));
+  return sample;
+}
+
+// What volts measured at `time` mean, with all that became of the sensors until then; the lock is held.
+void append_levels(PirPad& pir, Time time, std::span<const float> volts) {
+  const auto append = [&](Time at) {
+    std::array<std::uint8_t, sensing::kMaxSensors> values{};
+    std::ranges::transform(pir.levels.presence(), values.begin(),
+                           [](sensing::Presence presence) { return static_cast<std::uint8_t>(presence); });
+    pir.history.append(at, std::span(values).first(pir.info.sensors));
+  };
+  for (Time due = pir.levels.deadline(); due < time; due = pir.levels.deadline()) {
+    pir.levels.poll(due);
+    append(due);
+  }
+  pir.levels.measure(time, volts);
+  append(time);
+}
+
+// A sensor that tells volts is watched here, as pirsrc watches its own.
+void report_faults(GstElement* element, GstPad* pad) {
+  PirPad& pir = pir_pad(pad);
+  for (std::size_t i = 0; i < pir.levels.presence().size(); ++i) {
+    const sensing::PirFault fault = pir.levels.fault(i);
+    if (std::exchange(pir.faults[i], fault) == fault) continue;
+    const auto number = static_cast<unsigned>(i + 1);
+    const auto bearing = std::lround(pir.info.bearings[i]);
+    if (fault == sensing::PirFault::none)
+      GST_ELEMENT_INFO(
+          element, RESOURCE, READ,
+          ("PIR sensor infer%u (pad %s, bearing %ld) works again.", number, GST_PAD_NAME(pad), bearing),
+          (nullptr));
+    else
+      GST_ELEMENT_WARNING(
+          element, RESOURCE, READ,
+          ("PIR sensor infer%u (pad %s, bearing %ld) is %s: its readings do not count until it is well "
+           "again. "
+           "Check level-threshold, the sensor's cable and supply, and what is warm or moving before it.",
+           number, GST_PAD_NAME(pad), bearing, std::string(sensing::describe(fault)).c_str()),
+          (nullptr));
+  }
+}
+
+GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) {
+  PirPad& pir = pir_pad(pad);
+  if (pir.info.sensors == 0) return GST_FLOW_NOT_NEGOTIATED;
+  const Sample sample = sample_of(element, pad, buffer);
   if (!pir.live) pir.live = is_live(pad);
-  std::unique_lock guard(pir.inputs->lock());
-  // A reading without a time is as late as the one before.
-  const Time time = running_time(pir.segment, GST_BUFFER_PTS(buffer)).value_or(pir.history.newest());
-  const bool wanted = pir.live.value_or(true) || pir.inputs->wait_for_video(guard, pir, time);
-  if (pir.flushing) return GST_FLOW_FLUSHING;
-  if (!wanted) return GST_FLOW_EOS;
-  pir.history.append(time, std::span(values).first(pir.info.sensors));
-  pir.inputs->tell(pir);
+  {
+    std::unique_lock guard(pir.inputs->lock());
+    // A reading without a time is as late as the one before.
+    const Time time = running_time(pir.segment, GST_BUFFER_PTS(buffer)).value_or(pir.history.newest());
+    const bool wanted = pir.live.value_or(true) || pir.inputs->wait_for_video(guard, pir, time);
+    if (pir.flushing) return GST_FLOW_FLUSHING;
+    if (!wanted) return GST_FLOW_EOS;
+    if (pir.info.format == CERBERUS_PIR_LEVEL)
+      append_levels(pir, time, std::span(sample.volts).first(pir.info.sensors));
+    else
+      pir.history.append(time, std::span(sample.presence).first(pir.info.sensors));
+    pir.inputs->tell(pir);
+  }
+  report_faults(element, pad);
   return GST_FLOW_OK;
 }
 

@@ -10,6 +10,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "inputs.hpp"
+#include "sensing/levels.h"
 #include "sensor_history.hpp"
 
 namespace cerberus::plugin {
@@ -27,7 +28,10 @@ struct PirPad {
 
   // Of the pad's own streaming thread.
   GstSegment segment;
-  CerberusPirInfo info;      // without sensors: no caps
+  CerberusPirInfo info;          // without sensors: no caps
+  sensing::LevelSensors levels;  // what a stream of volts means
+  sensing::LevelOptions level;
+  std::array<sensing::PirFault, sensing::kMaxSensors> faults{};  // of those sensors, as they were told
   std::optional<bool> live;  // of what it is linked to; nothing: not known
   bool complained = false;   // of buffers of the wrong size
   bool refused = false;      // its caps or segment: they come again with the next buffer

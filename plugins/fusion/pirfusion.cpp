@@ -9,8 +9,8 @@
  *
  * Pads: `sink` and `src` take any caps; caps, allocation and latency are theirs alone. Each `pir_%u` takes PIR readings
  * (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the order of their
- * numbers, 16 sensors at most). `format=level` (volts) is refused: who measures them knows the threshold, `pirsrc`
- * has it.
+ * numbers, 16 sensors at most). `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by default;
+ * let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
  *
  * - Live: a frame never waits; the newest reading not later than the frame counts. Without one the sensors are invalid.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
@@ -55,6 +55,7 @@
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
+#include "translation.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 #define GST_CAT_DEFAULT pirfusion_debug
@@ -75,9 +76,8 @@ struct State {  // video thread only
   std::optional<bool> live;  // nothing: not known
   Time time{};               // of the last frame
   std::vector<fusion::Track> tracks;
-  double base_told = 0;   // to the PIR pads, degrees a second
-  std::string rule_name;  // what interned_name belongs to
-  const gchar* interned_name = nullptr;
+  double base_told = 0;  // to the PIR pads, degrees a second
+  RuleName rule_name;
 
   State() { gst_segment_init(&segment, GST_FORMAT_UNDEFINED); }
 };
@@ -139,60 +139,6 @@ void apply_settings(CerberusPirFusion* self) {
   fuser.set_options(options);
 }
 
-void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
-  tracks.clear();
-  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-  for (guint i = 0; i < regions->len; ++i) {
-    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
-    if (!region.tracked || region.id == 0) continue;
-    tracks.push_back({.id = region.id,
-                      .x = region.x,
-                      .y = region.y,
-                      .width = region.width,
-                      .height = region.height,
-                      .bearing = sensing::radians(region.bearing),
-                      .distance = region.distance,
-                      .age = duration(region.age),
-                      .state = region.state == CERBERUS_REGION_STOPPED   ? fusion::TrackState::stopped
-                               : region.state == CERBERUS_REGION_COASTED ? fusion::TrackState::coasted
-                                                                         : fusion::TrackState::seen});
-  }
-}
-
-constexpr bool same(fusion::Action ours, CerberusFusionAction theirs) {
-  return static_cast<int>(ours) == static_cast<int>(theirs);
-}
-static_assert(same(fusion::Action::track, CERBERUS_FUSION_TRACK) &&
-              same(fusion::Action::turn_left, CERBERUS_FUSION_TURN_LEFT) &&
-              same(fusion::Action::turn_right, CERBERUS_FUSION_TURN_RIGHT) &&
-              same(fusion::Action::search, CERBERUS_FUSION_SEARCH) &&
-              same(fusion::Action::zero, CERBERUS_FUSION_ZERO) &&
-              same(fusion::Action::hold, CERBERUS_FUSION_HOLD));
-
-CerberusFusion as_fusion(State& state, const fusion::Decision& decision, const Moment& moment) {
-  CerberusFusion fusion;
-  cerberus_fusion_init(&fusion);
-  if (!decision.rule_name.empty()) {
-    if (!state.interned_name || state.rule_name != decision.rule_name) {
-      state.rule_name = decision.rule_name;
-      state.interned_name = g_intern_string(state.rule_name.c_str());
-    }
-    fusion.rule_name = state.interned_name;
-  }
-  fusion.rule = decision.rule;
-  fusion.action = static_cast<CerberusFusionAction>(decision.action);
-  fusion.target = decision.target;
-  fusion.pan = moment.pan_degrees;
-  fusion.sector_from = sensing::degrees(decision.sector.from);
-  fusion.sector_to = sensing::degrees(decision.sector.to);
-  fusion.limited = decision.limited;
-  fusion.camera_found = decision.camera_found;
-  fusion.n_sensors = static_cast<guint>(moment.count);
-  std::copy_n(moment.sensors.begin(), moment.count, std::begin(fusion.sensors));
-  fusion.doubtful = decision.doubtful;
-  return fusion;
-}
-
 // Tells what was decided: on the buffer, and by message when it is something else.
 GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time, const Moment& moment) {
   State& state = *self->priv->state;
@@ -209,7 +155,7 @@ GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time,
                           .sensors = std::span(moment.sensors).first(moment.count),
                           .pan = sensing::radians(moment.pan_degrees),
                           .base_yaw_rate = sensing::radians(moment.base_degrees)});
-  const CerberusFusion fusion = as_fusion(state, decision, moment);
+  const CerberusFusion fusion = as_fusion(decision, moment, state.rule_name);
   buffer.reset(gst_buffer_make_writable(buffer.release()));
   cerberus_buffer_set_fusion(buffer.get(), &fusion);
   if (decision.changed)

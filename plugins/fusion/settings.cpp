@@ -59,6 +59,13 @@ const Property<Settings> kTable[] = {
         "max-wait", &Settings::max_wait,
         "Nanoseconds of real time that a frame of a stream that is not live waits for a PIR pad, which is "
         "then warned of and not waited for until it speaks; 0 = never wait"),
+    property("level-threshold", &Settings::level_threshold, -1000, 1000,
+             "Volts between nobody and somebody, at PIR pads that are given volts (format=level); read with "
+             "their caps"),
+    property(
+        "level-hysteresis", &Settings::level_hysteresis, 0, 1000,
+        "Volts between switching to somebody and switching back, level-threshold in the middle; read with "
+        "the caps"),
     property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
 };
 

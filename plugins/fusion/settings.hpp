@@ -7,6 +7,7 @@
 
 #include "fusion/fuser.h"
 #include "properties.hpp"
+#include "sensing/levels.h"
 
 namespace cerberus::plugin {
 
@@ -32,6 +33,8 @@ struct Settings {
   double horizontal_fov = 60;
   double pan_minimum = -170, pan_maximum = 170;
   guint64 max_wait = 5 * GST_SECOND;
+  double level_threshold = sensing::LevelOptions{}.threshold;
+  double level_hysteresis = sensing::LevelOptions{}.hysteresis;
   std::string head = "head";
 };
 

@@ -89,12 +89,15 @@ const Property<PirSettings> kProperties[] = {
     property("iio-device", &S::iio_device, "iio: the converter's name or id"),
     property("channels", &S::channels,
              "iio: the number of a voltage channel for each sensor, separated by commas"),
-    property("threshold", &S::threshold, -kVolts, kVolts, "iio: volts between low and high"),
+    property("threshold", &S::threshold, -kVolts, kVolts,
+             "Volts between low and high, where volts are measured: iio, recordings in volts"),
     property("hysteresis", &S::hysteresis, 0, kVolts,
-             "iio: volts between switching to high and switching to low, threshold in the middle; 0 = none"),
+             "Volts between switching to high and switching to low, threshold in the middle; 0 = none"),
     property("sample-interval", &S::sample_interval, "iio: nanoseconds between samples, at least 1 ms"),
     property("location", &S::location,
-             "replay: the file, lines of seconds,level,level,... or JSON lines with time (or pts) and pir"),
+             "replay: the file, lines of seconds,level,level,... or JSON lines with time (or pts) and pir; a "
+             "level "
+             "may be volts (1.7V; volts in JSON)"),
     property("script", &S::script, "scripted: lines as in a replayed file, separated by semicolons"),
 };
 
@@ -173,8 +176,7 @@ drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors) {
   setup.bias = static_cast<drivers::LineBias>(settings.bias);
   setup.device = settings.iio_device;
   setup.channels = split(settings.channels);
-  setup.threshold = settings.threshold;
-  setup.hysteresis = settings.hysteresis;
+  setup.level = {settings.threshold, settings.hysteresis};
   setup.interval = std::max(duration(settings.sample_interval), Time(std::chrono::milliseconds(1)));
   setup.location = settings.location;
   setup.script = settings.script;

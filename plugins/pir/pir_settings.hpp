@@ -41,8 +41,8 @@ struct PirSettings {
 
   std::string iio_device = "iio:device0";
   std::string channels = "0,1,2";
-  double threshold = drivers::SensorSetup{}.threshold;
-  double hysteresis = drivers::SensorSetup{}.hysteresis;
+  double threshold = sensing::LevelOptions{}.threshold;
+  double hysteresis = sensing::LevelOptions{}.hysteresis;
   guint64 sample_interval = nanoseconds(drivers::SensorSetup{}.interval);
 
   std::string location, script;

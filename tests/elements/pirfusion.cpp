@@ -616,7 +616,6 @@ GST_START_TEST(pir_caps_that_cannot_be_fused_are_refused_by_the_name_of_the_pad)
     std::string caps;
     const char* why;
   } cases[] = {
-      {"application/x-pir,format=level,sensors=1,bearings=<0.0>,field-of-view=90.0", "volts (format=level)"},
       {"application/x-pir,format=presence,sensors=2,bearings=<0.0>,field-of-view=90.0", "bearings"},
       {"application/x-pir,format=presence", "sensors must be 1 to 16"},
       {with_sensors(14, 0, 10), "14 PIR sensors are too many besides the other pads' 3: 16"},

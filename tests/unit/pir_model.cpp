@@ -405,16 +405,6 @@ START_TEST(the_modules_are_there_by_name) {
 }
 END_TEST
 
-START_TEST(a_voltage_switches_with_hysteresis) {
-  LevelSwitch level(2.0, 1.0);
-  ck_assert(!level.update(1.9) && level.update(2.0) && level.update(1.0) && !level.update(0.99) &&
-            !level.update(1.5));
-  ck_assert(level.update(3) && level.update(std::numeric_limits<double>::quiet_NaN()));
-  LevelSwitch upside_down(1.0, 2.0);  // "off" above "on" means no hysteresis
-  ck_assert(upside_down.update(1.5) && !upside_down.update(0.9));
-}
-END_TEST
-
 int main() {
   Suite* suite = suite_create("pir_model");
   TCase* tests = tcase_create("pir_model");
@@ -435,7 +425,6 @@ int main() {
   tcase_add_test(tests, presence_is_what_its_definition_says_on_random_lines);
   tcase_add_test(tests, sleeping_until_the_deadline_misses_nothing);
   tcase_add_test(tests, the_modules_are_there_by_name);
-  tcase_add_test(tests, a_voltage_switches_with_hysteresis);
   suite_add_tcase(suite, tests);
   SRunner* runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "translation.hpp"
+
+#include <algorithm>
+
+#include "sensing/angles.h"
+#include "settings.hpp"
+
+namespace cerberus::plugin {
+
+namespace {
+
+constexpr bool same(fusion::Action ours, CerberusFusionAction theirs) {
+  return static_cast<int>(ours) == static_cast<int>(theirs);
+}
+static_assert(same(fusion::Action::track, CERBERUS_FUSION_TRACK) &&
+              same(fusion::Action::turn_left, CERBERUS_FUSION_TURN_LEFT) &&
+              same(fusion::Action::turn_right, CERBERUS_FUSION_TURN_RIGHT) &&
+              same(fusion::Action::search, CERBERUS_FUSION_SEARCH) &&
+              same(fusion::Action::zero, CERBERUS_FUSION_ZERO) &&
+              same(fusion::Action::hold, CERBERUS_FUSION_HOLD));
+
+}  // namespace
+
+const gchar* RuleName::of(std::string_view name) {
+  if (!interned_ || name_ != name) {
+    name_ = name;
+    interned_ = g_intern_string(name_.c_str());
+  }
+  return interned_;
+}
+
+void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
+  tracks.clear();
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    if (!region.tracked || region.id == 0) continue;
+    tracks.push_back({.id = region.id,
+                      .x = region.x,
+                      .y = region.y,
+                      .width = region.width,
+                      .height = region.height,
+                      .bearing = sensing::radians(region.bearing),
+                      .distance = region.distance,
+                      .age = duration(region.age),
+                      .state = region.state == CERBERUS_REGION_STOPPED   ? fusion::TrackState::stopped
+                               : region.state == CERBERUS_REGION_COASTED ? fusion::TrackState::coasted
+                                                                         : fusion::TrackState::seen});
+  }
+}
+
+CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment, RuleName& name) {
+  CerberusFusion fusion;
+  cerberus_fusion_init(&fusion);
+  if (!decision.rule_name.empty()) fusion.rule_name = name.of(decision.rule_name);
+  fusion.rule = decision.rule;
+  fusion.action = static_cast<CerberusFusionAction>(decision.action);
+  fusion.target = decision.target;
+  fusion.pan = moment.pan_degrees;
+  fusion.sector_from = sensing::degrees(decision.sector.from);
+  fusion.sector_to = sensing::degrees(decision.sector.to);
+  fusion.limited = decision.limited;
+  fusion.camera_found = decision.camera_found;
+  fusion.n_sensors = static_cast<guint>(moment.count);
+  std::copy_n(moment.sensors.begin(), moment.count, std::begin(fusion.sensors));
+  fusion.doubtful = decision.doubtful;
+  return fusion;
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,181 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// All sensors of a driver together: what is told when.
+#include "drivers/sensor_array.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "support/says.h"
+#include "support/suite.h"
+
+namespace {
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::sensing::PirFault;
+using cerberus::sensing::PirOptions;
+using cerberus::sensing::Presence;
+
+struct Told {
+  Time time;
+  std::string readings;
+  bool changed;
+};
+
+// Plays a script to its end, by nothing but due(). Readings as digits, "!" behind one whose fault changed.
+std::vector<Told> play(SensorArray& array, const std::string& script, const PirOptions& options,
+                       Time heartbeat = 10s, int sensors = 3) {
+  SensorSetup setup;
+  setup.sensors = sensors;
+  setup.script = script;
+  const SensorError error = array.open(make_sensor("scripted"), setup, options, heartbeat);
+  if (error) ck_abort_msg("%s", error.text.c_str());
+  std::vector<Told> told;
+  for (int step = 0; step < 10000; ++step) {
+    SensorReading reading;
+    switch (array.next(array.due(), reading)) {
+      case SensorArray::Step::reading: {
+        std::string text;
+        for (int i = 0; i < array.count(); ++i) {
+          text += static_cast<char>('0' + static_cast<int>(reading.presence[static_cast<std::size_t>(i)]));
+          if (reading.faulty >> i & 1) text += '!';
+        }
+        told.push_back({reading.time, text, reading.changed});
+        break;
+      }
+      case SensorArray::Step::wait:
+        break;
+      case SensorArray::Step::ended:
+      case SensorArray::Step::failed:
+        return told;
+    }
+  }
+  ck_abort_msg("it does not end");
+}
+
+void must_be(const std::vector<Told>& told, const std::vector<Told>& expected) {
+  for (std::size_t i = 0; i < std::max(told.size(), expected.size()); ++i) {
+    const Told none{-1s, "nothing", false};
+    const Told &is = i < told.size() ? told[i] : none, &should = i < expected.size() ? expected[i] : none;
+    if (is.time != should.time || is.readings != should.readings || is.changed != should.changed)
+      ck_abort_msg("%zu: %s at %g s, not %s at %g s", i, is.readings.c_str(),
+                   static_cast<double>(is.time.count()) / 1e9, should.readings.c_str(),
+                   static_cast<double>(should.time.count()) / 1e9);
+  }
+}
+
+START_TEST(a_reading_at_the_start_at_every_change_and_every_heartbeat) {
+  SensorArray array;
+  must_be(
+      play(array, "0,0,0,0; 0.25,1,0,0; 0.4,1,1,1; 0.45,0,1,1", {}, 100ms),
+      {{0ms, "000", true},
+       {100ms, "000", false},
+       {200ms, "000", false},
+       {250ms, "100", true},
+       {300ms, "100", false},
+       {400ms, "111", true},    // a change at a heartbeat is one reading
+       {470ms, "011", true}});  // the fall counts after 20 ms of quiet, and the recording goes on until then
+}
+END_TEST
+
+START_TEST(nothing_is_known_before_a_recordings_first_line) {
+  SensorArray array;
+  must_be(play(array, "1,0,1,0", {}), {{0ms, "222", true}, {1s, "010", true}});
+  must_be(play(array, "", {}), {{0ms, "222", true}});
+}
+END_TEST
+
+START_TEST(a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well) {
+  SensorArray array;
+  must_be(play(array, "0,0; 1,1; 700,0; 800,0", {}, 1000s, 1),
+          {{0ms, "0", true}, {1s, "1", true}, {601s, "2!", true}, {700s + 20ms, "0!", true}});
+  ck_assert(array.fault(0) == PirFault::none);
+}
+END_TEST
+
+START_TEST(a_driver_that_fails_ends_it_with_its_own_words) {
+  SensorArray array;
+  must_be(play(array, "0,0,0,0; 1 fail the dog ate the cable", {}), {{0ms, "000", true}});
+  ck_assert(says(array.error().text, "the dog ate the cable"));
+  SensorReading reading;
+  ck_assert(array.next(2s, reading) == SensorArray::Step::failed);  // and stays so
+  must_be(play(array, "0,0,0,0; show fail no LED", {}), {});
+  ck_assert(says(array.error().text, "no LED"));
+}
+END_TEST
+
+START_TEST(what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for) {
+  SensorArray array;
+  SensorSetup setup;
+  setup.script = "0,0,0,0; 1,1,0,0; 2,0,1,0; 60,0,0,0";
+  ck_assert(!array.open(make_sensor("scripted"), setup, {}, 100ms));
+  SensorReading reading;
+  ck_assert(array.next(1500ms, reading) == SensorArray::Step::reading);
+  ck_assert(reading.time == 1500ms && reading.presence[0] == Presence::detected);
+  ck_assert(array.next(1500ms, reading) == SensorArray::Step::wait && array.due() == 1600ms);
+  ck_assert(array.next(30s, reading) == SensorArray::Step::reading && reading.time == 1600ms);
+  ck_assert(array.next(30s, reading) == SensorArray::Step::reading && reading.time == 2s && reading.changed);
+  ck_assert(array.next(30s, reading) == SensorArray::Step::reading && reading.time == 2020ms &&
+            reading.changed);
+  ck_assert(array.next(30s, reading) == SensorArray::Step::wait && array.due() == 30s + 100ms);
+}
+END_TEST
+
+START_TEST(a_turning_base_makes_detections_doubtful) {
+  SensorArray array;
+  SensorSetup setup;
+  setup.script = "0,0,0,0; 1,0,0,1; 60,0,0,1";
+  ck_assert(!array.open(make_sensor("scripted"), setup, {}, 100s));
+  SensorReading reading;
+  ck_assert(array.next(0s, reading) == SensorArray::Step::reading && reading.doubtful == 0);
+  array.base(500ms, cerberus::sensing::radians(20));
+  ck_assert(array.next(1s, reading) == SensorArray::Step::reading && reading.doubtful == 0b100);
+  array.base(2s, 0);
+  ck_assert(array.next(10s, reading) == SensorArray::Step::reading);
+  ck_assert(reading.changed && reading.time == 5s &&
+            reading.doubtful == 0);  // modules hold their output for a while
+}
+END_TEST
+
+START_TEST(every_sample_is_a_reading_where_that_is_asked_for) {
+  SensorArray array;
+  SensorSetup setup;
+  setup.script = "0.5,0V,0V,0V; 1,0.1V,3V,0V; 1.25,0.1V,3V,0V; 2,0V,0V,0V";
+  for (const bool all : {false, true}) {
+    ck_assert(!array.open(make_sensor("scripted"), setup, {}, 1500ms));
+    ck_assert(array.measures());
+    if (all) array.tell_samples(true);
+    std::vector<Time> times;
+    std::vector<float> second;
+    for (SensorReading reading;;) {
+      const auto step = array.next(array.due(), reading);
+      if (step == SensorArray::Step::ended) break;
+      if (step != SensorArray::Step::reading) continue;
+      times.push_back(reading.time);
+      second.push_back(reading.volts[1]);
+    }
+    // The start, when nothing is known; the first sample; a detection; ...; a heartbeat; ...; the fall's debounced end.
+    const std::vector<Time> expected = all ? std::vector<Time>{0ms, 500ms, 1s, 1250ms, 1500ms, 2s, 2020ms}
+                                           : std::vector<Time>{0ms, 500ms, 1s, 1500ms, 2020ms};
+    ck_assert(times == expected);
+    ck_assert(std::isnan(second[0]) && second[1] == 0 && second[2] == 3 && second.back() == 0);
+  }
+  setup.script = "0,0,0,0";
+  ck_assert(!array.open(make_sensor("scripted"), setup, {}, 1s) && !array.measures());
+}
+END_TEST
+
+}  // namespace
+
+int main() {
+  return cerberus::tests::run_suite(
+      "sensor_array",
+      {a_reading_at_the_start_at_every_change_and_every_heartbeat,
+       nothing_is_known_before_a_recordings_first_line,
+       a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well,
+       a_driver_that_fails_ends_it_with_its_own_words,
+       what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for,
+       a_turning_base_makes_detections_doubtful, every_sample_is_a_reading_where_that_is_asked_for});
+}
