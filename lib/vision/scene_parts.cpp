@@ -14,7 +14,7 @@ constexpr int kLeastMoved = 4;                            // pixels
 // Shares of the taller part's height.
 constexpr double kGap = 0.2;       // between neighbours that are one
 constexpr double kFrontGap = 1;    // between two fronts of one
-constexpr double kPieceGap = 0.5;  // between a part and its pieces
+constexpr double kPieceGap = 0.5;  // between a part and its pieces, a front and the rest
 constexpr double kNarrow = 0.3;    // a front is narrower than this share of its height
 constexpr double kLevel = 0.5;     // share of the lower one's height at which they stand beside each other
 constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
@@ -115,8 +115,9 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
       const int tall = std::max(a.height(), b.height());
       const int across = gap(a.left, a.right, b.left, b.right), down = gap(a.top, a.bottom, b.top, b.bottom);
       const bool level = -down > kLevel * std::min(a.height(), b.height());
-      const bool fronts = a.width() < kNarrow * a.height() && b.width() < kNarrow * b.height();
-      if (level && across > 0 && across < (fronts ? kFrontGap : kGap) * tall) {
+      const bool narrow_a = a.width() < kNarrow * a.height(), narrow_b = b.width() < kNarrow * b.height();
+      const double reach = narrow_a && narrow_b ? kFrontGap : narrow_a || narrow_b ? kPieceGap : kGap;
+      if (level && across > 0 && across < reach * tall) {
         for (int y = std::max(a.top, b.top); y < std::min(a.bottom, b.bottom); ++y)
           set_bits(mask.row(y), std::min(a.right, b.right), std::max(a.left, b.left));
         parts_[i].whole = parts_[j].whole = true;

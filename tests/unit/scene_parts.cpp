@@ -153,6 +153,16 @@ START_TEST(two_fronts_are_one_where_the_memory_is_young) {
 }
 END_TEST
 
+START_TEST(a_front_belongs_to_what_is_near) {
+  Scene s(10);
+  constexpr Rect kFront{155, 80, 8, 80};  // 25 away: between a fifth and half of their height
+  s.differs(kPerson, 1);
+  s.differs(kFront, 1);
+  s.join();
+  ck_assert_int_eq(count(s.mask, {130, 80, 25, 80}), all({130, 80, 25, 80}));
+}
+END_TEST
+
 START_TEST(fronts_far_apart_or_of_other_heights_are_two) {
   Scene apart(10);
   apart.differs({100, 80, 6, 80}, 1);
@@ -216,7 +226,7 @@ int main() {
       {windows_are_times_not_frames, what_moves_is_an_object, who_stopped_is_kept_for_ten_seconds,
        whose_place_is_empty_is_forgotten_at_once, what_the_memory_saw_for_moments_needs_motion_now,
        before_a_camera_that_moves_only_what_moves_now_counts, two_fronts_are_one_where_the_memory_is_young,
-       fronts_far_apart_or_of_other_heights_are_two,
+       a_front_belongs_to_what_is_near, fronts_far_apart_or_of_other_heights_are_two,
        a_piece_near_a_big_part_is_dropped_where_the_memory_is_young, two_people_stay_two,
        a_tiny_part_says_nothing_while_the_memory_is_young});
 }
