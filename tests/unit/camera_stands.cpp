@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// When the camera stands, and when a scene begins.
+#include "vision/camera_motion.h"
+
+#include <check.h>
+
+#include <functional>
+
+#include "support/looks.h"
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+START_TEST(the_first_frame_starts_a_scene) {
+  CameraMotion camera;
+  const CameraMotionResult r = camera.update(picture(Scene(1)).view());
+  ck_assert_int_eq(r.scene_age, 1);
+  ck_assert(r.transform.is_identity());
+  ck_assert(!r.still);
+  ck_assert_int_eq(camera.update(picture(Scene(1)).view()).scene_age, 2);
+}
+END_TEST
+
+START_TEST(a_person_walking_past_a_standing_camera_leaves_it_still) {
+  const Image<std::uint8_t> person = picture(Scene(78, 60));
+  std::mt19937 random(8);
+  CameraMotion camera;
+  int still = 0;
+  for (int k = 0; k < 40; ++k) {
+    Image<std::uint8_t> frame = picture(Scene(8));
+    paste(person, frame.view(), -110 + 11 * k, 20, 110, 220);  // a third of the picture, 11 pixels a frame
+    add_noise(frame.view(), 2, 4, random);
+    const CameraMotionResult r = camera.update(frame.view());
+    ck_assert_int_eq(r.scene_age, k + 1);
+    still += r.still;
+  }
+  ck_assert_int_ge(still, 39);
+}
+END_TEST
+
+START_TEST(a_person_before_a_blank_wall_is_not_the_camera) {
+  const Image<std::uint8_t> person = picture(Scene(79, 60));
+  std::mt19937 random(20);
+  CameraMotion camera;
+  for (int k = 0; k < 20; ++k) {
+    Image<std::uint8_t> frame = flat(120, random);
+    paste(person, frame.view(), 60 + 7 * std::max(k - 2, 0), 100, 60, 130);  // stands, then walks
+    const CameraMotionResult r = camera.update(frame.view());
+    ck_assert(r.transform.is_identity());
+    if (k > 2) ck_assert_double_eq(r.confidence, 0);
+    // The head knows better, if it says so.
+    if (k == 19) {
+      Image<std::uint8_t> last = flat(120, random);
+      paste(person, last.view(), 60 + 7 * 18, 100, 60, 130);
+      ck_assert_double_lt(disagreement(camera.update(last.view(), Transform::translation(5, 0)).transform,
+                                       Transform::translation(5, 0)),
+                          1e-9);
+    }
+  }
+}
+END_TEST
+
+START_TEST(a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure) {
+  std::mt19937 random(9);
+  const Image<std::uint8_t> scene = picture(Scene(9));
+  // 100 Hz light seen by a rolling shutter: bands that wander; exposure that drifts, and that steps.
+  const std::function<double(double, int, int)> lights[] = {
+      [](double v, int, int) { return v; },
+      [](double v, int y, int k) { return v * (1 + 0.08 * std::sin(0.9 * k + 0.03 * y)); },
+      [](double v, int, int k) { return v * (1 - 0.004 * k); },
+      [](double v, int, int k) { return k / 10 % 2 ? 1.4 * v - 10 : 0.8 * v + 10; }};
+  for (const auto& light : lights) {
+    CameraMotion camera;
+    int still = 0;
+    for (int k = 0; k < 100; ++k) {
+      Image<std::uint8_t> frame = mapped(scene, [&](double v, int y) { return light(v, y, k); });
+      add_noise(frame.view(), 2, 6, random);
+      const CameraMotionResult r = camera.update(frame.view());
+      ck_assert_int_eq(r.scene_age, k + 1);
+      still += r.still;
+      ck_assert(!r.still || r.transform.is_identity());
+    }
+    ck_assert_int_ge(still, 98);
+  }
+}
+END_TEST
+
+START_TEST(vibration_of_three_tenths_of_a_pixel_is_not_snapped_away) {
+  std::mt19937 random(10);
+  CameraMotion camera;
+  double before = 0;
+  for (int k = 0; k < 40; ++k) {
+    const double x = k % 2 ? 0.3 : 0;
+    Image<std::uint8_t> frame = picture(Scene(10), Transform::translation(x, 0));
+    add_noise(frame.view(), 2, 4, random);
+    const CameraMotionResult r = camera.update(frame.view());
+    if (k > 0) {
+      ck_assert(!r.still);
+      ck_assert_double_eq_tol(r.transform.apply({160, 120}).x - 160, x - before, 0.06);
+    }
+    before = x;
+  }
+}
+END_TEST
+
+START_TEST(a_drift_too_slow_to_see_between_two_frames_adds_up) {
+  std::mt19937 random(11);
+  CameraMotion camera;
+  Transform total;
+  for (int k = 0; k < 100; ++k) {
+    Image<std::uint8_t> frame = picture(Scene(11), Transform::translation(0.05 * k, 0));
+    add_noise(frame.view(), 2, 2, random);
+    total = camera.update(frame.view()).transform * total;
+    ck_assert_double_eq_tol(total.apply({160, 120}).x - 160, 0.05 * k, 0.35);
+  }
+}
+END_TEST
+
+START_TEST(a_cut_starts_a_scene_and_the_next_frame_continues_it) {
+  CameraMotion camera;
+  for (std::uint32_t scene = 100; scene < 140; ++scene) {
+    const CameraMotionResult cut = camera.update(picture(Scene(scene)).view());
+    ck_assert_int_eq(cut.scene_age, 1);
+    ck_assert(cut.transform.is_identity());
+    ck_assert_int_eq(camera.update(picture(Scene(scene), Transform::translation(3, 1)).view()).scene_age, 2);
+  }
+}
+END_TEST
+
+START_TEST(a_cut_to_black_and_back_is_found) {
+  std::mt19937 random(13);
+  const Image<std::uint8_t> scene = picture(Scene(13)), black = flat(16, random),
+                            more_black = flat(16, random);
+  CameraMotion camera;
+  const int ages[] = {1, 2, 1, 2, 1, 2};
+  const Image<std::uint8_t>* frames[] = {&scene, &scene, &black, &more_black, &scene, &scene};
+  for (int k = 0; k < 6; ++k) ck_assert_int_eq(camera.update(frames[k]->view()).scene_age, ages[k]);
+}
+END_TEST
+
+START_TEST(a_featureless_picture_stands_still_without_confidence) {
+  std::mt19937 random(14);
+  CameraMotion camera;
+  for (int k = 0; k < 10; ++k) {
+    const CameraMotionResult r = camera.update(flat(120, random).view());
+    ck_assert_int_eq(r.scene_age, k + 1);
+    ck_assert(r.transform.is_identity());
+    ck_assert_double_eq(r.confidence, 0);
+  }
+}
+END_TEST
+
+START_TEST(a_new_picture_size_and_a_reset_start_a_scene) {
+  CameraMotion camera;
+  camera.update(picture(Scene(16)).view());
+  ck_assert_int_eq(camera.update(picture(Scene(16)).view()).scene_age, 2);
+  ck_assert_int_eq(camera.update(picture(Scene(16), {}, {160, 120}).view()).scene_age, 1);
+  ck_assert_int_eq(camera.update(picture(Scene(16), {}, {160, 120}).view()).scene_age, 2);
+  camera.reset();
+  ck_assert_int_eq(camera.update(picture(Scene(16), {}, {160, 120}).view()).scene_age, 1);
+}
+END_TEST
+
+int main() {
+  return run_suite(
+      "camera_stands",
+      {the_first_frame_starts_a_scene, a_person_walking_past_a_standing_camera_leaves_it_still,
+       a_person_before_a_blank_wall_is_not_the_camera,
+       a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure,
+       vibration_of_three_tenths_of_a_pixel_is_not_snapped_away,
+       a_drift_too_slow_to_see_between_two_frames_adds_up,
+       a_cut_starts_a_scene_and_the_next_frame_continues_it, a_cut_to_black_and_back_is_found,
+       a_featureless_picture_stands_still_without_confidence, a_new_picture_size_and_a_reset_start_a_scene});
+}
