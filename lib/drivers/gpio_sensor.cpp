@@ -130,7 +130,8 @@ SensorError GpioSensor::refused(int error, std::span<const unsigned> offsets) {
             "Lines " + list + " of GPIO chip " + chip_ + " are not free: gpioinfo says who has them.",
             errno_text(error)};
   if (error == EACCES || error == EPERM)
-    return {SensorFault::denied, "No permission to use lines " + list + " of GPIO chip " + chip_ + ".",
+    return {SensorFault::denied,
+            "No permission to use lines " + list + " of GPIO chip " + chip_ + ": let a udev rule allow it.",
             errno_text(error)};
   return {SensorFault::gone,
           "GPIO chip " + chip_ + " does not give lines " + list + " (" + std::strerror(error) +

@@ -129,7 +129,8 @@ void IioSensor::close() noexcept {
 SensorError IioSensor::gone(std::size_t input, int error) const {
   const std::string what = place(static_cast<int>(input));
   if (error == EACCES || error == EPERM)
-    return {SensorFault::denied, "No permission to read " + what + ".", errno_text(error)};
+    return {SensorFault::denied, "No permission to read " + what + ": let a udev rule allow it.",
+            errno_text(error)};
   return {SensorFault::gone, "Cannot read " + what + " (" + std::strerror(error) + "): was it unplugged?",
           errno_text(error)};
 }

@@ -18,7 +18,10 @@ SensorError failed(const std::string& location, int error) {
   const SensorFault fault = error == ENOENT   ? SensorFault::not_found
                             : error == EACCES ? SensorFault::denied
                                               : SensorFault::gone;
-  return {fault, "Cannot read the PIR recording " + location + ": " + std::strerror(error) + ".",
+  const char* help = fault == SensorFault::not_found ? " Set location to a file that is there."
+                     : fault == SensorFault::denied  ? " Make sure that this user may read it."
+                                                     : "";
+  return {fault, "Cannot read the PIR recording " + location + ": " + std::strerror(error) + "." + help,
           "errno " + std::to_string(error)};
 }
 

@@ -27,7 +27,10 @@ def skip(why):
 
 
 def kernel(folder):
-    for path in (os.environ.get('CERBERUS_KERNEL'), TOP.parent / 'shared' / 'vm' / 'bzImage', folder / 'bzImage'):
+    named = os.environ.get('CERBERUS_KERNEL')
+    if named and not pathlib.Path(named).is_file():
+        sys.exit(f'CERBERUS_KERNEL names {named}, and there is no such file')
+    for path in (named, TOP.parent / 'shared' / 'vm' / 'bzImage', folder / 'bzImage'):
         if path and pathlib.Path(path).is_file():
             return pathlib.Path(path)
     done = subprocess.run([HERE / 'kernel', folder])

@@ -2,6 +2,7 @@
 // Recorded sensors: what their files and scripts say, and what is wrong with those that say nothing.
 #include "drivers/recording.h"
 
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
@@ -108,6 +109,20 @@ START_TEST(files_that_cannot_be_recordings_are_refused_at_once) {
 }
 END_TEST
 
+START_TEST(a_recording_that_may_not_be_read_is_named) {
+  SensorSetup setup;
+  setup.location = file("0,0,0,0\n");
+  chmod(setup.location.c_str(), 0);
+  const bool root = geteuid() == 0;
+  ck_assert(!root || seteuid(65534) == 0);
+  const SensorError error = make_sensor("replay")->open(setup);
+  ck_assert(!root || seteuid(0) == 0);
+  unlink(setup.location.c_str());
+  ck_assert(error.fault == SensorFault::denied);
+  ck_assert(says(error.text, setup.location) && says(error.text, "may read it"));
+}
+END_TEST
+
 START_TEST(a_recording_is_played_when_its_time_has_come) {
   SensorSetup setup;
   setup.script = "0.5,0,1,0; 2,1,1,0; 2,1,1,1; 3 fail the cable broke";
@@ -189,9 +204,10 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "recording", {comma_separated_values_and_json_lines_say_the_same,
-                    what_is_wrong_with_a_recording_is_told_with_file_and_line,
-                    files_that_cannot_be_recordings_are_refused_at_once,
-                    a_recording_is_played_when_its_time_has_come, volts_are_written_as_volts,
-                    what_is_wrong_with_volts_is_told, recorded_volts_are_compared_with_the_threshold});
+      "recording",
+      {comma_separated_values_and_json_lines_say_the_same,
+       what_is_wrong_with_a_recording_is_told_with_file_and_line,
+       files_that_cannot_be_recordings_are_refused_at_once, a_recording_that_may_not_be_read_is_named,
+       a_recording_is_played_when_its_time_has_come, volts_are_written_as_volts,
+       what_is_wrong_with_volts_is_told, recorded_volts_are_compared_with_the_threshold});
 }
