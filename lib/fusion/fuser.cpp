@@ -7,20 +7,15 @@
 #include <numbers>
 #include <utility>
 
+#include "fusion/follower.h"
 #include "sensing/pir_model.h"
 
 namespace cerberus::fusion {
 
 namespace {
 
-constexpr Time kLongAgo = Time::min();
 // Heads stop a little before an edge (dead band, steps): as good as there.
 constexpr double kEdge = sensing::radians(2);
-
-// time - since < duration, for times that may never have been.
-bool within(Time duration, Time since, Time time) {
-  return since != kLongAgo && time - since < duration;
-}
 
 SensorBits bit(int sensor) {
   return static_cast<SensorBits>(1U << sensor);
@@ -29,41 +24,6 @@ SensorBits bit(int sensor) {
 // Both unknown counts as the same.
 bool same(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
-}
-
-int rank(TrackState state) {
-  switch (state) {
-    case TrackState::seen:
-      return 0;
-    case TrackState::stopped:
-      return 1;
-    case TrackState::coasted:
-      break;
-  }
-  return 2;
-}
-
-// Is a better than b as somebody to follow? One who is seen before one who stands, before one who may be gone; then as
-// asked. Distance, where it is not known, is judged by the feet: lower in the picture is nearer on a floor.
-bool better(const Track& a, const Track& b, TargetChoice choice) {
-  if (rank(a.state) != rank(b.state)) return rank(a.state) < rank(b.state);
-  const double size_a = a.width * a.height, size_b = b.width * b.height;
-  switch (choice) {
-    case TargetChoice::nearest: {
-      const bool known_a = std::isfinite(a.distance), known_b = std::isfinite(b.distance);
-      if (known_a != known_b) return known_a;
-      const double near_a = known_a ? -a.distance : a.y + a.height;
-      const double near_b = known_b ? -b.distance : b.y + b.height;
-      if (near_a != near_b) return near_a > near_b;
-      break;
-    }
-    case TargetChoice::newest:
-      if (a.age != b.age) return a.age < b.age;
-      break;
-    case TargetChoice::largest:
-      break;
-  }
-  return size_a != size_b ? size_a > size_b : a.id < b.id;
 }
 
 FuserOptions sane(FuserOptions options) {
@@ -96,13 +56,7 @@ struct Fuser::State {
     bool begun = false;
     Time time{};
 
-    // Camera.
-    std::uint32_t followed = 0;
-    bool followed_here = false;             // in this frame
-    Time found = kLongAgo;                  // last time there was a track
-    Time stopped = kLongAgo;                // since when the followed one stands; kLongAgo: it moves
-    std::array<std::uint32_t, 16> tired{};  // stood longer than hold_stopped, until they move again
-    unsigned tired_next = 0;
+    Follower follower;  // the camera's part
 
     // Sensors.
     SensorBits ones = 0, fired = 0, invalid = 0, doubtful = 0;
@@ -129,7 +83,6 @@ struct Fuser::State {
   Decision decision;
 
   void read_sensors(const Input& input);
-  void read_tracks(const Input& input);
   Decision decide(const Input& input);
   Decision complete(const Input& input, Decision next);
   Decision by_table(const Input& input, Decision next);
@@ -169,41 +122,6 @@ void Fuser::State::read_sensors(const Input& input) {
   m.fired = fired;
 }
 
-// Keeps the one followed, else chooses; a person who stands is let go after hold_stopped.
-void Fuser::State::read_tracks(const Input& input) {
-  Memory& m = memory;
-  const Track* best = nullptr;
-  const Track* kept = nullptr;
-  for (const Track& track : input.tracks) {
-    if (track.id == 0) continue;
-    const auto tired = std::ranges::find(m.tired, track.id);
-    if (tired != m.tired.end()) {
-      if (track.state != TrackState::seen) continue;
-      *tired = 0;
-    }
-    if (track.id == m.followed) kept = &track;
-    if (best == nullptr || better(track, *best, options.choice)) best = &track;
-  }
-
-  if (kept != nullptr) {
-    if (kept->state == TrackState::seen) m.stopped = kLongAgo;
-    if (kept->state == TrackState::stopped && m.stopped == kLongAgo) m.stopped = input.time;
-    if (kept->state != TrackState::seen && m.stopped != kLongAgo &&
-        !within(options.hold_stopped, m.stopped, input.time)) {
-      m.tired[m.tired_next++ % m.tired.size()] = kept->id;
-      m.followed = 0;
-      m.stopped = kLongAgo;
-      return read_tracks(input);  // once a tired one: it is not looked at again
-    }
-  } else if (best != nullptr) {
-    m.followed = best->id;
-    m.stopped = best->state == TrackState::stopped ? input.time : kLongAgo;
-    kept = best;
-  }
-  m.followed_here = kept != nullptr;
-  if (kept != nullptr) m.found = input.time;
-}
-
 void Fuser::State::look_at(int place) {
   memory.place = place;
   memory.inside = memory.seen_left = memory.seen_right = false;
@@ -235,7 +153,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
   };
   if (next.camera_found) {
     forget_places();
-    next.target = m.followed_here ? m.followed : 0;
+    next.target = m.follower.target();
     return say(next.target != 0 ? Action::track : Action::hold, 1, "camera");
   }
   if (m.fired != 0 && m.fired != m.asked) {
@@ -294,7 +212,7 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
   const Interval& limits = options.limits;
   switch (next.action) {
     case Action::track:
-      next.target = m.followed_here ? m.followed : 0;
+      next.target = m.follower.target();
       if (next.target == 0) next.action = Action::hold;  // "Camera Tracking" of nothing is standing still
       break;
     case Action::turn_left:
@@ -328,19 +246,19 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
 Decision Fuser::State::decide(const Input& input) {
   Memory& m = memory;
   read_sensors(input);
-  read_tracks(input);
+  m.follower.watch(input.tracks, input.time, options.choice, options.hold_stopped);
 
   Decision next;
   next.pan = input.pan;
   next.fired = m.fired;
   next.doubtful = m.doubtful;
   next.invalid = m.invalid;
-  next.camera_found = m.followed_here || within(options.camera_hold, m.found, input.time);
+  next.camera_found = m.follower.found(options.camera_hold, input.time);
   if (next.camera_found || m.fired != 0) m.detected = input.time;
   next = options.rules == RuleSet::table ? by_table(input, next) : complete(input, next);
 
   // Somebody who stopped is blind to camera and PIR alike, yet there: rule 7 waits.
-  if (next.action == Action::zero && within(options.hold_stopped, m.stopped, input.time)) {
+  if (next.action == Action::zero && m.follower.stands(options.hold_stopped, input.time)) {
     next.action = Action::hold;
     next.rule = 0;
     next.rule_name = "stopped";
