@@ -49,6 +49,7 @@ struct Shown {
   double gain = 1, base = 0;  // of what the head is told; degrees a second
   const char* head = "head";
   bool carried = false;  // the pose comes on the frame
+  bool told = false;     // an application says that the base turns against the head
   bool blank = false;
 };
 
@@ -63,6 +64,9 @@ double show(scene::Line& line, const Shown& shown, int from, int to) {
       cerberus_buffer_set_pose(in, &pose);
     else
       gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&pose));
+    if (shown.told)
+      gst_harness_push_upstream_event(
+          line.harness, cerberus_event_new_base((sweep(k - 1) - sweep(k)) / 0.04, k * scene::kStep));
     GstBuffer* out = line.through(in);
     const CerberusBase* base = cerberus_buffer_peek_base(out);
     rate = base ? base->yaw_rate : NAN;
@@ -71,7 +75,7 @@ double show(scene::Line& line, const Shown& shown, int from, int to) {
   return rate;
 }
 
-constexpr char kLens[] = "cameramotion horizontal-fov=60";
+constexpr char kLens[] = "cameramotion name=motion horizontal-fov=60";
 
 // The one warning's fault; its text must name the head.
 std::string fault(scene::Line& line, double* gain) {
@@ -150,6 +154,28 @@ GST_START_TEST(a_robots_turning_is_measured_and_no_fault_of_the_head) {
 }
 GST_END_TEST
 
+// The picture stands because the robot turns against the head, and the application says so.
+GST_START_TEST(a_head_that_turns_against_its_robot_does_not_slip) {
+  scene::Line line(kLens);
+  show(line, {.gain = 0, .told = true}, 1, 160);
+  fail_unless(line.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+// Four of the five changes of speed that a wrong scale needs, and four more: those before are of the other lens.
+GST_START_TEST(with_another_lens_the_comparison_begins_anew) {
+  scene::Line line(kLens);
+  show(line, {.gain = 0.5}, 0, 115);
+  GstElement* motion = gst_bin_get_by_name(GST_BIN(line.harness->element), "motion");
+  g_object_set(motion, "horizontal-fov", 61.0, nullptr);
+  gst_object_unref(motion);
+  show(line, {.gain = 0.5}, 115, 215);
+  fail_unless(line.messages(GST_MESSAGE_WARNING).empty());
+  show(line, {.gain = 0.5}, 215, 300);
+  fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), 1);
+}
+GST_END_TEST
+
 // Who made the frames attached the pose with which they were made: it cannot be wrong of them.
 GST_START_TEST(poses_that_came_on_the_frames_are_not_judged) {
   scene::Line line(kLens);
@@ -223,6 +249,8 @@ static Suite* carrier_suite() {
   tcase_add_test(tc, a_head_that_does_not_is_warned_of_once);
   tcase_add_test(tc, without_a_lens_or_with_a_blank_picture_nothing_is_said);
   tcase_add_test(tc, a_robots_turning_is_measured_and_no_fault_of_the_head);
+  tcase_add_test(tc, a_head_that_turns_against_its_robot_does_not_slip);
+  tcase_add_test(tc, with_another_lens_the_comparison_begins_anew);
   tcase_add_test(tc, poses_that_came_on_the_frames_are_not_judged);
   tcase_add_test(tc, another_heads_pose_on_the_frames_leaves_the_base_unknown);
   tcase_add_test(tc, what_a_faulty_head_did_is_not_taken_for_the_base);
