@@ -207,6 +207,23 @@ inline GstPad* static_pad(GstElement* element, const char* name) {
   return pad;
 }
 
+// Caps of so many sensors, each turned by `step` degrees from the one before.
+inline std::string with_sensors(int count, double first, double step, double field = 60) {
+  std::string bearings;
+  for (int i = 0; i < count; ++i)
+    bearings += (i ? "," : "") + std::string("(double)") + std::to_string(static_cast<int>(first + i * step));
+  return "application/x-pir,format=presence,sensors=" + std::to_string(count) + ",bearings=<" + bearings +
+         ">,field-of-view=(double)" + std::to_string(static_cast<int>(field));
+}
+
+// What a head or an application says upstream.
+inline void say(Rig& rig, GstEvent* event) {
+  gst_harness_push_upstream_event(rig.video, event);
+}
+inline void say(Rig& rig, const CerberusPose& where) {
+  say(rig, cerberus_event_new_pose(&where));
+}
+
 // A rule file for one test.
 class RuleFile {
  public:

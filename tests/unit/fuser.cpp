@@ -1,101 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fusion/fuser.h"
+// What camera and sensors together decide. Whom to follow is asked in follower.cpp.
+#include "fuser_stream.h"
 
-#include <check.h>
-
-#include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <random>
-#include <string>
-#include <vector>
 
-#include "sensing/angles.h"
+#include "support/allocations.h"
 
-using namespace cerberus::fusion;
-using namespace std::chrono_literals;
-using cerberus::sensing::degrees;
-using cerberus::sensing::radians;
-
-namespace {
-
-long allocations = 0;
-
-constexpr Time kFrame = 40ms;
-
-Track somebody(std::uint32_t id, TrackState state = TrackState::seen) {
-  return {.id = id, .x = 100, .y = 50, .width = 40, .height = 100, .age = 1s, .state = state};
-}
-
-// A stream of frames: feeds a fuser and keeps the time.
-struct Stream {
-  Fuser fuser;
-  Time now{};
-  double pan = 0;  // degrees
-  double yaw_rate = kUnknown;
-  std::vector<Track> tracks;
-  std::vector<std::uint8_t> sensors{0, 0, 0};
-
-  explicit Stream(const FuserOptions& options = {}) { fuser.set_options(options); }
-
-  const Decision& frame(Time step = kFrame) {
-    now += step;
-    return fuser.update({.time = now,
-                         .tracks = tracks,
-                         .sensors = sensors,
-                         .pan = radians(pan),
-                         .base_yaw_rate = radians(yaw_rate)});
-  }
-  const Decision& frames(Time duration) {
-    const Time end = now + duration;
-    while (now + kFrame < end) frame();
-    return frame(end - now);
-  }
-  // A head that does what it is told at 40 degrees a second.
-  void obey(const Decision& decision) {
-    const double step = 40 * 0.04;
-    double target = pan;
-    if (decision.action == Action::turn_left) target = -170;
-    if (decision.action == Action::turn_right) target = 170;
-    if (decision.action == Action::zero) target = 0;
-    if (decision.action == Action::search) {
-      const double from = degrees(decision.sector.from), to = degrees(decision.sector.to);
-      if (pan <= from + 0.5) sweeping_right = true;
-      if (pan >= to - 0.5) sweeping_right = false;
-      target = sweeping_right ? to : from;
-    }
-    pan += std::clamp(target - pan, -step, step);
-    ck_assert(pan >= -170 && pan <= 170);
-  }
-  bool sweeping_right = true;
-};
-
-void assert_sector(const Decision& decision, double from, double to) {
-  ck_assert_double_eq_tol(degrees(decision.sector.from), from, 1e-6);
-  ck_assert_double_eq_tol(degrees(decision.sector.to), to, 1e-6);
-}
-
-void assert_says(const Decision& decision, Action action, int rule, const char* rule_name) {
-  ck_assert_str_eq(name(decision.action).data(), name(action).data());
-  ck_assert_int_eq(decision.rule, rule);
-  const std::string said(decision.rule_name);
-  ck_assert_str_eq(said.c_str(), rule_name);
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size)) return memory;
-  throw std::bad_alloc();
-}
-void operator delete(void* memory) noexcept {
-  std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept {
-  std::free(memory);
-}
+using namespace stream;
 
 START_TEST(nothing_anywhere_means_zero) {
   Stream stream;
@@ -104,22 +16,6 @@ START_TEST(nothing_anywhere_means_zero) {
   ck_assert(decision.changed && !decision.camera_found && decision.target == 0 &&
             std::isnan(decision.sector.from));
   ck_assert(!stream.frame().changed);
-}
-END_TEST
-
-START_TEST(a_track_is_followed_and_kept_half_a_second) {
-  Stream stream;
-  stream.tracks = {somebody(7)};
-  const Decision& decision = stream.frame();
-  assert_says(decision, Action::track, 1, "camera");
-  ck_assert(decision.camera_found && decision.target == 7);
-  stream.tracks.clear();
-  stream.frames(499ms);
-  assert_says(decision, Action::hold, 1, "camera");
-  ck_assert(decision.camera_found && decision.target == 0);
-  stream.frames(1ms);
-  ck_assert(!decision.camera_found);
-  assert_says(decision, Action::hold, 0, "return");
 }
 END_TEST
 
@@ -135,126 +31,6 @@ START_TEST(the_head_returns_five_seconds_after_the_last_detection) {
   assert_says(decision, Action::hold, 0, "return");
   stream.frames(1ms);
   assert_says(decision, Action::zero, 7, "zero");
-}
-END_TEST
-
-START_TEST(the_one_followed_is_kept_though_others_are_nearer) {
-  Stream stream;
-  Track far = somebody(1), near = somebody(2);
-  far.distance = 9;
-  near.distance = 3;
-  stream.tracks = {far};
-  const Decision& decision = stream.frame();
-  stream.tracks = {near, far};
-  stream.frame();
-  ck_assert_int_eq(decision.target, 1);
-  stream.tracks = {near};
-  stream.frame();
-  ck_assert_int_eq(decision.target, 2);
-}
-END_TEST
-
-START_TEST(a_target_is_chosen_by_nearness_size_or_newness) {
-  Track near = somebody(1), large = somebody(2), newest = somebody(3);
-  near.distance = 2;
-  large.distance = 5;
-  large.width = 200;
-  newest.distance = 4;
-  newest.age = 100ms;
-  const struct {
-    TargetChoice choice;
-    std::uint32_t expected;
-  } cases[] = {{TargetChoice::nearest, 1}, {TargetChoice::largest, 2}, {TargetChoice::newest, 3}};
-  for (const auto& one : cases) {
-    std::vector<Track> tracks{near, large, newest};
-    std::ranges::sort(tracks, {}, &Track::id);
-    do {  // whatever the order they come in
-      Stream stream(FuserOptions{.choice = one.choice});
-      stream.tracks = tracks;
-      ck_assert_int_eq(stream.frame().target, one.expected);
-    } while (std::ranges::next_permutation(tracks, {}, &Track::id).found);
-  }
-}
-END_TEST
-
-START_TEST(without_distances_the_lowest_feet_are_the_nearest) {
-  Stream stream;
-  Track high = somebody(1), low = somebody(2);
-  low.y = 90;
-  stream.tracks = {high, low};
-  ck_assert_int_eq(stream.frame().target, 2);
-}
-END_TEST
-
-START_TEST(one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone) {
-  Stream stream;
-  Track coasted = somebody(1, TrackState::coasted), stopped = somebody(2, TrackState::stopped),
-        seen = somebody(3);
-  coasted.distance = 1;
-  stopped.distance = 2;
-  seen.distance = 8;
-  stream.tracks = {coasted, stopped};
-  ck_assert_int_eq(stream.frame().target, 2);
-  Stream other;
-  other.tracks = {coasted, stopped, seen};
-  ck_assert_int_eq(other.frame().target, 3);
-}
-END_TEST
-
-START_TEST(who_stopped_is_tracked_for_half_a_minute_and_then_left) {
-  Stream stream;
-  stream.tracks = {somebody(7)};
-  const Decision& decision = stream.frame();
-  stream.tracks = {somebody(7, TrackState::stopped)};
-  stream.frame();
-  stream.frames(30s - 1ms);
-  assert_says(decision, Action::track, 1, "camera");
-  stream.frames(1ms);
-  ck_assert_int_eq(decision.target, 0);
-  stream.frames(6s);
-  assert_says(decision, Action::zero, 7, "zero");
-  stream.tracks = {somebody(7)};  // moves again
-  stream.frame();
-  ck_assert_int_eq(decision.target, 7);
-  stream.tracks = {somebody(7, TrackState::stopped)};  // and has another half minute
-  stream.frame();
-  stream.frames(29s);
-  ck_assert_int_eq(decision.target, 7);
-}
-END_TEST
-
-START_TEST(who_moves_in_between_has_another_half_minute) {
-  Stream stream;
-  stream.tracks = {somebody(7)};
-  const Decision& decision = stream.frame();
-  for (const TrackState state : {TrackState::stopped, TrackState::seen, TrackState::stopped}) {
-    stream.tracks = {somebody(7, state)};
-    stream.frames(20s);
-    ck_assert_int_eq(decision.target, 7);
-  }
-}
-END_TEST
-
-START_TEST(rule_7_waits_for_who_stopped_even_when_the_track_is_gone) {
-  for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
-    Stream stream(options);
-    stream.tracks = {somebody(7)};
-    const Decision& decision = stream.frame();
-    stream.tracks = {somebody(7, TrackState::stopped)};
-    stream.frame();
-    stream.tracks.clear();
-    stream.frames(10s);
-    assert_says(decision, Action::hold, 0, "stopped");
-    stream.sensors = {1, 0, 0};  // news from elsewhere go before
-    stream.pan = 100;
-    stream.frame();
-    ck_assert(decision.action == Action::turn_left);
-    stream.sensors = {0, 0, 0};
-    stream.frames(30s - 10s - kFrame - 1ms);
-    ck_assert(decision.action == Action::hold);
-    stream.frames(10s);
-    ck_assert(decision.action == Action::zero);
-  }
 }
 END_TEST
 
@@ -646,9 +422,9 @@ START_TEST(whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocati
                         .sensors = sensors,
                         .pan = pan,
                         .base_yaw_rate = random() % 10 == 0 ? 0.5 : kUnknown};
-      const long before = allocations;
+      const std::size_t before = cerberus::tests::allocations();
       const Decision& a = one.update(input);
-      if (allocations != before) ck_abort_msg("seed %u: allocates", seed);
+      if (cerberus::tests::allocations() != before) ck_abort_msg("seed %u: allocates", seed);
       const Decision& b = two.update(input);
       if (a.action != b.action || a.rule != b.rule || a.target != b.target || a.changed != b.changed ||
           (a.sector.from != b.sector.from && !std::isnan(a.sector.from)))
@@ -675,44 +451,28 @@ START_TEST(whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocati
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("fuser");
-  TCase* tests = tcase_create("fuser");
-  tcase_set_timeout(tests, 60);
-  tcase_add_test(tests, nothing_anywhere_means_zero);
-  tcase_add_test(tests, a_track_is_followed_and_kept_half_a_second);
-  tcase_add_test(tests, the_head_returns_five_seconds_after_the_last_detection);
-  tcase_add_test(tests, the_one_followed_is_kept_though_others_are_nearer);
-  tcase_add_test(tests, a_target_is_chosen_by_nearness_size_or_newness);
-  tcase_add_test(tests, without_distances_the_lowest_feet_are_the_nearest);
-  tcase_add_test(tests, one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone);
-  tcase_add_test(tests, who_stopped_is_tracked_for_half_a_minute_and_then_left);
-  tcase_add_test(tests, who_moves_in_between_has_another_half_minute);
-  tcase_add_test(tests, another_sensor_is_a_new_question);
-  tcase_add_test(tests, rule_7_waits_for_who_stopped_even_when_the_track_is_gone);
-  tcase_add_test(tests, a_sensor_makes_the_head_turn_and_then_sweep);
-  tcase_add_test(tests, a_search_outlives_its_sensor_by_the_return_delay);
-  tcase_add_test(tests, a_search_ends_when_somebody_is_found);
-  tcase_add_test(tests, two_sectors_without_a_common_part_are_both_searched);
-  tcase_add_test(tests, equally_near_sectors_go_to_the_sensor_that_fired_last);
-  tcase_add_test(tests, a_search_leaves_nothing_unseen);
-  tcase_add_test(tests, a_sector_beyond_the_limits_is_approached_and_said_to_be_limited);
-  tcase_add_test(tests, limits_without_zero_are_told);
-  tcase_add_test(tests, invalid_readings_do_not_count_but_are_told);
-  tcase_add_test(tests, what_a_turning_base_trips_is_doubtful_and_does_not_count);
-  tcase_add_test(tests, a_doubtful_sensor_that_rests_is_believed_again);
-  tcase_add_test(tests, the_paper_stands_still_where_it_tracks_nobody);
-  tcase_add_test(tests, the_paper_ignores_a_fourth_sensor);
-  tcase_add_test(tests, a_table_turns_no_further_than_the_stop);
-  tcase_add_test(tests, a_users_table_has_hysteresis_return_delay_and_searches);
-  tcase_add_test(tests, an_unknown_pan_angle_commands_no_turn);
-  tcase_add_test(tests, time_that_goes_back_starts_anew);
-  tcase_add_test(tests, a_long_gap_lets_every_timer_expire);
-  tcase_add_test(tests, options_that_make_no_sense_are_put_right);
-  tcase_add_test(tests, whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "fuser", {nothing_anywhere_means_zero,
+                the_head_returns_five_seconds_after_the_last_detection,
+                a_sensor_makes_the_head_turn_and_then_sweep,
+                another_sensor_is_a_new_question,
+                a_search_outlives_its_sensor_by_the_return_delay,
+                a_search_ends_when_somebody_is_found,
+                two_sectors_without_a_common_part_are_both_searched,
+                equally_near_sectors_go_to_the_sensor_that_fired_last,
+                a_search_leaves_nothing_unseen,
+                a_sector_beyond_the_limits_is_approached_and_said_to_be_limited,
+                limits_without_zero_are_told,
+                invalid_readings_do_not_count_but_are_told,
+                what_a_turning_base_trips_is_doubtful_and_does_not_count,
+                a_doubtful_sensor_that_rests_is_believed_again,
+                the_paper_stands_still_where_it_tracks_nobody,
+                the_paper_ignores_a_fourth_sensor,
+                a_table_turns_no_further_than_the_stop,
+                a_users_table_has_hysteresis_return_delay_and_searches,
+                an_unknown_pan_angle_commands_no_turn,
+                time_that_goes_back_starts_anew,
+                a_long_gap_lets_every_timer_expire,
+                options_that_make_no_sense_are_put_right,
+                whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
 }

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Whom the fuser follows, and for how long.
+#include "fuser_stream.h"
+
+using namespace stream;
+
+START_TEST(a_track_is_followed_and_kept_half_a_second) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::track, 1, "camera");
+  ck_assert(decision.camera_found && decision.target == 7);
+  stream.tracks.clear();
+  stream.frames(499ms);
+  assert_says(decision, Action::hold, 1, "camera");
+  ck_assert(decision.camera_found && decision.target == 0);
+  stream.frames(1ms);
+  ck_assert(!decision.camera_found);
+  assert_says(decision, Action::hold, 0, "return");
+}
+END_TEST
+
+START_TEST(the_one_followed_is_kept_though_others_are_nearer) {
+  Stream stream;
+  Track far = somebody(1), near = somebody(2);
+  far.distance = 9;
+  near.distance = 3;
+  stream.tracks = {far};
+  const Decision& decision = stream.frame();
+  stream.tracks = {near, far};
+  stream.frame();
+  ck_assert_int_eq(decision.target, 1);
+  stream.tracks = {near};
+  stream.frame();
+  ck_assert_int_eq(decision.target, 2);
+}
+END_TEST
+
+START_TEST(a_target_is_chosen_by_nearness_size_or_newness) {
+  Track near = somebody(1), large = somebody(2), newest = somebody(3);
+  near.distance = 2;
+  large.distance = 5;
+  large.width = 200;
+  newest.distance = 4;
+  newest.age = 100ms;
+  const struct {
+    TargetChoice choice;
+    std::uint32_t expected;
+  } cases[] = {{TargetChoice::nearest, 1}, {TargetChoice::largest, 2}, {TargetChoice::newest, 3}};
+  for (const auto& one : cases) {
+    std::vector<Track> tracks{near, large, newest};
+    std::ranges::sort(tracks, {}, &Track::id);
+    do {  // whatever the order they come in
+      Stream stream(FuserOptions{.choice = one.choice});
+      stream.tracks = tracks;
+      ck_assert_int_eq(stream.frame().target, one.expected);
+    } while (std::ranges::next_permutation(tracks, {}, &Track::id).found);
+  }
+}
+END_TEST
+
+START_TEST(without_distances_the_lowest_feet_are_the_nearest) {
+  Stream stream;
+  Track high = somebody(1), low = somebody(2);
+  low.y = 90;
+  stream.tracks = {high, low};
+  ck_assert_int_eq(stream.frame().target, 2);
+}
+END_TEST
+
+START_TEST(one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone) {
+  Stream stream;
+  Track coasted = somebody(1, TrackState::coasted), stopped = somebody(2, TrackState::stopped),
+        seen = somebody(3);
+  coasted.distance = 1;
+  stopped.distance = 2;
+  seen.distance = 8;
+  stream.tracks = {coasted, stopped};
+  ck_assert_int_eq(stream.frame().target, 2);
+  Stream other;
+  other.tracks = {coasted, stopped, seen};
+  ck_assert_int_eq(other.frame().target, 3);
+}
+END_TEST
+
+START_TEST(who_stopped_is_tracked_for_half_a_minute_and_then_left) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  stream.tracks = {somebody(7, TrackState::stopped)};
+  stream.frame();
+  stream.frames(30s - 1ms);
+  assert_says(decision, Action::track, 1, "camera");
+  stream.frames(1ms);
+  ck_assert_int_eq(decision.target, 0);
+  stream.frames(6s);
+  assert_says(decision, Action::zero, 7, "zero");
+  stream.tracks = {somebody(7)};  // moves again
+  stream.frame();
+  ck_assert_int_eq(decision.target, 7);
+  stream.tracks = {somebody(7, TrackState::stopped)};  // and has another half minute
+  stream.frame();
+  stream.frames(29s);
+  ck_assert_int_eq(decision.target, 7);
+}
+END_TEST
+
+START_TEST(who_moves_in_between_has_another_half_minute) {
+  Stream stream;
+  stream.tracks = {somebody(7)};
+  const Decision& decision = stream.frame();
+  for (const TrackState state : {TrackState::stopped, TrackState::seen, TrackState::stopped}) {
+    stream.tracks = {somebody(7, state)};
+    stream.frames(20s);
+    ck_assert_int_eq(decision.target, 7);
+  }
+}
+END_TEST
+
+START_TEST(rule_7_waits_for_who_stopped_even_when_the_track_is_gone) {
+  for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
+    Stream stream(options);
+    stream.tracks = {somebody(7)};
+    const Decision& decision = stream.frame();
+    stream.tracks = {somebody(7, TrackState::stopped)};
+    stream.frame();
+    stream.tracks.clear();
+    stream.frames(10s);
+    assert_says(decision, Action::hold, 0, "stopped");
+    stream.sensors = {1, 0, 0};  // news from elsewhere go before
+    stream.pan = 100;
+    stream.frame();
+    ck_assert(decision.action == Action::turn_left);
+    stream.sensors = {0, 0, 0};
+    stream.frames(30s - 10s - kFrame - 1ms);
+    ck_assert(decision.action == Action::hold);
+    stream.frames(10s);
+    ck_assert(decision.action == Action::zero);
+  }
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "follower",
+      {a_track_is_followed_and_kept_half_a_second, the_one_followed_is_kept_though_others_are_nearer,
+       a_target_is_chosen_by_nearness_size_or_newness, without_distances_the_lowest_feet_are_the_nearest,
+       one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone,
+       who_stopped_is_tracked_for_half_a_minute_and_then_left, who_moves_in_between_has_another_half_minute,
+       rule_7_waits_for_who_stopped_even_when_the_track_is_gone});
+}
