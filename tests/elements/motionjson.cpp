@@ -122,10 +122,17 @@ GST_START_TEST(pose_sensors_and_decision_are_there_where_somebody_told) {
   fusion.n_sensors = 3;
   fusion.sensors[1] = 1, fusion.sensors[2] = 2;
   cerberus_buffer_set_fusion(buffer, &fusion);
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = -12.504;
+  cerberus_buffer_set_base(buffer, &base);
   line = empty_line("40000000", 1);
   line.resize(line.rfind('}'));
-  expect(line_of(h.get(), buffer),
-         line + R"(,"pir":[0,1,2],"fusion":{"rule":3,"action":"turn-left","target":null}})" + "\n");
+  expect(
+      line_of(h.get(), buffer),
+      line +
+          R"(,"base":{"yaw-rate":-12.5},"pir":[0,1,2],"fusion":{"rule":3,"action":"turn-left","target":null}})" +
+          "\n");
 }
 GST_END_TEST
 
