@@ -99,7 +99,7 @@ def main():
             command.append(word)
     qemu = shutil.which('qemu-system-x86_64')
     if not qemu:
-        skip('qemu-system-x86_64 is not installed (Debian: qemu-system-x86)')
+        skip('qemu-system-x86_64 is not installed (pipelines/setup hardware installs it)')
     output = boot(qemu, kernel(folder), init, commands)
     begin = output.find('guest:')
     print(output[max(begin, 0):])
