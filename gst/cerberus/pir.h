@@ -39,7 +39,7 @@ G_BEGIN_DECLS
 /**
  * CerberusPirFormat:
  * @CERBERUS_PIR_PRESENCE: one byte a sensor: 0 nothing, 1 somebody, 2 invalid (as in warm-up)
- * @CERBERUS_PIR_LEVEL: one 32-bit float a sensor, in volts
+ * @CERBERUS_PIR_LEVEL: one 32-bit float a sensor, in volts, in this machine's byte order; NaN: nothing was measured
  *
  * What a buffer of PIR readings holds.
  *

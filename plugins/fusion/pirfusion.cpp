@@ -9,8 +9,8 @@
  *
  * Pads: `sink` and `src` take any caps; caps, allocation and latency are theirs alone. Each `pir_%u` takes PIR readings
  * (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the order of their
- * numbers, 16 sensors at most). `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by default;
- * let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
+ * numbers, 16 sensors at most). `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by
+ * default; let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
  *
  * - Live: a frame never waits; the newest reading not later than the frame counts. Without one the sensors are invalid.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
@@ -20,9 +20,9 @@
  *
  * The pan angle comes from the pose on the buffer, else from the head's `cerberus-pose` events passing upstream,
  * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
- * come while the robot turns faster than 5 degrees a second are doubtful and do not count: a `cerberus-base` event says so, or, where
- * none came, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are told by that event. Both events, and seeks,
- * are passed on to the video and to the PIR pads.
+ * come while the robot turns faster than 5 degrees a second are doubtful and do not count: a `cerberus-base` event says
+ * so, or, where none came, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are told by that
+ * event. Both events, and seeks, are passed on to the video and to the PIR pads.
  *
  * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
  * described in the manual (rules); one that leaves a case open or contradicts itself is refused and the case named.
