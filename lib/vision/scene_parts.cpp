@@ -8,9 +8,9 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr double kStillShare = 0.1, kMovingShare = 0.25;  // of a part that must have moved lately
-constexpr double kFreshShare = 0.05;                      // of a doubtful part that must move now
-constexpr int kLeastMoved = 4;                            // pixels
+constexpr double kMovingShare = 0.1;  // of a part that must have moved lately
+constexpr double kFreshShare = 0.05;  // of a doubtful part that must move now
+constexpr int kLeastMoved = 4;        // pixels
 // Shares of the taller part's height.
 constexpr double kGap = 0.2;       // between neighbours that are one
 constexpr double kFrontGap = 1;    // between two fronts of one
@@ -51,12 +51,14 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
   for (const Run& r : labeller_.runs()) {
     Part& part = parts_[r.component];
     const std::uint8_t *quiet = planes.quiet.row(r.row), *age = planes.age.row(r.row);
-    int now = 0, before = 0, young = 0;
+    int now = 0, before = 0, young = 0, newest = 0;
     for (int x = r.first; x < r.end; ++x)
-      now += quiet[x] < windows.now, before += quiet[x] < lately, young += age[x] < windows.young;
+      now += quiet[x] < windows.now, before += quiet[x] < lately, young += age[x] < windows.young,
+          newest += age[x] < windows.lately;
     part.now += now;
     part.lately += before;
     part.young += young;
+    part.newest += newest;
     const auto contrast = [&](int outside, int inside) {
       part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
       part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
@@ -73,16 +75,16 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
     const bool object = part.outline > 0 && part.frame > 1.3 * part.memory + 2 * part.outline;
     const bool ghost = part.outline > 0 && part.memory > 1.3 * part.frame + 2 * part.outline;
     // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
-    const double share = planes.still ? kStillShare : kMovingShare;
     const bool moving =
-        part.lately >= std::max<double>(kLeastMoved, std::min<double>(share * area, part.outline));
+        part.lately >= std::max<double>(kLeastMoved, std::min<double>(kMovingShare * area, part.outline));
     const bool fresh = part.now >= std::max<double>(kLeastMoved, kFreshShare * area);
     // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
-    // textured: like a ghost it needs its owner's motion, or it goes at once.
-    const bool young = planes.still && part.young > area / 2;
+    // textured: like a ghost it needs its owner's motion, or it goes at once. Who walked in a second after the start and
+    // stopped has the outline of an object.
+    const bool young = planes.still && (part.newest > area / 2 || (part.young > area / 2 && !object));
     const bool doubtful = ghost || young;
     if (moving && (fresh || !doubtful)) {
-      young_objects = young_objects || young;
+      young_objects = young_objects || part.young > area / 2;
       continue;
     }
     if (!(planes.still && object) || doubtful) clear_bits(mask.row(r.row), r.first, r.end);

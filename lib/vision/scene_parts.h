@@ -48,7 +48,7 @@ class SceneParts {
   // What is known of a connected part.
   struct Part {
     int now = 0, lately = 0;    // pixels that moved in the last frames, and for some time back
-    int young = 0;              // pixels that the memory has seen for moments only
+    int young = 0, newest = 0;  // pixels that the memory has learnt for no longer than those windows
     int frame = 0, memory = 0;  // contrast across its outline in frame and memory ...
     int outline = 0;            // ... and over how many places
     bool whole = false;         // has been joined with another one
