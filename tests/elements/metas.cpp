@@ -8,59 +8,13 @@
 #include <cmath>
 #include <string>
 
+#include "annotated.h"
 #include "support.h"
 
 namespace {
 
-constexpr int kWidth = 64, kHeight = 48;
-const std::string kI420 = "video/x-raw,format=I420,framerate=25/1,width=64,height=48";
-
-// A frame that carries one of everything, and a region of interest of a stranger.
-GstBuffer* annotated_frame(gsize bytes = kWidth * kHeight * 3 / 2) {
-  GstBuffer* frame = gst_buffer_new_allocate(nullptr, bytes, nullptr);
-  gst_buffer_memset(frame, 0, 128, bytes);
-  GST_BUFFER_PTS(frame) = 0;
-  GST_BUFFER_DURATION(frame) = GST_SECOND / 25;
-
-  CerberusCameraMotion motion;
-  cerberus_camera_motion_init(&motion);
-  motion.matrix[2] = 3;
-  motion.matrix[5] = -2;
-  motion.from = 40 * GST_MSECOND;
-  motion.confidence = 0.75;
-  motion.residual = 0.5;
-  motion.scene_age = 7;
-  cerberus_buffer_add_camera_motion_meta(frame, &motion);
-
-  CerberusThreshold threshold{};
-  threshold.threshold = 12;
-  threshold.fuzzy_threshold = 30;
-  threshold.noise = 1.5;
-  threshold.ready = TRUE;
-  cerberus_buffer_add_threshold_meta(frame, &threshold);
-
-  GstBuffer* plane = gst_buffer_new_allocate(nullptr, 64 * 6, nullptr);
-  gst_buffer_memset(plane, 0, 255, 64 * 6);
-  cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_MASK, plane, 8, 6, 64);
-
-  gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);  // a stranger's
-
-  CerberusRegion region;
-  cerberus_region_init(&region);
-  region.id = 5;
-  region.tracked = TRUE;
-  region.x = 8.25;
-  region.y = 16;
-  region.width = 15.75;
-  region.height = 24;
-  region.vx = 10;
-  region.vy = -5;
-  region.age = 3 * GST_SECOND;
-  region.state = CERBERUS_REGION_COASTED;
-  region.confidence = 0.9;
-  cerberus_buffer_add_region(frame, &region);
-  return frame;
-}
+using annotated::kHeight, annotated::kWidth;
+const std::string kI420 = annotated::kI420;
 
 struct Passage {
   const char* launch;
@@ -92,7 +46,7 @@ GstBuffer* pass(const Passage& passage) {
   GstHarness* h = gst_harness_new_parse(passage.launch);
   gst_harness_set_src_caps_str(h, kI420.c_str());
   if (passage.out_caps) gst_harness_set_sink_caps_str(h, passage.out_caps);
-  fail_unless_equals_int(gst_harness_push(h, annotated_frame()), GST_FLOW_OK);
+  fail_unless_equals_int(gst_harness_push(h, annotated::frame_with_everything()), GST_FLOW_OK);
   fail_unless(gst_harness_push_event(h, gst_event_new_eos()));
   GstBuffer* out = gst_harness_pull(h);
   fail_unless(out, "nothing came out of %s", passage.launch);
@@ -222,7 +176,7 @@ START_TEST(a_point_on_the_horizon_has_no_place) {
 END_TEST
 
 START_TEST(copies_carry_everything_and_share_the_planes) {
-  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) frame = annotated::frame_with_everything();
   g_autoptr(GstBuffer) shallow = gst_buffer_copy(frame);
   g_autoptr(GstBuffer) deep = gst_buffer_copy_deep(frame);
   for (GstBuffer* copy : {shallow, deep}) {
@@ -237,7 +191,7 @@ START_TEST(copies_carry_everything_and_share_the_planes) {
 END_TEST
 
 START_TEST(a_part_of_a_frame_has_no_planes) {
-  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) frame = annotated::frame_with_everything();
   g_autoptr(GstBuffer) part = gst_buffer_copy_region(frame, GST_BUFFER_COPY_ALL, 0, 100);
   fail_if(cerberus_buffer_get_plane_meta(part, CERBERUS_PLANE_MASK));
   fail_unless(cerberus_buffer_get_threshold_meta(part));
@@ -256,7 +210,7 @@ START_TEST(branches_of_a_tee_do_not_disturb_each_other) {
   GstHarness* one = gst_harness_new_with_element(tee, "sink", "src_%u");
   GstHarness* two = gst_harness_new_with_element(tee, nullptr, "src_%u");
   gst_harness_set_src_caps_str(one, kI420.c_str());
-  fail_unless_equals_int(gst_harness_push(one, annotated_frame()), GST_FLOW_OK);
+  fail_unless_equals_int(gst_harness_push(one, annotated::frame_with_everything()), GST_FLOW_OK);
   g_autoptr(GstBuffer) changed = gst_harness_pull(one);
   g_autoptr(GstBuffer) kept = gst_harness_pull(two);
   changed = gst_buffer_make_writable(changed);
@@ -280,7 +234,7 @@ START_TEST(branches_of_a_tee_do_not_disturb_each_other) {
 END_TEST
 
 START_TEST(a_frame_has_one_of_each_and_the_last_one_counts) {
-  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) frame = annotated::frame_with_everything();
   CerberusThreshold threshold{};
   threshold.threshold = 99;
   fail_unless(cerberus_buffer_set_threshold(frame, &threshold));
@@ -361,7 +315,7 @@ START_TEST(a_plane_larger_than_its_buffer_is_refused_and_released) {
 END_TEST
 
 START_TEST(a_shared_frame_cannot_be_annotated) {
-  g_autoptr(GstBuffer) frame = annotated_frame();
+  g_autoptr(GstBuffer) frame = annotated::frame_with_everything();
   g_autoptr(GstBuffer) other = gst_buffer_ref(frame);
   g_autoptr(CerberusCameraMotion) motion = cerberus_camera_motion_new();
   g_autoptr(CerberusThreshold) threshold = cerberus_threshold_new();

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "annotated.h"
 #include "cerberus/private/compat.hpp"
 #include "support.h"
 
@@ -17,23 +18,7 @@
 
 namespace {
 
-CerberusRegion walker() {
-  CerberusRegion region;
-  cerberus_region_init(&region);
-  region.id = 5;
-  region.tracked = TRUE;
-  region.x = 8.25;
-  region.y = 16;
-  region.width = 15.5;
-  region.height = 24;
-  region.confidence = 0.9;
-  region.vx = 10;
-  region.vy = -5;
-  region.age = 3 * GST_SECOND;
-  region.state = CERBERUS_REGION_COASTED;
-  region.bearing = -12.5;
-  return region;
-}
+using annotated::walker;
 
 void assert_same(const CerberusRegion& a, const CerberusRegion& b) {
   fail_unless_equals_int(a.id, b.id);
@@ -68,10 +53,9 @@ guint count_rois(GstBuffer* frame) {
 
 GstBuffer* through(const char* launch, const char* out_caps, const CerberusRegion& region) {
   GstHarness* h = gst_harness_new_parse(launch);
-  gst_harness_set_src_caps_str(h, "video/x-raw,format=I420,framerate=25/1,width=64,height=48");
+  gst_harness_set_src_caps_str(h, annotated::kI420);
   gst_harness_set_sink_caps_str(h, out_caps);
-  GstBuffer* frame = gst_buffer_new_allocate(nullptr, 64 * 48 * 3 / 2, nullptr);
-  gst_buffer_memset(frame, 0, 128, -1);
+  GstBuffer* frame = annotated::plain_frame();
   fail_unless(cerberus_buffer_add_region(frame, &region));
   fail_unless_equals_int(gst_harness_push(h, frame), GST_FLOW_OK);
   GstBuffer* out = gst_harness_pull(h);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What tests of metas and regions put on frames.
+#pragma once
+
+#include <cerberus/cerberus.h>
+#include <gst/gst.h>
+#include <gst/video/video.h>
+
+namespace annotated {
+
+inline constexpr int kWidth = 64, kHeight = 48;
+inline constexpr char kI420[] = "video/x-raw,format=I420,framerate=25/1,width=64,height=48";
+
+// A grey frame, I420 unless it has other `bytes`.
+inline GstBuffer* plain_frame(gsize bytes = kWidth * kHeight * 3 / 2) {
+  GstBuffer* frame = gst_buffer_new_allocate(nullptr, bytes, nullptr);
+  gst_buffer_memset(frame, 0, 128, bytes);
+  GST_BUFFER_PTS(frame) = 0;
+  GST_BUFFER_DURATION(frame) = GST_SECOND / 25;
+  return frame;
+}
+
+// Somebody tracked, whose edges are nearest to the pixels 8, 16, 24 and 40.
+inline CerberusRegion walker() {
+  CerberusRegion region;
+  cerberus_region_init(&region);
+  region.id = 5;
+  region.tracked = TRUE;
+  region.x = 8.25;
+  region.y = 16;
+  region.width = 15.5;
+  region.height = 24;
+  region.confidence = 0.9;
+  region.vx = 10;
+  region.vy = -5;
+  region.age = 3 * GST_SECOND;
+  region.state = CERBERUS_REGION_COASTED;
+  region.bearing = -12.5;
+  return region;
+}
+
+// A frame that carries one of everything, and a region of interest of a stranger.
+inline GstBuffer* frame_with_everything(gsize bytes = kWidth * kHeight * 3 / 2) {
+  GstBuffer* frame = plain_frame(bytes);
+
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  motion.matrix[2] = 3;
+  motion.matrix[5] = -2;
+  motion.from = 40 * GST_MSECOND;
+  motion.confidence = 0.75;
+  motion.residual = 0.5;
+  motion.scene_age = 7;
+  cerberus_buffer_add_camera_motion_meta(frame, &motion);
+
+  CerberusThreshold threshold{};
+  threshold.threshold = 12;
+  threshold.fuzzy_threshold = 30;
+  threshold.noise = 1.5;
+  threshold.ready = TRUE;
+  cerberus_buffer_add_threshold_meta(frame, &threshold);
+
+  GstBuffer* plane = gst_buffer_new_allocate(nullptr, 64 * 6, nullptr);
+  gst_buffer_memset(plane, 0, 255, 64 * 6);
+  cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_MASK, plane, 8, 6, 64);
+
+  gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);  // a stranger's
+
+  const CerberusRegion region = walker();
+  cerberus_buffer_add_region(frame, &region);
+  return frame;
+}
+
+}  // namespace annotated
