@@ -3,23 +3,18 @@
 // GStreamer and with no property set, under the scoring of the data folder's README. OpenCV's MOG2 and KNN
 // are scored in the same run by the same code, as a check of the scoring itself.
 #include <cerberus/cerberus.h>
-#include <gst/app/gstappsink.h>
 #include <gst/video/video.h>
 
-#include <algorithm>
 #include <cstdio>
-#include <fstream>
-#include <functional>
-#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/video/background_segm.hpp>
-#include <sstream>
 
-#include "frames.h"
+#include "boxes.h"
 #include "support/data.h"
 
+using namespace cerberus;
 using namespace cerberus::bench;
 namespace fs = std::filesystem;
 
@@ -55,49 +50,10 @@ const Sequence kSequences[] = {
      "MOG2 .781  KNN .839  SGM .721"},
 };
 
-struct Counts {
-  double hit = 0, extra = 0, missed = 0;
-  double precision() const { return hit + extra > 0 ? hit / (hit + extra) : 0; }
-  double recall() const { return hit + missed > 0 ? hit / (hit + missed) : 0; }
-  double f() const { return hit > 0 ? 2 * hit / (2 * hit + extra + missed) : 0; }
-};
-
 std::string text(const char* format, auto... values) {
   std::vector<char> out(static_cast<std::size_t>(std::snprintf(nullptr, 0, format, values...)) + 1);
   std::snprintf(out.data(), out.size(), format, values...);
   return out.data();
-}
-
-// Calls `each` with every buffer that comes out of `line` (which must name an appsink "out").
-bool for_each_sample(const std::string& line, const std::function<void(GstSample*, int)>& each) {
-  GError* error = nullptr;
-  GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
-  if (error) {
-    std::fprintf(stderr, "bench: %s\n", error->message);
-    g_clear_error(&error);
-    if (pipeline) gst_object_unref(pipeline);
-    return false;
-  }
-  GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
-  gst_element_set_state(pipeline, GST_STATE_PLAYING);
-  int n = 0;
-  while (GstSample* sample = gst_app_sink_pull_sample(GST_APP_SINK(out))) {
-    each(sample, n++);
-    gst_sample_unref(sample);
-  }
-  GstBus* bus = gst_element_get_bus(pipeline);
-  if (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
-    GError* what = nullptr;
-    gst_message_parse_error(message, &what, nullptr);
-    std::fprintf(stderr, "bench: %s\n", what->message);
-    g_clear_error(&what);
-    gst_message_unref(message);
-  }
-  gst_object_unref(bus);
-  gst_element_set_state(pipeline, GST_STATE_NULL);
-  gst_object_unref(out);
-  gst_object_unref(pipeline);
-  return n > 0;
 }
 
 // The first plane of a GRAY8 sample, or of any format with a luma plane first.
@@ -164,64 +120,31 @@ Counts peer_quality(const Sequence& s, const fs::path& data, cv::BackgroundSubtr
   return counts;
 }
 
-using Boxes = std::vector<cv::Rect2d>;
-
-double overlap(const cv::Rect2d& a, const cv::Rect2d& b) {
-  const double both = (a & b).area();
-  return both / (a.area() + b.area() - both);
+// The boxes that end before the truth does.
+std::vector<vision::Box> scored(std::vector<vision::Box> boxes) {
+  std::erase_if(boxes, [](const vision::Box& b) { return b.right() > kTruthEnds; });
+  return boxes;
 }
 
-// Greedy by overlap, IoU >= 0.5.
-void match(Counts& counts, const Boxes& found, const Boxes& truth) {
-  std::vector<std::tuple<double, std::size_t, std::size_t>> pairs;
-  for (std::size_t i = 0; i < found.size(); ++i)
-    for (std::size_t j = 0; j < truth.size(); ++j)
-      if (const double o = overlap(found[i], truth[j]); o >= 0.5) pairs.emplace_back(o, i, j);
-  std::sort(pairs.rbegin(), pairs.rend());
-  std::vector<bool> used_found(found.size()), used_truth(truth.size());
-  double hits = 0;
-  for (const auto& [o, i, j] : pairs) {
-    if (used_found[i] || used_truth[j]) continue;
-    used_found[i] = used_truth[j] = true;
-    ++hits;
-  }
-  counts.hit += hits;
-  counts.extra += static_cast<double>(found.size()) - hits;
-  counts.missed += static_cast<double>(truth.size()) - hits;
-}
-
-// frame (from 1), id, x, y, w, h a line; boxes that end beyond x = 736 are left out, as on our side.
-std::map<int, Boxes> read_boxes(const fs::path& file) {
-  std::map<int, Boxes> boxes;
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream fields(line);
-    double frame, id, x, y, w, h;
-    if (!(fields >> frame >> id >> x >> y >> w >> h)) continue;
-    auto& list = boxes[static_cast<int>(frame) - 1];
-    if (x + w <= 736) list.emplace_back(x, y, w, h);
-  }
+std::vector<vision::Box> boxes_of(std::span<const Person> people) {
+  std::vector<vision::Box> boxes;
+  for (const Person& p : people) boxes.push_back(p.box);
   return boxes;
 }
 
 void box_quality(const fs::path& data, const std::string& detector) {
   const fs::path folder = data / "pets09_s2l1_view1";
-  const auto keys = read_boxes(folder / "gt_keyframes.txt"),
-             between = read_boxes(folder / "gt_interpolated.txt");
+  const auto keys = read_people(folder / "gt_keyframes.txt"),
+             between = read_people(folder / "gt_interpolated.txt");
   Counts on_keys, on_all;
   for_each_sample("filesrc location=" + (folder / "vtest.avi").string() + " ! decodebin ! " + detector +
                       " ! appsink name=out sync=false",
                   [&](GstSample* sample, int n) {
-                    Boxes found;
-                    GPtrArray* regions = cerberus_buffer_get_regions(gst_sample_get_buffer(sample));
-                    for (guint i = 0; i < regions->len; ++i) {
-                      const auto* r = static_cast<CerberusRegion*>(g_ptr_array_index(regions, i));
-                      if (r->x + r->width <= 736) found.emplace_back(r->x, r->y, r->width, r->height);
-                    }
-                    g_ptr_array_unref(regions);
-                    if (const auto t = keys.find(n); t != keys.end()) match(on_keys, found, t->second);
-                    if (const auto t = between.find(n); t != between.end()) match(on_all, found, t->second);
+                    const auto found = scored(found_boxes(gst_sample_get_buffer(sample)));
+                    if (const auto t = keys.find(n); t != keys.end())
+                      match(on_keys, found, boxes_of(t->second));
+                    if (const auto t = between.find(n); t != between.end())
+                      match(on_all, found, boxes_of(t->second));
                   });
   std::printf("%-34s precision %.3f  recall %.3f   (interpolated frames: %.3f  %.3f)\n", detector.c_str(),
               on_keys.precision(), on_keys.recall(), on_all.precision(), on_all.recall());
