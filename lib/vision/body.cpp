@@ -15,7 +15,9 @@ constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % i
 constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
 constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
 constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
+constexpr double kFarthestAway = 3.0;        // and where nobody was looked for meanwhile, who else may come
 constexpr double kCoastBrake = 1.0;          // s in which what is not seen is believed to slow down
+constexpr double kAwayBrake = 3.0;           // s, for who walked on when the camera turned away
 constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
 constexpr double kFade = 20.0;               // how much less a shrinking extent counts while standing
 constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
@@ -64,6 +66,14 @@ Box Body::box() const {
   return {x.position - bw / 2, y.position - bh / 2, bw, bh};
 }
 
+Box Body::visible(Size frame) const {
+  const Box b = box();
+  const double x0 = std::max(b.x, 0.0), y0 = std::max(b.y, 0.0);
+  const double x1 = std::min<double>(b.right(), frame.width), y1 = std::min<double>(b.bottom(), frame.height);
+  if (x1 - x0 < 0.1 * b.width || y1 - y0 < 0.1 * b.height) return b;
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
 bool Body::at_border(Size frame) const {
   const Box b = box();
   const double margin = 0.1 * size();
@@ -88,6 +98,15 @@ bool Body::predict(double seconds) {
   return std::isfinite(x.position) && std::isfinite(y.position);
 }
 
+// All lengths but the velocities, which the caller turns as well.
+void Body::magnify(double scale) {
+  for (MovingValue* a : {&x, &y})
+    for (double* p : {&a->pp, &a->pv, &a->vv}) *p *= scale * scale;
+  for (SlowValue* e : {&w, &h}) e->value += std::log(scale);
+  widest *= scale;
+  tallest *= scale;
+}
+
 // To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
 bool Body::carry(const Transform& motion, Size frame) {
   if (motion.is_identity()) return true;
@@ -103,33 +122,67 @@ bool Body::carry(const Transform& motion, Size frame) {
   const double vx = xx * x.velocity + xy * y.velocity, vy = yx * x.velocity + yy * y.velocity;
   x.velocity = vx;
   y.velocity = vy;
-  for (MovingValue* a : {&x, &y}) {
-    a->pp *= det;
-    a->pv *= det;
-    a->vv *= det;
-  }
-  const double scale = std::sqrt(det);
-  w.value += std::log(scale);
-  h.value += std::log(scale);
-  widest *= scale;
-  tallest *= scale;
+  magnify(std::sqrt(det));
   origin = motion.apply(origin);
   return true;
 }
 
-double Body::distance(const Box& seen) const {
+void Body::leave(const Gaze& gaze) {
+  // It is not the piece at the picture's edge that comes back, whose middle lagged behind.
+  const bool stands = stopped || slow > 0;
+  x.velocity = stands ? 0 : walk.x;
+  y.velocity = stands ? 0 : walk.y;
+  if (leaving) {
+    w.value = std::log(widest);
+    h.value = std::log(tallest);
+  }
+  away = ahead = true;
+  absent = 0;
+  where = gaze.direction({x.position, y.position});
+  magnification = gaze.magnification(where);
+}
+
+void Body::predict_away(double seconds, const Gaze& gaze) {
+  const Point before{x.position, y.position};
+  predict(seconds);
+  const double pixels = gaze.lens.focal_length() * magnification;  // a radian, about there
+  where.bearing = wrap_angle(where.bearing + (x.position - before.x) / pixels);
+  where.elevation -= (y.position - before.y) / pixels;
+  const auto seen = gaze.project(where);
+  ahead = seen.has_value();
+  x.position = ahead ? seen->x : before.x;
+  y.position = ahead ? seen->y : before.y;
+  origin.x += x.position - before.x;
+  origin.y += y.position - before.y;
+  const double now = gaze.magnification(where), scale = now / magnification;
+  magnification = now;
+  x.velocity *= scale;
+  y.velocity *= scale;
+  magnify(scale);
+}
+
+void Body::come_back() {
+  away = false;
+}
+
+bool Body::expected_in(Size frame) const {
   const Box b = box();
+  return ahead && b.x > 0 && b.y > 0 && b.right() < frame.width && b.bottom() < frame.height;
+}
+
+double Body::distance(const Box& seen, Size frame) const {
+  const Box b = away ? visible(frame) : box();
   const double s = size();
   const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
   const double noise = square(kGateNoise * s);
   const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
-  if (d2 > square(kFarthest)) return -1;
-  const double sizes = std::abs(std::log(seen.width) - w.value) + std::abs(std::log(seen.height) - h.value);
+  if (d2 > square(away ? kFarthestAway : kFarthest)) return -1;
+  const double sizes = std::abs(std::log(seen.width / b.width)) + std::abs(std::log(seen.height / b.height));
   if (sizes > 2 * std::log(10.0)) return -1;  // a tenth or ten times each way is something else
   const Point c = centre(seen);
   return 1 - intersection_over_union(b, seen) + 0.5 * sizes +
-         std::hypot(c.x - x.position, c.y - y.position) / s + 0.1 * std::sqrt(d2);
+         std::hypot(c.x - b.x - b.width / 2, c.y - b.y - b.height / 2) / s + 0.1 * std::sqrt(d2);
 }
 
 // Who stands dissolves from the mask piece by piece without getting smaller; who is cut by the picture's edge shows
@@ -185,12 +238,14 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
       resize(h, seen.height, cut_y, seconds);
       misfit = 0;
       fitted += seconds;
+      proven = std::max(proven, fitted);
     } else if (alone && seen.area() < b.area()) {
       const double brake = std::exp(-seconds / kPieceBrake);
       if (!rx.same_extent) x.velocity *= brake;
       if (!ry.same_extent) y.velocity *= brake;
     }
   }
+  if (!cut_x && !cut_y) walk = {x.velocity, y.velocity};
   widest = std::max(widest, width());
   tallest = std::max(tallest, height());
   stopped = false;
@@ -205,7 +260,7 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
 
 void Body::miss(double seconds) {
   unseen += seconds;
-  const double brake = std::exp(-seconds / kCoastBrake);
+  const double brake = std::exp(-seconds / (away ? kAwayBrake : kCoastBrake));
   x.velocity *= brake;
   y.velocity *= brake;
 }

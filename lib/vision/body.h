@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "vision/heading.h"
 #include "vision/kalman.h"
 #include "vision/regions.h"
 #include "vision/transform.h"
@@ -37,15 +38,23 @@ struct Body {
   double confidence = 0;
   double age = 0, unseen = 0;  // s since first and since last seen
   double fitted = 0;           // s during which a region had its extent: how well the extent is known
+  double proven = 0;           // the longest that ever was
   double shared = 0;           // s it has shared a region with others
   double slow = 0;             // s it has been seen standing, or nearly, up to now
   double misfit = 0;           // s since a region had its extent, and the first one that had not
   Box misfit_from;
-  bool stood = false;  // it stood, or nearly, when the misfit began
+  Point walk;              // velocity, pixels a second, when last seen away from the picture's edges
+  bool uncovered = false;  // first seen where the camera had just begun to look
+  bool stood = false;      // it stood, or nearly, when the misfit began
   int hits = 0, frames = 0;
   int region = -1;  // of this frame, -1 none
   bool stopped = false, dead = false;
   bool leaving = false;  // when last seen the picture's edge had cut it to less than it was
+  // The camera turned away from it: kept by angle, and as pixels only while that is ahead of the camera.
+  bool away = false, ahead = true;
+  Direction where;
+  double magnification = 1;  // Gaze::magnification() there
+  double absent = 0;         // s that an away one was expected in the picture and not seen there
 
   static Body first_seen(const Region& region);
 
@@ -54,6 +63,8 @@ struct Body {
   double size() const { return std::max(width(), height()); }
   double speed() const { return std::hypot(x.velocity, y.velocity); }
   Box box() const;
+  // What of the box the picture shows; all of it where that is next to nothing.
+  Box visible(Size frame) const;
 
   // Less than a tenth of S from the picture's edge.
   bool at_border(Size frame) const;
@@ -63,8 +74,15 @@ struct Body {
   bool predict(double seconds);
   bool carry(const Transform& motion, Size frame);
 
+  // The camera has turned away from it; along its own velocity and with the camera, by angles; it is in the picture again.
+  void leave(const Gaze& gaze);
+  void predict_away(double seconds, const Gaze& gaze);
+  void come_back();
+  // An away one should be seen, all of it.
+  bool expected_in(Size frame) const;
+
   // How badly a region fits: 0 perfectly; negative: it cannot be this object.
-  double distance(const Box& seen) const;
+  double distance(const Box& seen, Size frame) const;
 
   // Seen in this region; `alone`: by no other track.
   void correct(const Region& region, bool alone, double seconds, Size frame);
@@ -72,6 +90,7 @@ struct Body {
   void miss(double seconds);
 
  private:
+  void magnify(double scale);
   void adopt(const Box& seen);
   bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);

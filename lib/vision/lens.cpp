@@ -8,6 +8,7 @@
 namespace cerberus::vision {
 namespace {
 
+constexpr double kAhead = 0.05;  // cosine: less than 87 degrees off the axis
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
@@ -40,6 +41,16 @@ Direction Lens::direction(Point p, double pan, double tilt) const {
   if (!known()) return {kNan, kNan};
   const Ray r = ray(p, tilt);
   return {wrap_angle(pan + std::atan2(r.right, r.ahead)), std::atan2(r.up, std::hypot(r.right, r.ahead))};
+}
+
+std::optional<Point> Lens::project(const Direction& d, double pan, double tilt) const {
+  const double side = d.bearing - pan, level = std::cos(d.elevation);
+  const double right = level * std::sin(side), ahead = level * std::cos(side), up = std::sin(d.elevation);
+  const double c = std::cos(tilt), s = std::sin(tilt);
+  const double depth = ahead * c + up * s;  // the ray in the camera's axes
+  if (!known() || !(depth > kAhead)) return std::nullopt;
+  return Point{frame_.width / 2.0 + focal_ * right / depth,
+               frame_.height / 2.0 - focal_ * (up * c - ahead * s) / depth};
 }
 
 Transform Lens::turn(double pan_before, double tilt_before, double pan_after, double tilt_after) const {

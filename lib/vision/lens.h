@@ -12,6 +12,8 @@
 //   floor distance of a point below the horizon = mounting height / tan(-elevation)
 #pragma once
 
+#include <optional>
+
 #include "vision/image.h"
 #include "vision/regions.h"
 #include "vision/transform.h"
@@ -47,6 +49,10 @@ class Lens {
 
   // Where a point of the picture lies when the camera looks to (pan, tilt).
   Direction direction(Point p, double pan, double tilt) const;
+
+  // The point of the picture, which may lie far outside of it, where a direction is seen: direction()'s inverse. Nothing
+  // for what is not ahead of the camera, or an unknown lens.
+  std::optional<Point> project(const Direction& d, double pan, double tilt) const;
 
   // Where the picture of what is far goes when the camera turns from one pose to another (radians): a point of the picture
   // before to its place after, in pixels as a Transform counts them. Identity for an unknown lens.

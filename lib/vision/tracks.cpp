@@ -15,8 +15,18 @@ constexpr double kDefaultSeconds = 1.0 / 25;  // until a frame distance is known
 // S: an object is published once it has moved by this; the hole somebody left in what was taken for the scene, and a
 // lamp that was switched on, never do.
 constexpr double kLeastTravel = 0.12;
+// s until what the camera has turned to is no longer new. What stands out there does so because it moves: nothing was
+// learnt of the place that could have left a hole.
+constexpr double kNew = 0.5;
+constexpr double kLargestBack = 2;  // how much larger than when it left may be what comes back
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
+
+// Whose turn it is to be found a region.
+enum class Sort { here, away, unconfirmed };
+Sort sort_of(const Body& b) {
+  return b.id == 0 ? Sort::unconfirmed : b.away ? Sort::away : Sort::here;
+}
 
 Box bounding(const Box& a, const Box& b) {
   const double x = std::min(a.x, b.x), y = std::min(a.y, b.y);
@@ -38,6 +48,9 @@ struct Tracker::State {
   std::uint32_t last_id = 0;
   double seconds = kDefaultSeconds;
   Size frame;
+  Heading heading;
+  Box known;             // of the picture, what has been in view for a while
+  bool turning = false;  // the camera moved since the last frame
 
   State() {
     bodies.reserve(kMaximumTracks);
@@ -48,10 +61,11 @@ struct Tracker::State {
     used.reserve(kMaximumRegions);
   }
 
+  void look(const Transform& motion);
   void take(std::span<const Region> input);
   void predict(const Transform& motion);
   double pair_cost(const Body& body, const Region& region) const;
-  void associate(bool confirmed);
+  void associate(Sort sort);
   void gather_fragments();
   void share_regions();
   void absorb_pieces();
@@ -65,6 +79,22 @@ struct Tracker::State {
   void publish();
   bool has_stopped(const Body& body) const;
 };
+
+// The part in view moves with the scene, and what is new becomes known in about kNew.
+void Tracker::State::look(const Transform& motion) {
+  turning = !motion.is_identity();
+  const Box whole{0, 0, static_cast<double>(frame.width), static_cast<double>(frame.height)};
+  if (!turning && known.area() == whole.area()) return;
+  const Point low = motion.apply({known.x, known.y}), high = motion.apply({known.right(), known.bottom()});
+  const double gain = std::min(1.0, seconds / kNew);
+  const auto side = [&](double at, double edge, double most) {
+    const double inside = std::clamp(std::isfinite(at) ? at : edge, 0.0, most);
+    return inside + gain * (edge - inside);
+  };
+  const double x0 = side(low.x, 0, whole.width), x1 = side(high.x, whole.width, whole.width);
+  const double y0 = side(low.y, 0, whole.height), y1 = side(high.y, whole.height, whole.height);
+  known = {x0, y0, std::max(0.0, x1 - x0), std::max(0.0, y1 - y0)};
+}
 
 void Tracker::State::take(std::span<const Region> input) {
   regions.clear();
@@ -83,13 +113,19 @@ void Tracker::State::take(std::span<const Region> input) {
 }
 
 void Tracker::State::predict(const Transform& motion) {
-  for (Body& b : bodies) b.dead = !b.predict(seconds) || !b.carry(motion, frame);
+  for (Body& b : bodies) {
+    if (b.away)
+      b.predict_away(seconds, heading.gaze());
+    else
+      b.dead = !b.predict(seconds) || !b.carry(motion, frame);
+  }
   drop_dead();
 }
 
 double Tracker::State::pair_cost(const Body& b, const Region& region) const {
-  const double distance = b.distance(region.box);
+  const double distance = b.ahead ? b.distance(region.box, frame) : -1;
   if (distance < 0) return Assignment::kForbidden;
+  if (b.away && region.box.area() > kLargestBack * b.box().area()) return Assignment::kForbidden;
   if (options.maximum_speed > 0) {
     const double moved = std::hypot(region.box.x + region.box.width / 2 - b.x.position,
                                     region.box.y + region.box.height / 2 - b.y.position);
@@ -98,10 +134,10 @@ double Tracker::State::pair_cost(const Body& b, const Region& region) const {
   return distance;
 }
 
-void Tracker::State::associate(bool confirmed) {
+void Tracker::State::associate(Sort sort) {
   rows.clear();
   for (std::size_t i = 0; i < bodies.size(); ++i)
-    if ((bodies[i].id != 0) == confirmed) rows.push_back(static_cast<int>(i));
+    if (sort_of(bodies[i]) == sort) rows.push_back(static_cast<int>(i));
   const auto columns = static_cast<int>(regions.size());
   cost.resize(rows.size() * regions.size());
   for (std::size_t r = 0; r < rows.size(); ++r)
@@ -124,7 +160,7 @@ void Tracker::State::gather_fragments() {
     const Box& piece = regions[j].box;
     for (std::size_t i = 0; i < bodies.size(); ++i) {
       Body& b = bodies[i];
-      if (b.id == 0 || (b.region >= 0 && regions[b.region].confidence >= kWhole)) continue;
+      if (sort_of(b) != Sort::here || (b.region >= 0 && regions[b.region].confidence >= kWhole)) continue;
       const Box expected = b.box();
       if (overlap_area(expected, piece) < 0.6 * piece.area() || piece.area() > 0.7 * expected.area())
         continue;
@@ -146,8 +182,8 @@ void Tracker::State::gather_fragments() {
 // owner lives on in it.
 void Tracker::State::share_regions() {
   for (Body& b : bodies) {
-    if (b.region >= 0 || b.id == 0) continue;
-    const Box box = b.box();
+    if (b.region >= 0 || sort_of(b) != Sort::here) continue;
+    const Box box = b.visible(frame);
     for (std::size_t j = 0; j < regions.size() && b.region < 0; ++j) {
       if (owner[j] < 0 || regions[j].confidence >= kWhole) continue;
       const Body& first = bodies[owner[j]];
@@ -179,6 +215,7 @@ void Tracker::State::absorb_pieces() {
       if (b.region != static_cast<int>(j)) continue;
       b.dead = pieces && &b != oldest;
       if (b.dead) continue;
+      if (b.away) b.come_back();
       b.correct(r, alone, seconds, frame);
       b.shared = alone ? 0 : b.shared + seconds;
     }
@@ -189,7 +226,7 @@ void Tracker::State::absorb_pieces() {
 // A track without evidence whose box holds several regions was the blob they have come out of.
 void Tracker::State::remove_hollow() {
   for (Body& b : bodies) {
-    if (b.region >= 0 || b.id == 0) continue;
+    if (b.region >= 0 || sort_of(b) != Sort::here) continue;
     const Box box = b.box();
     const auto inside = std::count_if(regions.begin(), regions.end(), [&](const Region& r) {
       return overlap_area(r.box, box) > 0.6 * r.box.area() && r.box.area() > 0.1 * box.area();
@@ -204,6 +241,7 @@ void Tracker::State::give_birth() {
     if (owner[j] >= 0 || used[j] || bodies.size() >= kMaximumTracks) continue;
     bodies.push_back(Body::first_seen(regions[j]));
     bodies.back().region = static_cast<int>(j);
+    bodies.back().uncovered = overlap_area(regions[j].box, known) < 0.5 * regions[j].box.area();
   }
 }
 
@@ -222,8 +260,8 @@ void Tracker::State::age() {
   for (Body& b : bodies) {
     if (b.region >= 0) {
       const bool enough = b.hits >= 3 || (b.hits >= 2 && b.age >= 3 * options.confirm_time);
-      if (b.id == 0 && enough && b.travelled >= kLeastTravel && b.age >= 0.99 * options.confirm_time &&
-          b.hits >= 0.6 * b.frames) {
+      if (b.id == 0 && enough && (b.uncovered || b.travelled >= kLeastTravel) &&
+          b.age >= 0.99 * options.confirm_time && b.hits >= 0.6 * b.frames) {
         b.id = ++last_id;
         b.top_speed = b.speed();
       }
@@ -232,6 +270,13 @@ void Tracker::State::age() {
     b.miss(seconds);
     if (b.id == 0) {
       b.dead = b.unseen > 0.5 * options.confirm_time && b.hits < 0.6 * b.frames;
+      continue;
+    }
+    if (b.away) {
+      if (b.expected_in(frame)) b.absent += seconds;
+      if (b.stopped && b.absent > 0) b.come_back();  // stands where it stood
+      b.dead =
+          b.unseen > (b.stopped ? options.hold_stopped : options.away_time) || b.absent > options.coast_time;
       continue;
     }
     const bool outside =
@@ -246,6 +291,11 @@ void Tracker::State::age() {
     b.confidence *=
         std::exp(-seconds / std::max(b.stopped ? options.hold_stopped : options.coast_time, 1e-3));
     b.dead = outside || b.unseen > limit;
+    if (b.dead && turning && (outside || b.at_border(frame)) && b.unseen < options.away_time &&
+        b.proven >= 0.5 && b.travelled >= 0.45) {
+      b.dead = false;
+      b.leave(heading.gaze());
+    }
   }
   drop_dead();
 }
@@ -255,7 +305,7 @@ void Tracker::State::remove_duplicates() {
   for (std::size_t i = 0; i < bodies.size(); ++i)
     for (std::size_t j = i + 1; j < bodies.size(); ++j) {
       Body &a = bodies[i], &b = bodies[j];
-      if (a.dead || b.dead || a.id == 0 || b.id == 0) continue;
+      if (a.dead || b.dead || sort_of(a) != Sort::here || sort_of(b) != Sort::here) continue;
       if (intersection_over_union(a.box(), b.box()) < 0.7) continue;
       const bool twins = a.region == b.region && a.region >= 0;
       if (twins && std::max(a.shared, b.shared) < 1.0) continue;
@@ -270,7 +320,7 @@ void Tracker::State::remove_duplicates() {
 void Tracker::State::publish() {
   published.clear();
   for (const Body& b : bodies) {
-    if (b.id == 0) continue;
+    if (sort_of(b) != Sort::here) continue;
     const Box box = b.box();
     if (b.region < 0 && !b.stopped && std::sqrt(b.x.pp) > 0.4 * box.width)
       continue;  // where it is, nobody knows
@@ -307,18 +357,25 @@ void Tracker::reset() {
   state_->bodies.clear();
   state_->published.clear();
   state_->seconds = kDefaultSeconds;
+  state_->heading.reset();
+  state_->frame = {};
 }
 
 std::span<const Track> Tracker::update(std::span<const Region> regions, const Transform& motion,
-                                       double seconds, Size frame) {
+                                       double seconds, Size frame, const std::optional<Gaze>& gaze) {
   State& s = *state_;
-  s.frame = frame;
   if (seconds > 0 && std::isfinite(seconds)) s.seconds = seconds;
+  if (frame.width != s.frame.width || frame.height != s.frame.height)
+    s.known = {0, 0, static_cast<double>(frame.width), static_cast<double>(frame.height)};
+  s.frame = frame;
+  if (s.heading.update(gaze, motion, frame)) std::erase_if(s.bodies, [](const Body& b) { return b.away; });
+  s.look(motion);
   s.take(regions);
   s.predict(motion);
-  s.associate(true);
+  s.associate(Sort::here);
   s.gather_fragments();
-  s.associate(false);
+  s.associate(Sort::away);
+  s.associate(Sort::unconfirmed);
   s.share_regions();
   s.absorb_pieces();
   s.remove_hollow();

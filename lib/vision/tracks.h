@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "vision/heading.h"
 #include "vision/regions.h"
 #include "vision/transform.h"
 
@@ -17,6 +19,7 @@ struct TrackOptions {
   double confirm_time = 0.2;   // s of evidence before a track is published
   double coast_time = 1.0;     // s a moving track is carried without evidence
   double hold_stopped = 30.0;  // s a confirmed track that stopped is held
+  double away_time = 5.0;      // s a moving track is kept in mind while the camera looks elsewhere
   double minimum_speed = 0;    // frame pixels a second; what never was as fast is not published (0: no limit)
   double maximum_speed = 0;    // frame pixels a second; faster jumps are not the same object (0: no limit)
 };
@@ -43,9 +46,13 @@ class Tracker {
   // Forget all tracks (identities go on counting).
   void reset();
   // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous frame
-  // (<= 0: unknown, taken as the last known distance). Returns confirmed tracks, by id; lives until the next call.
+  // (<= 0: unknown, taken as the last known distance). gaze: lens and where the head looks, if both are known. Returns
+  // confirmed tracks, by id; lives until the next call.
+  //
+  // Who leaves the picture because the camera turns is kept by bearing and elevation, unpublished, and is the same when the
+  // camera comes back; without it angles are summed up from the camera's motion.
   std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
-                                Size frame);
+                                Size frame, const std::optional<Gaze>& gaze = {});
 
  private:
   struct State;

@@ -91,6 +91,7 @@ constexpr Taken kTaken[] = {
     {"mounting-height", REGIONS, TRACK},
     {"confirm-time", TRACK},
     {"coast-time", TRACK},
+    {"away-time", TRACK},
     {"hold-stopped", TRACK},
     {"hold-time", TRACK},
     {"minimum-speed", TRACK},

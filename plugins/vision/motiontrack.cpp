@@ -4,7 +4,9 @@
  *
  * Gives the regions of interest a stable identity, a velocity with the camera's motion taken out, an age and a state:
  * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
- * replaced by the tracked ones; the frame goes through untouched. Without `motionregions` upstream the regions are found
+ * replaced by the tracked ones; the frame goes through untouched. Who leaves the picture because the camera turns keeps the
+ * identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames where `horizontal-fov` is
+ * known, else from the camera's own motion. Without `motionregions` upstream the regions are found
  * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
  * camera's axis) and, where its feet are seen, a distance (metres); where a head's pose is on the frame, its tilt counts.
  *
@@ -51,6 +53,7 @@ struct Settings {
   guint64 confirm_time = clock_time(vision::TrackOptions{}.confirm_time);
   guint64 coast_time = clock_time(vision::TrackOptions{}.coast_time);
   guint64 hold_stopped = clock_time(vision::TrackOptions{}.hold_stopped);
+  guint64 away_time = clock_time(vision::TrackOptions{}.away_time);
   guint64 hold_time = 2 * GST_SECOND;
   double minimum_speed = 0, maximum_speed = 0;
   double minimum_speed_metres = vision::human_speed().metres.least;
@@ -69,6 +72,10 @@ const Property<Settings> kProperties[] = {
     property(
         "hold-stopped", &Settings::hold_stopped,
         "Nanoseconds for which an object that stopped moving is held where it stands; 0 = it ends at once"),
+    property("away-time", &Settings::away_time,
+             "Nanoseconds for which a moving object that the camera has turned away from keeps its identity; "
+             "0 = it ends "
+             "at once"),
     property(
         "hold-time", &Settings::hold_time,
         "Nanoseconds without any object after which the message that motion ended is posted; 0 = at once"),
@@ -126,7 +133,7 @@ struct Private final : StatefulAnalyser<Settings, State> {
  private:
   void apply(const Settings& s);
   void read_regions(GstBuffer* buffer);
-  void publish(const Frame& frame, std::span<const vision::Track> tracks);
+  void publish(const Frame& frame, const vision::Lens& lens, std::span<const vision::Track> tracks);
   void announce(Presence::Change change, GstClockTime running_time);
 };
 
@@ -135,6 +142,7 @@ void Private::apply(const Settings& s) {
   options.confirm_time = seconds(s.confirm_time);
   options.coast_time = seconds(s.coast_time);
   options.hold_stopped = seconds(s.hold_stopped);
+  options.away_time = seconds(s.away_time);
   options.maximum_speed = s.maximum_speed;
   state->tracker.set_options(options);
   state->gate.pixels = {s.minimum_speed, s.maximum_speed};
@@ -155,6 +163,15 @@ void Private::read_regions(GstBuffer* buffer) {
   g_ptr_array_unref(regions);
 }
 
+// Where the head looked, if a pose on the frame says so.
+std::optional<vision::Gaze> gaze(const Frame& frame, const vision::Lens& lens) {
+  const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer);
+  if (!pose || !lens.known()) return std::nullopt;
+  double pan = 0, tilt = 0;
+  cerberus_pose_evaluate(pose, frame.running_time, &pan, &tilt);
+  return vision::Gaze{lens, radians(pan), radians(tilt)};
+}
+
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) apply(*changed);
   if (!regions_known(frame.buffer)) {
@@ -165,7 +182,10 @@ bool Private::analyse(Frame& frame) {
   }
   read_regions(frame.buffer);
   if (frame.fresh) state->tracker.reset();
-  publish(frame, state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size()));
+  const vision::Lens lens(radians(state->settings.horizontal_fov), frame.size());
+  publish(frame, lens,
+          state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size(),
+                                gaze(frame, lens)));
   const bool present = !state->published.empty();
   announce(state->presence.update(present, known(frame.running_time), nanoseconds(clock_time(frame.seconds)),
                                   nanoseconds(state->settings.hold_time)),
@@ -176,11 +196,10 @@ bool Private::analyse(Frame& frame) {
 static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
               static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED);
 
-void Private::publish(const Frame& frame, std::span<const vision::Track> tracks) {
+void Private::publish(const Frame& frame, const vision::Lens& lens, std::span<const vision::Track> tracks) {
   cerberus_buffer_remove_regions(frame.buffer);
   state->published.clear();
   const Settings& s = state->settings;
-  const vision::Lens lens(radians(s.horizontal_fov), frame.size());
   for (const vision::Track& track : tracks) {
     const vision::Placement place = lens.place(track.box, 0, frame.tilt, s.mounting_height);
     const double speed = std::hypot(track.vx, track.vy);

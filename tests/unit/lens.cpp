@@ -144,6 +144,41 @@ START_TEST(a_lens_nobody_described_knows_nothing) {
 }
 END_TEST
 
+START_TEST(a_direction_is_found_again_in_the_picture_where_it_was_seen) {
+  // tan 45 = 1 to the right is the picture's edge; half of it is atan 0.5; straight up by atan 0.75 is the upper edge.
+  const auto edge = kLens.project({75 * kDegree, 0}, 30 * kDegree, 0);
+  ck_assert(edge.has_value());
+  ck_assert_double_eq_tol(edge->x, 640, 1e-9);
+  ck_assert_double_eq_tol(edge->y, 240, 1e-9);
+  const auto half = kLens.project({-std::atan(0.5), 0}, 0, 0);
+  ck_assert_double_eq_tol(half->x, 160, 1e-9);
+  const auto top =
+      kLens.project({170 * kDegree, std::atan(0.75) - 20 * kDegree}, 170 * kDegree, -20 * kDegree);
+  ck_assert_double_eq_tol(top->x, 320, 1e-9);
+  ck_assert_double_eq_tol(top->y, 0, 1e-9);
+  for (const double pan : {-170.0, 0.0, 95.0})
+    for (const double tilt : {-40.0, 0.0, 25.0})
+      for (const Point p : {Point{0, 0}, Point{17, 400}, Point{640, 480}}) {
+        const auto back =
+            kLens.project(kLens.direction(p, pan * kDegree, tilt * kDegree), pan * kDegree, tilt * kDegree);
+        ck_assert(back.has_value());
+        ck_assert_double_eq_tol(back->x, p.x, 1e-6);
+        ck_assert_double_eq_tol(back->y, p.y, 1e-6);
+      }
+}
+END_TEST
+
+START_TEST(what_is_not_ahead_of_the_camera_has_no_place_in_the_picture) {
+  ck_assert(kLens.project({86 * kDegree, 0}, 0, 0).has_value());
+  for (const double bearing : {88.0, 90.0, 150.0, 180.0, -90.0})
+    ck_assert(!kLens.project({bearing * kDegree, 0}, 0, 0).has_value());
+  ck_assert(!kLens.project({0, 60 * kDegree}, 0, -40 * kDegree).has_value());
+  ck_assert(!Lens().project({0, 0}, 0, 0).has_value());
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  ck_assert(!kLens.project({nan, 0}, 0, 0).has_value());
+}
+END_TEST
+
 int main() {
   Suite* suite = suite_create("lens");
   TCase* tests = tcase_create("lens");
@@ -158,6 +193,8 @@ int main() {
   tcase_add_test(tests, a_tilted_camera_measures_the_same_person);
   tcase_add_test(tests, feet_that_are_not_in_the_picture_give_no_distance);
   tcase_add_test(tests, what_is_far_stays_where_it_is_when_the_camera_turns);
+  tcase_add_test(tests, a_direction_is_found_again_in_the_picture_where_it_was_seen);
+  tcase_add_test(tests, what_is_not_ahead_of_the_camera_has_no_place_in_the_picture);
   tcase_add_test(tests, a_lens_nobody_described_knows_nothing);
   suite_add_tcase(suite, tests);
   SRunner* runner = srunner_create(suite);
