@@ -56,15 +56,15 @@ bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<
   return !flushing_;
 }
 
-Moment Inputs::at(Time time, const std::string& head, GstBuffer* frame) {
+Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* frame) {
   Moment moment;
   const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
   const CerberusBase* seen = cerberus_buffer_peek_base(frame);
   const std::lock_guard guard(lock_);
   for (GstPad* pad : pads_) {
     PirPad& pir = pir_pad(pad);
-    Reading reading = pir.history.at(time);
-    pir.history.forget_before(time);
+    Reading reading = pir.history.at(heard);
+    pir.history.forget_before(heard);
     if (!reading.array) continue;
     if (!pir.linked || pir.given_up) reading.values.fill(2);
     const auto known =

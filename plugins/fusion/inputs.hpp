@@ -37,9 +37,9 @@ class Inputs {
   // A frame of `time` is here; with `max_wait` it waits until every linked PIR pad covers `time` or has been silent for
   // so long (the names of those are added to `silent`). False: the video was flushed meanwhile.
   bool frame_came(Time time, std::optional<guint64> max_wait, std::vector<std::string>& silent);
-  // Sensors, pan of the head of this name (empty: any) and base then. What `frame` carries goes before a pose that was
-  // heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
-  Moment at(Time time, const std::string& head, GstBuffer* frame);
+  // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before a
+  // pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
+  Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
   void begin_video();  // a new stream, or after a flush
   void end_video() { set(video_ended_, true); }
   void set_flushing(bool flushing) { set(flushing_, flushing); }  // also while the sink pad is not active

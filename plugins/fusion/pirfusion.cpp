@@ -12,7 +12,9 @@
  * numbers, 16 sensors at most). `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by
  * default; let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
  *
- * - Live: a frame never waits; the newest reading not later than the frame counts. Without one the sensors are invalid.
+ * - Live: a frame never waits; the newest reading counts that there is when it comes, even one that is younger than the
+ *   frame: a camera's frames are old when they arrive, and who is heard shall not wait for that. Without a reading the
+ *   sensors are invalid.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
  *   it speaks. Video and PIR need a thread each (a `queue`) where one element makes both.
@@ -139,6 +141,15 @@ void apply_settings(CerberusPirFusion* self) {
   fuser.set_options(options);
 }
 
+// Until when readings count for a frame of `time`. Live, until now: a frame comes an exposure, a transfer and the whole
+// analysis after its time, and 60 ms are all that may pass from a sensor's edge to the motors. But a recording of
+// sensors may be ahead of the video, and is not believed before its time.
+Time heard_until(CerberusPirFusion* self, Time time, bool live) {
+  const GstClockTime now =
+      live ? gst_element_get_current_running_time(GST_ELEMENT(self)) : GST_CLOCK_TIME_NONE;
+  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, duration(now)) : time;
+}
+
 // Tells what was decided: on the buffer, and by message when it is something else.
 GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time, const Moment& moment) {
   State& state = *self->priv->state;
@@ -207,7 +218,8 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
           ("No reading of the PIR sensors came at pad %s for %.3g s; it is not waited for any more.",
            name.c_str(), static_cast<double>(settings.max_wait) / GST_SECOND),
           ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(nanoseconds(state.time))));
-    const Moment moment = priv.inputs.at(state.time, settings.head, buffer.get());
+    const Time heard = heard_until(self, state.time, state.live == true);
+    const Moment moment = priv.inputs.at(state.time, heard, settings.head, buffer.get());
     pass_base_on(self, state.time, moment);
     return decide_and_push(self, std::move(buffer), state.time, moment);
   });
