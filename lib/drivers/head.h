@@ -41,6 +41,8 @@ class Head {
   virtual std::string state(Time time, control::Pose& pose) = 0;
   // True: it has no clock of its own and lives in the time that it is told, however slow or fast that runs.
   virtual bool simulated() const { return false; }
+  // False: every call returns at once, so that it needs no thread of its own.
+  virtual bool blocks() const { return true; }
 };
 
 // "simulated", "scripted"; nullptr for a name that is no driver's.

@@ -17,10 +17,12 @@ struct Question {
 
 }  // namespace
 
-// Shared by owner and worker; whoever is last destroys it. Locks: `lock` guards everything but the head (the worker's own)
-// and `notify` (`notify_lock`); the two locks are never held together.
+// Shared by owner and worker; whoever is last destroys it. Locks: `lock` guards everything but `notify` (`notify_lock`) and,
+// where there is a worker, the head, which is its own. `lock` is never taken under `notify_lock`.
 struct HeadRunner::Core {
-  std::unique_ptr<Head> head;  // worker only
+  std::unique_ptr<Head> head;
+  bool blocks = true;                // the head has a worker
+  std::vector<control::Pose> found;  // as the head
   std::shared_ptr<void> lease;
   std::mutex notify_lock;
   std::function<void()> notify;
@@ -36,15 +38,18 @@ struct HeadRunner::Core {
     bool any() const { return open || command || stop || question || quit; }
   } todo;
   unsigned long asked = 0, answered = 0;  // tickets
-  bool interrupted = false, ended = false, obeys = true, speaks = true;
+  unsigned interrupts = 0;
+  bool ended = false, obeys = true, speaks = true;
   std::string failure, last_failure;  // not yet told; of the last batch
   std::vector<control::Pose> poses;   // of the last question
 
   void run();
-  std::string carry_out(const Batch& batch, std::vector<control::Pose>& found);
+  void serve(std::unique_lock<std::mutex>& guard);
+  unsigned long hand_over(std::unique_lock<std::mutex>& guard);
+  std::string carry_out(const Batch& batch);
 };
 
-std::string HeadRunner::Core::carry_out(const Batch& batch, std::vector<control::Pose>& found) {
+std::string HeadRunner::Core::carry_out(const Batch& batch) {
   if (batch.open)
     if (std::string wrong = head->open(*batch.open); !wrong.empty()) return wrong;
   if (batch.stop) head->stop(*batch.stop);
@@ -66,42 +71,53 @@ std::string HeadRunner::Core::carry_out(const Batch& batch, std::vector<control:
   return failed;
 }
 
-void HeadRunner::Core::run() {
-  std::vector<control::Pose> found;
-  found.reserve(kMostPieces);
-  std::unique_lock guard(lock);
-  for (;;) {
-    work.wait(guard, [this] { return todo.any(); });
-    const Batch batch = std::exchange(todo, {});
-    const unsigned long ticket = asked;
-    guard.unlock();
-    found.clear();
-    const std::string failed = carry_out(batch, found);
-    if (batch.quit) head->close();
-    guard.lock();
-    last_failure = failed;
-    if (!failed.empty()) failure = failed;
-    if (batch.open || batch.command)
-      obeys = failed.empty();
-    else if (batch.question)
-      speaks = failed.empty();
-    if (batch.question) poses.assign(found.begin(), found.end());
-    answered = ticket;
-    if (batch.quit) {
-      ended = true;
-      lease.reset();
-      answer.notify_all();
-      return;
-    }
-    answer.notify_all();
-    if (!batch.open && !batch.command && !batch.stop) continue;
-    guard.unlock();
-    {
-      const std::lock_guard quiet(notify_lock);
-      if (notify) notify();
-    }
-    guard.lock();
+// Does what is to be done; `guard` holds the lock before and after.
+void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
+  const Batch batch = std::exchange(todo, {});
+  const unsigned long ticket = asked;
+  if (blocks) guard.unlock();
+  found.clear();
+  const std::string failed = carry_out(batch);
+  if (batch.quit) head->close();
+  if (blocks) guard.lock();
+  last_failure = failed;
+  if (!failed.empty()) failure = failed;
+  if (batch.open || batch.command)
+    obeys = failed.empty();
+  else if (batch.question)
+    speaks = failed.empty();
+  if (batch.question) poses.assign(found.begin(), found.end());
+  answered = ticket;
+  if (batch.quit) {
+    ended = true;
+    lease.reset();
   }
+  answer.notify_all();
+  if (batch.quit || (!batch.open && !batch.command && !batch.stop)) return;
+  if (blocks) guard.unlock();
+  {
+    const std::lock_guard quiet(notify_lock);
+    if (notify) notify();
+  }
+  if (blocks) guard.lock();
+}
+
+void HeadRunner::Core::run() {
+  std::unique_lock guard(lock);
+  while (!ended) {
+    work.wait(guard, [this] { return todo.any(); });
+    serve(guard);
+  }
+}
+
+// Something is to be done. Returns its ticket.
+unsigned long HeadRunner::Core::hand_over(std::unique_lock<std::mutex>& guard) {
+  const unsigned long ticket = ++asked;
+  if (blocks)
+    work.notify_one();
+  else
+    serve(guard);
+  return ticket;
 }
 
 HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> notify)
@@ -109,8 +125,10 @@ HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, 
   core_->head = std::move(head);
   core_->lease = std::move(lease);
   core_->notify = std::move(notify);
+  core_->found.reserve(kMostPieces);
   core_->poses.reserve(kMostPieces);
-  worker_ = std::thread([core = core_] { core->run(); });
+  core_->blocks = core_->head->blocks();
+  if (core_->blocks) worker_ = std::thread([core = core_] { core->run(); });
 }
 
 HeadRunner::~HeadRunner() {
@@ -121,79 +139,65 @@ HeadRunner::~HeadRunner() {
   std::unique_lock guard(core_->lock);
   core_->todo = {};
   core_->todo.quit = true;
-  ++core_->asked;
-  core_->work.notify_one();
+  core_->hand_over(guard);
   const bool ended = core_->answer.wait_for(guard, close_patience_, [this] { return core_->ended; });
   guard.unlock();
+  if (!worker_.joinable()) return;
   if (ended)
     worker_.join();
   else
     worker_.detach();
 }
 
-HeadRunner::Answer HeadRunner::wait(unsigned long ticket, Patience patience, bool interruptible) {
-  std::unique_lock guard(core_->lock);
-  const auto over = [&] { return core_->answered >= ticket || (interruptible && core_->interrupted); };
+HeadRunner::Answer HeadRunner::wait(std::unique_lock<std::mutex>& guard, unsigned long ticket,
+                                    Patience patience, bool interruptible) {
+  const auto over = [&] { return core_->answered >= ticket || (interruptible && core_->interrupts > 0); };
   if (!core_->answer.wait_for(guard, patience, over)) return Answer::late;
   if (core_->answered < ticket) return Answer::interrupted;
   return core_->last_failure.empty() ? Answer::done : Answer::failed;
 }
 
 HeadRunner::Answer HeadRunner::open(const HeadSetup& setup, Patience patience) {
-  unsigned long ticket;
-  {
-    const std::lock_guard guard(core_->lock);
-    core_->todo.open = setup;
-    ticket = ++core_->asked;
-    core_->work.notify_one();
-  }
-  return wait(ticket, patience, false);
+  std::unique_lock guard(core_->lock);
+  core_->todo.open = setup;
+  return wait(guard, core_->hand_over(guard), patience, false);
 }
 
 HeadRunner::Answer HeadRunner::stop(Time now, Patience patience) {
-  unsigned long ticket;
-  {
-    const std::lock_guard guard(core_->lock);
-    core_->todo.command.reset();
-    core_->todo.stop = now;
-    ticket = ++core_->asked;
-    core_->work.notify_one();
-  }
-  return wait(ticket, patience, false);
+  std::unique_lock guard(core_->lock);
+  core_->todo.command.reset();
+  core_->todo.stop = now;
+  return wait(guard, core_->hand_over(guard), patience, false);
 }
 
 void HeadRunner::command(const HeadCommand& command) {
-  const std::lock_guard guard(core_->lock);
+  std::unique_lock guard(core_->lock);
   core_->todo.stop.reset();
   core_->todo.command = command;
-  ++core_->asked;
-  core_->work.notify_one();
+  core_->hand_over(guard);
 }
 
 HeadRunner::Answer HeadRunner::ask(const std::optional<HeadCommand>& command, Time from, Time until,
                                    std::vector<control::Pose>& poses, Patience patience) {
-  unsigned long ticket;
-  {
-    const std::lock_guard guard(core_->lock);
-    if (core_->interrupted) return Answer::interrupted;
-    if (command) {
-      core_->todo.stop.reset();
-      core_->todo.command = command;
-    }
-    core_->todo.question = Question{from, until};
-    ticket = ++core_->asked;
-    core_->work.notify_one();
+  std::unique_lock guard(core_->lock);
+  if (core_->blocks && core_->interrupts > 0) return Answer::interrupted;
+  if (command) {
+    core_->todo.stop.reset();
+    core_->todo.command = command;
   }
-  const Answer answer = wait(ticket, patience, true);
+  core_->todo.question = Question{from, until};
+  const Answer answer = wait(guard, core_->hand_over(guard), patience, true);
   if (answer != Answer::done && answer != Answer::failed) return answer;
-  const std::lock_guard guard(core_->lock);
   poses.assign(core_->poses.begin(), core_->poses.end());
   return answer;
 }
 
 void HeadRunner::interrupt(bool on) {
   const std::lock_guard guard(core_->lock);
-  core_->interrupted = on;
+  if (on)
+    ++core_->interrupts;
+  else if (core_->interrupts > 0)
+    --core_->interrupts;
   core_->answer.notify_all();
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head on a thread of its own: whoever drives it waits as long as he wants to and not as long as the driver does.
+// A head on a thread of its own: whoever drives it waits as long as he wants to and not as long as the driver does. A head
+// that never blocks has no thread: its answer is there at once, whatever else the machine does.
 //
 // Requests do not queue up. Of what was asked for while the driver was busy the newest command counts, and a stop beats the
 // commands before it: nothing is caught up with. A driver that blocks for ever keeps its thread, its device and its lease
@@ -7,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 #include <optional>
 #include <thread>
 #include <vector>
@@ -24,8 +26,8 @@ class HeadRunner {
     late,         // no answer yet; it goes on
     interrupted,  // somebody called interrupt(true)
   };
-  // notify: called on the worker's thread when the head was opened, stopped or commanded; must not block nor call the
-  // runner.
+  // notify: called when the head was opened, stopped or commanded, on the worker's thread if there is one; must not block
+  // nor call the runner.
   HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> notify = {});
   // Gives the driver close_patience to stop and close.
   ~HeadRunner();
@@ -43,7 +45,7 @@ class HeadRunner {
   Answer ask(const std::optional<HeadCommand>& command, Time from, Time until,
              std::vector<control::Pose>& poses, Patience patience);
 
-  // true: who waits in ask() returns at once, and so do all later calls of it.
+  // true: who waits in ask() returns at once, and so do all later calls of it, until as many calls with false came.
   void interrupt(bool on);
   // What the driver complained of since the last call; empty: nothing.
   std::string failure();
@@ -54,7 +56,8 @@ class HeadRunner {
 
  private:
   struct Core;
-  Answer wait(unsigned long ticket, Patience patience, bool interruptible);
+  Answer wait(std::unique_lock<std::mutex>& guard, unsigned long ticket, Patience patience,
+              bool interruptible);
 
   std::shared_ptr<Core> core_;
   std::thread worker_;

@@ -20,6 +20,7 @@ class SimulatedHead final : public Head {
   std::string command(const HeadCommand& command) override;
   std::string state(Time time, control::Pose& pose) override;
   bool simulated() const override { return true; }
+  bool blocks() const override { return false; }
 
  private:
   // One axis from a moment on: what the motor does, and where the camera was then.

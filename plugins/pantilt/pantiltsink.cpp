@@ -457,7 +457,8 @@ void ask_whether_live(Private& self) {
   start_ticker(self);
 }
 
-// Interrupted by a change of state: goes on where it was when PLAYING comes back.
+// A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts, then
+// has the lock while whoever was interrupted waits here, and goes on where it was when told to.
 template <typename Ask>
 GstFlowReturn persist(Private& self, Ask ask) {
   for (;;) {
@@ -484,8 +485,7 @@ std::optional<Time> running_time(const Private& self, GstClockTime pts, std::opt
 }
 
 GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
-  // In PAUSED nothing is done; here the base class would let a gap through, and a frame that just came too late. Its preroll
-  // lock is held, and PLAYING needs it: nobody would interrupt a driver that is waited for.
+  // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
   while (!self.playing)
     if (const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink); flow != GST_FLOW_OK) return flow;
   if (const auto changed = self.settings.changes()) configure(self, *changed);
@@ -539,29 +539,40 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
     if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
-    Outbox out;
-    self.station.announce(running_time(self, sink->segment.start, {}, {}).value_or(Time::zero()), out);
-    send(self, out);
+    const Time begin = running_time(self, sink->segment.start, {}, {}).value_or(Time::zero());
+    persist(self, [&](Outbox& out) { return self.station.announce(begin, out); });
   });
+  return done;
+}
+
+// The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes under
+// the lock too: a frame that comes in the middle waits until the change is through.
+GstStateChangeReturn play(Private& self) {
+  GstElement* element = GST_ELEMENT(self.sink);
+  guarded(element, [&] { self.station.resume(now(self)); });
+  self.station.interrupt(true);
+  const GstStateChangeReturn done = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())
+                                        ->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
+  GST_BASE_SINK_PREROLL_LOCK(self.sink);
+  self.station.interrupt(false);
+  self.playing = done != GST_STATE_CHANGE_FAILURE;
+  GST_BASE_SINK_PREROLL_SIGNAL(self.sink);
+  GST_BASE_SINK_PREROLL_UNLOCK(self.sink);
+  guarded(element, [&] { start_ticker(self); });
   return done;
 }
 
 GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, GstStateChange change) {
   Private& self = *cerberus_pan_tilt_sink_self(element)->priv;
+  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(self);
   if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open_head(self)) return GST_STATE_CHANGE_FAILURE;
   if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
     self.playing = false;
     stop_ticker(self);
     guarded(element, [&] { halt(self, "paused"); });
   }
-  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) {
-    self.playing = true;
-    guarded(element, [&] { self.station.resume(now(self)); });
-  }
   const GstStateChangeReturn done =
       GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->change_state(element, change);
-  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING && done != GST_STATE_CHANGE_FAILURE)
-    guarded(element, [&] { start_ticker(self); });
   const bool failed = change == GST_STATE_CHANGE_READY_TO_PAUSED && done == GST_STATE_CHANGE_FAILURE;
   if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) close_head(self);
   return done;

@@ -20,8 +20,6 @@ constexpr control::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(
 // A driver that answers is asked every 20 ms; one that does not, in this time, is at fault.
 constexpr control::Time kSilence = std::chrono::seconds(1);
 constexpr char kSilent[] = "the head does not answer";
-// The base class holds a lock over events that a change of state waits for.
-constexpr auto kEventPatience = milliseconds(50);
 constexpr auto kTickPatience = milliseconds(10);
 // A loaded machine is no reason to decide otherwise than an idle one; who cannot wait interrupts.
 constexpr auto kFramePatience = std::chrono::seconds(10);
@@ -149,22 +147,25 @@ void Station::check(const std::string& failure, Time head, Outbox& out) {
     complain(failure, head, out);
 }
 
-void Station::announce(Time at, Outbox& out) {
+Station::Answer Station::announce(Time at, Outbox& out) {
   std::unique_lock guard(lock_);
   const auto runner = runner_;
-  if (!runner) return;
+  if (!runner) return Answer::failed;
   const Time head = head_time(at);
-  const Time from = std::exchange(fresh_, false) ? head : std::max(head, published_);
+  const Time from = fresh_ ? head : std::max(head, published_);
   const Time until = clock_driven_ ? control::kNever : std::max(from, head + setup_.latency);
   guard.unlock();
   std::vector<Pose> poses;
-  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses, kEventPatience);
+  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses, kFramePatience);
   guard.lock();
-  // A driver that does not answer yet: then what is known of it.
+  if (answer == Answer::interrupted) return answer;
+  fresh_ = false;
+  // A driver that does not answer: then what is known of it.
   if (answer != Answer::done) poses.assign(1, history_.at(from));
   if (answer != Answer::done) poses[0].from = from;
   remember(poses);
   publish(poses, until, out);
+  return answer;
 }
 
 HeadCommand Station::decide(const Frame& frame, Time now, Outbox& out) {

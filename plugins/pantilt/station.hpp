@@ -48,8 +48,8 @@ class Station {
   void set_clock_driven(bool on);
   // Forgets the frames so far (flush, new segment): the next one begins anew.
   void forget();
-  // Where the head looks at the start, valid until its latency allows something else.
-  void announce(Time running, Outbox& out);
+  // Where the head looks at the start, valid until its latency allows something else. interrupted: call again.
+  Answer announce(Time running, Outbox& out);
 
   struct Frame {
     GstBuffer* buffer;  // nullptr: a gap

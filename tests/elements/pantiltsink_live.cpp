@@ -1,20 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pantiltsink with a clock: poses by the clock, the watchdog, drivers that block or fail, and every way of asking for what
-// cannot be.
-#include <atomic>
-#include <chrono>
-#include <thread>
-
+// pantiltsink with a clock: poses by the clock, the watchdog, drivers that fail, and every way of asking for what cannot be.
 #include "head_rig.h"
 
 namespace {
 
 using namespace head_rig;
-using Clock = std::chrono::steady_clock;
-using std::chrono::milliseconds;
-
-// What is promised for any change of state, whatever the driver does.
-constexpr auto kPromised = milliseconds(100);
 
 GstBuffer* frame_with(CerberusFusionAction action, GstClockTime pts) {
   GstBuffer* buffer = frame_at(pts);
@@ -132,9 +122,7 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
   while (time_of(rig) < 500 * GST_MSECOND) crank(rig);
-  const auto start = Clock::now();
   fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
-  fail_unless(Clock::now() - start < kPromised);
   const auto messages = rig.messages();
   fail_unless_equals_string(messages.back().reason.c_str(), "paused");
   // What the application wants meanwhile is done afterwards.
@@ -142,41 +130,6 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PLAYING), GST_STATE_CHANGE_SUCCESS);
   while (time_of(rig) < 4 * GST_SECOND) crank(rig);
   fail_unless(std::fabs(rig.poses().back().pan + 30) < 1e-9);
-}
-GST_END_TEST
-
-GST_START_TEST(a_blocked_driver_delays_no_change_of_state) {
-  for (const char* call : {"open", "command", "state", "stop", "close"})
-    for (const Source source : {Source::stored, Source::live}) {
-      Pipe gate;
-      {
-        auto start = Clock::now();
-        Rig rig(std::string("driver=scripted head=") + call + (source == Source::live ? "live" : "") +
-                    " script=\"" + call + " wait " + gate.reader() + "\"",
-                source, false);
-        // Setting up a harness is three changes of state and more.
-        fail_unless(Clock::now() - start < 3 * kPromised, "%s: start", call);
-        std::atomic<bool> through = false;
-        std::thread pusher([&] {
-          rig.begin();
-          gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
-          through = true;
-        });
-        if (source == Source::live) pusher.join();  // never waits
-        for (const GstState state :
-             {GST_STATE_PAUSED, GST_STATE_PLAYING, GST_STATE_PAUSED, GST_STATE_READY}) {
-          start = Clock::now();
-          fail_if(gst_element_set_state(rig.element, state) == GST_STATE_CHANGE_FAILURE);
-          const auto took = std::chrono::duration_cast<milliseconds>(Clock::now() - start).count();
-          fail_unless(took < kPromised.count(), "%s: %s took %d ms", call, gst_element_state_get_name(state),
-                      static_cast<int>(took));
-        }
-        if (pusher.joinable()) pusher.join();
-        fail_unless(through);
-      }
-      // The head is still its driver's; nobody else may have it until the driver is through.
-      gate.close_writer();
-    }
 }
 GST_END_TEST
 
@@ -259,16 +212,6 @@ GST_START_TEST(one_head_has_one_sink) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_head_whose_driver_blocks_is_not_free) {
-  Pipe gate;
-  {
-    Rig rig("driver=scripted head=door script=\"close wait " + gate.reader() + "\"", Source::stored);
-  }
-  fail_unless(refusal("head=door").find("door") != std::string::npos);
-  gate.close_writer();
-}
-GST_END_TEST
-
 GST_START_TEST(a_strangers_pose_event_passes_and_changes_nothing) {
   Rig rig;
   rig.poses();
@@ -328,11 +271,9 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_piece_that_ends_is_followed_by_the_next_at_that_time);
   tcase_add_test(tests, when_frames_stay_away_the_head_stops);
   tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
-  tcase_add_test(tests, a_blocked_driver_delays_no_change_of_state);
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
   tcase_add_test(tests, one_head_has_one_sink);
-  tcase_add_test(tests, a_head_whose_driver_blocks_is_not_free);
   tcase_add_test(tests, a_strangers_pose_event_passes_and_changes_nothing);
   tcase_add_test(tests, caps_without_a_size_are_refused);
   tcase_add_test(tests, many_starts_and_stops_leave_no_thread);

@@ -141,6 +141,40 @@ START_TEST(interrupt_wakes_who_waits) {
 }
 END_TEST
 
+START_TEST(two_who_interrupt_must_both_be_done) {
+  const auto runner = runner_with("");
+  std::vector<Pose> poses;
+  runner->interrupt(true);
+  runner->interrupt(true);
+  runner->interrupt(false);
+  ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::interrupted);
+  runner->interrupt(false);
+  ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::done);
+  runner->interrupt(false);  // one too many does no harm
+  runner->interrupt(true);
+  ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::interrupted);
+}
+END_TEST
+
+START_TEST(a_head_that_never_blocks_is_nobodys_but_the_callers) {
+  std::vector<std::thread::id> notified;
+  HeadRunner runner(make_head("simulated"), {}, [&] { notified.push_back(std::this_thread::get_id()); });
+  // No patience, and it need not have any. Nor is there anybody to interrupt.
+  ck_assert(runner.open({}, 0s) == Answer::done);
+  runner.interrupt(true);
+  std::vector<Pose> poses;
+  ck_assert(runner.ask(go(0s, 1), 0s, 1s, poses, 0s) == Answer::done);
+  ck_assert_double_eq_tol(poses.back().pan.speed, 1, 1e-9);
+  runner.command(go(1s, 0));
+  ck_assert(runner.idle());
+  ck_assert(runner.stop(2s, 0s) == Answer::done);
+  ck_assert_uint_eq(notified.size(), 4);
+  for (const std::thread::id id : notified) ck_assert(id == std::this_thread::get_id());
+  ck_assert(runner.ask(go(1s, 1), 2s, 2s, poses, 0s) == Answer::failed);  // a stale one
+  ck_assert(!runner.failure().empty());
+}
+END_TEST
+
 START_TEST(of_commands_given_meanwhile_only_the_newest_counts) {
   Pipe gate, record;
   const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
@@ -209,7 +243,7 @@ END_TEST
 
 START_TEST(a_thousand_heads_come_and_go) {
   for (int k = 0; k < 1000; ++k) {
-    HeadRunner runner(make_head("simulated"), {});
+    HeadRunner runner(make_head(k % 2 ? "simulated" : "scripted"), {});
     ck_assert(runner.open({}, 10s) == Answer::done);
     runner.command(go(0s, 1));
   }
@@ -218,10 +252,12 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "head_runner", {questions_are_answered_with_all_pieces_of_the_way,
-                      a_failure_is_told_once_and_healed_by_the_next_success, a_head_that_fails_is_stopped,
-                      who_cannot_wait_is_not_kept, interrupt_wakes_who_waits,
-                      of_commands_given_meanwhile_only_the_newest_counts, a_stop_beats_the_commands_before_it,
-                      a_blocked_driver_keeps_its_lease_and_closes_by_itself,
-                      a_driver_that_does_not_open_says_why, a_thousand_heads_come_and_go});
+      "head_runner",
+      {questions_are_answered_with_all_pieces_of_the_way,
+       a_failure_is_told_once_and_healed_by_the_next_success, a_head_that_fails_is_stopped,
+       who_cannot_wait_is_not_kept, interrupt_wakes_who_waits, two_who_interrupt_must_both_be_done,
+       a_head_that_never_blocks_is_nobodys_but_the_callers,
+       of_commands_given_meanwhile_only_the_newest_counts, a_stop_beats_the_commands_before_it,
+       a_blocked_driver_keeps_its_lease_and_closes_by_itself, a_driver_that_does_not_open_says_why,
+       a_thousand_heads_come_and_go});
 }
