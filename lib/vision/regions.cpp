@@ -172,10 +172,7 @@ void RegionFinder::State::group_components() {
         continue;
       const int from = group[i], to = group[j];
       for (std::size_t k = 0; k <= i; ++k)
-        if (group[k] == from)
-          group[k] = std::min(from, to);
-        else if (group[k] == to)
-          group[k] = std::min(from, to);
+        if (group[k] == from || group[k] == to) group[k] = std::min(from, to);
     }
   }
 }
