@@ -161,8 +161,9 @@ void Body::predict_away(double seconds, const Gaze& gaze) {
   magnify(scale);
 }
 
-void Body::come_back() {
+void Body::come_back(const Box& seen) {
   away = false;
+  adopt(seen);  // what it was when the picture's edge cut it was a guess, and may have been a group
 }
 
 bool Body::expected_in(Size frame) const {

@@ -77,7 +77,7 @@ struct Body {
   // The camera has turned away from it; along its own velocity and with the camera, by angles; it is in the picture again.
   void leave(const Gaze& gaze);
   void predict_away(double seconds, const Gaze& gaze);
-  void come_back();
+  void come_back(const Box& seen);
   // An away one should be seen, all of it.
   bool expected_in(Size frame) const;
 

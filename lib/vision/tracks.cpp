@@ -215,7 +215,7 @@ void Tracker::State::absorb_pieces() {
       if (b.region != static_cast<int>(j)) continue;
       b.dead = pieces && &b != oldest;
       if (b.dead) continue;
-      if (b.away) b.come_back();
+      if (b.away) b.come_back(r.box);
       b.correct(r, alone, seconds, frame);
       b.shared = alone ? 0 : b.shared + seconds;
     }
@@ -274,7 +274,7 @@ void Tracker::State::age() {
     }
     if (b.away) {
       if (b.expected_in(frame)) b.absent += seconds;
-      if (b.stopped && b.absent > 0) b.come_back();  // stands where it stood
+      if (b.stopped && b.absent > 0) b.away = false;  // stands where it stood
       b.dead =
           b.unseen > (b.stopped ? options.hold_stopped : options.away_time) || b.absent > options.coast_time;
       continue;
