@@ -154,9 +154,11 @@ Station::Answer Station::announce(Time at, Outbox& out) {
   const Time head = head_time(at);
   const Time from = fresh_ ? head : std::max(head, published_);
   const Time until = clock_driven_ ? control::kNever : std::max(from, head + setup_.latency);
+  // Live nobody waits, and tick() tells the rest soon.
+  const drivers::HeadRunner::Patience patience = clock_driven_ ? kTickPatience : kFramePatience;
   guard.unlock();
   std::vector<Pose> poses;
-  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses, kFramePatience);
+  const Answer answer = runner->ask({}, from, from + setup_.latency + kAhead, poses, patience);
   guard.lock();
   if (answer == Answer::interrupted) return answer;
   fresh_ = false;

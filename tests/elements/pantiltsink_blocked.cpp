@@ -153,7 +153,11 @@ GST_START_TEST(a_blocked_driver_delays_no_change_of_state) {
           rig.begin();
           gst_harness_push(rig.harness, turning_right());
         });
-        if (source == Source::live) pusher.join();  // never waits
+        if (source == Source::live) {
+          const milliseconds took = time_taken([&] { pusher.join(); });
+          fail_unless(took < kHang, "%s: live, a frame waited for %d ms", call,
+                      static_cast<int>(took.count()));
+        }
         for (std::size_t k = 0; k < kStates.size(); ++k) {
           const milliseconds took = change(rig, kStates[k]);
           fail_unless(took < kHang, "%s: %s took %d ms", call, gst_element_state_get_name(kStates[k]),

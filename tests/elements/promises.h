@@ -3,10 +3,10 @@
 // counts: what waits for something is slow in each of them.
 #pragma once
 
-#include <gst/check/gstcheck.h>
-
 #include <algorithm>
 #include <chrono>
+
+#include <gst/check/gstcheck.h>  // last: its macro `fail` is a name in the library's headers
 
 // Unlock and every change of state.
 inline constexpr std::chrono::milliseconds kPromised(100);

@@ -173,15 +173,15 @@ def test_a_display_that_cannot_be_opened_does_not_stop_it():
 
 def test_ctrl_c_finishes_the_files():
     file = video('long.mp4', 'mp4mux', frames=3000)
-    process = subprocess.Popen(line(file), stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(line(file), stderr=subprocess.PIPE, text=True)
     until = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < until:
         if os.path.exists('out/objects.jsonl') and os.path.getsize('out/objects.jsonl') > 0:
             break
         time.sleep(0.005)
     process.send_signal(signal.SIGINT)
-    status = process.wait(60)
-    assert status == 0, f'exit status {status}'
+    said = process.communicate(timeout=60)[1]
+    assert process.returncode == 0, f'exit status {process.returncode}: {said}'
     lines = json_lines('out/objects.jsonl')
     assert 0 < len(lines) < 3000, f'{len(lines)} lines'
     # Read back, the very last frame may fall outside the length that the muxer wrote.

@@ -57,14 +57,14 @@ struct Sight {
 std::vector<SlipFinding> findings(const Speed& head, const Sight& sight, double seconds, unsigned seed = 1,
                                   SlipWatch* watch = nullptr) {
   std::mt19937 random(seed);
-  std::normal_distribution<double> normal(0, sight.noise);
+  std::normal_distribution<double> normal;  // of deviation 1: 0 is not allowed there
   SlipWatch own;
   std::vector<SlipFinding> all;
   for (int k = 1; k * sight.frame < seconds; ++k) {
     const double to = k * sight.frame, from = to - sight.frame;
     double picture =
         sight.gain * turned(head, from - sight.late, to - sight.late) + turned(sight.base, from, to);
-    if (picture != 0) picture += normal(random);  // a picture that stands is snapped to stand
+    if (picture != 0) picture += sight.noise * normal(random);  // a picture that stands is snapped to stand
     if (!sight.seen(k)) picture = kNan;
     const auto found =
         (watch ? *watch : own).add(sight.frame, radians(picture), radians(turned(head, from, to)));
