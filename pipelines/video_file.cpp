@@ -7,10 +7,8 @@ namespace cerberus::demo {
 
 namespace {
 
-// A damaged file can leave decodebin waiting for ever (GStreamer 1.22 may swallow a demuxer's error), and so can, seldom, a
-// sound one on a busy machine: it gets a second chance.
-constexpr GstClockTime kPatience = 10 * GST_SECOND;
-constexpr int kTries = 2;
+// A damaged file can leave decodebin waiting for ever (GStreamer 1.22 may swallow a demuxer's error).
+constexpr GstClockTime kPatience = 20 * GST_SECOND;
 
 // decodebin has found every stream. A file with sound only has nothing to link to, and would end in silence.
 void on_no_more_pads(GstElement* decoder, gpointer) {
@@ -68,13 +66,9 @@ VideoFile look_at(const std::string& path) {
   g_object_set(file, "location", path.c_str(), nullptr);
   g_signal_connect(decoder, "no-more-pads", G_CALLBACK(on_no_more_pads), nullptr);
   g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
-  g_autoptr(GstMessage) message = nullptr;
-  for (int k = 0; k < kTries && !message; ++k) {
-    gst_element_set_state(pipeline, GST_STATE_NULL);
-    gst_element_set_state(pipeline, GST_STATE_PAUSED);
-    message = gst_bus_timed_pop_filtered(
-        bus, kPatience, GstMessageType(GST_MESSAGE_ASYNC_DONE | GST_MESSAGE_ERROR | GST_MESSAGE_EOS));
-  }
+  gst_element_set_state(pipeline, GST_STATE_PAUSED);
+  g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
+      bus, kPatience, GstMessageType(GST_MESSAGE_ASYNC_DONE | GST_MESSAGE_ERROR | GST_MESSAGE_EOS));
   if (message && GST_MESSAGE_TYPE(message) == GST_MESSAGE_ASYNC_DONE) {
     g_autoptr(GstPad) pad = gst_element_get_static_pad(end, "sink");
     g_autoptr(GstCaps) caps = gst_pad_get_current_caps(pad);

@@ -27,6 +27,11 @@ struct Component {
   int height() const { return bottom - top; }
 };
 
+// How far two extents (columns or rows) lie apart; below 0 where they overlap.
+constexpr int gap(int a_from, int a_to, int b_from, int b_to) {
+  return (a_from > b_from ? a_from : b_from) - (a_to < b_to ? a_to : b_to);
+}
+
 // One horizontal stretch of moving pixels. 16 bits: no picture here is wider or higher than 65535.
 struct Run {
   std::uint16_t row = 0;

@@ -29,10 +29,6 @@ bool looks_like_one_person(const Component& c, const Window& body, Size picture)
          c.left > 0 && c.top > 0 && c.right < picture.width && c.bottom < picture.height;
 }
 
-int gap(int a_from, int a_to, int b_from, int b_to) {
-  return std::max(a_from, b_from) - std::min(a_to, b_to);
-}
-
 Box box_of(const Window& w) {
   return {static_cast<double>(w.left), static_cast<double>(w.top), static_cast<double>(w.width()),
           static_cast<double>(w.height())};

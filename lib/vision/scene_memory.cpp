@@ -33,8 +33,7 @@ constexpr int kClosing = 9;            // side of the closing at 320 columns
 constexpr double kUsualPeriod = 0.04;  // seconds, where nobody knows
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
 constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
-constexpr int kUnsettled =
-    12;  // frames in which a memory has not averaged its own errors of registration out yet
+constexpr int kUnsettled = 12;        // frames in which a memory still has its own errors of registration
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
@@ -388,8 +387,9 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
       std::fill_n(tolerance.view().data, size.width, std::uint8_t{16});  // a pixel
     } else if (!in.still && y % kSceneBlock == 0) {
       // The registration error around a block: |e| over gradient where nothing moves, of the 3 x 3 blocks; twice its
-      // mean, since the tail counts (twice that while the memory has errors of its own). One pixel at least: interpolation and aliasing make that much. Whether the memory is
-      // still good there is judged by what noise alone does not explain.
+      // mean, since the tail counts (twice that while the memory has errors of its own). One pixel at least:
+      // interpolation and aliasing make that much. Whether the memory is still good there is judged by what noise
+      // alone does not explain.
       for (int bx = 0; bx < columns; ++bx) {
         double ge = 0, gg = 0, n = 0;
         for (int v = std::max(by - 1, 0); v <= std::min(by + 1, rows - 1); ++v)

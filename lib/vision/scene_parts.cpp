@@ -20,11 +20,6 @@ constexpr double kLevel = 0.5;     // share of the lower one's height at which t
 constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
 constexpr double kPiece = 1 / 3.0;     // share of the bigger part's area below which a part is a piece
 
-// Below 0 where they overlap.
-int gap(int a_from, int a_to, int b_from, int b_to) {
-  return std::max(a_from, b_from) - std::min(a_to, b_to);
-}
-
 }  // namespace
 
 SceneWindows SceneWindows::of(double seconds) {
