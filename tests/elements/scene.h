@@ -75,6 +75,13 @@ struct World {
   }
 };
 
+// The figure comes in from the left: wholly inside from frame 20 to 100.
+inline World entering() {
+  World world;
+  world.start = -45;
+  return world;
+}
+
 inline std::string caps(const char* format, int width, int height, const char* more = ",framerate=25/1") {
   return "video/x-raw,format=" + std::string(format) + ",width=" + std::to_string(width) +
          ",height=" + std::to_string(height) + more;
@@ -116,6 +123,24 @@ inline GstBuffer* buffer(const char* format, int width, int height, const std::v
 
 inline GstBuffer* grey_buffer(const World& world, int frame) {
   return buffer("GRAY8", world.width, world.height, world.picture(frame), frame * kStep);
+}
+
+// Pixels of the moving area in a plane of the buffer.
+inline long moving_pixels(GstBuffer* buffer) {
+  const CerberusPlaneMeta* plane = cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_MASK);
+  fail_unless(plane != nullptr);
+  GstMapInfo map;
+  fail_unless(gst_buffer_map(plane->buffer, &map, GST_MAP_READ));
+  long pixels = 0, neither = 0;  // counted: an assertion for each pixel costs more than the detection
+  for (int y = 0; y < plane->height; ++y)
+    for (int x = 0; x < plane->width; ++x) {
+      const guint8 value = map.data[y * plane->stride + x];
+      pixels += value != 0;
+      neither += value != 0 && value != 255;
+    }
+  gst_buffer_unmap(plane->buffer, &map);
+  fail_unless_equals_int(neither, 0);
+  return pixels;
 }
 
 struct Regions {

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The bin of all stages: presets, properties, messages.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+#include "support.h"
+
+namespace {
+
+using scene::Line;
+using scene::Regions;
+using scene::World;
+
+// A figure that leaves the picture: frames 0 to 59 with it, the empty wall afterwards.
+GST_START_TEST(motion_starts_once_and_ends_after_hold_time) {
+  Line line("motiondetect coast-time=0 hold-stopped=0 hold-time=400000000 ! identity");
+  World world;
+  world.start = 200;
+  world.speed = 4;
+  int from = -1, until = -1;
+  line.run(world, 0, 80, [&](int k, GstBuffer* out) {
+    if (Regions(out).size() == 0) return;
+    if (from < 0) from = k;
+    until = k;
+  });
+  fail_unless(from > 0 && until < 60);
+  GstMessage* message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
+  gboolean started = FALSE;
+  GstClockTime time = 0;
+  GPtrArray* objects = nullptr;
+  fail_unless(message && cerberus_message_parse_motion(message, &started, &time, &objects));
+  fail_unless(started);
+  fail_unless_equals_uint64(time, from * scene::kStep);
+  fail_unless_equals_int(objects->len, 1);
+  g_ptr_array_unref(objects);
+  gst_message_unref(message);
+  message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
+  fail_unless(message && cerberus_message_parse_motion(message, &started, &time, nullptr));
+  fail_if(started);
+  fail_unless_equals_uint64(time, (until + 10) * scene::kStep);
+  gst_message_unref(message);
+  fail_unless(gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT) == nullptr);
+}
+GST_END_TEST
+
+GST_START_TEST(motion_ends_with_the_stream_and_with_the_element_but_once) {
+  for (const bool eos : {true, false}) {
+    Line line("motiondetect ! identity");
+    line.run(World{}, 0, 30);
+    if (eos) gst_harness_push_event(line.harness, gst_event_new_eos());
+    gst_element_set_state(line.harness->element, GST_STATE_READY);
+    const std::vector<std::string> states = line.messages(GST_MESSAGE_ELEMENT);
+    fail_unless_equals_int(states.size(), 2);
+    ck_assert_str_eq(states[0].c_str(), "started");
+    ck_assert_str_eq(states[1].c_str(), "ended");
+    gst_element_set_state(line.harness->element, GST_STATE_PLAYING);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(an_empty_scene_posts_nothing) {
+  Line line("motiondetect ! identity");
+  World world;
+  world.figure = false;
+  line.run(world, 0, 40, [](int, GstBuffer* out) { fail_unless_equals_int(Regions(out).size(), 0); });
+  gst_harness_push_event(line.harness, gst_event_new_eos());
+  fail_unless(line.messages(GST_MESSAGE_ELEMENT).empty());
+}
+GST_END_TEST
+
+GST_START_TEST(a_property_that_was_set_wins_over_the_preset_in_any_order) {
+  gint weighting = -1, area = -1, order = 0;
+  gboolean memory = TRUE, people = TRUE;
+  GstElement* first = gst_element_factory_make("motiondetect", nullptr);
+  gst_util_set_object_arg(G_OBJECT(first), "weighting", "log");
+  gst_util_set_object_arg(G_OBJECT(first), "preset", "paper");
+  g_object_get(first, "weighting", &weighting, "area", &area, "memory", &memory, "people", &people, "order",
+               &order, nullptr);
+  fail_unless_equals_int(weighting, 1);
+  fail_unless_equals_int(area, 0);
+  fail_if(memory || people);
+  gst_util_set_object_arg(G_OBJECT(first), "preset", "default");
+  g_object_get(first, "weighting", &weighting, "area", &area, "memory", &memory, nullptr);
+  fail_unless_equals_int(weighting, 1);
+  fail_unless_equals_int(area, 2);
+  fail_unless(memory);
+
+  GstElement* last = gst_element_factory_make("motiondetect", nullptr);
+  gst_util_set_object_arg(G_OBJECT(last), "preset", "paper");
+  gst_util_set_object_arg(G_OBJECT(last), "weighting", "log");
+  g_object_get(last, "weighting", &weighting, "area", &area, nullptr);
+  fail_unless_equals_int(weighting, 1);
+  fail_unless_equals_int(area, 0);
+  gst_object_unref(first);
+  gst_object_unref(last);
+}
+GST_END_TEST
+
+// A thread that sets a property while another one's preset is on its way to the stages, as soon as the first stage tells.
+GST_START_TEST(a_property_that_another_thread_sets_meanwhile_wins_over_the_preset) {
+  GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
+  GstElement* stage = gst_bin_get_by_name(GST_BIN(detect), "threeframediff");
+  guint told = 0;
+  g_object_set_data(G_OBJECT(stage), "told", &told);
+  g_signal_connect(stage, "notify::blur", G_CALLBACK(+[](GObject* from, GParamSpec*, gpointer bin) {
+                     ++*static_cast<guint*>(g_object_get_data(from, "told"));
+                     const auto set_order = [](gpointer on) -> gpointer {
+                       g_object_set(on, "order", 3, nullptr);
+                       return nullptr;
+                     };
+                     g_thread_join(g_thread_new("application", set_order, bin));
+                   }),
+                   detect);
+  gst_util_set_object_arg(G_OBJECT(detect), "preset", "paper");  // says order=1
+  gint order = 0;
+  g_object_get(detect, "order", &order, nullptr);
+  fail_unless_equals_int(told, 1);
+  fail_unless_equals_int(order, 3);
+  gst_object_unref(stage);
+  gst_object_unref(detect);
+}
+GST_END_TEST
+
+GST_START_TEST(the_human_gate_is_off_in_preset_traffic) {
+  gdouble speed = 0, width = 0;
+  GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
+  g_object_get(detect, "maximum-speed-metres", &speed, "maximum-width-metres", &width, nullptr);
+  fail_unless(speed == 4.0 && width > 0.48);
+  gst_util_set_object_arg(G_OBJECT(detect), "preset", "traffic");
+  g_object_get(detect, "maximum-speed-metres", &speed, "maximum-width-metres", &width, nullptr);
+  fail_unless(speed == 0 && width == 0);
+  gst_object_unref(detect);
+}
+GST_END_TEST
+
+GST_START_TEST(every_preset_works_and_each_property_reaches_its_stage) {
+  for (const char* preset : {"default", "paper", "traffic"}) {
+    guint found = 0;
+    Line line(
+        std::string("motiondetect confirm-time=0 ! identity").insert(12, std::string(" preset=") + preset));
+    line.run(World{}, 0, 30, [&](int, GstBuffer* out) { found += Regions(out).size(); });
+    fail_unless(found > 0, "preset %s finds nothing", preset);
+  }
+  GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
+  g_object_set(detect, "horizontal-fov", 61.5, "mounting-height", 2.5, "closing", 7, "hold-time", GST_SECOND,
+               nullptr);
+  for (const char* name : {"motionregions", "motiontrack"}) {
+    GstElement* stage = gst_bin_get_by_name(GST_BIN(detect), name);
+    gdouble fov = 0, height = 0;
+    g_object_get(stage, "horizontal-fov", &fov, "mounting-height", &height, nullptr);
+    fail_unless(fov == 61.5 && height == 2.5);
+    gst_object_unref(stage);
+  }
+  gst_object_unref(detect);
+}
+GST_END_TEST
+
+// Every property of every stage is on the bin, with the same default: nobody has to open it. Where stages share one and
+// say what each of them does with it, the bin says it in the words of one.
+GST_START_TEST(the_bin_has_every_property_of_its_stages) {
+  GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
+  std::map<std::string, bool> worded;
+  for (const char* name :
+       {"cameramotion", "threeframediff", "fuzzythreshold", "motionregions", "motiontrack"}) {
+    GstElement* stage = gst_element_factory_make(name, nullptr);
+    guint count = 0;
+    GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(stage), &count);
+    for (guint i = 0; i < count; ++i) {
+      if (g_type_is_a(GST_TYPE_BASE_TRANSFORM, specs[i]->owner_type)) continue;  // name, parent, qos
+      GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(detect), specs[i]->name);
+      fail_unless(spec != nullptr, "motiondetect lacks %s", specs[i]->name);
+      worded[spec->name] |= g_str_equal(g_param_spec_get_blurb(spec), g_param_spec_get_blurb(specs[i]));
+      GValue a = G_VALUE_INIT, b = G_VALUE_INIT;
+      g_value_init(&a, spec->value_type);
+      g_value_init(&b, spec->value_type);
+      g_param_value_set_default(specs[i], &a);
+      g_object_get_property(G_OBJECT(detect), specs[i]->name, &b);
+      fail_unless_equals_int(g_param_values_cmp(spec, &a, &b), 0);
+      g_value_unset(&a);
+      g_value_unset(&b);
+    }
+    g_free(specs);
+    gst_object_unref(stage);
+  }
+  for (const auto& [name, same] : worded) fail_unless(same, "%s: no stage says it like this", name.c_str());
+  gst_object_unref(detect);
+}
+GST_END_TEST
+
+Suite* detect_bin_suite() {
+  Suite* suite = suite_create("detect_bin");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 300);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_test(tests, motion_starts_once_and_ends_after_hold_time);
+  tcase_add_test(tests, motion_ends_with_the_stream_and_with_the_element_but_once);
+  tcase_add_test(tests, an_empty_scene_posts_nothing);
+  tcase_add_test(tests, a_property_that_was_set_wins_over_the_preset_in_any_order);
+  tcase_add_test(tests, a_property_that_another_thread_sets_meanwhile_wins_over_the_preset);
+  tcase_add_test(tests, the_human_gate_is_off_in_preset_traffic);
+  tcase_add_test(tests, every_preset_works_and_each_property_reaches_its_stage);
+  tcase_add_test(tests, the_bin_has_every_property_of_its_stages);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(detect_bin);
