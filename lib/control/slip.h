@@ -6,14 +6,15 @@
 //
 //   bins of kBin; of each the mean speeds h (head, as told) and r (picture)
 //   pairs of bins with one between them: e = h(j) - h(j-2), d = r(j) - r(j-2); counted where |e| >= kLeastChange
-//   episode: pairs in a row; gain = sum d e / sum e^2
-//
-// A head that is some frames late shifts d against e; over the pairs before and after a change that evens out.
+//   episode: pairs in a row; gain = sum d e / sum e^2; stir = max - min of r - gain h over the episode's bins
+//   all this for heads that are 0 .. (kLags - 1) kLag late: the lag that leaves the least stir counts
+//   finding: kLeastEpisodes in a row that say the same, and kLeastTravel
 //
 // One case looks like a head that slips and is none: a head that holds a target while the robot turns below it moves, and
 // the picture stands. It cannot do so without being late, though (it sees the robot turn before it answers), and
-// the picture jerks at every change. So a picture that jerks (r - gain h is not steady during the episode) is no evidence
-// but of a head that follows or turns the wrong way, which no robot's turning looks like.
+// the picture jerks at every change. So a picture that jerks (stirs) is no evidence but of a head that follows or turns the
+// wrong way, which no robot's turning looks like. And a gain that is another one at each change is the robot's doing,
+// or a person's: a wrong lens or gear is always wrong by the same.
 #pragma once
 
 #include <array>
@@ -42,6 +43,9 @@ class SlipWatch {
   static constexpr double kBin = 0.2;                           // seconds
   static constexpr double kLeastChange = sensing::radians(15);  // a second
   static constexpr double kLeastTravel = sensing::radians(20);  // of evidence before anything is said
+  static constexpr int kLeastEpisodes = 3;                      // as well
+  static constexpr unsigned kLags = 10;
+  static constexpr double kLag = 0.0125;  // seconds
 
   // Forgets everything.
   void reset() { *this = {}; }
@@ -52,34 +56,44 @@ class SlipWatch {
   SlipFault fault() const { return fault_; }  // that stands
 
  private:
+  // The same for a head that is that many kLag late.
+  using Lagged = std::array<double, kLags>;
   struct Bin {
-    double picture = 0, head = 0;  // radians a second
-    double travel = 0;             // radians, until an episode counted it
-    bool abrupt = false;
+    double picture = 0;  // radians a second
+    Lagged head{};       // radians a second
+    double travel = 0;   // radians, until an episode counted it
   };
   struct Episode {
     static constexpr int kMost = 8;
     std::array<Bin, kMost> bin;
     int bins = 0, pairs = 0;
-    double de = 0, ee = 0, largest = 0;
+    Lagged de{}, ee{};
+    double largest = 0;
     double travel = 0;
-    bool abrupt = false;
     void see(Bin& seen);
-    void add(double d, double e);
+    void add(const Bin& now, const Bin& before);
+    double gain(unsigned lag) const { return de[lag] / ee[lag]; }
     // Between which speeds the picture went, were the head's part (the gain's share of what it was told) not there.
-    double stir(double gain) const;
+    double stir(unsigned lag) const;
+    unsigned lag() const;
   };
   // Episodes in a row that say the same.
   struct Run {
     SlipFault fault = SlipFault::none;
     int episodes = 0;
     double gains = 0, travel = 0;
+    bool goes_on(SlipFault next, double gain) const;
+  };
+  // What the head was told to have turned since the beginning, and when.
+  struct Told {
+    double time = 0, head = 0;
   };
 
   void forget_frames();
+  double told_at(double time) const;
   std::optional<SlipFinding> close_bin();
   std::optional<SlipFinding> close_episode();
-  static std::optional<SlipFault> judge(const Episode& episode);
+  static std::optional<SlipFault> judge(const Episode& episode, unsigned lag);
 
   std::array<Bin, 4> bins_{};  // the newest first
   int bin_count_ = 0;
@@ -88,9 +102,12 @@ class SlipWatch {
   SlipFault fault_ = SlipFault::none;
 
   // The bin that is being filled.
-  double span_ = 0, seen_ = 0, picture_ = 0, head_ = 0, travel_ = 0;
-  double head_rate_ = 0;
-  bool abrupt_ = false, has_rate_ = false;
+  double span_ = 0, seen_ = 0, picture_ = 0, travel_ = 0;
+  Lagged head_{};
+  // As many frames as a head may be late, at 240 a second. Never empty: it begins with nothing told.
+  static constexpr unsigned kTold = 32;
+  std::array<Told, kTold> told_{};
+  unsigned newest_ = 0, told_count_ = 1;
 };
 
 }  // namespace cerberus::control
