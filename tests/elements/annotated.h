@@ -2,8 +2,11 @@
 // What tests of metas and regions put on frames.
 #pragma once
 
+#include <cmath>
+#include <initializer_list>
+
 #include <cerberus/cerberus.h>
-#include <gst/gst.h>
+#include <gst/check/gstcheck.h>
 #include <gst/video/video.h>
 
 namespace annotated {
@@ -37,6 +40,28 @@ inline CerberusRegion walker() {
   region.state = CERBERUS_REGION_COASTED;
   region.bearing = -12.5;
   return region;
+}
+
+inline void assert_same(const CerberusRegion& a, const CerberusRegion& b) {
+  fail_unless_equals_int(a.id, b.id);
+  fail_unless_equals_int(a.tracked, b.tracked);
+  fail_unless_equals_int(a.person, b.person);
+  fail_unless_equals_int(a.state, b.state);
+  fail_unless_equals_uint64(a.age, b.age);
+  const double pairs[][2] = {{a.x, b.x},
+                             {a.y, b.y},
+                             {a.width, b.width},
+                             {a.height, b.height},
+                             {a.confidence, b.confidence},
+                             {a.vx, b.vx},
+                             {a.vy, b.vy},
+                             {a.bearing, b.bearing},
+                             {a.distance, b.distance}};
+  for (const auto& p : pairs) fail_unless(p[0] == p[1] || (std::isnan(p[0]) && std::isnan(p[1])));
+}
+
+inline const CerberusRegion& at(GPtrArray* regions, guint i) {
+  return *static_cast<CerberusRegion*>(g_ptr_array_index(regions, i));
 }
 
 // A frame that carries one of everything, and a region of interest of a stranger.

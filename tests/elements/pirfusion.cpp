@@ -1,33 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pirfusion's decisions: what it takes from frames, events and rules, and what it says. (What comes to its pads is in
-// pirfusion_pads.cpp, who waits for whom in pirfusion_waiting.cpp.)
+// pirfusion's decisions: what it takes from frames and events, and what it says. (Its rules are in pirfusion_rules.cpp, what
+// comes to its pads in pirfusion_pads.cpp, who waits for whom in pirfusion_waiting.cpp.)
 #include "fusion_rig.h"
 
 namespace {
 
 using namespace rig;
-
-struct Expected {
-  int rule;
-  CerberusFusionAction action;
-};
-
-// The paper's rules (II.D), written down anew: order 1, 5, 6, 2, 3, 4, 7; rules 2-4 turn AT their edge, 5-6 track at it. "Camera
-// Tracking" without a target is standing still.
-Expected paper(bool camera, bool i1, bool i2, bool i3, double a) {
-  const auto turn = [](int rule, bool right, bool left) {
-    return Expected{rule, right  ? CERBERUS_FUSION_TURN_RIGHT
-                          : left ? CERBERUS_FUSION_TURN_LEFT
-                                 : CERBERUS_FUSION_HOLD};
-  };
-  if (camera) return {1, CERBERUS_FUSION_TRACK};
-  if (i1 && i2) return turn(5, a < -90, a > 0);
-  if (i1 && i3) return turn(6, a < 0, a > 120);
-  if (i1) return turn(2, a <= -45, a >= 45);
-  if (i2) return turn(3, a <= -120, a >= -60);
-  if (i3) return turn(4, a <= 60, a >= 120);
-  return {7, CERBERUS_FUSION_ZERO};
-}
 
 // The upstream events that reached this harness' source.
 std::vector<std::string> events_up(GstHarness* h) {
@@ -41,52 +19,6 @@ std::vector<std::string> events_up(GstHarness* h) {
   }
   return names;
 }
-
-// The element's answer when its state is raised; its error message.
-std::string refusal(const std::string& properties) {
-  const std::string line = "pirfusion " + properties;
-  GstElement* element = gst_parse_launch(line.c_str(), nullptr);
-  gst_object_ref_sink(element);
-  g_autoptr(GstBus) bus = gst_bus_new();
-  gst_element_set_bus(element, bus);
-  std::string text;
-  if (gst_element_set_state(element, GST_STATE_READY) == GST_STATE_CHANGE_FAILURE) {
-    g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
-    fail_unless(message, "refused without a word");
-    g_autoptr(GError) error = nullptr;
-    gst_message_parse_error(message, &error, nullptr);
-    text = error->message;
-    fail_if(gst_bus_have_pending(bus) && gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR),
-            "one message a failure");
-  }
-  gst_element_set_state(element, GST_STATE_NULL);
-  gst_element_set_bus(element, nullptr);
-  gst_object_unref(element);
-  return text;
-}
-
-const char kTwoSensors[] = R"(
-name = "mine"
-sensors = 2
-[[rule]]
-number = 40
-name = "somebody"
-camera = "found"
-action = "track"
-[[rule]]
-number = 41
-name = "gate"
-camera = "missing"
-any = [1, 2]
-action = "search"
-sweep = [-90, -45]
-[[rule]]
-number = 42
-name = "quiet"
-camera = "missing"
-none = [1, 2]
-action = "hold"
-)";
 
 }  // namespace
 
@@ -111,36 +43,6 @@ GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_told) {
   fail_unless_equals_int(told.size(), 2);
   assert_says(told[0], "0:7:zero");
   assert_says(told[1], "200:1:track");
-}
-GST_END_TEST
-
-// The pan angles of the issue, for all 16 states of camera and sensors: 416 cells.
-GST_START_TEST(the_papers_table_holds_through_the_element) {
-  Rig rig(true, "rules=paper camera-hold=0 hold-stopped=0");
-  rig.add_pir();
-  std::vector<double> angles = {-170, 170};
-  for (const double edge : {-120, -90, -60, -45, 0, 45, 60, 120})
-    for (const double off : {-0.1, 0.0, 0.1}) angles.push_back(edge + off);
-  GstClockTime time = 0;
-  int cells = 0;
-  for (const double angle : angles)
-    for (int state = 0; state < 16; ++state) {
-      const bool camera = state & 8, i1 = state & 1, i2 = state & 2, i3 = state & 4;
-      time += 40 * kMs;
-      rig.read(time, {guint8(i1), guint8(i2), guint8(i3)});
-      GstBuffer* buffer = camera ? frame_with(time, 3) : frame(time);
-      const CerberusPose where = pose(angle, time);
-      cerberus_buffer_set_pose(buffer, &where);
-      const CerberusFusion fusion = rig.show(buffer);
-      const Expected expected = paper(camera, i1, i2, i3, angle);
-      fail_unless(fusion.rule == expected.rule && fusion.action == expected.action,
-                  "camera %d, sensors %d%d%d, pan %g: rule %d, %s", camera, i1, i2, i3, angle, fusion.rule,
-                  cerberus_fusion_action_get_nick(fusion.action));
-      fail_unless(fusion.pan == angle && fusion.camera_found == camera);
-      fail_unless(sensors(fusion) == Bytes({guint8(i1), guint8(i2), guint8(i3)}));
-      ++cells;
-    }
-  fail_unless_equals_int(cells, 416);
 }
 GST_END_TEST
 
@@ -368,82 +270,12 @@ GST_START_TEST(a_seek_reaches_the_pir_sources_and_the_video_source) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_users_own_rules_are_followed) {
-  const RuleFile file(kTwoSensors);
-  Rig rig(true, file.property());
-  rig.add_pir();
-  rig.read(0, {0, 0, 1});  // a third sensor of which the table does not speak
-  CerberusFusion fusion = rig.at(0);
-  fail_unless_equals_int(fusion.rule, 42);
-  fail_unless_equals_string(fusion.rule_name, "quiet");
-  rig.read(40 * kMs, {0, 1, 0});
-  fusion = rig.at(40 * kMs);
-  fail_unless_equals_string(fusion.rule_name, "gate");
-  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
-  fail_unless(std::abs(fusion.sector_from + 90) < 1e-9 && std::abs(fusion.sector_to + 45) < 1e-9);
-  fail_unless_equals_string(rig.show(frame_with(80 * kMs, 2)).rule_name, "somebody");
-}
-GST_END_TEST
-
-GST_START_TEST(rules_that_cannot_be_used_are_refused_and_the_case_is_named) {
-  const std::string whole = kTwoSensors;
-  const std::string found = whole.substr(0, whole.find("[[rule]]\nnumber = 41"));
-  const RuleFile gap(found +
-                     "[[rule]]\nnumber = 42\ncamera = \"missing\"\nnone = [1, 2]\naction = \"hold\"\n");
-  const RuleFile contradiction(whole + "[[rule]]\nnumber = 43\nall = [1, 2]\naction = \"zero\"\n");
-  const RuleFile unknown(whole + "[[rule]]\naction = \"left\"\n");
-  const RuleFile broken("sensors = = 2\n");
-  const struct {
-    const RuleFile& file;
-    std::vector<const char*> words;
-  } cases[] = {{gap, {"camera not found", "infer1", "no rule applies"}},
-               {contradiction,
-                {"camera found", "infer1 and infer2 fired", "somebody says track", "rule 43 says zero"}},
-               {unknown, {"unknown action \"left\""}},
-               {broken, {":1"}}};
-  for (const auto& c : cases) {
-    const std::string text = refusal(c.file.property());
-    fail_unless(text.find(c.file.path()) != std::string::npos, "%s", text.c_str());
-    for (const char* word : c.words)
-      fail_unless(text.find(word) != std::string::npos, "\"%s\" is not in: %s", word, text.c_str());
-  }
-  fail_unless(refusal("rules-file=/nowhere/rules.toml").find("/nowhere/rules.toml") != std::string::npos);
-  fail_unless(refusal("pan-min=20 pan-max=10").find("pan-min (20") != std::string::npos);
-  std::string gone;
-  {
-    const RuleFile temporary(whole);
-    gone = temporary.property();
-    fail_unless(refusal(gone).empty());
-  }
-  fail_if(refusal(gone).empty());
-  fail_unless(refusal("rules=paper").empty() && refusal("").empty());
-}
-GST_END_TEST
-
-GST_START_TEST(rules_may_change_while_playing_and_bad_ones_leave_the_old) {
-  RuleFile file(kTwoSensors);
-  Rig rig;
-  fail_unless_equals_int(rig.at(0).rule, 7);
-  g_object_set(rig.element, "rules-file", file.path().c_str(), nullptr);
-  fail_unless_equals_int(rig.at(40 * kMs).rule, 42);
-  file.write("sensors = 1\n");
-  g_object_set(rig.element, "rules-file", file.path().c_str(), nullptr);
-  const std::string warning = rig.warning();
-  fail_unless(warning.find(file.path()) != std::string::npos, "%s", warning.c_str());
-  fail_unless_equals_int(rig.at(80 * kMs).rule, 42);
-  g_object_set(rig.element, "rules-file", "", nullptr);
-  fail_unless_equals_int(rig.at(120 * kMs).rule, 7);
-  fail_unless(rig.warning().empty() && rig.error().empty());
-}
-GST_END_TEST
-
 static Suite* pirfusion_suite(void) {
   watch_library_log();
   Suite* s = suite_create("pirfusion");
   TCase* tc = tcase_create("decisions");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, every_frame_carries_a_decision_and_only_changes_are_told);
-  tcase_add_test(tc, the_papers_table_holds_through_the_element);
   tcase_add_test(tc, only_confirmed_tracks_make_the_camera_found);
   tcase_add_test(tc, properties_count_while_playing);
   tcase_add_test(tc, hysteresis_and_hold_stopped_are_the_users);
@@ -456,11 +288,6 @@ static Suite* pirfusion_suite(void) {
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
   tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);
   tcase_add_test(tc, a_seek_reaches_the_pir_sources_and_the_video_source);
-  tc = tcase_create("rules");
-  suite_add_tcase(s, tc);
-  tcase_add_test(tc, a_users_own_rules_are_followed);
-  tcase_add_test(tc, rules_that_cannot_be_used_are_refused_and_the_case_is_named);
-  tcase_add_test(tc, rules_may_change_while_playing_and_bad_ones_leave_the_old);
   return s;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Regions on buffers, in structures and in messages.
+// Regions on buffers. (In structures and messages: motion_messages.cpp.)
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 #include <gst/check/gstharness.h>
 #include <gst/video/video.h>
 
 #include <cmath>
-#include <initializer_list>
 
 #include "annotated.h"
 #include "cerberus/private/compat.hpp"
@@ -18,29 +17,7 @@
 
 namespace {
 
-using annotated::walker;
-
-void assert_same(const CerberusRegion& a, const CerberusRegion& b) {
-  fail_unless_equals_int(a.id, b.id);
-  fail_unless_equals_int(a.tracked, b.tracked);
-  fail_unless_equals_int(a.person, b.person);
-  fail_unless_equals_int(a.state, b.state);
-  fail_unless_equals_uint64(a.age, b.age);
-  const double pairs[][2] = {{a.x, b.x},
-                             {a.y, b.y},
-                             {a.width, b.width},
-                             {a.height, b.height},
-                             {a.confidence, b.confidence},
-                             {a.vx, b.vx},
-                             {a.vy, b.vy},
-                             {a.bearing, b.bearing},
-                             {a.distance, b.distance}};
-  for (const auto& p : pairs) fail_unless(p[0] == p[1] || (std::isnan(p[0]) && std::isnan(p[1])));
-}
-
-const CerberusRegion& at(GPtrArray* regions, guint i) {
-  return *static_cast<CerberusRegion*>(g_ptr_array_index(regions, i));
-}
+using annotated::assert_same, annotated::at, annotated::walker;
 
 GstVideoRegionOfInterestMeta* roi(GstBuffer* frame) {
   return reinterpret_cast<GstVideoRegionOfInterestMeta*>(
@@ -360,103 +337,13 @@ START_TEST(detections_of_strangers_stay) {
 END_TEST
 #endif
 
-START_TEST(a_structure_holds_everything_but_what_is_unknown) {
-  const CerberusRegion region = walker();  // distance is NaN
-  g_autoptr(GstStructure) structure = cerberus_region_to_structure(&region);
-  fail_if(gst_structure_has_field(structure, "distance"));
-  fail_unless(gst_structure_has_field(structure, "bearing"));
-  g_autoptr(CerberusRegion) back = cerberus_region_from_structure(structure);
-  assert_same(*back, region);
-}
-END_TEST
-
-START_TEST(a_strangers_structure_is_read_with_care) {
-  g_autoptr(GstStructure) other = gst_structure_new_empty("cerberus-objects");
-  fail_if(cerberus_region_from_structure(other));
-  g_autoptr(GstStructure) wrong = gst_structure_new("cerberus-object", "id", G_TYPE_STRING, "five", "x",
-                                                    G_TYPE_INT, 3, "state", G_TYPE_STRING, "flying", "age",
-                                                    G_TYPE_DOUBLE, 1.0, "width", G_TYPE_DOUBLE, 4.0, nullptr);
-  g_autoptr(CerberusRegion) region = cerberus_region_from_structure(wrong);
-  g_autoptr(CerberusRegion) expected = cerberus_region_new();
-  expected->width = 4;
-  assert_same(*region, *expected);
-}
-END_TEST
-
-START_TEST(a_motion_message_reads_back) {
-  g_autoptr(GPtrArray) regions = g_ptr_array_new();
-  CerberusRegion one = walker(), two = walker();
-  two.id = 6;
-  g_ptr_array_add(regions, &one);
-  g_ptr_array_add(regions, &two);
-  g_autoptr(GstElement) source = gst_element_factory_make("identity", "here");
-  gst_object_ref_sink(source);
-  for (const bool started : {true, false}) {
-    g_autoptr(GstMessage) message = cerberus_message_new_motion(GST_OBJECT(source), started, 42, regions);
-    fail_unless(GST_MESSAGE_SRC(message) == GST_OBJECT(source));
-    fail_unless(cerberus_message_is_motion(message));
-    fail_unless_equals_string(gst_structure_get_string(gst_message_get_structure(message), "state"),
-                              started ? "started" : "ended");
-    gboolean was_started = !started;
-    GstClockTime time = 0;
-    g_autoptr(GPtrArray) back = nullptr;
-    fail_unless(cerberus_message_parse_motion(message, &was_started, &time, &back));
-    fail_unless_equals_int(was_started, started);
-    fail_unless_equals_uint64(time, 42);
-    fail_unless_equals_int(back->len, 2);
-    assert_same(at(back, 0), one);
-    assert_same(at(back, 1), two);
-    fail_unless(cerberus_message_parse_motion(message, nullptr, nullptr, nullptr));
-  }
-}
-END_TEST
-
-START_TEST(a_motion_message_may_have_no_objects_and_no_source) {
-  g_autoptr(GstMessage) message = cerberus_message_new_motion(nullptr, FALSE, GST_CLOCK_TIME_NONE, nullptr);
-  GstClockTime time = 0;
-  g_autoptr(GPtrArray) regions = nullptr;
-  fail_unless(cerberus_message_parse_motion(message, nullptr, &time, &regions));
-  fail_unless_equals_uint64(time, GST_CLOCK_TIME_NONE);
-  fail_unless_equals_int(regions->len, 0);
-}
-END_TEST
-
-START_TEST(other_messages_are_not_motion) {
-  GstMessage* const messages[] = {
-      gst_message_new_eos(nullptr),
-      gst_message_new_element(nullptr, gst_structure_new_empty("something")),
-      gst_message_new_element(nullptr, gst_structure_new_empty("cerberus-motion")),
-      gst_message_new_element(
-          nullptr, gst_structure_new("cerberus-motion", "state", G_TYPE_STRING, "paused", "running-time",
-                                     G_TYPE_UINT64, G_GUINT64_CONSTANT(1), nullptr)),
-      gst_message_new_element(nullptr, gst_structure_new("cerberus-motion", "state", G_TYPE_STRING, "started",
-                                                         "running-time", G_TYPE_UINT64, G_GUINT64_CONSTANT(1),
-                                                         "objects", G_TYPE_INT, 3, nullptr)),
-  };
-  for (GstMessage* message : messages) {
-    gboolean started = 77;
-    GstClockTime time = 77;
-    GPtrArray* regions = nullptr;
-    fail_if(cerberus_message_parse_motion(message, &started, &time, &regions));
-    fail_unless_equals_int(started, 77);
-    fail_unless_equals_uint64(time, 77);
-    fail_if(regions);
-    gst_message_unref(message);
-  }
-}
-END_TEST
-
 START_TEST(nothing_crashes_on_null) {
   g_autoptr(GstBuffer) frame = gst_buffer_new();
   EXPECT_CRITICAL(cerberus_region_init(nullptr));
-  EXPECT_CRITICAL(cerberus_region_to_structure(nullptr));
-  EXPECT_CRITICAL(cerberus_region_from_structure(nullptr));
   EXPECT_CRITICAL(cerberus_buffer_add_region(nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_buffer_add_region(frame, nullptr));
   EXPECT_CRITICAL(cerberus_buffer_get_regions(nullptr));
   EXPECT_CRITICAL(cerberus_buffer_remove_regions(nullptr));
-  EXPECT_CRITICAL(cerberus_message_is_motion(nullptr));
-  EXPECT_CRITICAL(cerberus_message_parse_motion(nullptr, nullptr, nullptr, nullptr));
 }
 END_TEST
 
@@ -480,13 +367,6 @@ static Suite* regions_suite(void) {
   tcase_add_test(tc, detections_go_with_the_regions);
   tcase_add_test(tc, detections_of_strangers_stay);
 #endif
-  tc = tcase_create("structures and messages");
-  suite_add_tcase(s, tc);
-  tcase_add_test(tc, a_structure_holds_everything_but_what_is_unknown);
-  tcase_add_test(tc, a_strangers_structure_is_read_with_care);
-  tcase_add_test(tc, a_motion_message_reads_back);
-  tcase_add_test(tc, a_motion_message_may_have_no_objects_and_no_source);
-  tcase_add_test(tc, other_messages_are_not_motion);
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;
 }
