@@ -35,6 +35,11 @@
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees; false
  * if the head is not there or a number is none), `stop`, `home`, `auto`.
  *
+ * `follow` (the identity of a track, as its region has it; false if the head is not there) chooses whom to follow: that track
+ * from the next frame on, whatever fusion or `target` would choose. While it is on no frame the head turns to nobody else that
+ * the camera sees; after 5 s, also if it never came, a warning names it and the usual choice goes on. `auto` takes the choice
+ * back, and so does each of the other signals: the last one counts.
+ *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
  * tests: what `script` says). One head has one name (`head`) and in a process one sink.
  *
@@ -266,6 +271,15 @@ CerberusPose to_c(const Private& self, const control::Pose& pose) {
   return out;
 }
 
+void warn_of_lost(Private& self, guint id) {
+  if (id != 0)
+    GST_ELEMENT_WARNING(
+        self.sink, RESOURCE, NOT_FOUND,
+        ("Track %u, which was to be followed, is on no frame for %d s: the usual choice goes on.", id,
+         static_cast<int>(fusion::Chosen::kPatience / std::chrono::seconds(1))),
+        ("head %s", self.head));
+}
+
 // Sends off what the station said. No lock held.
 void send(Private& self, const Outbox& out) {
   for (const control::Pose& pose : out.poses) {
@@ -282,6 +296,7 @@ void send(Private& self, const Outbox& out) {
     GST_ELEMENT_WARNING(self.sink, RESOURCE, WRITE,
                         ("The head \"%s\" fails: %s", self.head, out.fault.c_str()),
                         ("driver %s", self.settings.snapshot().driver.c_str()));
+  warn_of_lost(self, out.lost);
 }
 
 // Running time by the clock, while there is one.
@@ -609,6 +624,10 @@ gboolean automatic(CerberusPanTiltSink* sink) {
   return by_hand(sink, [](Station& station, auto at, Outbox& out) { return station.automatic(at, out); });
 }
 
+gboolean follow(CerberusPanTiltSink* sink, guint id) {
+  return by_hand(sink, [=](Station& station, auto at, Outbox& out) { return station.follow(id, at, out); });
+}
+
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
   cerberus_pan_tilt_sink_self(object)->priv->settings.set(kProperties, id, value);
 }
@@ -625,10 +644,12 @@ void cerberus_pan_tilt_sink_init(CerberusPanTiltSink* self) {
   gst_base_sink_set_qos_enabled(sink, FALSE);
 }
 
-void add_signal(GObjectClass* klass, const char* name, GCallback handler, guint numbers) {
+// With `count` arguments of a type, two at most.
+void add_signal(GObjectClass* klass, const char* name, GCallback handler, guint count = 0,
+                GType type = G_TYPE_DOUBLE) {
   g_signal_new_class_handler(name, G_TYPE_FROM_CLASS(klass),
                              static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION), handler, nullptr,
-                             nullptr, nullptr, G_TYPE_BOOLEAN, numbers, G_TYPE_DOUBLE, G_TYPE_DOUBLE);
+                             nullptr, nullptr, G_TYPE_BOOLEAN, count, type, type);
 }
 
 void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
@@ -638,9 +659,10 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   Adjustable<Settings>::install(object, kProperties);
   add_signal(object, "move-to", G_CALLBACK(move_to), 2);
   add_signal(object, "move-by", G_CALLBACK(move_by), 2);
-  add_signal(object, "stop", G_CALLBACK(stay), 0);
-  add_signal(object, "home", G_CALLBACK(home), 0);
-  add_signal(object, "auto", G_CALLBACK(automatic), 0);
+  add_signal(object, "stop", G_CALLBACK(stay));
+  add_signal(object, "home", G_CALLBACK(home));
+  add_signal(object, "auto", G_CALLBACK(automatic));
+  add_signal(object, "follow", G_CALLBACK(follow), 1, G_TYPE_UINT);
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   element->change_state = cerberus_pan_tilt_sink_change_state;

@@ -82,9 +82,34 @@ Pilot::Verdict Pilot::decide(GstBuffer* frame, control::Time time, double pan) {
   return verdict;
 }
 
+// Whom the application chose goes before the usual verdict, which is found all the same: it goes on when the choice ends, and
+// sensors may know where somebody went whom the camera has lost.
+void Pilot::prefer(GstBuffer* frame, control::Time time, Verdict& verdict) {
+  const guint id = chosen_.id();
+  if (id == 0) return;
+  using enum fusion::Chosen::Answer;
+  const std::optional<vision::Point> middle = middle_of(frame, id);
+  const fusion::Chosen::Answer answer = chosen_.watch(middle.has_value(), time);
+  if (answer == lost) verdict.lost = id;
+  if (answer == here) {
+    verdict.wish = {.action = fusion::Action::track, .target = middle};
+    verdict.reason = "told to follow " + std::to_string(id);
+  } else if (answer == awaited && verdict.wish.action == fusion::Action::track) {
+    verdict.wish = {};
+    verdict.reason = "waits for " + std::to_string(id) + ", which it was told to follow";
+  }
+}
+
+void Pilot::reset() {
+  fuser_.reset();
+  chosen_.restart();
+}
+
 Pilot::Verdict Pilot::look(GstBuffer* frame, control::Time time, double pan) {
   const CerberusFusion* fusion = cerberus_buffer_peek_fusion(frame);
-  return fusion ? obey(frame, *fusion) : decide(frame, time, pan);
+  Verdict verdict = fusion ? obey(frame, *fusion) : decide(frame, time, pan);
+  prefer(frame, time, verdict);
+  return verdict;
 }
 
 }  // namespace cerberus::plugin

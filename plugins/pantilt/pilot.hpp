@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a frame wants of the head: read from its fusion meta, or, where nobody fused, decided here by the two rules that
-// need no sensors (1: follow whom the camera sees; 7: nobody there, return to zero).
+// need no sensors (1: follow whom the camera sees; 7: nobody there, return to zero). Whom the application chose goes before
+// both.
 #pragma once
 
 #include <cerberus/fusion.h>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "control/law.h"
+#include "fusion/chosen.h"
 #include "fusion/fuser.h"
 
 namespace cerberus::plugin {
@@ -18,17 +20,23 @@ class Pilot {
   struct Verdict {
     control::Wish wish;
     std::string reason;  // for a user
+    guint lost = 0;      // the identity that was to be followed and is no longer, because it is on no frame
   };
   void set_options(const fusion::FuserOptions& options) { fuser_.set_options(options); }
-  void reset() { fuser_.reset(); }
+  // Of time and tracks: another stream begins.
+  void reset();
+  // Whom to follow from now on; 0: the usual choice.
+  void follow(guint id) { chosen_.choose(id); }
   // pan: radians, when the frame was taken.
   Verdict look(GstBuffer* frame, control::Time time, double pan);
 
  private:
   Verdict obey(GstBuffer* frame, const CerberusFusion& fusion);
   Verdict decide(GstBuffer* frame, control::Time time, double pan);
+  void prefer(GstBuffer* frame, control::Time time, Verdict& verdict);
 
   fusion::Fuser fuser_;
+  fusion::Chosen chosen_;
   std::vector<fusion::Track> tracks_;
 };
 

@@ -49,6 +49,7 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
   setup_ = setup;
   law_.reset();
   pilot_.reset();
+  pilot_.follow(0);
   history_.clear();
   watchdog_.rest();
   manual_ = faulty_ = silent_ = false;
@@ -182,6 +183,7 @@ HeadCommand Station::decide(const Frame& frame, Time now, Outbox& out) {
   const Pose capture = frame.capture ? *frame.capture : history_.at(taken);
   const Pose ahead = history_.at(now + setup_.latency);
   const Pilot::Verdict verdict = pilot_.look(frame.buffer, frame.running, capture.pan.position);
+  if (verdict.lost != 0) out.lost = verdict.lost;
   const control::Order order = law_.update(verdict.wish, frame.lens, capture, ahead);
   command.pan = order.pan;
   command.tilt = order.tilt;
@@ -300,6 +302,7 @@ void Station::resume(std::optional<Time> at) {
 
 bool Station::override(const char* reason, const HeadCommand& command, std::optional<Time> at, Outbox& out) {
   manual_ = true;
+  pilot_.follow(0);
   wanted_ = command;
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : told_;
@@ -333,13 +336,28 @@ bool Station::stay(std::optional<Time> at, Outbox& out) {
   return runner_ && override("told to stop", {}, at, out);
 }
 
+// From the application's hand to what the frames say.
+void Station::give_back(const char* reason, std::optional<Time> at, Outbox& out) {
+  if (!std::exchange(manual_, false)) return;
+  const Time now = at && clock_driven_ ? head_time(*at) : told_;
+  if (clock_driven_ && !halted_) runner_->command({now, {}, {}});
+  say("holding", reason, now, out);
+}
+
 bool Station::automatic(std::optional<Time> at, Outbox& out) {
   const std::lock_guard guard(lock_);
   if (!runner_) return false;
-  if (!std::exchange(manual_, false)) return true;
-  const Time now = at && clock_driven_ ? head_time(*at) : told_;
-  if (clock_driven_ && !halted_) runner_->command({now, {}, {}});
-  say("holding", "told to go on by itself", now, out);
+  pilot_.follow(0);
+  give_back("told to go on by itself", at, out);
+  return true;
+}
+
+bool Station::follow(guint id, std::optional<Time> at, Outbox& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_ || id == 0) return false;
+  pilot_.follow(id);
+  law_.reset();  // somebody new
+  give_back("told to follow somebody", at, out);
   return true;
 }
 

@@ -31,6 +31,7 @@ struct Outbox {
   std::vector<control::Pose> poses;
   std::vector<Status> statuses;
   std::string fault;  // new: for a warning
+  guint lost = 0;     // the identity that was to be followed and is not there: for a warning
 };
 
 class Station {
@@ -72,6 +73,8 @@ class Station {
   bool move(double pan, double tilt, bool relative, std::optional<Time> now, Outbox& out);
   bool stay(std::optional<Time> now, Outbox& out);
   bool automatic(std::optional<Time> now, Outbox& out);
+  // The track to be followed while it lives; the frames decide again. 0 is none.
+  bool follow(guint id, std::optional<Time> now, Outbox& out);
 
   void interrupt(bool on);
   // When the last frame was taken that counted.
@@ -87,6 +90,7 @@ class Station {
   drivers::HeadCommand decide(const Frame& frame, Time now, Outbox& out);
   bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,
                 Outbox& out);
+  void give_back(const char* reason, std::optional<Time> now, Outbox& out);
   control::Pose running(control::Pose pose) const;
 
   mutable std::mutex lock_;

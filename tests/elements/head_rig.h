@@ -164,6 +164,23 @@ class Rig {
     g_signal_emit_by_name(element, signal, pan, tilt, &done);
     return done;
   }
+  gboolean follow(guint id) {
+    gboolean done = FALSE;
+    g_signal_emit_by_name(element, "follow", id, &done);
+    return done;
+  }
+  // What the warnings since the last call say, one a line.
+  std::string warnings() {
+    std::string all;
+    while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
+      GError* error = nullptr;
+      gst_message_parse_warning(message, &error, nullptr);
+      all.append(error->message).append("\n");
+      g_error_free(error);
+      gst_message_unref(message);
+    }
+    return all;
+  }
   GstTestClock* clock() const { return gst_harness_get_testclock(harness); }
 
   GstElement* element;

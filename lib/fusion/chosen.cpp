@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fusion/chosen.h"
+
+namespace cerberus::fusion {
+
+Chosen::Answer Chosen::watch(bool here, Time time) {
+  if (id_ == 0) return Answer::nobody;
+  if (!since_) since_ = time;
+  if (here) {
+    seen_ = time;
+    return Answer::here;
+  }
+  if (time - seen_.value_or(*since_) < kPatience) return seen_ ? Answer::awaited : Answer::nobody;
+  choose(0);
+  return Answer::lost;
+}
+
+}  // namespace cerberus::fusion

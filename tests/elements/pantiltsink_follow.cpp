@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// pantiltsink's action signal `follow`: the application chooses whom the head turns to.
+#include "head_rig.h"
+
+namespace {
+
+using namespace head_rig;
+
+constexpr double kFirst = -10, kSecond = 10;  // bearings
+
+// Two people stand there. The usual choice is the first: the feet are lower, and fusion, where there is any, says so.
+struct Scene {
+  Rig rig;
+  bool fused;
+  int next = 0;
+  double pan = 0;  // when the next frame is taken
+
+  explicit Scene(bool with_fusion = false) : fused(with_fusion) {}
+
+  void frames(int count, bool first = true, bool second = true) {
+    for (; count > 0; --count) {
+      GstBuffer* buffer = frame_at(next++ * kFrame);
+      if (first) stand(buffer, 1, kFirst, 20);
+      if (second) stand(buffer, 2, kSecond, 0);
+      if (fused) add(buffer, first ? CERBERUS_FUSION_TRACK : CERBERUS_FUSION_HOLD, first ? 1 : 0);
+      rig.push(buffer);
+      for (const CerberusPose& pose : rig.poses()) {  // they reach further than the next frame
+        if (pose.valid_from <= next * kFrame && next * kFrame <= pose.valid_until)
+          cerberus_pose_evaluate(&pose, next * kFrame, &pan, nullptr);
+      }
+    }
+  }
+  void assert_looks_at(double bearing) const {
+    fail_unless(std::fabs(pan - bearing) <= 0.7, "%d: %g, not %g", next, pan, bearing);
+  }
+  std::string last_reason() {
+    const auto messages = rig.messages();
+    return messages.empty() ? "" : messages.back().reason;
+  }
+  void assert_says(const char* reason) {
+    const std::string last = last_reason();
+    fail_unless(last.ends_with(reason), "%d: '%s', not '%s'", next, last.c_str(), reason);
+  }
+  void assert_warns_of(const char* track) {
+    const std::string text = rig.warnings();
+    fail_unless(text.starts_with(std::string("Track ") + track + ", which was to be followed"), "%d: '%s'",
+                next, text.c_str());
+    fail_unless(text.find('\n') == text.size() - 1, "%s", text.c_str());  // one
+  }
+  void assert_no_warning() {
+    const std::string text = rig.warnings();
+    fail_unless(text.empty(), "%d: %s", next, text.c_str());
+  }
+
+ private:
+  void stand(GstBuffer* buffer, guint id, double bearing, double lower) const {
+    Person person = somebody(id, bearing - pan);
+    person.y += lower;
+    add(buffer, person);
+  }
+};
+
+GST_START_TEST(the_chosen_one_is_followed_whatever_the_usual_choice_is_until_auto) {
+  for (const bool fused : {false, true}) {
+    Scene scene(fused);
+    scene.frames(50);
+    scene.assert_looks_at(kFirst);
+    fail_unless(scene.rig.follow(2));
+    scene.frames(1);
+    scene.assert_says("told to follow 2");
+    scene.frames(500);
+    scene.assert_looks_at(kSecond);
+    scene.assert_says("");  // nothing more
+    fail_unless(scene.rig.call("auto"));
+    scene.frames(50);
+    scene.assert_looks_at(kFirst);
+    scene.assert_says("track 1");
+    scene.assert_no_warning();
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(while_the_chosen_one_is_away_nobody_else_is_turned_to) {
+  for (const bool fused : {false, true}) {
+    Scene scene(fused);
+    fail_unless(scene.rig.follow(2));
+    scene.frames(50);
+    scene.assert_looks_at(kSecond);
+    scene.frames(120, true, false);  // 4.8 s
+    scene.assert_looks_at(kSecond);
+    scene.assert_says("waits for 2, which it was told to follow");
+    scene.frames(10);
+    scene.assert_says("told to follow 2");
+    scene.frames(120, true, false);
+    scene.assert_looks_at(kSecond);
+    scene.assert_no_warning();
+  }
+}
+GST_END_TEST
+
+// Nobody is in the picture any more, and a sensor heard somebody on the left: perhaps the one.
+GST_START_TEST(while_the_chosen_one_is_away_sensors_are_obeyed) {
+  Scene scene;
+  fail_unless(scene.rig.follow(2));
+  scene.frames(50);
+  for (int k = 0; k < 50; ++k) {
+    GstBuffer* buffer = frame_at(scene.next++ * kFrame);
+    add(buffer, CERBERUS_FUSION_TURN_LEFT);
+    scene.rig.push(buffer);
+  }
+  fail_unless(scene.rig.poses().back().pan < kSecond - 40);
+  scene.assert_no_warning();
+}
+GST_END_TEST
+
+GST_START_TEST(who_stays_away_is_warned_of_once_and_forgotten) {
+  for (const bool fused : {false, true}) {
+    Scene scene(fused);
+    fail_unless(scene.rig.follow(2));
+    scene.frames(50);
+    scene.frames(124, true, false);  // 4.96 s since the last frame with it
+    scene.assert_looks_at(kSecond);
+    scene.assert_no_warning();
+    scene.frames(1, true, false);
+    scene.assert_warns_of("2");
+    scene.frames(200);
+    scene.assert_looks_at(kFirst);
+    scene.assert_no_warning();
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(who_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile) {
+  Scene scene;
+  fail_unless(scene.rig.follow(4000000000));
+  scene.frames(50);
+  scene.assert_looks_at(kFirst);
+  scene.frames(75);
+  scene.assert_no_warning();
+  scene.frames(1);  // the 126th: 5 s after the first
+  scene.assert_warns_of("4000000000");
+  scene.frames(200);
+  scene.assert_looks_at(kFirst);
+  scene.assert_no_warning();
+}
+GST_END_TEST
+
+GST_START_TEST(of_what_the_application_asks_for_the_last_counts) {
+  Scene scene;
+  fail_unless(scene.rig.call("move-to", 40, 0));
+  scene.frames(50);
+  scene.assert_looks_at(40);
+  fail_unless(scene.rig.follow(2));
+  scene.frames(50);
+  scene.assert_looks_at(kSecond);
+  fail_unless(scene.rig.follow(1));
+  scene.frames(50);
+  scene.assert_looks_at(kFirst);
+  fail_unless(scene.rig.follow(2));
+  fail_unless(scene.rig.call("stop"));
+  fail_unless(scene.rig.call("auto"));  // gives back to the usual choice, not to an earlier one
+  scene.frames(50);
+  scene.assert_looks_at(kFirst);
+}
+GST_END_TEST
+
+GST_START_TEST(nobody_is_chosen_where_there_is_no_head_nor_by_no_identity) {
+  Scene scene;
+  fail_if(scene.rig.follow(0));
+  scene.frames(5);
+  scene.assert_says("track 1");
+  fail_unless(scene.rig.follow(2));
+  gst_element_set_state(scene.rig.element, GST_STATE_NULL);
+  fail_if(scene.rig.follow(2));
+  // Another start is another stream with other tracks.
+  gst_element_set_state(scene.rig.element, GST_STATE_PLAYING);
+  scene.rig.begin();
+  scene.rig.poses();
+  scene.next = 0;
+  scene.pan = 0;
+  scene.frames(50);
+  scene.assert_looks_at(kFirst);
+}
+GST_END_TEST
+
+GST_START_TEST(a_flush_does_not_unmake_the_choice) {
+  Scene scene;
+  fail_unless(scene.rig.follow(2));
+  scene.frames(50);
+  fail_unless(gst_harness_push_event(scene.rig.harness, gst_event_new_flush_start()));
+  fail_unless(gst_harness_push_event(scene.rig.harness, gst_event_new_flush_stop(TRUE)));
+  scene.rig.begin();
+  scene.rig.poses();
+  scene.next = 0;
+  scene.frames(120, true, false);  // 5 s of the time that has begun anew
+  scene.assert_no_warning();
+  scene.frames(50);
+  scene.assert_looks_at(kSecond);
+}
+GST_END_TEST
+
+Suite* pantiltsink_follow_suite() {
+  Suite* suite = suite_create("pantiltsink told whom to follow");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 60);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_test(tests, the_chosen_one_is_followed_whatever_the_usual_choice_is_until_auto);
+  tcase_add_test(tests, while_the_chosen_one_is_away_nobody_else_is_turned_to);
+  tcase_add_test(tests, while_the_chosen_one_is_away_sensors_are_obeyed);
+  tcase_add_test(tests, who_stays_away_is_warned_of_once_and_forgotten);
+  tcase_add_test(tests, who_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile);
+  tcase_add_test(tests, of_what_the_application_asks_for_the_last_counts);
+  tcase_add_test(tests, nobody_is_chosen_where_there_is_no_head_nor_by_no_identity);
+  tcase_add_test(tests, a_flush_does_not_unmake_the_choice);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(pantiltsink_follow);
