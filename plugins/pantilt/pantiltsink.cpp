@@ -57,13 +57,14 @@
 #include <gst/video/video.h>
 
 #include <atomic>
-#include <cmath>
-#include <thread>
+#include <mutex>
 
 #include "cerberus/private/element.hpp"
-#include "head_names.hpp"
+#include "head_opening.hpp"
+#include "head_settings.hpp"
 #include "station.hpp"
-#include "vision/properties.hpp"
+#include "ticker.hpp"
+#include "times.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
 #define GST_CAT_DEFAULT pantiltsink_debug
@@ -72,165 +73,13 @@ namespace cerberus::plugin {
 namespace {
 
 using control::Time;
-using sensing::degrees;
 using sensing::radians;
-using std::chrono::milliseconds;
 
-// A change of state takes at most these together, whatever the driver does (100 ms is promised).
-constexpr auto kOpenPatience = milliseconds(60);
-constexpr auto kHaltPatience = milliseconds(30);
-constexpr auto kClosePatience = milliseconds(30);
-
-constexpr double kMostDegrees = 3600;
+// As kOpenPatience.
+constexpr auto kHaltPatience = std::chrono::milliseconds(30);
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw(ANY)"));
-
-GType target_type() {
-  static const GEnumValue values[] = {
-      {static_cast<int>(fusion::TargetChoice::nearest), "The one whose feet are nearest", "nearest"},
-      {static_cast<int>(fusion::TargetChoice::largest), "The one that covers most of the picture", "largest"},
-      {static_cast<int>(fusion::TargetChoice::newest), "The one that came last", "newest"},
-      {0, nullptr, nullptr}};
-  static const GType type = g_enum_register_static("CerberusPanTiltTarget", values);
-  return type;
-}
-
-constexpr GstClockTime clock_time(Time time) {
-  return static_cast<GstClockTime>(time.count());
-}
-Time time_of(GstClockTime time) {
-  return Time(static_cast<Time::rep>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
-}
-
-struct Settings {
-  std::string driver = "simulated";
-  std::string head = "head";
-  std::string script;
-  double horizontal_fov = 60;
-  double pan_min = -170, pan_max = 170, tilt_min = -45, tilt_max = 45;
-  double start_pan = 0, start_tilt = 0;
-  double turn_speed = 40, max_speed = 90, max_acceleration = 600;
-  double gain = control::LawOptions{}.gain;
-  double dead_band_start = 3, dead_band_stop = 0.7;
-  guint64 latency = 60 * GST_MSECOND;
-  double step_size = 0, backlash = 0, noise = 0;
-  int seed = 1;
-  int target = static_cast<int>(fusion::TargetChoice::nearest);
-  guint64 return_delay = 5 * GST_SECOND;
-  guint64 hold_stopped = 30 * GST_SECOND;
-  guint64 watchdog_timeout = 500 * GST_MSECOND;
-};
-
-const Property<Settings> kProperties[] = {
-    property("driver", &Settings::driver,
-             "What drives the head: simulated or scripted (read when the element starts)"),
-    property("head", &Settings::head,
-             "Name of the head, in pose events and messages; one sink a name (read when the element starts)"),
-    property("script", &Settings::script,
-             "What the scripted driver does, for tests: parts like 'record 7; command 3 fail no power; stop "
-             "wait 8' "
-             "with file descriptors (read when the element starts)"),
-    property(
-        "horizontal-fov", &Settings::horizontal_fov, 0, 179,
-        "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing can be "
-        "tracked"),
-    property("pan-min", &Settings::pan_min, -kMostDegrees, kMostDegrees,
-             "How far the head turns to the left, degrees, at most 0 (read when the element starts)"),
-    property("pan-max", &Settings::pan_max, -kMostDegrees, kMostDegrees,
-             "How far the head turns to the right, degrees, at least 0 (read when the element starts)"),
-    property("tilt-min", &Settings::tilt_min, -kMostDegrees, kMostDegrees,
-             "How far the head looks down, degrees, at most 0; as tilt-max 0: it does not tilt (read when "
-             "the element "
-             "starts)"),
-    property("tilt-max", &Settings::tilt_max, -kMostDegrees, kMostDegrees,
-             "How far the head looks up, degrees, at least 0 (read when the element starts)"),
-    property("start-pan", &Settings::start_pan, -kMostDegrees, kMostDegrees,
-             "Where a simulated head looks at the start, degrees, positive to the right"),
-    property("start-tilt", &Settings::start_tilt, -kMostDegrees, kMostDegrees,
-             "Where a simulated head looks at the start, degrees, positive up"),
-    property("turn-speed", &Settings::turn_speed, 0, kMostDegrees,
-             "Degrees a second at which the head turns, searches and returns to zero; 0 = the default"),
-    property("max-speed", &Settings::max_speed, 0, 1e9,
-             "Highest speed of the head in degrees a second (read when the element starts)"),
-    property("max-acceleration", &Settings::max_acceleration, 0, 1e9,
-             "Highest acceleration of the head in degrees a second squared (read when the element starts)"),
-    property("gain", &Settings::gain, 0, 100,
-             "Speed with which a target is followed, in degrees a second for each degree that it is off the "
-             "middle; "
-             "higher follows closer and passes on more noise; 0 = the default"),
-    property("dead-band-start", &Settings::dead_band_start, 0, 90,
-             "A head at rest starts to follow when the target is this many degrees off the middle"),
-    property("dead-band-stop", &Settings::dead_band_stop, 0, 90,
-             "A head that follows rests when the target is less than this many degrees off the middle"),
-    property("latency", &Settings::latency,
-             "Nanoseconds from a command until the head obeys, at most 5 s (read when the element starts)"),
-    property("step-size", &Settings::step_size, 0, 90,
-             "A simulated head rests at multiples of this many degrees; 0 = anywhere (read when the element "
-             "starts)"),
-    property("backlash", &Settings::backlash, 0, 90,
-             "Play in degrees between a simulated head's motor and camera (read when the element starts)"),
-    property("noise", &Settings::noise, 0, 90,
-             "Standard deviation in degrees of what a simulated head says of its own position (read when the "
-             "element "
-             "starts)"),
-    property("seed", &Settings::seed, 0, G_MAXINT,
-             "Seed of the noise: equal seeds give equal runs (read when the element starts)"),
-    property("target", &Settings::target, target_type,
-             "Whom to follow when nobody is followed yet, without pirfusion upstream"),
-    property("return-delay", &Settings::return_delay,
-             "Nanoseconds without anybody after which the head returns to zero, without pirfusion upstream"),
-    property("hold-stopped", &Settings::hold_stopped,
-             "Nanoseconds for which somebody who stopped is watched at least, without pirfusion upstream"),
-    property("watchdog-timeout", &Settings::watchdog_timeout,
-             "Nanoseconds without a frame after which the head stops; 0 = never"),
-};
-
-// The thread that lets the clock's time pass in a clock-driven element.
-class Ticker {
- public:
-  ~Ticker() { stop(); }
-  // tick(): does what is due, returns the clock's time of the next call.
-  template <typename Tick>
-  void start(GstClock* clock, Tick tick) {
-    if (thread_.joinable()) return;
-    quit_ = false;
-    thread_ = std::thread([this, clock = GST_CLOCK(gst_object_ref(clock)), tick] {
-      while (!quit_) {
-        woken_ = false;
-        const GstClockTime next = tick();
-        GstClockID id = gst_clock_new_single_shot_id(clock, next);
-        {
-          const std::lock_guard guard(lock_);
-          id_ = id;
-        }
-        if (!quit_ && !woken_) gst_clock_id_wait(id, nullptr);
-        const std::lock_guard guard(lock_);
-        id_ = nullptr;
-        gst_clock_id_unref(id);
-      }
-      gst_object_unref(clock);
-    });
-  }
-  // The next call comes at once. From any thread; a wake-up before the wait is not lost.
-  void wake() {
-    woken_ = true;
-    const std::lock_guard guard(lock_);
-    if (id_) gst_clock_id_unschedule(id_);
-  }
-  void stop() {
-    if (!thread_.joinable()) return;
-    quit_ = true;
-    wake();
-    thread_.join();
-  }
-
- private:
-  std::thread thread_;
-  std::mutex lock_;
-  GstClockID id_ = nullptr;
-  std::atomic<bool> quit_ = false, woken_ = false;
-};
 
 struct State {  // streaming thread only
   GstVideoInfo info;
@@ -240,7 +89,7 @@ struct State {  // streaming thread only
 
 struct Private {
   GstBaseSink* sink = nullptr;
-  Adjustable<Settings> settings;
+  Adjustable<HeadSettings> settings;
   std::atomic<double> field_of_view = 0;
   const char* head = nullptr;  // interned, while started
   std::atomic<bool> clock_driven = false, playing = false;
@@ -253,136 +102,26 @@ struct Private {
 
 CERBERUS_DEFINE_TYPE(CerberusPanTiltSink, cerberus_pan_tilt_sink, GstBaseSink, GST_TYPE_BASE_SINK, Private)
 
-CerberusPose to_c(const Private& self, const control::Pose& pose) {
-  CerberusPose out;
-  cerberus_pose_init(&out);
-  if (self.head) out.head = self.head;
-  out.pan = degrees(pose.pan.position);
-  out.tilt = degrees(pose.tilt.position);
-  out.pan_speed = degrees(pose.pan.speed);
-  out.tilt_speed = degrees(pose.tilt.speed);
-  out.pan_acceleration = degrees(pose.pan.acceleration);
-  out.tilt_acceleration = degrees(pose.tilt.acceleration);
-  out.valid_from = clock_time(pose.from);
-  out.valid_until = pose.until == control::kNever ? GST_CLOCK_TIME_NONE : clock_time(pose.until);
-  out.source = pose.measured ? CERBERUS_POSE_MEASURED : CERBERUS_POSE_COMMANDED;
-  out.moving = pose.moving();
-  out.settled = pose.settled;
-  return out;
+void tell(const Private& self, const Outbox& out) {
+  send(out, self.sink, self.head);
 }
 
-void warn_of_lost(Private& self, guint id) {
-  if (id != 0)
-    GST_ELEMENT_WARNING(
-        self.sink, RESOURCE, NOT_FOUND,
-        ("Track %u, which was to be followed, is on no frame for %d s: the usual choice goes on.", id,
-         static_cast<int>(fusion::Chosen::kPatience / std::chrono::seconds(1))),
-        ("head %s", self.head));
-}
-
-// Sends off what the station said. No lock held.
-void send(Private& self, const Outbox& out) {
-  for (const control::Pose& pose : out.poses) {
-    const CerberusPose event = to_c(self, pose);
-    gst_pad_push_event(GST_BASE_SINK_PAD(self.sink), cerberus_event_new_pose(&event));
-  }
-  for (const Status& status : out.statuses) {
-    const CerberusPose pose = to_c(self, status.pose);
-    gst_element_post_message(GST_ELEMENT(self.sink),
-                             cerberus_message_new_pantilt(GST_OBJECT(self.sink), clock_time(status.time),
-                                                          status.state, status.reason.c_str(), &pose));
-  }
-  if (!out.fault.empty())
-    GST_ELEMENT_WARNING(self.sink, RESOURCE, WRITE,
-                        ("The head \"%s\" fails: %s", self.head, out.fault.c_str()),
-                        ("driver %s", self.settings.snapshot().driver.c_str()));
-  warn_of_lost(self, out.lost);
-}
-
-// Running time by the clock, while there is one.
-std::optional<Time> now(const Private& self) {
-  const GstClockTime time = gst_element_get_current_running_time(GST_ELEMENT(self.sink));
-  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
-  return time_of(time);
-}
-
-void configure(Private& self, const Settings& s) {
-  control::LawOptions law;
-  law.limits.pan = {radians(s.pan_min), radians(s.pan_max), radians(s.max_speed),
-                    radians(s.max_acceleration)};
-  law.limits.tilt = {radians(s.tilt_min), radians(s.tilt_max), radians(s.max_speed),
-                     radians(s.max_acceleration)};
-  law.turn_speed = radians(s.turn_speed);
-  law.gain = s.gain;
-  law.dead_band_start = radians(s.dead_band_start);
-  law.dead_band_stop = radians(s.dead_band_stop);
-  fusion::FuserOptions fuser;
-  fuser.choice = static_cast<fusion::TargetChoice>(s.target);
-  fuser.return_delay = time_of(s.return_delay);
-  fuser.hold_stopped = time_of(s.hold_stopped);
+void configure(Private& self, const HeadSettings& s) {
   self.field_of_view = s.horizontal_fov;
-  self.station.set_options(law, fuser, time_of(s.watchdog_timeout));
-}
-
-drivers::HeadSetup setup_of(const Settings& s) {
-  drivers::HeadSetup setup;
-  setup.limits.pan = {radians(s.pan_min), radians(s.pan_max), radians(s.max_speed),
-                      radians(s.max_acceleration)};
-  setup.limits.tilt = {radians(s.tilt_min), radians(s.tilt_max), radians(s.max_speed),
-                       radians(s.max_acceleration)};
-  setup.latency = time_of(s.latency);
-  setup.step = radians(s.step_size);
-  setup.backlash = radians(s.backlash);
-  setup.noise = radians(s.noise);
-  setup.seed = static_cast<unsigned>(s.seed);
-  setup.pan = radians(s.start_pan);
-  setup.tilt = radians(s.start_tilt);
-  setup.script = s.script;
-  return setup;
+  self.station.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
 }
 
 // Not GstBaseSink::start: that one adds an error message of its own.
-bool open_head(Private& self) {
-  GstBaseSink* sink = self.sink;
-  return guarded(sink, false, [&] {
-    const Settings s = self.settings.snapshot();
+bool open(Private& self) {
+  return guarded(self.sink, false, [&] {
+    const HeadSettings s = self.settings.snapshot();
     self.settings.refresh();
-    const drivers::HeadSetup setup = setup_of(s);
-    if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
-      GST_ELEMENT_ERROR(sink, LIBRARY, SETTINGS, ("%s.", wrong.c_str()), ("head %s", s.head.c_str()));
-      return false;
-    }
-    auto head = drivers::make_head(s.driver);
-    if (!head) {
-      GST_ELEMENT_ERROR(sink, LIBRARY, SETTINGS,
-                        ("There is no head driver \"%s\": take one of %s.", s.driver.c_str(),
-                         drivers::head_drivers().c_str()),
-                        ("head %s", s.head.c_str()));
-      return false;
-    }
-    auto lease = lease_head(s.head);
-    if (!lease) {
-      GST_ELEMENT_ERROR(
-          sink, RESOURCE, BUSY,
-          ("Another pantiltsink drives the head \"%s\" already: give each its own name (head=).",
-           s.head.c_str()),
-          (nullptr));
-      return false;
-    }
+    auto runner = open_head(GST_ELEMENT(self.sink), s, [&self] { self.ticker.wake(); });
+    if (!runner) return false;
     self.head = g_intern_string(s.head.c_str());
     self.state = {};
-    self.real = !head->simulated();
-    self.clock_driven = self.real;
-    auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease),
-                                                        [&self] { self.ticker.wake(); });
-    runner->set_close_patience(kClosePatience);
-    if (runner->open(setup, kOpenPatience) == Station::Answer::failed) {
-      GST_ELEMENT_ERROR(sink, RESOURCE, OPEN_READ_WRITE,
-                        ("The head \"%s\" cannot be opened: %s.", s.head.c_str(), runner->failure().c_str()),
-                        ("driver %s", s.driver.c_str()));
-      return false;
-    }
-    self.station.open(std::move(runner), setup);
+    self.clock_driven = self.real = !runner->simulated();
+    self.station.open(std::move(runner), head_setup(s));
     self.station.set_clock_driven(self.clock_driven);
     configure(self, s);
     return true;
@@ -401,14 +140,13 @@ void start_ticker(Private& self) {
   {
     const std::lock_guard guard(self.ticker_lock);
     if (self.playing)
-      self.ticker.start(clock, [&self, clock]() -> GstClockTime {
-        const GstClockTime time = gst_clock_get_time(clock);
+      self.ticker.start(clock, [&self](GstClockTime time) {
         Outbox out;
         GstClockTime next = time + 20 * GST_MSECOND;
-        if (const auto running = now(self)) {
+        if (const auto running = clock_now(self.sink)) {
           guarded(self.sink, [&] { next = time + clock_time(self.station.tick(*running, out) - *running); });
         }
-        send(self, out);
+        tell(self, out);
         return next;
       });
   }
@@ -417,11 +155,11 @@ void start_ticker(Private& self) {
 
 void halt(Private& self, const char* reason, std::chrono::milliseconds patience = kHaltPatience) {
   Outbox out;
-  self.station.halt(reason, now(self), patience, out);
-  send(self, out);
+  self.station.halt(reason, clock_now(self.sink), patience, out);
+  tell(self, out);
 }
 
-void close_head(Private& self) {
+void close(Private& self) {
   guarded(self.sink, [&] {
     stop_ticker(self);
     halt(self, "stopped");
@@ -479,7 +217,7 @@ GstFlowReturn persist(Private& self, Ask ask) {
   for (;;) {
     Outbox out;
     const Station::Answer answer = ask(out);
-    send(self, out);
+    tell(self, out);
     if (answer != Station::Answer::interrupted) return GST_FLOW_OK;
     const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink);
     if (flow != GST_FLOW_OK) return flow;
@@ -491,7 +229,7 @@ std::optional<Time> running_time(const Private& self, GstClockTime pts, std::opt
                                  Time length) {
   const GstSegment& segment = self.sink->segment;
   if (segment.format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID(pts)) {
-    if (self.clock_driven) return now(self);
+    if (self.clock_driven) return clock_now(self.sink);
     return newest ? *newest + length : Time::zero();
   }
   const GstClockTime running = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts);
@@ -519,7 +257,7 @@ GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockT
   Station::Frame frame{.buffer = buffer,
                        .running = *taken,
                        .length = length,
-                       .now = now(self).value_or(*taken),
+                       .now = clock_now(self.sink).value_or(*taken),
                        .lens = vision::Lens(radians(self.field_of_view), {info.width, info.height}),
                        .capture = std::nullopt};
   const CerberusPose* pose = buffer ? cerberus_buffer_peek_pose(buffer) : nullptr;
@@ -549,7 +287,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
       self.station.forget();
-      if (self.playing) self.station.resume(now(self));
+      if (self.playing) self.station.resume(clock_now(self.sink));
     }
     if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
@@ -564,7 +302,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
 // the lock too: a frame that comes in the middle waits until the change is through.
 GstStateChangeReturn play(Private& self) {
   GstElement* element = GST_ELEMENT(self.sink);
-  guarded(element, [&] { self.station.resume(now(self)); });
+  guarded(element, [&] { self.station.resume(clock_now(self.sink)); });
   self.station.interrupt(true);
   const GstStateChangeReturn done = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())
                                         ->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
@@ -580,7 +318,7 @@ GstStateChangeReturn play(Private& self) {
 GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, GstStateChange change) {
   Private& self = *cerberus_pan_tilt_sink_self(element)->priv;
   if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(self);
-  if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open_head(self)) return GST_STATE_CHANGE_FAILURE;
+  if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open(self)) return GST_STATE_CHANGE_FAILURE;
   if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
     self.playing = false;
     stop_ticker(self);
@@ -589,7 +327,7 @@ GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, Gs
   const GstStateChangeReturn done =
       GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->change_state(element, change);
   const bool failed = change == GST_STATE_CHANGE_READY_TO_PAUSED && done == GST_STATE_CHANGE_FAILURE;
-  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) close_head(self);
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) close(self);
   return done;
 }
 
@@ -599,8 +337,8 @@ gboolean by_hand(CerberusPanTiltSink* sink, Act act) {
   Private& self = *sink->priv;
   return guarded(sink, FALSE, [&]() -> gboolean {
     Outbox out;
-    const bool done = act(self.station, now(self), out);
-    send(self, out);
+    const bool done = act(self.station, clock_now(self.sink), out);
+    tell(self, out);
     return done;
   });
 }
@@ -629,11 +367,11 @@ gboolean follow(CerberusPanTiltSink* sink, guint id) {
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_pan_tilt_sink_self(object)->priv->settings.set(kProperties, id, value);
+  cerberus_pan_tilt_sink_self(object)->priv->settings.set(head_properties(), id, value);
 }
 
 void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_pan_tilt_sink_self(object)->priv->settings.get(kProperties, id, value);
+  cerberus_pan_tilt_sink_self(object)->priv->settings.get(head_properties(), id, value);
 }
 
 void cerberus_pan_tilt_sink_init(CerberusPanTiltSink* self) {
@@ -656,7 +394,7 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   GObjectClass* object = G_OBJECT_CLASS(klass);
   object->set_property = set_property;
   object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
+  Adjustable<HeadSettings>::install(object, head_properties());
   add_signal(object, "move-to", G_CALLBACK(move_to), 2);
   add_signal(object, "move-by", G_CALLBACK(move_by), 2);
   add_signal(object, "stop", G_CALLBACK(stay));
@@ -678,7 +416,7 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   sink->propose_allocation = cerberus_pan_tilt_sink_propose_allocation;
   sink->event = cerberus_pan_tilt_sink_event;
   sink->render = cerberus_pan_tilt_sink_render;
-  gst_type_mark_as_plugin_api(target_type(), static_cast<GstPluginAPIFlags>(0));
+  gst_type_mark_as_plugin_api(pan_tilt_target_type(), static_cast<GstPluginAPIFlags>(0));
 }
 
 }  // namespace

@@ -16,23 +16,10 @@
 #include "control/law.h"
 #include "control/watchdog.h"
 #include "drivers/head_runner.h"
+#include "outbox.hpp"
 #include "pilot.hpp"
 
 namespace cerberus::plugin {
-
-struct Status {
-  const char* state = "stopped";  // one of the words of cerberus-pantilt
-  std::string reason;
-  control::Pose pose;
-  control::Time time{};
-};
-
-struct Outbox {
-  std::vector<control::Pose> poses;
-  std::vector<Status> statuses;
-  std::string fault;  // new: for a warning
-  guint lost = 0;     // the identity that was to be followed and is not there: for a warning
-};
 
 class Station {
  public:

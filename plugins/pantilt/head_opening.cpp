@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "head_opening.hpp"
+
+#include <utility>
+
+#include "head_names.hpp"
+
+namespace cerberus::plugin {
+
+std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
+                                               std::function<void()> notify) {
+  const char* name = s.head.c_str();
+  const drivers::HeadSetup setup = head_setup(s);
+  if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
+    GST_ELEMENT_ERROR(element, LIBRARY, SETTINGS, ("%s.", wrong.c_str()), ("head %s", name));
+    return nullptr;
+  }
+  auto head = drivers::make_head(s.driver);
+  if (!head) {
+    GST_ELEMENT_ERROR(element, LIBRARY, SETTINGS,
+                      ("There is no head driver \"%s\": take one of %s.", s.driver.c_str(),
+                       drivers::head_drivers().c_str()),
+                      ("head %s", name));
+    return nullptr;
+  }
+  auto lease = lease_head(s.head);
+  if (!lease) {
+    GST_ELEMENT_ERROR(
+        element, RESOURCE, BUSY,
+        ("Another pantiltsink drives the head \"%s\" already: give each its own name (head=).", name),
+        (nullptr));
+    return nullptr;
+  }
+  auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease), std::move(notify));
+  runner->set_close_patience(kClosePatience);
+  if (runner->open(setup, kOpenPatience) == drivers::HeadRunner::Answer::failed) {
+    GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
+                      ("The head \"%s\" cannot be opened: %s.", name, runner->failure().c_str()),
+                      ("driver %s", s.driver.c_str()));
+    return nullptr;
+  }
+  return runner;
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "head_settings.hpp"
+
+#include "times.hpp"
+
+namespace cerberus::plugin {
+
+using sensing::radians;
+
+namespace {
+
+constexpr double kMostDegrees = 3600;
+
+const Property<HeadSettings> kProperties[] = {
+    property("driver", &HeadSettings::driver,
+             "What drives the head: simulated or scripted (read when the element starts)"),
+    property("head", &HeadSettings::head,
+             "Name of the head, in pose events and messages; one sink a name (read when the element starts)"),
+    property("script", &HeadSettings::script,
+             "What the scripted driver does, for tests: parts like 'record 7; command 3 fail no power; stop "
+             "wait 8' "
+             "with file descriptors (read when the element starts)"),
+    property(
+        "horizontal-fov", &HeadSettings::horizontal_fov, 0, 179,
+        "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing can be "
+        "tracked"),
+    property("pan-min", &HeadSettings::pan_min, -kMostDegrees, kMostDegrees,
+             "How far the head turns to the left, degrees, at most 0 (read when the element starts)"),
+    property("pan-max", &HeadSettings::pan_max, -kMostDegrees, kMostDegrees,
+             "How far the head turns to the right, degrees, at least 0 (read when the element starts)"),
+    property("tilt-min", &HeadSettings::tilt_min, -kMostDegrees, kMostDegrees,
+             "How far the head looks down, degrees, at most 0; as tilt-max 0: it does not tilt (read when "
+             "the element "
+             "starts)"),
+    property("tilt-max", &HeadSettings::tilt_max, -kMostDegrees, kMostDegrees,
+             "How far the head looks up, degrees, at least 0 (read when the element starts)"),
+    property("start-pan", &HeadSettings::start_pan, -kMostDegrees, kMostDegrees,
+             "Where a simulated head looks at the start, degrees, positive to the right"),
+    property("start-tilt", &HeadSettings::start_tilt, -kMostDegrees, kMostDegrees,
+             "Where a simulated head looks at the start, degrees, positive up"),
+    property("turn-speed", &HeadSettings::turn_speed, 0, kMostDegrees,
+             "Degrees a second at which the head turns, searches and returns to zero; 0 = the default"),
+    property("max-speed", &HeadSettings::max_speed, 0, 1e9,
+             "Highest speed of the head in degrees a second (read when the element starts)"),
+    property("max-acceleration", &HeadSettings::max_acceleration, 0, 1e9,
+             "Highest acceleration of the head in degrees a second squared (read when the element starts)"),
+    property("gain", &HeadSettings::gain, 0, 100,
+             "Speed with which a target is followed, in degrees a second for each degree that it is off the "
+             "middle; "
+             "higher follows closer and passes on more noise; 0 = the default"),
+    property("dead-band-start", &HeadSettings::dead_band_start, 0, 90,
+             "A head at rest starts to follow when the target is this many degrees off the middle"),
+    property("dead-band-stop", &HeadSettings::dead_band_stop, 0, 90,
+             "A head that follows rests when the target is less than this many degrees off the middle"),
+    property("latency", &HeadSettings::latency,
+             "Nanoseconds from a command until the head obeys, at most 5 s (read when the element starts)"),
+    property("step-size", &HeadSettings::step_size, 0, 90,
+             "A simulated head rests at multiples of this many degrees; 0 = anywhere (read when the element "
+             "starts)"),
+    property("backlash", &HeadSettings::backlash, 0, 90,
+             "Play in degrees between a simulated head's motor and camera (read when the element starts)"),
+    property("noise", &HeadSettings::noise, 0, 90,
+             "Standard deviation in degrees of what a simulated head says of its own position (read when the "
+             "element "
+             "starts)"),
+    property("seed", &HeadSettings::seed, 0, G_MAXINT,
+             "Seed of the noise: equal seeds give equal runs (read when the element starts)"),
+    property("target", &HeadSettings::target, pan_tilt_target_type,
+             "Whom to follow when nobody is followed yet, without pirfusion upstream"),
+    property("return-delay", &HeadSettings::return_delay,
+             "Nanoseconds without anybody after which the head returns to zero, without pirfusion upstream"),
+    property("hold-stopped", &HeadSettings::hold_stopped,
+             "Nanoseconds for which somebody who stopped is watched at least, without pirfusion upstream"),
+    property("watchdog-timeout", &HeadSettings::watchdog_timeout,
+             "Nanoseconds without a frame after which the head stops; 0 = never"),
+};
+
+}  // namespace
+
+GType pan_tilt_target_type() {
+  static const GEnumValue values[] = {
+      {static_cast<int>(fusion::TargetChoice::nearest), "The one whose feet are nearest", "nearest"},
+      {static_cast<int>(fusion::TargetChoice::largest), "The one that covers most of the picture", "largest"},
+      {static_cast<int>(fusion::TargetChoice::newest), "The one that came last", "newest"},
+      {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPanTiltTarget", values);
+  return type;
+}
+
+std::span<const Property<HeadSettings>> head_properties() {
+  return kProperties;
+}
+
+control::Limits head_limits(const HeadSettings& s) {
+  const double speed = radians(s.max_speed), acceleration = radians(s.max_acceleration);
+  return {.pan = {radians(s.pan_min), radians(s.pan_max), speed, acceleration},
+          .tilt = {radians(s.tilt_min), radians(s.tilt_max), speed, acceleration}};
+}
+
+control::LawOptions law_options(const HeadSettings& s) {
+  return {.limits = head_limits(s),
+          .turn_speed = radians(s.turn_speed),
+          .gain = s.gain,
+          .dead_band_start = radians(s.dead_band_start),
+          .dead_band_stop = radians(s.dead_band_stop)};
+}
+
+fusion::FuserOptions fuser_options(const HeadSettings& s) {
+  return {.choice = static_cast<fusion::TargetChoice>(s.target),
+          .return_delay = time_of(s.return_delay),
+          .hold_stopped = time_of(s.hold_stopped)};
+}
+
+drivers::HeadSetup head_setup(const HeadSettings& s) {
+  return {.limits = head_limits(s),
+          .latency = time_of(s.latency),
+          .step = radians(s.step_size),
+          .backlash = radians(s.backlash),
+          .noise = radians(s.noise),
+          .seed = static_cast<unsigned>(s.seed),
+          .pan = radians(s.start_pan),
+          .tilt = radians(s.start_tilt),
+          .script = s.script};
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The properties of pantiltsink, and what they mean to lib/.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "control/law.h"
+#include "drivers/head.h"
+#include "fusion/fuser.h"
+#include "vision/properties.hpp"
+
+namespace cerberus::plugin {
+
+struct HeadSettings {
+  std::string driver = "simulated";
+  std::string head = "head";
+  std::string script;
+  double horizontal_fov = 60;
+  double pan_min = -170, pan_max = 170, tilt_min = -45, tilt_max = 45;
+  double start_pan = 0, start_tilt = 0;
+  double turn_speed = 40, max_speed = 90, max_acceleration = 600;
+  double gain = control::LawOptions{}.gain;
+  double dead_band_start = 3, dead_band_stop = 0.7;
+  guint64 latency = 60 * GST_MSECOND;
+  double step_size = 0, backlash = 0, noise = 0;
+  int seed = 1;
+  int target = static_cast<int>(fusion::TargetChoice::nearest);
+  guint64 return_delay = 5 * GST_SECOND;
+  guint64 hold_stopped = 30 * GST_SECOND;
+  guint64 watchdog_timeout = 500 * GST_MSECOND;
+};
+
+std::span<const Property<HeadSettings>> head_properties();
+GType pan_tilt_target_type();
+
+control::Limits head_limits(const HeadSettings& settings);
+control::LawOptions law_options(const HeadSettings& settings);
+// For who decides without pirfusion.
+fusion::FuserOptions fuser_options(const HeadSettings& settings);
+drivers::HeadSetup head_setup(const HeadSettings& settings);
+
+}  // namespace cerberus::plugin

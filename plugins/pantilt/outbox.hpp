@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a station has to tell: poses to everybody upstream, states and warnings to the application.
+#pragma once
+
+#include <gst/base/gstbasesink.h>
+
+#include <string>
+#include <vector>
+
+#include "control/pose.h"
+
+namespace cerberus::plugin {
+
+struct Status {
+  const char* state = "stopped";  // one of the words of cerberus-pantilt
+  std::string reason;
+  control::Pose pose;
+  control::Time time{};
+};
+
+struct Outbox {
+  std::vector<control::Pose> poses;
+  std::vector<Status> statuses;
+  std::string fault;  // new: for a warning
+  guint lost = 0;     // the identity that was to be followed and is not there: for a warning
+};
+
+// Sends it off for `sink`, whose head is `head` (may be nullptr). No lock held.
+void send(const Outbox& out, GstBaseSink* sink, const char* head);
+
+}  // namespace cerberus::plugin
