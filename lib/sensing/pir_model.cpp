@@ -121,6 +121,7 @@ void PirModel::base(Time time, double yaw_rate) {
   const bool turning = std::abs(yaw_rate) > kDoubtfulTurn;  // false for NaN
   if (turning_ && !turning) calm_since_ = now_;
   turning_ = turning;
+  turning_until_ = later(now_, kBaseLifetime);
   settle(now_);
 }
 
@@ -169,6 +170,7 @@ Time PirModel::deadline() const {
      later(active_since_, options_.stuck_after));
   at(fault_ == PirFault::stuck_on && !line_, later(last_fall_, options_.debounce));
   at(fault_ == PirFault::chattering, calm_time());
+  at(turning_, turning_until_);
   at(doubtful_ && !turning_, later(calm_since_, kDoubtLinger));
   return due;
 }
@@ -197,6 +199,10 @@ void PirModel::settle(Time now) {
       now >= later(active_since_, options_.stuck_after))
     fault_ = PirFault::stuck_on;
 
+  if (turning_ && now >= turning_until_) {
+    turning_ = false;
+    calm_since_ = turning_until_;
+  }
   doubtful_ = detecting_ && (turning_ || (doubtful_ && now < later(calm_since_, kDoubtLinger)));
 
   const Presence old_presence = presence_;

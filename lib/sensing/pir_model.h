@@ -78,7 +78,8 @@ class PirModel {
   // A detection that began or stood while the base turned faster than kDoubtfulTurn (see base()), until it ends or the
   // base has been calm for kDoubtLinger.
   bool doubtful() const { return doubtful_; }
-  // The base turns with `yaw_rate` radians a second from `time` on (NaN: unknown, taken as standing still).
+  // The base turns with `yaw_rate` radians a second from `time` on, for kBaseLifetime or until the next call (NaN:
+  // unknown, taken as standing still).
   void base(Time time, double yaw_rate);
 
   const PirOptions& options() const { return options_; }
@@ -102,13 +103,16 @@ class PirModel {
   Presence presence_ = Presence::invalid;
   PirFault fault_ = PirFault::none;
   bool turning_ = false, doubtful_ = false;
-  Time calm_since_{};
+  Time turning_until_{}, calm_since_{};
   std::array<Time, kRises> rises_{};
   unsigned rise_count_ = 0;  // of all rises since start; the last kRises of them are kept
 };
 
 // A body that turns faster than this trips its own PIR sensors: 5 degrees a second, an assumption.
 constexpr double kDoubtfulTurn = radians(5);
+// So long holds what was said of the base, if nothing more is: who knows how a robot turns says so many times a second, and who
+// has been silent for so long is dead or gone, and must not be believed for ever.
+constexpr Time kBaseLifetime = std::chrono::seconds(1);
 // A module holds its output for some seconds after the turn that tripped it.
 constexpr Time kDoubtLinger = std::chrono::seconds(3);
 

@@ -82,7 +82,7 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }
   if (pose) cerberus_pose_evaluate(pose, nanoseconds(time), &moment.pan_degrees, nullptr);
-  if (const double* rate = base_.at(time)) {
+  if (const auto rate = base_.at(time)) {
     moment.base_degrees = *rate;
     moment.base_heard = true;
   } else if (seen) {
@@ -101,7 +101,7 @@ void Inputs::hear(const CerberusPose& pose) {
 
 void Inputs::hear_base(double degrees_a_second, Time from) {
   const std::lock_guard guard(lock_);
-  base_.insert(from, degrees_a_second);
+  base_.hear(from, degrees_a_second);
 }
 
 GstPad* Inputs::add_pad(const char* name, GstPadTemplate* pad_template) {

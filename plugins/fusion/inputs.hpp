@@ -15,6 +15,7 @@
 
 #include "sensing/sectors.h"
 #include "timeline.hpp"
+#include "told_base.hpp"
 
 namespace cerberus::plugin {
 
@@ -68,8 +69,8 @@ class Inputs {
   std::condition_variable news_;  // of anything below, and of the pads
   std::vector<GstPad*> pads_;     // by number; the element owns them
   Timeline<CerberusPose> poses_;
-  Timeline<double> base_;  // yaw rate, degrees a second
-  Time video_{};           // newest frame that came
+  ToldBase base_;
+  Time video_{};  // newest frame that came
   bool flushing_ = true;
   bool video_ended_ = false;
 };

@@ -23,8 +23,8 @@
  * The pan angle comes from the pose on the buffer, else from the head's `cerberus-pose` events passing upstream,
  * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
  * come while the robot turns faster than 5 degrees a second are doubtful and do not count: a `cerberus-base` event says
- * so, or, where none came, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are told by that
- * event. Both events, and seeks, are passed on to the video and to the PIR pads.
+ * so, or, where none came within a second, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are
+ * told by that event. Both events, and seeks, are passed on to the video and to the PIR pads.
  *
  * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
  * described in the manual (rules); one that leaves a case open or contradicts itself is refused and the case named.
@@ -79,6 +79,7 @@ struct State {  // video thread only
   Time time{};               // of the last frame
   std::vector<fusion::Track> tracks;
   double base_told = 0;  // to the PIR pads, degrees a second
+  Time base_told_at{};
   RuleName rule_name;
 
   State() { gst_segment_init(&segment, GST_FORMAT_UNDEFINED); }
@@ -182,15 +183,22 @@ void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
   }
 }
 
-// The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter.
+// The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter, and before
+// they forget it; that it stands is what they take silence for.
 void pass_base_on(CerberusPirFusion* self, Time time, const Moment& moment) {
   constexpr double kMatters = 1;  // degrees a second
   const auto doubtful = [](double rate) { return std::abs(sensing::radians(rate)) > sensing::kDoubtfulTurn; };
-  double& told = self->priv->state->base_told;
+  State& state = *self->priv->state;
+  const double told = state.base_told;
   const double rate = std::isfinite(moment.base_degrees) ? moment.base_degrees : 0;
-  if (moment.base_heard || rate == told) return;
-  if (std::abs(rate - told) < kMatters && doubtful(rate) == doubtful(told) && rate != 0) return;
-  told = rate;
+  if (moment.base_heard) return;
+  const bool same =
+      rate == told || (rate != 0 && std::abs(rate - told) < kMatters && doubtful(rate) == doubtful(told));
+  const Time since = time - state.base_told_at;
+  const bool fresh = since >= Time::zero() && since < sensing::kBaseLifetime / 2;
+  if (same && (fresh || rate == 0)) return;
+  state.base_told = rate;
+  state.base_told_at = time;
   g_autoptr(GstEvent) event = cerberus_event_new_base(rate, nanoseconds(time));
   push_to_pirs(self, event);
 }

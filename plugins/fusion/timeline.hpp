@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What was said when: entries in the order of their running time, for "the newest one not later than the frame".
+// What was said when: entries in the order of their running time, for "the newest one not later than this moment". Which
+// moment that is, the asker knows: of poses the frame's own, of PIR readings, live, the one in which the frame came.
 #pragma once
 
 #include <algorithm>
@@ -39,10 +40,14 @@ class Timeline {
   }
 
   // The newest entry not later than `time`; nullptr: there is none.
-  const T* at(Time time) const {
+  const Entry* entry_at(Time time) const {
     const auto after = std::upper_bound(entries_.begin(), entries_.end(), time,
                                         [](Time t, const Entry& entry) { return t < entry.time; });
-    return after == entries_.begin() ? nullptr : &std::prev(after)->value;
+    return after == entries_.begin() ? nullptr : &*std::prev(after);
+  }
+  const T* at(Time time) const {
+    const Entry* entry = entry_at(time);
+    return entry ? &entry->value : nullptr;
   }
   const T* first() const { return entries_.empty() ? nullptr : &entries_.front().value; }
   // The last entry, or one that many before it.
@@ -52,7 +57,7 @@ class Timeline {
   // The last entry was said again: later.
   void postpone_last(Time time) { entries_.back().time = time; }
 
-  // Drops what no frame from `time` on can ask for.
+  // Drops what nobody can ask for who asks for `time` or later.
   void forget_before(Time time) {
     while (entries_.size() > 1 && entries_[1].time <= time) entries_.pop_front();
   }

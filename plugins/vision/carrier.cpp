@@ -69,7 +69,7 @@ void Carrier::forget() {
   begin_comparison();
   const std::lock_guard guard(lock_);
   poses_.clear();
-  base_rates_.clear();
+  told_base_.clear();
 }
 
 void Carrier::begin_comparison() {
@@ -85,7 +85,7 @@ void Carrier::hear(GstEvent* event, const std::string& head) {
   if (pose && (head.empty() || head == pose->head))
     poses_.insert(clamped(pose->valid_from), *pose);
   else if (cerberus_event_parse_base(event, &rate, &from))
-    base_rates_.insert(clamped(from), rate);
+    told_base_.hear(clamped(from), rate);
 }
 
 Carrier::Head Carrier::head_of(Frame& frame, const std::string& head) {
@@ -129,11 +129,11 @@ void Carrier::tell_base(Frame& frame, double seen) {
   if (GST_CLOCK_TIME_IS_VALID(frame.running_time)) {
     const Time time = clamped(frame.running_time);
     const std::lock_guard guard(lock_);
-    if (const double* told = base_rates_.at(time)) {
+    if (const auto told = told_base_.at(time)) {
       base.yaw_rate = *told;
       base.told = TRUE;
     }
-    base_rates_.forget_before(time);
+    told_base_.forget_before(time);
   }
   if (std::isfinite(base.yaw_rate)) cerberus_buffer_set_base(frame.buffer, &base);
 }

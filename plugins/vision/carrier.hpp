@@ -13,6 +13,7 @@
 #include "control/slip.h"
 #include "frame.hpp"
 #include "fusion/timeline.hpp"
+#include "fusion/told_base.hpp"
 
 namespace cerberus::plugin {
 
@@ -51,7 +52,7 @@ class Carrier {
 
   std::mutex lock_;  // of what was told
   Timeline<CerberusPose> poses_;
-  Timeline<double> base_rates_;  // degrees a second
+  ToldBase told_base_;
 };
 
 }  // namespace cerberus::plugin

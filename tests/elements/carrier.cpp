@@ -203,6 +203,10 @@ GST_START_TEST(an_application_knows_its_robot_better) {
   gst_harness_push_upstream_event(line.harness, cerberus_event_new_base(33, 10 * scene::kStep));
   fail_unless(std::abs(show(line, {}, 0, 10)) < 1);
   fail_unless(show(line, {}, 10, 20) == 33);
+  // For a second: then it has fallen silent, and what is seen counts.
+  fail_unless(show(line, {}, 20, 35) == 33);
+  const double later = show(line, {}, 35, 36);
+  fail_unless(std::abs(later) < 1, "%g", later);
   // It is passed on, too.
   bool passed = false;
   while (GstEvent* event = gst_harness_try_pull_upstream_event(line.harness)) {

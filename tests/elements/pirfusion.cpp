@@ -249,10 +249,37 @@ GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
   }
   // Not each small change, but always what makes a doubt or ends it.
   fail_unless(heard == std::vector<double>({4.9, 5.1, -20, 0}));
-  // An application knows better.
+  // An application knows better, until it falls silent.
   say(rig, cerberus_event_new_base(0, 200 * kMs));
-  rig.read(5 * GST_SECOND, {1, 0, 0});
-  fail_unless_equals_int(rig.show(turning(5 * GST_SECOND, 40)).doubtful, 0);
+  rig.read(1000 * kMs, {1, 0, 0});
+  fail_unless_equals_int(rig.show(turning(1199 * kMs, 40)).doubtful, 0);
+  fail_unless_equals_int(rig.show(turning(1200 * kMs, 40)).doubtful, 0b001);
+}
+GST_END_TEST
+
+// They would forget it within a second; that it stands they take silence for.
+GST_START_TEST(the_sensors_sources_are_told_again_while_the_robot_turns) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  std::vector<GstClockTime> told;
+  for (GstClockTime time = 0; time < 5 * GST_SECOND; time += 40 * kMs) {
+    GstBuffer* buffer = frame_at(time, 0);
+    CerberusBase base;
+    cerberus_base_init(&base);
+    base.yaw_rate = time < 3 * GST_SECOND ? 20 : 0;
+    cerberus_buffer_set_base(buffer, &base);
+    rig.show(buffer);
+    while (GstEvent* event = gst_harness_try_pull_upstream_event(pir)) {
+      double rate = 0;
+      if (cerberus_event_parse_base(event, &rate, nullptr)) {
+        fail_unless_equals_float(rate, base.yaw_rate);
+        told.push_back(time);
+      }
+      gst_event_unref(event);
+    }
+  }
+  fail_unless(told == std::vector<GstClockTime>(
+                          {0, 520 * kMs, 1040 * kMs, 1560 * kMs, 2080 * kMs, 2600 * kMs, 3 * GST_SECOND}));
 }
 GST_END_TEST
 
@@ -287,6 +314,7 @@ static Suite* pirfusion_suite(void) {
   tcase_add_test(tc, a_strangers_pose_is_passed_on_and_not_listened_to);
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
   tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);
+  tcase_add_test(tc, the_sensors_sources_are_told_again_while_the_robot_turns);
   tcase_add_test(tc, a_seek_reaches_the_pir_sources_and_the_video_source);
   return s;
 }

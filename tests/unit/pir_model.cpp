@@ -285,13 +285,36 @@ START_TEST(a_turning_base_makes_detections_doubtful) {
   model.edge(7s, false);
   model.base(8s, 1);
   ck_assert(!model.doubtful());  // nothing detected: nothing to doubt
-  model.edge(9s, true);
+  model.edge(8900ms, true);
   ck_assert(model.doubtful());
   model.base(10s, std::numeric_limits<double>::quiet_NaN());
   model.edge(11s, false);
   model.poll(11s + 20ms);
   ck_assert(!model.doubtful());
   model.edge(12s, true);
+  ck_assert(!model.doubtful());
+}
+END_TEST
+
+START_TEST(a_base_of_which_nobody_speaks_any_more_is_taken_as_standing) {
+  PirModel model = started(kPlain);
+  model.edge(1s, true);
+  model.base(2s, 1);
+  ck_assert(model.deadline() == 3s);
+  model.base(2900ms, 1);  // said again
+  ck_assert(model.deadline() == 3900ms);
+  model.poll(3900ms);
+  ck_assert(model.doubtful());  // the module holds what the turn did to it
+  ck_assert(model.deadline() == 6900ms);
+  model.poll(6900ms - 1ns);
+  ck_assert(model.doubtful());
+  model.poll(6900ms);
+  ck_assert(!model.doubtful());
+  // Not only where somebody polls in between.
+  model.base(10s, 1);
+  model.poll(14s - 1ns);
+  ck_assert(model.doubtful());
+  model.poll(14s);
   ck_assert(!model.doubtful());
 }
 END_TEST
@@ -421,6 +444,7 @@ int main() {
   tcase_add_test(tests, a_line_that_chatters_is_invalid_until_it_calms_down);
   tcase_add_test(tests, no_module_of_the_list_chatters_by_its_own_timing);
   tcase_add_test(tests, a_turning_base_makes_detections_doubtful);
+  tcase_add_test(tests, a_base_of_which_nobody_speaks_any_more_is_taken_as_standing);
   tcase_add_test(tests, a_time_that_goes_back_counts_as_the_last_one);
   tcase_add_test(tests, presence_is_what_its_definition_says_on_random_lines);
   tcase_add_test(tests, sleeping_until_the_deadline_misses_nothing);
