@@ -66,7 +66,7 @@ std::string parse_csv(std::string_view line, Row& row) {
     return "\"" + std::string(trim(line.substr(0, comma))) + "\" is no time in seconds";
   for (auto at = comma; at != line.npos;) {
     const auto end = line.find(',', at + 1);
-    const std::string why = add_level(row, trim(line.substr(at + 1, end == line.npos ? end : end - at - 1)));
+    std::string why = add_level(row, trim(line.substr(at + 1, end == line.npos ? end : end - at - 1)));
     if (!why.empty()) return why;
     at = end;
   }
@@ -86,14 +86,14 @@ std::string parse_json(std::string_view line, Row& row) {
   if (volts != object.end() && volts->is_array()) {
     for (const auto& measured : *volts) {
       const double number = measured.is_number() ? measured.get<double>() : kMostVolts * 2;
-      const std::string why = add_volts(row, number, measured.dump());
+      std::string why = add_volts(row, number, measured.dump());
       if (!why.empty()) return why;
     }
     return "";
   }
   if (pir == object.end() || !pir->is_array()) return "it has no \"pir\": [readings]";
   for (const auto& level : *pir) {
-    const std::string why = add_level(row, level.dump());
+    std::string why = add_level(row, level.dump());
     if (!why.empty()) return why;
   }
   return "";

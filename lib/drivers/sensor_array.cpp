@@ -9,7 +9,6 @@
 namespace cerberus::drivers {
 
 using sensing::kNever;
-using sensing::Presence;
 
 SensorError SensorArray::open(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
                               const sensing::PirOptions& options, Time heartbeat) {

@@ -43,7 +43,8 @@ void SensorHistory::clear() {
 Reading SensorHistory::at(Time time) const {
   if (const Reading* reading = readings_.at(time)) return *reading;
   Reading none;
-  none.array = readings_.first() ? readings_.first()->array : array_;
+  const Reading* first = readings_.first();
+  none.array = first ? first->array : array_;
   none.values.fill(kInvalid);
   return none;
 }
