@@ -9,7 +9,10 @@
 #include <random>
 #include <vector>
 
+#include "support/wrong.h"
+
 using namespace cerberus::vision;
+using cerberus::tests::Wrong;
 
 // The definition in floating point, sample by sample of the whole picture.
 static double expected(const std::vector<std::uint32_t>& drawing, int dw, int dh, int x, int y,
@@ -60,15 +63,19 @@ START_TEST(every_layout_agrees_with_the_definition) {
     after = before;
     c.data = after.data();
     blend({drawing.data(), dw, dh, dw}, x, y, {&c, 1});
+    Wrong drawn, kept;
     for (int v = 0; v < rows; ++v)
       for (int i = 0; i < static_cast<int>(c.stride); ++i) {
         const std::size_t at = static_cast<std::size_t>(v * c.stride + i);
         if (i % c.step == 0 && i / c.step < samples)
-          ck_assert_double_eq_tol(after[at], expected(drawing, dw, dh, x, y, c, i / c.step, v, before[at]),
-                                  0.51);
+          drawn.unless(
+              std::abs(after[at] - expected(drawing, dw, dh, x, y, c, i / c.step, v, before[at])) <= 0.51, i,
+              v);
         else
-          ck_assert_int_eq(after[at], before[at]);  // other components, and what lies between rows
+          kept.unless(after[at] == before[at], i, v);  // other components, and what lies between rows
       }
+    drawn.assert_none("drawn");
+    kept.assert_none("not to be touched");
   }
 }
 END_TEST

@@ -5,6 +5,7 @@
 
 #include <check.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -160,14 +161,21 @@ START_TEST(no_commands_make_an_axis_jump_or_pass_its_stops) {
     ck_assert_double_eq_tol(plan.at(now).position, state.position, 1e-6);
     const Time until = now + Time(static_cast<Time::rep>(wait(random) * 1e9));
     AxisState last = plan.at(now);
+    // The worst of 5 ms steps: an assertion for each of them costs more than the plan.
+    double fastest = 0, change = 0, step = 0;
+    bool sound = true;
     for (Time t = now; t <= until; t += 5ms) {
       const AxisState s = plan.at(t);
-      ck_assert(kLimits.holds(s.position));
-      ck_assert_double_le(std::abs(s.speed), 2 + 1e-6);
-      ck_assert_double_le(std::abs(s.speed - last.speed), 4 * 0.005 + 1e-6);
-      ck_assert_double_le(std::abs(s.position - last.position), 2 * 0.005 + 1e-6);
+      sound = sound && kLimits.holds(s.position) && std::isfinite(s.speed);
+      fastest = std::max(fastest, std::abs(s.speed));
+      change = std::max(change, std::abs(s.speed - last.speed));
+      step = std::max(step, std::abs(s.position - last.position));
       last = s;
     }
+    ck_assert(sound);
+    ck_assert_double_le(fastest, 2 + 1e-6);
+    ck_assert_double_le(change, 4 * 0.005 + 1e-6);
+    ck_assert_double_le(step, 2 * 0.005 + 1e-6);
     ck_assert(!plan.at(plan.end()).moving());
     state = plan.at(until);
     now = until;

@@ -7,6 +7,7 @@
 #include "support/allocations.h"
 #include "support/pictures.h"
 #include "support/targets.h"
+#include "support/wrong.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -71,13 +72,16 @@ START_TEST(a_shift_by_whole_pixels_moves_them_unchanged) {
     for (const bool nearest : {false, true}) {
       nearest ? warp.nearest(source.view(), target.view(), kFill)
               : warp.bilinear(source.view(), target.view(), kFill);
+      Wrong validity, value;
       for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
           const int u = x - s[0], v = y - s[1];
           const bool valid = u >= 0 && v >= 0 && u < size.width && v < size.height;
-          ck_assert_int_eq(inside(warp.spans()[y], x), valid);
-          ck_assert_int_eq(target.view().at(x, y), valid ? source.view().at(u, v) : kFill);
+          validity.unless(inside(warp.spans()[y], x) == valid, x, y);
+          value.unless(target.view().at(x, y) == (valid ? source.view().at(u, v) : kFill), x, y);
         }
+      validity.assert_none("validity");
+      value.assert_none("value");
     }
   }
 }
@@ -109,17 +113,19 @@ START_TEST(every_motion_matches_the_reference_and_stays_inside_its_memory) {
       warp_bilinear_reference(motion, source.view(), exact.view(), kFill);
       double sum = 0;
       long compared = 0;
+      Wrong filled, close;
       for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x) {
           // A position on the edge may be rounded to either side.
           const RowSpan span = warp.spans()[y];
-          if (!inside(span, x)) ck_assert_int_eq(target.view().at(x, y), kFill);
+          filled.unless(inside(span, x) || target.view().at(x, y) == kFill, x, y);
           if (!inside(span, x - 1) || !inside(span, x + 1)) continue;
           const int error = std::abs(target.view().at(x, y) - exact.view().at(x, y));
-          ck_assert_msg(error <= 5, "%dx%d at %d,%d: %d", size.width, size.height, x, y,
-                        error);  // 2/128 of 255
+          close.unless(error <= 5, x, y);  // 2/128 of 255
           sum += error, ++compared;
         }
+      filled.assert_none("what nobody saw");
+      close.assert_none("far from the reference");
       ck_assert_double_le(sum, 0.12 * compared + 1);
     }
 }
@@ -132,13 +138,15 @@ START_TEST(valid_pixels_are_those_whose_source_is_inside) {
     ck_assert(warp.prepare(motion, size));
     const Transform inverse = motion.inverse();
     long valid = 0;
+    Wrong validity;
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
         const Point p = inverse.apply({double(x), double(y)});
         const double depth = std::min({p.x, p.y, size.width - 1 - p.x, size.height - 1 - p.y});
-        if (std::abs(depth) > 0.01) ck_assert_int_eq(inside(warp.spans()[y], x), depth > 0);
+        validity.unless(std::abs(depth) <= 0.01 || inside(warp.spans()[y], x) == (depth > 0), x, y);
         valid += inside(warp.spans()[y], x);
       }
+    validity.assert_none("validity");
     ck_assert_int_eq(valid, warp.valid_pixels());
   }
 }
@@ -177,9 +185,11 @@ START_TEST(sixteen_bit_planes_follow_the_same_motion) {
     warp.prepare(motion, size);
     warp.bilinear(bytes.view(), warped.view(), 0);
     warp.bilinear(words.view(), warped_words.view(), 0);
+    Wrong apart;
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x)
-        ck_assert_int_le(std::abs(warped_words.view().at(x, y) - warped.view().at(x, y) * 257), 129);
+        apart.unless(std::abs(warped_words.view().at(x, y) - warped.view().at(x, y) * 257) <= 129, x, y);
+    apart.assert_none("bytes and words");
   }
 }
 END_TEST
@@ -193,16 +203,21 @@ START_TEST(nearest_takes_existing_values_only_and_the_right_ones) {
     Warp warp;
     warp.prepare(motion, size);
     warp.nearest(labels.view(), target.view(), 65535);
+    const Transform inverse = motion.inverse();
+    Wrong filled, place;
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) {
         if (!inside(warp.spans()[y], x)) {
-          ck_assert_int_eq(target.view().at(x, y), 65535);
+          filled.unless(target.view().at(x, y) == 65535, x, y);
           continue;
         }
-        const Point p = motion.inverse().apply({double(x), double(y)});
-        ck_assert_double_le(std::abs(target.view().at(x, y) % 256 - p.x), 0.51);
-        ck_assert_double_le(std::abs(target.view().at(x, y) / 256 - p.y), 0.51);
+        const Point p = inverse.apply({double(x), double(y)});
+        place.unless(std::abs(target.view().at(x, y) % 256 - p.x) <= 0.51 &&
+                         std::abs(target.view().at(x, y) / 256 - p.y) <= 0.51,
+                     x, y);
       }
+    filled.assert_none("what nobody saw");
+    place.assert_none("whence it came");
   }
 }
 END_TEST
@@ -217,8 +232,10 @@ START_TEST(a_motion_that_is_none_fills) {
     ck_assert(!warp.prepare(motion, size));
     ck_assert_int_eq(warp.valid_pixels(), 0);
     warp.bilinear(source.view(), target.view(), kFill);
+    Wrong filled;
     for (int y = 0; y < size.height; ++y)
-      for (int x = 0; x < size.width; ++x) ck_assert_int_eq(target.view().at(x, y), kFill);
+      for (int x = 0; x < size.width; ++x) filled.unless(target.view().at(x, y) == kFill, x, y);
+    filled.assert_none("what nobody saw");
   }
   for (const double far : {1e4, -1e9, 1e15}) {  // sane, but out of sight
     Warp warp;
