@@ -43,6 +43,13 @@ std::string channels_of(const iio_device* device) {
   return list.empty() ? "It has no voltage channels." : "It has: " + list + ".";
 }
 
+// Returns errno, 0: good, or the channel has no such attribute.
+int read_if_there(const iio_channel* channel, const char* attribute, double& value) {
+  if (!iio_channel_find_attr(channel, attribute)) return 0;
+  const int result = iio_channel_attr_read_double(channel, attribute, &value);
+  return result < 0 ? -result : 0;
+}
+
 int start_timer(Time interval) {
   const int timer = ::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC);
   if (timer < 0) return -1;
@@ -79,14 +86,14 @@ SensorError IioSensor::find_channels(const SensorSetup& setup) {
               "IIO device " + device_ + " (" + name_of(device) + ") has no channel " + id + " to read. " +
                   channels_of(device),
               ""};
-    Input input{channel, 1, 0, sensing::LevelSwitch(setup.level)};
     // A converter without a scale counts in millivolts.
-    if (iio_channel_find_attr(channel, "scale")) iio_channel_attr_read_double(channel, "scale", &input.scale);
-    if (iio_channel_find_attr(channel, "offset"))
-      iio_channel_attr_read_double(channel, "offset", &input.offset);
-    inputs_.push_back(input);
+    inputs_.push_back({channel, 1, 0, sensing::LevelSwitch(setup.level)});
+    Input& input = inputs_.back();
     double ignored = 0;
-    if (const int error = volts(input, ignored)) return gone(inputs_.size() - 1, error);
+    int error = read_if_there(channel, "scale", input.scale);
+    if (!error) error = read_if_there(channel, "offset", input.offset);
+    if (!error) error = volts(input, ignored);
+    if (error) return gone(inputs_.size() - 1, error);
   }
   return {};
 }

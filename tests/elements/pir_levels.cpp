@@ -5,6 +5,8 @@
 
 #include "fusion_rig.h"
 
+#include "../support/pir_source.h"
+
 namespace {
 
 using namespace rig;
@@ -14,46 +16,19 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr char kLevels[] = "application/x-pir,format=level,sensors=2,bearings=<0.0,90.0>,field-of-view=90.0";
 constexpr char kTwo[] = "pirsrc name=source bearings=0,90 heartbeat=3600000000000 ";
 
-// A pirsrc, and behind it somebody who takes `caps`.
-class Source {
+class Source : public PirSource {
  public:
-  Source(const std::string& line, const char* caps) {
-    element_ = gst_parse_bin_from_description(line.c_str(), TRUE, nullptr);
-    fail_unless(element_ != nullptr, "%s cannot be made", line.c_str());
-    gst_object_ref_sink(element_);
-    harness_ = gst_harness_new_with_element(element_, nullptr, "src");
-    if (caps) gst_harness_set_sink_caps_str(harness_, caps);
-    gst_element_set_bus(element_, bus_);  // of a bin: what its children post comes too
-  }
-  ~Source() {
-    gst_element_set_state(element_, GST_STATE_NULL);
-    gst_element_set_bus(element_, nullptr);
-    gst_harness_teardown(harness_);
-    gst_object_unref(bus_);
-    gst_object_unref(element_);
-  }
-  Source(const Source&) = delete;
+  using PirSource::PirSource;
 
-  GstElement* element() const { return element_; }
-  GstElement* child(const char* name) const {
-    GstElement* child = gst_bin_get_by_name(GST_BIN(element_), name);
-    fail_unless(child != nullptr, "there is no %s", name);
-    gst_object_unref(child);  // the bin holds it
-    return child;
-  }
-  GstHarness* harness() const { return harness_; }
-  GstBus* bus() const { return bus_; }
-  void play() { gst_harness_play(harness_); }
   CerberusPirFormat format() const {
-    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(harness_->sinkpad);
+    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(harness()->sinkpad);
     CerberusPirInfo info;
     fail_unless(caps && cerberus_pir_info_from_caps(&info, caps, nullptr));
     return info.format;
   }
   // The next buffer as volts, "0.500: 0.1 3.2".
   std::string volts() {
-    g_autoptr(GstBuffer) buffer = gst_harness_pull(harness_);
-    fail_unless(buffer, "no buffer came");
+    g_autoptr(GstBuffer) buffer = take();
     float values[CERBERUS_PIR_MAX_SENSORS];
     const gsize size = gst_buffer_extract(buffer, 0, values, sizeof values);
     fail_unless_equals_int(size % sizeof(float), 0);
@@ -66,16 +41,10 @@ class Source {
     return result;
   }
   std::string presence() {
-    g_autoptr(GstBuffer) buffer = gst_harness_pull(harness_);
-    fail_unless(buffer, "no buffer came");
+    g_autoptr(GstBuffer) buffer = take();
     guint8 values[CERBERUS_PIR_MAX_SENSORS];
     return text(Bytes(values, values + gst_buffer_extract(buffer, 0, values, sizeof values)));
   }
-
- private:
-  GstElement* element_ = nullptr;
-  GstHarness* harness_ = nullptr;
-  GstBus* bus_ = gst_bus_new();
 };
 
 GstBuffer* volts(GstClockTime time, const Volts& values) {
@@ -134,7 +103,7 @@ GST_START_TEST(who_asks_for_volts_gets_every_sample) {
   fail_unless_equals_int(source.format(), CERBERUS_PIR_LEVEL);
   // The messages speak of presence in any case.
   std::string told;
-  while (GstMessage* message = gst_bus_pop_filtered(source.bus(), GST_MESSAGE_ELEMENT)) {
+  while (GstMessage* message = source.pop(GST_MESSAGE_ELEMENT)) {
     g_autoptr(GBytes) readings = cerberus_message_parse_pir(message, nullptr);
     const auto* bytes = static_cast<const guint8*>(g_bytes_get_data(readings, nullptr));
     told += text(Bytes(bytes, bytes + g_bytes_get_size(readings))) + " ";
@@ -174,14 +143,9 @@ GST_END_TEST
 
 GST_START_TEST(who_asks_for_volts_that_nobody_measures_is_told_so) {
   Source source(std::string(kTwo) + "script=\"0,0,1\"", "application/x-pir,format=level");
-  fail_unless_equals_int(gst_element_set_state(source.element(), GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-  g_autoptr(GstMessage) message = gst_bus_pop_filtered(source.bus(), GST_MESSAGE_ERROR);
-  fail_unless(message);
-  g_autoptr(GError) error = nullptr;
-  gst_message_parse_error(message, &error, nullptr);
-  fail_unless(g_error_matches(error, GST_CORE_ERROR, GST_CORE_ERROR_NEGOTIATION));
+  const std::string why = source.refusal(GST_CORE_ERROR, GST_CORE_ERROR_NEGOTIATION);
   for (const char* what : {"format=(string)level", "format=(string)presence", "driver=iio"})
-    fail_unless(std::string(error->message).find(what) != std::string::npos, "%s", error->message);
+    fail_unless(says(why, what));
   // And it can be put right.
   g_object_set(source.child("source"), "script", "0,0V,3V", nullptr);
   source.play();

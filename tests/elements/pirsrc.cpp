@@ -3,12 +3,12 @@
 #include <cerberus/base.h>
 #include <cerberus/pir.h>
 #include <glib/gstdio.h>
-#include <gst/check/gstharness.h>
 
 #include <algorithm>
 #include <string>
 #include <vector>
 
+#include "../support/pir_source.h"
 #include "support.h"
 
 namespace {
@@ -26,97 +26,40 @@ std::string digits(gconstpointer bytes, gsize size) {
   return text;
 }
 
-class Source {
+class Source : public PirSource {
  public:
-  explicit Source(const std::string& properties) {
-    element_ = gst_parse_launch(("pirsrc " + properties).c_str(), nullptr);
-    fail_unless(element_ != nullptr, "pirsrc %s cannot be made", properties.c_str());
-    harness_ = gst_harness_new_with_element(element_, nullptr, "src");
-    bus_ = gst_bus_new();
-    gst_element_set_bus(element_, bus_);
-  }
-  ~Source() {
-    gst_element_set_state(element_, GST_STATE_NULL);
-    gst_element_set_bus(element_, nullptr);
-    gst_harness_teardown(harness_);
-    gst_object_unref(bus_);
-    gst_object_unref(element_);
-  }
-  Source(const Source&) = delete;
+  explicit Source(const std::string& properties) : PirSource("pirsrc " + properties) {}
 
-  GstElement* element() const { return element_; }
-  GstHarness* harness() const { return harness_; }
-  void play() { gst_harness_play(harness_); }
   Buffer pull() {
-    GstBuffer* buffer = gst_harness_pull(harness_);
-    fail_unless(buffer != nullptr, "no buffer came");
-    GstMapInfo map;
-    gst_buffer_map(buffer, &map, GST_MAP_READ);
-    const Buffer result{GST_BUFFER_PTS(buffer), digits(map.data, map.size)};
-    gst_buffer_unmap(buffer, &map);
-    gst_buffer_unref(buffer);
-    return result;
+    g_autoptr(GstBuffer) buffer = take();
+    guint8 bytes[CERBERUS_PIR_MAX_SENSORS];
+    return {GST_BUFFER_PTS(buffer), digits(bytes, gst_buffer_extract(buffer, 0, bytes, sizeof bytes))};
   }
-  // All until EOS, as "0.250 100".
+  // All until EOS, as "250 100".
   std::vector<std::string> all() {
     std::vector<std::string> lines;
     play();
-    wait_for(GST_MESSAGE_EOS);
-    while (GstBuffer* buffer = gst_harness_try_pull(harness_)) {
-      gchar bytes[16];
-      const gsize size = gst_buffer_extract(buffer, 0, bytes, sizeof bytes);
-      gchar* time = g_strdup_printf("%" G_GUINT64_FORMAT " ", GST_BUFFER_PTS(buffer) / GST_MSECOND);
-      lines.push_back(time + digits(bytes, size));
-      g_free(time);
-      gst_buffer_unref(buffer);
+    wait_for_end();
+    while (gst_harness_buffers_in_queue(harness()) > 0) {
+      const Buffer buffer = pull();
+      lines.push_back(std::to_string(buffer.pts / GST_MSECOND) + " " + buffer.readings);
     }
     return lines;
   }
-  GstMessage* wait_for(GstMessageType type) {
-    GstMessage* message = nullptr;
-    if (type == GST_MESSAGE_EOS) {  // an element alone posts none: its EOS event comes to the pad
-      while (GstEvent* event = gst_harness_pull_event(harness_)) {
-        const bool ended = GST_EVENT_TYPE(event) == GST_EVENT_EOS;
-        gst_event_unref(event);
-        if (ended) return nullptr;
-      }
-      ck_abort_msg("no EOS came");
-    }
-    message = gst_bus_timed_pop_filtered(bus_, 10 * GST_SECOND, type);
-    fail_unless(message != nullptr, "no such message came");
-    return message;
-  }
   std::string error(GQuark domain, gint code) { return words(GST_MESSAGE_ERROR, domain, code); }
   std::string warning() { return words(GST_MESSAGE_WARNING, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ); }
-  GstMessage* pop(GstMessageType type) { return gst_bus_pop_filtered(bus_, type); }
-  std::string refusal(GQuark domain, gint code) {
-    fail_unless_equals_int(gst_element_set_state(element_, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-    return error(domain, code);
-  }
 
  private:
-  std::string words(GstMessageType type, GQuark domain, gint code) {
-    GstMessage* message = wait_for(type);
-    GError* error = nullptr;
-    type == GST_MESSAGE_ERROR ? gst_message_parse_error(message, &error, nullptr)
-                              : gst_message_parse_warning(message, &error, nullptr);
-    fail_unless(g_error_matches(error, domain, code), "%s", error->message);
-    const std::string text = error->message;
-    g_error_free(error);
-    gst_message_unref(message);
-    return text;
+  // No pipeline, no EOS message: the event comes to the pad.
+  void wait_for_end() {
+    while (GstEvent* event = gst_harness_pull_event(harness())) {
+      const bool ended = GST_EVENT_TYPE(event) == GST_EVENT_EOS;
+      gst_event_unref(event);
+      if (ended) return;
+    }
+    ck_abort_msg("no EOS came");
   }
-
-  GstElement* element_ = nullptr;
-  GstHarness* harness_ = nullptr;
-  GstBus* bus_ = nullptr;
 };
-
-bool says(const std::string& text, const std::string& what) {
-  if (text.find(what) != std::string::npos) return true;
-  g_printerr("\"%s\" does not say \"%s\"\n", text.c_str(), what.c_str());
-  return false;
-}
 
 GST_START_TEST(a_recording_becomes_a_stream_of_its_own_times) {
   const std::vector<std::string> expected = {"0 000",   "100 000", "200 000", "250 100",

@@ -2,7 +2,12 @@
 // pirsrc on the lines of a GPIO chip that the kernel simulates: real character devices, interrupts and time stamps.
 #include "pir_source.h"
 
-#include <algorithm>
+#include <linux/gpio.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+
+#include <cerrno>
+#include <cstdarg>
 #include <string>
 #include <vector>
 
@@ -10,16 +15,48 @@ namespace {
 
 using namespace simulated;
 
+// What libgpiod's requests for lines end with, as a kernel driver or a sandbox may refuse them though the chip opens; 0: they
+// go through. The files of a simulated chip know no such thing: the program's own ioctl() comes before libc's.
+int inputs_refused = 0, outputs_refused = 0;
+
+int refusal_of(unsigned long request, const void* argument) {
+  if (request == GPIO_GET_LINEEVENT_IOCTL) return inputs_refused;
+  if (request == GPIO_GET_LINEHANDLE_IOCTL) return outputs_refused;
+  if (request != GPIO_V2_GET_LINE_IOCTL) return 0;
+  const auto& config = static_cast<const gpio_v2_line_request*>(argument)->config;
+  return config.flags & GPIO_V2_LINE_FLAG_OUTPUT ? outputs_refused : inputs_refused;
+}
+
+}  // namespace
+
+extern "C" int ioctl(int fd, unsigned long request, ...) noexcept {
+  va_list arguments;
+  va_start(arguments, request);
+  void* argument = va_arg(arguments, void*);
+  va_end(arguments);
+  errno = refusal_of(request, argument);
+  return errno ? -1 : static_cast<int>(syscall(SYS_ioctl, fd, request, argument));
+}
+
+namespace {
+
 // Long heartbeats: what comes, comes because of an edge.
 std::string gpio(const Chip& chip, const std::string& more = "lines=0,1,2") {
   return "driver=gpio heartbeat=5000000000 chip=" + chip.path() + " " + more;
 }
 
+// One that plays, and nobody is there.
+class Quiet : public Source {
+ public:
+  explicit Quiet(const std::string& properties) : Source(properties) {
+    play();
+    expect({0, 0, 0});
+  }
+};
+
 GST_START_TEST(a_rise_comes_at_once_with_the_kernels_time) {
   Chip chip;
-  Source source(gpio(chip));
-  source.play();
-  source.expect({0, 0, 0});
+  Quiet source(gpio(chip));
   int line = 0;
   const GstClockTime least = least_of(60 * GST_MSECOND, [&] {
     Bytes expected{0, 0, 0};
@@ -45,9 +82,7 @@ GST_END_TEST
 
 GST_START_TEST(edges_that_nobody_waited_for_keep_their_times) {
   Chip chip;
-  Source source(gpio(chip, "lines=0,1,2 debounce=0"));
-  source.play();
-  source.expect({0, 0, 0});
+  Quiet source(gpio(chip, "lines=0,1,2 debounce=0"));
   std::vector<Span> pulled;
   for (int i = 0; i < 6; ++i) {
     const GstClockTime before = source.now();
@@ -91,17 +126,13 @@ GST_START_TEST(bias_pulls_an_open_line) {
     as_is.play();
     as_is.expect({1, 1, 1});
   }
-  Source down(gpio(chip, "lines=3,4,5 bias=pull-down"));
-  down.play();
-  down.expect({0, 0, 0});
+  Quiet down(gpio(chip, "lines=3,4,5 bias=pull-down"));
 }
 GST_END_TEST
 
 GST_START_TEST(an_open_collector_module_is_active_low) {
   Chip chip;
-  Source source(gpio(chip, "lines=0,1,2 bias=pull-up active-low=true"));
-  source.play();
-  source.expect({0, 0, 0});
+  Quiet source(gpio(chip, "lines=0,1,2 bias=pull-up active-low=true"));
   chip.pull(2, false);
   source.expect({0, 0, 1});
 }
@@ -115,9 +146,7 @@ GST_START_TEST(leds_are_red_while_a_sensor_detects_and_blue_while_it_does_not) {
     return all;
   };
   {
-    Source source(gpio(chip, "lines=0,1,2 leds-red=3,4,5 leds-blue=6,7,8"));
-    source.play();
-    source.expect({0, 0, 0});
+    Quiet source(gpio(chip, "lines=0,1,2 leds-red=3,4,5 leds-blue=6,7,8"));
     fail_unless(leds() == "000111", "%s", leds().c_str());
     chip.pull(1, true);
     source.expect({0, 1, 0});
@@ -140,9 +169,7 @@ GST_END_TEST
 
 GST_START_TEST(a_line_in_use_is_named_with_its_user) {
   Chip chip;
-  Source first(gpio(chip));
-  first.play();
-  first.expect({0, 0, 0});
+  Quiet first(gpio(chip));
   {
     Source second(gpio(chip, "lines=6,7,2"));
     const std::string why = second.refusal(GST_RESOURCE_ERROR_BUSY);
@@ -190,13 +217,33 @@ GST_START_TEST(without_permission_the_group_is_named) {
 }
 GST_END_TEST
 
+GST_START_TEST(lines_that_may_not_be_used_are_named) {
+  Chip chip;
+  for (const int error : {EPERM, EACCES}) {
+    inputs_refused = error;
+    std::string why = Source(gpio(chip)).refusal(GST_RESOURCE_ERROR_NOT_AUTHORIZED);
+    fail_unless(says(why, "No permission to use lines 0, 1, 2 of GPIO chip " + chip.path()));
+    inputs_refused = 0;
+    outputs_refused = error;
+    why = Source(gpio(chip, "lines=0,1,2 leds-blue=5,4,3")).refusal(GST_RESOURCE_ERROR_NOT_AUTHORIZED);
+    fail_unless(says(why, "No permission to use lines 5, 4, 3 of GPIO chip " + chip.path()));
+    outputs_refused = 0;
+  }
+  inputs_refused = EINVAL;  // of a driver that knows no bias
+  const std::string why = Source(gpio(chip)).refusal(GST_RESOURCE_ERROR_READ);
+  fail_unless(says(why, "does not give lines 0, 1, 2 (Invalid argument)") && says(why, "bias"));
+  inputs_refused = 0;
+  Quiet usable(gpio(chip));  // the refused ones left nothing behind
+}
+GST_END_TEST
+
 GST_START_TEST(a_chip_that_is_unplugged_while_running_is_an_error_that_names_it) {
   Chip chip;
   Source source("driver=gpio lines=0,1,2 leds-red=3,4,5 chip=" + chip.path());  // the usual heartbeat
   source.play();
   source.expect({0, 0, 0});
   chip.unplug();
-  fail_unless(says(source.message(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ),
+  fail_unless(says(source.words(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ),
                    "GPIO chip " + chip.path()));
 }
 GST_END_TEST
@@ -204,11 +251,9 @@ GST_END_TEST
 GST_START_TEST(a_chip_that_comes_back_is_usable_again) {
   for (int round = 0; round < 3; ++round) {
     Chip chip;
-    Source source("driver=gpio lines=0,1,2 chip=" + chip.path());
-    source.play();
-    source.expect({0, 0, 0});
+    Quiet source("driver=gpio lines=0,1,2 chip=" + chip.path());
     chip.unplug();
-    source.message(GST_MESSAGE_ERROR);
+    source.words(GST_MESSAGE_ERROR);
   }
 }
 GST_END_TEST
@@ -229,9 +274,7 @@ GST_END_TEST
 
 GST_START_TEST(a_sensor_that_chatters_is_named_with_its_line) {
   Chip chip;
-  Source source(gpio(chip, "lines=4,5,6 debounce=0 chatter-edges=10"));
-  source.play();
-  source.expect({0, 0, 0});
+  Quiet source(gpio(chip, "lines=4,5,6 debounce=0 chatter-edges=10"));
   for (int i = 0; i < 30;
        ++i) {  // more than needed: of edges that come too fast the kernel tells some as one
     chip.pull(5, true);
@@ -239,7 +282,7 @@ GST_START_TEST(a_sensor_that_chatters_is_named_with_its_line) {
     chip.pull(5, false);
     g_usleep(3000);
   }
-  const std::string warning = source.message(GST_MESSAGE_WARNING);
+  const std::string warning = source.words(GST_MESSAGE_WARNING);
   fail_unless(says(warning, "infer2 (line 5 of " + chip.path()) && says(warning, "is chattering"));
 }
 GST_END_TEST
@@ -247,9 +290,7 @@ GST_END_TEST
 // The kernel keeps 16 edges of a line for who does not come; what is lost must not leave the sensor wrong.
 GST_START_TEST(a_flood_of_edges_ends_with_the_right_level) {
   Chip chip;
-  Source source("driver=gpio debounce=0 chatter-edges=0 lines=0,1,2 chip=" + chip.path());
-  source.play();
-  source.expect({0, 0, 0});
+  Quiet source("driver=gpio debounce=0 chatter-edges=0 lines=0,1,2 chip=" + chip.path());
   for (int round = 0; round < 4; ++round) {  // now the kernel's last edge is the right one by chance, now not
     gst_element_set_state(source.element(), GST_STATE_PAUSED);  // nobody reads
     for (int i = 0; i < 101; ++i) {
@@ -279,6 +320,7 @@ Suite* gpio_suite() {
   tcase_add_test(tests, a_line_in_use_is_named_with_its_user);
   tcase_add_test(tests, what_is_not_there_is_named);
   tcase_add_test(tests, without_permission_the_group_is_named);
+  tcase_add_test(tests, lines_that_may_not_be_used_are_named);
   tcase_add_test(tests, a_chip_that_is_unplugged_while_running_is_an_error_that_names_it);
   tcase_add_test(tests, a_chip_that_comes_back_is_usable_again);
   tcase_add_test(tests, stopping_takes_no_time_while_it_waits_for_an_edge);

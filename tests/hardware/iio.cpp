@@ -12,17 +12,18 @@ namespace {
 
 using namespace simulated;
 
-constexpr char kRaw[] = "/sys/bus/iio/devices/iio:device0/in_voltage0_raw";
+const std::string kInput = "/sys/bus/iio/devices/iio:device0/in_voltage0_";
+const std::string kRaw = kInput + "raw";
 
 // The dummy's voltage never changes: a file of our own takes the place of the attribute.
 class Voltage {
  public:
   Voltage() {
-    umount(kRaw);  // left by a test that died
+    umount(kRaw.c_str());  // left by a test that died
     simulated::write_text(kFile, "00073\n");
-    simulated::must(mount(kFile, kRaw, nullptr, MS_BIND, nullptr) == 0, "mount");
+    simulated::must(mount(kFile, kRaw.c_str(), nullptr, MS_BIND, nullptr) == 0, "mount");
   }
-  ~Voltage() { umount(kRaw); }
+  ~Voltage() { umount(kRaw.c_str()); }
   void set(int raw) {  // never empty in between
     gchar* text = g_strdup_printf("%05d\n", raw);
     const int fd = open(kFile, O_WRONLY | O_CLOEXEC);
@@ -57,12 +58,10 @@ GST_START_TEST(who_asks_for_volts_gets_what_was_measured) {
   Converter converter;
   Voltage voltage;
   voltage.set(1500);
-  Source source(iio(""));
-  source.wants("application/x-pir,format=level");
+  Source source(iio(""), "application/x-pir,format=level");
   source.play();
   const auto volts = [&](GstClockTime* when) {
-    GstBuffer* buffer = gst_harness_pull(source.harness());
-    fail_unless(buffer != nullptr, "no buffer came");
+    GstBuffer* buffer = source.take();
     gfloat value = 0;
     fail_unless_equals_int(gst_buffer_extract(buffer, 0, &value, 8), 4);
     *when = GST_BUFFER_PTS(buffer);
@@ -118,13 +117,48 @@ GST_START_TEST(a_channel_or_a_converter_that_is_missing_is_named) {
 }
 GST_END_TEST
 
+// Nobody but its owner may read the file; a test is that owner, until it is nobody.
+class Forbidden {
+ public:
+  explicit Forbidden(const std::string& file) : file_(file) {
+    must(chmod(file_.c_str(), 0400) == 0, "chmod " + file_);
+    must(seteuid(65534) == 0, "seteuid");
+  }
+  ~Forbidden() {
+    must(seteuid(0) == 0, "seteuid");
+    chmod(file_.c_str(), 0444);
+  }
+  Forbidden(const Forbidden&) = delete;
+
+ private:
+  std::string file_;
+};
+
+GST_START_TEST(a_channel_that_may_not_be_read_is_named) {
+  Converter converter;
+  for (const char* which : {"raw", "scale", "offset"}) {
+    Source source(iio(""));
+    const Forbidden forbidden(kInput + which);
+    const std::string why = source.refusal(GST_RESOURCE_ERROR_NOT_AUTHORIZED);
+    fail_unless(says(why, "No permission to read voltage0 of iio:device0: let a udev rule"), "%s", which);
+  }
+  Source source(iio(""));
+  source.play();
+  source.expect({0});
+  const Forbidden forbidden(kRaw);  // while it runs
+  const std::string why =
+      source.words(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_NOT_AUTHORIZED);
+  fail_unless(says(why, "No permission to read voltage0 of iio:device0"));
+}
+GST_END_TEST
+
 GST_START_TEST(a_converter_that_is_unplugged_while_running_is_an_error_that_names_it) {
   Converter converter;
   Source source(iio(""));
   source.play();
   source.expect({0});
   converter.unplug();
-  const std::string why = source.message(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ);
+  const std::string why = source.words(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ);
   fail_unless(says(why, "voltage0 of iio:device0"));
 }
 GST_END_TEST
@@ -137,6 +171,7 @@ Suite* iio_suite() {
   tcase_add_test(tests, who_asks_for_volts_gets_what_was_measured);
   tcase_add_test(tests, a_voltage_that_rises_and_falls_is_a_detection_with_hysteresis);
   tcase_add_test(tests, a_channel_or_a_converter_that_is_missing_is_named);
+  tcase_add_test(tests, a_channel_that_may_not_be_read_is_named);
   tcase_add_test(tests, a_converter_that_is_unplugged_while_running_is_an_error_that_names_it);
   suite_add_tcase(suite, tests);
   return suite;
