@@ -97,10 +97,7 @@ gboolean Job::on_interrupt(gpointer data) {
   }
   job.interrupted_ = true;
   std::fprintf(stderr, "\ndemo: stopping, and finishing the files\n");
-  // Not at the source: before the tee a frame may wait for the head, which has ended.
-  g_autoptr(GstElement) tee = gst_bin_get_by_name(GST_BIN(job.pipeline_), "t");
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(tee, "sink");
-  gst_pad_send_event(pad, gst_event_new_eos());
+  gst_element_send_event(job.pipeline_, gst_event_new_eos());
   return G_SOURCE_CONTINUE;
 }
 

@@ -17,9 +17,10 @@
  * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know.
  *
  * In a pipeline that is not live, each frame but the first waits until the head's way is known up to its running time
- * (`lockstep`), so that every run gives the same, whatever queues there are; when no pose comes for `lockstep-timeout` the
- * element gives up with an error. The first frame (also after a flush) shows where the head looked last, `start-pan` and
- * `start-tilt` at the start. In a live pipeline nothing waits: the newest pose counts.
+ * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event tells those
+ * behind. When no pose comes for `lockstep-timeout` the element gives up with an error. The first frame (also after a flush)
+ * shows where the head looked last, `start-pan` and `start-tilt` at the start. In a live pipeline nothing waits: the newest
+ * pose counts.
  *
  * With `inset` each frame carries a small picture of the whole scene, with the window's place in it, as a
  * GstVideoOverlayComposition for the upper right corner: `motionoverlay` draws it, and so do most sinks that draw with a
@@ -139,10 +140,10 @@ struct State {  // streaming thread, and state changes while it does not run
   vision::WindowResampler resampler;
   Inset inset;
   Settings settings;
-  std::optional<bool> live;    // nothing: not asked yet
-  std::optional<Time> newest;  // running time of the last frame
-  std::string complaint;       // about the caps, once said
-  bool warned = false;         // about an unusable buffer, once a stream
+  std::optional<bool> live;  // nothing: not asked yet
+  std::optional<Time> end;   // running time at which the last frame ends
+  std::string complaint;     // about the caps, once said
+  bool warned = false;       // about an unusable buffer, once a stream
 };
 
 struct Private {
@@ -313,16 +314,32 @@ bool wants_lockstep(GstBaseTransform* trans, State& state) {
   return !*state.live;
 }
 
-// Without a time stamp: one frame after the last, as pantiltsink counts.
+// Without a time stamp: when the last one ended, as pantiltsink counts.
 Time running_time(GstBaseTransform* trans, const State& state, GstBuffer* buffer) {
-  const int n = GST_VIDEO_INFO_FPS_N(&state.in), d = GST_VIDEO_INFO_FPS_D(&state.in);
-  const Time length(n > 0 ? gst_util_uint64_scale_int(GST_SECOND, d, n) : 0);
   GstClockTime running = GST_CLOCK_TIME_NONE;
   if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
     running = gst_segment_to_running_time(&trans->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
   if (GST_CLOCK_TIME_IS_VALID(running))
     return Time(static_cast<Time::rep>(std::min<GstClockTime>(running, G_MAXINT64 / 4)));
-  return state.newest ? *state.newest + length : Time::zero();
+  return state.end.value_or(Time::zero());
+}
+
+// How long a frame lasts, as far as that is known: a nanosecond at least.
+Time length(const State& state, GstBuffer* buffer) {
+  const int n = GST_VIDEO_INFO_FPS_N(&state.in), d = GST_VIDEO_INFO_FPS_D(&state.in);
+  GstClockTime duration = GST_BUFFER_DURATION(buffer);
+  if (!GST_CLOCK_TIME_IS_VALID(duration)) duration = n > 0 ? gst_util_uint64_scale_int(GST_SECOND, d, n) : 0;
+  return Time(static_cast<Time::rep>(std::clamp<GstClockTime>(duration, 1, G_MAXINT64 / 4)));
+}
+
+// After a frame the head tells its way until the next one, where it takes that to be. Where frames are missing (lost ones,
+// a variable rate, a decoder that was cut off) it has to be told that none comes, or it waits for one, and one for it.
+void announce_gap(GstBaseTransform* trans, Time from, GstClockTime until) {
+  guint64 begin = gst_segment_position_from_running_time(&trans->segment, GST_FORMAT_TIME,
+                                                         static_cast<guint64>(from.count()));
+  if (!GST_CLOCK_TIME_IS_VALID(begin)) begin = trans->segment.start;  // it ended in the segment before
+  if (begin < until)
+    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(trans), gst_event_new_gap(begin, until - begin));
 }
 
 Samples<guint8> samples(GstVideoFrame& frame, guint component, bool pixels) {
@@ -381,6 +398,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   apply_settings(trans, self);
   const Time time = running_time(trans, state, in);
   if (wants_lockstep(trans, state)) {
+    if (state.end && *state.end < time) announce_gap(trans, *state.end, GST_BUFFER_PTS(in));
     const Time patience(
         static_cast<Time::rep>(std::min<guint64>(state.settings.lockstep_timeout, G_MAXINT64)));
     switch (self.feed.wait(time, patience)) {
@@ -399,7 +417,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
         return GST_FLOW_ERROR;
     }
   }
-  state.newest = time;
+  state.end = time + length(state, in);
   const control::Pose pose = self.feed.at(time);
   const auto place = state.geometry.at(pose.pan.position, pose.tilt.position);
   GST_LOG_OBJECT(trans, "%" GST_TIME_FORMAT ": pan %.3f tilt %.3f, window at %.2f %.2f%s",
@@ -450,7 +468,7 @@ gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
     // Before the others hear of it: what they tell from now on is of the new time.
     self.feed.forget();
     self.feed.interrupt(false);
-    self.state.newest.reset();
+    self.state.end.reset();
   }
   return cerberus_virtual_ptz_parent_class()->sink_event(trans, event);
 }
@@ -462,7 +480,7 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
       const Settings s = self.settings.snapshot();
       self.settings.refresh();
       self.state.live.reset();
-      self.state.newest.reset();
+      self.state.end.reset();
       self.state.complaint.clear();
       self.state.settings = s;
       control::Pose start;

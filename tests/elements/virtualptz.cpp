@@ -6,6 +6,8 @@
 #include <cmath>
 #include <string>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "outputs.h"
 #include "promises.h"
@@ -331,6 +333,77 @@ GST_START_TEST(not_live_a_frame_waits_for_its_pose) {
 }
 GST_END_TEST
 
+// A head that knows of no frame to come stays silent, and tells its way through a gap when it hears of one.
+struct Silent {
+  GstHarness* h;
+  std::vector<std::pair<GstClockTime, GstClockTime>> gaps;
+  explicit Silent(GstHarness* harness) : h(harness) {
+    gst_pad_add_probe(
+        h->sinkpad, GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM,
+        [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+          GstEvent* event = GST_PAD_PROBE_INFO_EVENT(info);
+          if (GST_EVENT_TYPE(event) != GST_EVENT_GAP) return GST_PAD_PROBE_OK;
+          auto* self = static_cast<Silent*>(data);
+          auto& gap = self->gaps.emplace_back();
+          gst_event_parse_gap(event, &gap.first, &gap.second);
+          tell(self->h, pose(kForty, 0, gap.first, gap.first + gap.second));
+          return GST_PAD_PROBE_OK;
+        },
+        this, nullptr);
+  }
+};
+
+GST_START_TEST(where_frames_are_missing_those_behind_are_told) {
+  Ptz ptz(kLine + "lockstep-timeout=1000000", false);
+  Silent silent(ptz.h.get());
+  ptz.frame_shows(0, 80, 60);
+  ptz.frame_shows(5, 120, 60);
+  tell(ptz.h.get(), pose(0, 0, 200 * GST_MSECOND, 260 * GST_MSECOND));
+  ptz.frame_shows(6, 80, 60);
+  ptz.frame_shows(8, 120, 60);
+  const decltype(silent.gaps) missing = {{40 * GST_MSECOND, 160 * GST_MSECOND},
+                                         {280 * GST_MSECOND, 40 * GST_MSECOND}};
+  fail_unless(silent.gaps == missing, "%zu gaps", silent.gaps.size());
+}
+GST_END_TEST
+
+GST_START_TEST(a_stream_without_a_rate_is_full_of_gaps) {
+  Ptz ptz(kLine + "lockstep-timeout=1000000", false);
+  Silent silent(ptz.h.get());
+  gst_harness_set_src_caps_str(
+      ptz.h.get(), "video/x-raw,format=I420,width=320,height=240,framerate=0/1,interlace-mode=progressive");
+  for (const int number : {0, 1, 3}) {
+    GstBuffer* frame = noise(ptz.in, number);
+    GST_BUFFER_DURATION(frame) = GST_CLOCK_TIME_NONE;
+    fail_unless_equals_int(gst_harness_push(ptz.h.get(), frame), GST_FLOW_OK);
+    ptz.shows(gst_harness_pull(ptz.h.get()), number, number ? 120 : 80, 60);
+  }
+  fail_unless_equals_int(silent.gaps.size(), 2);
+  // It begins when the last frame is over, and that one is not of no time at all.
+  fail_unless_equals_uint64(silent.gaps[1].first, 40 * GST_MSECOND + 1);
+  fail_unless_equals_uint64(silent.gaps[1].first + silent.gaps[1].second, 120 * GST_MSECOND);
+}
+GST_END_TEST
+
+GST_START_TEST(a_segment_may_begin_with_a_gap) {
+  Ptz ptz(kLine + "lockstep-timeout=1000000", false);
+  Silent silent(ptz.h.get());
+  ptz.frame_shows(0, 80, 60);
+  // Running time goes on at 1 s: the first frame's end at 40 ms lies before.
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  segment.start = segment.time = 10 * GST_SECOND;
+  segment.base = GST_SECOND;
+  gst_harness_push_event(ptz.h.get(), gst_event_new_segment(&segment));
+  GstBuffer* frame = noise(ptz.in, 1);
+  GST_BUFFER_PTS(frame) = 10 * GST_SECOND + 80 * GST_MSECOND;
+  tell(ptz.h.get(), pose(0, 0, GST_SECOND, GST_SECOND + 60 * GST_MSECOND));
+  gst_harness_push(ptz.h.get(), frame);
+  const decltype(silent.gaps) missing = {{10 * GST_SECOND, 80 * GST_MSECOND}};
+  fail_unless(silent.gaps == missing, "%zu gaps", silent.gaps.size());
+}
+GST_END_TEST
+
 GST_START_TEST(of_two_poses_that_meet_the_earlier_counts_in_lockstep) {
   // The later one may or may not have come in time: the result must not depend on it.
   Ptz ptz(kLine, false);
@@ -432,6 +505,9 @@ static Suite* virtualptz_suite() {
   tc = tcase_create("lockstep");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, not_live_a_frame_waits_for_its_pose);
+  tcase_add_test(tc, where_frames_are_missing_those_behind_are_told);
+  tcase_add_test(tc, a_stream_without_a_rate_is_full_of_gaps);
+  tcase_add_test(tc, a_segment_may_begin_with_a_gap);
   tcase_add_test(tc, of_two_poses_that_meet_the_earlier_counts_in_lockstep);
   tcase_add_test(tc, nobody_waits_in_a_live_pipeline_or_without_lockstep);
   tcase_add_test(tc, a_head_that_never_tells_is_an_error_that_names_it);
