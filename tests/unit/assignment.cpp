@@ -5,9 +5,10 @@
 #include <check.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <random>
 #include <vector>
+
+#include "support/suite.h"
 
 using cerberus::vision::Assignment;
 
@@ -89,15 +90,7 @@ START_TEST(random_gated_problems_match_the_exhaustive_search) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("assignment");
-  TCase* tests = tcase_create("assignment");
-  tcase_add_test(tests, the_greedy_choice_is_not_taken_when_it_costs_more);
-  tcase_add_test(tests, nothing_to_match_gives_nothing);
-  tcase_add_test(tests, random_gated_problems_match_the_exhaustive_search);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "assignment", {the_greedy_choice_is_not_taken_when_it_costs_more, nothing_to_match_gives_nothing,
+                     random_gated_problems_match_the_exhaustive_search});
 }

@@ -9,6 +9,7 @@
 #include <random>
 #include <vector>
 
+#include "support/suite.h"
 #include "support/wrong.h"
 
 using namespace cerberus::vision;
@@ -98,14 +99,6 @@ START_TEST(opaque_white_is_white_and_nothing_is_nothing) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("blend");
-  TCase* tc = tcase_create("blend");
-  tcase_add_test(tc, every_layout_agrees_with_the_definition);
-  tcase_add_test(tc, opaque_white_is_white_and_nothing_is_nothing);
-  suite_add_tcase(suite, tc);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "blend", {every_layout_agrees_with_the_definition, opaque_white_is_white_and_nothing_is_nothing});
 }

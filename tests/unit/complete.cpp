@@ -8,11 +8,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <vector>
 
 #include "sensing/angles.h"
+#include "support/suite.h"
 
 using namespace cerberus::fusion;
 using cerberus::sensing::degrees;
@@ -342,28 +342,18 @@ START_TEST(an_edge_is_crossed_once) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("complete");
-  TCase* tests = tcase_create("complete");
-  tcase_set_timeout(tests, 200);
-  tcase_add_test(tests, every_evenly_spread_geometry_has_one_answer_everywhere);
-  tcase_add_test(tests, every_odd_geometry_has_one_answer_everywhere);
-  tcase_add_test(tests, whatever_the_limits_there_is_one_answer_within_them);
-  tcase_add_test(tests, one_sensor_asks_for_its_sector_pulled_in_by_half_a_lens);
-  tcase_add_test(tests, a_sector_narrower_than_the_lens_is_looked_at_from_its_middle);
-  tcase_add_test(tests, sensors_together_ask_for_what_they_share_and_then_for_what_each_covers);
-  tcase_add_test(tests, sensors_that_contradict_each_other_are_visited_nearest_first);
-  tcase_add_test(tests, equally_near_sectors_go_by_the_last_to_fire_and_then_by_number);
-  tcase_add_test(tests, a_sector_behind_is_reached_from_both_stops_and_said_to_be_limited);
-  tcase_add_test(tests, the_stops_choose_the_way_round);
-  tcase_add_test(tests, what_is_out_of_reach_is_looked_at_from_the_nearest_stop);
-  tcase_add_test(tests, a_sensor_that_sees_all_around_makes_the_head_look_all_around);
-  tcase_add_test(tests, an_unknown_pan_angle_turns_nothing);
-  tcase_add_test(tests, no_sensor_no_place);
-  tcase_add_test(tests, an_edge_is_crossed_once);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "complete",
+      {every_evenly_spread_geometry_has_one_answer_everywhere, every_odd_geometry_has_one_answer_everywhere,
+       whatever_the_limits_there_is_one_answer_within_them,
+       one_sensor_asks_for_its_sector_pulled_in_by_half_a_lens,
+       a_sector_narrower_than_the_lens_is_looked_at_from_its_middle,
+       sensors_together_ask_for_what_they_share_and_then_for_what_each_covers,
+       sensors_that_contradict_each_other_are_visited_nearest_first,
+       equally_near_sectors_go_by_the_last_to_fire_and_then_by_number,
+       a_sector_behind_is_reached_from_both_stops_and_said_to_be_limited, the_stops_choose_the_way_round,
+       what_is_out_of_reach_is_looked_at_from_the_nearest_stop,
+       a_sensor_that_sees_all_around_makes_the_head_look_all_around, an_unknown_pan_angle_turns_nothing,
+       no_sensor_no_place, an_edge_is_crossed_once},
+      200);
 }

@@ -3,8 +3,9 @@
 
 #include <check.h>
 
-#include <cstdlib>
 #include <limits>
+
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -78,18 +79,10 @@ START_TEST(pixels_and_metres_convert_both_ways) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("gates");
-  TCase* tests = tcase_create("gates");
-  tcase_add_test(tests, a_range_holds_its_ends_and_what_is_unknown);
-  tcase_add_test(tests, sizes_are_judged_in_pixels_everywhere_and_in_metres_where_known);
-  tcase_add_test(tests, the_human_size_takes_people_and_leaves_cats_and_cars);
-  tcase_add_test(tests, the_human_speed_is_a_tenth_to_four_metres_a_second);
-  tcase_add_test(tests, who_came_walking_may_stand_but_what_only_sways_may_not);
-  tcase_add_test(tests, pixels_and_metres_convert_both_ways);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "gates", {a_range_holds_its_ends_and_what_is_unknown,
+                sizes_are_judged_in_pixels_everywhere_and_in_metres_where_known,
+                the_human_size_takes_people_and_leaves_cats_and_cars,
+                the_human_speed_is_a_tenth_to_four_metres_a_second,
+                who_came_walking_may_stand_but_what_only_sways_may_not, pixels_and_metres_convert_both_ways});
 }

@@ -3,8 +3,9 @@
 
 #include <check.h>
 
-#include <cstdlib>
 #include <random>
+
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -109,19 +110,10 @@ START_TEST(a_new_truth_replaces_an_old_one) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("height_prior");
-  TCase* tests = tcase_create("height prior");
-  tcase_add_test(tests, nothing_is_said_before_eight_people_agree);
-  tcase_add_test(tests, the_line_is_found_among_four_wrong_of_ten);
-  tcase_add_test(tests, heights_without_any_order_teach_nothing);
-  tcase_add_test(tests, a_prior_learnt_in_one_row_says_nothing_about_rows_far_away);
-  tcase_add_test(tests, what_was_learnt_moves_with_the_camera);
-  tcase_add_test(tests, a_zoom_about_the_middle_scales_heights_and_rows);
-  tcase_add_test(tests, a_new_truth_replaces_an_old_one);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "height_prior",
+      {nothing_is_said_before_eight_people_agree, the_line_is_found_among_four_wrong_of_ten,
+       heights_without_any_order_teach_nothing, a_prior_learnt_in_one_row_says_nothing_about_rows_far_away,
+       what_was_learnt_moves_with_the_camera, a_zoom_about_the_middle_scales_heights_and_rows,
+       a_new_truth_replaces_an_old_one});
 }

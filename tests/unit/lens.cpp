@@ -6,9 +6,10 @@
 #include <check.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
+
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -180,26 +181,16 @@ START_TEST(what_is_not_ahead_of_the_camera_has_no_place_in_the_picture) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("lens");
-  TCase* tests = tcase_create("lens");
-  tcase_add_test(tests, the_focal_length_and_the_height_of_the_view_follow_from_the_width);
-  tcase_add_test(tests, the_middle_of_the_picture_is_where_the_camera_looks);
-  tcase_add_test(tests, right_in_the_picture_is_a_larger_bearing_and_up_a_larger_elevation);
-  tcase_add_test(tests, a_tilted_camera_sees_its_sides_further_round_than_a_level_one);
-  tcase_add_test(tests, bearings_wrap_into_minus_180_to_180);
-  tcase_add_test(tests, the_floor_is_as_far_as_the_mounting_height_at_45_degrees_down);
-  tcase_add_test(tests, the_floor_is_nowhere_on_and_above_the_horizon);
-  tcase_add_test(tests, a_person_four_metres_away_has_the_size_it_had_when_drawn);
-  tcase_add_test(tests, a_tilted_camera_measures_the_same_person);
-  tcase_add_test(tests, feet_that_are_not_in_the_picture_give_no_distance);
-  tcase_add_test(tests, what_is_far_stays_where_it_is_when_the_camera_turns);
-  tcase_add_test(tests, a_direction_is_found_again_in_the_picture_where_it_was_seen);
-  tcase_add_test(tests, what_is_not_ahead_of_the_camera_has_no_place_in_the_picture);
-  tcase_add_test(tests, a_lens_nobody_described_knows_nothing);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "lens",
+      {the_focal_length_and_the_height_of_the_view_follow_from_the_width,
+       the_middle_of_the_picture_is_where_the_camera_looks,
+       right_in_the_picture_is_a_larger_bearing_and_up_a_larger_elevation,
+       a_tilted_camera_sees_its_sides_further_round_than_a_level_one, bearings_wrap_into_minus_180_to_180,
+       the_floor_is_as_far_as_the_mounting_height_at_45_degrees_down,
+       the_floor_is_nowhere_on_and_above_the_horizon,
+       a_person_four_metres_away_has_the_size_it_had_when_drawn, a_tilted_camera_measures_the_same_person,
+       feet_that_are_not_in_the_picture_give_no_distance, what_is_far_stays_where_it_is_when_the_camera_turns,
+       a_direction_is_found_again_in_the_picture_where_it_was_seen,
+       what_is_not_ahead_of_the_camera_has_no_place_in_the_picture, a_lens_nobody_described_knows_nothing});
 }

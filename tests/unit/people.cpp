@@ -5,8 +5,9 @@
 #include <check.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <vector>
+
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -193,23 +194,13 @@ START_TEST(a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("people");
-  TCase* tests = tcase_create("people");
-  tcase_add_test(tests, one_person_is_one_box_in_the_right_place);
-  tcase_add_test(tests, two_side_by_side_who_touch_are_two);
-  tcase_add_test(tests, four_in_a_row_are_four);
-  tcase_add_test(tests, a_person_cut_in_two_by_a_lamp_post_or_a_belt_is_one);
-  tcase_add_test(tests, somebody_who_walks_behind_somebody_else_is_found_by_what_shows);
-  tcase_add_test(tests, specks_and_small_animals_are_nobody);
-  tcase_add_test(tests, a_person_whose_feet_are_below_the_picture_is_placed_below_it);
-  tcase_add_test(tests, a_person_at_the_left_border_may_be_half_outside);
-  tcase_add_test(tests, a_larger_picture_gives_the_same_people_larger);
-  tcase_add_test(tests, without_a_known_height_nobody_is_said_to_be_there);
-  tcase_add_test(tests, a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "people",
+      {one_person_is_one_box_in_the_right_place, two_side_by_side_who_touch_are_two, four_in_a_row_are_four,
+       a_person_cut_in_two_by_a_lamp_post_or_a_belt_is_one,
+       somebody_who_walks_behind_somebody_else_is_found_by_what_shows, specks_and_small_animals_are_nobody,
+       a_person_whose_feet_are_below_the_picture_is_placed_below_it,
+       a_person_at_the_left_border_may_be_half_outside, a_larger_picture_gives_the_same_people_larger,
+       without_a_known_height_nobody_is_said_to_be_there,
+       a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory});
 }

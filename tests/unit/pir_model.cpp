@@ -5,10 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <random>
 #include <vector>
+
+#include "support/suite.h"
 
 using namespace cerberus::sensing;
 using namespace std::chrono_literals;
@@ -429,30 +430,17 @@ START_TEST(the_modules_are_there_by_name) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("pir_model");
-  TCase* tests = tcase_create("pir_model");
-  tcase_add_test(tests, a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time);
-  tcase_add_test(tests, bounce_does_not_show);
-  tcase_add_test(tests, a_late_poll_still_tells_when_it_happened);
-  tcase_add_test(tests, the_debounce_time_is_limited_to_50_ms);
-  tcase_add_test(tests, an_open_collector_module_detects_while_its_line_is_low);
-  tcase_add_test(tests, readings_are_invalid_before_the_start_and_in_warm_up);
-  tcase_add_test(tests, hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers);
-  tcase_add_test(tests, without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time);
-  tcase_add_test(tests, nothing_triggers_in_the_block_time);
-  tcase_add_test(tests, a_line_that_never_rests_is_stuck_until_it_does);
-  tcase_add_test(tests, a_line_that_chatters_is_invalid_until_it_calms_down);
-  tcase_add_test(tests, no_module_of_the_list_chatters_by_its_own_timing);
-  tcase_add_test(tests, a_turning_base_makes_detections_doubtful);
-  tcase_add_test(tests, a_base_of_which_nobody_speaks_any_more_is_taken_as_standing);
-  tcase_add_test(tests, a_time_that_goes_back_counts_as_the_last_one);
-  tcase_add_test(tests, presence_is_what_its_definition_says_on_random_lines);
-  tcase_add_test(tests, sleeping_until_the_deadline_misses_nothing);
-  tcase_add_test(tests, the_modules_are_there_by_name);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "pir_model",
+      {a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time, bounce_does_not_show,
+       a_late_poll_still_tells_when_it_happened, the_debounce_time_is_limited_to_50_ms,
+       an_open_collector_module_detects_while_its_line_is_low,
+       readings_are_invalid_before_the_start_and_in_warm_up,
+       hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers,
+       without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time,
+       nothing_triggers_in_the_block_time, a_line_that_never_rests_is_stuck_until_it_does,
+       a_line_that_chatters_is_invalid_until_it_calms_down, no_module_of_the_list_chatters_by_its_own_timing,
+       a_turning_base_makes_detections_doubtful, a_base_of_which_nobody_speaks_any_more_is_taken_as_standing,
+       a_time_that_goes_back_counts_as_the_last_one, presence_is_what_its_definition_says_on_random_lines,
+       sleeping_until_the_deadline_misses_nothing, the_modules_are_there_by_name});
 }

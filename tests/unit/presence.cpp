@@ -3,7 +3,7 @@
 
 #include <check.h>
 
-#include <cstdlib>
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 using namespace std::chrono_literals;
@@ -106,22 +106,12 @@ START_TEST(silence_before_an_object_does_not_shorten_the_hold_after_it) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("presence");
-  TCase* tests = tcase_create("all");
-  suite_add_tcase(suite, tests);
-  tcase_add_test(tests, nothing_is_told_before_the_first_object);
-  tcase_add_test(tests, it_starts_once_with_the_first_object);
-  tcase_add_test(tests, it_ends_once_when_the_hold_is_over);
-  tcase_add_test(tests, an_object_that_comes_back_is_the_same_motion_and_the_hold_begins_anew);
-  tcase_add_test(tests, without_a_hold_the_first_empty_frame_ends_it);
-  tcase_add_test(tests, a_gap_in_the_stream_counts_as_long_as_it_was);
-  tcase_add_test(tests, time_that_runs_backwards_is_no_silence);
-  tcase_add_test(tests, without_times_the_frames_are_counted);
-  tcase_add_test(tests, the_end_of_the_stream_ends_it_once_and_knows_when);
-  tcase_add_test(tests, silence_before_an_object_does_not_shorten_the_hold_after_it);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "presence", {nothing_is_told_before_the_first_object, it_starts_once_with_the_first_object,
+                   it_ends_once_when_the_hold_is_over,
+                   an_object_that_comes_back_is_the_same_motion_and_the_hold_begins_anew,
+                   without_a_hold_the_first_empty_frame_ends_it, a_gap_in_the_stream_counts_as_long_as_it_was,
+                   time_that_runs_backwards_is_no_silence, without_times_the_frames_are_counted,
+                   the_end_of_the_stream_ends_it_once_and_knows_when,
+                   silence_before_an_object_does_not_shorten_the_hold_after_it});
 }

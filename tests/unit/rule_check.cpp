@@ -3,11 +3,11 @@
 
 #include <check.h>
 
-#include <cstdlib>
 #include <limits>
 #include <random>
 
 #include "sensing/angles.h"
+#include "support/suite.h"
 
 using namespace cerberus::fusion;
 using cerberus::sensing::radians;
@@ -220,21 +220,13 @@ START_TEST(the_checker_finds_what_trying_every_case_finds) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("rule_check");
-  TCase* tests = tcase_create("rule_check");
-  tcase_add_test(tests, a_sound_table_has_no_problems);
-  tcase_add_test(tests, a_gap_of_a_single_angle_is_named);
-  tcase_add_test(tests, a_gap_names_the_sensors_and_the_angles);
-  tcase_add_test(tests, the_papers_rules_contradict_each_other_unless_their_order_counts);
-  tcase_add_test(tests, two_rules_that_say_the_same_are_no_contradiction);
-  tcase_add_test(tests, bands_of_one_rule_must_agree_where_they_meet_unless_their_order_counts);
-  tcase_add_test(tests, searches_of_different_places_contradict_each_other);
-  tcase_add_test(tests, a_malformed_table_is_told_so_before_anything_else);
-  tcase_add_test(tests, the_checker_finds_what_trying_every_case_finds);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "rule_check",
+      {a_sound_table_has_no_problems, a_gap_of_a_single_angle_is_named,
+       a_gap_names_the_sensors_and_the_angles,
+       the_papers_rules_contradict_each_other_unless_their_order_counts,
+       two_rules_that_say_the_same_are_no_contradiction,
+       bands_of_one_rule_must_agree_where_they_meet_unless_their_order_counts,
+       searches_of_different_places_contradict_each_other, a_malformed_table_is_told_so_before_anything_else,
+       the_checker_finds_what_trying_every_case_finds});
 }

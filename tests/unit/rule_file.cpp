@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "sensing/angles.h"
-
-#include <check.h>  // after the streams: it defines fail()
+#include "support/suite.h"  // after the streams: check defines fail()
 
 using namespace cerberus::fusion;
 using cerberus::sensing::radians;
@@ -215,22 +214,10 @@ START_TEST(damaged_files_are_refused_or_read_but_never_harm) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("rule_file");
-  TCase* tests = tcase_create("rule_file");
-  tcase_set_timeout(tests, 60);
-  tcase_add_test(tests, the_manuals_first_example_is_the_papers_table);
-  tcase_add_test(tests, the_manuals_second_example_does_what_it_says);
-  tcase_add_test(tests, what_is_left_out_has_a_default);
-  tcase_add_test(tests, a_gap_and_a_contradiction_are_named);
-  tcase_add_test(tests, a_mistake_is_named_with_its_line);
-  tcase_add_test(tests, all_mistakes_are_told_at_once);
-  tcase_add_test(tests, a_file_that_cannot_be_read_is_named);
-  tcase_add_test(tests, a_file_is_read_as_its_text_is);
-  tcase_add_test(tests, damaged_files_are_refused_or_read_but_never_harm);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "rule_file",
+      {the_manuals_first_example_is_the_papers_table, the_manuals_second_example_does_what_it_says,
+       what_is_left_out_has_a_default, a_gap_and_a_contradiction_are_named, a_mistake_is_named_with_its_line,
+       all_mistakes_are_told_at_once, a_file_that_cannot_be_read_is_named, a_file_is_read_as_its_text_is,
+       damaged_files_are_refused_or_read_but_never_harm});
 }

@@ -4,11 +4,11 @@
 #include <check.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <limits>
 
 #include "sensing/angles.h"
+#include "support/suite.h"
 
 using namespace cerberus::fusion;
 using cerberus::sensing::radians;
@@ -146,18 +146,10 @@ START_TEST(a_rule_without_a_band_for_the_angle_lets_the_next_one_speak) {
 END_TEST
 
 int main() {
-  TCase* cases = tcase_create("rules");
-  tcase_add_test(cases, the_papers_rules_answer_as_its_truth_table_in_416_cases);
-  tcase_add_test(cases, sensors_beyond_the_papers_three_change_nothing);
-  tcase_add_test(cases, an_unknown_pan_angle_meets_only_what_holds_everywhere);
-  tcase_add_test(cases, a_band_ends_where_it_says);
-  tcase_add_test(cases, a_rule_asks_for_all_for_any_and_for_none);
-  tcase_add_test(cases, a_rule_without_a_band_for_the_angle_lets_the_next_one_speak);
-  Suite* suite = suite_create("rules");
-  suite_add_tcase(suite, cases);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "rules",
+      {the_papers_rules_answer_as_its_truth_table_in_416_cases,
+       sensors_beyond_the_papers_three_change_nothing, an_unknown_pan_angle_meets_only_what_holds_everywhere,
+       a_band_ends_where_it_says, a_rule_asks_for_all_for_any_and_for_none,
+       a_rule_without_a_band_for_the_angle_lets_the_next_one_speak});
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sensing/angles.h"
+#include "support/suite.h"
 
 using namespace cerberus::sensing;
 
@@ -166,21 +167,10 @@ START_TEST(overlaps_are_those_of_a_brute_force_count) {
 END_TEST
 
 int main() {
-  TCase* cases = tcase_create("sectors");
-  tcase_add_test(cases, directions_wrap_and_keep_their_meaning);
-  tcase_add_test(cases, the_default_geometry_is_the_papers);
-  tcase_add_test(cases, a_geometry_that_cannot_be_is_refused_and_changes_nothing);
-  tcase_add_test(cases, sensors_of_different_make_have_each_its_own_width);
-  tcase_add_test(cases, sectors_overlap_where_all_of_them_look);
-  tcase_add_test(cases, sectors_that_touch_meet_on_their_border);
-  tcase_add_test(cases, wide_sectors_meet_twice);
-  tcase_add_test(cases, sensors_that_see_all_around_narrow_nothing);
-  tcase_add_test(cases, overlaps_are_those_of_a_brute_force_count);
-  Suite* suite = suite_create("sectors");
-  suite_add_tcase(suite, cases);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "sectors", {directions_wrap_and_keep_their_meaning, the_default_geometry_is_the_papers,
+                  a_geometry_that_cannot_be_is_refused_and_changes_nothing,
+                  sensors_of_different_make_have_each_its_own_width, sectors_overlap_where_all_of_them_look,
+                  sectors_that_touch_meet_on_their_border, wide_sectors_meet_twice,
+                  sensors_that_see_all_around_narrow_nothing, overlaps_are_those_of_a_brute_force_count});
 }

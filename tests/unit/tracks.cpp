@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -512,38 +513,31 @@ START_TEST(the_same_regions_give_the_same_tracks) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("tracks");
-  TCase* tests = tcase_create("tracks");
-  tcase_add_test(tests, a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed);
-  tcase_add_test(tests, the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate);
-  tcase_add_test(tests, blobs_that_flash_up_here_and_there_are_never_published);
-  tcase_add_test(tests, what_never_moves_is_never_published);
-  tcase_add_test(tests, a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change);
-  tcase_add_test(tests, a_zoom_scales_box_and_speed_of_a_track_without_evidence);
-  tcase_add_test(tests, a_flickering_object_is_coasted_over_its_gaps);
-  tcase_add_test(tests, who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go);
-  tcase_add_test(tests, who_stood_and_walks_on_is_the_same_person);
-  tcase_add_test(tests, a_standing_person_s_moving_arm_does_not_make_the_person_small);
-  tcase_add_test(tests, who_leaves_the_picture_is_gone_within_half_a_second);
-  tcase_add_test(tests, two_who_meet_in_one_blob_come_out_with_the_identities_they_had);
-  tcase_add_test(tests, a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost);
-  tcase_add_test(tests, pieces_of_one_object_are_not_counted_apart_for_long);
-  tcase_add_test(tests, an_unknown_time_is_taken_as_the_last_known_one);
-  tcase_add_test(tests, impossible_regions_and_transforms_do_no_harm);
-  tcase_add_test(tests, boxes_are_clamped_to_the_frame_and_identities_never_come_again);
-  tcase_add_test(tests, limits_of_speed_keep_the_slow_unpublished_and_the_too_fast_apart);
-  tcase_add_test(tests, the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived);
-  tcase_add_test(tests, who_is_left_by_the_camera_is_the_same_when_it_comes_back);
-  tcase_add_test(tests, a_head_that_turned_its_back_finds_the_same_person_again);
-  tcase_add_test(tests, somebody_else_in_another_place_is_somebody_else);
-  tcase_add_test(tests, who_is_away_too_long_is_forgotten);
-  tcase_add_test(tests, who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new);
-  tcase_add_test(tests, what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far);
-  tcase_add_test(tests, the_same_regions_give_the_same_tracks);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite("tracks",
+                                    {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
+                                     the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
+                                     blobs_that_flash_up_here_and_there_are_never_published,
+                                     what_never_moves_is_never_published,
+                                     a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change,
+                                     a_zoom_scales_box_and_speed_of_a_track_without_evidence,
+                                     a_flickering_object_is_coasted_over_its_gaps,
+                                     who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go,
+                                     who_stood_and_walks_on_is_the_same_person,
+                                     a_standing_person_s_moving_arm_does_not_make_the_person_small,
+                                     who_leaves_the_picture_is_gone_within_half_a_second,
+                                     two_who_meet_in_one_blob_come_out_with_the_identities_they_had,
+                                     a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost,
+                                     pieces_of_one_object_are_not_counted_apart_for_long,
+                                     an_unknown_time_is_taken_as_the_last_known_one,
+                                     impossible_regions_and_transforms_do_no_harm,
+                                     boxes_are_clamped_to_the_frame_and_identities_never_come_again,
+                                     limits_of_speed_keep_the_slow_unpublished_and_the_too_fast_apart,
+                                     the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
+                                     who_is_left_by_the_camera_is_the_same_when_it_comes_back,
+                                     a_head_that_turned_its_back_finds_the_same_person_again,
+                                     somebody_else_in_another_place_is_somebody_else,
+                                     who_is_away_too_long_is_forgotten,
+                                     who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
+                                     what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far,
+                                     the_same_regions_give_the_same_tracks});
 }

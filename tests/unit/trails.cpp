@@ -3,8 +3,9 @@
 
 #include <check.h>
 
-#include <cstdlib>
 #include <limits>
+
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -102,20 +103,10 @@ START_TEST(long_gone_trails_make_room_for_new_ones) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("trails");
-  TCase* tc = tcase_create("trails");
-  tcase_add_test(tc, a_trail_grows_by_one_point_a_frame_and_keeps_its_order);
-  tcase_add_test(tc, points_older_than_the_duration_go);
-  tcase_add_test(tc, a_trail_lies_still_on_the_scene_while_the_camera_pans);
-  tcase_add_test(tc, a_lost_object_leaves_its_trail_until_the_duration_is_over);
-  tcase_add_test(tc, points_carried_far_away_are_dropped_with_all_before_them);
-  tcase_add_test(tc, not_a_number_leaves_no_mark);
-  tcase_add_test(tc, a_trail_is_bounded_whatever_the_duration);
-  tcase_add_test(tc, long_gone_trails_make_room_for_new_ones);
-  suite_add_tcase(suite, tc);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_NORMAL);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "trails", {a_trail_grows_by_one_point_a_frame_and_keeps_its_order, points_older_than_the_duration_go,
+                 a_trail_lies_still_on_the_scene_while_the_camera_pans,
+                 a_lost_object_leaves_its_trail_until_the_duration_is_over,
+                 points_carried_far_away_are_dropped_with_all_before_them, not_a_number_leaves_no_mark,
+                 a_trail_is_bounded_whatever_the_duration, long_gone_trails_make_room_for_new_ones});
 }

@@ -4,10 +4,11 @@
 #include <check.h>
 
 #include <clocale>
-#include <cstdlib>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "support/suite.h"
 
 using namespace cerberus::vision;
 
@@ -141,21 +142,14 @@ START_TEST(decimal_points_are_read_in_a_german_locale) {
 END_TEST
 
 int main() {
-  Suite* suite = suite_create("zones");
-  TCase* tests = tcase_create("zones");
-  tcase_add_test(tests, without_polygons_motion_counts_everywhere);
-  tcase_add_test(tests, an_included_rectangle_covers_the_pixels_whose_centres_it_holds);
-  tcase_add_test(tests, a_triangle_is_cut_where_centres_cross_its_side);
-  tcase_add_test(tests, an_exclude_takes_away_from_everywhere_and_from_includes_whatever_the_order);
-  tcase_add_test(tests, a_polygon_that_crosses_itself_is_filled_even_odd);
-  tcase_add_test(tests, wrong_words_are_named_with_what_to_write_instead);
-  tcase_add_test(tests, a_wrong_text_leaves_the_old_polygons_in_place);
-  tcase_add_test(tests, the_mask_loses_what_does_not_count_at_every_size_and_after_every_change);
-  tcase_add_test(tests, decimal_points_are_read_in_a_german_locale);
-  suite_add_tcase(suite, tests);
-  SRunner* runner = srunner_create(suite);
-  srunner_run_all(runner, CK_ENV);
-  const int failed = srunner_ntests_failed(runner);
-  srunner_free(runner);
-  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+  return cerberus::tests::run_suite(
+      "zones",
+      {without_polygons_motion_counts_everywhere,
+       an_included_rectangle_covers_the_pixels_whose_centres_it_holds,
+       a_triangle_is_cut_where_centres_cross_its_side,
+       an_exclude_takes_away_from_everywhere_and_from_includes_whatever_the_order,
+       a_polygon_that_crosses_itself_is_filled_even_odd, wrong_words_are_named_with_what_to_write_instead,
+       a_wrong_text_leaves_the_old_polygons_in_place,
+       the_mask_loses_what_does_not_count_at_every_size_and_after_every_change,
+       decimal_points_are_read_in_a_german_locale});
 }
