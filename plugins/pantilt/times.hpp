@@ -2,9 +2,10 @@
 // GStreamer's times and lib's.
 #pragma once
 
-#include <gst/gst.h>
+#include <gst/video/video.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "control/head_limits.h"
@@ -16,6 +17,16 @@ constexpr GstClockTime clock_time(control::Time time) {
 }
 constexpr control::Time time_of(GstClockTime time) {
   return control::Time(static_cast<control::Time::rep>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
+}
+
+// How long a frame or a gap of `duration` (none: as the rate of frames says) lasts in running time; 0: nobody knows. Who
+// waits for a head and who drives it count alike.
+inline control::Time running_length(GstClockTime duration, const GstVideoInfo& info,
+                                    const GstSegment& segment) {
+  if (!GST_CLOCK_TIME_IS_VALID(duration))
+    duration = info.fps_n > 0 ? gst_util_uint64_scale_int(GST_SECOND, info.fps_d, info.fps_n) : 0;
+  const double length = std::ceil(static_cast<double>(duration) / std::abs(segment.rate));
+  return time_of(static_cast<GstClockTime>(std::min(length, 0x1p61)));
 }
 
 // Running time by the clock, while there is one.

@@ -40,7 +40,8 @@
  *
  * Since: 0.1
  */
-// Where the window lies and how its pixels come about is lib/vision/window.h; when a pose is known, pose_feed.hpp.
+// This file only connects with GStreamer: when a pose is known is pose_feed.hpp, when frames are taken frame_times.hpp, and
+// what is drawn window_view.hpp.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/video-overlay-composition.h>
@@ -51,10 +52,11 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/video.hpp"
-#include "inset.hpp"
+#include "frame_times.hpp"
 #include "pose_feed.hpp"
-#include "vision/properties.hpp"
-#include "vision/window.h"
+#include "times.hpp"
+#include "window_settings.hpp"
+#include "window_view.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(virtualptz_debug);
 #define GST_CAT_DEFAULT virtualptz_debug
@@ -65,89 +67,26 @@ namespace {
 using control::Time;
 using sensing::degrees;
 using sensing::radians;
-using vision::Samples;
-
-constexpr int kMostPixels = 16384;
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
 
-enum Lockstep { LOCKSTEP_AUTO, LOCKSTEP_ON, LOCKSTEP_OFF };
-
-GType lockstep_type() {
-  static const GEnumValue values[] = {{LOCKSTEP_AUTO, "In pipelines that are not live", "auto"},
-                                      {LOCKSTEP_ON, "Every frame waits for its pose", "on"},
-                                      {LOCKSTEP_OFF, "No frame waits", "off"},
-                                      {0, nullptr, nullptr}};
-  static const GType type = g_enum_register_static("CerberusVirtualPtzLockstep", values);
-  return type;
-}
-
-struct Settings {
-  int width = 0, height = 0;
-  double wide_fov = 60, horizontal_fov = 0;
-  double start_pan = 0, start_tilt = 0;
-  bool inset = false;
-  std::string head = "head";
-  int lockstep = LOCKSTEP_AUTO;
-  guint64 lockstep_timeout = 10 * GST_SECOND;
-};
-
-const Property<Settings> kProperties[] = {
-    property("width", &Settings::width, 0, kMostPixels,
-             "Width of the window in pixels; 0 = what downstream takes, nearest to half the picture's"),
-    property("height", &Settings::height, 0, kMostPixels,
-             "Height of the window in pixels; 0 = what downstream takes, nearest to half the picture's"),
-    property("wide-fov", &Settings::wide_fov, 1, 170,
-             "Angle in degrees that the wide picture shows over its width"),
-    property(
-        "horizontal-fov", &Settings::horizontal_fov, 0, 170,
-        "Angle in degrees that the window shows over its width, at most the picture's; 0 = a pixel of the "
-        "picture is a pixel of the window"),
-    property(
-        "start-pan", &Settings::start_pan, -90, 90,
-        "Where the window looks until a head tells, degrees, positive to the right (read when the element "
-        "starts)"),
-    property(
-        "start-tilt", &Settings::start_tilt, -90, 90,
-        "Where the window looks until a head tells, degrees, positive up (read when the element starts)"),
-    property("inset", &Settings::inset,
-             "Attach to each frame a small picture of the whole scene with the window's place in it, for "
-             "motionoverlay and sinks that draw overlays"),
-    property("head", &Settings::head, "Name of the head that moves the window; empty = any"),
-    property("lockstep", &Settings::lockstep, lockstep_type,
-             "Whether a frame waits until the head's pose at its running time is known"),
-    property(
-        "lockstep-timeout", &Settings::lockstep_timeout,
-        "Nanoseconds of real time without any pose after which a waiting frame ends in an error; 0 = wait "
-        "for ever"),
-};
-
-// After the table's: what can be read only.
-enum {
-  PROP_PAN_MIN = std::size(kProperties) + 1,
-  PROP_PAN_MAX,
-  PROP_TILT_MIN,
-  PROP_TILT_MAX,
-  PROP_WINDOW_FOV
-};
+// What can be read only: beyond the ids of window_properties().
+enum { PROP_PAN_MIN = 100, PROP_PAN_MAX, PROP_TILT_MIN, PROP_TILT_MAX, PROP_WINDOW_FOV };
 
 struct State {  // streaming thread, and state changes while it does not run
-  GstVideoInfo in, out;
-  vision::WindowGeometry geometry;
-  vision::WindowResampler resampler;
-  Inset inset;
-  Settings settings;
+  WindowView view;
+  FrameTimes times;
+  WindowSettings settings;
   std::optional<bool> live;  // nothing: not asked yet
-  std::optional<Time> end;   // running time at which the last frame ends
   std::string complaint;     // about the caps, once said
   bool warned = false;       // about an unusable buffer, once a stream
 };
 
 struct Private {
-  Adjustable<Settings> settings;
+  Adjustable<WindowSettings> settings;
   State state;
   PoseFeed feed;
   std::atomic<double> pan_reach = 0, tilt_reach = 0, window_fov = 0;  // degrees
@@ -159,7 +98,7 @@ CERBERUS_DEFINE_TYPE(CerberusVirtualPtz, cerberus_virtual_ptz, GstBaseTransform,
 // ---- caps
 
 GstCaps* transform_caps(GstBaseTransform* trans, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
-  const Settings s = cerberus_virtual_ptz_self(trans)->priv->settings.snapshot();
+  const WindowSettings s = cerberus_virtual_ptz_self(trans)->priv->settings.snapshot();
   GstCaps* others = gst_caps_copy(caps);
   for (guint i = 0; i < gst_caps_get_size(others); ++i) {
     GstStructure* structure = gst_caps_get_structure(others, i);
@@ -206,27 +145,8 @@ gboolean transform_size(GstBaseTransform* trans, GstPadDirection, GstCaps*, gsiz
   return get_unit_size(trans, others, size);
 }
 
-vision::WindowGeometry geometry_of(const State& state, const Settings& s) {
-  return {radians(s.wide_fov),
-          {GST_VIDEO_INFO_WIDTH(&state.in), GST_VIDEO_INFO_HEIGHT(&state.in)},
-          {GST_VIDEO_INFO_WIDTH(&state.out), GST_VIDEO_INFO_HEIGHT(&state.out)},
-          radians(s.horizontal_fov)};
-}
-
-std::string size_text(const GstVideoInfo& info) {
-  return std::to_string(GST_VIDEO_INFO_WIDTH(&info)) + " x " + std::to_string(GST_VIDEO_INFO_HEIGHT(&info));
-}
-
-std::string does_not_fit(const State& state, const Settings& s) {
-  const bool natural = s.horizontal_fov == 0;
-  return "A window of " + size_text(state.out) + " pixels" +
-         (natural ? std::string() : " that sees " + std::to_string(s.horizontal_fov) + " degrees") +
-         " does not fit into the picture of " + size_text(state.in) + " pixels" +
-         (natural ? "" : " that sees " + std::to_string(s.wide_fov) + " degrees") + ".";
-}
-
 void tell_reach(GstBaseTransform* trans, Private& self) {
-  const auto& geometry = self.state.geometry;
+  const auto& geometry = self.state.view.geometry();
   self.pan_reach = degrees(geometry.pan_reach());
   self.tilt_reach = degrees(geometry.tilt_reach());
   self.window_fov = degrees(geometry.fov());
@@ -240,14 +160,13 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
     State& state = self.state;
     std::string wrong;
     state.settings = self.settings.snapshot();
-    if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out))
+    GstVideoInfo picture, window;
+    if (!gst_video_info_from_caps(&picture, in) || !gst_video_info_from_caps(&window, out))
       wrong = "These video caps cannot be used.";
-    else if (GST_VIDEO_INFO_IS_INTERLACED(&state.in))
+    else if (GST_VIDEO_INFO_IS_INTERLACED(&picture))
       wrong = "A window cannot move over interlaced video: put the element `deinterlace` in front.";
-    else if (const auto geometry = geometry_of(state, state.settings); geometry.fits())
-      state.geometry = geometry;
     else
-      wrong = does_not_fit(state, state.settings);
+      wrong = state.view.begin(picture, window, state.settings);
     if (!wrong.empty()) {
       // Upstream tries again with every frame: one message a failure.
       if (wrong != state.complaint)
@@ -258,7 +177,6 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
     }
     state.complaint.clear();
     state.warned = false;
-    state.inset.begin(state.in, state.out);
     tell_reach(trans, self);
     return TRUE;
   });
@@ -273,14 +191,10 @@ void apply_settings(GstBaseTransform* trans, Private& self) {
                      changed->horizontal_fov != state.settings.horizontal_fov;
   state.settings = *changed;
   if (!moved) return;
-  const auto geometry = geometry_of(state, *changed);
-  if (geometry.fits()) {
-    state.geometry = geometry;
+  if (const std::string wrong = state.view.set_angles(*changed); wrong.empty())
     tell_reach(trans, self);
-  } else {
-    GST_ELEMENT_WARNING(trans, RESOURCE, SETTINGS,
-                        ("%s The old angles stay.", does_not_fit(state, *changed).c_str()), (nullptr));
-  }
+  else
+    GST_ELEMENT_WARNING(trans, RESOURCE, SETTINGS, ("%s The old angles stay.", wrong.c_str()), (nullptr));
 }
 
 // Any stride will do.
@@ -314,65 +228,6 @@ bool wants_lockstep(GstBaseTransform* trans, State& state) {
   return !*state.live;
 }
 
-// Without a time stamp: when the last one ended, as pantiltsink counts.
-Time running_time(GstBaseTransform* trans, const State& state, GstBuffer* buffer) {
-  GstClockTime running = GST_CLOCK_TIME_NONE;
-  if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
-    running = gst_segment_to_running_time(&trans->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
-  if (GST_CLOCK_TIME_IS_VALID(running))
-    return Time(static_cast<Time::rep>(std::min<GstClockTime>(running, G_MAXINT64 / 4)));
-  return state.end.value_or(Time::zero());
-}
-
-// How long a frame lasts, as far as that is known: a nanosecond at least.
-Time length(const State& state, GstBuffer* buffer) {
-  const int n = GST_VIDEO_INFO_FPS_N(&state.in), d = GST_VIDEO_INFO_FPS_D(&state.in);
-  GstClockTime duration = GST_BUFFER_DURATION(buffer);
-  if (!GST_CLOCK_TIME_IS_VALID(duration)) duration = n > 0 ? gst_util_uint64_scale_int(GST_SECOND, d, n) : 0;
-  return Time(static_cast<Time::rep>(std::clamp<GstClockTime>(duration, 1, G_MAXINT64 / 4)));
-}
-
-// After a frame the head tells its way until the next one, where it takes that to be. Where frames are missing (lost ones,
-// a variable rate, a decoder that was cut off) it has to be told that none comes, or it waits for one, and one for it.
-void announce_gap(GstBaseTransform* trans, Time from, GstClockTime until) {
-  guint64 begin = gst_segment_position_from_running_time(&trans->segment, GST_FORMAT_TIME,
-                                                         static_cast<guint64>(from.count()));
-  if (!GST_CLOCK_TIME_IS_VALID(begin)) begin = trans->segment.start;  // it ended in the segment before
-  if (begin < until)
-    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(trans), gst_event_new_gap(begin, until - begin));
-}
-
-Samples<guint8> samples(GstVideoFrame& frame, guint component, bool pixels) {
-  const guint plane = GST_VIDEO_FRAME_COMP_PLANE(&frame, component);
-  const int step = GST_VIDEO_FRAME_COMP_PSTRIDE(&frame, component);
-  // Bytes that lie together are drawn together: whole RGB pixels, pairs of U and V.
-  auto* data = static_cast<guint8*>(pixels ? GST_VIDEO_FRAME_PLANE_DATA(&frame, plane)
-                                           : GST_VIDEO_FRAME_COMP_DATA(&frame, component));
-  return {data,
-          GST_VIDEO_FRAME_COMP_WIDTH(&frame, component),
-          GST_VIDEO_FRAME_COMP_HEIGHT(&frame, component),
-          GST_VIDEO_FRAME_COMP_STRIDE(&frame, component),
-          step,
-          pixels ? step : 1};
-}
-
-void draw(State& state, GstVideoFrame& in, GstVideoFrame& out, const vision::WindowGeometry::Place& place) {
-  const GstVideoFormatInfo* format = in.info.finfo;
-  const bool rgb = GST_VIDEO_FORMAT_INFO_IS_RGB(format);
-  for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS(&in); ++c) {
-    // U and V in one plane of their own, as NV12 has them.
-    const bool pair = c > 0 && GST_VIDEO_FRAME_N_PLANES(&in) == 2;
-    if (c > 0 && (rgb || (pair && c > 1))) break;
-    const auto from = samples(in, c, rgb || pair);
-    const double sub_x = 1 << GST_VIDEO_FORMAT_INFO_W_SUB(format, c),
-                 sub_y = 1 << GST_VIDEO_FORMAT_INFO_H_SUB(format, c);
-    state.resampler.draw(
-        {from.data, from.width, from.height, from.stride, from.step, from.channels},
-        samples(out, c, rgb || pair),
-        {place.left / sub_x, place.top / sub_y, state.geometry.scale(), state.geometry.scale()});
-  }
-}
-
 void attach_pose(const State& state, control::Pose pose, const vision::WindowGeometry::Place& place,
                  GstBuffer* out) {
   pose.pan.position = place.pan;
@@ -392,55 +247,54 @@ void attach_base(GstBuffer* in, GstBuffer* out) {
   cerberus_buffer_set_base(out, &base);
 }
 
+// Until the head's way is known up to `time`, when `in` was taken.
+GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* in, Time time) {
+  const WindowSettings& s = self.state.settings;
+  if (GstEvent* gap = self.state.times.gap_before(trans->segment, in))
+    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(trans), gap);
+  switch (self.feed.wait(time, time_of(s.lockstep_timeout))) {
+    case PoseFeed::Answer::known:
+      return GST_FLOW_OK;
+    case PoseFeed::Answer::interrupted:
+      return GST_FLOW_FLUSHING;
+    case PoseFeed::Answer::silent:
+      break;
+  }
+  GST_ELEMENT_ERROR(
+      trans, RESOURCE, READ,
+      ("The head \"%s\" does not tell where it looks at %.3f s: for %.1f s no pose came. Is there a "
+       "pantiltsink of that name downstream? Without one, set lockstep=off.",
+       s.head.c_str(), control::seconds(time), static_cast<double>(s.lockstep_timeout) / GST_SECOND),
+      ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(time))));
+  return GST_FLOW_ERROR;
+}
+
 GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out) {
   Private& self = *cerberus_virtual_ptz_self(trans)->priv;
   State& state = self.state;
   apply_settings(trans, self);
-  const Time time = running_time(trans, state, in);
-  if (wants_lockstep(trans, state)) {
-    if (state.end && *state.end < time) announce_gap(trans, *state.end, GST_BUFFER_PTS(in));
-    const Time patience(
-        static_cast<Time::rep>(std::min<guint64>(state.settings.lockstep_timeout, G_MAXINT64)));
-    switch (self.feed.wait(time, patience)) {
-      case PoseFeed::Answer::known:
-        break;
-      case PoseFeed::Answer::interrupted:
-        return GST_FLOW_FLUSHING;
-      case PoseFeed::Answer::silent:
-        GST_ELEMENT_ERROR(
-            trans, RESOURCE, READ,
-            ("The head \"%s\" does not tell where it looks at %.3f s: for %.1f s no pose came. Is there a "
-             "pantiltsink of that name downstream? Without one, set lockstep=off.",
-             state.settings.head.c_str(), control::seconds(time),
-             static_cast<double>(state.settings.lockstep_timeout) / GST_SECOND),
-            ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(static_cast<GstClockTime>(time.count()))));
-        return GST_FLOW_ERROR;
-    }
-  }
-  state.end = time + length(state, in);
+  const Time time = state.times.taken(trans->segment, in);
+  if (wants_lockstep(trans, state))
+    if (const GstFlowReturn flow = wait_for_head(trans, self, in, time); flow != GST_FLOW_OK) return flow;
+  state.times.add(trans->segment, state.view.picture(), in);
   const control::Pose pose = self.feed.at(time);
-  const auto place = state.geometry.at(pose.pan.position, pose.tilt.position);
+  const auto place = state.view.geometry().at(pose.pan.position, pose.tilt.position);
   GST_LOG_OBJECT(trans, "%" GST_TIME_FORMAT ": pan %.3f tilt %.3f, window at %.2f %.2f%s",
-                 GST_TIME_ARGS(static_cast<GstClockTime>(time.count())), degrees(place.pan),
-                 degrees(place.tilt), place.left, place.top, place.limited ? ", at the edge" : "");
+                 GST_TIME_ARGS(clock_time(time)), degrees(place.pan), degrees(place.tilt), place.left,
+                 place.top, place.limited ? ", at the edge" : "");
   attach_pose(state, pose, place, out);
   attach_base(in, out);
+  if (state.view.draw(in, place, state.settings.inset, out)) return GST_FLOW_OK;
 
-  VideoFrame source(state.in, in, GST_MAP_READ), target(state.out, out, GST_MAP_WRITE);
-  if (source && target) {
-    draw(state, *source.get(), *target.get(), place);
-    if (state.settings.inset) state.inset.attach(source.get(), state.geometry, place, out);
-    return GST_FLOW_OK;
-  }
   // The picture is not there: whoever follows is told by the flag.
   const bool told = GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_CORRUPTED) || state.warned;
   gst_buffer_memset(out, 0, 0, gst_buffer_get_size(out));
   GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_CORRUPTED);
   if (!told) {
     state.warned = true;
-    GST_ELEMENT_WARNING(
-        trans, STREAM, DECODE, ("A buffer does not hold the picture that its caps promise."),
-        ("%" G_GSIZE_FORMAT " bytes for %s", gst_buffer_get_size(in), size_text(state.in).c_str()));
+    GST_ELEMENT_WARNING(trans, STREAM, DECODE, ("A buffer does not hold the picture that its caps promise."),
+                        ("%" G_GSIZE_FORMAT " bytes, not %" G_GSIZE_FORMAT, gst_buffer_get_size(in),
+                         GST_VIDEO_INFO_SIZE(&state.view.picture())));
   }
   return GST_FLOW_OK;
 }
@@ -468,7 +322,7 @@ gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
     // Before the others hear of it: what they tell from now on is of the new time.
     self.feed.forget();
     self.feed.interrupt(false);
-    self.state.end.reset();
+    self.state.times.forget();
   }
   return cerberus_virtual_ptz_parent_class()->sink_event(trans, event);
 }
@@ -477,10 +331,10 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
   Private& self = *cerberus_virtual_ptz_self(element)->priv;
   switch (change) {
     case GST_STATE_CHANGE_READY_TO_PAUSED: {
-      const Settings s = self.settings.snapshot();
+      const WindowSettings s = self.settings.snapshot();
       self.settings.refresh();
       self.state.live.reset();
-      self.state.end.reset();
+      self.state.times.forget();
       self.state.complaint.clear();
       self.state.settings = s;
       control::Pose start;
@@ -504,7 +358,7 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec* spec) {
-  cerberus_virtual_ptz_self(object)->priv->settings.set(kProperties, id, value);
+  cerberus_virtual_ptz_self(object)->priv->settings.set(window_properties(), id, value);
   const std::string_view name = spec->name;
   if (name == "width" || name == "height") gst_base_transform_reconfigure_src(GST_BASE_TRANSFORM(object));
 }
@@ -523,20 +377,17 @@ void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
     case PROP_WINDOW_FOV:
       return g_value_set_double(value, self.window_fov);
     default:
-      self.settings.get(kProperties, id, value);
+      self.settings.get(window_properties(), id, value);
   }
 }
 
-void cerberus_virtual_ptz_init(CerberusVirtualPtz* self) {
-  gst_video_info_init(&self->priv->state.in);
-  gst_video_info_init(&self->priv->state.out);
-}
+void cerberus_virtual_ptz_init(CerberusVirtualPtz*) {}
 
 void cerberus_virtual_ptz_class_init(CerberusVirtualPtzClass* klass) {
   GObjectClass* object = G_OBJECT_CLASS(klass);
   object->set_property = set_property;
   object->get_property = get_property;
-  Adjustable<Settings>::install(object, kProperties);
+  Adjustable<WindowSettings>::install(object, window_properties());
   const auto readable = [&](guint id, const char* name, double low, double high, const char* blurb) {
     g_object_class_install_property(
         object, id,
