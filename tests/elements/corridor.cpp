@@ -8,17 +8,11 @@
 
 namespace {
 
+using scene::kElementCount;
+using scene::kElements;
 using scene::Line;
 using scene::Regions;
 using scene::World;
-
-const char* const kElements[] = {"cameramotion",  "threeframediff", "fuzzythreshold",
-                                 "motionregions", "motiontrack",    "motiondetect"};
-constexpr int kElementCount = G_N_ELEMENTS(kElements);
-
-const char* const kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
-                                "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
-                                "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
 
 struct Size {
   int width, height;

@@ -24,9 +24,6 @@ using cerberus::PlanePool;
 using cerberus::VideoFrame;
 using cerberus::vision::LumaSource;
 
-const char* const kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
-                                "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
-                                "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
 const int kSizes[][2] = {{32, 32}, {33, 35}, {1, 1}, {640, 3}};
 
 std::uint8_t sample(int x, int y, int channel) {

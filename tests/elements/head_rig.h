@@ -6,16 +6,18 @@
 #include <gst/check/gstcheck.h>
 #include <gst/check/gstharness.h>
 #include <gst/check/gsttestclock.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <vector>
 
+#include "../support/pipe.h"
 #include "support.h"
 
 namespace head_rig {
+
+using cerberus::tests::Pipe;
 
 inline constexpr GstClockTime kFrame = 40 * GST_MSECOND;
 inline constexpr int kWidth = 320, kHeight = 240;
@@ -68,26 +70,6 @@ inline Person somebody(guint id, double degrees_right) {
   const double middle = kWidth / 2.0 + focal * std::tan(degrees_right * std::numbers::pi / 180);
   return {.id = id, .x = middle - 10, .y = kHeight / 2 - 30, .width = 20, .height = 60};
 }
-
-struct Pipe {
-  int ends[2];
-  Pipe() { fail_unless(::pipe(ends) == 0); }
-  ~Pipe() {
-    close_writer();
-    ::close(ends[0]);
-  }
-  std::string reader() const { return std::to_string(ends[0]); }
-  std::string writer() const { return std::to_string(ends[1]); }
-  void close_writer() {
-    if (ends[1] >= 0) ::close(ends[1]);
-    ends[1] = -1;
-  }
-  std::string line() const {
-    std::string text;
-    for (char c = 0; ::read(ends[0], &c, 1) == 1 && c != '\n';) text += c;
-    return text;
-  }
-};
 
 struct Message {
   std::string state, reason;
@@ -169,7 +151,7 @@ class Rig {
     g_signal_emit_by_name(element, "follow", id, &done);
     return done;
   }
-  // What the warnings since the last call say, one a line.
+  // What the warnings since the last call say, one a line. Like messages(), it throws away what it does not look for.
   std::string warnings() {
     std::string all;
     while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {

@@ -17,10 +17,6 @@
 
 namespace outputs {
 
-inline const std::vector<const char*> kFormats = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
-                                                  "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
-                                                  "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
-
 inline std::string caps_string(const std::string& format, int width, int height, const char* more = "") {
   return "video/x-raw,format=" + format + ",width=" + std::to_string(width) +
          ",height=" + std::to_string(height) + ",framerate=25/1" + more;

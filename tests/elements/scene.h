@@ -19,6 +19,11 @@
 
 namespace scene {
 
+// The corridor, and the bin of all of it.
+inline constexpr const char* kElements[] = {"cameramotion",  "threeframediff", "fuzzythreshold",
+                                            "motionregions", "motiontrack",    "motiondetect"};
+inline constexpr int kElementCount = G_N_ELEMENTS(kElements);
+
 constexpr int kWidth = 320, kHeight = 240;
 constexpr int kFigureWidth = 28, kFigureHeight = 72;
 constexpr GstClockTime kStep = GST_SECOND / 25;

@@ -4,6 +4,11 @@
 
 #include <gst/check/gstcheck.h>
 
+// Every format that our elements take.
+inline constexpr const char* kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
+                                           "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
+                                           "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
+
 // gst-check watches the log of GStreamer and GLib only: a critical of our own library must fail a test as well, unless
 // EXPECT_CRITICAL expects it. Call it at the start of a suite.
 inline void watch_library_log() {
