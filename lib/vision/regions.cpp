@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <vector>
 
@@ -16,9 +17,11 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr double kLeastShare = 4e-4;     // of the picture: smaller blobs are noise (31 pixels of 320x240)
-constexpr double kTallest = 2.2;         // heights of a person: what is taller is something else
-constexpr double kSkirt = 0.3;           // columns lower than this share of the highest are a shadow
+constexpr double kLeastShare = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
+constexpr double kTallest = 2.2;      // heights of a person: what is taller is something else
+constexpr double kSkirt = 0.3;        // columns lower than this share of the highest are a shadow
+constexpr int kYoung = 60;  // frames of a scene in which nobody knows yet what stood there when it began
+constexpr double kRim = 2;  // pixels at 320 columns by which a box goes beyond what moves in them
 constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
 
@@ -65,6 +68,7 @@ struct RegionFinder::State {
   std::vector<Window> bodies;  // of each component: its box without the shadow it casts
   std::vector<int> columns;    // scratch: moving pixels of a component in each of its columns
   std::vector<Region> regions;
+  int seen = 0;  // frames of this scene
 
   std::uint32_t least() const {
     return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
@@ -76,7 +80,6 @@ struct RegionFinder::State {
   void group_components();
   void explain(int group);
   void add_plain(std::size_t component, bool person = false);
-  void add_person(const Person& person, const Window& window, int label);
   Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
 };
 
@@ -175,10 +178,19 @@ void RegionFinder::State::group_components() {
 
 void RegionFinder::State::add_plain(std::size_t i, bool person) {
   const Component& c = labeller.components()[i];
-  const Box box = box_of(bodies[i]);
   if (regions.size() == regions.capacity()) return;
+  Box box = box_of(bodies[i]);
+  const double filled = c.area / box.area();
+  // What somebody leaves who stood there when the scene began differs from the memory as he does: the edge that moves has
+  // him on one side and the place he left on the other, and nobody can tell which is which yet. The box takes in both.
+  if (options.people && !person && seen <= kYoung) {
+    const double rim = std::max(1.0, std::round(kRim * size.width / 320));
+    const double left = std::max(box.x - rim, 0.0), top = std::max(box.y - rim, 0.0);
+    box = {left, top, std::min(box.right() + rim, static_cast<double>(size.width)) - left,
+           std::min(box.bottom() + rim, static_cast<double>(size.height)) - top};
+  }
   regions.push_back({box, static_cast<double>(c.area),
-                     std::min(1.0, person ? 0.5 + 0.5 * c.area / box.area() : 0.45 * c.area / box.area()),
+                     person ? std::min(1.0, 0.5 + 0.5 * filled) : std::min(1.0, 0.45 * filled),
                      static_cast<int>(i) + 1});
 }
 
@@ -263,6 +275,7 @@ void RegionFinder::reset() {
   state_->prior.reset();
   state_->walkers.clear();
   state_->regions.clear();
+  state_->seen = 0;
 }
 
 std::size_t RegionFinder::bytes() const {
@@ -280,6 +293,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
     s.make_room(mask.size());
     reset();
   }
+  ++s.seen;
   s.prior.advance(motion, s.size);
   pack(mask, s.moving.view());
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());

@@ -23,12 +23,14 @@ double intersection_over_union(const Box& a, const Box& b);
 
 struct RegionOptions {
   int closing = 9;          // side of the closing, analysis pixels at 320 wide; scaled with the picture
-  bool people = true;       // merge and split by the learnt height of a person; off: plain components
+  bool people = true;       // merge and split by the learnt height of a person; off: plain components, to the pixel
   double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
 };
 
 struct Region {
-  Box box;          // analysis pixels
+  // Analysis pixels. In the first 60 frames of a scene what nobody knows as a person is given two more (of 320) on every
+  // side: the edge that moves is between the object and the place it leaves.
+  Box box;
   double area = 0;  // moving pixels inside
   // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below: moving
   // pixels that hang together and may be a piece of an object or several objects.

@@ -58,6 +58,14 @@ void let_people_walk_by(RegionFinder& finder) {
   }
 }
 
+// A finder past the first frames of a scene, in which nothing has been seen yet.
+RegionFinder settled() {
+  RegionFinder finder;
+  Picture picture;
+  for (int k = 0; k < 60; ++k) picture.find(finder);
+  return finder;
+}
+
 int matched(std::span<const Region> regions, const std::vector<Box>& expected, double least) {
   int n = 0;
   for (const Box& e : expected)
@@ -87,7 +95,7 @@ START_TEST(nothing_moving_gives_no_region_and_an_empty_label_picture) {
 END_TEST
 
 START_TEST(before_anything_is_known_components_are_regions_with_box_area_and_label) {
-  RegionFinder finder;
+  RegionFinder finder = settled();
   Picture picture;
   picture.fill(20, 30, 40, 60);
   picture.fill(200, 100, 260, 130);
@@ -105,6 +113,36 @@ START_TEST(before_anything_is_known_components_are_regions_with_box_area_and_lab
 }
 END_TEST
 
+START_TEST(in_the_first_frames_of_a_scene_a_box_takes_in_both_sides_of_its_edge) {
+  const auto assert_box = [](RegionFinder& finder, double rim) {
+    Picture picture;
+    picture.fill(20, 30, 40, 60);
+    picture.fill(310, 0, 320, 30);  // in a corner: nothing beyond the picture
+    const auto regions = picture.find(finder);
+    ck_assert_uint_eq(regions.size(), 2);
+    const Box &corner = regions[0].box, &box = regions[1].box;
+    ck_assert_double_eq(box.x, 20 - rim);
+    ck_assert_double_eq(box.y, 30 - rim);
+    ck_assert_double_eq(box.right(), 40 + rim);
+    ck_assert_double_eq(box.bottom(), 60 + rim);
+    ck_assert_double_eq(corner.x, 310 - rim);
+    ck_assert_double_eq(corner.y, 0);
+    ck_assert_double_eq(corner.right(), 320);
+    ck_assert_double_eq(corner.bottom(), 30 + rim);
+    ck_assert_double_eq(regions[1].area, 600);
+    ck_assert_int_eq(picture.count(), 900);  // the mask is what moves, no more
+  };
+  RegionFinder finder;
+  for (int k = 0; k < 60; ++k) assert_box(finder, 2);
+  assert_box(finder, 0);
+  finder.reset();
+  assert_box(finder, 2);
+  RegionFinder plain;
+  plain.set_options({.people = false});
+  assert_box(plain, 0);
+}
+END_TEST
+
 START_TEST(the_mask_comes_back_closed_and_without_specks) {
   RegionFinder finder;
   Picture picture;
@@ -119,7 +157,7 @@ START_TEST(the_mask_comes_back_closed_and_without_specks) {
 END_TEST
 
 START_TEST(a_low_shadow_on_the_floor_is_not_part_of_the_box) {
-  RegionFinder finder;
+  RegionFinder finder = settled();
   Picture picture;
   picture.fill(100, 60, 115, 110);
   picture.fill(70, 105, 100, 110);
@@ -306,6 +344,7 @@ int main() {
       "regions",
       {overlap_of_boxes_as_computed_by_hand, nothing_moving_gives_no_region_and_an_empty_label_picture,
        before_anything_is_known_components_are_regions_with_box_area_and_label,
+       in_the_first_frames_of_a_scene_a_box_takes_in_both_sides_of_its_edge,
        the_mask_comes_back_closed_and_without_specks, a_low_shadow_on_the_floor_is_not_part_of_the_box,
        two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
        head_and_legs_without_a_trunk_are_one_person_once_people_are_known,
