@@ -85,15 +85,21 @@ bool SensorArray::look(Time time, SensorReading& reading) {
   return reading.changed;
 }
 
-bool SensorArray::fail(SensorError error) {
-  if (!error) return false;
+// Of sensors that cannot be read nothing is known: whoever looked where one fired must not do so for ever.
+SensorArray::Step SensorArray::fail(SensorError error, Time now, SensorReading& reading) {
   error_ = std::move(error);
-  return true;
+  if (!begun_) return Step::failed;
+  reading = {};
+  reading.time = std::max(now, last_.time);
+  reading.presence.fill(sensing::Presence::invalid);
+  reading.volts.fill(std::numeric_limits<float>::quiet_NaN());
+  reading.changed = true;
+  return Step::reading;
 }
 
 SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
   if (!sensor_ || error_) return Step::failed;
-  if (fail(sensor_->read(now, edges_))) return Step::failed;
+  if (SensorError error = sensor_->read(now, edges_)) return fail(std::move(error), now, reading);
   if (!begun_) {
     let_pass(now);  // what was before is nobody's business
     beat_ = now;
@@ -110,9 +116,9 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
     begun_ = true;
     last_ = reading;
     for (std::size_t i = 0; i < models_.size(); ++i) faults_[i] = models_[i].fault();
-    if (reading.changed && fail(sensor_->show(std::span(reading.presence).first(models_.size()))))
-      return Step::failed;
-    return Step::reading;
+    if (!reading.changed) return Step::reading;
+    SensorError error = sensor_->show(std::span(reading.presence).first(models_.size()));
+    return error ? fail(std::move(error), now, reading) : Step::reading;
   }
 }
 

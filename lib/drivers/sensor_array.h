@@ -27,7 +27,7 @@ class SensorArray {
     reading,  // here is one
     wait,     // nothing more until `now`: come again at due(), or when the driver's fd has something
     ended,    // of a recording
-    failed,   // see error(); final
+    failed,   // see error(); final. The reading before it is invalid: nothing is known of the sensors any more
   };
 
   // Takes the sensors and opens them. heartbeat > 0.
@@ -56,7 +56,7 @@ class SensorArray {
   Time deadline() const;
   void let_pass(Time until);
   bool look(Time time, SensorReading& reading);
-  bool fail(SensorError error);
+  Step fail(SensorError error, Time now, SensorReading& reading);
 
   std::unique_ptr<Sensor> sensor_;
   std::vector<sensing::PirModel> models_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "settings.hpp"
 
+#include "control/head_limits.h"
+
 #include "sensing/angles.h"
 
 namespace cerberus::plugin {
@@ -74,9 +76,11 @@ const Property<Settings> kTable[] = {
 const std::span<const Property<Settings>> kProperties = kTable;
 
 std::string limits_fault(const Settings& settings) {
-  if (settings.pan_minimum <= settings.pan_maximum) return {};
-  return "pan-min (" + std::to_string(settings.pan_minimum) + ") is above pan-max (" +
-         std::to_string(settings.pan_maximum) + ").";
+  control::Limits limits;
+  limits.pan.from = sensing::radians(settings.pan_minimum);
+  limits.pan.to = sensing::radians(settings.pan_maximum);
+  const std::string fault = control::check(limits);
+  return fault.empty() ? fault : "No head has such limits: " + fault + ".";
 }
 
 fusion::FuserOptions fuser_options(const Settings& s, bool own_table) {

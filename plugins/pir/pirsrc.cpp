@@ -21,7 +21,8 @@
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
  * knows modules. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
  * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, as an upstream event
- * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message.
+ * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last reading
+ * is invalid for all sensors; then comes the error.
  *
  * ## Examples
  * |[

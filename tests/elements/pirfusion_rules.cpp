@@ -146,7 +146,9 @@ GST_START_TEST(rules_that_cannot_be_used_are_refused_and_the_case_is_named) {
       fail_unless(text.find(word) != std::string::npos, "\"%s\" is not in: %s", word, text.c_str());
   }
   fail_unless(refusal("rules-file=/nowhere/rules.toml").find("/nowhere/rules.toml") != std::string::npos);
-  fail_unless(refusal("pan-min=20 pan-max=10").find("pan-min (20") != std::string::npos);
+  fail_unless(refusal("pan-min=20 pan-max=10").find("pan-min 20 and pan-max 10") != std::string::npos);
+  fail_unless(refusal("pan-min=20").find("pan-min 20 and pan-max 170 exclude 0") != std::string::npos);
+  fail_unless(refusal("pan-max=-1").find("pan-min -170 and pan-max -1 exclude 0") != std::string::npos);
   std::string gone;
   {
     const RuleFile temporary(whole);

@@ -8,8 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "fusion_rig.h"
+
 #include "../support/pir_source.h"
-#include "support.h"
 
 namespace {
 
@@ -236,10 +237,29 @@ GST_START_TEST(a_driver_that_fails_ends_the_stream_with_its_words) {
   Source source("script=\"0,0,0,0; 0.15 fail the cable broke\"");
   source.play();
   fail_unless(says(source.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ), "the cable broke"));
-  fail_unless_equals_uint64(source.pull().pts, 0);
+  for (const auto& [time, readings] : {std::pair{0, "000"}, {100, "000"}, {150, "222"}}) {
+    const Buffer buffer = source.pull();
+    fail_unless_equals_uint64(buffer.pts, time * GST_MSECOND);
+    ck_assert_str_eq(buffer.readings.c_str(), readings);  // nothing is known of a sensor that cannot be read
+  }
   Source leds("script=\"0,0,0,0; show fail no light\"");
   leds.play();
   fail_unless(says(leds.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ), "no light"));
+}
+GST_END_TEST
+
+// The head must not look for somebody whom nobody sees any more.
+GST_START_TEST(whom_failing_sensors_saw_last_does_not_stand) {
+  Source source("heartbeat=1000000000 script=\"0,0,0,0; 0.5,0,1,0; 1.5 fail the cable broke\"");
+  source.play();
+  source.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ);
+  rig::Rig fusion(false);
+  GstHarness* pir = fusion.add_pir(rig::kPaper, "pir_%u", false);
+  for (int i = 0; i < 4; ++i) fail_unless_equals_int(gst_harness_push(pir, source.take()), GST_FLOW_OK);
+  gst_harness_push_event(pir, gst_event_new_eos());
+  rig::assert_says(rig::text(rig::sensors(fusion.at(1499 * rig::kMs))), "010");
+  rig::assert_says(rig::text(rig::sensors(fusion.at(1500 * rig::kMs))), "222");
+  rig::assert_says(rig::text(rig::sensors(fusion.at(60 * GST_SECOND))), "222");
 }
 GST_END_TEST
 
@@ -330,6 +350,7 @@ Suite* pirsrc_suite() {
   tcase_add_test(tests, a_wrong_setting_is_an_error_that_names_it);
   tcase_add_test(tests, a_bad_recording_is_named_with_its_line);
   tcase_add_test(tests, a_driver_that_fails_ends_the_stream_with_its_words);
+  tcase_add_test(tests, whom_failing_sensors_saw_last_does_not_stand);
   tcase_add_test(tests, live_it_keeps_the_clocks_time);
   tcase_add_test(tests, stopping_takes_no_time_while_it_waits);
   tcase_add_test(tests, while_the_base_turns_a_detection_is_doubtful);

@@ -242,7 +242,10 @@ GST_START_TEST(a_chip_that_is_unplugged_while_running_is_an_error_that_names_it)
   Source source("driver=gpio lines=0,1,2 leds-red=3,4,5 chip=" + chip.path());  // the usual heartbeat
   source.play();
   source.expect({0, 0, 0});
+  chip.pull(1, true);
+  source.expect({0, 1, 0});
   chip.unplug();
+  source.expect({2, 2, 2});  // whom it saw last is not searched for ever
   fail_unless(says(source.words(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ),
                    "GPIO chip " + chip.path()));
 }

@@ -158,6 +158,7 @@ GST_START_TEST(a_converter_that_is_unplugged_while_running_is_an_error_that_name
   source.play();
   source.expect({0});
   converter.unplug();
+  source.expect({2});
   const std::string why = source.words(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ);
   fail_unless(says(why, "voltage0 of iio:device0"));
 }

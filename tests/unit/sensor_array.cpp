@@ -97,11 +97,11 @@ END_TEST
 
 START_TEST(a_driver_that_fails_ends_it_with_its_own_words) {
   SensorArray array;
-  must_be(play(array, "0,0,0,0; 1 fail the dog ate the cable", {}), {{0ms, "000", true}});
+  must_be(play(array, "0,0,0,0; 1 fail the dog ate the cable", {}), {{0ms, "000", true}, {1s, "222", true}});
   ck_assert(says(array.error().text, "the dog ate the cable"));
   SensorReading reading;
   ck_assert(array.next(2s, reading) == SensorArray::Step::failed);  // and stays so
-  must_be(play(array, "0,0,0,0; show fail no LED", {}), {});
+  must_be(play(array, "0,0,0,0; show fail no LED", {}), {{0ms, "222", true}});
   ck_assert(says(array.error().text, "no LED"));
 }
 END_TEST
