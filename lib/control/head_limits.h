@@ -25,11 +25,13 @@ struct AxisLimits {
   bool holds(double position) const { return position >= from && position <= to; }
   // The nearest position between the stops; NaN becomes 0.
   double clamp(double position) const;
+  bool operator==(const AxisLimits&) const = default;
 };
 
 struct Limits {
   AxisLimits pan{sensing::radians(-170), sensing::radians(170)};
   AxisLimits tilt{sensing::radians(-45), sensing::radians(45)};
+  bool operator==(const Limits&) const = default;
 };
 
 // No head turns further (ten turns of cable) or faster than this; who asks for more mistyped.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/head_runner.h"
 
+#include <algorithm>
 #include <condition_variable>
 #include <mutex>
 #include <utility>
@@ -10,6 +11,11 @@ namespace cerberus::drivers {
 namespace {
 
 constexpr std::size_t kMostPieces = 64;
+
+struct Limiting {
+  Time now{};
+  control::Limits limits;
+};
 
 struct Question {
   Time from{}, until{};
@@ -23,6 +29,7 @@ struct HeadRunner::Core {
   std::unique_ptr<Head> head;
   bool blocks = true;                // the head has a worker
   std::vector<control::Pose> found;  // as the head
+  std::optional<Limiting> owed;      // as the head: limits that it has refused so far
   std::shared_ptr<void> lease;
   std::mutex notify_lock;
   std::function<void()> notify;
@@ -31,17 +38,23 @@ struct HeadRunner::Core {
   std::condition_variable work, answer;
   struct Batch {
     std::optional<HeadSetup> open;
+    std::optional<Limiting> limiting;
     std::optional<HeadCommand> command;
     std::optional<Time> stop;
     std::optional<Question> question;
     bool quit = false;
-    bool any() const { return open || command || stop || question || quit; }
+    // Leads to another way of the head.
+    bool moves() const { return open || limiting || command || stop; }
+    bool any() const { return moves() || question || quit; }
   } todo;
   unsigned long asked = 0, answered = 0;  // tickets
   unsigned interrupts = 0;
   bool ended = false, obeys = true, speaks = true;
-  std::string failure, last_failure;  // not yet told; of the last batch
-  std::vector<control::Pose> poses;   // of the last question
+  std::string failure;           // not yet told
+  bool asking = false;           // somebody waits in ask()
+  bool failed = false;           // the last batch
+  bool question_failed = false;  // that of the last question, whose answer is in `poses`
+  std::vector<control::Pose> poses;
 
   void run();
   void serve(std::unique_lock<std::mutex>& guard);
@@ -54,7 +67,18 @@ std::string HeadRunner::Core::carry_out(const Batch& batch) {
     if (std::string wrong = head->open(*batch.open); !wrong.empty()) return wrong;
   if (batch.stop) head->stop(*batch.stop);
   std::string failed;
-  if (batch.command) {
+  if (batch.open) owed.reset();
+  if (batch.limiting) owed = batch.limiting;
+  if (owed && (batch.limiting || batch.command)) {
+    // The command may be older than the limits, and must not be stale for it.
+    const Time now = batch.command ? std::min(owed->now, batch.command->time) : owed->now;
+    failed = head->limit(now, owed->limits);
+    if (failed.empty())
+      owed.reset();
+    else
+      head->stop(now);
+  }
+  if (batch.command && failed.empty()) {
     failed = head->command(*batch.command);
     if (!failed.empty()) head->stop(batch.command->time);
   }
@@ -77,23 +101,26 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   const unsigned long ticket = asked;
   if (blocks) guard.unlock();
   found.clear();
-  const std::string failed = carry_out(batch);
+  const std::string wrong = carry_out(batch);
   if (batch.quit) head->close();
   if (blocks) guard.lock();
-  last_failure = failed;
-  if (!failed.empty()) failure = failed;
-  if (batch.open || batch.command)
-    obeys = failed.empty();
+  failed = !wrong.empty();
+  if (failed) failure = wrong;
+  if (batch.open || batch.limiting || batch.command)
+    obeys = !failed;
   else if (batch.question)
-    speaks = failed.empty();
-  if (batch.question) poses.assign(found.begin(), found.end());
+    speaks = !failed;
+  if (batch.question) {
+    poses.assign(found.begin(), found.end());
+    question_failed = failed;
+  }
   answered = ticket;
   if (batch.quit) {
     ended = true;
     lease.reset();
   }
   answer.notify_all();
-  if (batch.quit || (!batch.open && !batch.command && !batch.stop)) return;
+  if (batch.quit || !batch.moves()) return;
   if (blocks) guard.unlock();
   {
     const std::lock_guard quiet(notify_lock);
@@ -154,7 +181,7 @@ HeadRunner::Answer HeadRunner::wait(std::unique_lock<std::mutex>& guard, unsigne
   const auto over = [&] { return core_->answered >= ticket || (interruptible && core_->interrupts > 0); };
   if (!core_->answer.wait_for(guard, patience, over)) return Answer::late;
   if (core_->answered < ticket) return Answer::interrupted;
-  return core_->last_failure.empty() ? Answer::done : Answer::failed;
+  return core_->failed ? Answer::failed : Answer::done;
 }
 
 HeadRunner::Answer HeadRunner::open(const HeadSetup& setup, Patience patience) {
@@ -177,19 +204,33 @@ void HeadRunner::command(const HeadCommand& command) {
   core_->hand_over(guard);
 }
 
+void HeadRunner::limit(Time now, const control::Limits& limits) {
+  std::unique_lock guard(core_->lock);
+  core_->todo.limiting = Limiting{now, limits};
+  core_->hand_over(guard);
+}
+
 HeadRunner::Answer HeadRunner::ask(const std::optional<HeadCommand>& command, Time from, Time until,
                                    std::vector<control::Pose>& poses, Patience patience) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   std::unique_lock guard(core_->lock);
+  // One at a time, or the answer would be another's.
+  const auto turn = [this] { return !core_->asking || core_->interrupts > 0; };
+  if (!core_->answer.wait_until(guard, deadline, turn)) return Answer::late;
   if (core_->blocks && core_->interrupts > 0) return Answer::interrupted;
+  core_->asking = true;
   if (command) {
     core_->todo.stop.reset();
     core_->todo.command = command;
   }
   core_->todo.question = Question{from, until};
-  const Answer answer = wait(guard, core_->hand_over(guard), patience, true);
+  const Answer answer =
+      wait(guard, core_->hand_over(guard), deadline - std::chrono::steady_clock::now(), true);
+  core_->asking = false;
+  core_->answer.notify_all();
   if (answer != Answer::done && answer != Answer::failed) return answer;
   poses.assign(core_->poses.begin(), core_->poses.end());
-  return answer;
+  return core_->question_failed ? Answer::failed : Answer::done;
 }
 
 void HeadRunner::interrupt(bool on) {

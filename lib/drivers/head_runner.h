@@ -40,8 +40,11 @@ class HeadRunner {
   Answer stop(Time now, Patience patience);
   // Hands over and returns.
   void command(const HeadCommand& command);
+  // As command(). A command that waits is carried out within the new limits, and none without them: a head that refuses them
+  // is stopped, and asked again before each command.
+  void limit(Time now, const control::Limits& limits);
   // Carries out `command`, if there is one, then asks for the pieces of the way from `from` until `until` (one piece at
-  // least, 64 at most).
+  // least, 64 at most). Two who ask at once are answered one after the other.
   Answer ask(const std::optional<HeadCommand>& command, Time from, Time until,
              std::vector<control::Pose>& poses, Patience patience);
 

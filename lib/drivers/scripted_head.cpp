@@ -16,7 +16,7 @@ namespace {
 
 using control::AxisCommand;
 
-constexpr std::array<std::string_view, 5> kNames{"open", "command", "state", "stop", "close"};
+constexpr std::array<std::string_view, 6> kNames{"open", "command", "state", "stop", "close", "limit"};
 
 // Cuts the next word off `text`.
 std::string_view word(std::string_view& text) {
@@ -107,15 +107,11 @@ std::string ScriptedHead::parse(std::string_view script) {
   return {};
 }
 
-std::string ScriptedHead::play(Call call, Time time, const HeadCommand* command) {
+std::string ScriptedHead::play(Call call, Time time, const std::string& details) {
   const unsigned count = ++calls_[call];
   if (record_fd_ >= 0 && call != kState) {
     std::string line(kNames[call]);
-    line.append(" ").append(std::to_string(time.count()));
-    if (command) {
-      append(line, command->pan);
-      append(line, command->tilt);
-    }
+    line.append(" ").append(std::to_string(time.count())).append(details);
     write_all(record_fd_, line.append("\n"));
   }
   for (const Part& part : parts_) {
@@ -134,9 +130,10 @@ std::string ScriptedHead::open(const HeadSetup& setup) {
     return "the scripted head would start beyond its limits";
   if (std::string wrong = parse(setup.script); !wrong.empty()) return wrong;
   calls_ = {};
-  if (std::string failure = play(kOpen, {}, nullptr); !failure.empty()) return failure;
+  if (std::string failure = play(kOpen, {}); !failure.empty()) return failure;
   setup_ = setup;
   told_ = {};
+  last_ = {};
   pan_ = setup.pan;
   tilt_ = setup.tilt;
   open_ = true;
@@ -145,29 +142,50 @@ std::string ScriptedHead::open(const HeadSetup& setup) {
 
 void ScriptedHead::close() noexcept {
   if (!open_) return;
-  play(kClose, told_, nullptr);
+  play(kClose, told_);
   open_ = false;
 }
 
 void ScriptedHead::stop(Time now) noexcept {
   if (!open_) return;
   told_ = std::max(told_, now);
-  play(kStop, told_, nullptr);
+  play(kStop, told_);
+  last_ = {};
+}
+
+void ScriptedHead::obey() {
+  pan_ = setup_.limits.pan.clamp(follow(pan_, last_.pan, setup_.limits.pan));
+  tilt_ = setup_.limits.tilt.clamp(follow(tilt_, last_.tilt, setup_.limits.tilt));
 }
 
 std::string ScriptedHead::command(const HeadCommand& command) {
   if (!open_) return "the scripted head is not open";
   if (command.time < told_) return "a stale command: it was given before the last one";
-  if (std::string failure = play(kCommand, command.time, &command); !failure.empty()) return failure;
+  std::string details;
+  append(details, command.pan);
+  append(details, command.tilt);
+  if (std::string failure = play(kCommand, command.time, details); !failure.empty()) return failure;
   told_ = command.time;
-  pan_ = follow(pan_, command.pan, setup_.limits.pan);
-  tilt_ = follow(tilt_, command.tilt, setup_.limits.tilt);
+  last_ = command;
+  obey();
+  return {};
+}
+
+std::string ScriptedHead::limit(Time now, const control::Limits& limits) {
+  if (!open_) return "the scripted head is not open";
+  told_ = std::max(told_, now);
+  std::string details;
+  for (const double stop : {limits.pan.from, limits.pan.to, limits.tilt.from, limits.tilt.to})
+    append(details, stop);
+  if (std::string failure = play(kLimit, told_, details); !failure.empty()) return failure;
+  setup_.limits = limits;
+  obey();
   return {};
 }
 
 std::string ScriptedHead::state(Time time, control::Pose& pose) {
   if (!open_) return "the scripted head is not open";
-  if (std::string failure = play(kState, time, nullptr); !failure.empty()) return failure;
+  if (std::string failure = play(kState, time); !failure.empty()) return failure;
   pose = {};
   pose.from = time;
   pose.pan.position = pan_;

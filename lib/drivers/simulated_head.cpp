@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace cerberus::drivers {
 
@@ -32,6 +33,11 @@ double uniform(std::uint64_t x) {
 // The camera after the motor went monotonously to `motor`.
 double dragged(double camera, double motor, double play) {
   return std::clamp(camera, motor - play, motor + play);
+}
+
+// What the head says of its position: nothing that lies beyond a stop, unless it is there (the stops were moved).
+double noisy(double position, double noise, const AxisLimits& limits) {
+  return std::clamp(position + noise, std::min(limits.from, position), std::max(limits.to, position));
 }
 
 // When the motor of a piece at `state` first stands at `position`, seconds from now; infinite: not in this piece.
@@ -100,6 +106,21 @@ std::string SimulatedHead::obey(const HeadCommand& command) {
   told_ = command.time;
   const Chapter& last = nth_last(0);
   if (command.pan == last.command.pan && command.tilt == last.command.tilt) return {};  // it is doing so
+  return begin(command);
+}
+
+std::string SimulatedHead::limit(Time now, const control::Limits& limits) {
+  if (count_ == 0) return "the simulated head is not open";
+  HeadCommand again = nth_last(0).command;
+  again.time = told_ = std::max(told_, now);
+  const control::Limits before = std::exchange(setup_.limits, limits);
+  std::string wrong = begin(again);
+  if (!wrong.empty()) setup_.limits = before;
+  return wrong;
+}
+
+// A new way from where the head will be when the command reaches it.
+std::string SimulatedHead::begin(const HeadCommand& command) {
   const Time from = command.time + setup_.latency;
   if (count_ == kKept && nth_last(kKept - 2).from > command.time)
     return "too many commands on their way to the simulated head";
@@ -158,8 +179,8 @@ std::string SimulatedHead::state(Time time, control::Pose& pose) {
   pose.settled = pose.until == kNever && !pose.moving();
   pose.measured = setup_.noise > 0;
   if (pose.measured) {
-    pose.pan.position = setup_.limits.pan.clamp(pose.pan.position + noise(time, 0));
-    pose.tilt.position = setup_.limits.tilt.clamp(pose.tilt.position + noise(time, 1));
+    pose.pan.position = noisy(pose.pan.position, noise(time, 0), setup_.limits.pan);
+    pose.tilt.position = noisy(pose.tilt.position, noise(time, 1), setup_.limits.tilt);
   }
   return {};
 }

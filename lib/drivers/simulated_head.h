@@ -18,6 +18,7 @@ class SimulatedHead final : public Head {
   void close() noexcept override;
   void stop(Time now) noexcept override;
   std::string command(const HeadCommand& command) override;
+  std::string limit(Time now, const control::Limits& limits) override;
   std::string state(Time time, control::Pose& pose) override;
   bool simulated() const override { return true; }
   bool blocks() const override { return false; }
@@ -39,6 +40,7 @@ class SimulatedHead final : public Head {
   Chapter& nth_last(unsigned n) { return chapters_[(next_ + kKept - 1 - n) % kKept]; }
   const Chapter& chapter_at(Time time, Time& end) const;
   std::string obey(const HeadCommand& command);
+  std::string begin(const HeadCommand& command);
   Leg follow(const Leg& leg, Time from, const control::AxisCommand& command,
              const control::AxisLimits& limits) const;
   control::AxisState camera(const Leg& leg, Time time, Time& until) const;

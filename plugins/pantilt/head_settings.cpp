@@ -12,59 +12,56 @@ namespace {
 constexpr double kMostDegrees = 3600;
 
 const Property<HeadSettings> kProperties[] = {
-    property("driver", &HeadSettings::driver,
-             "What drives the head: simulated or scripted (read when the element starts)"),
-    property("head", &HeadSettings::head,
-             "Name of the head, in pose events and messages; one sink a name (read when the element starts)"),
+    property("driver", &HeadSettings::driver, "What drives the head: simulated or scripted").read_at_start(),
+    property("head", &HeadSettings::head, "Name of the head, in pose events and messages; one sink a name")
+        .read_at_start(),
     property("script", &HeadSettings::script,
              "What the scripted driver does, for tests: parts like 'record 7; command 3 fail no power; stop "
-             "wait 8' "
-             "with file descriptors (read when the element starts)"),
-    property(
-        "horizontal-fov", &HeadSettings::horizontal_fov, 0, 179,
-        "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing can be "
-        "tracked"),
+             "wait 8' with file descriptors")
+        .read_at_start(),
+    property("horizontal-fov", &HeadSettings::horizontal_fov, 0, 179,
+             "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing "
+             "can be tracked"),
     property("pan-min", &HeadSettings::pan_min, -kMostDegrees, kMostDegrees,
-             "How far the head turns to the left, degrees, at most 0 (read when the element starts)"),
+             "How far the head turns to the left, degrees, at most 0"),
     property("pan-max", &HeadSettings::pan_max, -kMostDegrees, kMostDegrees,
-             "How far the head turns to the right, degrees, at least 0 (read when the element starts)"),
+             "How far the head turns to the right, degrees, at least 0"),
     property("tilt-min", &HeadSettings::tilt_min, -kMostDegrees, kMostDegrees,
-             "How far the head looks down, degrees, at most 0; as tilt-max 0: it does not tilt (read when "
-             "the element "
-             "starts)"),
+             "How far the head looks down, degrees, at most 0; as tilt-max 0: it does not tilt"),
     property("tilt-max", &HeadSettings::tilt_max, -kMostDegrees, kMostDegrees,
-             "How far the head looks up, degrees, at least 0 (read when the element starts)"),
+             "How far the head looks up, degrees, at least 0"),
     property("start-pan", &HeadSettings::start_pan, -kMostDegrees, kMostDegrees,
-             "Where a simulated head looks at the start, degrees, positive to the right"),
+             "Where a simulated head looks at the start, degrees, positive to the right")
+        .read_at_start(),
     property("start-tilt", &HeadSettings::start_tilt, -kMostDegrees, kMostDegrees,
-             "Where a simulated head looks at the start, degrees, positive up"),
+             "Where a simulated head looks at the start, degrees, positive up")
+        .read_at_start(),
     property("turn-speed", &HeadSettings::turn_speed, 0, kMostDegrees,
              "Degrees a second at which the head turns, searches and returns to zero; 0 = the default"),
-    property("max-speed", &HeadSettings::max_speed, 0, 1e9,
-             "Highest speed of the head in degrees a second (read when the element starts)"),
+    property("max-speed", &HeadSettings::max_speed, 0, 1e9, "Highest speed of the head in degrees a second"),
     property("max-acceleration", &HeadSettings::max_acceleration, 0, 1e9,
-             "Highest acceleration of the head in degrees a second squared (read when the element starts)"),
+             "Highest acceleration of the head in degrees a second squared"),
     property("gain", &HeadSettings::gain, 0, 100,
              "Speed with which a target is followed, in degrees a second for each degree that it is off the "
-             "middle; "
-             "higher follows closer and passes on more noise; 0 = the default"),
+             "middle; higher follows closer and passes on more noise; 0 = the default"),
     property("dead-band-start", &HeadSettings::dead_band_start, 0, 90,
              "A head at rest starts to follow when the target is this many degrees off the middle"),
     property("dead-band-stop", &HeadSettings::dead_band_stop, 0, 90,
              "A head that follows rests when the target is less than this many degrees off the middle"),
     property("latency", &HeadSettings::latency,
-             "Nanoseconds from a command until the head obeys, at most 5 s (read when the element starts)"),
+             "Nanoseconds from a command until the head obeys, at most 5 s")
+        .read_at_start(),
     property("step-size", &HeadSettings::step_size, 0, 90,
-             "A simulated head rests at multiples of this many degrees; 0 = anywhere (read when the element "
-             "starts)"),
+             "A simulated head rests at multiples of this many degrees; 0 = anywhere")
+        .read_at_start(),
     property("backlash", &HeadSettings::backlash, 0, 90,
-             "Play in degrees between a simulated head's motor and camera (read when the element starts)"),
+             "Play in degrees between a simulated head's motor and camera")
+        .read_at_start(),
     property("noise", &HeadSettings::noise, 0, 90,
-             "Standard deviation in degrees of what a simulated head says of its own position (read when the "
-             "element "
-             "starts)"),
-    property("seed", &HeadSettings::seed, 0, G_MAXINT,
-             "Seed of the noise: equal seeds give equal runs (read when the element starts)"),
+             "Standard deviation in degrees of what a simulated head says of its own position")
+        .read_at_start(),
+    property("seed", &HeadSettings::seed, 0, G_MAXINT, "Seed of the noise: equal seeds give equal runs")
+        .read_at_start(),
     property("target", &HeadSettings::target, pan_tilt_target_type,
              "Whom to follow when nobody is followed yet, without pirfusion upstream"),
     property("return-delay", &HeadSettings::return_delay,

@@ -14,7 +14,9 @@
  * A pixel becomes an angle through the lens (`horizontal-fov`), with the pose that the head had when the frame was taken:
  * the pose meta of the frame if it is this head's, else the element's own memory. The head follows proportionally (`gain`) and
  * rests within a dead band that has two thresholds. It never passes `pan-min`, `pan-max`, `tilt-min`, `tilt-max`, which must
- * include 0. Tilt holds unless a target is tracked or the head returns to zero.
+ * include 0. Tilt holds unless a target is tracked or the head returns to zero. Limits, `max-speed` and `max-acceleration`
+ * that change while it plays go to the head at once: who is beyond a new limit returns to it, in PAUSED when that ends. Limits
+ * that cannot be are a warning, and the old ones stay.
  *
  * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits for
  * the clock and asks nobody upstream to hurry.
@@ -90,6 +92,7 @@ struct State {  // streaming thread only
 struct Private {
   GstBaseSink* sink = nullptr;
   Adjustable<HeadSettings> settings;
+  std::mutex configuring;
   std::atomic<double> field_of_view = 0;
   const char* head = nullptr;  // interned, while started
   std::atomic<bool> clock_driven = false, playing = false;
@@ -106,16 +109,25 @@ void tell(const Private& self, const Outbox& out) {
   send(out, self.sink, self.head);
 }
 
-void configure(Private& self, const HeadSettings& s) {
-  self.field_of_view = s.horizontal_fov;
-  self.station.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
+// Passes on what the settings are now; any thread.
+void configure(Private& self) {
+  std::string wrong;
+  {
+    const std::lock_guard guard(self.configuring);
+    const HeadSettings s = self.settings.snapshot();
+    self.field_of_view = s.horizontal_fov;
+    self.station.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
+    wrong = self.station.set_limits(head_limits(s), clock_now(self.sink));
+  }
+  if (!wrong.empty())
+    GST_ELEMENT_WARNING(self.sink, LIBRARY, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
+                        ("head %s", self.head));
 }
 
 // Not GstBaseSink::start: that one adds an error message of its own.
 bool open(Private& self) {
   return guarded(self.sink, false, [&] {
     const HeadSettings s = self.settings.snapshot();
-    self.settings.refresh();
     auto runner = open_head(GST_ELEMENT(self.sink), s, [&self] { self.ticker.wake(); });
     if (!runner) return false;
     self.head = g_intern_string(s.head.c_str());
@@ -123,7 +135,7 @@ bool open(Private& self) {
     self.clock_driven = self.real = !runner->simulated();
     self.station.open(std::move(runner), head_setup(s));
     self.station.set_clock_driven(self.clock_driven);
-    configure(self, s);
+    configure(self);  // what has changed meanwhile, too
     return true;
   });
 }
@@ -241,7 +253,6 @@ GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockT
   // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
   while (!self.playing)
     if (const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink); flow != GST_FLOW_OK) return flow;
-  if (const auto changed = self.settings.changes()) configure(self, *changed);
   ask_whether_live(self);
   const GstVideoInfo& info = self.state.info;
   if (!GST_CLOCK_TIME_IS_VALID(duration) && info.fps_n > 0)
@@ -367,7 +378,9 @@ gboolean follow(CerberusPanTiltSink* sink, guint id) {
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  cerberus_pan_tilt_sink_self(object)->priv->settings.set(head_properties(), id, value);
+  Private& self = *cerberus_pan_tilt_sink_self(object)->priv;
+  self.settings.set(head_properties(), id, value);
+  guarded(self.sink, [&] { configure(self); });
 }
 
 void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {

@@ -47,6 +47,8 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
   const std::lock_guard guard(lock_);
   runner_ = std::move(runner);
   setup_ = setup;
+  asked_ = setup.limits;
+  limits_wait_ = false;
   law_.reset();
   pilot_.reset();
   pilot_.follow(0);
@@ -76,9 +78,22 @@ void Station::close(drivers::HeadRunner::Patience patience) {
 void Station::set_options(const control::LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog) {
   const std::lock_guard guard(lock_);
   law_.set_options(law);
+  confine_law();
   pilot_.set_options(fuser);
   timeout_ = watchdog;
   watchdog_.set_timeout(watchdog);
+}
+
+std::string Station::set_limits(const control::Limits& limits, std::optional<Time> at) {
+  const std::lock_guard guard(lock_);
+  if (!runner_ || limits == asked_) return {};
+  asked_ = limits;
+  if (std::string wrong = control::check(limits); !wrong.empty()) return wrong;
+  setup_.limits = limits;
+  confine_law();
+  limits_wait_ = halted_;
+  if (!halted_) runner_->limit(earliest(at), limits);
+  return {};
 }
 
 void Station::set_clock_driven(bool on) {
@@ -101,6 +116,18 @@ Station::Time Station::head_time(Time running) {
   if (running + epoch_ + kJitter < told_) epoch_ = told_ - running;
   told_ = std::max(told_, running + epoch_);
   return told_;
+}
+
+// When what is told now counts at the earliest, in the head's time: nothing that was told of its way becomes untrue.
+Station::Time Station::earliest(std::optional<Time> at) {
+  told_ = at && clock_driven_ ? head_time(*at) : std::max(told_, published_ - setup_.latency);
+  return told_;
+}
+
+void Station::confine_law() {
+  control::LawOptions options = law_.options();
+  options.limits = setup_.limits;
+  law_.set_options(options);
 }
 
 Pose Station::running(Pose pose) const {
@@ -277,8 +304,7 @@ void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunn
   std::unique_lock guard(lock_);
   const auto runner = runner_;
   if (!runner || std::exchange(halted_, true)) return;
-  const Time now = at && clock_driven_ ? head_time(*at) : std::max(told_, published_ - setup_.latency);
-  told_ = now;
+  const Time now = earliest(at);
   watchdog_.rest();
   law_.reset();
   guard.unlock();
@@ -296,6 +322,7 @@ void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunn
 void Station::resume(std::optional<Time> at) {
   const std::lock_guard guard(lock_);
   halted_ = false;
+  if (runner_ && std::exchange(limits_wait_, false)) runner_->limit(earliest(at), setup_.limits);
   if (runner_ && manual_ && clock_driven_ && at)
     runner_->command({head_time(*at), wanted_.pan, wanted_.tilt});
 }

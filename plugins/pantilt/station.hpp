@@ -31,6 +31,9 @@ class Station {
   // Gives the driver the rest of its patience, then leaves it to itself.
   void close(drivers::HeadRunner::Patience patience);
 
+  // While the head is there; at once, and in a halt when that ends. What is wrong with them, once; then they stay as they were.
+  std::string set_limits(const control::Limits& limits, std::optional<Time> now);
+  // The limits are not those of `law`.
   void set_options(const control::LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
   // clock_driven: the head moves while the clock runs, and tick() is called; otherwise its time is that of the frames.
   void set_clock_driven(bool on);
@@ -69,6 +72,8 @@ class Station {
 
  private:
   Time head_time(Time running);
+  Time earliest(std::optional<Time> now);
+  void confine_law();
   void remember(const std::vector<control::Pose>& poses);
   void publish(const std::vector<control::Pose>& poses, Time until, Outbox& out);
   void say(const char* state, std::string reason, Time head, Outbox& out);
@@ -83,6 +88,8 @@ class Station {
   mutable std::mutex lock_;
   std::shared_ptr<drivers::HeadRunner> runner_;
   drivers::HeadSetup setup_;
+  control::Limits asked_;     // by set_limits()
+  bool limits_wait_ = false;  // for the end of a halt
   control::Law law_;
   control::PoseHistory history_;  // of the head's time
   control::Watchdog watchdog_;

@@ -24,6 +24,13 @@ struct Property {
   double minimum, maximum;  // of numbers
   GType (*choices)();
   const char* blurb;
+  GParamFlags when = GParamFlags(0);  // GST_PARAM_MUTABLE_...; 0: as the whole table
+
+  constexpr Property read_at_start() const {
+    Property later = *this;
+    later.when = GParamFlags(GST_PARAM_MUTABLE_READY);
+    return later;
+  }
 };
 
 template <typename Settings, typename Member>
@@ -52,7 +59,8 @@ class Adjustable {
                       GParamFlags when = GParamFlags(GST_PARAM_MUTABLE_PLAYING)) {
     const Settings defaults;
     guint id = 0;
-    for (const auto& entry : table) g_object_class_install_property(klass, ++id, spec(entry, defaults, when));
+    for (const auto& entry : table)
+      g_object_class_install_property(klass, ++id, spec(entry, defaults, entry.when ? entry.when : when));
   }
 
   void set(Table table, guint id, const GValue* value) {

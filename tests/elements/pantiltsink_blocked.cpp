@@ -125,6 +125,45 @@ void meet(const std::string& script, GstStateChange when, What what) {
   fail_unless(down < kHang, "%s, then READY took %d ms", where.c_str(), static_cast<int>(down.count()));
 }
 
+// A frame that the base class lets through before the element itself is in PLAYING waits for the element, which has to wake it.
+class EarlyFrame {
+ public:
+  explicit EarlyFrame(Rig& rig) : rig_(rig) {
+    frame = this;
+    GstBaseSinkClass* sink = GST_BASE_SINK_GET_CLASS(rig.element);
+    GstElementClass* base = GST_ELEMENT_CLASS(g_type_class_peek_parent(sink));
+    change_state = std::exchange(base->change_state, on_change);
+    render = std::exchange(sink->render, on_render);
+  }
+  ~EarlyFrame() {
+    GstBaseSinkClass* sink = GST_BASE_SINK_GET_CLASS(rig_.element);
+    GST_ELEMENT_CLASS(g_type_class_peek_parent(sink))->change_state = change_state;
+    sink->render = render;
+  }
+  EarlyFrame(const EarlyFrame&) = delete;
+
+ private:
+  static inline EarlyFrame* frame;
+  static inline decltype(GstElementClass::change_state) change_state;
+  static inline decltype(GstBaseSinkClass::render) render;
+
+  static GstStateChangeReturn on_change(GstElement* element, GstStateChange change) {
+    const GstStateChangeReturn done = change_state(element, change);
+    if (change != GST_STATE_CHANGE_PAUSED_TO_PLAYING) return done;
+    frame->there_.get_future().wait();
+    GST_BASE_SINK_PREROLL_LOCK(element);  // the frame has given it up: it waits
+    GST_BASE_SINK_PREROLL_UNLOCK(element);
+    return done;
+  }
+  static GstFlowReturn on_render(GstBaseSink* sink, GstBuffer* buffer) {
+    frame->there_.set_value();
+    return render(sink, buffer);
+  }
+
+  Rig& rig_;
+  std::promise<void> there_;
+};
+
 }  // namespace
 
 GST_START_TEST(what_comes_in_the_middle_of_a_change_of_state_does_not_hold_it_up) {
@@ -137,6 +176,20 @@ GST_START_TEST(what_comes_in_the_middle_of_a_change_of_state_does_not_hold_it_up
         const bool later = what != What::segment && g_str_equal(call, "state");
         meet(std::string(call) + (later ? " 2" : "") + " wait " + gate.reader(), when, what);
       }
+}
+GST_END_TEST
+
+GST_START_TEST(a_frame_that_is_early_for_playing_goes_on_by_itself) {
+  Pipe record;
+  Rig rig(scripted("record " + record.writer()));
+  change(rig, GST_STATE_PAUSED);
+  fail_unless(record.line().starts_with("open"));
+  fail_unless(record.line().starts_with("stop"));  // of PAUSED
+  EarlyFrame early(rig);
+  std::thread pusher([&] { gst_harness_push(rig.harness, turning_right()); });
+  change(rig, GST_STATE_PLAYING);
+  fail_unless(record.line().starts_with("command"));
+  pusher.join();
 }
 GST_END_TEST
 
@@ -220,6 +273,7 @@ static Suite* pantiltsink_blocked_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, what_comes_in_the_middle_of_a_change_of_state_does_not_hold_it_up);
+  tcase_add_test(tests, a_frame_that_is_early_for_playing_goes_on_by_itself);
   tcase_add_test(tests, a_blocked_driver_delays_no_change_of_state);
   tcase_add_test(tests, a_frame_that_waits_for_the_driver_lets_go_of_a_flush_and_of_a_stop);
   tcase_add_test(tests, a_head_whose_driver_blocks_is_not_free_until_it_is_through);

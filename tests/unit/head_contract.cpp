@@ -102,6 +102,54 @@ START_TEST(no_command_leads_beyond_a_limit) {
 }
 END_TEST
 
+START_TEST(what_was_commanded_goes_on_within_other_limits) {
+  for (const AxisCommand& command : {AxisCommand{Kind::position, 2, 1}, AxisCommand{Kind::velocity, 1, 0}}) {
+    Opened head(_i);
+    head.command(0s, command, command);
+    Limits narrow;
+    narrow.pan.to = 0.5;
+    narrow.tilt.to = 0.25;
+    for (const Time later : {1s, 31s}) {  // on the way, or at the stop; and once more
+      ck_assert(head.head->limit(later, narrow).empty());
+      ck_assert_double_eq_tol(head.at(later + 29s).pan.position, 0.5, 1e-9);
+      ck_assert_double_eq_tol(head.at(later + 29s).tilt.position, 0.25, 1e-9);
+    }
+    ck_assert(head.head->limit(61s, {}).empty());
+    ck_assert_double_eq_tol(head.at(90s).pan.position, command.kind == Kind::position ? 2 : Limits{}.pan.to,
+                            1e-9);
+  }
+}
+END_TEST
+
+START_TEST(who_stands_beyond_a_new_limit_returns_to_it) {
+  for (const double side : {-1.0, 1.0}) {
+    Opened head(_i);
+    head.command(0s, {Kind::position, side * 2, 5}, {Kind::position, side * 0.6, 5});
+    head.head->stop(10s);
+    const Limits narrow{.pan = {-0.5, 0.5, 1, 2}, .tilt = {-0.25, 0.25, 1, 2}};
+    ck_assert(head.head->limit(20s, narrow).empty());
+    Pose last = head.at(20s);
+    for (Time t = 20s; t < 30s; t += 10ms) {
+      const Pose pose = head.at(t);
+      ck_assert(std::abs(pose.pan.position) <= std::abs(last.pan.position) + 1e-12);
+      ck_assert(std::abs(pose.tilt.position) <= std::abs(last.tilt.position) + 1e-12);
+      last = pose;
+    }
+    ck_assert_double_eq_tol(last.pan.position, side * 0.5, 1e-9);
+    ck_assert_double_eq_tol(last.tilt.position, side * 0.25, 1e-9);
+  }
+}
+END_TEST
+
+START_TEST(new_limits_make_no_command_stale_that_comes_with_them) {
+  Opened head(_i);
+  ck_assert(head.head->limit(5s, {}).empty());
+  ck_assert(head.head->limit(4s, {}).empty());  // late, and safe
+  head.command(5s, {Kind::position, 1, 1});
+  ck_assert_double_eq_tol(head.at(30s).pan.position, 1, 1e-6);
+}
+END_TEST
+
 START_TEST(numbers_that_are_none_move_nothing) {
   HeadSetup there = setup();
   there.pan = 0.5;
@@ -157,6 +205,7 @@ START_TEST(what_is_not_open_is_safe_and_says_so) {
   head->close();
   Pose pose;
   ck_assert(head->command({}).find("not open") != std::string::npos);
+  ck_assert(head->limit(0s, {}).find("not open") != std::string::npos);
   ck_assert(head->state(0s, pose).find("not open") != std::string::npos);
   assert_text(head->open(setup()), "");
   head->close();
@@ -181,9 +230,10 @@ int main() {
   for (const TTest* test :
        {a_head_starts_at_rest_where_it_is_said_to, a_head_goes_where_it_is_sent_and_settles,
         a_velocity_ends_at_the_stop_at_the_latest, no_command_leads_beyond_a_limit,
-        numbers_that_are_none_move_nothing, stop_stops_and_may_be_said_again,
-        a_stale_command_is_refused_and_changes_nothing, limits_that_exclude_zero_are_refused,
-        what_is_not_open_is_safe_and_says_so})
+        what_was_commanded_goes_on_within_other_limits, who_stands_beyond_a_new_limit_returns_to_it,
+        new_limits_make_no_command_stale_that_comes_with_them, numbers_that_are_none_move_nothing,
+        stop_stops_and_may_be_said_again, a_stale_command_is_refused_and_changes_nothing,
+        limits_that_exclude_zero_are_refused, what_is_not_open_is_safe_and_says_so})
     tcase_add_loop_test(cases, test, 0, std::size(kDrivers));
   tcase_add_test(cases, drivers_are_known_by_their_names);
   suite_add_tcase(suite, cases);

@@ -178,6 +178,97 @@ START_TEST(a_stop_beats_the_commands_before_it) {
 }
 END_TEST
 
+// What they are told is the answer to their own question, whoever else asks, commands and stops.
+START_TEST(two_who_ask_at_once_are_both_answered) {
+  const auto runner = runner_with("");
+  std::atomic<int> asking = 2;
+  const auto ask = [&](Time from) {
+    std::vector<Pose> poses;
+    for (int k = 0; k < 2000; ++k, from += 2s) {
+      ck_assert(runner->ask({}, from, from, poses, 60s) == Answer::done);
+      ck_assert_uint_eq(poses.size(), 1);
+      ck_assert_int_eq(poses[0].from.count(), from.count());
+    }
+    --asking;
+  };
+  std::thread even(ask, 0s), odd(ask, 1s);
+  while (asking > 0) {
+    runner->command({0s, {}, {}});
+    runner->stop(0s, 60s);
+  }
+  even.join();
+  odd.join();
+}
+END_TEST
+
+START_TEST(who_asks_second_waits_no_longer_than_patience_and_is_interrupted) {
+  Pipe gate, record;
+  const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
+  record.line();
+  std::thread first([&] {
+    std::vector<Pose> poses;
+    ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 60s) == Answer::interrupted);
+  });
+  record.line();  // it is in the call
+  std::vector<Pose> poses;
+  ck_assert(runner->ask({}, 1s, 1s, poses, 1ms) == Answer::late);
+  std::thread second([&] {
+    std::vector<Pose> none;
+    ck_assert(runner->ask({}, 1s, 1s, none, 60s) == Answer::interrupted);
+  });
+  runner->interrupt(true);
+  first.join();
+  second.join();
+  runner->interrupt(false);
+  gate.close_writer();
+  ck_assert(runner->ask({}, 2s, 2s, poses, 60s) == Answer::done);
+  ck_assert_int_eq(poses[0].from.count(), Time(2s).count());
+}
+END_TEST
+
+START_TEST(new_limits_come_before_the_command_that_waits) {
+  Pipe gate, record;
+  const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
+  record.line();
+  runner->command(go(1s, 0.125));
+  record.line();
+  runner->command(go(2s, 2));
+  Limits narrow;
+  narrow.pan = {-0.5, 0.5};
+  narrow.tilt = {-0.25, 0.25};
+  runner->limit(3s, narrow);
+  gate.close_writer();
+  assert_text(record.line(), "limit 2000000000 -0.5 0.5 -0.25 0.25");  // so that the command is not stale
+  assert_text(record.line(), "command 2000000000 position 2 1 hold 0 0");
+  std::vector<Pose> poses;
+  ck_assert(runner->ask({}, 4s, 4s, poses, 10s) == Answer::done);
+  ck_assert_double_eq(poses[0].pan.position, 0.5);
+}
+END_TEST
+
+START_TEST(a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them) {
+  Pipe record;
+  const auto runner = runner_with("record " + record.writer() + "; limit fail no memory");
+  assert_text(record.line(), "open 0");
+  runner->limit(1s, {});
+  const std::string limit = record.line();
+  ck_assert_msg(limit.starts_with("limit 1000000000 "), "%s", limit.c_str());
+  assert_text(record.line(), "stop 1000000000");
+  std::vector<Pose> poses;
+  ck_assert(runner->ask(go(2s, 1), 2s, 2s, poses, 10s) == Answer::failed);
+  assert_text(runner->failure(), "no memory");
+  ck_assert(!runner->healthy());
+  ck_assert(record.line().starts_with("limit 1000000000 "));
+  assert_text(record.line(), "stop 1000000000");
+  HeadSetup anew;
+  anew.script = "record " + record.writer();
+  ck_assert(runner->open(anew, 10s) == Answer::done);
+  ck_assert(runner->ask(go(3s, 1), 3s, 3s, poses, 10s) == Answer::done);
+  assert_text(record.line(), "open 0");
+  assert_text(record.line(), "command 3000000000 position 1 1 hold 0 0");
+}
+END_TEST
+
 START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
   Pipe gate, record;
   std::weak_ptr<void> watch;
@@ -231,7 +322,10 @@ int main() {
       {questions_are_answered_with_all_pieces_of_the_way,
        a_failure_is_told_once_and_healed_by_the_next_success, a_head_that_fails_is_stopped,
        who_cannot_wait_is_not_kept, interrupt_wakes_who_waits, two_who_interrupt_must_both_be_done,
-       a_head_that_never_blocks_is_nobodys_but_the_callers,
+       a_head_that_never_blocks_is_nobodys_but_the_callers, two_who_ask_at_once_are_both_answered,
+       who_asks_second_waits_no_longer_than_patience_and_is_interrupted,
+       new_limits_come_before_the_command_that_waits,
+       a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
        of_commands_given_meanwhile_only_the_newest_counts, a_stop_beats_the_commands_before_it,
        a_blocked_driver_keeps_its_lease_and_closes_by_itself, a_driver_that_does_not_open_says_why,
        a_thousand_heads_come_and_go});

@@ -6,6 +6,7 @@
 #include <check.h>
 
 #include <cmath>
+#include <random>
 #include <string>
 
 #include "../support/allocations.h"
@@ -184,6 +185,75 @@ START_TEST(numbers_that_are_none_do_not_make_a_head) {
 }
 END_TEST
 
+// 0.5 s and 0.25 of way to full speed: at 1.1 s on the way at 0.75.
+START_TEST(new_limits_count_after_the_latency) {
+  HeadSetup with = setup();
+  with.latency = 100ms;
+  for (const bool later : {false, true}) {
+    Opened head(with);
+    head.send(0s, {Kind::position, 2.5, 5});
+    const Limits slower{.pan = {-3, 3, 0.25, 1}, .tilt = {-1, 1, 1, 2}};
+    ck_assert(head.head.limit(1s, slower).empty());
+    if (later) head.send(1s, {Kind::position, 2.5, 5});  // the same again changes nothing
+    ck_assert_double_eq_tol(head.at(1099ms).pan.speed, 1, 1e-9);
+    // From 1 to 0.25 a second at 1 a second squared: 0.75 s; and then so.
+    ck_assert_double_eq_tol(head.at(1400ms).pan.acceleration, -1, 1e-9);
+    ck_assert_double_eq_tol(head.at(1850ms).pan.speed, 0.25, 1e-9);
+    ck_assert_double_eq_tol(head.pan(1850ms), 0.75 + 0.625 * 0.75, 1e-9);
+    ck_assert_double_eq_tol(head.at(3s).pan.speed, 0.25, 1e-9);
+    ck_assert_double_eq_tol(head.pan(60s), 2.5, 1e-9);
+  }
+}
+END_TEST
+
+// A stop that is moved to just before a head that cannot brake in time: it brakes harder, and does not pass.
+START_TEST(a_stop_that_is_too_near_to_brake_for_is_not_passed) {
+  Opened head(setup());
+  head.send(0s, {Kind::velocity, 1, 0});
+  Limits narrow = setup().limits;
+  narrow.pan.to = 0.76;  // braking takes 0.25
+  ck_assert(head.head.limit(1s, narrow).empty());
+  for (Time t = 1s; t < 2s; t += 1ms) ck_assert_double_le(head.pan(t), 0.76);
+  ck_assert_double_eq_tol(head.pan(2s), 0.76, 1e-9);
+}
+END_TEST
+
+// Whatever is asked for and whenever the stops are moved: no jump, and beyond a stop only inwards.
+START_TEST(moved_stops_lead_nobody_further_out) {
+  HeadSetup with = setup();
+  with.latency = 60ms;
+  with.noise = 1e-4;  // what it says of itself is not cut off at a stop that it is beyond
+  Opened head(with);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> number(0, 1);
+  AxisLimits past = with.limits.pan, now = past;
+  double last = 0;
+  int beyond = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const Time time = k * 70ms;
+    past = now;
+    if (k % 3 == 0) {
+      now = {-3 * number(random), 3 * number(random), 0.1 + 0.9 * number(random), 0.5 + 2 * number(random)};
+      ck_assert(head.head.limit(time, {.pan = now, .tilt = now}).empty());
+    } else {
+      head.send(time, {static_cast<Kind>(k / 3 % 3), 8 * number(random) - 4, 2 * number(random)});
+    }
+    for (Time t = time; t < time + 70ms; t += 10ms) {
+      const AxisLimits& limits = t < time + 60ms ? past : now;
+      const double position = head.pan(t);
+      constexpr double kNoise = 1e-3;                                 // 7 deviations between two
+      ck_assert_double_le(std::abs(position - last), 0.01 + kNoise);  // 1 a second at most
+      if (!limits.holds(position) && t != time + 60ms) {  // then `last` was within
+        ck_assert_double_le(std::abs(position), std::abs(last) + kNoise);
+        ++beyond;
+      }
+      last = position;
+    }
+  }
+  ck_assert_int_ge(beyond, 100);  // or this tells nothing
+}
+END_TEST
+
 START_TEST(steady_state_allocates_nothing) {
   Opened head(setup());
   const std::size_t before = cerberus::tests::allocations();
@@ -197,9 +267,11 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "simulated_head", {a_command_counts_after_the_latency, commands_on_their_way_are_not_lost,
-                         a_flood_of_commands_is_refused_not_forgotten, it_rests_on_a_step,
-                         the_camera_follows_the_motor_with_play, pieces_meet_and_make_the_whole_way,
-                         equal_seeds_give_equal_noise_and_others_other,
-                         numbers_that_are_none_do_not_make_a_head, steady_state_allocates_nothing});
+      "simulated_head",
+      {a_command_counts_after_the_latency, commands_on_their_way_are_not_lost,
+       a_flood_of_commands_is_refused_not_forgotten, it_rests_on_a_step, new_limits_count_after_the_latency,
+       a_stop_that_is_too_near_to_brake_for_is_not_passed, moved_stops_lead_nobody_further_out,
+       the_camera_follows_the_motor_with_play, pieces_meet_and_make_the_whole_way,
+       equal_seeds_give_equal_noise_and_others_other, numbers_that_are_none_do_not_make_a_head,
+       steady_state_allocates_nothing});
 }
