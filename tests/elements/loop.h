@@ -17,7 +17,8 @@ inline std::string film(int frames, const std::string& more = "", const char* ra
 
 class Pipeline {
  public:
-  explicit Pipeline(const std::string& launch) {
+  // `world`: what the film shows.
+  explicit Pipeline(const std::string& launch, const scene::World& world = {}) : world_(world) {
     GError* error = nullptr;
     element_ = gst_parse_launch(launch.c_str(), &error);
     fail_unless(element_ && !error, "%s: %s", launch.c_str(), error ? error->message : "");
@@ -26,7 +27,7 @@ class Pipeline {
     GstElement* source = gst_bin_get_by_name(GST_BIN(element_), "film");
     if (!source) return;
     GstPad* pad = gst_element_get_static_pad(source, "src");
-    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, paint, nullptr, nullptr);
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, paint, &world_, nullptr);
     gst_object_unref(pad);
     gst_object_unref(source);
   }
@@ -38,6 +39,22 @@ class Pipeline {
   Pipeline(const Pipeline&) = delete;
 
   GstElement* element() const { return element_; }
+  // The film is without the frames for which missing(number) says so. To be called before it plays, and once.
+  template <typename Missing>
+  void leave_out(Missing& missing) {
+    GstElement* source = gst_bin_get_by_name(GST_BIN(element_), "film");
+    GstPad* pad = gst_element_get_static_pad(source, "src");
+    gst_pad_add_probe(
+        pad, GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad*, GstPadProbeInfo* info, gpointer function) {
+          const auto number =
+              static_cast<int>(GST_BUFFER_PTS(GST_PAD_PROBE_INFO_BUFFER(info)) / scene::kStep);
+          return (*static_cast<Missing*>(function))(number) ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
+        },
+        &missing, nullptr);
+    gst_object_unref(pad);
+    gst_object_unref(source);
+  }
   // Calls see(buffer) for each one at the sink pad of the element of this name, as long as the pipeline lives.
   template <typename See>
   void watch(const char* name, See& see) {
@@ -94,16 +111,17 @@ class Pipeline {
     return error->message;
   }
   // A test source's frame is replaced by one of the walk.
-  static GstPadProbeReturn paint(GstPad*, GstPadProbeInfo* info, gpointer) {
+  static GstPadProbeReturn paint(GstPad*, GstPadProbeInfo* info, gpointer world) {
     GstBuffer* blank = GST_PAD_PROBE_INFO_BUFFER(info);
     const auto frame = static_cast<int>(GST_BUFFER_OFFSET(blank));
-    GstBuffer* painted = scene::grey_buffer(scene::World{}, frame);
+    GstBuffer* painted = scene::grey_buffer(*static_cast<scene::World*>(world), frame);
     gst_buffer_copy_into(painted, blank, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
     gst_buffer_unref(blank);
     GST_PAD_PROBE_INFO_DATA(info) = painted;
     return GST_PAD_PROBE_OK;
   }
 
+  scene::World world_;
   GstElement* element_;
   GstBus* bus_;
 };

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// virtualptz with the head behind it that turns it: over somebody who walks before a wall, 320 x 240 pixels, a window of
+// 160 x 120 that reaches 16.1 degrees (80 pixels) to each side.
+#include <cmath>
+#include <string>
+#include <vector>
+
+// gst-check's macros bite standard headers: last.
+#include "loop.h"
+
+namespace {
+
+std::string line(int frames, const std::string& detect = "", const std::string& head = "") {
+  return loop::film(frames) + "virtualptz width=160 height=120 ! motiondetect " + detect +
+         " ! queue ! pantiltsink name=head driver=simulated horizontal-fov=32.2 pan-min=-16 pan-max=16 " +
+         head;
+}
+
+// Somebody who walks to the right, and into the window as it looks at the start.
+scene::World stroll() {
+  scene::World world;
+  world.start = 44;
+  world.speed = 0.8;
+  return world;
+}
+
+// Where the middle of that figure is in a window that looks along `pan`, by hand.
+double place(int frame, double pan) {
+  constexpr double kFocal = 277.128;  // 160 / tan 30 degrees
+  return stroll().figure_left(frame) + scene::kFigureWidth / 2.0 - 80 - kFocal * std::tan(pan * M_PI / 180);
+}
+
+struct Seen {
+  double place = 0;
+  std::vector<CerberusRegion> regions;
+};
+
+// The head is moved by hand: at rest, away from the figure at frame kAway, back at frame kBack.
+constexpr int kAway = 75, kBack = 105, kFrames = 140;
+
+std::vector<Seen> sweep(const std::string& detect) {
+  std::vector<Seen> all;
+  loop::Pipeline pipeline(line(kFrames, detect), stroll());
+  GstElement* head = gst_bin_get_by_name(GST_BIN(pipeline.element()), "head");
+  auto see = [&](GstBuffer* buffer) {
+    const int frame = static_cast<int>(all.size());
+    const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
+    fail_unless(pose != nullptr);
+    Seen& seen = all.emplace_back(Seen{place(frame, pose->pan), {}});
+    GPtrArray* regions = cerberus_buffer_get_regions(buffer);
+    for (guint i = 0; i < regions->len; ++i)
+      seen.regions.push_back(*static_cast<CerberusRegion*>(g_ptr_array_index(regions, i)));
+    g_ptr_array_unref(regions);
+    gboolean done = TRUE;
+    if (frame == 0 || frame == kAway || frame == kBack)
+      g_signal_emit_by_name(head, "move-to", frame == kAway ? 16.0 : 0.0, 0.0, &done);
+    fail_unless(done);
+  };
+  pipeline.watch("head", see);
+  pipeline.play();
+  pipeline.wait_for_end();
+  gst_object_unref(head);
+  fail_unless_equals_int(all.size(), kFrames);
+  return all;
+}
+
+// The identity of the one who is seen where the figure is.
+guint identity(const Seen& seen) {
+  fail_unless_equals_int(seen.regions.size(), 1);
+  const CerberusRegion& r = seen.regions[0];
+  fail_unless(r.tracked && r.x < seen.place && seen.place < r.x + r.width, "at %g, seen from %g to %g",
+              seen.place, r.x, r.x + r.width);
+  return r.id;
+}
+
+}  // namespace
+
+GST_START_TEST(who_is_left_by_the_window_is_the_same_when_it_comes_back) {
+  // Without the lens's angle the picture's own motion says how far the camera turned.
+  for (const char* detect : {"", "horizontal-fov=32.2"}) {
+    const std::vector<Seen> all = sweep(detect);
+    int away = 0;
+    for (int frame = kAway; frame < kFrames; ++frame) away += all[frame].place < -scene::kFigureWidth / 2.0;
+    fail_unless(away > 20, "away for %d frames only", away);
+    fail_unless_equals_int(identity(all.back()), identity(all[kAway]));
+  }
+}
+GST_END_TEST
+
+// ---- frames that are missing
+
+GST_START_TEST(frames_may_be_missing) {
+  auto missing = [](int frame) {
+    return frame % 7 == 3 || (frame > 20 && frame < 26) || (frame > 40 && frame < 120);
+  };
+  for (const char* latency : {"0", "60000000"}) {
+    loop::Pipeline pipeline(line(150, "", std::string("latency=") + latency));
+    pipeline.leave_out(missing);
+    int come = 0;
+    auto count = [&](GstBuffer*) { ++come; };
+    pipeline.watch("head", count);
+    pipeline.play();
+    pipeline.wait_for_end();
+    int there = 0;
+    for (int frame = 0; frame < 150; ++frame) there += !missing(frame);
+    fail_unless_equals_int(come, there);
+  }
+}
+GST_END_TEST
+
+static Suite* virtualptz_loop_suite() {
+  watch_library_log();
+  Suite* s = suite_create("virtualptz_loop");
+  TCase* tc = tcase_create("all");
+  suite_add_tcase(s, tc);
+  tcase_set_timeout(tc, 60);
+  tcase_add_test(tc, who_is_left_by_the_window_is_the_same_when_it_comes_back);
+  tcase_add_test(tc, frames_may_be_missing);
+  return s;
+}
+
+GST_CHECK_MAIN(virtualptz_loop)
