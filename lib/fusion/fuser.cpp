@@ -65,7 +65,7 @@ struct Fuser::State {
     Time turned = kLongAgo;
     std::array<int, kMaxSensors> order{};  // the higher, the later it fired
     int fire_count = 0;
-    Time detected = kLongAgo;  // last time camera or sensors found something
+    Time detected{};  // last time camera or sensors found something; before that the first frame's
 
     // complete: the places to look at, in the order in which they were found when the sensors last changed.
     Places places;
@@ -302,6 +302,7 @@ const Decision& Fuser::update(const Input& input) {
   State& state = *state_;
   if (state.memory.begun && input.time < state.memory.time) reset();
   const bool first = !state.memory.begun;
+  if (first) state.memory.detected = input.time;  // nobody knows who was there a moment ago
   state.memory.begun = true;
   state.memory.time = input.time;
 

@@ -39,8 +39,8 @@ const Property<Settings> kTable[] = {
              "Whom to follow when nobody is followed yet; whoever is followed stays the target"),
     property(
         "return-delay", &Settings::return_delay,
-        "Nanoseconds without any detection after which the head returns to zero; 0 = at once. rules=paper "
-        "has none"),
+        "Nanoseconds without any detection, from the first frame on, after which the head returns to zero; "
+        "0 = at once. rules=paper has none"),
     property(
         "hold-stopped", &Settings::hold_stopped,
         "Nanoseconds for which a followed person who stopped moving is watched at least; 0 = not at all"),

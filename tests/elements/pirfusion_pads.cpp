@@ -266,7 +266,7 @@ GST_START_TEST(sensors_that_contradict_each_other_are_answered_without_hunting) 
 GST_END_TEST
 
 GST_START_TEST(the_video_path_is_as_if_nothing_were_there) {
-  Rig rig;
+  Rig rig(true, "return-delay=0");
   GstHarness* pir = rig.add_pir();
   // Latency: the video's, whatever a PIR source says.
   gst_harness_set_upstream_latency(rig.video, 30 * kMs);

@@ -162,7 +162,7 @@ GST_END_TEST
 
 GST_START_TEST(rules_may_change_while_playing_and_bad_ones_leave_the_old) {
   RuleFile file(kTwoSensors);
-  Rig rig;
+  Rig rig(true, "return-delay=0");
   fail_unless_equals_int(rig.at(0).rule, 7);
   g_object_set(rig.element, "rules-file", file.path().c_str(), nullptr);
   fail_unless_equals_int(rig.at(40 * kMs).rule, 42);

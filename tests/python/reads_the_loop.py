@@ -123,11 +123,11 @@ class WithATurningRobot(unittest.TestCase):
 WIDE, WINDOW = 60, 32.2  # degrees that 640 pixels show, and the middle 320 of them
 REACH = 12
 SCRIPT = "0,0,0,0; 1,0,0,1; 2,0,0,0; 4,0,0,0"
-DEBOUNCE = 0.02
+DEBOUNCE, RETURN_DELAY = 0.02, 0.3
 LOOP = f"""
     videotestsrc num-buffers=120 pattern=black ! video/x-raw,format=GRAY8,width=640,height=240,framerate=30/1 !
     virtualptz wide-fov={WIDE} width=320 height=240 ! motiondetect !
-    pirfusion name=fusion horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH} return-delay=300000000 ! tee name=t
+    pirfusion name=fusion horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH} return-delay={round(RETURN_DELAY * SECOND)} ! tee name=t
     pirsrc driver=scripted bearings=0,-20,20 field-of-view=20 script="{SCRIPT}" ! queue ! fusion.pir_0
     t. ! queue ! pantiltsink driver=simulated horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH}
     t. ! queue ! motionjson ! filesink location=%s
@@ -162,7 +162,9 @@ class WithTheWholeLoop(unittest.TestCase):
             self.assertEqual(pose.head, "head")
             self.assertAlmostEqual(fusion.pan, pose.pan, places=6)
             self.assertLessEqual(abs(pose.pan), REACH + 1e-9)
-            if time < 1 or time > 2.4:
+            if time < RETURN_DELAY:
+                self.assertEqual((fusion.action, fusion.rule_name), (A.HOLD, "return"))
+            elif time < 1 or time > 2.4:
                 self.assertEqual((fusion.action, fusion.target, fusion.camera_found), (A.ZERO, 0, False))
             elif time < 2:
                 self.assertIn(fusion.action, (A.TURN_RIGHT, A.SEARCH))

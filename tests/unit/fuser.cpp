@@ -12,10 +12,30 @@ using namespace stream;
 START_TEST(nothing_anywhere_means_zero) {
   Stream stream;
   const Decision& decision = stream.frame();
+  stream.frames(5s);
   assert_says(decision, Action::zero, 7, "zero");
   ck_assert(decision.changed && !decision.camera_found && decision.target == 0 &&
             std::isnan(decision.sector.from));
   ck_assert(!stream.frame().changed);
+}
+END_TEST
+
+// Who was there before the first frame nobody knows: the head does not run away from somebody to whom it was sent.
+START_TEST(the_return_delay_counts_from_the_first_frame_and_from_a_reset) {
+  for (FuserOptions options : {FuserOptions{}, FuserOptions{.rules = RuleSet::table}}) {
+    Stream stream(options);
+    stream.now = 1h;
+    const Decision& decision = stream.frame();
+    for (int round = 0; round < 2; ++round) {
+      assert_says(decision, Action::hold, 0, "return");
+      stream.frames(5s - 1ms);
+      assert_says(decision, Action::hold, 0, "return");
+      stream.frames(1ms);
+      ck_assert(decision.action == Action::zero && decision.rule == 7);
+      stream.fuser.reset();
+      stream.frame();
+    }
+  }
 }
 END_TEST
 
@@ -39,6 +59,7 @@ START_TEST(limits_without_zero_are_told) {
     options.limits = {radians(20), radians(90)};
     Stream stream(options);
     const Decision& decision = stream.frame();
+    stream.frames(5s);
     ck_assert(decision.action == Action::zero && decision.limited);
   }
 }
@@ -48,10 +69,10 @@ START_TEST(invalid_readings_do_not_count_but_are_told) {
   Stream stream;
   stream.sensors = {2, 0, 77};
   const Decision& decision = stream.frame();
-  ck_assert(decision.action == Action::zero && decision.fired == 0 && decision.invalid == 0b101);
+  ck_assert(decision.action == Action::hold && decision.fired == 0 && decision.invalid == 0b101);
   stream.sensors = {};  // a PIR pad that never spoke
   stream.frame();
-  ck_assert(decision.action == Action::zero && decision.invalid == 0);
+  ck_assert(decision.action == Action::hold && decision.invalid == 0);
 }
 END_TEST
 
@@ -60,7 +81,7 @@ START_TEST(what_a_turning_base_trips_is_doubtful_and_does_not_count) {
   stream.yaw_rate = 5.1;
   stream.sensors = {1, 0, 0};
   const Decision& decision = stream.frame();
-  ck_assert(decision.action == Action::zero && decision.fired == 0 && decision.doubtful == 0b001);
+  ck_assert(decision.action == Action::hold && decision.fired == 0 && decision.doubtful == 0b001);
   stream.yaw_rate = 0;
   stream.sensors = {1, 1, 0};  // the second came between the two frames
   stream.frame();
@@ -204,7 +225,7 @@ START_TEST(time_that_goes_back_starts_anew) {
   stream.tracks.clear();
   stream.sensors = {0, 0, 0};
   const Decision& decision = stream.frame(-90s);
-  assert_says(decision, Action::zero, 7, "zero");
+  assert_says(decision, Action::hold, 0, "return");
   ck_assert(decision.changed);
 }
 END_TEST
@@ -298,13 +319,14 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "fuser", {nothing_anywhere_means_zero, the_head_returns_five_seconds_after_the_last_detection,
-                limits_without_zero_are_told, invalid_readings_do_not_count_but_are_told,
-                what_a_turning_base_trips_is_doubtful_and_does_not_count,
-                a_doubtful_sensor_that_rests_is_believed_again, the_paper_stands_still_where_it_tracks_nobody,
-                the_paper_ignores_a_fourth_sensor, a_table_turns_no_further_than_the_stop,
-                a_users_table_has_hysteresis_return_delay_and_searches, an_unknown_pan_angle_commands_no_turn,
-                time_that_goes_back_starts_anew, a_long_gap_lets_every_timer_expire,
-                options_that_make_no_sense_are_put_right,
-                whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
+      "fuser",
+      {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
+       the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_told,
+       invalid_readings_do_not_count_but_are_told, what_a_turning_base_trips_is_doubtful_and_does_not_count,
+       a_doubtful_sensor_that_rests_is_believed_again, the_paper_stands_still_where_it_tracks_nobody,
+       the_paper_ignores_a_fourth_sensor, a_table_turns_no_further_than_the_stop,
+       a_users_table_has_hysteresis_return_delay_and_searches, an_unknown_pan_angle_commands_no_turn,
+       time_that_goes_back_starts_anew, a_long_gap_lets_every_timer_expire,
+       options_that_make_no_sense_are_put_right,
+       whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
 }
