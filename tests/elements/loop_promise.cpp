@@ -2,8 +2,9 @@
 // From the edge of a PIR sensor to the first command of the motors at most 60 ms pass in a live pipeline of 30 frames a
 // second, whatever the camera needs to deliver a frame.
 //
-// A sensor's rise is told at once (debounce delays falls only), a decision is made with each frame that comes, and its
-// command is given with it: what passes is the way to the next frame, 33.3 ms at most, and the work.
+// A sensor's rise is told at once (debounce delays falls only), motiondetect keeps no frame back, a decision is made with
+// each frame that comes, and its command is given with it: what passes is the way to the next frame, 33.3 ms at most,
+// and the work.
 #include <algorithm>
 #include <cstdio>
 #include <functional>
@@ -51,9 +52,44 @@ GST_START_TEST(a_rise_is_told_with_its_own_time) {
 }
 GST_END_TEST
 
+// A motiondetect before a wall on which a camera turns.
+class Detection {
+ public:
+  Detection() : harness_(gst_harness_new("motiondetect")) {
+    gst_harness_set_live(harness_, TRUE);
+    gst_harness_set_src_caps_str(harness_, kCaps);
+  }
+  ~Detection() { gst_harness_teardown(harness_); }
+  Detection(const Detection&) = delete;
+
+  // The frame of `time`, which must come out before the next one goes in.
+  GstBuffer* frame(GstClockTime time) {
+    GstBuffer* seen = scene::grey_buffer(world_, number_++);
+    GST_BUFFER_PTS(seen) = time;
+    GST_BUFFER_DURATION(seen) = kFrame;
+    fail_unless_equals_int(gst_harness_push(harness_, seen), GST_FLOW_OK);
+    GstBuffer* found = gst_harness_try_pull(harness_);
+    fail_unless(found && GST_BUFFER_PTS(found) == time, "motiondetect kept a frame");
+    const CerberusPose ahead = rig::pose(0, time);
+    cerberus_buffer_set_pose(found, &ahead);
+    turned_ += std::abs(cerberus_buffer_get_camera_motion_meta(found)->motion.matrix[2] + world_.pan) < 0.5;
+    return found;
+  }
+  int turned() const { return turned_; }  // frames in which it saw the camera's turn
+
+  static constexpr char kCaps[] = "video/x-raw,format=GRAY8,framerate=30/1,width=320,height=240";
+
+ private:
+  const scene::World world_{.figure = false, .pan = 3};
+  GstHarness* harness_;
+  int number_ = 0, turned_ = 0;
+};
+
 // Time from an edge to the first command, behind a camera whose frames are `age` old when they come.
-GstClockTime reaction(GstClockTime edge, GstClockTime age) {
+GstClockTime reaction(GstClockTime edge, GstClockTime age, bool detects = false) {
+  Detection detection;
   rig::Rig fusion;
+  gst_harness_set_src_caps_str(fusion.video, Detection::kCaps);
   fusion.add_pir();
   fusion.read(0, {0, 0, 0});
   head_rig::Pipe record;
@@ -67,7 +103,9 @@ GstClockTime reaction(GstClockTime edge, GstClockTime age) {
       heard = true;
     }
     gst_harness_set_time(fusion.video, now);
-    fail_unless_equals_int(gst_harness_push(fusion.video, rig::frame_at(time, 0)), GST_FLOW_OK);
+    fail_unless_equals_int(
+        gst_harness_push(fusion.video, detects ? detection.frame(time) : rig::frame_at(time, 0)),
+        GST_FLOW_OK);
     head.push(gst_harness_pull(fusion.video));
     std::string line;
     while (!line.starts_with("command")) line = record.line();
@@ -76,6 +114,7 @@ GstClockTime reaction(GstClockTime edge, GstClockTime age) {
       continue;
     }
     fail_unless(heard && turns(line) == 1);
+    fail_unless(!detects || detection.turned() > 5);
     return now - edge;
   }
 }
@@ -85,6 +124,9 @@ GST_START_TEST(the_next_frame_that_comes_carries_the_command) {
   for (const GstClockTime age : std::initializer_list<GstClockTime>{0, 20 * GST_MSECOND, kFrame, 4 * kFrame})
     for (GstClockTime edge = 300 * GST_MSECOND; edge < 334 * GST_MSECOND; edge += 3 * GST_MSECOND)
       worst = std::max(worst, reaction(edge, age));
+  for (const GstClockTime age : std::initializer_list<GstClockTime>{0, 4 * kFrame})
+    for (GstClockTime edge = 300 * GST_MSECOND; edge < 334 * GST_MSECOND; edge += 11 * GST_MSECOND)
+      worst = std::max(worst, reaction(edge, age, true));
   g_print("at most %.1f ms, work not counted\n", static_cast<double>(worst) / GST_MSECOND);
   fail_unless(worst <= kFrame);
 }
@@ -128,10 +170,11 @@ GST_START_TEST(sixty_milliseconds_from_an_edge_to_the_motors) {
   head_rig::Pipe record;
   std::vector<Command> commands;
   {
-    // The head reaches neither sensor's sector: it is always on the way there, or at the stop before it.
+    // The head reaches neither sensor's sector: it is always on the way there, or at the stop before it. The picture goes
+    // by as before a camera that turns, which is the most work; there is nobody in it.
     loop::Pipeline pipeline(
-        "videotestsrc is-live=true num-buffers=185 ! "
-        "video/x-raw,format=GRAY8,width=320,height=240,framerate=30/1 ! "
+        "videotestsrc is-live=true num-buffers=185 pattern=pinwheel horizontal-speed=2 ! "
+        "video/x-raw,format=GRAY8,width=160,height=120,framerate=30/1 ! motiondetect ! "
         "pirfusion name=fusion pan-min=-10 pan-max=10 ! pantiltsink driver=scripted pan-min=-10 pan-max=10 "
         "script=\"record " +
         record.writer() + "\" pirsrc driver=scripted is-live=true script=\"" + script + "\" ! fusion.pir_0");
