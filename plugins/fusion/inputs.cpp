@@ -2,6 +2,7 @@
 #include "inputs.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "pir_pad.hpp"
 #include "settings.hpp"
@@ -22,7 +23,36 @@ bool is_missing(GstPad* pad, Time time) {
   return pir.linked && !pir.given_up && !pir.history.covers(time);
 }
 
+constexpr std::uint8_t kInvalid = 2;
+
+// What a pad counts as whose caps nobody has told, or a number that no pad has. It says nothing, so where it looks and how
+// wide does not matter.
+Reading unknown_sensor() {
+  static const auto array = [] {
+    auto one = std::make_shared<SensorArray>();
+    one->count = 1;
+    one->field_of_view = 1;
+    return std::shared_ptr<const SensorArray>(std::move(one));
+  }();
+  Reading reading{.array = array, .values = {}};
+  reading.values.fill(kInvalid);
+  return reading;
+}
+
+int places_of(const PirPad& pir) {
+  return std::max(pir.sensors, 1);
+}
+
 }  // namespace
+
+void Moment::add(const Reading& reading) {
+  const auto known = std::min(static_cast<std::size_t>(reading.array->count), sensors.size() - count);
+  for (std::size_t i = 0; i < known; ++i, ++count) {
+    sensors[count] = reading.values[i];
+    bearings[count] = reading.array->bearings[i];
+    fields_of_view[count] = reading.array->field_of_view;
+  }
+}
 
 void Inputs::set(bool& flag, bool value) {
   const std::lock_guard guard(lock_);
@@ -61,19 +91,16 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
   const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
   const CerberusBase* seen = cerberus_buffer_peek_base(frame);
   const std::lock_guard guard(lock_);
+  guint number = 0;
   for (GstPad* pad : pads_) {
     PirPad& pir = pir_pad(pad);
+    for (; number < pir.index; ++number) moment.add(unknown_sensor());
+    ++number;
     Reading reading = pir.history.at(heard);
     pir.history.forget_before(heard);
-    if (!reading.array) continue;
-    if (!pir.linked || pir.given_up) reading.values.fill(2);
-    const auto known =
-        std::min(static_cast<std::size_t>(reading.array->count), moment.sensors.size() - moment.count);
-    for (std::size_t i = 0; i < known; ++i, ++moment.count) {
-      moment.sensors[moment.count] = reading.values[i];
-      moment.bearings[moment.count] = reading.array->bearings[i];
-      moment.fields_of_view[moment.count] = reading.array->field_of_view;
-    }
+    if (!reading.array) reading = unknown_sensor();
+    if (!pir.linked || pir.given_up) reading.values.fill(kInvalid);
+    moment.add(reading);
   }
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
@@ -116,6 +143,7 @@ GstPad* Inputs::add_pad(const char* name, GstPadTemplate* pad_template) {
   } else {
     for (index = 0; taken(index);) ++index;
   }
+  if (index >= sensing::kMaxSensors) return nullptr;
   GstPad* pad = pir_pad_new(("pir_" + std::to_string(index)).c_str(), pad_template, this);
   pir_pad(pad).index = static_cast<guint>(index);
   const auto after = std::ranges::find_if(pads_, [&](GstPad* each) { return pir_pad(each).index > index; });
@@ -150,9 +178,13 @@ void Inputs::tell(PirPad& pad) {
   news_.notify_all();
 }
 
-int Inputs::sensors() const {
-  int sum = 0;
-  for (GstPad* pad : pads_) sum += pir_pad(pad).sensors;
+int Inputs::places_besides(const PirPad& pad) const {
+  int sum = 0, number = 0;
+  for (GstPad* each : pads_) {
+    const PirPad& pir = pir_pad(each);
+    sum += static_cast<int>(pir.index) - std::exchange(number, static_cast<int>(pir.index) + 1);
+    if (&pir != &pad) sum += places_of(pir);
+  }
   return sum;
 }
 

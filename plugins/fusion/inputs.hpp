@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "sensing/sectors.h"
+#include "sensor_history.hpp"
 #include "timeline.hpp"
 #include "told_base.hpp"
 
@@ -29,6 +30,8 @@ struct Moment {
   double pan_degrees = std::numeric_limits<double>::quiet_NaN();
   double base_degrees = std::numeric_limits<double>::quiet_NaN();  // a second
   bool base_heard = false;  // by an event, which the PIR pads have got too
+
+  void add(const Reading& reading);  // what does not fit is dropped
 };
 
 // The lock is never held while something is pushed, queried or posted, and no GStreamer object's lock is taken under it.
@@ -49,8 +52,9 @@ class Inputs {
   void hear(const CerberusPose& pose);
   void hear_base(double degrees_a_second, Time from);
 
-  // ---- PIR pads (those of pir_pad.hpp), counted in the order of their numbers
-  // A new one with the number in `name`, or the next free one; nullptr when it is taken. Floating.
+  // ---- PIR pads (those of pir_pad.hpp), counted in the order of their numbers. Rules know sensors by their places, so a pad
+  // that has no caps yet keeps the place of one sensor, and so does a number that no pad has, below one that a pad has.
+  // A new one with the number in `name`, or the next free one; nullptr when it is taken, or 16 or more. Floating.
   GstPad* add_pad(const char* name, GstPadTemplate* pad_template);
   void drop_pad(GstPad* pad);
   std::vector<GstPad*> pads();  // with a reference each
@@ -58,9 +62,9 @@ class Inputs {
 
   // ---- for the PIR pads, whose state the lock guards too
   std::mutex& lock() { return lock_; }
-  void tell(PirPad& pad);            // something was heard there; the lock is held
-  int sensors() const;               // of all pads' caps; the lock is held
-  void set(bool& flag, bool value);  // and wake whoever waits
+  void tell(PirPad& pad);                       // something was heard there; the lock is held
+  int places_besides(const PirPad& pad) const;  // as they are counted; the lock is held
+  void set(bool& flag, bool value);             // and wake whoever waits
   // Waits while a PIR source is so far ahead of the video that it can do so later; false: the video has ended.
   bool wait_for_video(std::unique_lock<std::mutex>& guard, const PirPad& pad, Time time);
 

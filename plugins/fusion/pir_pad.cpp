@@ -50,7 +50,7 @@ std::string take_caps(GstElement* element, PirPad& pir, const GstCaps* caps) {
                nullptr);
   const auto count = static_cast<int>(info.sensors);
   const std::lock_guard guard(pir.inputs->lock());
-  const int others = pir.inputs->sensors() - pir.sensors;
+  const int others = pir.inputs->places_besides(pir);
   if (others + count > sensing::kMaxSensors)
     return std::to_string(count) + " PIR sensors are too many besides the other pads' " +
            std::to_string(others) + ": " + std::to_string(sensing::kMaxSensors) + " in all can be fused.";

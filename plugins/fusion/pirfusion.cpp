@@ -9,7 +9,8 @@
  *
  * Pads: `sink` and `src` take any caps; caps, allocation and latency are theirs alone. Each `pir_%u` takes PIR readings
  * (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the order of their
- * numbers, 16 sensors at most). `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by
+ * numbers, 16 sensors at most). A pad that has no caps yet, and a number that is left out (`pir_1` without `pir_0`), counts
+ * as one sensor whose readings are invalid: the others keep their places, and rules mean whom they meant. `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by
  * default; let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
  *
  * - Live: a frame never waits; the newest reading counts that there is when it comes, even one that is younger than the
@@ -307,7 +308,11 @@ GstPad* request_new_pad(GstElement* element, GstPadTemplate* pad_template, const
                         const GstCaps*) {
   return guarded(element, nullptr, [&]() -> GstPad* {
     GstPad* pad = cerberus_pir_fusion_self(element)->priv->inputs.add_pad(name, pad_template);
-    if (!pad) return nullptr;
+    if (!pad) {
+      GST_WARNING_OBJECT(element, "no pad %s: it is there, or its sensors would be the 17th and more",
+                         name ? name : "pir_%u");
+      return nullptr;
+    }
     gst_element_add_pad(element, pad);
     if (GST_STATE(element) >= GST_STATE_PAUSED || GST_STATE_TARGET(element) >= GST_STATE_PAUSED)
       gst_pad_set_active(pad, TRUE);

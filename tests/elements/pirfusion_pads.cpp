@@ -99,13 +99,53 @@ GST_START_TEST(several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_num
   rig.read(0, {1, 0}, 0);
   rig.read(0, {2}, 1);
   const CerberusFusion before = rig.show(frame_at(0, 0));
-  assert_says(text(sensors(before)), "2210");
+  assert_says(text(sensors(before)), "2222210");
   rig.read(40 * kMs, {0}, 2);
   const CerberusFusion fusion = rig.show(frame_at(40 * kMs, 0));
-  assert_says(text(sensors(fusion)), "0210");
-  // The third sensor looks at 90 +- 30.
+  assert_says(text(sensors(fusion)), "0222210");
+  // The first sensor of pir_5 looks at 90 +- 30.
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
   fail_unless(std::abs(fusion.sector_from - 60) < 1e-9 && std::abs(fusion.sector_to - 120) < 1e-9);
+}
+GST_END_TEST
+
+// The paper's three, one a pad. Rules mean sensors by their places, whatever has become of the others.
+GST_START_TEST(a_sensor_of_which_nothing_is_known_keeps_its_place) {
+  const char* const kPads[] = {"pir_0", "pir_1", "pir_2"};
+  const double bearings[] = {0, -120, 120};
+  const auto turns = [&](const char* missing, bool requested, std::size_t fires, int rule,
+                         CerberusFusionAction action, const char* told) {
+    Rig rig(true, "rules=paper");
+    for (std::size_t i = 0; i < 3; ++i) {
+      const bool there = !g_str_equal(kPads[i], missing);
+      const std::string caps = with_sensors(1, bearings[i], 0, 120);
+      if (there || requested) rig.add_pir(there ? caps.c_str() : nullptr, kPads[i]);
+      if (there) rig.read(0, {guint8(i == fires)}, rig.pir.size() - 1);
+    }
+    const CerberusFusion fusion = rig.show(frame_at(0, 0));
+    assert_says(text(sensors(fusion)), told);
+    fail_unless_equals_int(fusion.rule, rule);
+    fail_unless_equals_int(fusion.action, action);
+  };
+  for (const bool requested : {true, false}) {
+    turns("pir_0", requested, 2, 4, CERBERUS_FUSION_TURN_RIGHT, "201");
+    turns("pir_0", requested, 1, 3, CERBERUS_FUSION_TURN_LEFT, "210");
+    turns("pir_1", requested, 2, 4, CERBERUS_FUSION_TURN_RIGHT, "021");
+    turns("pir_2", requested, 1, 3, CERBERUS_FUSION_TURN_LEFT, requested ? "012" : "01");
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(no_more_than_sixteen_places_are_given_away) {
+  Rig rig;
+  rig.add_pir(with_sensors(1, 0, 0).c_str(), "pir_15");  // the 16th
+  rig.read(0, {1});
+  assert_says(text(sensors(rig.at(0))), "2222222222222221");
+  fail_if(gst_element_request_pad_simple(rig.element, "pir_16"));
+  gst_harness_set_src_caps_str(rig.add_pir(nullptr, "pir_3"), with_sensors(2, 0, 9).c_str());
+  const std::string error = rig.error();
+  fail_unless(error.find("pir_3: 2 PIR sensors are too many besides the other pads' 15") != error.npos, "%s",
+              error.c_str());
 }
 GST_END_TEST
 
@@ -208,7 +248,7 @@ GST_START_TEST(pads_come_and_go_while_frames_pass) {
   assert_says(text(sensors(rig.at(80 * kMs))), "1001");
   EXPECT_CRITICAL(fail_if(gst_element_request_pad_simple(rig.element, "pir_1")));  // taken
   rig.remove_pir(0);
-  assert_says(text(sensors(rig.at(120 * kMs))), "1");
+  assert_says(text(sensors(rig.at(120 * kMs))), "21");
   rig.remove_pir(1);
   fail_unless_equals_int(rig.at(160 * kMs).n_sensors, 0);
   rig.add_pir();  // the first number is free again
@@ -369,6 +409,8 @@ static Suite* pirfusion_pads_suite(void) {
   tcase_add_test(tc, a_reading_of_unknown_value_or_wrong_size_is_invalid);
   tcase_add_test(tc, readings_and_frames_without_a_time_are_taken_as_they_come);
   tcase_add_test(tc, several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_numbers);
+  tcase_add_test(tc, a_sensor_of_which_nothing_is_known_keeps_its_place);
+  tcase_add_test(tc, no_more_than_sixteen_places_are_given_away);
   tcase_add_test(tc, each_pad_has_its_own_field_of_view);
   tcase_add_test(tc, new_pir_caps_count_from_their_first_reading_on);
   tcase_add_test(tc, what_happens_at_a_pir_pad_stays_there);
