@@ -58,15 +58,10 @@
 #include <gst/base/gstbasesink.h>
 #include <gst/video/video.h>
 
-#include <atomic>
-#include <mutex>
+#include <utility>
 
 #include "cerberus/private/element.hpp"
-#include "head_opening.hpp"
-#include "head_settings.hpp"
-#include "station.hpp"
-#include "ticker.hpp"
-#include "times.hpp"
+#include "conductor.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
 #define GST_CAT_DEFAULT pantiltsink_debug
@@ -76,9 +71,6 @@ namespace {
 
 using control::Time;
 using sensing::radians;
-
-// As kOpenPatience.
-constexpr auto kHaltPatience = std::chrono::milliseconds(30);
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw(ANY)"));
@@ -90,102 +82,19 @@ struct State {  // streaming thread only
 };
 
 struct Private {
-  GstBaseSink* sink = nullptr;
-  Adjustable<HeadSettings> settings;
-  std::mutex configuring;
-  std::atomic<double> field_of_view = 0;
-  const char* head = nullptr;  // interned, while started
-  std::atomic<bool> clock_driven = false, playing = false;
-  bool real = false;  // the head has a clock of its own
+  Conductor conductor;
   State state;
-  Station station;
-  std::mutex ticker_lock;  // start and stop; never held by the ticker's own thread
-  Ticker ticker;
 };
 
 CERBERUS_DEFINE_TYPE(CerberusPanTiltSink, cerberus_pan_tilt_sink, GstBaseSink, GST_TYPE_BASE_SINK, Private)
 
-void tell(const Private& self, const Outbox& out) {
-  send(out, self.sink, self.head);
-}
-
-// Passes on what the settings are now; any thread.
-void configure(Private& self) {
-  std::string wrong;
-  {
-    const std::lock_guard guard(self.configuring);
-    const HeadSettings s = self.settings.snapshot();
-    self.field_of_view = s.horizontal_fov;
-    self.station.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
-    wrong = self.station.set_limits(head_limits(s), clock_now(self.sink));
-  }
-  if (!wrong.empty())
-    GST_ELEMENT_WARNING(self.sink, LIBRARY, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
-                        ("head %s", self.head));
-}
-
-// Not GstBaseSink::start: that one adds an error message of its own.
-bool open(Private& self) {
-  return guarded(self.sink, false, [&] {
-    const HeadSettings s = self.settings.snapshot();
-    auto runner = open_head(GST_ELEMENT(self.sink), s, [&self] { self.ticker.wake(); });
-    if (!runner) return false;
-    self.head = g_intern_string(s.head.c_str());
-    self.state = {};
-    self.clock_driven = self.real = !runner->simulated();
-    self.station.open(std::move(runner), head_setup(s));
-    self.station.set_clock_driven(self.clock_driven);
-    configure(self);  // what has changed meanwhile, too
-    return true;
-  });
-}
-
-void stop_ticker(Private& self) {
-  const std::lock_guard guard(self.ticker_lock);
-  self.ticker.stop();
-}
-
-void start_ticker(Private& self) {
-  if (!self.clock_driven || !self.playing) return;
-  GstClock* clock = gst_element_get_clock(GST_ELEMENT(self.sink));
-  if (!clock) return;
-  {
-    const std::lock_guard guard(self.ticker_lock);
-    if (self.playing)
-      self.ticker.start(clock, [&self](GstClockTime time) {
-        Outbox out;
-        GstClockTime next = time + 20 * GST_MSECOND;
-        if (const auto running = clock_now(self.sink)) {
-          guarded(self.sink, [&] { next = time + clock_time(self.station.tick(*running, out) - *running); });
-        }
-        tell(self, out);
-        return next;
-      });
-  }
-  gst_object_unref(clock);
-}
-
-void halt(Private& self, const char* reason, std::chrono::milliseconds patience = kHaltPatience) {
-  Outbox out;
-  self.station.halt(reason, clock_now(self.sink), patience, out);
-  tell(self, out);
-}
-
-void close(Private& self) {
-  guarded(self.sink, [&] {
-    stop_ticker(self);
-    halt(self, "stopped");
-    self.station.close(kClosePatience);
-  });
-}
-
 gboolean cerberus_pan_tilt_sink_unlock(GstBaseSink* sink) {
-  cerberus_pan_tilt_sink_self(sink)->priv->station.interrupt(true);
+  cerberus_pan_tilt_sink_self(sink)->priv->conductor.station.interrupt(true);
   return TRUE;
 }
 
 gboolean cerberus_pan_tilt_sink_unlock_stop(GstBaseSink* sink) {
-  cerberus_pan_tilt_sink_self(sink)->priv->station.interrupt(false);
+  cerberus_pan_tilt_sink_self(sink)->priv->conductor.station.interrupt(false);
   return TRUE;
 }
 
@@ -210,38 +119,36 @@ gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query
 
 // Live or not decides what drives the head's time. Asked when the stream begins: then everybody upstream knows.
 void ask_whether_live(Private& self) {
-  if (self.state.live_known) return;
-  self.state.live_known = true;
+  if (std::exchange(self.state.live_known, true)) return;
+  Conductor& conductor = self.conductor;
   gboolean live = FALSE;
   GstQuery* query = gst_query_new_latency();
-  if (gst_pad_peer_query(GST_BASE_SINK_PAD(self.sink), query))
+  if (gst_pad_peer_query(GST_BASE_SINK_PAD(conductor.sink), query))
     gst_query_parse_latency(query, &live, nullptr, nullptr);
   gst_query_unref(query);
-  self.clock_driven = live || self.real;
-  self.station.set_clock_driven(self.clock_driven);
-  start_ticker(self);
+  conductor.set_live(live);
 }
 
 // A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts, then
 // has the lock while whoever was interrupted waits here, and goes on where it was when told to.
 template <typename Ask>
-GstFlowReturn persist(Private& self, Ask ask) {
+GstFlowReturn persist(const Conductor& conductor, Ask ask) {
   for (;;) {
     Outbox out;
     const Station::Answer answer = ask(out);
-    tell(self, out);
+    conductor.tell(out);
     if (answer != Station::Answer::interrupted) return GST_FLOW_OK;
-    const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink);
+    const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink);
     if (flow != GST_FLOW_OK) return flow;
   }
 }
 
 // When a frame was taken, in running time. Without a time stamp: now, or one frame after the last.
-std::optional<Time> running_time(const Private& self, GstClockTime pts, std::optional<Time> newest,
+std::optional<Time> running_time(const Conductor& conductor, GstClockTime pts, std::optional<Time> newest,
                                  Time length) {
-  const GstSegment& segment = self.sink->segment;
+  const GstSegment& segment = conductor.sink->segment;
   if (segment.format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID(pts)) {
-    if (self.clock_driven) return clock_now(self.sink);
+    if (conductor.clock_driven) return conductor.now();
     return newest ? *newest + length : Time::zero();
   }
   const GstClockTime running = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts);
@@ -250,34 +157,36 @@ std::optional<Time> running_time(const Private& self, GstClockTime pts, std::opt
 }
 
 GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
+  Conductor& conductor = self.conductor;
   // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
-  while (!self.playing)
-    if (const GstFlowReturn flow = gst_base_sink_wait_preroll(self.sink); flow != GST_FLOW_OK) return flow;
+  while (!conductor.playing)
+    if (const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink); flow != GST_FLOW_OK)
+      return flow;
   ask_whether_live(self);
   const GstVideoInfo& info = self.state.info;
   if (!GST_CLOCK_TIME_IS_VALID(duration) && info.fps_n > 0)
     duration = gst_util_uint64_scale_int(GST_SECOND, info.fps_d, info.fps_n);
   const Time length = time_of(GST_CLOCK_TIME_IS_VALID(duration) ? duration : 0);
-  const auto newest = self.station.newest();
-  const auto taken = running_time(self, pts, newest, length);
+  const auto newest = conductor.station.newest();
+  const auto taken = running_time(conductor, pts, newest, length);
   if (!taken || (newest && *taken <= *newest)) {
-    GST_DEBUG_OBJECT(self.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
+    GST_DEBUG_OBJECT(conductor.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
                      GST_TIME_ARGS(pts));
     return GST_FLOW_OK;
   }
   Station::Frame frame{.buffer = buffer,
                        .running = *taken,
                        .length = length,
-                       .now = clock_now(self.sink).value_or(*taken),
-                       .lens = vision::Lens(radians(self.field_of_view), {info.width, info.height}),
+                       .now = conductor.now().value_or(*taken),
+                       .lens = vision::Lens(radians(conductor.field_of_view), {info.width, info.height}),
                        .capture = std::nullopt};
   const CerberusPose* pose = buffer ? cerberus_buffer_peek_pose(buffer) : nullptr;
-  if (pose && g_strcmp0(pose->head, self.head) == 0) {
+  if (pose && g_strcmp0(pose->head, conductor.head) == 0) {
     control::Pose& capture = frame.capture.emplace();
     capture.pan.position = radians(pose->pan);
     capture.tilt.position = radians(pose->tilt);
   }
-  return persist(self, [&](Outbox& out) { return self.station.frame(frame, out); });
+  return persist(conductor, [&](Outbox& out) { return conductor.station.frame(frame, out); });
 }
 
 GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer) {
@@ -289,69 +198,71 @@ GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer
 
 gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
+  Conductor& conductor = self.conductor;
   const GstEventType type = GST_EVENT_TYPE(event);
   GstClockTime from = GST_CLOCK_TIME_NONE, length = GST_CLOCK_TIME_NONE;
   if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
-  if (type == GST_EVENT_EOS) guarded(sink, [&] { halt(self, "end of the stream"); });
-  if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { halt(self, "flushed"); });
+  if (type == GST_EVENT_EOS) guarded(sink, [&] { conductor.halt("end of the stream"); });
+  if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { conductor.halt("flushed"); });
   const gboolean done = cerberus_pan_tilt_sink_parent_class()->event(sink, event);
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
-      self.station.forget();
-      if (self.playing) self.station.resume(clock_now(self.sink));
+      conductor.station.forget();
+      if (conductor.playing) conductor.station.resume(conductor.now());
     }
     if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
-    const Time begin = running_time(self, sink->segment.start, {}, {}).value_or(Time::zero());
-    persist(self, [&](Outbox& out) { return self.station.announce(begin, out); });
+    const Time begin = running_time(conductor, sink->segment.start, {}, {}).value_or(Time::zero());
+    persist(conductor, [&](Outbox& out) { return conductor.station.announce(begin, out); });
   });
   return done;
 }
 
 // The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes under
 // the lock too: a frame that comes in the middle waits until the change is through.
-GstStateChangeReturn play(Private& self) {
-  GstElement* element = GST_ELEMENT(self.sink);
-  guarded(element, [&] { self.station.resume(clock_now(self.sink)); });
-  self.station.interrupt(true);
+GstStateChangeReturn play(Conductor& conductor) {
+  GstElement* element = GST_ELEMENT(conductor.sink);
+  guarded(element, [&] { conductor.station.resume(conductor.now()); });
+  conductor.station.interrupt(true);
   const GstStateChangeReturn done = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())
                                         ->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
-  GST_BASE_SINK_PREROLL_LOCK(self.sink);
-  self.station.interrupt(false);
-  self.playing = done != GST_STATE_CHANGE_FAILURE;
-  GST_BASE_SINK_PREROLL_SIGNAL(self.sink);
-  GST_BASE_SINK_PREROLL_UNLOCK(self.sink);
-  guarded(element, [&] { start_ticker(self); });
+  GST_BASE_SINK_PREROLL_LOCK(element);
+  conductor.station.interrupt(false);
+  conductor.playing = done != GST_STATE_CHANGE_FAILURE;
+  GST_BASE_SINK_PREROLL_SIGNAL(element);
+  GST_BASE_SINK_PREROLL_UNLOCK(element);
+  guarded(element, [&] { conductor.run(); });
   return done;
+}
+
+// The head is not opened in GstBaseSink::start: that one adds an error message of its own.
+bool open(Private& self) {
+  self.state = {};
+  return guarded(self.conductor.sink, false, [&] { return self.conductor.open(); });
 }
 
 GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, GstStateChange change) {
   Private& self = *cerberus_pan_tilt_sink_self(element)->priv;
-  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(self);
+  Conductor& conductor = self.conductor;
+  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(conductor);
   if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open(self)) return GST_STATE_CHANGE_FAILURE;
-  if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED) {
-    self.playing = false;
-    stop_ticker(self);
-    guarded(element, [&] { halt(self, "paused"); });
-  }
+  if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED)
+    guarded(element, [&] {
+      conductor.pause();
+      conductor.halt("paused");
+    });
   const GstStateChangeReturn done =
       GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->change_state(element, change);
   const bool failed = change == GST_STATE_CHANGE_READY_TO_PAUSED && done == GST_STATE_CHANGE_FAILURE;
-  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) close(self);
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) guarded(element, [&] { conductor.close(); });
   return done;
 }
 
 // Action signals: the application's own hand.
 template <typename Act>
 gboolean by_hand(CerberusPanTiltSink* sink, Act act) {
-  Private& self = *sink->priv;
-  return guarded(sink, FALSE, [&]() -> gboolean {
-    Outbox out;
-    const bool done = act(self.station, clock_now(self.sink), out);
-    tell(self, out);
-    return done;
-  });
+  return sink->priv->conductor.by_hand(act);
 }
 gboolean move_to(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
   return by_hand(sink, [=](Station& station, std::optional<Time> at, Outbox& out) {
@@ -378,18 +289,18 @@ gboolean follow(CerberusPanTiltSink* sink, guint id) {
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  Private& self = *cerberus_pan_tilt_sink_self(object)->priv;
-  self.settings.set(head_properties(), id, value);
-  guarded(self.sink, [&] { configure(self); });
+  Conductor& conductor = cerberus_pan_tilt_sink_self(object)->priv->conductor;
+  conductor.settings.set(head_properties(), id, value);
+  guarded(conductor.sink, [&] { conductor.configure(); });
 }
 
 void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_pan_tilt_sink_self(object)->priv->settings.get(head_properties(), id, value);
+  cerberus_pan_tilt_sink_self(object)->priv->conductor.settings.get(head_properties(), id, value);
 }
 
 void cerberus_pan_tilt_sink_init(CerberusPanTiltSink* self) {
   GstBaseSink* sink = GST_BASE_SINK(self);
-  self->priv->sink = sink;
+  self->priv->conductor.sink = sink;
   gst_base_sink_set_sync(sink, FALSE);
   gst_base_sink_set_async_enabled(sink, FALSE);
   gst_base_sink_set_qos_enabled(sink, FALSE);

@@ -329,7 +329,6 @@ void Station::resume(std::optional<Time> at) {
 
 bool Station::override(const char* reason, const HeadCommand& command, std::optional<Time> at, Outbox& out) {
   manual_ = true;
-  pilot_.follow(0);
   wanted_ = command;
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : told_;

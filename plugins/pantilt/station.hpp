@@ -103,7 +103,6 @@ class Station {
   Time timeout_{};
   Time late_since_ = control::kNever;
   Status status_;
-  std::vector<control::Pose> poses_;  // tick() or frame(), whoever asks
 };
 
 }  // namespace cerberus::plugin

@@ -192,10 +192,18 @@ GST_START_TEST(a_flush_does_not_unmake_the_choice) {
   scene.rig.begin();
   scene.rig.poses();
   scene.next = 0;
-  scene.frames(120, true, false);  // 5 s of the time that has begun anew
-  scene.assert_no_warning();
   scene.frames(50);
   scene.assert_looks_at(kSecond);
+  scene.frames(150);
+  fail_unless(gst_harness_push_event(scene.rig.harness, gst_event_new_flush_start()));
+  fail_unless(gst_harness_push_event(scene.rig.harness, gst_event_new_flush_stop(TRUE)));
+  scene.rig.begin();
+  scene.rig.poses();
+  scene.next = 0;
+  scene.frames(125, true, false);
+  scene.assert_no_warning();
+  scene.frames(1, true, false);  // 5 s of the time that has begun anew
+  scene.assert_warns_of("2");
 }
 GST_END_TEST
 

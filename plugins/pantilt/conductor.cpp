@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "conductor.hpp"
+
+#include "head_opening.hpp"
+
+namespace cerberus::plugin {
+
+namespace {
+
+// As kOpenPatience.
+constexpr auto kHaltPatience = std::chrono::milliseconds(30);
+
+}  // namespace
+
+bool Conductor::open() {
+  const HeadSettings s = settings.snapshot();
+  auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); });
+  if (!runner) return false;
+  head = g_intern_string(s.head.c_str());
+  clock_driven = real_ = !runner->simulated();
+  station.open(std::move(runner), head_setup(s));
+  station.set_clock_driven(clock_driven);
+  configure();  // what has changed meanwhile, too
+  return true;
+}
+
+void Conductor::close() {
+  pause();
+  halt("stopped");
+  station.close(kClosePatience);
+}
+
+void Conductor::configure() {
+  std::string wrong;
+  {
+    const std::lock_guard guard(configuring_);
+    const HeadSettings s = settings.snapshot();
+    field_of_view = s.horizontal_fov;
+    station.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
+    wrong = station.set_limits(head_limits(s), now());
+  }
+  if (!wrong.empty())
+    GST_ELEMENT_WARNING(sink, LIBRARY, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
+                        ("head %s", head));
+}
+
+void Conductor::halt(const char* reason) {
+  Outbox out;
+  station.halt(reason, now(), kHaltPatience, out);
+  tell(out);
+}
+
+void Conductor::set_live(bool live) {
+  clock_driven = live || real_;
+  station.set_clock_driven(clock_driven);
+  run();
+}
+
+GstClockTime Conductor::tick(GstClockTime time) {
+  Outbox out;
+  GstClockTime next = time + 20 * GST_MSECOND;
+  if (const auto running = now())
+    guarded(sink, [&] { next = time + clock_time(station.tick(*running, out) - *running); });
+  tell(out);
+  return next;
+}
+
+void Conductor::run() {
+  if (!clock_driven || !playing) return;
+  GstClock* clock = gst_element_get_clock(GST_ELEMENT(sink));
+  if (!clock) return;
+  {
+    const std::lock_guard guard(ticker_lock_);
+    if (playing) ticker_.start(clock, [this](GstClockTime time) { return tick(time); });
+  }
+  gst_object_unref(clock);
+}
+
+void Conductor::pause() {
+  const std::lock_guard guard(ticker_lock_);
+  playing = false;
+  ticker_.stop();
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Leads a station through the states of its sink: opens and closes the head by the settings, lets the clock's time pass where
+// that moves the head, and sends off what the station says. Thread-safe where nothing else is said.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+
+#include "cerberus/private/element.hpp"
+#include "head_settings.hpp"
+#include "station.hpp"
+#include "ticker.hpp"
+#include "times.hpp"
+
+namespace cerberus::plugin {
+
+struct Conductor {
+  GstBaseSink* sink = nullptr;
+  Adjustable<HeadSettings> settings;
+  Station station;
+  const char* head = nullptr;  // its name, interned, while it is open
+  std::atomic<double> field_of_view = 0;
+  std::atomic<bool> clock_driven = false, playing = false;
+
+  // false: the sink has said why. From READY to PAUSED and back.
+  bool open();
+  void close();
+  // Passes on what the settings are now.
+  void configure();
+  void halt(const char* reason);
+  // Once the stream has told.
+  void set_live(bool live);
+  // Lets the clock's time pass from now on, if it moves the head and the sink plays; until pause().
+  void run();
+  void pause();
+
+  std::optional<control::Time> now() const { return clock_now(sink); }
+  void tell(const Outbox& out) const { send(out, sink, head); }
+  // act(station, now, outbox) -> done
+  template <typename Act>
+  gboolean by_hand(Act act) {
+    return guarded(sink, FALSE, [&]() -> gboolean {
+      Outbox out;
+      const bool done = act(station, now(), out);
+      tell(out);
+      return done;
+    });
+  }
+
+ private:
+  GstClockTime tick(GstClockTime time);
+
+  bool real_ = false;       // the head has a clock of its own
+  std::mutex configuring_;  // the newest settings come last
+  std::mutex ticker_lock_;  // start and stop; never held by the ticker's own thread
+  Ticker ticker_;
+};
+
+}  // namespace cerberus::plugin
