@@ -27,10 +27,6 @@ Lens::Lens(double horizontal_fov, Size frame) : frame_(frame) {
     focal_ = frame.width / 2.0 / std::tan(horizontal_fov / 2);
 }
 
-double Lens::vertical_fov() const {
-  return known() ? 2 * std::atan(frame_.height / 2.0 / focal_) : kNan;
-}
-
 Lens::Ray Lens::ray(Point p, double tilt) const {
   const double right = (p.x - frame_.width / 2.0) / focal_, up = (frame_.height / 2.0 - p.y) / focal_;
   const double c = std::cos(tilt), s = std::sin(tilt);

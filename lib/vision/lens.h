@@ -45,7 +45,6 @@ class Lens {
 
   bool known() const { return focal_ > 0; }
   double focal_length() const { return focal_; }  // pixels
-  double vertical_fov() const;                    // radians
 
   // Where a point of the picture lies when the camera looks to (pan, tilt).
   Direction direction(Point p, double pan, double tilt) const;

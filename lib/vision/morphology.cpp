@@ -108,17 +108,13 @@ bool fill_runs(Word* seeds, const Word* within, int words) {
   return grew;
 }
 
-// Seeds of a row := seeds | the neighbouring row's reach (8-connected when wide, else straight), inside
-// `within`.
-bool take_over(Word* row, const Word* neighbour, const Word* within, Word* scratch, int words, bool wide) {
+// Seeds of a row := seeds | the neighbouring row's reach (8-connected), inside `within`.
+bool take_over(Word* row, const Word* neighbour, const Word* within, Word* scratch, int words) {
   Word any = 0;
   for (int i = 0; i < words; ++i) {
-    Word reach = neighbour[i];
-    if (wide) {
-      reach |= neighbour[i] << 1 | neighbour[i] >> 1;
-      if (i > 0) reach |= neighbour[i - 1] >> 63;
-      if (i + 1 < words) reach |= neighbour[i + 1] << 63;
-    }
+    Word reach = neighbour[i] | neighbour[i] << 1 | neighbour[i] >> 1;
+    if (i > 0) reach |= neighbour[i - 1] >> 63;
+    if (i + 1 < words) reach |= neighbour[i + 1] << 63;
     scratch[i] = reach & within[i] & ~row[i];
     any |= scratch[i];
   }
@@ -129,14 +125,14 @@ bool take_over(Word* row, const Word* neighbour, const Word* within, Word* scrat
 }
 
 // Sweeps down and up until nothing grows: a spiral needs many sweeps, ordinary shapes two or three.
-void grow(MutableBitView seeds, BitView within, Word* scratch, bool wide) {
+void grow(MutableBitView seeds, BitView within, Word* scratch) {
   for (int y = 0; y < seeds.height; ++y) fill_runs(seeds.row(y), within.row(y), seeds.width);
   for (bool changed = true; changed;) {
     changed = false;
     for (int y = 1; y < seeds.height; ++y)
-      changed |= take_over(seeds.row(y), seeds.row(y - 1), within.row(y), scratch, seeds.width, wide);
+      changed |= take_over(seeds.row(y), seeds.row(y - 1), within.row(y), scratch, seeds.width);
     for (int y = seeds.height - 2; y >= 0; --y)
-      changed |= take_over(seeds.row(y), seeds.row(y + 1), within.row(y), scratch, seeds.width, wide);
+      changed |= take_over(seeds.row(y), seeds.row(y + 1), within.row(y), scratch, seeds.width);
   }
 }
 
@@ -170,10 +166,10 @@ void Morphology::open(MutableBitView bits, int width, int side) {
 // Counts by bit-sliced addition: three bits of sum for each row's triple, then the column's.
 void Morphology::vote(MutableBitView bits, int width, int least) {
   if (bits.empty()) return;
-  a_.resize(bits.size());
-  copy(bits, a_.view());
+  scratch_.resize(bits.size());
+  copy(bits, scratch_.view());
   const Word last = last_word_bits(width);
-  const MutableBitView in = a_.view();
+  const MutableBitView in = scratch_.view();
   for (int y = 0; y < bits.height; ++y) {
     for (int i = 0; i < bits.width; ++i) {
       if (in.row(y)[i] == 0) continue;  // most of a mask; only what is set can be kept
@@ -207,45 +203,9 @@ void Morphology::vote(MutableBitView bits, int width, int least) {
 void Morphology::reconstruct(MutableBitView seeds, BitView within, int width) {
   (void)width;
   if (seeds.empty()) return;
-  a_.resize(seeds.size());
+  scratch_.resize(seeds.size());
   intersect(seeds, within, seeds);
-  grow(seeds, within, a_.view().row(0), true);
-}
-
-void Morphology::fill_holes(MutableBitView bits, int width) {
-  if (bits.empty()) return;
-  a_.resize(bits.size());
-  b_.resize(bits.size());
-  const MutableBitView outside = b_.view();
-  invert(bits, width);  // now: background
-  b_.fill_bytes(0);
-  const int right = width - 1;
-  for (int y = 0; y < bits.height; ++y) {
-    Word* row = outside.row(y);
-    if (y == 0 || y == bits.height - 1)
-      for (int i = 0; i < bits.width; ++i) row[i] = bits.row(y)[i];
-    row[0] |= bits.row(y)[0] & 1;
-    row[right / 64] |= bits.row(y)[right / 64] & (Word{1} << (right % 64));
-  }
-  grow(outside, bits, a_.view().row(0), false);
-  copy(outside, bits);
-  invert(bits, width);
-}
-
-void Morphology::close(MutableGrayView mask, int side) {
-  if (mask.empty()) return;
-  packed_.resize(bit_mask_size(mask.size()));
-  pack(mask, packed_.view());
-  close(packed_.view(), mask.width, side);
-  unpack(packed_.view(), mask);
-}
-
-void Morphology::open(MutableGrayView mask, int side) {
-  if (mask.empty()) return;
-  packed_.resize(bit_mask_size(mask.size()));
-  pack(mask, packed_.view());
-  open(packed_.view(), mask.width, side);
-  unpack(packed_.view(), mask);
+  grow(seeds, within, scratch_.view().row(0));
 }
 
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Mathematical morphology of masks with square elements, and what is built on it: closing, opening,
-// reconstruction, hole filling. A 320x240 closing of 11 takes a few microseconds.
+// Mathematical morphology of masks with square elements, and what is built on it: closing, opening, reconstruction. A
+// 320x240 closing of 11 takes a few microseconds.
 #pragma once
 
 #include "vision/image.h"
@@ -23,17 +23,11 @@ class Morphology {
   void vote(MutableBitView bits, int width, int least);
   // Reconstruction: seeds := the 8-connected parts of `within` that hold a seed.
   void reconstruct(MutableBitView seeds, BitView within, int width);
-  // Fills what the set pixels enclose: background that is not 4-connected to the picture's border.
-  void fill_holes(MutableBitView bits, int width);
 
-  // The same closing on a mask of bytes (0 = not set; result 0 or 255).
-  void close(MutableGrayView mask, int side);
-  void open(MutableGrayView mask, int side);
-
-  std::size_t bytes() const { return a_.bytes() + b_.bytes() + packed_.bytes(); }
+  std::size_t bytes() const { return scratch_.bytes(); }
 
  private:
-  BitMask a_, b_, packed_;
+  BitMask scratch_;
 };
 
 // The definitions, one pixel at a time: what the tests hold the fast ones against.
