@@ -160,6 +160,21 @@ GST_START_TEST(in_a_pause_the_head_stays_and_the_limits_count_afterwards) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_real_head_is_told_of_limits_when_the_pause_ends) {
+  Pipe record;
+  Rig rig("driver=scripted latency=0 script=\"record " + record.writer() + "\"", Source::live);
+  fail_unless(record.line().starts_with("open"));
+  fail_unless(rig.call("move-to", 90, 0));
+  fail_unless(record.line().starts_with("command"));
+  gst_element_set_state(rig.element, GST_STATE_PAUSED);
+  fail_unless(record.line().starts_with("stop"));
+  g_object_set(rig.element, "pan-max", 45.0, nullptr);
+  gst_element_set_state(rig.element, GST_STATE_PLAYING);
+  fail_unless(record.line().starts_with("limit"));  // once
+  fail_unless(record.line().starts_with("command"));
+}
+GST_END_TEST
+
 // Without a frame, while the clock runs and the application has the head in its hand.
 GST_START_TEST(with_a_clock_a_limit_counts_without_a_frame) {
   Pipe record;
@@ -218,6 +233,7 @@ Suite* pantiltsink_limits_suite() {
   tcase_add_test(tests, a_new_acceleration_holds_for_the_next_turn);
   tcase_add_test(tests, limits_that_cannot_be_are_warned_of_and_change_nothing);
   tcase_add_test(tests, in_a_pause_the_head_stays_and_the_limits_count_afterwards);
+  tcase_add_test(tests, a_real_head_is_told_of_limits_when_the_pause_ends);
   tcase_add_test(tests, with_a_clock_a_limit_counts_without_a_frame);
   tcase_add_test(tests, a_driver_that_refuses_limits_is_warned_of);
   tcase_add_test(tests, what_is_read_at_the_start_says_so);
