@@ -10,6 +10,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "launch.h"
+
 namespace cerberus::bench {
 
 using vision::Box;
@@ -60,14 +62,8 @@ void match(Counts& counts, std::span<const Box> found, std::span<const Box> trut
 
 bool for_each_sample(const std::string& line, const std::function<void(GstSample*, int)>& each,
                      const std::function<void(GstElement*)>& begin) {
-  GError* error = nullptr;
-  GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
-  if (error) {
-    std::fprintf(stderr, "bench: %s\n", error->message);
-    g_clear_error(&error);
-    if (pipeline) gst_object_unref(pipeline);
-    return false;
-  }
+  GstElement* pipeline = launch(line);
+  if (!pipeline) return false;
   if (begin) begin(pipeline);
   GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
   gst_element_set_state(pipeline, GST_STATE_PLAYING);

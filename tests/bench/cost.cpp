@@ -13,6 +13,7 @@
 #include <opencv2/video/background_segm.hpp>
 
 #include "frames.h"
+#include "launch.h"
 #include "support/allocations.h"
 #include "support/chain.h"
 #include "support/data.h"
@@ -56,14 +57,8 @@ GstPadProbeReturn on_source_item(GstPad*, GstPadProbeInfo* info, gpointer data) 
 double run_pipeline(const std::string& elements, const Frames& frames, std::size_t count) {
   const std::string line = "appsrc name=in format=time block=true max-bytes=0 max-buffers=8 ! " + elements +
                            " ! fakesink name=out sync=false";
-  GError* error = nullptr;
-  GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
-  if (error) {
-    std::fprintf(stderr, "bench: %s\n", error->message);
-    g_clear_error(&error);
-    if (pipeline) gst_object_unref(pipeline);
-    return -1;
-  }
+  GstElement* pipeline = launch(line);
+  if (!pipeline) return -1;
   GstElement* in = gst_bin_get_by_name(GST_BIN(pipeline), "in");
   GstCaps* caps = gst_caps_from_string((frames.caps + ", framerate=(fraction)30/1").c_str());
   g_object_set(in, "caps", caps, nullptr);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "launch.h"
+
 namespace cerberus::bench {
 
 std::size_t Frames::loop(std::size_t n) const {
@@ -22,14 +24,8 @@ std::optional<Frames> load_frames(const std::string& source, const char* format,
   std::string line = source + " ! videoconvert ! videoscale ! video/x-raw,format=" + format;
   if (width > 0) line += ",width=" + std::to_string(width) + ",height=" + std::to_string(height);
   line += ",pixel-aspect-ratio=1/1 ! appsink name=out sync=false max-buffers=4";
-  GError* error = nullptr;
-  GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
-  if (error) {
-    std::fprintf(stderr, "bench: %s\n", error->message);
-    g_clear_error(&error);
-    if (pipeline) gst_object_unref(pipeline);
-    return std::nullopt;
-  }
+  GstElement* pipeline = launch(line);
+  if (!pipeline) return std::nullopt;
   GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   Frames frames;
