@@ -21,6 +21,8 @@ constexpr CerberusCameraMotion kUnknown = {
     .residual = 0,
     .still = FALSE,
     .scene_age = 0,
+    .path_id = 0,
+    .path = {1, 0, 0, 0, 1, 0, 0, 0, 1},
     ._cerberus_reserved = {},
 };
 
@@ -29,14 +31,19 @@ gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
   return TRUE;
 }
 
+void scale(gdouble (&matrix)[9], Size from, Size to) {
+  Transform transform;
+  std::copy(std::begin(matrix), std::end(matrix), transform.m.begin());
+  transform = transform.rescaled(from, to);  // identity stays exactly identity
+  std::copy(transform.m.begin(), transform.m.end(), matrix);
+}
+
 // The same motion in a picture of another size. The residual scales by the geometric mean of both directions.
 CerberusCameraMotion scaled(const CerberusCameraMotion& motion, Size from, Size to) {
   CerberusCameraMotion result = motion;
   if (from == to || from.area() <= 0 || to.area() <= 0) return result;
-  Transform transform;
-  std::copy(std::begin(motion.matrix), std::end(motion.matrix), transform.m.begin());
-  transform = transform.rescaled(from, to);  // identity stays exactly identity
-  std::copy(transform.m.begin(), transform.m.end(), result.matrix);
+  scale(result.matrix, from, to);
+  scale(result.path, from, to);
   result.residual *= std::sqrt(static_cast<double>(to.area()) / static_cast<double>(from.area()));
   return result;
 }

@@ -17,6 +17,10 @@ G_BEGIN_DECLS
  * @still: the camera stands: @matrix is exactly identity
  * @scene_age: frames of this scene so far, this one included: 1 is the first frame after the start, a cut, a seek or a
  *     gap (it has no predecessor, and everybody drops history); 0 is unknown
+ * @path_id: the same for all frames that @path connects; 0 is none
+ * @path: (array fixed-size=9): where the picture went from the frame at which the path began to this one, as @matrix. Who
+ *     missed frames in between learns from two frames of one path how the camera moved from one to the other: the
+ *     later one's path times the inverse of the earlier one's
  *
  * The camera's own motion between two consecutive frames.
  *
@@ -30,6 +34,8 @@ struct _CerberusCameraMotion {
   gdouble residual;
   gboolean still;
   guint scene_age;
+  guint path_id;
+  gdouble path[9];
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <iterator>
 #include <string>
 
+#include "camera_path.hpp"
 #include "history.hpp"
 #include "properties.hpp"
 #include "room.hpp"
@@ -46,10 +46,12 @@ struct AnalysisPrivate {
   bool planes_wanted = false;
   std::atomic<bool> ask_for_planes = true;  // whether somebody downstream wants them; set by any thread
   History history;
-  guint64 number = 0;     // analysed frames
-  guint scene_age = 0;    // of the last frame's camera motion, 0 = it had none
-  std::string complaint;  // about the caps, once said
-  bool warned = false;    // about an unusable buffer, once a stream
+  guint64 number = 0;  // analysed frames
+  CameraFollower camera;
+  int breaks = 0;           // of late, for want of frames that were dropped upstream; see complain_of_drops()
+  std::string complaint;    // about the caps, once said
+  bool warned = false;      // about an unusable buffer, once a stream
+  bool complained = false;  // about dropped frames, likewise
 };
 
 namespace {
@@ -60,26 +62,6 @@ AnalysisPrivate& priv_of(gpointer instance) {
 
 GstBaseTransformClass* parent_class();
 
-// The camera's motion as the buffer tells it. Returns false when it starts from another frame than our last one.
-bool read_camera_motion(AnalysisPrivate& priv, Frame& frame) {
-  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(frame.buffer);
-  if (!meta) {
-    const bool lost = priv.scene_age != 0;  // the camera was measured until now: we do not know where it went
-    priv.scene_age = 0;
-    return !lost;
-  }
-  const CerberusCameraMotion& motion = meta->motion;
-  const bool follows = motion.scene_age != 1 && motion.from == frame.previous &&
-                       (motion.scene_age == 0 || motion.scene_age == priv.scene_age + 1);
-  priv.scene_age = motion.scene_age;
-  vision::Transform transform;
-  std::copy(std::begin(motion.matrix), std::end(motion.matrix), transform.m.begin());
-  // A stranger's numbers may be anything.
-  if (!follows || !transform.is_sane(frame.size())) return false;
-  frame.motion = {transform, motion.still != FALSE};
-  return true;
-}
-
 // What the pose on the buffer says of the camera's tilt, radians.
 double read_tilt(const Frame& frame) {
   const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer);
@@ -89,29 +71,56 @@ double read_tilt(const Frame& frame) {
   return std::abs(tilt) <= 90 ? radians(tilt) : 0;  // a stranger's numbers may be anything
 }
 
+// Nobody upstream has analysed this frame.
+bool is_first_stage(GstBuffer* buffer) {
+  return !cerberus_buffer_get_camera_motion_meta(buffer) && !regions_known(buffer) &&
+         !cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_LUMA);
+}
+
+// Frames that are dropped upstream may blind a stage; who does not know sees nothing at all, and no reason.
+void complain_of_drops(GstBaseTransform* trans, AnalysisPrivate& priv, bool broken) {
+  constexpr int kMany = 8;
+  priv.breaks = std::clamp(priv.breaks + (broken ? 2 : -1), 0, 2 * kMany);
+  if (priv.breaks < 2 * kMany || priv.complained) return;
+  priv.complained = true;
+  GST_ELEMENT_WARNING(
+      trans, STREAM, FAILED,
+      ("Most frames do not continue the ones before them, and nothing can be found: drop frames in front of "
+       "`cameramotion`, by `videorate drop-only=true` or a leaky queue, or behind `motiontrack`."),
+      ("the buffers are marked DISCONT, or their camera motion starts from frames that never came"));
+}
+
 Frame begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  using Link = CameraFollower::Link;
   Frame frame;
   frame.buffer = buffer;
   frame.info = &priv.info;
   if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
     frame.running_time =
         gst_segment_to_running_time(&trans->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
-  if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT)) priv.history.drop();
+  const bool measures = priv.analyser->measures_camera();
+  const CerberusCameraMotionMeta* meta = measures ? nullptr : cerberus_buffer_get_camera_motion_meta(buffer);
+  const CameraFollower::Step camera =
+      priv.camera.next(meta ? &meta->motion : nullptr, priv.history.previous(), frame.size());
+
   const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
-  const History::Step step =
-      priv.history.next(frame.running_time, fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0);
-  frame.fresh = step.fresh;
-  frame.seconds = step.seconds;
-  frame.previous = step.previous;
+  const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
+  // A mark of DISCONT may be a cut or dropped frames. Who measures the camera sees a cut among dropped frames, and tells
+  // the others.
+  const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
+                      !(measures && priv.history.misses_frames(frame.running_time, nominal));
+  if (marked) priv.history.drop();
+  const History::Step step = priv.history.next(frame.running_time, nominal);
+  frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
   frame.planes_wanted = priv.planes_wanted;
   frame.tilt = read_tilt(frame);
-  if (!priv.analyser->measures_camera() && !read_camera_motion(priv, frame)) frame.fresh = true;
-  if (frame.fresh) {
-    frame.motion = {};
-    frame.seconds = 0;
-    frame.previous = GST_CLOCK_TIME_NONE;
+  if (!frame.fresh) {
+    frame.seconds = step.seconds;
+    frame.previous = step.previous;
+    frame.motion = camera.motion;
   }
+  complain_of_drops(trans, priv, camera.link == Link::lost || (marked && is_first_stage(buffer)));
   return frame;
 }
 
@@ -149,6 +158,7 @@ void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
   priv.info = info;
   priv.have_info = true;
   priv.warned = false;
+  priv.complained = false;
   priv.ask_for_planes = true;
 }
 
@@ -214,7 +224,8 @@ gboolean start(GstBaseTransform* trans) {
     priv.history.drop();
     priv.have_info = false;
     priv.warned = false;
-    priv.scene_age = 0;
+    priv.breaks = 0;
+    priv.camera.forget();
     priv.complaint.clear();
     return priv.analyser->start();
   });

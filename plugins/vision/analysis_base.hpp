@@ -7,8 +7,9 @@
 // that no exception leaves.
 //
 // A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new segment, DISCONT, time
-// running backwards, a gap in time, a buffer without a usable picture, a cut seen by `cameramotion`, and when the
-// camera's motion starts from another frame than the last one seen here (something between dropped frames).
+// running backwards, a gap in time, a buffer without a usable picture, a cut seen by `cameramotion`, and when it is
+// not known how the camera moved since the last frame seen here. Frames dropped between the stages, or in front of all,
+// end nothing: see camera_path.hpp.
 #pragma once
 
 #include <gst/base/gstbasetransform.h>

@@ -38,6 +38,7 @@
 #include <string>
 
 #include "analysis_element.hpp"
+#include "camera_path.hpp"
 #include "carrier.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
@@ -78,6 +79,7 @@ struct State {
 
 struct Private final : StatefulAnalyser<Settings, State> {
   Carrier carrier;
+  CameraPath path;
 
   bool measures_camera() const override { return true; }
   bool start() override {
@@ -113,6 +115,7 @@ bool Private::analyse(Frame& frame) {
   motion.residual = result.residual * frame.size().width / picture.width();
   motion.still = result.still;
   motion.scene_age = static_cast<guint>(std::max(result.scene_age, 1));
+  path.extend(motion, frame.size());
   cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
   GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
                  motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);

@@ -11,6 +11,7 @@ namespace {
 constexpr double kGapFactor = 3.0;
 constexpr double kGapSeconds = 0.25;
 constexpr double kSmoothing = 0.1;
+constexpr double kHoleFactor = 1.5;  // of the usual distance: from here a frame is missing
 }  // namespace
 
 History::Step History::next(GstClockTime time, double nominal) {
@@ -39,6 +40,13 @@ History::Step History::next(GstClockTime time, double nominal) {
   previous_ = time;
   if (timed) newest_ = time;
   return step;
+}
+
+bool History::misses_frames(GstClockTime time, double nominal) const {
+  if (!any_ || !GST_CLOCK_TIME_IS_VALID(time) || !GST_CLOCK_TIME_IS_VALID(previous_) || time < previous_)
+    return false;
+  const double expected = nominal > 0 ? nominal : usual_;
+  return expected > 0 && static_cast<double>(time - previous_) / GST_SECOND > kHoleFactor * expected;
 }
 
 }  // namespace cerberus::plugin

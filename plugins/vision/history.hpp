@@ -12,6 +12,9 @@ class History {
   // The next frame starts a scene: caps, segment, flush, DISCONT, an unusable buffer.
   void drop() { any_ = false; }
 
+  // Running time of the last frame, or NONE.
+  GstClockTime previous() const { return previous_; }
+
   struct Step {
     bool fresh = true;   // no predecessor: everything learnt from earlier frames is dropped
     double seconds = 0;  // since the previous frame; 0: none, or not known
@@ -20,6 +23,8 @@ class History {
 
   // time: running time of the frame, or NONE. nominal: frame distance of the caps in seconds, 0 = variable.
   Step next(GstClockTime time, double nominal);
+  // Whether frames are missing between the last one and this: what a queue that leaks marks DISCONT, as others mark a cut.
+  bool misses_frames(GstClockTime time, double nominal) const;
 
  private:
   bool any_ = false;  // a frame of this scene was seen

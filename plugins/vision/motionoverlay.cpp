@@ -46,6 +46,7 @@
 #include <memory>
 #include <vector>
 
+#include "camera_path.hpp"
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/video.hpp"
 #include "composition.hpp"
@@ -58,7 +59,6 @@ namespace {
 using cerberus::plugin::Adjustable;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
-using cerberus::vision::Transform;
 namespace draw = cerberus::draw;
 
 GST_DEBUG_CATEGORY_STATIC(motionoverlay_debug);
@@ -109,6 +109,7 @@ struct State {  // streaming thread only
   double time = 0;      // s, of the last frame
   bool fresh = true;    // the next frame has no predecessor
   bool warned = false;  // a frame that cannot be written
+  cerberus::plugin::CameraFollower camera;
   cerberus::vision::Trails trails;
   draw::Painter painter;
   std::vector<draw::Object> objects;
@@ -286,12 +287,13 @@ void read_objects(State& state, GstBuffer* buffer) {
 }
 
 void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
-  Transform motion;
-  if (const auto* camera = cerberus_buffer_get_camera_motion_meta(buffer)) {
-    std::copy_n(camera->motion.matrix, motion.m.size(), motion.m.begin());
-    if (camera->motion.scene_age == 1) state.fresh = true;
-  }
-  if (GST_BUFFER_IS_DISCONT(buffer)) state.fresh = true;
+  using Link = cerberus::plugin::CameraFollower::Link;
+  const cerberus::vision::Size frame{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
+  const auto* meta = cerberus_buffer_get_camera_motion_meta(buffer);
+  const CerberusCameraMotion* measured = meta ? &meta->motion : nullptr;
+  const auto camera = state.camera.next(measured, measured ? measured->from : GST_CLOCK_TIME_NONE, frame);
+  if (camera.link == Link::cut || camera.link == Link::lost) state.fresh = true;
+  if (GST_BUFFER_IS_DISCONT(buffer) && !camera.connected) state.fresh = true;
   const double nominal = GST_VIDEO_INFO_FPS_N(&state.info) > 0
                              ? double(GST_VIDEO_INFO_FPS_D(&state.info)) / GST_VIDEO_INFO_FPS_N(&state.info)
                              : 1 / 30.0;
@@ -300,9 +302,9 @@ void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
   if (state.fresh || time < state.time) state.trails.reset();
   state.fresh = false;
   state.time = time;
-  const cerberus::vision::Size frame{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
   if (settings.trails)
-    state.trails.update(time, double(settings.trail_time) / GST_SECOND, motion, frame, state.marks);
+    state.trails.update(time, double(settings.trail_time) / GST_SECOND, camera.motion.transform, frame,
+                        state.marks);
   else
     state.trails.reset();
 }

@@ -76,6 +76,9 @@ inline GstBuffer* frame_with_everything(gsize bytes = kWidth * kHeight * 3 / 2) 
   motion.confidence = 0.75;
   motion.residual = 0.5;
   motion.scene_age = 7;
+  motion.path_id = 4;
+  motion.path[2] = 21;
+  motion.path[5] = -14;
   cerberus_buffer_add_camera_motion_meta(frame, &motion);
 
   CerberusThreshold threshold{};

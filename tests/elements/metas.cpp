@@ -104,7 +104,12 @@ START_TEST(scaling_scales_the_camera_motion) {
   g_autoptr(GstBuffer) out = pass(passage_named("videoscale"));
   const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
   const double expected[9] = {1, 0, 12, 0, 1, -1, 0, 0, 1};
-  for (int i = 0; i < 9; ++i) fail_unless(std::abs(meta->motion.matrix[i] - expected[i]) < 1e-12);
+  const double way[9] = {1, 0, 84, 0, 1, -7, 0, 0, 1};
+  for (int i = 0; i < 9; ++i) {
+    fail_unless(std::abs(meta->motion.matrix[i] - expected[i]) < 1e-12);
+    fail_unless(std::abs(meta->motion.path[i] - way[i]) < 1e-12);
+  }
+  fail_unless_equals_int(meta->motion.path_id, 4);
   fail_unless(std::abs(meta->motion.residual - 0.5 * std::sqrt(2.0)) < 1e-12);
 }
 END_TEST

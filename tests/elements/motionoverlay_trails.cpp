@@ -9,11 +9,14 @@ using namespace outputs;
 
 namespace {
 
-void set_camera(GstBuffer* buffer, double dx, guint scene_age) {
+// way: of the picture since a path began; 0 = there is no path.
+void set_camera(GstBuffer* buffer, double dx, guint scene_age, double way = 0) {
   CerberusCameraMotion motion;
   cerberus_camera_motion_init(&motion);
   motion.matrix[2] = dx;
   motion.scene_age = scene_age;
+  motion.path_id = way != 0;
+  motion.path[2] = way;
   cerberus_buffer_add_camera_motion_meta(buffer, &motion);
 }
 
@@ -47,6 +50,24 @@ GST_START_TEST(a_trail_lies_on_the_scene_while_the_camera_turns) {
   // The object stands in the scene: the whole way in the picture is the camera's.
   const int extent = trail_extent(-4, -4);
   fail_unless(extent <= 12, "%d", extent);
+}
+GST_END_TEST
+
+// The same, and of three frames one is shown, marked as a leaky queue marks it.
+GST_START_TEST(a_trail_lies_on_the_scene_across_dropped_frames) {
+  Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
+  std::vector<Rectangle> all;
+  for (int k = 0; k < 30; k += 3) {
+    GstBuffer* in = frame(info_of(kCaps), k);
+    add(in, region(1, 150 - 4 * (k - 15), 100, 20, 40));
+    set_camera(in, -4, k + 1, 5 - 4 * k);
+    GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
+    all = drawn(h.get(), in);
+  }
+  fail_if(all.empty());  // not forgotten either
+  int left = kWidth, right = 0;
+  for (const Rectangle& r : all) left = std::min(left, r.x), right = std::max(right, r.x + int(r.width));
+  fail_unless(right - left <= 12, "%d", right - left);
 }
 GST_END_TEST
 
@@ -113,6 +134,7 @@ static Suite* motionoverlay_trails_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_trail_is_as_long_as_the_way);
   tcase_add_test(tc, a_trail_lies_on_the_scene_while_the_camera_turns);
+  tcase_add_test(tc, a_trail_lies_on_the_scene_across_dropped_frames);
   tcase_add_test(tc, a_trail_is_as_old_as_trail_time);
   tcase_add_test(tc, trails_are_forgotten_where_the_scene_begins_anew);
   tcase_add_test(tc, a_trail_does_not_follow_the_edge_of_the_frame);

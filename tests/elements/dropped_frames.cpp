@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Frames that somebody drops on the way (videorate, a leaky queue): whatever stands where must go on seeing, and must say
+// so where it cannot.
+#include "scene.h"
+#include "support.h"
+
+namespace {
+
+using scene::Line;
+using scene::Regions;
+using scene::World;
+
+// The corridor, cut in two behind each stage.
+struct Cut {
+  const char *before, *behind;
+};
+const Cut kCuts[] = {
+    {"cameramotion",
+     "threeframediff ! fuzzythreshold ! motionregions ! motiontrack confirm-time=0 ! identity"},
+    {"cameramotion ! threeframediff",
+     "fuzzythreshold ! motionregions ! motiontrack confirm-time=0 ! identity"},
+    {"cameramotion ! threeframediff ! fuzzythreshold",
+     "motionregions ! motiontrack confirm-time=0 ! identity"},
+    {"cameramotion ! threeframediff ! fuzzythreshold ! motionregions",
+     "motiontrack confirm-time=0 ! identity"},
+};
+const double kPans[] = {0, 5};  // pixels a frame
+constexpr int kCutCount = G_N_ELEMENTS(kCuts), kPanCount = G_N_ELEMENTS(kPans);
+
+World turning(double pan) {
+  World world = scene::entering();
+  world.speed = 3 + pan;  // in the picture: 3
+  world.pan = pan;
+  return world;
+}
+
+// Of three frames one comes through, marked as a leaky queue marks it, and with other times, as videorate writes them.
+GST_START_TEST(frames_dropped_between_two_stages_blind_nobody) {
+  const Cut& cut = kCuts[__i__ % kCutCount];
+  const World world = turning(kPans[__i__ / kCutCount]);
+  Line before(std::string(cut.before) + " ! identity"), behind(cut.behind);
+  int seen = 0;
+  guint id = 0;
+  for (int k = 0; k < 90; ++k) {
+    GstBuffer* out = before.through(scene::grey_buffer(world, k));
+    if (k % 3 != 0) {
+      gst_buffer_unref(out);
+      continue;
+    }
+    GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_DISCONT);
+    GST_BUFFER_PTS(out) += 7 * GST_MSECOND;
+    out = behind.through(out);
+    const Regions regions(out);
+    for (guint i = 0; i < regions.size(); ++i)
+      fail_unless(scene::overlaps_figure(regions[i], world, k), "frame %d: a wrong region: %s", k,
+                  regions.text().c_str());
+    if (regions.size() > 0) {
+      fail_unless(id == 0 || regions[0].id == id, "frame %d: another identity", k);
+      id = regions[0].id;
+      ++seen;
+    }
+    gst_buffer_unref(out);
+  }
+  fail_unless(seen >= 18, "seen in %d frames of 23", seen);  // inside from frame 20 on
+  fail_unless(behind.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+// The difference to the frame that was seen before, not to the one that was dropped: the wall stands in it.
+GST_START_TEST(the_camera_is_followed_across_a_dropped_frame) {
+  const World world = turning(5);
+  Line camera("cameramotion"), difference("threeframediff");
+  for (int k = 0; k < 40; ++k) {
+    GstBuffer* out = camera.through(scene::grey_buffer(world, k));
+    if (k == 32) {
+      gst_buffer_unref(out);
+      continue;
+    }
+    // Without its path, as an application that writes the motion itself may leave it, a motion from another frame is
+    // not believed.
+    if (__i__ == 1) {
+      CerberusCameraMotion motion = cerberus_buffer_get_camera_motion_meta(out)->motion;
+      motion.path_id = 0;
+      cerberus_buffer_add_camera_motion_meta(out, &motion);
+    }
+    out = difference.through(out);
+    const CerberusPlaneMeta* plane = cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_DIFFERENCE);
+    fail_unless(plane != nullptr);
+    GstMapInfo map;
+    gst_buffer_map(plane->buffer, &map, GST_MAP_READ);
+    int different = 0;
+    for (int y = 0; y < plane->height; ++y)
+      for (int x = 0; x < plane->width; ++x) different += map.data[y * plane->stride + x] > 20;
+    gst_buffer_unmap(plane->buffer, &map);
+    gst_buffer_unref(out);
+    if (k == 33 && __i__ == 1)
+      fail_unless(different == 0, "frame %d: %d", k, different);
+    else if (k >= 31)
+      fail_unless(different > 0 && different < scene::kWidth * scene::kHeight / 10, "frame %d: %d", k,
+                  different);
+  }
+}
+GST_END_TEST
+
+// Two cameras and a selector: the second one's path is not the first one's, however alike they look.
+GST_START_TEST(the_path_of_another_camera_is_not_followed) {
+  const World first, second = [] {
+    World world;
+    world.wall = 5;
+    return world;
+  }();
+  Line one("cameramotion"), two("cameramotion"), behind("motionregions ! identity");
+  for (int k = 0; k < 20; ++k) {
+    GstBuffer* a = one.through(scene::grey_buffer(first, k));
+    GstBuffer* b = two.through(scene::grey_buffer(second, k));
+    gst_buffer_unref(k < 10 ? b : a);
+    GstBuffer* out = behind.through(k < 10 ? a : b);
+    if (k == 10) {
+      fail_unless_equals_int(Regions(out).size(), 0);
+      fail_if(cerberus_buffer_get_threshold_meta(out)->threshold.ready);
+    }
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+// A leaky queue in front: holes, each of them marked.
+GST_START_TEST(frames_dropped_in_front_blind_nobody) {
+  const World world = turning(kPans[__i__]);
+  Line line("motiondetect confirm-time=0");
+  int seen = 0;
+  for (int k = 0; k < 80; k += 2) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
+    GstBuffer* out = line.through(in);
+    seen += Regions(out).size() > 0;
+    gst_buffer_unref(out);
+  }
+  fail_unless(seen >= 20, "seen in %d frames of 30", seen);
+  fail_unless(line.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+// Marked without a hole: a cut every time, for all that can be known. One message says why nothing is found.
+GST_START_TEST(a_stream_of_breaks_is_complained_of_once) {
+  const World world;
+  Line line("motiondetect confirm-time=0");
+  for (int k = 0; k < 60; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
+    GstBuffer* out = line.through(in);
+    fail_unless_equals_int(Regions(out).size(), 0);
+    gst_buffer_unref(out);
+  }
+  const auto warnings = line.messages(GST_MESSAGE_WARNING);
+  fail_unless_equals_int(warnings.size(), 1);
+  fail_unless(warnings[0].find("videorate") != std::string::npos, "%s", warnings[0].c_str());
+}
+GST_END_TEST
+
+// Somebody else's camera motion, which nothing but its times connects, and dropped frames; and a seek now and then, which
+// is nobody's fault.
+GST_START_TEST(motions_that_cannot_be_followed_are_complained_of_once) {
+  const World world;
+  Line stage("threeframediff"), sought("threeframediff");
+  for (int k = 0; k < 60; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    CerberusCameraMotion motion;
+    cerberus_camera_motion_init(&motion);
+    motion.from = (k - 1) * scene::kStep;
+    motion.scene_age = k + 2;
+    cerberus_buffer_add_camera_motion_meta(in, &motion);
+    if (k % 2 == 0) gst_buffer_unref(stage.through(gst_buffer_copy(in)));
+    if (k % 10 == 0) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
+    gst_buffer_unref(sought.through(in));
+  }
+  fail_unless_equals_int(stage.messages(GST_MESSAGE_WARNING).size(), 1);
+  fail_unless(sought.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+Suite* dropped_frames_suite() {
+  Suite* suite = suite_create("dropped frames");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 60);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_loop_test(tests, frames_dropped_between_two_stages_blind_nobody, 0, kCutCount * kPanCount);
+  tcase_add_loop_test(tests, the_camera_is_followed_across_a_dropped_frame, 0, 2);
+  tcase_add_test(tests, the_path_of_another_camera_is_not_followed);
+  tcase_add_loop_test(tests, frames_dropped_in_front_blind_nobody, 0, kPanCount);
+  tcase_add_test(tests, a_stream_of_breaks_is_complained_of_once);
+  tcase_add_test(tests, motions_that_cannot_be_followed_are_complained_of_once);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(dropped_frames);
