@@ -214,9 +214,8 @@ HeadRunner::Answer HeadRunner::ask(const std::optional<HeadCommand>& command, Ti
                                    std::vector<control::Pose>& poses, Patience patience) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   std::unique_lock guard(core_->lock);
-  // One at a time, or the answer would be another's.
-  const auto turn = [this] { return !core_->asking || core_->interrupts > 0; };
-  if (!core_->answer.wait_until(guard, deadline, turn)) return Answer::late;
+  // One at a time, or the answer would be another's. Who interrupts the one interrupts the next.
+  if (!core_->answer.wait_until(guard, deadline, [this] { return !core_->asking; })) return Answer::late;
   if (core_->blocks && core_->interrupts > 0) return Answer::interrupted;
   core_->asking = true;
   if (command) {

@@ -160,6 +160,20 @@ GST_START_TEST(in_a_pause_the_head_stays_and_the_limits_count_afterwards) {
 }
 GST_END_TEST
 
+GST_START_TEST(what_was_told_of_the_way_stays_true) {
+  Rig rig("start-pan=50");
+  constexpr GstClockTime kSlow = GST_SECOND / 2;  // told until the next one: longer than the latency
+  rig.push(frame_at(0, kSlow));
+  fail_unless_equals_uint64(rig.poses().back().valid_until, kSlow);
+  g_object_set(rig.element, "pan-max", 30.0, nullptr);
+  rig.push(frame_at(kSlow, kSlow));
+  const auto poses = rig.poses();
+  fail_unless_equals_uint64(poses.front().valid_from, kSlow);
+  fail_unless_equals_float(poses.front().pan, 50);
+  fail_unless(poses.front().moving);
+}
+GST_END_TEST
+
 GST_START_TEST(a_real_head_is_told_of_limits_when_the_pause_ends) {
   Pipe record;
   Rig rig("driver=scripted latency=0 script=\"record " + record.writer() + "\"", Source::live);
@@ -233,6 +247,7 @@ Suite* pantiltsink_limits_suite() {
   tcase_add_test(tests, a_new_acceleration_holds_for_the_next_turn);
   tcase_add_test(tests, limits_that_cannot_be_are_warned_of_and_change_nothing);
   tcase_add_test(tests, in_a_pause_the_head_stays_and_the_limits_count_afterwards);
+  tcase_add_test(tests, what_was_told_of_the_way_stays_true);
   tcase_add_test(tests, a_real_head_is_told_of_limits_when_the_pause_ends);
   tcase_add_test(tests, with_a_clock_a_limit_counts_without_a_frame);
   tcase_add_test(tests, a_driver_that_refuses_limits_is_warned_of);

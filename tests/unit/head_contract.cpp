@@ -144,7 +144,8 @@ END_TEST
 START_TEST(new_limits_make_no_command_stale_that_comes_with_them) {
   Opened head(_i);
   ck_assert(head.head->limit(5s, {}).empty());
-  ck_assert(head.head->limit(4s, {}).empty());  // late, and safe
+  ck_assert(head.head->limit(4s, {}).empty());                                    // late, and safe
+  ck_assert(!head.head->command({4500ms, {Kind::position, -1, 1}, {}}).empty());  // stale
   head.command(5s, {Kind::position, 1, 1});
   ck_assert_double_eq_tol(head.at(30s).pan.position, 1, 1e-6);
 }
