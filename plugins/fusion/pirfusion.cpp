@@ -58,6 +58,7 @@
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
+#include "tracks.hpp"
 #include "translation.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);

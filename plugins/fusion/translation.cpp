@@ -30,26 +30,6 @@ const gchar* RuleName::of(std::string_view name) {
   return interned_;
 }
 
-void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
-  tracks.clear();
-  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-  for (guint i = 0; i < regions->len; ++i) {
-    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
-    if (!region.tracked || region.id == 0) continue;
-    tracks.push_back({.id = region.id,
-                      .x = region.x,
-                      .y = region.y,
-                      .width = region.width,
-                      .height = region.height,
-                      .bearing = sensing::radians(region.bearing),
-                      .distance = region.distance,
-                      .age = duration(region.age),
-                      .state = region.state == CERBERUS_REGION_STOPPED   ? fusion::TrackState::stopped
-                               : region.state == CERBERUS_REGION_COASTED ? fusion::TrackState::coasted
-                                                                         : fusion::TrackState::seen});
-  }
-}
-
 CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment, RuleName& name) {
   CerberusFusion fusion;
   cerberus_fusion_init(&fusion);

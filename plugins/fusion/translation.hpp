@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Between what rides on buffers and what the fuser knows: its tracks, its decisions.
+// The decisions of the fuser as they ride on buffers.
 #pragma once
 
 #include <cerberus/cerberus.h>
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "fusion/fuser.h"
 #include "inputs.hpp"
@@ -23,8 +22,6 @@ class RuleName {
   const gchar* interned_ = nullptr;
 };
 
-// The regions on `buffer` that are tracks, in place of what `tracks` held.
-void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks);
 CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment, RuleName& name);
 
 }  // namespace cerberus::plugin

@@ -5,6 +5,8 @@
 
 #include <memory>
 
+#include "fusion/tracks.hpp"
+
 namespace cerberus::plugin {
 
 namespace {
@@ -61,18 +63,7 @@ Pilot::Verdict Pilot::obey(GstBuffer* frame, const CerberusFusion& fusion) {
 }
 
 Pilot::Verdict Pilot::decide(GstBuffer* frame, control::Time time, double pan) {
-  tracks_.clear();
-  each_track(frame, [&](const CerberusRegion& region) {
-    tracks_.push_back({.id = region.id,
-                       .x = region.x,
-                       .y = region.y,
-                       .width = region.width,
-                       .height = region.height,
-                       .bearing = sensing::radians(region.bearing),
-                       .distance = region.distance,
-                       .age = control::Time(static_cast<control::Time::rep>(region.age)),
-                       .state = static_cast<fusion::TrackState>(region.state)});
-  });
+  read_tracks(frame, tracks_);
   const fusion::Decision& decision =
       fuser_.update({.time = time, .tracks = tracks_, .sensors = {}, .pan = pan});
   Verdict verdict;

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The tracks on a frame as lib/fusion knows them: for whoever decides with a frame in hand.
+#pragma once
+
+#include <cerberus/cerberus.h>
+
+#include <algorithm>
+#include <chrono>
+#include <vector>
+
+#include "fusion/fuser.h"
+#include "sensing/angles.h"
+
+namespace cerberus::plugin {
+
+static_assert(static_cast<int>(fusion::TrackState::seen) == CERBERUS_REGION_SEEN &&
+              static_cast<int>(fusion::TrackState::coasted) == CERBERUS_REGION_COASTED &&
+              static_cast<int>(fusion::TrackState::stopped) == CERBERUS_REGION_STOPPED);
+
+// The regions on `buffer` that are tracks, in place of what `tracks` held.
+inline void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
+  tracks.clear();
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    if (!region.tracked || region.id == 0) continue;
+    tracks.push_back({.id = region.id,
+                      .x = region.x,
+                      .y = region.y,
+                      .width = region.width,
+                      .height = region.height,
+                      .bearing = sensing::radians(region.bearing),
+                      .distance = region.distance,
+                      .age = std::chrono::nanoseconds(std::min<guint64>(region.age, G_MAXINT64)),
+                      .state = region.state <= CERBERUS_REGION_STOPPED
+                                   ? static_cast<fusion::TrackState>(region.state)
+                                   : fusion::TrackState::seen});
+  }
+}
+
+}  // namespace cerberus::plugin
