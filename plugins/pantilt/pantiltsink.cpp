@@ -164,9 +164,7 @@ GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockT
       return flow;
   ask_whether_live(self);
   const GstVideoInfo& info = self.state.info;
-  if (!GST_CLOCK_TIME_IS_VALID(duration) && info.fps_n > 0)
-    duration = gst_util_uint64_scale_int(GST_SECOND, info.fps_d, info.fps_n);
-  const Time length = time_of(GST_CLOCK_TIME_IS_VALID(duration) ? duration : 0);
+  const Time length = running_length(duration, info, conductor.sink->segment);
   const auto newest = conductor.station.newest();
   const auto taken = running_time(conductor, pts, newest, length);
   if (!taken || (newest && *taken <= *newest)) {

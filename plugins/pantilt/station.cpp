@@ -241,9 +241,12 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
   const Time now = std::max(head_time(frame.running), published_ - setup_.latency);
   const Time horizon = now + std::max(setup_.latency, frame.length) + kAhead;
   std::vector<Pose> poses;
-  if (const Time deadline = watchdog_.deadline(); !manual_ && deadline < now - frame.length) {
+  // Until here at least no frame came to decide by: until the one before this could have come, or the gap's end.
+  const Time nobody = frame.buffer ? now - frame.length : now + frame.length;
+  if (const Time deadline = watchdog_.deadline(); !manual_ && deadline < nobody) {
     watchdog_.rest();
     const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}};
+    told_ = std::max(told_, brake.time);
     guard.unlock();
     const Answer answer = runner->ask(brake, brake.time, horizon, poses, kFramePatience);
     guard.lock();

@@ -226,13 +226,26 @@ GST_START_TEST(a_gap_keeps_the_pace) {
 }
 GST_END_TEST
 
-GST_START_TEST(when_frames_stay_away_the_head_has_stopped_meanwhile) {
+GST_START_TEST(a_frame_may_come_in_the_middle_of_a_gap) {
+  // Its command comes after the watchdog's, which was given for 1.16 s.
   Rig rig("watchdog-timeout=200000000 pan-max=170");
   act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 25);
-  const auto poses = act(rig, CERBERUS_FUSION_HOLD, 75, 1);  // 2 s later
-  // Told to stop 0.2 s after the frame at 0.96 s: 1.16, obeyed at 1.22, at rest 40^2 / 1200 degrees later.
-  const double stopped = 40 * (1.22 - 0.06 - 1 / 30.0) + 40 * 40 / 1200.0;
-  fail_unless(std::fabs(poses.back().pan - stopped) < 1e-6, "%g %g", poses.back().pan, stopped);
+  fail_unless(gst_harness_push_event(rig.harness, gst_event_new_gap(GST_SECOND, 180 * GST_MSECOND)));
+  act(rig, CERBERUS_FUSION_TURN_RIGHT, 26, 30);
+  fail_unless(rig.states().find("fault") == std::string::npos);
+}
+GST_END_TEST
+
+GST_START_TEST(when_frames_stay_away_the_head_has_stopped_meanwhile) {
+  for (const bool told : {false, true}) {  // that none will come
+    Rig rig("watchdog-timeout=200000000 pan-max=170");
+    act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 25);
+    if (told) fail_unless(gst_harness_push_event(rig.harness, gst_event_new_gap(25 * kFrame, 50 * kFrame)));
+    const auto poses = act(rig, CERBERUS_FUSION_HOLD, 75, 1);  // 2 s later
+    // Told to stop 0.2 s after the frame at 0.96 s: 1.16, obeyed at 1.22, at rest 40^2 / 1200 degrees later.
+    const double stopped = 40 * (1.22 - 0.06 - 1 / 30.0) + 40 * 40 / 1200.0;
+    fail_unless(std::fabs(poses.back().pan - stopped) < 1e-6, "%g %g", poses.back().pan, stopped);
+  }
 }
 GST_END_TEST
 
@@ -404,6 +417,7 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, a_frame_that_is_not_newer_is_dropped);
   tcase_add_test(tests, frames_without_time_stamps_count_at_the_frame_rate);
   tcase_add_test(tests, a_gap_keeps_the_pace);
+  tcase_add_test(tests, a_frame_may_come_in_the_middle_of_a_gap);
   tcase_add_test(tests, when_frames_stay_away_the_head_has_stopped_meanwhile);
   tcase_add_test(tests, equal_seeds_give_equal_ways);
   tcase_add_test(tests, the_application_may_take_over_and_give_back);

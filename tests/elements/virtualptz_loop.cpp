@@ -108,6 +108,22 @@ GST_START_TEST(frames_may_be_missing) {
 }
 GST_END_TEST
 
+// At half the speed a frame lasts twice as long as it says.
+GST_START_TEST(it_may_be_played_slowly) {
+  loop::Pipeline pipeline(line(30, "", "latency=0"));
+  int come = 0;
+  auto count = [&](GstBuffer*) { ++come; };
+  pipeline.watch("head", count);
+  fail_if(gst_element_set_state(pipeline.element(), GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE);
+  fail_unless(gst_element_seek(pipeline.element(), 0.5, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                               GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_SET, 20 * scene::kStep));
+  come = 0;
+  pipeline.play();
+  pipeline.wait_for_end();
+  fail_unless_equals_int(come, 20);
+}
+GST_END_TEST
+
 static Suite* virtualptz_loop_suite() {
   watch_library_log();
   Suite* s = suite_create("virtualptz_loop");
@@ -116,6 +132,7 @@ static Suite* virtualptz_loop_suite() {
   tcase_set_timeout(tc, 60);
   tcase_add_test(tc, who_is_left_by_the_window_is_the_same_when_it_comes_back);
   tcase_add_test(tc, frames_may_be_missing);
+  tcase_add_test(tc, it_may_be_played_slowly);
   return s;
 }
 
