@@ -64,9 +64,10 @@ void Inputs::begin_video() {
   const std::lock_guard guard(lock_);
   video_ended_ = false;
   video_ = Time::zero();
+  for (GstPad* pad : pads_) pir_pad(pad).spoken.reset();
 }
 
-bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<std::string>& silent) {
+bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<SilentPad>& silent) {
   std::unique_lock guard(lock_);
   video_ = time;
   news_.notify_all();
@@ -80,10 +81,22 @@ bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<
     for (GstPad* pad : pads_)
       if (is_missing(pad, time)) {
         pir_pad(pad).given_up = true;
-        silent.emplace_back(GST_PAD_NAME(pad));
+        silent.push_back({GST_PAD_NAME(pad), false});
       }
   }
   return !flushing_;
+}
+
+void Inputs::give_up_silent(Time heard, Time patience, std::vector<SilentPad>& silent) {
+  const std::lock_guard guard(lock_);
+  for (GstPad* pad : pads_) {
+    PirPad& pir = pir_pad(pad);
+    if (!pir.linked || pir.given_up || pir.live == false) continue;
+    if (!pir.spoken) pir.spoken = heard;  // patience begins with the first frame
+    if (heard - *pir.spoken <= patience) continue;
+    pir.given_up = true;
+    silent.push_back({GST_PAD_NAME(pad), pir.history.ended()});
+  }
 }
 
 Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* frame) {
@@ -173,8 +186,15 @@ void Inputs::forget() {
   video_ended_ = false;
 }
 
-void Inputs::tell(PirPad& pad) {
+void Inputs::tell(PirPad& pad, Time until) {
+  pad.spoken = until;
   pad.given_up = false;
+  news_.notify_all();
+}
+
+void Inputs::end(PirPad& pad) {
+  pad.history.end();
+  if (pad.live == false) pad.given_up = false;
   news_.notify_all();
 }
 

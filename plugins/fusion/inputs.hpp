@@ -34,13 +34,22 @@ struct Moment {
   void add(const Reading& reading);  // what does not fit is dropped
 };
 
+// A PIR pad that has been silent for too long.
+struct SilentPad {
+  std::string name;
+  bool ended;
+};
+
 // The lock is never held while something is pushed, queried or posted, and no GStreamer object's lock is taken under it.
 class Inputs {
  public:
   // ---- video thread
   // A frame of `time` is here; with `max_wait` it waits until every linked PIR pad covers `time` or has been silent for
-  // so long (the names of those are added to `silent`). False: the video was flushed meanwhile.
-  bool frame_came(Time time, std::optional<guint64> max_wait, std::vector<std::string>& silent);
+  // so long (those are added to `silent`, and given up until they speak). False: the video was flushed meanwhile.
+  bool frame_came(Time time, std::optional<guint64> max_wait, std::vector<SilentPad>& silent);
+  // Where nobody waits: gives up the linked PIR pads that have said nothing in the last `patience` before `heard`, but for
+  // recordings, whose last word stays true.
+  void give_up_silent(Time heard, Time patience, std::vector<SilentPad>& silent);
   // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before a
   // pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
   Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
@@ -62,7 +71,8 @@ class Inputs {
 
   // ---- for the PIR pads, whose state the lock guards too
   std::mutex& lock() { return lock_; }
-  void tell(PirPad& pad);                       // something was heard there; the lock is held
+  void tell(PirPad& pad, Time until);           // it was heard of, up to this time; the lock is held
+  void end(PirPad& pad);                        // it will say no more; the lock is held
   int places_besides(const PirPad& pad) const;  // as they are counted; the lock is held
   void set(bool& flag, bool value);             // and wake whoever waits
   // Waits while a PIR source is so far ahead of the video that it can do so later; false: the video has ended.

@@ -79,34 +79,44 @@ bool segment_event(GstElement* element, GstPad* pad, GstEvent* event) {
   gst_event_parse_segment(event, &segment);
   if (segment->format != GST_FORMAT_TIME)
     return refuse(element, pad, "PIR readings need times, and their stream has none.");
-  gst_segment_copy_into(segment, &pir_pad(pad).segment);
-  pir_pad(pad).live.reset();
-  begin_levels(pir_pad(pad));
+  PirPad& pir = pir_pad(pad);
+  gst_segment_copy_into(segment, &pir.segment);
+  const std::lock_guard guard(pir.inputs->lock());
+  pir.live.reset();
+  begin_levels(pir);
   return true;
 }
 
 // ---- what covers time without a reading
 
-void gap_event(PirPad& pir, GstEvent* event) {
+// Whoever speaks is there now, however old what he says is.
+Time now_or(GstElement* element, Time time) {
+  const GstClockTime now = gst_element_get_current_running_time(element);
+  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, duration(now)) : time;
+}
+
+void gap_event(GstElement* element, PirPad& pir, GstEvent* event) {
   GstClockTime begin, length;
   gst_event_parse_gap(event, &begin, &length);
   const auto from = running_time(pir.segment, begin);
   if (!from) return;
   const bool has_length = GST_CLOCK_TIME_IS_VALID(length) && length > 0;
+  const Time until = *from + (has_length ? std::min(duration(length), Time::max() / 4) : Time(1));
+  const Time spoken = now_or(element, until);
   const std::lock_guard guard(pir.inputs->lock());
-  pir.history.cover(*from + (has_length ? std::min(duration(length), Time::max() / 4) : Time(1)));
-  pir.inputs->tell(pir);
+  pir.history.cover(until);
+  pir.inputs->tell(pir, spoken);
 }
 
 void end(PirPad& pir) {
   const std::lock_guard guard(pir.inputs->lock());
-  pir.history.end();
-  pir.inputs->tell(pir);
+  pir.inputs->end(pir);
 }
 
 void begin_again(PirPad& pir) {
   const std::lock_guard guard(pir.inputs->lock());
   pir.history.clear();
+  pir.spoken.reset();
   pir.flushing = pir.refused = false;
   gst_segment_init(&pir.segment, GST_FORMAT_UNDEFINED);
   begin_levels(pir);
@@ -125,7 +135,7 @@ gboolean event_function(GstPad* pad, GstObject* parent, GstEvent* event) {
       case GST_EVENT_SEGMENT:
         return segment_event(element, pad, event);
       case GST_EVENT_GAP:
-        gap_event(pir, event);
+        gap_event(element, pir, event);
         return true;
       case GST_EVENT_SEGMENT_DONE:
       case GST_EVENT_EOS:
@@ -216,9 +226,11 @@ GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) 
   PirPad& pir = pir_pad(pad);
   if (pir.info.sensors == 0) return GST_FLOW_NOT_NEGOTIATED;
   const Sample sample = sample_of(element, pad, buffer);
-  if (!pir.live) pir.live = is_live(pad);
+  const std::optional<bool> live = pir.live ? pir.live : is_live(pad);
+  const Time now = now_or(element, Time::zero());
   {
     std::unique_lock guard(pir.inputs->lock());
+    pir.live = live;
     // A reading without a time is as late as the one before.
     const Time time = running_time(pir.segment, GST_BUFFER_PTS(buffer)).value_or(pir.history.newest());
     const bool wanted = pir.live.value_or(true) || pir.inputs->wait_for_video(guard, pir, time);
@@ -228,7 +240,7 @@ GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) 
       append_levels(pir, time, std::span(sample.volts).first(pir.info.sensors));
     else
       pir.history.append(time, std::span(sample.presence).first(pir.info.sensors));
-    pir.inputs->tell(pir);
+    pir.inputs->tell(pir, std::max(time, now));
   }
   report_faults(element, pad);
   return GST_FLOW_OK;
@@ -271,6 +283,7 @@ void PirPad::reset() {
   sensors = 0;
   given_up = complained = refused = false;
   live.reset();
+  spoken.reset();
   gst_segment_init(&segment, GST_FORMAT_UNDEFINED);
   cerberus_pir_info_init(&info);
   info.sensors = 0;

@@ -23,8 +23,10 @@ struct PirPad {
   guint index = 0;  // of its name
   int sensors = 0;  // of its caps
   bool linked = false;
-  bool flushing = true;   // also while it is not active
-  bool given_up = false;  // silent for max-wait; nobody waits for it until it speaks
+  bool flushing = true;        // also while it is not active
+  bool given_up = false;       // silent for too long: invalid, and not waited for, until it speaks
+  std::optional<Time> spoken;  // it was heard of until then; nothing: not since the video began
+  std::optional<bool> live;    // of what it is linked to; nothing: not known. Its own thread alone changes it
 
   // Of the pad's own streaming thread.
   GstSegment segment;
@@ -32,9 +34,8 @@ struct PirPad {
   sensing::LevelSensors levels;  // what a stream of volts means
   sensing::LevelOptions level;
   std::array<sensing::PirFault, sensing::kMaxSensors> faults{};  // of those sensors, as they were told
-  std::optional<bool> live;  // of what it is linked to; nothing: not known
-  bool complained = false;   // of buffers of the wrong size
-  bool refused = false;      // its caps or segment: they come again with the next buffer
+  bool complained = false;                                       // of buffers of the wrong size
+  bool refused = false;  // its caps or segment: they come again with the next buffer
 
   PirPad() { reset(); }
   void reset();  // READY

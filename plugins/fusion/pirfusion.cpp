@@ -15,11 +15,11 @@
  *
  * - Live: a frame never waits; the newest reading counts that there is when it comes, even one that is younger than the
  *   frame: a camera's frames are old when they arrive, and who is heard shall not wait for that. Without a reading the
- *   sensors are invalid.
+ *   sensors are invalid. So are those of a pad that was silent for `lost-after`, or ended so long ago: a warning names it.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
  *   it speaks. Video and PIR need a thread each (a `queue`) where one element makes both.
- * - A pad that ended (EOS) keeps its last reading.
+ * - A recording that ended (EOS) keeps its last reading.
  *
  * The pan angle comes from the pose on the buffer, else from the head's `cerberus-pose` events passing upstream,
  * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
@@ -153,6 +153,17 @@ Time heard_until(CerberusPirFusion* self, Time time, bool live) {
   return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, duration(now)) : time;
 }
 
+void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guint64 patience) {
+  for (const SilentPad& pad : silent) {
+    const char* what = pad.ended ? "The PIR readings have ended at" : "No PIR reading comes to";
+    GST_ELEMENT_WARNING(
+        self, RESOURCE, READ,
+        ("%s pad %s, for %.3g s now: its sensors are invalid and nobody waits for them.", what,
+         pad.name.c_str(), static_cast<double>(patience) / GST_SECOND),
+        ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(nanoseconds(self->priv->state->time))));
+  }
+}
+
 // Tells what was decided: on the buffer, and by message when it is something else.
 GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time, const Moment& moment) {
   State& state = *self->priv->state;
@@ -217,18 +228,15 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     state.time = running_time(state.segment, GST_BUFFER_PTS(buffer.get())).value_or(state.time);
     if (!state.live) state.live = is_live(pad);
 
-    std::vector<std::string> silent;
+    std::vector<SilentPad> silent;
     // Not by ?: with nullopt, which GCC 12 gets wrong here under the sanitizers.
     std::optional<guint64> max_wait;
     if (state.live == false) max_wait = settings.max_wait;
     if (!priv.inputs.frame_came(state.time, max_wait, silent)) return GST_FLOW_FLUSHING;
-    for (const std::string& name : silent)
-      GST_ELEMENT_WARNING(
-          self, RESOURCE, READ,
-          ("No reading of the PIR sensors came at pad %s for %.3g s; it is not waited for any more.",
-           name.c_str(), static_cast<double>(settings.max_wait) / GST_SECOND),
-          ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(nanoseconds(state.time))));
     const Time heard = heard_until(self, state.time, state.live == true);
+    if (state.live != false && settings.lost_after > 0)
+      priv.inputs.give_up_silent(heard, duration(settings.lost_after), silent);
+    warn_of(self, silent, max_wait ? *max_wait : settings.lost_after);
     const Moment moment = priv.inputs.at(state.time, heard, settings.head, buffer.get());
     pass_base_on(self, state.time, moment);
     return decide_and_push(self, std::move(buffer), state.time, moment);

@@ -61,6 +61,10 @@ const Property<Settings> kTable[] = {
         "max-wait", &Settings::max_wait,
         "Nanoseconds of real time that a frame of a stream that is not live waits for a PIR pad, which is "
         "then warned of and not waited for until it speaks; 0 = never wait"),
+    property(
+        "lost-after", &Settings::lost_after,
+        "Nanoseconds of silence after which the sensors of a live PIR pad are invalid, with a warning, until "
+        "it speaks: several heartbeats of its source; 0 = never"),
     property("level-threshold", &Settings::level_threshold, -1000, 1000,
              "Volts between nobody and somebody, at PIR pads that are given volts (format=level); read with "
              "their caps"),

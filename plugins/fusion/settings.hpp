@@ -33,6 +33,7 @@ struct Settings {
   double horizontal_fov = 60;
   double pan_minimum = -170, pan_maximum = 170;
   guint64 max_wait = 5 * GST_SECOND;
+  guint64 lost_after = GST_SECOND;
   double level_threshold = sensing::LevelOptions{}.threshold;
   double level_hysteresis = sensing::LevelOptions{}.hysteresis;
   std::string head = "head";

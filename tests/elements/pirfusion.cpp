@@ -206,7 +206,7 @@ GST_START_TEST(a_strangers_pose_is_passed_on_and_not_listened_to) {
 GST_END_TEST
 
 GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
-  Rig rig;
+  Rig rig(true, "lost-after=0");
   rig.add_pir();
   rig.read(0, {0, 0, 0});
   say(rig, cerberus_event_new_base(-5.1, 100 * kMs));

@@ -36,7 +36,7 @@ GST_START_TEST(live_the_newest_reading_not_later_than_the_frame_counts) {
 GST_END_TEST
 
 GST_START_TEST(readings_out_of_order_are_put_where_they_belong) {
-  Rig rig;
+  Rig rig(true, "lost-after=0");
   rig.add_pir();
   rig.read(0, {0, 0, 0});
   rig.read(100 * kMs, {1, 0, 0});
@@ -283,7 +283,7 @@ GST_END_TEST
 
 // Two sensors look the same way and disagree; then two that look opposite ways both see somebody.
 GST_START_TEST(sensors_that_contradict_each_other_are_answered_without_hunting) {
-  Rig rig;
+  Rig rig(true, "lost-after=0");
   for (const double bearing : {90, 90, -90}) rig.add_pir(with_sensors(1, bearing, 0).c_str());
   for (const std::size_t pad : {0, 1, 2}) rig.read(0, {pad == 0}, pad);
   CerberusFusion fusion = rig.show(frame_at(0, 0));

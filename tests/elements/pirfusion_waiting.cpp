@@ -78,12 +78,89 @@ GST_START_TEST(live_nobody_waits_for_a_pir_pad_that_never_speaks) {
 GST_END_TEST
 
 GST_START_TEST(live_nobody_waits_for_a_late_reading) {
-  Rig rig(true, kForEver);
+  Rig rig(true, kForEver + " lost-after=0");
   rig.add_pir();
   rig.read(0, {1, 0, 0});
   assert_says(values(rig, 10 * GST_SECOND), "100");
   rig.read(5 * GST_SECOND, {0, 1, 0});
   assert_says(values(rig, 11 * GST_SECOND), "010");
+}
+GST_END_TEST
+
+// A chip that was unplugged, a network that broke: the head must not look for ever for whom a lost sensor saw last.
+GST_START_TEST(live_who_falls_silent_is_named_once_and_invalid) {
+  for (const bool ends : {false, true}) {
+    Rig rig;
+    GstHarness* pir = rig.add_pir();
+    const auto frame_of = [&](GstClockTime time) { return rig.show(frame_at(time, 120)); };
+    for (int k = 0; k <= 10; ++k) rig.read(k * 100 * kMs, {0, 0, 1});
+    if (ends) fail_unless(gst_harness_push_event(pir, gst_event_new_eos()));
+    CerberusFusion fusion = frame_of(2 * GST_SECOND);  // 1 s later
+    assert_says(text(sensors(fusion)), "001");
+    fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
+    fail_unless(rig.warning().empty());
+
+    fusion = frame_of(2040 * kMs);
+    assert_says(text(sensors(fusion)), "222");
+    const std::string warning = rig.warning();
+    for (const char* word : {"pir_0", "1 s", ends ? "ended" : "No PIR reading"})
+      fail_unless(warning.find(word) != warning.npos, "%s", warning.c_str());
+    fail_unless_equals_int(frame_of(6960 * kMs).action, CERBERUS_FUSION_SEARCH);  // return-delay
+    fail_unless_equals_int(frame_of(7040 * kMs).action, CERBERUS_FUSION_ZERO);
+    fail_unless(rig.warning().empty());
+
+    if (ends) continue;
+    rig.read(8 * GST_SECOND, {0, 0, 1});
+    fusion = frame_of(8 * GST_SECOND);
+    assert_says(text(sensors(fusion)), "001");
+    fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
+    // Who says that nothing changes is there.
+    fail_unless(gst_harness_push_event(pir, gst_event_new_gap(9 * GST_SECOND, GST_SECOND)));
+    assert_says(text(sensors(frame_of(11 * GST_SECOND))), "001");
+    assert_says(text(sensors(frame_of(11040 * kMs))), "222");
+    fail_if(rig.warning().empty());
+    fail_unless(gst_harness_push_event(pir, gst_event_new_eos()));
+    assert_says(text(sensors(frame_of(11080 * kMs))), "222");
+    fail_unless(rig.warning().empty());
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(live_a_pad_that_never_speaks_is_named) {
+  Rig rig;
+  rig.add_pir(nullptr);
+  const GstClockTime begin = 100 * GST_SECOND;  // the pipeline has been running
+  rig.at(begin);
+  assert_says(values(rig, begin + GST_SECOND), "2");
+  fail_unless(rig.warning().empty());
+  assert_says(values(rig, begin + 1040 * kMs), "2");
+  fail_unless(rig.warning().find("pir_0") != std::string::npos);
+}
+GST_END_TEST
+
+// Late by a network, but alive: what arrives now was said by somebody who is there.
+GST_START_TEST(live_readings_that_are_always_late_count) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir();
+  gst_harness_use_testclock(rig.video);
+  GstClockTime time = 5 * GST_SECOND;
+  for (int k = 0; k < 10; ++k, time += 100 * kMs) {
+    gst_harness_set_time(rig.video, time);
+    fail_unless_equals_int(gst_harness_push(pir, reading(time - 3 * GST_SECOND, {0, 1, 0})), GST_FLOW_OK);
+    assert_says(values(rig, time), "010");
+  }
+  fail_unless(rig.warning().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(live_the_last_word_of_a_recording_stays_true) {
+  Rig rig;
+  GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
+  rig.read(0, {0, 0, 1});
+  assert_says(values(rig, 5 * GST_SECOND), "001");
+  gst_harness_push_event(pir, gst_event_new_eos());
+  assert_says(values(rig, 10 * GST_SECOND), "001");
+  fail_unless(rig.warning().empty());
 }
 GST_END_TEST
 
@@ -354,6 +431,10 @@ static Suite* pirfusion_waiting_suite(void) {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, live_nobody_waits_for_a_pir_pad_that_never_speaks);
   tcase_add_test(tc, live_nobody_waits_for_a_late_reading);
+  tcase_add_test(tc, live_who_falls_silent_is_named_once_and_invalid);
+  tcase_add_test(tc, live_a_pad_that_never_speaks_is_named);
+  tcase_add_test(tc, live_readings_that_are_always_late_count);
+  tcase_add_test(tc, live_the_last_word_of_a_recording_stays_true);
   tcase_add_test(tc, a_live_pir_source_never_waits);
   tcase_add_test(tc, where_nobody_knows_whether_it_is_live_nobody_waits);
   tc = tcase_create("not live");

@@ -227,7 +227,7 @@ def test_rtp(kind):
 
 def test_robot(kind):
     """With a recording in place of the sensors. The stream drops what is late, so all that is sure of it is that it begins."""
-    pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,0,0,1\n', 'ascii')
+    pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,0,0,1\n600,0,0,1\n', 'ascii')
     sensors = f'pirsrc driver=replay location=pir.csv is-live={kind == "live"}'
     with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as stream:
         stream.bind(('127.0.0.1', 0))
