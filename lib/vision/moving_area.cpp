@@ -17,6 +17,16 @@ struct MovingArea::State {
   SceneMemory memory;
 };
 
+namespace {
+
+// What differs from the scene is where the object is now: it has no leading and no common part. Who asks for one asks for
+// the sets of the two differences.
+bool uses_memory(const MovingAreaOptions& options) {
+  return options.memory && options.area == Area::all;
+}
+
+}  // namespace
+
 MovingArea::MovingArea() : state_(std::make_unique<State>()) {}
 MovingArea::~MovingArea() = default;
 MovingArea::MovingArea(MovingArea&&) noexcept = default;
@@ -24,7 +34,7 @@ MovingArea& MovingArea::operator=(MovingArea&&) noexcept = default;
 
 void MovingArea::set_options(const MovingAreaOptions& options) {
   // A memory that was switched off has not seen where the camera went since.
-  if (options.memory != state_->options.memory) state_->memory.reset();
+  if (uses_memory(options) != uses_memory(state_->options)) state_->memory.reset();
   state_->options = options;
 }
 void MovingArea::reset() {
@@ -40,9 +50,10 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
   result.threshold =
       s.options.noise_floor ? clamp_to_noise(result.fuzzy_threshold, result.sigma) : result.fuzzy_threshold;
   result.ready = input.frames >= 3;
-  if (s.options.memory) {
+  if (uses_memory(s.options)) {
     if (input.frames <= 1) s.memory.reset();
-    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still, input.seconds},
+    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still,
+                     input.seconds},
                     mask);
     if (result.ready) return result;
   }

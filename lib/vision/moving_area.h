@@ -17,7 +17,7 @@ struct MovingAreaOptions {
   FuzzyThresholdOptions threshold;
   Area area = Area::all;
   bool noise_floor = true;  // clamp Th to the measured noise
-  bool memory = true;       // use the registered memory
+  bool memory = true;       // use the registered memory, where area is all
 };
 
 struct MovingAreaInput {
@@ -46,8 +46,7 @@ class MovingArea {
 
   void set_options(const MovingAreaOptions& options);
   void reset();
-  // mask := 0 or 255 a pixel. Not closed: RegionFinder closes it, once it has seen the gaps between people. With the
-  // memory, `area` does not count (what differs from the scene is where the object is now).
+  // mask := 0 or 255 a pixel. Not closed: RegionFinder closes it, once it has seen the gaps between people.
   MovingAreaResult update(const MovingAreaInput& input, MutableGrayView mask);
   std::size_t bytes() const;
 

@@ -19,7 +19,7 @@
 // 9 both print the factor 2 / n^(1/k), which belongs once, and Eq. 8 needs the absolute value. See
 // lib/vision/fuzzy_threshold.h and moving_area.h. Deviations of the defaults, each a property: Th is held near the
 // measured noise (`noise-floor`), lone bright pixels do not count (`clip`), and a registered memory of the scene completes
-// what two neighbouring frames cannot see (`memory`).
+// what two neighbouring frames cannot see (`memory`, of D(k) alone: M(k) and M(k-1) are sets of the two differences).
 
 #include "analysis_element.hpp"
 #include "elements.hpp"
@@ -43,23 +43,30 @@ struct Settings {
 };
 
 const Property<Settings> kProperties[] = {
-    property("weighting", &Settings::weighting, weighting_type,
-             "How the histogram's counts weigh: log lets a small object count beside a large background"),
+    property(
+        "weighting", &Settings::weighting, weighting_type,
+        "How the histogram's counts weigh: log lets a small object count beside a large background; with "
+        "noise-floor it chooses within the range that the noise leaves"),
     property("extremes", &Settings::extremes, extremes_type,
-             "Between which levels the membership function of a fuzzy subset runs"),
-    property("order", &Settings::order, 1, 16,
-             "Order k of the index of fuzziness (Eq. 8 and 9): 1 is linear, 2 quadratic, higher ones follow "
-             "the largest "
-             "distances alone"),
+             "Between which levels the membership function of a fuzzy subset runs; with noise-floor it "
+             "chooses within the range that the noise leaves"),
+    property(
+        "order", &Settings::order, 1, 16,
+        "Order k of the index of fuzziness (Eq. 8 and 9): 1 is linear, 2 quadratic, higher ones follow "
+        "the largest distances alone; with noise-floor it chooses within the range that the noise leaves"),
     property("clip", &Settings::clip,
-             "Let the few brightest levels of the histogram not count (weighting=log only)"),
-    property("area", &Settings::area, area_type, "Which moving area goes out"),
+             "Let the few brightest levels of the histogram not count (weighting=log only); with noise-floor "
+             "it chooses within the range that the noise leaves"),
+    property("area", &Settings::area, area_type,
+             "Which moving area goes out: all that moves, or what an object newly covers (leading), or what "
+             "it covered in the frame before too (common); these two are sets of the differences alone, and "
+             "the memory is not used"),
     property(
         "noise-floor", &Settings::noise_floor,
         "Hold the threshold between one and one and a half times the floor that the measured noise sets"),
     property("memory", &Settings::memory,
              "Use a memory of the scene, moved along with the camera, where it knows better than two "
-             "neighbouring frames"),
+             "neighbouring frames; with area=all only"),
 };
 
 vision::MovingAreaOptions options(const Settings& s) {

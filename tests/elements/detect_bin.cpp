@@ -157,6 +157,50 @@ GST_START_TEST(every_preset_works_and_each_property_reaches_its_stage) {
 }
 GST_END_TEST
 
+// One mask a frame, row by row.
+using Mask = std::vector<guint8>;
+std::vector<Mask> masks_of(const std::string& launch) {
+  std::vector<Mask> masks;
+  Line line(launch + " ! identity");
+  line.run(World{}, 0, 30, [&](int, GstBuffer* out) {
+    const CerberusPlaneMeta* plane = cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_MASK);
+    fail_unless(plane != nullptr);
+    GstMapInfo map;
+    fail_unless(gst_buffer_map(plane->buffer, &map, GST_MAP_READ));
+    Mask& mask = masks.emplace_back();
+    for (int y = 0; y < plane->height; ++y)
+      mask.insert(mask.end(), map.data + static_cast<gssize>(y) * plane->stride,
+                  map.data + static_cast<gssize>(y) * plane->stride + plane->width);
+    gst_buffer_unmap(plane->buffer, &map);
+  });
+  return masks;
+}
+
+// With the defaults beside it, which include the memory of the scene: that has no leading part.
+GST_START_TEST(area_chooses_among_the_sets_of_the_differences) {
+  const std::string detect = "motiondetect keep-planes=always";
+  const auto all = masks_of(detect), leading = masks_of(detect + " area=leading"),
+             common = masks_of(detect + " area=common");
+  fail_unless(leading != all && common != all && leading != common);
+  fail_unless(leading == masks_of(detect + " area=leading memory=false"));
+  fail_unless(common == masks_of(detect + " area=common memory=false"));
+  // As fuzzythreshold forms them, before anything is cleaned: D(k) is both, and nothing is in both.
+  const std::string sets = "fuzzythreshold noise-floor=false weighting=linear extremes=subset";
+  const auto d = masks_of(sets + " memory=false"), m = masks_of(sets + " area=leading"),
+             before = masks_of(sets + " area=common");
+  long wrong = 0, new_pixels = 0,
+       old_pixels = 0;  // counted: an assertion for each pixel costs more than the detection
+  for (std::size_t k = 0; k < d.size(); ++k)
+    for (std::size_t i = 0; i < d[k].size(); ++i) {
+      wrong += d[k][i] != (m[k][i] | before[k][i]) || (m[k][i] & before[k][i]) != 0;
+      new_pixels += m[k][i] != 0;
+      old_pixels += before[k][i] != 0;
+    }
+  fail_unless_equals_int(wrong, 0);
+  fail_unless(new_pixels > 0 && old_pixels > 0);
+}
+GST_END_TEST
+
 // Every property of every stage is on the bin, with the same default: nobody has to open it. Where stages share one and
 // say what each of them does with it, the bin says it in the words of one.
 GST_START_TEST(the_bin_has_every_property_of_its_stages) {
@@ -202,6 +246,7 @@ Suite* detect_bin_suite() {
   tcase_add_test(tests, a_property_that_another_thread_sets_meanwhile_wins_over_the_preset);
   tcase_add_test(tests, the_human_gate_is_off_in_preset_traffic);
   tcase_add_test(tests, every_preset_works_and_each_property_reaches_its_stage);
+  tcase_add_test(tests, area_chooses_among_the_sets_of_the_differences);
   tcase_add_test(tests, the_bin_has_every_property_of_its_stages);
   return suite;
 }
