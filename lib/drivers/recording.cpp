@@ -117,6 +117,8 @@ bool parse_seconds(std::string_view text, Time& time) {
 
 SensorError parse_recording(std::string_view text, std::string_view name, int sensors, Recording& recording) {
   recording = {};
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some spreadsheets begin so
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t number = 0;
   bool begun = false;
   while (!text.empty()) {
@@ -146,8 +148,11 @@ SensorError parse_recording(std::string_view text, std::string_view name, int se
     for (std::size_t i = 0; i < row.count; ++i) {
       if (in_volts)
         recording.edges.push_back({row.time, static_cast<int>(i), false, row.volts[i]});
-      else if (row.levels[i] < 2)
-        recording.edges.push_back({row.time, static_cast<int>(i), row.levels[i] == 1});
+      else
+        recording.edges.push_back({.time = row.time,
+                                   .sensor = static_cast<int>(i),
+                                   .level = row.levels[i] == 1,
+                                   .known = row.levels[i] < 2});
     }
   }
   return {};

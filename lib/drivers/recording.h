@@ -7,7 +7,7 @@
 //   # a comment                        (what motionjson writes is of this form)
 //
 // CSV: seconds, then a level (0, 1) a sensor; a heading, empty lines and lines that begin with # do not count. JSON lines:
-// `time` in seconds or `pts` in nanoseconds, and `pir`. 2 (no valid reading) leaves the line as it was. Times never go back.
+// `time` in seconds or `pts` in nanoseconds, and `pir`. 2: the reading is invalid until the next 0 or 1. Times never go back.
 // What an analogue sensor said is written in volts, on all lines or on none: 0,0.1V,3.2V,0V or {"time": 0, "volts": [...]}.
 #pragma once
 

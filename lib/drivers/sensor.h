@@ -22,6 +22,7 @@ struct SensorEdge {
   int sensor = 0;
   bool level = false;                                     // of the line, before polarity; may repeat
   float volts = std::numeric_limits<float>::quiet_NaN();  // what was measured; NaN: nothing is
+  bool known = true;  // false: from now on nothing is known of the line, until its next edge
 };
 
 class Sensor {

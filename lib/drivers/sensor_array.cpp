@@ -41,6 +41,17 @@ void SensorArray::close() noexcept {
   begun_ = false;
 }
 
+namespace {
+
+// A sensor of which nothing is known. Whoever says when it is valid again has waited for its warm-up.
+sensing::PirModel begin_again(const sensing::PirModel& model) {
+  sensing::PirOptions options = model.options();
+  options.warm_up = {};
+  return sensing::PirModel(options);
+}
+
+}  // namespace
+
 Time SensorArray::deadline() const {
   Time due = kNever;
   for (const auto& model : models_) due = std::min(due, model.deadline());
@@ -57,7 +68,11 @@ void SensorArray::let_pass(Time until) {
   for (; next_edge_ < edges_.size() && edges_[next_edge_].time <= until; ++next_edge_) {
     const SensorEdge& edge = edges_[next_edge_];
     if (edge.sensor < 0 || edge.sensor >= count()) continue;
-    models_[static_cast<std::size_t>(edge.sensor)].edge(edge.time, edge.level);
+    sensing::PirModel& model = models_[static_cast<std::size_t>(edge.sensor)];
+    if (edge.known)
+      model.edge(edge.time, edge.level);
+    else
+      model = begin_again(model);
     if (std::isnan(edge.volts)) continue;
     volts_[static_cast<std::size_t>(edge.sensor)] = edge.volts;
     sampled_ = true;

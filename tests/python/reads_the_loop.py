@@ -208,5 +208,24 @@ class WithTheWholeLoop(unittest.TestCase):
         self.assertIn(True, [line["pose"]["moving"] for line in self.lines])
 
 
+class WithARecording(unittest.TestCase):
+    def test_what_motionjson_wrote_is_replayed_as_it_was(self):
+        def lines(sensors):
+            buffers = frames('videotestsrc num-buffers=40 pattern=black ! '
+                             'video/x-raw,format=GRAY8,width=64,height=64,framerate=20/1 ! pirfusion name=fusion ! '
+                             'motionjson ! appsink name=sink sync=false '
+                             f'pirsrc debounce=0 {sensors} ! queue ! fusion.pir_0')
+            return b"".join(buffer.extract_dup(0, buffer.get_size()) for buffer in buffers)
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder, "night.json")
+            file.write_bytes(lines('script="0,2,0,1; 0.5,2,1,2; 0.7,1,1,2; 1,0,2,2; 1.2,0,1,0; 2,0,1,0"'))
+            again = lines(f"driver=replay location={file}")
+            told, again = ([json.loads(line)["pir"] for line in text.splitlines()] for text in (file.read_bytes(), again))
+        expected = [[2, 0, 1]] * 10 + [[2, 1, 2]] * 4 + [[1, 1, 2]] * 6 + [[0, 2, 2]] * 4 + [[0, 1, 0]] * 16
+        self.assertEqual(told, expected)
+        self.assertEqual(again, expected)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -44,10 +44,21 @@ START_TEST(comma_separated_values_and_json_lines_say_the_same) {
              pts));
   for (const Recording& recording : {csv, json, pts}) {
     ck_assert(recording.end == 2s);
-    ck_assert_int_eq(static_cast<int>(recording.edges.size()), 8);  // 2 = the line stays as it was
+    ck_assert_int_eq(static_cast<int>(recording.edges.size()), 9);
     ck_assert(recording.edges[3].time == 1500ms && recording.edges[3].sensor == 0 &&
               recording.edges[3].level);
-    ck_assert(recording.edges[7].time == 2s && recording.edges[7].sensor == 2 && recording.edges[7].level);
+    ck_assert(recording.edges[3].known && !recording.edges[7].known);  // 2
+    ck_assert(recording.edges[8].time == 2s && recording.edges[8].sensor == 2 && recording.edges[8].level);
+  }
+}
+END_TEST
+
+START_TEST(a_byte_order_mark_is_no_reading) {
+  for (const std::string text : {"0,0,1,0\n", "time,a,b,c\n0,0,1,0\n", "{\"time\":0,\"pir\":[0,1,0]}\n"}) {
+    Recording recording;
+    ck_assert(!parse("\xEF\xBB\xBF" + text, recording));
+    ck_assert(recording.edges.size() == 3 && recording.edges[1].level);
+    ck_assert(parse(text + "\xEF\xBB\xBF" + text, recording).fault == SensorFault::data);
   }
 }
 END_TEST
@@ -205,7 +216,7 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "recording",
-      {comma_separated_values_and_json_lines_say_the_same,
+      {comma_separated_values_and_json_lines_say_the_same, a_byte_order_mark_is_no_reading,
        what_is_wrong_with_a_recording_is_told_with_file_and_line,
        files_that_cannot_be_recordings_are_refused_at_once, a_recording_that_may_not_be_read_is_named,
        a_recording_is_played_when_its_time_has_come, volts_are_written_as_volts,

@@ -87,6 +87,21 @@ START_TEST(nothing_is_known_before_a_recordings_first_line) {
 }
 END_TEST
 
+START_TEST(what_a_recording_calls_invalid_is_so_until_it_says_something_else) {
+  SensorArray array;
+  must_be(play(array, "0,0,1,2; 1,2,2,2; 2,2,1,1; 3,1,0,2; 4,0,0,0", {.hold = 10s, .warm_up = 500ms}, 100s),
+          {{0s, "222", true},
+           {500ms, "012", true},
+           {1s, "222", true},
+           {2s, "211", true},  // whatever it said before
+           {3s, "112", true},
+           {4s, "110", true}});  // the hold of those that go on
+  // Low when somebody is there, and no edge of before is waited for.
+  must_be(play(array, "0,0; 1,2; 2,1; 3,2; 4,0", {.active_low = true}, 100s, 1),
+          {{0s, "1", true}, {1s, "2", true}, {2s, "0", true}, {3s, "2", true}, {4s, "1", true}});
+}
+END_TEST
+
 START_TEST(a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well) {
   SensorArray array;
   must_be(play(array, "0,0; 1,1; 700,0; 800,0", {}, 1000s, 1),
@@ -174,6 +189,7 @@ int main() {
       "sensor_array",
       {a_reading_at_the_start_at_every_change_and_every_heartbeat,
        nothing_is_known_before_a_recordings_first_line,
+       what_a_recording_calls_invalid_is_so_until_it_says_something_else,
        a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well,
        a_driver_that_fails_ends_it_with_its_own_words,
        what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for,
