@@ -260,8 +260,9 @@ void Tracker::State::age() {
   for (Body& b : bodies) {
     if (b.region >= 0) {
       const bool enough = b.hits >= 3 || (b.hits >= 2 && b.age >= 3 * options.confirm_time);
-      if (b.id == 0 && enough && (b.uncovered || b.travelled >= kLeastTravel) &&
-          b.age >= 0.99 * options.confirm_time && b.hits >= 0.6 * b.frames) {
+      const bool confirmed = enough && (b.uncovered || b.travelled >= kLeastTravel) &&
+                             b.age >= 0.99 * options.confirm_time && b.hits >= 0.6 * b.frames;
+      if (b.id == 0 && (confirmed || options.confirm_time <= 0)) {
         b.id = ++last_id;
         b.top_speed = b.speed();
       }

@@ -64,9 +64,8 @@ struct Settings {
 
 const Property<Settings> kProperties[] = {
     property("confirm-time", &Settings::confirm_time,
-             "Nanoseconds for which an object must be seen before it is published: longer drops flicker and "
-             "answers later; "
-             "0 = at once"),
+             "Nanoseconds for which an object must be seen, and move, before it is published: longer drops "
+             "flicker and answers later; 0 = every region is one in the frame in which it is first seen"),
     property("coast-time", &Settings::coast_time,
              "Nanoseconds for which a moving object is carried on without being seen; 0 = it ends at once"),
     property(

@@ -247,6 +247,25 @@ GST_START_TEST(tracks_have_identity_velocity_age_and_state) {
 GST_END_TEST
 
 // That regions were looked for is known behind tees, queues, converters and scalers, even where none was left.
+// From the third frame of a scene on, as the regions are; with the default somebody has to be seen for a while.
+GST_START_TEST(without_confirm_time_a_region_is_an_object_at_once) {
+  Line regions("motionregions"), at_once("motiontrack confirm-time=0"), later("motiontrack");
+  const World world;
+  for (int k = 0; k < 4; ++k) {
+    GstBuffer* found = regions.through(scene::grey_buffer(world, k));
+    const guint count = Regions(found).size();
+    fail_unless_equals_int(count > 0, k >= 2);
+    GstBuffer* now = at_once.through(gst_buffer_copy(found));
+    GstBuffer* after = later.through(found);
+    fail_unless_equals_int(Regions(now).size(), count);
+    if (count > 0) fail_unless(Regions(now)[0].tracked && Regions(now)[0].state == CERBERUS_REGION_SEEN);
+    fail_unless_equals_int(Regions(after).size(), 0);
+    gst_buffer_unref(now);
+    gst_buffer_unref(after);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(what_motionregions_dropped_is_not_found_again_downstream) {
   static const char* const between[] = {"identity", "queue", "videoconvert ! video/x-raw,format=RGBx",
                                         "videoscale ! video/x-raw,width=160,height=120"};
@@ -284,6 +303,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, the_tilt_of_a_pose_on_the_frame_counts_for_the_distance);
   tcase_add_test(tests, limits_of_speed_drop_what_is_outside);
   tcase_add_test(tests, tracks_have_identity_velocity_age_and_state);
+  tcase_add_test(tests, without_confirm_time_a_region_is_an_object_at_once);
   tcase_add_loop_test(tests, what_motionregions_dropped_is_not_found_again_downstream, 0, 4);
   return suite;
 }
