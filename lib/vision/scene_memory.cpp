@@ -18,6 +18,8 @@
 #include "vision/scene_alignment.h"
 #include "vision/scene_kernels.h"
 #include "vision/scene_parts.h"
+#include "vision/scene_surroundings.h"
+#include "vision/shift_content.h"
 #include "vision/warp.h"
 
 namespace cerberus::vision {
@@ -37,32 +39,6 @@ constexpr int kUnsettled = 12;        // frames in which a memory still has its 
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
-
-// Moves the content; what comes in is `fill`.
-template <typename T>
-void shift_content(View<T> v, int dx, int dy, T fill) {
-  const auto move_row = [&](int y) {
-    const int from = y - dy;
-    T* out = v.row(y);
-    if (from < 0 || from >= v.height || std::abs(dx) >= v.width) {
-      std::fill_n(out, v.width, fill);
-      return;
-    }
-    const T* in = v.row(from);
-    const std::size_t bytes = sizeof(T) * static_cast<std::size_t>(v.width - std::abs(dx));
-    if (dx >= 0) {
-      std::memmove(out + dx, in, bytes);
-      std::fill_n(out, dx, fill);
-    } else {
-      std::memmove(out, in - dx, bytes);
-      std::fill_n(out + v.width + dx, -dx, fill);
-    }
-  };
-  if (dy > 0)
-    for (int y = v.height - 1; y >= 0; --y) move_row(y);
-  else
-    for (int y = 0; y < v.height; ++y) move_row(y);
-}
 
 // 64 bits of a row from x on, zeros outside the row.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
@@ -121,10 +97,12 @@ struct SceneMemory::State {
   Image<std::uint8_t> present;    // the frame in memory coordinates, blurred
   Image<std::uint8_t> known;      // the mean as compared: 8 bits, under the present light; with margins
   Image<std::uint8_t> tolerance;  // one row of blocks, per pixel
-  BitMask weak, strong, moved, valid, absorb;
+  BitMask weak, strong, moved, absorb;
+  BitMask valid;  // one row
   BitMask plain;  // the mask before it is closed: who makes regions of it needs the gaps between people
   Morphology morphology;
   SceneParts parts;
+  SceneSurroundings surroundings;
   SceneWindows windows;
   double period = 0;  // seconds from frame to frame, smoothed
   Warp warp;
@@ -137,6 +115,7 @@ struct SceneMemory::State {
   void measure_time(double seconds);
   void follow(const SceneMemoryInput& in);
   void redraw();
+  ScenePixels pixels() { return {mean.view(), spread.view(), age.view(), quiet.view()}; }
   View<std::uint8_t> known_view() {
     const auto v = known.view();
     return {v.data + v.stride + kMargin, size.width, size.height, v.stride};
@@ -148,6 +127,7 @@ struct SceneMemory::State {
   bool compensate(bool still);
   void forgive_step();
   void learn_noise(const SceneMemoryInput& in);
+  void leave_valid(MutableBitView bits) const;
   void compare(const SceneMemoryInput& in);
   void decide(const SceneMemoryInput& in);
   void learn();
@@ -169,8 +149,10 @@ void SceneMemory::State::prepare(Size to) {
     for (auto* plane : {&spread, &age, &quiet, &present}) plane->resize(to);
     known.resize({to.width + 2 * kMargin, to.height + 2});
     tolerance.resize({to.width, 1});
-    for (auto* bits : {&weak, &strong, &moved, &valid, &absorb, &plain}) bits->resize(bit_mask_size(to));
+    for (auto* bits : {&weak, &strong, &moved, &absorb, &plain}) bits->resize(bit_mask_size(to));
+    valid.resize({bit_mask_size(to).width, 1});
     parts.make_room(to);
+    surroundings.make_room(to);
     columns = (to.width + kSceneBlock - 1) / kSceneBlock;
     rows = (to.height + kSceneBlock - 1) / kSceneBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
@@ -179,6 +161,7 @@ void SceneMemory::State::prepare(Size to) {
   if (frames == 0) {
     mean.fill_bytes(0);
     for (auto* plane : {&spread, &age, &quiet}) plane->fill_bytes(0);
+    surroundings.begin(to);
     to_frame = {};
   }
   ++frames;
@@ -207,8 +190,11 @@ void SceneMemory::State::follow(const SceneMemoryInput& in) {
   }
   if (std::abs(tx) > 0.75 || std::abs(ty) > 0.75) {
     const int dx = static_cast<int>(std::lround(tx)), dy = static_cast<int>(std::lround(ty));
+    const Transform shift = Transform::translation(dx, dy);
+    surroundings.keep(pixels(), shift);
     shift_content<std::uint16_t>(mean.view(), dx, dy, 0);
     for (auto* plane : {&spread, &age, &quiet}) shift_content<std::uint8_t>(plane->view(), dx, dy, 0);
+    surroundings.recall(pixels(), shift);
     to_frame = to_frame * Transform::translation(-dx, -dy);
   }
   if (to_frame.corner_motion(size) > kFarthest) redraw();
@@ -221,6 +207,7 @@ void SceneMemory::State::redraw() {
     prepare(size);
     return;
   }
+  surroundings.keep(pixels(), to_frame);
   draw_known(false);
   warp.bilinear(known_view(), present.view());
   for (int y = 0; y < size.height; ++y)
@@ -230,6 +217,7 @@ void SceneMemory::State::redraw() {
     warp.nearest(plane->view(), present.view());
     plane->swap(present);
   }
+  surroundings.recall(pixels(), to_frame);
   to_frame = {};
   standing = 0;
 }
@@ -297,6 +285,7 @@ bool SceneMemory::State::compensate(bool still) {
   if (light.none()) return false;
   if (light.agreement() < kAgreement && still) {  // not a change of light: another scene
     age.fill_bytes(0);
+    surroundings.begin(size);
     light.clear();
     return false;
   }
@@ -309,6 +298,7 @@ bool SceneMemory::State::compensate(bool still) {
       for (int x = 0; x < size.width; ++x)
         row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
     }
+    surroundings.relight(gain, offset);
     draw_known(false);
     light.estimate(known_view(), present.view(), warp.spans());
     if (light.none()) return std::abs(at_middle) > kStep;
@@ -370,6 +360,15 @@ void SceneMemory::State::learn_noise(const SceneMemoryInput& in) {
   }
 }
 
+// Clears what this frame does not show.
+void SceneMemory::State::leave_valid(MutableBitView bits) const {
+  for (int y = 0; y < bits.height; ++y) {
+    const RowSpan span = warp.spans()[static_cast<std::size_t>(y)];
+    clear_bits(bits.row(y), 0, span.begin);
+    clear_bits(bits.row(y), span.end, 64 * bits.width);
+  }
+}
+
 void SceneMemory::State::compare(const SceneMemoryInput& in) {
   CompareLimits limits;
   for (int c = 0; c < kBrightness; ++c)
@@ -420,8 +419,8 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
     row.moved = moved.view().row(y), row.quiet = quiet.view().row(y);
     compare_row(row, limits, weak.view().row(y), strong.view().row(y));
   }
-  intersect(weak.view(), valid.view(), weak.view());
-  intersect(strong.view(), valid.view(), strong.view());
+  leave_valid(weak.view());
+  leave_valid(strong.view());
 }
 
 // strong := the mask, closed; plain: as it is published. weak := what must not be learnt. absorb := what is to be taken over.
@@ -437,7 +436,7 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   const int side = std::max(3, kClosing * w / 320 | 1);
   std::memcpy(plain.view().data, seeds.data, plain.bytes());
   morphology.close(seeds, w, side);
-  intersect(seeds, valid.view(), seeds);
+  leave_valid(seeds);
   unite(weak.view(), seeds, weak.view());
   morphology.dilate(weak.view(), w, 3);
   if (young) parts.join(planes, windows, seeds, plain.view());
@@ -447,9 +446,13 @@ void SceneMemory::State::learn() {
   LearnRow row;
   row.width = size.width;
   row.phase = frames % 2 ? 15 : 0;
+  row.valid = valid.view().data;
   for (int y = 0; y < size.height; ++y) {
     row.present = present.view().row(y), row.memory = known_view().row(y), row.quiet = quiet.view().row(y);
-    row.keep = weak.view().row(y), row.absorb = absorb.view().row(y), row.valid = valid.view().row(y);
+    row.keep = weak.view().row(y), row.absorb = absorb.view().row(y);
+    const RowSpan span = warp.spans()[static_cast<std::size_t>(y)];
+    valid.fill_bytes(0);
+    set_bits(valid.view().data, span.begin, span.end);
     row.mean = mean.view().row(y), row.spread = spread.view().row(y), row.age = age.view().row(y);
     learn_row(row);
   }
@@ -470,13 +473,9 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
     return;
   }
   if (!in.still && s.frames > 1) s.align(in, blurred);
-  s.valid.fill_bytes(0);
-  for (int y = 0; y < s.size.height; ++y) {
-    const RowSpan span = s.warp.spans()[static_cast<std::size_t>(y)];
-    set_bits(s.valid.view().row(y), span.begin, span.end);
-  }
   s.light.clear();
   const bool step = s.frames > 1 && s.compensate(in.still);
+  s.surroundings.doubt(s.pixels(), s.present.view(), s.known_view(), s.warp.spans());
   if (s.warp.is_identity()) {
     binarise(in.difference, in.threshold, s.moved.view());
   } else {
@@ -499,7 +498,8 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
 std::size_t SceneMemory::bytes() const {
   const State& s = *state_;
   std::size_t total = sizeof(State) + s.mean.bytes() + s.known.bytes() + s.tolerance.bytes() +
-                      s.morphology.bytes() + s.parts.bytes() + s.warp.bytes() + s.light.bytes();
+                      s.morphology.bytes() + s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() +
+                      s.light.bytes();
   for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
   for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
     total += bits->bytes();

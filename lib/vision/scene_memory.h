@@ -23,6 +23,7 @@ struct SceneMemoryInput {
 // Per pixel 5 bytes: mean (8.8 fixed point), spread, age, frames since it moved. The memory has coordinates of its own,
 // which follow the frame's by whole pixels (a copy, not an interpolation: interpolating it every frame would blur it);
 // the rest, to_frame, is fitted to the memory's own content every frame, and the frame is warped, never the memory.
+// What leaves the picture is kept coarsely beyond it (scene_surroundings.h), for a camera that turns back.
 //
 // A pixel is foreground by confidence:
 // - it differs from the memory by more than noise (known by brightness: sensor noise grows with it), its own spread,

@@ -8,72 +8,15 @@
 #include <vector>
 
 #include "support/allocations.h"
-#include "support/pictures.h"
+#include "support/area.h"
 #include "support/suite.h"
-#include "vision/three_frame_difference.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
 
 namespace {
 
-// Both stages in a row, as the elements run them.
-struct Chain {
-  explicit Chain(Size size) : current(size), previous(size), mask(size) {}
-  MovingAreaResult feed(GrayView picture, const Transform& motion = {}, bool still = true) {
-    const auto d = difference.update(picture, motion, current.view(), previous.view(), histogram);
-    MovingAreaInput in;
-    in.picture = picture;
-    in.motion = motion;
-    in.still = still;
-    in.current = current.view();
-    in.previous = previous.view();
-    in.histogram = &histogram;
-    in.frames = d.frames;
-    return area.update(in, mask.view());
-  }
-  void reset() {
-    difference.reset();
-    area.reset();
-  }
-  long moving() {
-    long n = 0;
-    for (int y = 0; y < mask.size().height; ++y)
-      for (int x = 0; x < mask.size().width; ++x) n += mask.view().at(x, y) != 0;
-    return n;
-  }
-  ThreeFrameDifference difference;
-  MovingArea area;
-  Image<std::uint8_t> current, previous, mask;
-  Histogram histogram{};
-};
-
 constexpr double kContrast = 12;  // grey levels: about what walls, streets and lawns have at this size
-
-struct Square {
-  double x, y;
-  int side;
-};
-
-// F of the mask against a square, over everything but a border.
-struct Score {
-  double hit = 0, wrong = 0, missed = 0;
-  void add(GrayView mask, const Square& s, int border = 4) {
-    for (int y = border; y < mask.height - border; ++y)
-      for (int x = border; x < mask.width - border; ++x) {
-        const bool in = x >= s.x && x < s.x + s.side && y >= s.y && y < s.y + s.side, on = mask.at(x, y) != 0;
-        hit += in && on, wrong += !in && on, missed += in && !on;
-      }
-  }
-  double f() const { return 2 * hit / (2 * hit + wrong + missed); }
-};
-
-void draw(MutableGrayView picture, const Square& s, const Scene& texture) {
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      if (x >= s.x && x < s.x + s.side && y >= s.y && y < s.y + s.side)
-        picture.at(x, y) = to_byte(texture.at(x - s.x, y - s.y) + 45);
-}
 
 // Levels from dark to bright with some structure, so that noise is of every strength.
 double static_scene(int x, int y, Size size) {
@@ -91,7 +34,7 @@ struct Light {
 
 // Frames with a mask, over `frames` of a static scene with noise of sigma 2 (dark) to 6 (bright).
 int frames_with_motion(Size size, int frames, const Light& light, unsigned seed) {
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(seed);
   std::vector<float> noise(1 << 16);
@@ -191,7 +134,7 @@ END_TEST
 START_TEST(a_square_before_a_still_camera_is_found) {
   const Size size{160, 120};
   const Scene scene(21, kContrast), texture(22, kContrast);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(5);
   Score score;
@@ -210,7 +153,7 @@ END_TEST
 START_TEST(a_square_before_a_panning_camera_is_found) {
   const Size size{160, 120};
   const Scene scene(31, kContrast), texture(32, kContrast);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(6);
   Score score;
@@ -231,7 +174,7 @@ END_TEST
 START_TEST(an_object_that_is_there_from_the_first_frame_is_found_from_the_third) {
   const Size size{160, 120};
   const Scene scene(41), texture(42, kContrast);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   for (int k = 0; k < 3; ++k) {
     look(scene, {}, picture.view());
@@ -249,7 +192,7 @@ END_TEST
 START_TEST(something_that_leaves_its_place_leaves_no_ghost) {
   const Size size{160, 120};
   const Scene scene(51, kContrast), texture(52, kContrast);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(7);
   for (int k = 0; k < 60; ++k) {  // stands for 30 frames, from the start; walks out; then the scene is empty
@@ -266,7 +209,7 @@ END_TEST
 START_TEST(something_that_stops_stays_in_the_mask_of_a_standing_camera) {
   const Size size{160, 120};
   const Scene scene(61, kContrast), texture(62, kContrast);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(8);
   Score score;
@@ -285,7 +228,7 @@ END_TEST
 START_TEST(after_a_reset_nothing_of_the_old_scene_is_left) {
   const Size size{160, 120};
   const Scene first(71), second(72);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(9);
   for (int k = 0; k < 40; ++k) {
@@ -306,7 +249,7 @@ END_TEST
 START_TEST(a_change_of_scene_that_nobody_announced_is_overcome) {
   const Size size{160, 120};
   const Scene first(81), second(82);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   for (int k = 0; k < 60; ++k) {
     look(k < 40 ? first : second, {}, picture.view());
@@ -319,7 +262,7 @@ END_TEST
 START_TEST(turning_and_zooming_for_long_stays_registered) {
   const Size size{160, 120};
   const Scene scene(91);
-  Chain chain(size);
+  AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   const Transform centre = Transform::translation(79.5, 59.5);
   const Transform step = centre * Transform::similarity(1.004, 0.006, 0.3, 0.1) * centre.inverse();
@@ -337,7 +280,7 @@ END_TEST
 
 START_TEST(motion_that_cannot_be_and_odd_sizes_do_no_harm) {
   for (const Size size : {Size{33, 35}, Size{65, 32}, Size{16, 16}, Size{320, 17}}) {
-    Chain chain(size);
+    AreaChain chain(size);
     Image<std::uint8_t> picture(size);
     std::mt19937 random(10);
     for (int k = 0; k < 12; ++k) {
@@ -357,7 +300,7 @@ END_TEST
 START_TEST(steady_state_allocates_nothing_and_stays_small) {
   const Size size{320, 240};
   const Scene scene(101), texture(102, kContrast);
-  Chain chain(size);
+  AreaChain chain(size);
   std::vector<Image<std::uint8_t>> pictures;
   for (int k = 0; k < 24; ++k) {
     pictures.emplace_back(size);
