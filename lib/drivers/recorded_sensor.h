@@ -17,6 +17,7 @@ class RecordedSensor : public Sensor {
   bool measures() const override { return recording_.volts; }
   bool recorded() const override { return true; }
   Time next() const override;
+  void rewind() override { next_ = 0; }
   Time end() const override { return recording_.end; }
 
  protected:

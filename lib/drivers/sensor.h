@@ -46,6 +46,7 @@ class Sensor {
   virtual bool measures() const { return false; }
   virtual bool recorded() const { return false; }
   virtual Time next() const { return sensing::kNever; }  // of a recording: time of the next edge
+  virtual void rewind() {}                               // a recording begins again
   virtual Time end() const { return sensing::kNever; }   // of a recording: nothing is known of later times
 };
 

@@ -16,6 +16,7 @@ SensorError SensorArray::open(std::unique_ptr<Sensor> sensor, const SensorSetup&
   const auto count = static_cast<std::size_t>(std::clamp(setup.sensors, 1, sensing::kMaxSensors));
   if (SensorError error = sensor->open(setup)) return error;
   sensor_ = std::move(sensor);
+  options_ = options;
   models_.assign(count, sensing::PirModel(options));
   faults_.assign(count, sensing::PirFault::none);
   edges_.reserve(1024);
@@ -121,7 +122,7 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
   }
   for (;;) {
     const Time time = due();
-    if (recorded() && time > end_) return now >= end_ ? Step::ended : Step::wait;
+    if (recorded() && begun_ && time > end_) return now >= end_ ? Step::ended : Step::wait;
     if (time > now) return Step::wait;
     let_pass(time);
     const bool sampled = std::exchange(sampled_, false) && tell_samples_;
@@ -135,6 +136,20 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
     SensorError error = sensor_->show(std::span(reading.presence).first(models_.size()));
     return error ? fail(std::move(error), now, reading) : Step::reading;
   }
+}
+
+void SensorArray::seek(Time start) {
+  if (!recorded()) return;
+  sensor_->rewind();
+  for (auto& model : models_) model = sensing::PirModel(options_);
+  std::ranges::fill(faults_, sensing::PirFault::none);
+  edges_.clear();
+  next_edge_ = 0;
+  volts_.fill(std::numeric_limits<float>::quiet_NaN());
+  last_ = {};
+  last_.time = beat_ = start;
+  error_ = {};
+  begun_ = sampled_ = false;
 }
 
 void SensorArray::base(Time time, double yaw_rate) {

@@ -27,7 +27,7 @@ class SensorArray {
     reading,  // here is one
     wait,     // nothing more until `now`: come again at due(), or when the driver's fd has something
     ended,    // of a recording
-    failed,   // see error(); final. The reading before it is invalid: nothing is known of the sensors any more
+    failed,  // see error(); final. The reading before it is invalid: nothing is known of the sensors any more
   };
 
   // Takes the sensors and opens them. heartbeat > 0.
@@ -35,8 +35,10 @@ class SensorArray {
                    const sensing::PirOptions& options, Time heartbeat);
   void close() noexcept;
 
-  // The next reading not later than `now`. Readings begin with the time of the first call.
+  // The next reading not later than `now`. Readings begin with the time of the first call; there is one at least.
   Step next(Time now, SensorReading& reading);
+  // Of a recording: the next reading is that of `start`, of which everything before it is known as if it had been played.
+  void seek(Time start);
   // Of drivers that measure: a reading for each sample, whatever changes; false at the begin.
   void tell_samples(bool all) { tell_samples_ = all; }
   bool measures() const { return sensor_ && sensor_->measures(); }
@@ -59,6 +61,7 @@ class SensorArray {
   Step fail(SensorError error, Time now, SensorReading& reading);
 
   std::unique_ptr<Sensor> sensor_;
+  sensing::PirOptions options_;
   std::vector<sensing::PirModel> models_;
   std::vector<SensorEdge> edges_;  // read, not yet told to the models from next_edge_ on
   std::size_t next_edge_ = 0;

@@ -25,7 +25,8 @@
  * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
  * come while the robot turns faster than 5 degrees a second are doubtful and do not count: a `cerberus-base` event says
  * so, or, where none came within a second, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are
- * told by that event. Both events, and seeks, are passed on to the video and to the PIR pads.
+ * told by that event. Both events, and seeks, are passed on to the video and to the PIR pads; where a video can begin at key
+ * frames only, accurate seeks keep a recording of sensors in step with it.
  *
  * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
  * described in the manual (rules); one that leaves a case open or contradicts itself is refused and the case named.

@@ -18,6 +18,8 @@
  *   JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
  * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
  *
+ * A recording that is not live can be sought in: readings go on with what it says of that time.
+ *
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
  * knows modules. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
  * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, as an upstream event
@@ -75,7 +77,7 @@ struct Private {
   bool live = false;
   SensorArray sensors;
   GstPollFD device = GST_POLL_FD_INIT;
-  GstClockTime last = 0;  // running time of the last buffer
+  GstClockTime last = 0;  // time stamp of the last buffer: running time, or of a recording its own
 
   Private() : poll(gst_poll_new(TRUE)) {}
   ~Private() { gst_poll_free(poll); }
@@ -241,7 +243,9 @@ GstBuffer* publish(CerberusPirSrc* self, const News& news) {
       report_fault(GST_ELEMENT(self), static_cast<int>(i), news.faults[i], news.info.bearings[i],
                    news.places[i]);
   if (reading.changed) {
-    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), news.time, &news.info, presence);
+    const GstClockTime running =
+        gst_segment_to_running_time(&GST_BASE_SRC(self)->segment, GST_FORMAT_TIME, news.time);
+    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), running, &news.info, presence);
     GstStructure* fields = gst_message_writable_structure(message);
     gst_structure_set(fields, "doubtful", G_TYPE_UINT, static_cast<guint>(reading.doubtful), nullptr);
     gst_element_post_message(GST_ELEMENT(self), message);
@@ -292,6 +296,26 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
 GstFlowReturn create(GstPushSrc* push, GstBuffer** buffer) {
   auto* self = cerberus_pir_src_self(push);
   return guarded(self, GST_FLOW_ERROR, [&] { return next_buffer(self, buffer); });
+}
+
+// ---- seeking in a recording
+
+gboolean is_seekable(GstBaseSrc* base) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  const std::lock_guard guard(priv.lock);
+  return priv.running && !priv.live && priv.sensors.recorded();
+}
+
+gboolean do_seek(GstBaseSrc* base, GstSegment* segment) {
+  if (!is_seekable(base)) return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->do_seek(base, segment);
+  if (segment->rate < 0) return FALSE;
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  const std::lock_guard guard(priv.lock);
+  const Time start(static_cast<Time::rep>(std::min<guint64>(segment->start, G_MAXINT64 / 4)));
+  priv.sensors.seek(start);
+  priv.last = static_cast<GstClockTime>(start.count());
+  segment->time = segment->start;
+  return TRUE;
 }
 
 gboolean unlock(GstBaseSrc* base) {
@@ -360,6 +384,8 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   auto* src = GST_BASE_SRC_CLASS(klass);
   src->start = start;
   src->stop = stop;
+  src->is_seekable = is_seekable;
+  src->do_seek = do_seek;
   src->get_caps = get_caps;
   src->set_caps = set_caps;
   src->unlock = unlock;

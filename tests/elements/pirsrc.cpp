@@ -74,6 +74,71 @@ GST_START_TEST(a_recording_becomes_a_stream_of_its_own_times) {
 }
 GST_END_TEST
 
+bool seek(Source& source, double rate, GstClockTime start) {
+  return gst_harness_push_upstream_event(
+      source.harness(), gst_event_new_seek(rate, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH, GST_SEEK_TYPE_SET,
+                                           static_cast<gint64>(start), GST_SEEK_TYPE_NONE, -1));
+}
+
+GST_START_TEST(a_recording_is_sought_in_and_a_live_source_is_not) {
+  const std::string script = "heartbeat=3600000000000 script=\"0,0,0,0; 1,1,0,0; 2.5,0,1,0; 3,0,1,0\"";
+  Source source(script);
+  fail_unless(source.all() == std::vector<std::string>({"0 000", "1000 100", "2500 110", "2520 010"}));
+  while (GstMessage* message = source.pop(GST_MESSAGE_ELEMENT)) gst_message_unref(message);
+  fail_unless(seek(source, 1, 2 * GST_SECOND));
+  fail_unless(source.all() == std::vector<std::string>({"2000 100", "2500 110", "2520 010"}));
+  g_autoptr(GstEvent) event = gst_pad_get_sticky_event(source.harness()->sinkpad, GST_EVENT_SEGMENT, 0);
+  const GstSegment* segment = nullptr;
+  gst_event_parse_segment(event, &segment);
+  fail_unless_equals_uint64(segment->start, 2 * GST_SECOND);
+  fail_unless_equals_uint64(segment->time, 2 * GST_SECOND);
+  for (const GstClockTime running : {0, 500, 520}) {  // ms
+    g_autoptr(GstMessage) message = source.pop(GST_MESSAGE_ELEMENT);
+    GstClockTime time = 0;
+    g_autoptr(GBytes) readings = cerberus_message_parse_pir(message, &time);
+    fail_unless_equals_uint64(time, running * GST_MSECOND);
+  }
+  fail_if(seek(source, -1, 2 * GST_SECOND));
+  Source live("is-live=true " + script);
+  live.play();
+  live.pull();
+  fail_if(seek(live, 1, 2 * GST_SECOND));
+}
+GST_END_TEST
+
+// Whoever seeks in a recorded night sees what the sensors said then.
+GST_START_TEST(after_a_seek_frames_meet_the_readings_of_their_time) {
+  g_autoptr(GstElement) pipeline = gst_parse_launch(
+      "videotestsrc ! video/x-raw,format=GRAY8,width=16,height=16,framerate=25/1 ! pirfusion name=fusion "
+      "max-wait=18446744073709551615 ! appsink name=sink sync=false max-buffers=2 "
+      "pirsrc script=\"0,0,0,0; 1,1,0,0; 2.5,0,1,0; 60,0,1,0\" ! queue ! fusion.pir_0",
+      nullptr);
+  fail_unless(pipeline != nullptr);
+  g_autoptr(GstElement) sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
+  const auto next = [&] {
+    g_autoptr(GstSample) sample = nullptr;
+    g_signal_emit_by_name(sink, "pull-sample", &sample);
+    GstBuffer* buffer = gst_sample_get_buffer(sample);
+    const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
+    return std::to_string(GST_BUFFER_PTS(buffer) / GST_MSECOND) + " " +
+           digits(fusion->sensors, fusion->n_sensors);
+  };
+  gst_element_set_state(pipeline, GST_STATE_PLAYING);
+  ck_assert_str_eq(next().c_str(), "0 000");
+  for (const int second : {2, 0, 30, 2}) {
+    fail_unless(gst_element_seek_simple(
+        pipeline, GST_FORMAT_TIME, static_cast<GstSeekFlags>(GST_SEEK_FLAG_FLUSH | GST_SEEK_FLAG_ACCURATE),
+        second * GST_SECOND));
+    for (int k = 0; k < 20; ++k) {
+      const int time = second * 1000 + k * 40;
+      const char* said = time < 1000 ? "000" : time < 2500 ? "100" : time < 2520 ? "110" : "010";
+      ck_assert_str_eq(next().c_str(), (std::to_string(time) + " " + said).c_str());
+    }
+  }
+  gst_element_set_state(pipeline, GST_STATE_NULL);
+}
+GST_END_TEST
+
 GST_START_TEST(caps_tell_where_the_sensors_look) {
   Source source("bearings=\"-90, 0, 90, 270\" field-of-view=100 script=\"0,0,0,0,1\"");
   source.play();
@@ -342,6 +407,8 @@ Suite* pirsrc_suite() {
   TCase* tests = tcase_create("pirsrc");
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, a_recording_becomes_a_stream_of_its_own_times);
+  tcase_add_test(tests, a_recording_is_sought_in_and_a_live_source_is_not);
+  tcase_add_test(tests, after_a_seek_frames_meet_the_readings_of_their_time);
   tcase_add_test(tests, caps_tell_where_the_sensors_look);
   tcase_add_test(tests, every_change_is_a_message_and_a_heartbeat_is_none);
   tcase_add_test(tests, the_model_follows_the_properties);

@@ -24,14 +24,8 @@ struct Told {
   bool changed;
 };
 
-// Plays a script to its end, by nothing but due(). Readings as digits, "!" behind one whose fault changed.
-std::vector<Told> play(SensorArray& array, const std::string& script, const PirOptions& options,
-                       Time heartbeat = 10s, int sensors = 3) {
-  SensorSetup setup;
-  setup.sensors = sensors;
-  setup.script = script;
-  const SensorError error = array.open(make_sensor("scripted"), setup, options, heartbeat);
-  if (error) ck_abort_msg("%s", error.text.c_str());
+// All until the end, by nothing but due(). Readings as digits, "!" behind one whose fault changed.
+std::vector<Told> rest(SensorArray& array) {
   std::vector<Told> told;
   for (int step = 0; step < 10000; ++step) {
     SensorReading reading;
@@ -53,6 +47,17 @@ std::vector<Told> play(SensorArray& array, const std::string& script, const PirO
     }
   }
   ck_abort_msg("it does not end");
+}
+
+// Plays a script to its end.
+std::vector<Told> play(SensorArray& array, const std::string& script, const PirOptions& options,
+                       Time heartbeat = 10s, int sensors = 3) {
+  SensorSetup setup;
+  setup.sensors = sensors;
+  setup.script = script;
+  const SensorError error = array.open(make_sensor("scripted"), setup, options, heartbeat);
+  if (error) ck_abort_msg("%s", error.text.c_str());
+  return rest(array);
 }
 
 void must_be(const std::vector<Told>& told, const std::vector<Told>& expected) {
@@ -99,6 +104,23 @@ START_TEST(what_a_recording_calls_invalid_is_so_until_it_says_something_else) {
   // Low when somebody is there, and no edge of before is waited for.
   must_be(play(array, "0,0; 1,2; 2,1; 3,2; 4,0", {.active_low = true}, 100s, 1),
           {{0s, "1", true}, {1s, "2", true}, {2s, "0", true}, {3s, "2", true}, {4s, "1", true}});
+}
+END_TEST
+
+START_TEST(a_recording_goes_on_wherever_it_is_asked_to) {
+  SensorArray array;
+  const std::string script = "0,0,0; 1,1,0; 1.5,1,2; 2.5,0,1; 4,0,0";
+  const std::vector<Told> whole = play(array, script, {.hold = 2s}, 100s, 2);
+  must_be(whole,
+          {{0s, "00", true}, {1s, "10", true}, {1500ms, "12", true}, {2500ms, "11", true}, {3s, "01", true}});
+  array.seek(2s);
+  must_be(rest(array), {{2s, "12", true}, {2500ms, "11", true}, {3s, "01", true}});
+  array.seek(2999ms);  // the hold of before
+  must_be(rest(array), {{2999ms, "11", true}, {3s, "01", true}});
+  array.seek(0s);
+  must_be(rest(array), whole);
+  array.seek(10s);  // the last word
+  must_be(rest(array), {{10s, "00", true}});
 }
 END_TEST
 
@@ -190,6 +212,7 @@ int main() {
       {a_reading_at_the_start_at_every_change_and_every_heartbeat,
        nothing_is_known_before_a_recordings_first_line,
        what_a_recording_calls_invalid_is_so_until_it_says_something_else,
+       a_recording_goes_on_wherever_it_is_asked_to,
        a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well,
        a_driver_that_fails_ends_it_with_its_own_words,
        what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for,
