@@ -29,7 +29,6 @@
  *   `person`; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`: pixels of the frame; `vx`, `vy`:
  *   pixels a second, camera motion taken out; `bearing`: degrees, positive to the right; `distance`: metres.
  *
- *
  * Keys that are there only where an element told, after `objects`:
  * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
  *   `moving` true or false.
