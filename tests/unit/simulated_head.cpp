@@ -243,7 +243,7 @@ START_TEST(moved_stops_lead_nobody_further_out) {
       const double position = head.pan(t);
       constexpr double kNoise = 1e-3;                                 // 7 deviations between two
       ck_assert_double_le(std::abs(position - last), 0.01 + kNoise);  // 1 a second at most
-      if (!limits.holds(position) && t != time + 60ms) {  // then `last` was within
+      if (!limits.holds(position) && t != time + 60ms) {              // then `last` was within
         ck_assert_double_le(std::abs(position), std::abs(last) + kNoise);
         ++beyond;
       }
