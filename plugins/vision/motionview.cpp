@@ -13,7 +13,7 @@
  * - `stage=mask`: 0 or 255, the moving area; behind `motionregions` the cleaned one that regions are made from.
  * - `stage=labels`: one colour a region.
  * - `stage=histogram`: how the threshold was chosen, after the paper's figures 2 and 3: histogram of the difference,
- *   memberships, indices of fuzziness (of the weighting and extremes set here), the threshold that was used.
+ *   memberships, indices of fuzziness (as `fuzzythreshold` was set), the threshold that was used.
  *
  * Pads: `sink` takes raw video in every format that the stages read; `src` gives GRAY8 (or BGRx) for the grey
  * stages, BGRx for labels and histogram. Regions, threshold and camera motion stay on the buffers, so that motionoverlay
@@ -40,6 +40,7 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <cstring>
 
 #include "canvas.hpp"
 #include "cerberus/private/element.hpp"
@@ -56,6 +57,7 @@ namespace {
 
 using cerberus::MappedPlane;
 using cerberus::plugin::Adjustable;
+using cerberus::plugin::HistogramRecord;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
 namespace draw = cerberus::draw;
@@ -101,8 +103,6 @@ GType stage_type() {
 struct Settings {
   int stage = STAGE_MASK;
   double gain = 1;
-  int weighting = static_cast<int>(vision::FuzzyThresholdOptions{}.weighting);
-  int extremes = static_cast<int>(vision::FuzzyThresholdOptions{}.extremes);
 };
 
 const Property<Settings> kProperties[] = {
@@ -111,10 +111,6 @@ const Property<Settings> kProperties[] = {
         "gain", &Settings::gain, 0, 255,
         "Factor of the grey levels shown for the two differences: 1 shows them as they are, 4 makes small "
         "ones visible, 0 shows black"),
-    property("weighting", &Settings::weighting, cerberus::plugin::weighting_type,
-             "For stage=histogram: the weighting that the curves are drawn for (the one of fuzzythreshold)"),
-    property("extremes", &Settings::extremes, cerberus::plugin::extremes_type,
-             "For stage=histogram: the extremes that the curves are drawn for (those of fuzzythreshold)"),
 };
 
 struct State {  // streaming thread only
@@ -164,16 +160,27 @@ draw::Canvas canvas_of(GstVideoFrame* frame) {
           GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8};
 }
 
-bool show_histogram(const std::uint32_t* counts, GstBuffer* buffer, const Settings& settings,
-                    const draw::Canvas& canvas) {
+// As fuzzythreshold was set, where it has chosen; what does not say so was made by a stranger, or is not that far yet.
+vision::FuzzyThresholdOptions options_of(const HistogramRecord& record) {
+  vision::FuzzyThresholdOptions options;
+  if (!record.chosen) return options;
+  options.weighting = record.weighting ? vision::Weighting::log : vision::Weighting::linear;
+  options.extremes = record.extremes ? vision::Extremes::image : vision::Extremes::subset;
+  options.order = std::clamp(record.order, 1, 16);
+  options.clip = record.clip != 0;
+  return options;
+}
+
+bool show_histogram(const MappedPlane& plane, GstBuffer* buffer, const draw::Canvas& canvas) {
+  HistogramRecord record{};
   vision::Histogram histogram;
-  std::copy_n(counts, histogram.size(), histogram.begin());
+  if (plane.width() < static_cast<int>(histogram.size())) return false;
+  std::memcpy(&record, plane.view<std::uint32_t>().row(0),
+              std::min(sizeof record, plane.width() * sizeof(std::uint32_t)));
+  std::copy_n(record.count, histogram.size(), histogram.begin());
   draw::ThresholdFigure figure;
   figure.histogram = &histogram;
-  vision::FuzzyThresholdOptions options;
-  options.weighting = static_cast<vision::Weighting>(settings.weighting);
-  options.extremes = static_cast<vision::Extremes>(settings.extremes);
-  figure.fuzzy_threshold = vision::fuzzy_threshold(histogram, options, &figure.curves);
+  figure.fuzzy_threshold = vision::fuzzy_threshold(histogram, options_of(record), &figure.curves);
   if (const auto* meta = cerberus_buffer_get_threshold_meta(buffer); meta && meta->threshold.ready) {
     figure.threshold = static_cast<int>(std::min(meta->threshold.threshold, 255u));
     figure.fuzzy_threshold = static_cast<int>(std::min(meta->threshold.fuzzy_threshold, 255u));
@@ -208,7 +215,7 @@ bool show(State& state, const Settings& settings, GstBuffer* in, const draw::Can
       state.enlarger.show_labels(plane.view<std::uint16_t>(), canvas);
       return true;
     case STAGE_HISTOGRAM:
-      return plane.width() >= 256 && show_histogram(plane.view<std::uint32_t>().row(0), in, settings, canvas);
+      return show_histogram(plane, in, canvas);
     case STAGE_DIFFERENCE:
     case STAGE_PREVIOUS_DIFFERENCE:
       state.enlarger.show(plane.view<std::uint8_t>(), settings.gain, canvas);

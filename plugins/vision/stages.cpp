@@ -80,7 +80,7 @@ bool DifferenceStage::run(Frame& frame) {
   const vision::DifferenceResult result =
       difference_.update(picture.view<std::uint8_t>(), frame.motion.in(size, frame.size()),
                          current.writable<std::uint8_t>(), previous.writable<std::uint8_t>(), counts);
-  HistogramRecord record;
+  HistogramRecord record{};
   std::memcpy(record.count, counts.data(), sizeof record.count);
   record.frames = result.frames;
   std::memcpy(histogram.writable<std::uint32_t>().data, &record, sizeof record);
@@ -100,13 +100,14 @@ bool MaskStage::run(Frame& frame) {
   if (!picture || !before_.ensure(frame, picture.size())) return false;
   const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
   const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
-  const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
+  MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const vision::Size size = picture.size();
   if (sequence_.broken_by(frame) || size != size_) area_.reset();
   size_ = size;
 
   HistogramRecord record;
   std::memcpy(&record, histogram.view<std::uint32_t>().data, sizeof record);
+  histogram = {};
   vision::Histogram counts;
   std::memcpy(counts.data(), record.count, sizeof record.count);
   vision::MovingAreaInput input;
@@ -129,7 +130,21 @@ bool MaskStage::run(Frame& frame) {
   threshold.noise = result.sigma;
   threshold.ready = result.ready;
   cerberus_buffer_add_threshold_meta(frame.buffer, &threshold);
+  tell_how(frame.buffer, record);
   return true;
+}
+
+// In place, unless somebody else holds the histogram (a tee between the stages).
+void MaskStage::tell_how(GstBuffer* buffer, HistogramRecord& record) {
+  record.chosen = 1;
+  record.weighting = static_cast<std::int32_t>(threshold_.weighting);
+  record.extremes = static_cast<std::int32_t>(threshold_.extremes);
+  record.order = threshold_.order;
+  record.clip = threshold_.clip;
+  MappedPlane plane = MappedPlane::take(buffer, CERBERUS_PLANE_HISTOGRAM);
+  if (!plane) plane = acquire(histogram_pool_, {sizeof record / 4, 1}, 4);
+  std::memcpy(plane.writable<std::uint32_t>().data, &record, sizeof record);
+  plane.publish(buffer, CERBERUS_PLANE_HISTOGRAM);
 }
 
 bool RegionStage::run(Frame& frame, bool want_labels) {

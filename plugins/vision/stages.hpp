@@ -36,10 +36,13 @@ class LumaStage {
   PlanePool pool_;
 };
 
-// What rides in a HISTOGRAM plane: 256 counts, then over how many frames the differences span.
+// What rides in a HISTOGRAM plane: 256 counts, over how many frames the differences span, and how the threshold was
+// chosen from the counts, once it was.
 struct HistogramRecord {
   std::uint32_t count[256];
-  std::int32_t frames;  // vision::DifferenceResult
+  std::int32_t frames;                            // vision::DifferenceResult
+  std::int32_t chosen;                            // 0: the rest is not known yet
+  std::int32_t weighting, extremes, order, clip;  // vision::FuzzyThresholdOptions
 };
 
 // Registered differences and their histogram (Eq. 1, 2).
@@ -63,17 +66,22 @@ class DifferenceStage {
 class MaskStage {
  public:
   LumaStage& luma() { return before_.luma(); }
-  void set_options(const vision::MovingAreaOptions& options) { area_.set_options(options); }
+  void set_options(const vision::MovingAreaOptions& options) {
+    area_.set_options(options);
+    threshold_ = options.threshold;
+  }
   bool ensure(Frame& frame);
   bool run(Frame& frame);
   std::size_t bytes() const { return area_.bytes() + before_.bytes(); }
 
  private:
+  void tell_how(GstBuffer* buffer, HistogramRecord& record);
   DifferenceStage before_;
   vision::MovingArea area_;
+  vision::FuzzyThresholdOptions threshold_;
   vision::Size size_;
   Sequence sequence_;
-  PlanePool pool_;
+  PlanePool pool_, histogram_pool_;
 };
 
 // Regions of interest from the moving area.

@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "outputs.h"
+#include "scene.h"
 
 using namespace outputs;
 
@@ -192,6 +193,47 @@ GST_START_TEST(the_histogram_shows_the_threshold_where_it_is) {
   const int c = threshold_column(shown(harness.get(), with_histogram(info_of(caps), 40)));
   fail_unless(a > 0 && b > a && c > b, "%d %d %d", a, b, c);
   fail_unless(std::abs((c - b) - 2 * (b - a)) <= 3, "%d %d %d", a, b, c);
+}
+GST_END_TEST
+
+// The lower panel's curves, blue and orange: the row of each in a column, -1 where it is not.
+static std::pair<double, double> curves_at(const Picture& p, int x) {
+  double blue = 0, orange = 0;
+  int blues = 0, oranges = 0;
+  for (int y = p.height() * 57 / 100; y < p.height() * 94 / 100; ++y) {
+    const guint32 c = p.at(x, y);
+    const int r = c >> 16, b = c & 255;
+    if (b > 150 && r < 130) blue += y, ++blues;
+    if (r > 150 && b < 60 && (c >> 8 & 255) > 110) orange += y, ++oranges;
+  }
+  return {blues ? blue / blues : -1, oranges ? orange / oranges : -1};
+}
+
+// Linear, subset: what is above the threshold is nearer to the objects (Eq. 10), so the curves cross at its line. The
+// curves of other options cross elsewhere.
+GST_START_TEST(the_curves_are_those_of_the_options_that_were_used) {
+  const std::string caps = scene::caps("GRAY8", 640, 480);
+  Harness harness = started("motiondetect preset=paper ! motionview stage=histogram", caps);
+  scene::World world;
+  world.width = 640;
+  world.height = 480;
+  int checked = 0;
+  for (int k = 0; k < 12; ++k) {
+    const Picture p = shown(harness.get(), scene::grey_buffer(world, k));
+    const int threshold = threshold_column(p);
+    if (k < 3 || threshold < 0) continue;
+    // From the left, the first column from which the object's index lies below the background's (rows count downwards).
+    int crossing = -1;
+    for (int x = 0; x < p.width() && crossing < 0; ++x) {
+      const auto [background, object] = curves_at(p, x);
+      if (background >= 0 && object >= 0 && object > background + 1) crossing = x;
+    }
+    const int level = p.width() / 32;  // the widest that one may be drawn
+    fail_unless(std::abs(crossing - threshold) <= level, "frame %d: crossing at %d, threshold at %d", k,
+                crossing, threshold);
+    ++checked;
+  }
+  fail_unless(checked >= 6, "%d", checked);
 }
 GST_END_TEST
 
@@ -387,6 +429,7 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, equal_pictures_are_equal_bytes_between_the_rows_too);
   tcase_add_test(tc, every_label_has_a_colour_and_the_background_none);
   tcase_add_test(tc, the_histogram_shows_the_threshold_where_it_is);
+  tcase_add_test(tc, the_curves_are_those_of_the_options_that_were_used);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
   tcase_add_test(tc, a_missing_plane_is_black_and_told_once);
   tcase_add_test(tc, luma_is_made_here_where_no_stage_made_it);
