@@ -6,10 +6,10 @@
 
 namespace cerberus::vision {
 
-// Every row also has a private column of cost kForbidden beyond the real ones: "unmatched". Whoever ends
+// There are as many columns for "unmatched" beyond the real ones as there are rows. Whoever ends
 // there, or on a forbidden pair, is without partner, and a full matching always exists.
 double Assignment::cost(int row, int column) const {
-  if (column >= columns_) return kForbidden;
+  if (column >= columns_) return unmatched_.empty() ? kForbidden : unmatched_[row];
   return std::min(cost_[static_cast<std::size_t>(row) * columns_ + column], kForbidden);
 }
 
@@ -54,24 +54,39 @@ void Assignment::augment(int row) {
   }
 }
 
-std::span<const int> Assignment::solve(std::span<const double> cost, int rows, int columns) {
+void Assignment::reserve(int rows, int columns) {
+  const auto r = static_cast<std::size_t>(rows), n = r + static_cast<std::size_t>(columns) + 1;
+  row_potential_.reserve(r);
+  column_of_.reserve(r);
+  column_potential_.reserve(n);
+  row_of_.reserve(n);
+  distance_.resize(std::max(distance_.size(), n));
+  done_.resize(std::max(done_.size(), n));
+  previous_.resize(std::max(previous_.size(), n));
+}
+
+std::size_t Assignment::bytes() const {
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return of(row_potential_) + of(column_potential_) + of(distance_) + of(row_of_) + of(previous_) +
+         of(column_of_) + of(done_);
+}
+
+std::span<const int> Assignment::solve(std::span<const double> cost, int rows, int columns,
+                                       std::span<const double> unmatched) {
   cost_ = cost;
+  unmatched_ = unmatched;
   rows_ = rows;
   columns_ = columns;
   const auto n = static_cast<std::size_t>(rows + columns) + 1;
   row_potential_.assign(static_cast<std::size_t>(rows), 0);
   column_potential_.assign(n, 0);
-  if (distance_.size() < n) {
-    distance_.resize(n);
-    done_.resize(n);
-    previous_.resize(n);
-  }
+  if (distance_.size() < n) reserve(rows, columns);
   row_of_.assign(n, -1);
   column_of_.assign(static_cast<std::size_t>(rows), -1);
   for (int r = 0; r < rows; ++r) augment(r);
   for (int c = 1; c <= columns; ++c)
     if (const int r = row_of_[c]; r >= 0 && this->cost(r, c - 1) < kForbidden) column_of_[r] = c - 1;
-  cost_ = {};
+  cost_ = unmatched_ = {};
   return column_of_;
 }
 

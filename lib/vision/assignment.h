@@ -2,6 +2,7 @@
 // Who belongs to whom at the least total cost.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -14,16 +15,22 @@ class Assignment {
   // A pair that may not be matched has this cost or a higher one.
   static constexpr double kForbidden = 1e6;
 
-  // cost: rows x columns, row-major, each >= 0. Returns for each row its column, -1 for none. Matches as many
-  // rows as the gates allow and, among those matchings, one of least total cost; deterministic. Lives until
-  // the next call.
-  std::span<const int> solve(std::span<const double> cost, int rows, int columns);
+  // Problems up to this size take no memory any more.
+  void reserve(int rows, int columns);
+
+  // cost: rows x columns, row-major, each >= 0. unmatched: what each row costs without partner; none given: kForbidden,
+  // then as many rows are matched as the gates allow. Returns for each row its column, -1 for none, at the least total
+  // cost; deterministic. Lives until the next call.
+  std::span<const int> solve(std::span<const double> cost, int rows, int columns,
+                             std::span<const double> unmatched = {});
+
+  std::size_t bytes() const;
 
  private:
   void augment(int row);
   double cost(int row, int column) const;
 
-  std::span<const double> cost_;
+  std::span<const double> cost_, unmatched_;
   int rows_ = 0, columns_ = 0;
   std::vector<double> row_potential_, column_potential_, distance_;
   std::vector<int> row_of_, previous_, column_of_;

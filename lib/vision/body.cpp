@@ -16,6 +16,8 @@ constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border g
 constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
 constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
 constexpr double kFarthestAway = 3.0;        // and where nobody was looked for meanwhile, who else may come
+constexpr double kPiece = 0.2;               // of its area: as little may be a piece of it,
+constexpr double kFarthestPiece = 1.5;       // and lies where it is, or very near
 constexpr double kCoastBrake = 1.0;          // s in which what is not seen is believed to slow down
 constexpr double kAwayBrake = 3.0;           // s, for who walked on when the camera turned away
 constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
@@ -178,7 +180,8 @@ double Body::distance(const Box& seen, Size frame) const {
   const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
   const double noise = square(kGateNoise * s);
   const double d2 = square(rx.distance) / (x.pp + noise) + square(ry.distance) / (y.pp + noise);
-  if (d2 > square(away ? kFarthestAway : kFarthest)) return -1;
+  const double farthest = away ? kFarthestAway : seen.area() < kPiece * b.area() ? kFarthestPiece : kFarthest;
+  if (d2 > square(farthest)) return -1;
   const double sizes = std::abs(std::log(seen.width / b.width)) + std::abs(std::log(seen.height / b.height));
   if (sizes > 2 * std::log(10.0)) return -1;  // a tenth or ten times each way is something else
   const Point c = centre(seen);
@@ -232,8 +235,8 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
   if (!fits && alone && outgrown(seen, r.confidence >= kWhole, cut_x || cut_y, seconds)) {
     adopt(seen);
   } else {
-    x.correct(rx.distance, rx.same_extent ? noise : 6 * noise);
-    y.correct(ry.distance, ry.same_extent ? noise : 6 * noise);
+    x.correct(rx.distance, fits ? noise : 6 * noise);
+    y.correct(ry.distance, fits ? noise : 6 * noise);
     if (fits && alone) {
       resize(w, seen.width, cut_x, seconds);
       resize(h, seen.height, cut_y, seconds);

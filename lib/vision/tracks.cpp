@@ -19,8 +19,17 @@ constexpr double kLeastTravel = 0.12;
 // learnt of the place that could have left a hole.
 constexpr double kNew = 0.5;
 constexpr double kLargestBack = 2;  // how much larger than when it left may be what comes back
+constexpr double kApart = 0.3;      // S: how far two must have come apart to be two
+// What a track without region costs, and the most that a pair does. Who has a region that fits keeps it when somebody
+// else has none: without it, two would rather share two regions that fit neither.
+constexpr double kWorst = 1.99, kUnmatched = 2;
+constexpr double kShared = 1;    // what it costs to live on in a blob of several
+constexpr double kCrossing = 3;  // s that two who came different ways may be in one place
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
+
+constexpr std::size_t kUsualPairs =
+    64 * 64;  // of tracks and regions: memory for more is taken when more come
 
 // Whose turn it is to be found a region.
 enum class Sort { here, away, unconfirmed };
@@ -41,7 +50,7 @@ struct Tracker::State {
   std::vector<Region> regions;
   std::vector<int> owner;  // body of each region, -1 none
   std::vector<char> used;  // region explained
-  std::vector<double> cost;
+  std::vector<double> cost, unmatched;
   std::vector<int> rows;  // bodies taking part in an assignment
   std::vector<Track> published;
   Assignment assignment;
@@ -59,12 +68,16 @@ struct Tracker::State {
     rows.reserve(kMaximumTracks);
     owner.reserve(kMaximumRegions);
     used.reserve(kMaximumRegions);
+    unmatched.reserve(kMaximumTracks);
+    cost.resize(kUsualPairs);
+    assignment.reserve(kMaximumTracks, kMaximumRegions);
   }
 
   void look(const Transform& motion);
   void take(std::span<const Region> input);
   void predict(const Transform& motion);
   double pair_cost(const Body& body, const Region& region) const;
+  bool may_hold(const Region& region, const Body& body) const;
   void associate(Sort sort);
   void gather_fragments();
   void share_regions();
@@ -131,7 +144,14 @@ double Tracker::State::pair_cost(const Body& b, const Region& region) const {
                                     region.box.y + region.box.height / 2 - b.y.position);
     if (moved > options.maximum_speed * (seconds + b.unseen) + 0.5 * b.size()) return Assignment::kForbidden;
   }
-  return distance;
+  return std::min(distance, kWorst);
+}
+
+// Is it a blob of several that the body is expected in?
+bool Tracker::State::may_hold(const Region& region, const Body& b) const {
+  if (region.confidence >= kWhole || sort_of(b) != Sort::here) return false;
+  const Box box = b.visible(frame);
+  return region.box.area() > 1.3 * box.area() && overlap_area(box, region.box) > 0.5 * box.area();
 }
 
 void Tracker::State::associate(Sort sort) {
@@ -139,12 +159,20 @@ void Tracker::State::associate(Sort sort) {
   for (std::size_t i = 0; i < bodies.size(); ++i)
     if (sort_of(bodies[i]) == sort) rows.push_back(static_cast<int>(i));
   const auto columns = static_cast<int>(regions.size());
-  cost.resize(rows.size() * regions.size());
-  for (std::size_t r = 0; r < rows.size(); ++r)
-    for (std::size_t c = 0; c < regions.size(); ++c)
-      cost[r * regions.size() + c] =
-          owner[c] >= 0 || used[c] ? Assignment::kForbidden : pair_cost(bodies[rows[r]], regions[c]);
-  const auto partner = assignment.solve(cost, static_cast<int>(rows.size()), columns);
+  if (cost.size() < rows.size() * regions.size()) cost.resize(rows.size() * regions.size());
+  unmatched.assign(rows.size(), kUnmatched);
+  for (std::size_t c = 0; c < regions.size(); ++c) {
+    double least = Assignment::kForbidden;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      double& pair = cost[r * regions.size() + c];
+      pair = owner[c] >= 0 || used[c] ? Assignment::kForbidden : pair_cost(bodies[rows[r]], regions[c]);
+      least = std::min(least, pair);
+    }
+    for (std::size_t r = 0; r < rows.size(); ++r)
+      if (cost[r * regions.size() + c] > least && may_hold(regions[c], bodies[rows[r]]))
+        unmatched[r] = kShared;
+  }
+  const auto partner = assignment.solve(cost, static_cast<int>(rows.size()), columns, unmatched);
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (partner[r] < 0) continue;
     bodies[rows[r]].region = partner[r];
@@ -195,8 +223,17 @@ void Tracker::State::share_regions() {
   }
 }
 
-// Tracks that together fill only a small part of the blob they share were pieces of one object: the oldest becomes it
-// and the others go.
+// Have they gone different ways for as long as both are known? Pieces of one object never do.
+bool apart(const Body& a, const Body& b) {
+  const double both = std::min(a.age, b.age);
+  if (!(both > 0)) return false;
+  const double x = (a.x.position - a.origin.x) / a.age - (b.x.position - b.origin.x) / b.age;
+  const double y = (a.y.position - a.origin.y) / a.age - (b.y.position - b.origin.y) / b.age;
+  return std::hypot(x, y) * both > kApart * std::max(a.size(), b.size());
+}
+
+// Tracks that together fill only a small part of the blob they share and have moved as one were pieces of one object: the
+// oldest becomes it and the others go.
 void Tracker::State::absorb_pieces() {
   for (std::size_t j = 0; j < regions.size(); ++j) {
     const Region& r = regions[j];
@@ -209,12 +246,15 @@ void Tracker::State::absorb_pieces() {
       ++count;
       if (!oldest || b.age > oldest->age) oldest = &b;
     }
-    const bool pieces = count > 1 && filled < 0.4 * r.box.area();
-    const bool alone = count == 1 || pieces;
+    if (count > 1 && filled < 0.4 * r.box.area())
+      for (Body& b : bodies) {
+        if (b.region != static_cast<int>(j) || &b == oldest || apart(b, *oldest)) continue;
+        b.dead = true;
+        --count;
+      }
+    const bool alone = count == 1;
     for (Body& b : bodies) {
-      if (b.region != static_cast<int>(j)) continue;
-      b.dead = pieces && &b != oldest;
-      if (b.dead) continue;
+      if (b.region != static_cast<int>(j) || b.dead) continue;
       if (b.away) b.come_back(r.box);
       b.correct(r, alone, seconds, frame);
       b.shared = alone ? 0 : b.shared + seconds;
@@ -309,7 +349,7 @@ void Tracker::State::remove_duplicates() {
       if (a.dead || b.dead || sort_of(a) != Sort::here || sort_of(b) != Sort::here) continue;
       if (intersection_over_union(a.box(), b.box()) < 0.7) continue;
       const bool twins = a.region == b.region && a.region >= 0;
-      if (twins && std::max(a.shared, b.shared) < 1.0) continue;
+      if (twins && std::max(a.shared, b.shared) < (apart(a, b) ? kCrossing : 1.0)) continue;
       if (!twins && a.region >= 0 && b.region >= 0) continue;
       if (!twins && std::max(a.unseen, b.unseen) < 0.5) continue;
       Body& weaker = a.unseen != b.unseen ? (a.unseen > b.unseen ? a : b) : (a.age < b.age ? a : b);
@@ -360,6 +400,13 @@ void Tracker::reset() {
   state_->seconds = kDefaultSeconds;
   state_->heading.reset();
   state_->frame = {};
+}
+
+std::size_t Tracker::bytes() const {
+  const State& s = *state_;
+  const auto of = [](const auto& v) { return v.capacity() * sizeof(v[0]); };
+  return sizeof s + of(s.bodies) + of(s.regions) + of(s.owner) + of(s.used) + of(s.cost) + of(s.unmatched) +
+         of(s.rows) + of(s.published) + s.assignment.bytes();
 }
 
 std::span<const Track> Tracker::update(std::span<const Region> regions, const Transform& motion,

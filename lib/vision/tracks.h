@@ -2,6 +2,7 @@
 // Multi-object tracks: stable identities and velocities with the camera's motion taken out.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -53,6 +54,7 @@ class Tracker {
   // camera comes back; without it angles are summed up from the camera's motion.
   std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
                                 Size frame, const std::optional<Gaze>& gaze = {});
+  std::size_t bytes() const;
 
  private:
   struct State;

@@ -58,6 +58,18 @@ START_TEST(nothing_to_match_gives_nothing) {
 }
 END_TEST
 
+START_TEST(who_costs_less_without_partner_has_none) {
+  // Alone row 0 would take column 0; row 1 fits there, and has nothing else as good.
+  const std::vector<double> cost = {1.2, Assignment::kForbidden, 0.3, 1.3}, price = {2, 2}, high = {3, 2};
+  Assignment assignment;
+  ck_assert_int_eq(assignment.solve(cost, 2, 2, price)[0], -1);  // 2 + .3 < 1.2 + 1.3
+  ck_assert_int_eq(assignment.solve(cost, 2, 2, price)[1], 0);
+  ck_assert_int_eq(assignment.solve(cost, 2, 2, high)[0], 0);  // 3 + .3 > 1.2 + 1.3
+  ck_assert_int_eq(assignment.solve(cost, 2, 2, high)[1], 1);
+  ck_assert_int_eq(assignment.solve(std::span(cost).first(1), 1, 1, price)[0], 0);
+}
+END_TEST
+
 START_TEST(random_gated_problems_match_the_exhaustive_search) {
   std::mt19937 random(5);
   Assignment assignment;
@@ -91,6 +103,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "assignment", {the_greedy_choice_is_not_taken_when_it_costs_more, nothing_to_match_gives_nothing,
-                     random_gated_problems_match_the_exhaustive_search});
+      "assignment",
+      {the_greedy_choice_is_not_taken_when_it_costs_more, nothing_to_match_gives_nothing,
+       who_costs_less_without_partner_has_none, random_gated_problems_match_the_exhaustive_search});
 }

@@ -49,7 +49,7 @@ constexpr Size kSizes[] = {{320, 240}, {320, 180}, {640, 480}};
 
 }  // namespace
 
-// Tracks grow with the number of objects, not with the picture: they are not counted here.
+// What tracks take depends on the number of objects, not on the picture: it is counted apart.
 constexpr std::size_t kPictureStages = Chain::kStages - 1;
 
 START_TEST(the_stages_hold_what_they_say_and_that_is_at_most_24_bytes_a_pixel) {
@@ -80,6 +80,15 @@ START_TEST(the_stages_hold_what_they_say_and_that_is_at_most_24_bytes_a_pixel) {
 }
 END_TEST
 
+START_TEST(a_tracker_holds_what_it_says) {
+  const std::ptrdiff_t before = held_bytes();
+  const Tracker tracker;
+  const auto held = static_cast<double>(held_bytes() - before), said = static_cast<double>(tracker.bytes());
+  ck_assert_double_le(said, held);
+  ck_assert_double_ge(said, 0.97 * held);
+}
+END_TEST
+
 START_TEST(nothing_is_taken_after_the_first_frames_whatever_moves) {
   for (const Size size : kSizes) {
     Street street(size);
@@ -94,7 +103,7 @@ START_TEST(nothing_is_taken_after_the_first_frames_whatever_moves) {
         if (k >= 3) taken[s] += allocations() - before;
       }
     }
-    for (std::size_t s = 0; s < kPictureStages; ++s)
+    for (std::size_t s = 0; s < Chain::kStages; ++s)
       ck_assert_msg(taken[s] == 0, "%s: %zu at %d x %d", Chain::stage_name(s), taken[s], size.width,
                     size.height);
   }
@@ -102,6 +111,7 @@ START_TEST(nothing_is_taken_after_the_first_frames_whatever_moves) {
 END_TEST
 
 int main() {
-  return run_suite("memory", {the_stages_hold_what_they_say_and_that_is_at_most_24_bytes_a_pixel,
-                              nothing_is_taken_after_the_first_frames_whatever_moves});
+  return run_suite("memory",
+                   {the_stages_hold_what_they_say_and_that_is_at_most_24_bytes_a_pixel,
+                    a_tracker_holds_what_it_says, nothing_is_taken_after_the_first_frames_whatever_moves});
 }

@@ -245,6 +245,102 @@ START_TEST(two_who_meet_in_one_blob_come_out_with_the_identities_they_had) {
 }
 END_TEST
 
+START_TEST(three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three) {
+  Tracker tracker;
+  std::vector<std::uint32_t> ids(3);
+  for (int k = 0; k < 44; ++k) {
+    // One from the left, one from the right, one from below, all through the same place.
+    const double far = (25 - k) * 8.0, out = std::abs(far);
+    const Point at[] = {{320 - far, 200}, {320 + far, 200}, {320, 200 + far}};
+    std::vector<Region> seen;
+    if (out > 110)
+      for (const Point& p : at) seen.push_back(person(p.x, p.y));
+    else
+      seen = {{{300 - out, std::min(150.0, 150 + far), 40 + 2 * out, 100 + out}, 8000, 0.2, 1}};
+    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
+    if (k < 5) continue;
+    ck_assert_uint_eq(tracks.size(), 3);
+    for (const Track& t : tracks)
+      for (std::size_t i = 0; i < 3; ++i)
+        if (k == 5 && std::hypot(centre(t).x - at[i].x, centre(t).y - at[i].y) < 10) ids[i] = t.id;
+    if (k < 41) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      ck_assert_double_eq_tol(centre(*with_id(tracks, ids[i])).x, at[i].x, 15);
+      ck_assert_double_eq_tol(centre(*with_id(tracks, ids[i])).y, at[i].y, 15);
+    }
+  }
+}
+END_TEST
+
+START_TEST(a_sliver_beside_somebody_unseen_is_not_the_person) {
+  Tracker tracker;
+  double x = 100;
+  for (int k = 0; k < 24; ++k) {
+    x += 8;
+    const Region seen = k < 20 ? person(x, 240) : person(x + 55, 240, 0.4, 34, 4);
+    const auto tracks = tracker.update({&seen, 1}, {}, 0.1, kFrame);
+    if (k < 3) continue;
+    ck_assert_uint_ge(tracks.size(), 1);
+    ck_assert_double_eq_tol(centre(tracks[0]).x, x, 15);
+  }
+}
+END_TEST
+
+START_TEST(legs_tell_less_of_where_somebody_is_than_the_whole_person) {
+  for (const bool whole : {false, true}) {
+    Tracker tracker;
+    for (int k = 0; k < 20; ++k) {
+      const Region seen = person(100 + 8 * k, 240);
+      tracker.update({&seen, 1}, {}, 0.1, kFrame);
+    }
+    const Region aside = whole ? person(280, 240) : person(280, 275, 0.4, 40, 30);  // expected at 260
+    const auto tracks = tracker.update({&aside, 1}, {}, 0.1, kFrame);
+    ck_assert_uint_eq(tracks.size(), 1);
+    if (whole)
+      ck_assert_double_gt(centre(tracks[0]).x, 270);
+    else
+      ck_assert_double_lt(centre(tracks[0]).x, 268);
+  }
+}
+END_TEST
+
+START_TEST(a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people) {
+  Tracker tracker;
+  std::uint32_t in_front = 0;
+  for (int k = 0; k < 30; ++k) {
+    const double x = 100 + 8 * k;
+    // One is lost from sight behind the other; a third appears ahead.
+    std::vector<Region> seen = {person(x + 45, 240)};
+    if (k < 20) seen.push_back(person(x, 240));
+    if (k >= 20) seen.push_back(person(x + 90, 240));
+    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
+    if (k < 10) continue;
+    for (const Track& t : tracks)
+      if (k == 19 && std::abs(centre(t).x - x - 45) < 10) in_front = t.id;
+    if (k < 20) continue;
+    ck_assert_ptr_nonnull(with_id(tracks, in_front));
+    ck_assert_double_eq_tol(centre(*with_id(tracks, in_front)).x, x + 45, 10);
+  }
+}
+END_TEST
+
+START_TEST(who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it) {
+  Tracker tracker;
+  for (int k = 0; k < 50; ++k) {
+    // Two walk in and stand beside each other, first apart, then in one blob; from behind them somebody walks away.
+    const double a = 200 - 8.0 * std::max(0, 12 - k), b = 240 - 8.0 * std::max(0, 12 - k);
+    std::vector<Region> seen = {person(a, 240), person(b, 240)};
+    if (k >= 25) seen = {{{a - 20, 190, b - a + 40, 100}, 5000, 0.3, 1}};
+    if (k >= 35) seen.push_back(person(295 + 8.0 * (k - 35), 240));
+    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
+    if (k < 5) continue;
+    ck_assert_uint_eq(tracks.size(), k < 37 ? 2 : 3);
+    ck_assert_double_eq_tol(centre(*with_id(tracks, 1)).x, a, 12);
+    ck_assert_double_eq_tol(centre(*with_id(tracks, 2)).x, b, 12);
+  }
+}
+END_TEST
+
 START_TEST(a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost) {
   Tracker tracker;
   for (int k = 0; k < 40; ++k) {
@@ -526,6 +622,11 @@ int main() {
                                      a_standing_person_s_moving_arm_does_not_make_the_person_small,
                                      who_leaves_the_picture_is_gone_within_half_a_second,
                                      two_who_meet_in_one_blob_come_out_with_the_identities_they_had,
+                                     three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three,
+                                     a_sliver_beside_somebody_unseen_is_not_the_person,
+                                     legs_tell_less_of_where_somebody_is_than_the_whole_person,
+                                     a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people,
+                                     who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it,
                                      a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost,
                                      pieces_of_one_object_are_not_counted_apart_for_long,
                                      an_unknown_time_is_taken_as_the_last_known_one,
