@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 
 #include "vision/room.h"
 #include "vision/shift_content.h"
@@ -139,16 +140,17 @@ void SceneSurroundings::recall(const ScenePixels& pixels, const Transform& next)
 void SceneSurroundings::doubt(const ScenePixels& pixels, GrayView present, GrayView memory,
                               std::span<const RowSpan> shown) {
   if (last_.is_identity()) return;
-  const auto for_each_recalled = [&](auto&& f) {
+  const auto for_each_recalled = [&](int step, auto&& f) {
     for_each_uncovered(last_, pixels.age.size(), [&](const Part& part) {
-      for (int y = part.top; y < part.bottom; ++y)
-        for (int x = part.left; x < part.right; ++x)
-          if (const int age = pixels.age.at(x, y); pixels.quiet.at(x, y) == 0 && age > 0 && age <= kOldest)
-            f(x, y);
+      for (int y = part.top; y < part.bottom; y += step) {
+        const std::uint8_t *age = pixels.age.row(y), *quiet = pixels.quiet.row(y);
+        for (int x = part.left; x < part.right; x += step)
+          if (quiet[x] == 0 && age[x] > 0 && age[x] <= kOldest) f(x, y);
+      }
     });
   };
   long count = 0, darker = 0, brighter = 0;
-  for_each_recalled([&](int x, int y) {
+  for_each_recalled(2, [&](int x, int y) {
     const RowSpan span = shown[static_cast<std::size_t>(y)];
     if (x < span.begin || x >= span.end) return;
     const int e = present.at(x, y) - memory.at(x, y);
@@ -157,7 +159,7 @@ void SceneSurroundings::doubt(const ScenePixels& pixels, GrayView present, GrayV
     brighter += e > kDifferent;
   });
   if (static_cast<double>(std::max(darker, brighter)) > kMost * static_cast<double>(count))
-    for_each_recalled([&](int x, int y) { pixels.age.at(x, y) = 0; });
+    for_each_recalled(1, [&](int x, int y) { pixels.age.at(x, y) = 0; });
   last_ = {};
 }
 
@@ -169,7 +171,9 @@ void SceneSurroundings::recall_part(const ScenePixels& pixels, const Part& part)
     const double u0 = m[1] * y + m[2] + 0.5, v0 = m[4] * y + m[5] + 0.5, w0 = m[7] * y + m[8];
     std::uint8_t* age = pixels.age.row(y);
     for (int x = part.left; x < part.right; ++x) {
-      if (age[x] != 0) continue;
+      const void* unknown = std::memchr(age + x, 0, static_cast<std::size_t>(part.right - x));
+      if (!unknown) break;
+      x = static_cast<int>(static_cast<const std::uint8_t*>(unknown) - age);
       double u = u0 + m[0] * x, v = v0 + m[3] * x;
       if (!affine) {
         const double w = 1 / (w0 + m[6] * x);
