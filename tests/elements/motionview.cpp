@@ -237,6 +237,33 @@ GST_START_TEST(the_curves_are_those_of_the_options_that_were_used) {
 }
 GST_END_TEST
 
+// Each of the options alone moves the curves: what fuzzythreshold was told arrives.
+GST_START_TEST(each_option_of_the_threshold_moves_the_curves) {
+  const char* const options[] = {"", "weighting=linear", "extremes=subset", "order=3", "clip=false"};
+  std::vector<std::vector<std::pair<double, double>>> curves;
+  for (const char* option : options) {
+    Harness harness = started(std::string("fuzzythreshold ") + option + " ! motionview stage=histogram",
+                              scene::caps("GRAY8", scene::kWidth, scene::kHeight));
+    Picture p;
+    for (int k = 0; k < 8; ++k) p = shown(harness.get(), scene::grey_buffer(scene::World{}, k));
+    curves.emplace_back();
+    for (int x = 0; x < p.width(); ++x) curves.back().push_back(curves_at(p, x));
+  }
+  // By columns with both curves in both pictures, away from the upright lines, which hide them: more than a line's width.
+  for (std::size_t i = 1; i < curves.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) {
+      double farthest = 0;
+      for (std::size_t x = 0; x < curves[i].size(); ++x) {
+        const auto& [a, b] = curves[i][x];
+        const auto& [c, d] = curves[j][x];
+        if (std::min({a, b, c, d}) < 0) continue;
+        farthest = std::max({farthest, std::abs(a - c), std::abs(b - d)});
+      }
+      fail_unless(farthest > 4, "\"%s\" as \"%s\": %.1f", options[i], options[j], farthest);
+    }
+}
+GST_END_TEST
+
 GST_START_TEST(the_histogram_is_drawn_at_every_size) {
   for (const auto& [width, height] : kSizes) {
     const std::string caps = caps_string("I420", width, height);
@@ -430,6 +457,7 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, every_label_has_a_colour_and_the_background_none);
   tcase_add_test(tc, the_histogram_shows_the_threshold_where_it_is);
   tcase_add_test(tc, the_curves_are_those_of_the_options_that_were_used);
+  tcase_add_test(tc, each_option_of_the_threshold_moves_the_curves);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
   tcase_add_test(tc, a_missing_plane_is_black_and_told_once);
   tcase_add_test(tc, luma_is_made_here_where_no_stage_made_it);
