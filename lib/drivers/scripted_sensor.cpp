@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/scripted_sensor.h"
 
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <utility>
 
 namespace cerberus::drivers {
@@ -9,6 +15,7 @@ namespace cerberus::drivers {
 namespace {
 
 constexpr std::string_view kFail = "fail ";
+constexpr std::string_view kWait = "wait ";
 
 std::string_view next_line(std::string_view& script) {
   const auto end = script.find(';');
@@ -25,6 +32,10 @@ SensorError ScriptedSensor::open(const SensorSetup& setup) {
   std::string levels;
   for (std::string_view script = setup.script; !script.empty();) {
     const std::string_view line = next_line(script);
+    if (line.starts_with(kWait) && parse_wait(line.substr(kWait.size()))) {
+      levels.append("\n");  // lines are counted
+      continue;
+    }
     const auto fail = line.find(kFail);
     if (fail == line.npos) {
       levels.append(line).append("\n");
@@ -33,7 +44,7 @@ SensorError ScriptedSensor::open(const SensorSetup& setup) {
     const std::string text(line.substr(fail + kFail.size()));
     const std::string_view what = line.substr(0, fail);
     if (what == "open ") return {SensorFault::gone, text, "script"};
-    levels.append("\n");  // lines are counted
+    levels.append("\n");
     if (what == "show ") {
       led_failure_ = text;
     } else if (!what.empty() && parse_seconds(what.substr(0, what.size() - 1), fails_at_)) {
@@ -54,9 +65,39 @@ void ScriptedSensor::close() noexcept {
   fails_at_ = sensing::kNever;
   failure_.clear();
   led_failure_.clear();
+  if (device_ >= 0) ::close(device_);
+  gate_ = bell_ = device_ = -1;
+  begun_ = false;
+}
+
+bool ScriptedSensor::parse_wait(std::string_view fds) {
+  const char* const end = fds.data() + fds.size();
+  const auto gate = std::from_chars(fds.data(), end, gate_);
+  const bool more = gate.ec == std::errc() && gate.ptr != end;
+  if (!more || std::from_chars(gate.ptr + 1, end, bell_).ec != std::errc()) return false;
+  device_ = ::eventfd(1, EFD_CLOEXEC);
+  return device_ >= 0;
+}
+
+void ScriptedSensor::wait() {
+  eventfd_t ignored = 0;
+  ::eventfd_read(device_, &ignored);
+  while (::write(bell_, "!", 1) < 0 && errno == EINTR) {
+  }
+  pollfd gate{gate_, POLLIN, 0};
+  while (::poll(&gate, 1, -1) < 0 && errno == EINTR) {
+  }
 }
 
 SensorError ScriptedSensor::read(Time now, std::vector<SensorEdge>& edges) {
+  if (blocks()) {
+    const std::size_t before = edges.size();
+    const bool later = std::exchange(begun_, true);
+    if (later) wait();
+    RecordedSensor::read(later ? sensing::kNever : Time::zero(), edges);
+    for (std::size_t i = before; i < edges.size(); ++i) edges[i].time = now;
+    return {};
+  }
   if (now >= fails_at_) return {SensorFault::gone, failure_, "script"};
   return RecordedSensor::read(now, edges);
 }

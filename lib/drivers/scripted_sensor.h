@@ -6,6 +6,10 @@
 //          | "open fail" TEXT                  opening fails
 //          | SECONDS "fail" TEXT               from then on reading fails
 //          | "show fail" TEXT                  the LEDs fail
+//          | "wait" FD FD                      not a recording but a device that blocks, for a live source: its first
+//                                              read() gives what the script says of 0 s, its second writes a byte to the
+//                                              second descriptor, waits for something to read, or the end, at the first,
+//                                              and gives the rest
 #pragma once
 
 #include "drivers/recorded_sensor.h"
@@ -20,10 +24,19 @@ class ScriptedSensor final : public RecordedSensor {
   SensorError show(std::span<const sensing::Presence> readings) override;
   Time next() const override;
   Time end() const override;
+  bool recorded() const override { return !blocks(); }
+  bool blocks() const override { return device_ >= 0; }
+  int fd() const override { return device_; }
+  ~ScriptedSensor() override { close(); }
 
  private:
+  bool parse_wait(std::string_view fds);
+  void wait();
   Time fails_at_ = sensing::kNever;
   std::string failure_, led_failure_;
+  int gate_ = -1, bell_ = -1;  // to wait for, to tell of it
+  int device_ = -1;            // readable until the second read()
+  bool begun_ = false;
 };
 
 }  // namespace cerberus::drivers

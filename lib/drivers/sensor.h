@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The interface to a set of PIR sensors: a driver tells what its lines do, it does not think (polarity, debounce and the
-// rest are sensing::PirModel's). Nothing blocks. One thread calls at a time. A default SensorError = good.
+// rest are sensing::PirModel's). Nothing blocks but what blocks() says. One thread calls at a time. A default SensorError = good.
 //
 // A device has a clock of its own, CLOCK_MONOTONIC: wait for fd(), then read(). A recording lives in the time that it is
 // told, 0 = its begin, however slow or fast that runs: read() when next() has come.
@@ -34,6 +34,9 @@ class Sensor {
 
   // Readable when read() has something; -1: a recording, or not open.
   virtual int fd() const { return -1; }
+  // Of a device, once it is open: read() may take its time. It is given a thread of its own then (sensor_runner.h), and has
+  // an fd(), and no LEDs.
+  virtual bool blocks() const { return false; }
   // Appends what happened until `now`, oldest first. The first edge of each sensor is the level that it began with.
   // An error is final: close.
   virtual SensorError read(Time now, std::vector<SensorEdge>& edges) = 0;

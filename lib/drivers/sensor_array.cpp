@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "drivers/sensor_runner.h"
+
 namespace cerberus::drivers {
 
 using sensing::kNever;
@@ -15,6 +17,11 @@ SensorError SensorArray::open(std::unique_ptr<Sensor> sensor, const SensorSetup&
   close();
   const auto count = static_cast<std::size_t>(std::clamp(setup.sensors, 1, sensing::kMaxSensors));
   if (SensorError error = sensor->open(setup)) return error;
+  if (sensor->blocks()) {
+    auto runner = std::make_unique<SensorRunner>();
+    if (SensorError error = runner->take(std::move(sensor), setup.sensors)) return error;
+    sensor = std::move(runner);
+  }
   sensor_ = std::move(sensor);
   options_ = options;
   models_.assign(count, sensing::PirModel(options));

@@ -2,11 +2,14 @@
 // All sensors of a driver together: what is told when.
 #include "drivers/sensor_array.h"
 
+#include <poll.h>
+
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <string>
 
+#include "support/pipe.h"
 #include "support/says.h"
 #include "support/suite.h"
 
@@ -17,6 +20,7 @@ using namespace std::chrono_literals;
 using cerberus::sensing::PirFault;
 using cerberus::sensing::PirOptions;
 using cerberus::sensing::Presence;
+using cerberus::tests::Pipe;
 
 struct Told {
   Time time;
@@ -124,6 +128,37 @@ START_TEST(a_recording_goes_on_wherever_it_is_asked_to) {
 }
 END_TEST
 
+// It is between two reads, or in one, when it is let go.
+START_TEST(a_driver_that_blocks_keeps_nobody_and_is_heard_when_it_is_through) {
+  for (const bool late : {false, true}) {
+    Pipe gate, bell;
+    SensorArray array;
+    SensorSetup setup;
+    setup.script = "0,0,1,0; 1,1,0,0; wait " + gate.reader() + " " + bell.writer();
+    ck_assert(!array.open(make_sensor("scripted"), setup, {.debounce = 0s}, 1h));
+    ck_assert(array.fd() >= 0 && !array.recorded());
+    ck_assert(array.place(2) == "reading 3 of script");
+    bell.read();  // it blocks
+    const auto now = [] { return Time(std::chrono::steady_clock::now().time_since_epoch()); };
+    const Time begin = now();
+    SensorReading reading;
+    ck_assert(array.next(begin, reading) == SensorArray::Step::reading);
+    ck_assert(reading.presence[0] == Presence::none && reading.presence[1] == Presence::detected);
+    ck_assert(array.next(begin, reading) == SensorArray::Step::wait);
+    if (late) {
+      array.close();  // while it blocks
+      ck_assert_int_eq(array.fd(), -1);
+      continue;
+    }
+    gate.close_writer();
+    pollfd news{array.fd(), POLLIN, 0};
+    ck_assert_int_eq(poll(&news, 1, 60000), 1);
+    ck_assert(array.next(now(), reading) == SensorArray::Step::reading);
+    ck_assert(reading.presence[0] == Presence::detected && reading.presence[1] == Presence::none);
+  }
+}
+END_TEST
+
 START_TEST(a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well) {
   SensorArray array;
   must_be(play(array, "0,0; 1,1; 700,0; 800,0", {}, 1000s, 1),
@@ -213,6 +248,7 @@ int main() {
        nothing_is_known_before_a_recordings_first_line,
        what_a_recording_calls_invalid_is_so_until_it_says_something_else,
        a_recording_goes_on_wherever_it_is_asked_to,
+       a_driver_that_blocks_keeps_nobody_and_is_heard_when_it_is_through,
        a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well,
        a_driver_that_fails_ends_it_with_its_own_words,
        what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for,
