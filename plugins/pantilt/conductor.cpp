@@ -50,6 +50,12 @@ void Conductor::halt(const char* reason) {
   tell(out);
 }
 
+void Conductor::end() {
+  Outbox out;
+  station.end(now(), kHaltPatience, out);
+  tell(out);
+}
+
 void Conductor::set_live(bool live) {
   clock_driven = live || real_;
   station.set_clock_driven(clock_driven);

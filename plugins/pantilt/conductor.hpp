@@ -28,6 +28,7 @@ struct Conductor {
   // Passes on what the settings are now.
   void configure();
   void halt(const char* reason);
+  void end();  // of the stream
   // Once the stream has told.
   void set_live(bool live);
   // Lets the clock's time pass from now on, if it moves the head and the sink plays; until pause().

@@ -27,20 +27,21 @@
  * frames, never a clock: each frame is answered with the poses until its running time plus `latency` (or until the next
  * frame, if that is later), so that a source upstream can keep in step with it and two runs give the same.
  *
- * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. Driver calls are
- * made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
+ * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by hand goes
+ * on after PAUSED, but not after the end of the stream: then it stands until another order or `auto`, and `move-to`,
+ * `move-by`, `home` and `follow` are refused until a flush begins the stream anew. Driver calls are made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
  * opened is an error; one that fails later is a warning and the state `fault`, until it answers again: the video goes on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`,
  * `manual`, `limited`, `fault`) and `reason` at every change of either.
  *
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees; false
- * if the head is not there or a number is none), `stop`, `home`, `auto`.
+ * if the head is not there, the stream is over, or a number is none), `stop`, `home`, `auto`.
  *
- * `follow` (the identity of a track, as its region has it; false if the head is not there) chooses whom to follow: that track
- * from the next frame on, whatever fusion or `target` would choose. While it is on no frame the head turns to nobody else that
- * the camera sees; after 5 s, also if it never came, a warning names it and the usual choice goes on. `auto` takes the choice
- * back, and so does each of the other signals: the last one counts.
+ * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over) chooses whom
+ * to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on no frame the head turns
+ * to nobody else that the camera sees; after 5 s, also if it never came, a warning names it and the usual choice goes on. `auto`
+ * takes the choice back, and so does each of the other signals: the last one counts.
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
  * tests: what `script` says). One head has one name (`head`) and in a process one sink.
@@ -200,7 +201,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   const GstEventType type = GST_EVENT_TYPE(event);
   GstClockTime from = GST_CLOCK_TIME_NONE, length = GST_CLOCK_TIME_NONE;
   if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
-  if (type == GST_EVENT_EOS) guarded(sink, [&] { conductor.halt("end of the stream"); });
+  if (type == GST_EVENT_EOS) guarded(sink, [&] { conductor.end(); });
   if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { conductor.halt("flushed"); });
   const gboolean done = cerberus_pan_tilt_sink_parent_class()->event(sink, event);
   guarded(sink, [&] {

@@ -54,7 +54,7 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
   pilot_.follow(0);
   history_.clear();
   watchdog_.rest();
-  manual_ = faulty_ = silent_ = false;
+  manual_ = faulty_ = silent_ = ended_ = false;
   halted_ = fresh_ = true;
   told_ = epoch_ = published_ = Time::zero();
   newest_.reset();
@@ -108,6 +108,7 @@ void Station::forget() {
   told_ = std::max(told_, published_);  // what was told happens before whatever comes now
   law_.reset();
   pilot_.reset();
+  ended_ = false;
 }
 
 // A running time that went back (a flush, another base time) does not turn the head's time back.
@@ -322,8 +323,24 @@ void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunn
   if (!faulty_) say("stopped", reason, now, out);
 }
 
+void Station::end(std::optional<Time> at, drivers::HeadRunner::Patience patience, Outbox& out) {
+  {
+    const std::lock_guard guard(lock_);
+    ended_ = true;
+    pilot_.follow(0);
+    lapse();
+  }
+  halt("end of the stream", at, patience, out);
+}
+
+// What the application ordered is over. Who has the head in his hand keeps it: nobody else moves it, and it stands.
+void Station::lapse() {
+  wanted_ = {};
+}
+
 void Station::resume(std::optional<Time> at) {
   const std::lock_guard guard(lock_);
+  if (ended_) return;
   halted_ = false;
   if (runner_ && std::exchange(limits_wait_, false)) runner_->limit(earliest(at), setup_.limits);
   if (runner_ && manual_ && clock_driven_ && at)
@@ -342,7 +359,7 @@ bool Station::override(const char* reason, const HeadCommand& command, std::opti
 
 bool Station::move(double pan, double tilt, bool relative, std::optional<Time> at, Outbox& out) {
   const std::lock_guard guard(lock_);
-  if (!runner_ || !std::isfinite(pan) || !std::isfinite(tilt)) return false;
+  if (!runner_ || ended_ || !std::isfinite(pan) || !std::isfinite(tilt)) return false;
   if (relative) {
     const Time now = at && clock_driven_ ? head_time(*at) : std::max(told_, published_);
     const Pose here = history_.at(now);
@@ -383,7 +400,7 @@ bool Station::automatic(std::optional<Time> at, Outbox& out) {
 
 bool Station::follow(guint id, std::optional<Time> at, Outbox& out) {
   const std::lock_guard guard(lock_);
-  if (!runner_ || id == 0) return false;
+  if (!runner_ || ended_ || id == 0) return false;
   pilot_.follow(id);
   law_.reset();  // somebody new
   give_back("told to follow somebody", at, out);

@@ -37,7 +37,7 @@ class Station {
   void set_options(const control::LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
   // clock_driven: the head moves while the clock runs, and tick() is called; otherwise its time is that of the frames.
   void set_clock_driven(bool on);
-  // Forgets the frames so far (flush, new segment): the next one begins anew.
+  // Forgets the frames so far, and that they were over (flush): the next one begins anew.
   void forget();
   // Where the head looks at the start, valid until its latency allows something else. interrupted: call again.
   Answer announce(Time running, Outbox& out);
@@ -58,6 +58,8 @@ class Station {
   // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.
   void halt(const char* reason, std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
   void resume(std::optional<Time> now);
+  // The stream is over: a halt that only forget() and open() end; nothing moves the head meanwhile. An order by hand is over, too.
+  void end(std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
 
   // Manual override until automatic(). now: as for halt(). false: not possible.
   bool move(double pan, double tilt, bool relative, std::optional<Time> now, Outbox& out);
@@ -82,6 +84,7 @@ class Station {
   drivers::HeadCommand decide(const Frame& frame, Time now, Outbox& out);
   bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,
                 Outbox& out);
+  void lapse();
   void give_back(const char* reason, std::optional<Time> now, Outbox& out);
   control::Pose running(control::Pose pose) const;
 
@@ -95,6 +98,7 @@ class Station {
   control::Watchdog watchdog_;
   Pilot pilot_;
   bool clock_driven_ = false, halted_ = false, manual_ = false, faulty_ = false, silent_ = false;
+  bool ended_ = false;           // the stream
   drivers::HeadCommand wanted_;  // by hand
   Time told_{}, epoch_{};        // head time of the last command; head time = running time + epoch
   Time published_{};             // head time until which poses were told

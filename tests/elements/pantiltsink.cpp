@@ -333,6 +333,45 @@ GST_START_TEST(the_head_stops_at_the_end_in_pause_and_on_a_flush) {
 }
 GST_END_TEST
 
+// EOS is a latch: nothing moves the head until a flush begins the stream anew, in PAUSED or in PLAYING.
+GST_START_TEST(after_the_end_of_the_stream_nothing_moves_the_head) {
+  for (const GstState state : {GST_STATE_PLAYING, GST_STATE_PAUSED}) {
+    Rig rig("max-speed=20");
+    fail_unless(rig.call("move-to", 90, 0));
+    const double before = act(rig, CERBERUS_FUSION_HOLD, 0, 10).back().pan;
+    fail_unless(before > 0 && before < 20);
+    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_eos()));
+    rig.messages();
+    fail_if(rig.call("move-to", 60, 0));
+    fail_if(rig.call("move-by", 60, 0));
+    fail_if(rig.call("home"));
+    fail_if(rig.follow(3));
+    gst_element_set_state(rig.element, GST_STATE_PAUSED);
+    fail_if(rig.call("move-to", 60, 0));
+    gst_element_set_state(rig.element, GST_STATE_PLAYING);
+    fail_if(rig.call("move-to", 60, 0));
+    fail_unless(rig.messages().empty());
+
+    gst_element_set_state(rig.element, state);
+    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
+    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
+    gst_element_set_state(rig.element, GST_STATE_PLAYING);
+    GstSegment segment;
+    gst_segment_init(&segment, GST_FORMAT_TIME);
+    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_segment(&segment)));
+    // The order is over, and the head still in the application's hand.
+    auto poses = act(rig, CERBERUS_FUSION_TURN_LEFT, 0, 25);
+    const double here = poses.back().pan;
+    fail_unless(poses.back().settled && here >= before && here < before + 5, "%g %g", before, here);
+    fail_unless(rig.call("move-to", 30, 0));
+    poses = act(rig, CERBERUS_FUSION_TURN_LEFT, 25, 75);
+    fail_unless(std::fabs(poses.back().pan - 30) < 1e-9, "%g", poses.back().pan);
+    fail_unless(rig.call("auto"));
+    fail_unless(act(rig, CERBERUS_FUSION_TURN_LEFT, 100, 25).back().pan_speed < 0);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(after_a_flush_time_begins_anew_and_the_head_goes_on_from_where_it_is) {
   Rig rig;
   const double before = act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 50).back().pan;
@@ -423,6 +462,7 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, the_application_may_take_over_and_give_back);
   tcase_add_test(tests, what_the_application_asks_for_stays_within_the_limits);
   tcase_add_test(tests, the_head_stops_at_the_end_in_pause_and_on_a_flush);
+  tcase_add_test(tests, after_the_end_of_the_stream_nothing_moves_the_head);
   tcase_add_test(tests, after_a_flush_time_begins_anew_and_the_head_goes_on_from_where_it_is);
   tcase_add_test(tests, properties_changed_while_playing_count_from_the_next_frame);
   tcase_add_test(tests, a_new_picture_size_changes_the_lens);

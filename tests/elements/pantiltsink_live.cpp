@@ -133,6 +133,25 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
 }
 GST_END_TEST
 
+GST_START_TEST(an_order_does_not_survive_the_end_of_the_stream) {
+  Rig rig("max-speed=20", Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_HOLD, 0));
+  fail_unless(rig.call("move-to", 90, 0));
+  while (time_of(rig) < 300 * GST_MSECOND) crank(rig);
+  fail_unless(gst_harness_push_event(rig.harness, gst_event_new_eos()));
+  while (time_of(rig) < GST_SECOND) crank(rig);
+  const CerberusPose end = rig.poses().back();
+  fail_unless(!end.moving && end.pan > 0 && end.pan < 20, "%g", end.pan);
+  gst_element_set_state(rig.element, GST_STATE_PAUSED);
+  gst_element_set_state(rig.element, GST_STATE_PLAYING);
+  fail_if(rig.call("move-to", -60, 0));
+  while (time_of(rig) < 3 * GST_SECOND) crank(rig);
+  for (const CerberusPose& pose : rig.poses()) fail_unless(pose.pan == end.pan && !pose.moving);
+  const auto messages = rig.messages();
+  fail_unless_equals_string(messages.back().reason.c_str(), "end of the stream");
+}
+GST_END_TEST
+
 GST_START_TEST(a_driver_that_fails_warns_once_and_the_video_goes_on) {
   for (const Source source : {Source::stored, Source::live}) {
     Pipe record;
@@ -273,6 +292,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_piece_that_ends_is_followed_by_the_next_at_that_time);
   tcase_add_test(tests, when_frames_stay_away_the_head_stops);
   tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
+  tcase_add_test(tests, an_order_does_not_survive_the_end_of_the_stream);
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
   tcase_add_test(tests, one_head_has_one_sink);
