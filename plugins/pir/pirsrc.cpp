@@ -103,14 +103,6 @@ GstClockTime running_time(CerberusPirSrc* self, Time time) {
 
 // ---- the stream
 
-GstStateChangeReturn change_state(GstElement* element, GstStateChange transition) {
-  if (transition == GST_STATE_CHANGE_READY_TO_PAUSED) {
-    const PirSettings settings = cerberus_pir_src_self(element)->priv->settings.snapshot();
-    gst_base_src_set_live(GST_BASE_SRC(element), settings.is_live || drivers::is_device(settings.driver));
-  }
-  return GST_ELEMENT_CLASS(cerberus_pir_src_parent_class())->change_state(element, transition);
-}
-
 bool open_sensors(CerberusPirSrc* self) {
   Private& priv = *self->priv;
   const PirSettings settings = priv.settings.snapshot();
@@ -214,14 +206,21 @@ gboolean stop(GstBaseSrc* base) {
   return TRUE;
 }
 
-gboolean start(GstBaseSrc* base) {
-  auto* self = cerberus_pir_src_self(base);
-  return guarded(self, FALSE, [&]() -> gboolean {
-    if (!open_sensors(self)) return FALSE;
-    if (fits_downstream(self)) return TRUE;
-    stop(base);
-    return FALSE;
-  });
+bool begin(CerberusPirSrc* self) {
+  const PirSettings settings = self->priv->settings.snapshot();
+  gst_base_src_set_live(GST_BASE_SRC(self), settings.is_live || drivers::is_device(settings.driver));
+  return open_sensors(self) && fits_downstream(self);
+}
+
+// Not in start(): the base class would say a second time that it failed.
+GstStateChangeReturn change_state(GstElement* element, GstStateChange transition) {
+  auto* self = cerberus_pir_src_self(element);
+  const bool begins = transition == GST_STATE_CHANGE_READY_TO_PAUSED;
+  GstStateChangeReturn result = GST_STATE_CHANGE_FAILURE;
+  if (!begins || guarded(self, false, [&] { return begin(self); }))
+    result = GST_ELEMENT_CLASS(cerberus_pir_src_parent_class())->change_state(element, transition);
+  if (begins && result == GST_STATE_CHANGE_FAILURE) stop(GST_BASE_SRC(self));
+  return result;
 }
 
 // What a step of the sensors left to be said, outside the lock.
@@ -382,7 +381,6 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   Adjustable<PirSettings>::install(object, pir_properties(), GParamFlags(GST_PARAM_MUTABLE_READY));
   GST_ELEMENT_CLASS(klass)->change_state = change_state;
   auto* src = GST_BASE_SRC_CLASS(klass);
-  src->start = start;
   src->stop = stop;
   src->is_seekable = is_seekable;
   src->do_seek = do_seek;

@@ -70,7 +70,9 @@ class PirSource {
   // It must not start; why.
   std::string refusal(GQuark domain, gint code) {
     fail_unless_equals_int(gst_element_set_state(element_, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
-    return words(GST_MESSAGE_ERROR, domain, code);
+    const std::string why = words(GST_MESSAGE_ERROR, domain, code);
+    fail_unless(pop(GST_MESSAGE_ERROR) == nullptr, "one message a failure");
+    return why;
   }
 
  private:
