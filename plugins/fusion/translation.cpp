@@ -2,6 +2,7 @@
 #include "translation.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "sensing/angles.h"
 #include "settings.hpp"
@@ -9,6 +10,11 @@
 namespace cerberus::plugin {
 
 namespace {
+
+// As somebody would write it: -30, not -29.999999999999986.
+double degrees_told(double radians) {
+  return std::round(sensing::degrees(radians) * 1e6) / 1e6;
+}
 
 constexpr bool same(fusion::Action ours, CerberusFusionAction theirs) {
   return static_cast<int>(ours) == static_cast<int>(theirs);
@@ -38,8 +44,8 @@ CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment,
   fusion.action = static_cast<CerberusFusionAction>(decision.action);
   fusion.target = decision.target;
   fusion.pan = moment.pan_degrees;
-  fusion.sector_from = sensing::degrees(decision.sector.from);
-  fusion.sector_to = sensing::degrees(decision.sector.to);
+  fusion.sector_from = degrees_told(decision.sector.from);
+  fusion.sector_to = degrees_told(decision.sector.to);
   fusion.limited = decision.limited;
   fusion.camera_found = decision.camera_found;
   fusion.n_sensors = static_cast<guint>(moment.count);
