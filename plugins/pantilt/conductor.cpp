@@ -56,6 +56,12 @@ void Conductor::end() {
   tell(out);
 }
 
+void Conductor::resume() {
+  Outbox out;
+  station.resume(now(), out);
+  tell(out);
+}
+
 void Conductor::set_live(bool live) {
   clock_driven = live || real_;
   station.set_clock_driven(clock_driven);

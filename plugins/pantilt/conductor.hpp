@@ -29,6 +29,7 @@ struct Conductor {
   void configure();
   void halt(const char* reason);
   void end();  // of the stream
+  void resume();
   // Once the stream has told.
   void set_live(bool live);
   // Lets the clock's time pass from now on, if it moves the head and the sink plays; until pause().

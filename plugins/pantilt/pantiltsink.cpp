@@ -29,7 +29,8 @@
  *
  * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by hand goes
  * on after PAUSED, but not after the end of the stream: then it stands until another order or `auto`, and `move-to`,
- * `move-by`, `home` and `follow` are refused until a flush begins the stream anew. Driver calls are made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
+ * `move-by`, `home` and `follow` are refused until a flush begins the stream anew. Driver calls are made on a thread of
+ * their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
  * opened is an error; one that fails later is a warning and the state `fault`, until it answers again: the video goes on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`,
@@ -207,7 +208,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
       conductor.station.forget();
-      if (conductor.playing) conductor.station.resume(conductor.now());
+      if (conductor.playing) conductor.resume();
     }
     if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
@@ -222,7 +223,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
 // the lock too: a frame that comes in the middle waits until the change is through.
 GstStateChangeReturn play(Conductor& conductor) {
   GstElement* element = GST_ELEMENT(conductor.sink);
-  guarded(element, [&] { conductor.station.resume(conductor.now()); });
+  guarded(element, [&] { conductor.resume(); });
   conductor.station.interrupt(true);
   const GstStateChangeReturn done = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())
                                         ->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);

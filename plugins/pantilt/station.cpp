@@ -162,6 +162,10 @@ void Station::say(const char* state, std::string reason, Time head, Outbox& out)
   out.statuses.push_back(status_);
 }
 
+void Station::say_by_hand(Time head, Outbox& out) {
+  if (manual_ && !halted_ && !faulty_) say("manual", hand_, head, out);
+}
+
 void Station::complain(const std::string& failure, Time head, Outbox& out) {
   if (failure.empty()) return;
   if (!std::exchange(faulty_, true)) out.fault = failure;
@@ -170,10 +174,11 @@ void Station::complain(const std::string& failure, Time head, Outbox& out) {
 
 // After an answer: is the head at fault, still or no longer?
 void Station::check(const std::string& failure, Time head, Outbox& out) {
-  if (runner_ && runner_->healthy())
-    faulty_ = false;
-  else
+  if (!runner_ || !runner_->healthy()) {
     complain(failure, head, out);
+    return;
+  }
+  if (std::exchange(faulty_, false)) say_by_hand(head, out);
 }
 
 Station::Answer Station::announce(Time at, Outbox& out) {
@@ -203,6 +208,7 @@ HeadCommand Station::decide(const Frame& frame, Time now, Outbox& out) {
   HeadCommand command{now, {}, {}};
   if (halted_) return command;
   if (manual_) {
+    say_by_hand(now, out);
     command.pan = wanted_.pan;
     command.tilt = wanted_.tilt;
     return command;
@@ -328,28 +334,32 @@ void Station::end(std::optional<Time> at, drivers::HeadRunner::Patience patience
     const std::lock_guard guard(lock_);
     ended_ = true;
     pilot_.follow(0);
-    lapse();
+    lapse("its order was over with the stream");
   }
   halt("end of the stream", at, patience, out);
 }
 
 // What the application ordered is over. Who has the head in his hand keeps it: nobody else moves it, and it stands.
-void Station::lapse() {
+void Station::lapse(const char* reason) {
+  if (!manual_) return;
   wanted_ = {};
+  hand_ = reason;
 }
 
-void Station::resume(std::optional<Time> at) {
+void Station::resume(std::optional<Time> at, Outbox& out) {
   const std::lock_guard guard(lock_);
   if (ended_) return;
   halted_ = false;
   if (runner_ && std::exchange(limits_wait_, false)) runner_->limit(earliest(at), setup_.limits);
   if (runner_ && manual_ && clock_driven_ && at)
     runner_->command({head_time(*at), wanted_.pan, wanted_.tilt});
+  say_by_hand(told_, out);
 }
 
 bool Station::override(const char* reason, const HeadCommand& command, std::optional<Time> at, Outbox& out) {
   manual_ = true;
   wanted_ = command;
+  hand_ = reason;
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : told_;
   if (clock_driven_ && !halted_) runner_->command({now, command.pan, command.tilt});

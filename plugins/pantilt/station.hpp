@@ -57,7 +57,7 @@ class Station {
   Time tick(Time now, Outbox& out);
   // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.
   void halt(const char* reason, std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
-  void resume(std::optional<Time> now);
+  void resume(std::optional<Time> now, Outbox& out);
   // The stream is over: a halt that only forget() and open() end; nothing moves the head meanwhile. An order by hand is over, too.
   void end(std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
 
@@ -84,7 +84,8 @@ class Station {
   drivers::HeadCommand decide(const Frame& frame, Time now, Outbox& out);
   bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,
                 Outbox& out);
-  void lapse();
+  void lapse(const char* reason);
+  void say_by_hand(Time head, Outbox& out);
   void give_back(const char* reason, std::optional<Time> now, Outbox& out);
   control::Pose running(control::Pose pose) const;
 
@@ -100,6 +101,7 @@ class Station {
   bool clock_driven_ = false, halted_ = false, manual_ = false, faulty_ = false, silent_ = false;
   bool ended_ = false;           // the stream
   drivers::HeadCommand wanted_;  // by hand
+  const char* hand_ = "";        // why
   Time told_{}, epoch_{};        // head time of the last command; head time = running time + epoch
   Time published_{};             // head time until which poses were told
   bool fresh_ = true;            // nothing was told since running time may have begun anew

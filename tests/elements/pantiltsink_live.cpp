@@ -133,6 +133,40 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
 }
 GST_END_TEST
 
+GST_START_TEST(an_order_that_goes_on_says_so) {
+  for (const char* properties : {"", "driver=scripted"}) {
+    Rig rig(properties, Source::live);
+    fail_unless(rig.call("move-to", 90, 0));
+    gst_element_set_state(rig.element, GST_STATE_PAUSED);
+    std::string states = rig.states();
+    fail_unless_equals_string(states.c_str(), "manual stopped");
+    gst_element_set_state(rig.element, GST_STATE_PLAYING);
+    const auto messages = rig.messages();
+    fail_unless_equals_int(messages.size(), 1);
+    fail_unless_equals_string(messages[0].state.c_str(), "manual");
+    fail_unless_equals_string(messages[0].reason.c_str(), "told to move");
+    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
+    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
+    states = rig.states();
+    fail_unless_equals_string(states.c_str(), "stopped manual");
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(after_a_fault_an_order_that_goes_on_says_so) {
+  Pipe gate;
+  Rig rig("driver=scripted script=\"state wait " + gate.reader() + "\"", Source::live);
+  fail_unless(rig.call("move-to", 90, 0));
+  std::string states = rig.states();
+  fail_unless_equals_string(states.c_str(), "manual");
+  while ((states = rig.states()).empty()) crank(rig);  // it is silent
+  fail_unless_equals_string(states.c_str(), "fault");
+  gate.close_writer();
+  while ((states = rig.states()).empty()) crank(rig);
+  fail_unless_equals_string(states.c_str(), "manual");
+}
+GST_END_TEST
+
 GST_START_TEST(an_order_does_not_survive_the_end_of_the_stream) {
   Rig rig("max-speed=20", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_HOLD, 0));
@@ -292,6 +326,8 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_piece_that_ends_is_followed_by_the_next_at_that_time);
   tcase_add_test(tests, when_frames_stay_away_the_head_stops);
   tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
+  tcase_add_test(tests, an_order_that_goes_on_says_so);
+  tcase_add_test(tests, after_a_fault_an_order_that_goes_on_says_so);
   tcase_add_test(tests, an_order_does_not_survive_the_end_of_the_stream);
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
