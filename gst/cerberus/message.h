@@ -22,7 +22,7 @@ G_BEGIN_DECLS
  * @src: (transfer none) (nullable): the object that posts it
  * @started: %TRUE: motion started; %FALSE: it ended
  * @running_time: running time of the frame in which it did
- * @regions: (nullable) (element-type CerberusRegion): what moves; %NULL for none
+ * @regions: (nullable) (element-type CerberusRegion): what moves, or moved last; %NULL for none
  *
  * Makes the element message %CERBERUS_MESSAGE_MOTION.
  *

@@ -35,7 +35,7 @@ typedef enum {
  * CerberusRegion:
  * @id: identity of the track (from 1, stable over frames) if @tracked, else a number within the frame
  * @tracked: @id, @vx, @vy, @age and @state come from a tracker
- * @person: verified to be a person
+ * @person: verified to be a person; reserved: no element sets it yet
  * @x: left edge, frame pixels
  * @y: top edge, frame pixels
  * @width: frame pixels
@@ -45,7 +45,8 @@ typedef enum {
  * @vy: speed downwards, frame pixels a second, the camera's motion taken out
  * @age: time since the object was first seen
  * @state: how its place is known
- * @bearing: direction of its centre, degrees, positive to the right of the camera's axis; NaN if unknown
+ * @bearing: direction of its centre from the camera's axis (the head's pan is not in it), degrees, positive to the right; NaN if
+ *     unknown
  * @distance: metres from the camera; NaN if unknown
  *
  * Something that moves. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),

@@ -25,9 +25,10 @@
  *   of the scene).
  * - `camera`: where the picture went from the previous frame to this one, a homography in row-major order, in
  *   pixels of this frame; identity where nothing upstream measured it, and `confidence` is null then, else 0 to 1.
- * - `objects`: `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion` or
- *   `person`; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`: pixels of the frame; `vx`, `vy`:
- *   pixels a second, camera motion taken out; `bearing`: degrees, positive to the right; `distance`: metres.
+ * - `objects`: `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion`
+ *   (`person` is reserved: nothing verifies that yet); `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
+ *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and frame rate: at 25 frames a second);
+ *   `bearing`: degrees from the camera's axis, wherever the head looks, positive to the right; `distance`: metres.
  *
  * Keys that are there only where an element told, after `objects`:
  * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,

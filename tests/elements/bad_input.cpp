@@ -180,8 +180,10 @@ GST_END_TEST
 // Somebody else's metas of our own kinds, with numbers out of a nightmare.
 GST_START_TEST(metas_from_strangers_do_no_harm) {
   Line line(std::string(kElements[__i__]) + " ! identity");
+  Line alone(std::string(kElements[__i__]) + " ! identity");
   const World world;
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  bool seen_alone = false;
   for (int k = 0; k < 20; ++k) {
     GstBuffer* in = scene::grey_buffer(world, k);
     CerberusCameraMotion motion;
@@ -217,9 +219,92 @@ GST_START_TEST(metas_from_strangers_do_no_harm) {
                gst_buffer_iterate_meta_filtered(out, &position, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
       faces += reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta)->roi_type == g_quark_from_string("face");
     fail_unless_equals_int(faces, 1);
+    // Where the camera is measured anew, all that follows from it is made anew: the answer is the one without strangers.
+    // The others cannot follow such a camera, and find nothing but what planes say that look like ours.
+    GstBuffer* without = alone.through(scene::grey_buffer(world, k));
+    const std::string is = Regions(out).text(), should = Regions(without).text();
+    const std::string element = kElements[__i__];
+    if (element == "motiondetect")
+      fail_unless(is == should, "frame %d: %s instead of %s", k, is.c_str(), should.c_str());
+    else if (k % 2 == 0 && (element == "motionregions" || element == "motiontrack"))
+      fail_unless(is.empty(), "frame %d: %s", k, is.c_str());
+    seen_alone = seen_alone || !should.empty();
+    gst_buffer_unref(without);
     gst_buffer_unref(out);
   }
+  fail_unless_equals_int(seen_alone, __i__ >= 3);
   fail_unless(line.messages(GST_MESSAGE_ERROR).empty());
+}
+GST_END_TEST
+
+// The numbers follow each other as they should; what they say is nonsense, or would turn the picture over.
+GST_START_TEST(a_camera_motion_that_none_can_be_is_not_believed) {
+  const double nonsense[][9] = {
+      {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0, 1, 0, 0, 0, 1},
+      {1, 0, std::numeric_limits<double>::infinity(), 0, 1, 0, 0, 0, 1},
+      {-1, 0, 320, 0, 1, 0, 0, 0, 1},
+      // Near (142, 132), where the figure is, nothing moves; right of x = 242 is beyond the horizon:
+      // x' = 142 + (x - 142) / w, y' = 132 + (y - 132) / w, w = 1 - (x - 142) / 100.
+      {-0.42, 0, 201.64, -1.32, 1, 187.44, -0.01, 0, 2.42},
+      {0, 0, 0, 0, 0, 0, 0, 0, 0},
+      {1, 0, 0, 0, 1, 0, 0, 0, 1},  // this one is a camera that stands
+  };
+  Line regions("motionregions"), alone("motionregions"), tracks("motiontrack confirm-time=0");
+  World world;
+  world.start = 120;
+  world.speed = 2;
+  guint id = 0;
+  for (int k = 0; k < 12; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    CerberusCameraMotion motion;
+    cerberus_camera_motion_init(&motion);
+    cerberus_camera_motion_set_matrix(&motion, nonsense[__i__]);
+    motion.from = k > 0 ? (k - 1) * scene::kStep : GST_CLOCK_TIME_NONE;
+    motion.scene_age = k + 1;
+    cerberus_buffer_add_camera_motion_meta(in, &motion);
+    GstBuffer* out = regions.through(in);
+    const CerberusThresholdMeta* threshold = cerberus_buffer_get_threshold_meta(out);
+    const bool stands = __i__ == G_N_ELEMENTS(nonsense) - 1;
+    fail_unless_equals_int(threshold->threshold.ready, stands && k >= 2);
+    if (!stands) fail_unless_equals_int(Regions(out).size(), 0);
+    gst_buffer_unref(out);
+    // And regions that were found all the same: with no way from frame to frame there is no identity.
+    out = alone.through(scene::grey_buffer(world, k));
+    cerberus_buffer_add_camera_motion_meta(out, &motion);
+    out = tracks.through(out);
+    if (k >= 2) {
+      const Regions found(out);
+      fail_unless(found.size() > 0);
+      fail_unless(id == 0 || (found[0].id == id) == stands, "frame %d: %u after %u", k, found[0].id, id);
+      id = found[0].id;
+    }
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+// Aligned and padded as ours are, and empty: nothing would be found in it.
+GST_START_TEST(a_plane_larger_than_the_frame_is_not_ours) {
+  Line line("motionregions ! identity"), alone("motionregions ! identity");
+  const World world;
+  constexpr int kSides[][2] = {{384, 240}, {320, 241}};
+  const auto [width, height] = kSides[__i__];
+  for (int k = 0; k < 12; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GstBuffer* plane = aligned(static_cast<gsize>(384) * height);
+    cerberus_buffer_add_plane_meta(in, CERBERUS_PLANE_LUMA, plane, width, height, 384);
+    assert_same_regions(line.through(in), alone.through(scene::grey_buffer(world, k)), k == 11);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(the_warning_of_an_unusable_buffer_comes_again_with_new_caps) {
+  Line line(std::string(kElements[__i__]) + " ! identity");
+  for (int stream = 1; stream <= 2; ++stream) {
+    for (int k = 0; k < 3; ++k) gst_buffer_unref(line.through(sized(0, k * scene::kStep)));
+    fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), 1);
+    line.push_caps(scene::caps("GRAY8", scene::kWidth, scene::kHeight, ",framerate=50/1"));
+  }
 }
 GST_END_TEST
 
@@ -295,6 +380,9 @@ Suite* bad_input_suite() {
   tcase_add_test(tests, missing_timestamps_are_no_obstacle);
   tcase_add_test(tests, timestamps_that_run_backwards_all_the_time_give_no_region);
   tcase_add_loop_test(tests, metas_from_strangers_do_no_harm, 0, kElementCount);
+  tcase_add_loop_test(tests, a_camera_motion_that_none_can_be_is_not_believed, 0, 6);
+  tcase_add_loop_test(tests, a_plane_larger_than_the_frame_is_not_ours, 0, 2);
+  tcase_add_loop_test(tests, the_warning_of_an_unusable_buffer_comes_again_with_new_caps, 0, kElementCount);
   tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
   tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
   return suite;
