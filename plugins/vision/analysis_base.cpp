@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <optional>
 #include <string>
 
 #include "camera_path.hpp"
@@ -63,12 +64,13 @@ AnalysisPrivate& priv_of(gpointer instance) {
 GstBaseTransformClass* parent_class();
 
 // What the pose on the buffer says of the camera's tilt, radians.
-double read_tilt(const Frame& frame) {
+std::optional<double> read_tilt(const Frame& frame) {
   const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer);
-  if (!pose) return 0;
+  if (!pose) return std::nullopt;
   double tilt = 0;
   cerberus_pose_evaluate(pose, frame.running_time, nullptr, &tilt);
-  return std::abs(tilt) <= 90 ? radians(tilt) : 0;  // a stranger's numbers may be anything
+  if (!(std::abs(tilt) <= 90)) return std::nullopt;  // a stranger's numbers may be anything
+  return radians(tilt);
 }
 
 // Nobody upstream has analysed this frame.

@@ -4,6 +4,8 @@
 
 #include <gst/video/video.h>
 
+#include <optional>
+
 #include "vision/transform.h"
 
 namespace cerberus::plugin {
@@ -29,7 +31,7 @@ struct Frame {
   guint64 number = 0;                           // counts analysed frames without holes
   bool fresh = true;                            // first frame of a scene
   Motion motion;
-  double tilt = 0;             // radians, of the head when the frame was taken; 0: level, or not known
+  std::optional<double> tilt;  // radians, of the head when the frame was taken, where a pose tells
   bool planes_wanted = false;  // somebody downstream reads the stages' planes
 
   vision::Size size() const { return {GST_VIDEO_INFO_WIDTH(info), GST_VIDEO_INFO_HEIGHT(info)}; }

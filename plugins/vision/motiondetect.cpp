@@ -89,6 +89,7 @@ constexpr Taken kTaken[] = {
     {"head", CAMERA},
     {"horizontal-fov", REGIONS, TRACK, CAMERA},
     {"mounting-height", REGIONS, TRACK},
+    {"tilt", REGIONS, TRACK},
     {"confirm-time", TRACK},
     {"coast-time", TRACK},
     {"away-time", TRACK},

@@ -49,6 +49,7 @@ struct Settings {
   double maximum_height_metres = vision::human_size().metres_high.most;
   double horizontal_fov = 0;
   double mounting_height = kDefaultMountingHeight;
+  double tilt = 0;
   int keep_planes = KEEP_PLANES_AUTO;
 };
 
@@ -70,24 +71,28 @@ const Property<Settings> kProperties[] = {
              "the picture from "
              "its top left corner; empty = everywhere"),
     property("minimum-width", &Settings::minimum_width, 0, kMaximumPixels,
-             "Regions narrower than this, in frame pixels, are dropped; 0 = no limit"),
+             "Regions as found that are narrower than this, in frame pixels, are dropped; 0 = no limit"),
     property("maximum-width", &Settings::maximum_width, 0, kMaximumPixels,
-             "Regions wider than this, in frame pixels, are dropped; 0 = no limit"),
+             "Regions as found that are wider than this, in frame pixels, are dropped; 0 = no limit"),
     property("minimum-height", &Settings::minimum_height, 0, kMaximumPixels,
-             "Regions lower than this, in frame pixels, are dropped; 0 = no limit"),
+             "Regions as found that are lower than this, in frame pixels, are dropped; 0 = no limit"),
     property("maximum-height", &Settings::maximum_height, 0, kMaximumPixels,
-             "Regions higher than this, in frame pixels, are dropped; 0 = no limit"),
-    property(
-        "minimum-width-metres", &Settings::minimum_width_metres, 0, kMaximumMetres,
-        "Regions narrower than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+             "Regions as found that are higher than this, in frame pixels, are dropped; 0 = no limit"),
+    property("minimum-width-metres", &Settings::minimum_width_metres, 0, kMaximumMetres,
+             "Regions as found that are narrower than this, in metres, are dropped while horizontal-fov is "
+             "known; 0 = no limit"),
     property("maximum-width-metres", &Settings::maximum_width_metres, 0, kMaximumMetres,
-             "Regions wider than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+             "Regions as found that are wider than this, in metres, are dropped while horizontal-fov is "
+             "known; 0 = no limit"),
     property("minimum-height-metres", &Settings::minimum_height_metres, 0, kMaximumMetres,
-             "Regions lower than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+             "Regions as found that are lower than this, in metres, are dropped while horizontal-fov is "
+             "known; 0 = no limit"),
     property("maximum-height-metres", &Settings::maximum_height_metres, 0, kMaximumMetres,
-             "Regions higher than this, in metres, are dropped while horizontal-fov is known; 0 = no limit"),
+             "Regions as found that are higher than this, in metres, are dropped while horizontal-fov is "
+             "known; 0 = no limit"),
     property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
+    property("tilt", &Settings::tilt, -kMaximumTilt, kMaximumTilt, kTiltBlurb),
     property("keep-planes", &Settings::keep_planes, keep_planes_type,
              "Whether the stages' planes stay on the frame after they were read here"),
 };
@@ -107,7 +112,7 @@ void Private::apply(const Settings& s) {
   gate.height = {s.minimum_height, s.maximum_height};
   gate.metres_wide = {s.minimum_width_metres, s.maximum_width_metres};
   gate.metres_high = {s.minimum_height_metres, s.maximum_height_metres};
-  state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height);
+  state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height, radians(s.tilt));
   keep = static_cast<KeepPlanes>(s.keep_planes);
 }
 

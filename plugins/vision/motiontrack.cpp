@@ -8,10 +8,12 @@
  * identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames where `horizontal-fov` is
  * known, else from the camera's own motion. Without `motionregions` upstream the regions are found
  * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
- * camera's axis) and, where its feet are seen, a distance (metres); where a head's pose is on the frame, its tilt counts.
+ * camera's axis, wherever the head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of
+ * a head's pose on the frame.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
- * none was there for `hold-time`, at the end of the stream and when the element stops.
+ * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last frame
+ * that had any.
  *
  * ## Example
  * |[
@@ -60,6 +62,7 @@ struct Settings {
   double maximum_speed_metres = vision::human_speed().metres.most;
   double horizontal_fov = 0;
   double mounting_height = kDefaultMountingHeight;
+  double tilt = 0;
 };
 
 const Property<Settings> kProperties[] = {
@@ -94,6 +97,7 @@ const Property<Settings> kProperties[] = {
              "0 = no limit"),
     property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
+    property("tilt", &Settings::tilt, -kMaximumTilt, kMaximumTilt, kTiltBlurb),
 };
 
 using vision::Presence;
@@ -112,6 +116,7 @@ struct State {
   vision::Tracker tracker;
   std::vector<vision::Region> found;  // what the tracker is fed with
   std::vector<CerberusRegion> published;
+  std::vector<CerberusRegion> last;  // of the last frame with any
   Presence presence;
   Settings settings;
   vision::SpeedGate gate;
@@ -186,6 +191,7 @@ bool Private::analyse(Frame& frame) {
           state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size(),
                                 gaze(frame, lens)));
   const bool present = !state->published.empty();
+  if (present) state->last = state->published;
   announce(state->presence.update(present, known(frame.running_time), nanoseconds(clock_time(frame.seconds)),
                                   nanoseconds(state->settings.hold_time)),
            frame.running_time);
@@ -200,7 +206,8 @@ void Private::publish(const Frame& frame, const vision::Lens& lens, std::span<co
   state->published.clear();
   const Settings& s = state->settings;
   for (const vision::Track& track : tracks) {
-    const vision::Placement place = lens.place(track.box, 0, frame.tilt, s.mounting_height);
+    const vision::Placement place =
+        lens.place(track.box, 0, frame.tilt.value_or(radians(s.tilt)), s.mounting_height);
     const double speed = std::hypot(track.vx, track.vy);
     if (!vision::passes(state->gate, speed, track.top_speed, place)) continue;
     CerberusRegion& out = state->published.emplace_back();
@@ -226,8 +233,7 @@ void Private::announce(Presence::Change change, GstClockTime running_time) {
   if (change == Presence::Change::none) return;
   const bool started = change == Presence::Change::started;
   GPtrArray* objects = g_ptr_array_new();
-  if (started)
-    for (CerberusRegion& region : state->published) g_ptr_array_add(objects, &region);
+  for (CerberusRegion& region : state->last) g_ptr_array_add(objects, &region);
   gst_element_post_message(GST_ELEMENT(base),
                            cerberus_message_new_motion(GST_OBJECT(base), started, running_time, objects));
   g_ptr_array_unref(objects);

@@ -90,11 +90,13 @@ class RegionStage {
   LumaStage& luma() { return before_.luma(); }
   void set_options(const vision::RegionOptions& options) { finder_.set_options(options); }
   vision::Zones& zones() { return zones_; }
-  // field_of_view: horizontal, radians, 0 = unknown (limits in metres are not judged then); mounting_height: metres.
-  void set_gate(const vision::SizeGate& gate, double field_of_view, double mounting_height) {
+  // field_of_view: horizontal, radians, 0 = unknown (limits in metres are not judged then); mounting_height: metres;
+  // tilt: radians, of frames that bring none.
+  void set_gate(const vision::SizeGate& gate, double field_of_view, double mounting_height, double tilt) {
     gate_ = gate;
     field_of_view_ = field_of_view;
     mounting_height_ = mounting_height;
+    tilt_ = tilt;
   }
   // False for an unusable buffer. Labels (2 bytes a pixel) are only made where they are wanted.
   bool run(Frame& frame, bool want_labels);
@@ -106,7 +108,7 @@ class RegionStage {
   vision::RegionFinder finder_;
   vision::Zones zones_;
   vision::SizeGate gate_;
-  double field_of_view_ = 0, mounting_height_ = 0;
+  double field_of_view_ = 0, mounting_height_ = 0, tilt_ = 0;
   vision::Size size_;
   Sequence sequence_;
   PlanePool mask_pool_, label_pool_;

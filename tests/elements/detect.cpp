@@ -175,17 +175,21 @@ GST_START_TEST(bearing_and_distance_follow_from_the_lens) {
 }
 GST_END_TEST
 
-// The lens 0.8 m above the floor, pitched down by 10 degrees: the feet's ray falls steeper, so they are nearer.
-GST_START_TEST(the_tilt_of_a_pose_on_the_frame_counts_for_the_distance) {
+// The lens 0.8 m above the floor, pitched down by 10 degrees: the feet's ray falls steeper, so they are nearer. A pose on
+// the frame says so, or the property; the pose wins.
+GST_START_TEST(the_tilt_of_the_camera_counts_for_the_distance) {
   const World world = entering();
-  Line line("motiondetect confirm-time=0 horizontal-fov=60 preset=traffic ! identity");
+  const char* const tilts[] = {"", "tilt=-10", "tilt=30"};
+  const bool posed = __i__ != 1;
+  Line line("motiondetect confirm-time=0 horizontal-fov=60 preset=traffic " + std::string(tilts[__i__]) +
+            " ! identity");
   CerberusPose pose;
   cerberus_pose_init(&pose);
   pose.tilt = -10;
   guint seen = 0;
   for (int k = 0; k < 80; ++k) {
     GstBuffer* in = scene::grey_buffer(world, k);
-    cerberus_buffer_set_pose(in, &pose);
+    if (posed) cerberus_buffer_set_pose(in, &pose);
     GstBuffer* out = line.through(in);
     const Regions regions(out);
     for (guint i = 0; k >= 25 && i < regions.size(); ++i) {
@@ -203,6 +207,23 @@ GST_START_TEST(the_tilt_of_a_pose_on_the_frame_counts_for_the_distance) {
     gst_buffer_unref(out);
   }
   fail_unless(seen > 5);
+}
+GST_END_TEST
+
+// A fixed camera 5 m up, 60 degrees wide, that looks down by 35. By hand: f = 160 / tan 30 = 277.13; feet in row 168, 48 below
+// the middle, are 9.826 degrees below the axis, so 44.826 below the horizon, and 5 / tan 44.826 = 5.030 m away.
+GST_START_TEST(a_fixed_camera_that_looks_down_tells_distances) {
+  World world = entering();
+  Line line(
+      "motiondetect confirm-time=0 horizontal-fov=60 mounting-height=5 tilt=-35 preset=traffic ! identity");
+  guint seen = 0;
+  line.run(world, 0, 80, [&](int k, GstBuffer* out) {
+    const Regions regions(out);
+    const double off = std::abs(world.figure_left(k) + scene::kFigureWidth / 2.0 - 160);
+    for (guint i = 0; off < 10 && i < regions.size(); ++i, ++seen)
+      fail_unless(std::abs(regions[i].distance - 5.03) < 0.3, "%.3f", regions[i].distance);
+  });
+  fail_unless(seen > 3);
 }
 GST_END_TEST
 
@@ -300,7 +321,8 @@ Suite* detect_suite() {
   tcase_add_test(tests, zones_change_while_playing_and_a_typo_keeps_the_old_ones);
   tcase_add_test(tests, limits_of_size_drop_what_is_outside);
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
-  tcase_add_test(tests, the_tilt_of_a_pose_on_the_frame_counts_for_the_distance);
+  tcase_add_loop_test(tests, the_tilt_of_the_camera_counts_for_the_distance, 0, 3);
+  tcase_add_test(tests, a_fixed_camera_that_looks_down_tells_distances);
   tcase_add_test(tests, limits_of_speed_drop_what_is_outside);
   tcase_add_test(tests, tracks_have_identity_velocity_age_and_state);
   tcase_add_test(tests, without_confirm_time_a_region_is_an_object_at_once);

@@ -34,12 +34,19 @@ GST_START_TEST(motion_starts_once_and_ends_after_hold_time) {
   fail_unless(started);
   fail_unless_equals_uint64(time, from * scene::kStep);
   fail_unless_equals_int(objects->len, 1);
+  const guint id = static_cast<CerberusRegion*>(g_ptr_array_index(objects, 0))->id;
   g_ptr_array_unref(objects);
   gst_message_unref(message);
   message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
-  fail_unless(message && cerberus_message_parse_motion(message, &started, &time, nullptr));
+  fail_unless(message && cerberus_message_parse_motion(message, &started, &time, &objects));
   fail_if(started);
   fail_unless_equals_uint64(time, (until + 10) * scene::kStep);
+  // who it was, where it was last seen
+  fail_unless_equals_int(objects->len, 1);
+  const auto* gone = static_cast<CerberusRegion*>(g_ptr_array_index(objects, 0));
+  fail_unless_equals_int(gone->id, id);
+  fail_unless(scene::overlaps_figure(*gone, world, until));
+  g_ptr_array_unref(objects);
   gst_message_unref(message);
   fail_unless(gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT) == nullptr);
 }
