@@ -28,8 +28,9 @@
  * frame, if that is later), so that a source upstream can keep in step with it and two runs give the same.
  *
  * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by hand goes
- * on after PAUSED, but not after the end of the stream: then it stands until another order or `auto`, and `move-to`,
- * `move-by`, `home` and `follow` are refused until a flush begins the stream anew. Driver calls are made on a thread of
+ * on after PAUSED, but not after the end of the stream, nor when frames came and stay away for `watchdog-timeout`: then the head
+ * stands until another order or `auto`. At the end of the stream `move-to`, `move-by`, `home` and `follow` are refused until a
+ * flush begins it anew; where no frames come, an order is obeyed. Driver calls are made on a thread of
  * their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
  * opened is an error; one that fails later is a warning and the state `fault`, until it answers again: the video goes on.
  *

@@ -250,15 +250,16 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
   std::vector<Pose> poses;
   // Until here at least no frame came to decide by: until the one before this could have come, or the gap's end.
   const Time nobody = frame.buffer ? now - frame.length : now + frame.length;
-  if (const Time deadline = watchdog_.deadline(); !manual_ && deadline < nobody) {
-    watchdog_.rest();
+  if (const Time deadline = watchdog_.deadline(); deadline < nobody) {
     const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}};
     told_ = std::max(told_, brake.time);
     guard.unlock();
     const Answer answer = runner->ask(brake, brake.time, horizon, poses, kFramePatience);
     guard.lock();
     if (answer == Answer::interrupted) return answer;
+    watchdog_.rest();
     remember(poses);
+    stand(brake.time, out);
   }
   std::optional<HeadCommand> command;
   if (frame.buffer) command = decide(frame, now, out);
@@ -285,9 +286,9 @@ Station::Time Station::tick(Time at, Outbox& out) {
   const auto runner = runner_;
   if (!runner) return at + kAtRest;
   const Time now = head_time(at);
-  if (!manual_ && watchdog_.bites(now)) {
+  if (watchdog_.bites(now)) {
     runner->command({now, {}, {}});
-    say("stopped", "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", now, out);
+    stand(now, out);
   }
   guard.unlock();
   std::vector<Pose> poses;
@@ -344,6 +345,12 @@ void Station::lapse(const char* reason) {
   if (!manual_) return;
   wanted_ = {};
   hand_ = reason;
+}
+
+// The watchdog has bitten.
+void Station::stand(Time head, Outbox& out) {
+  lapse("its order was over when no frame came");
+  say("stopped", "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head, out);
 }
 
 void Station::resume(std::optional<Time> at, Outbox& out) {

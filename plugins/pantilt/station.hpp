@@ -85,6 +85,7 @@ class Station {
   bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,
                 Outbox& out);
   void lapse(const char* reason);
+  void stand(Time head, Outbox& out);
   void say_by_hand(Time head, Outbox& out);
   void give_back(const char* reason, std::optional<Time> now, Outbox& out);
   control::Pose running(control::Pose pose) const;

@@ -249,6 +249,19 @@ GST_START_TEST(when_frames_stay_away_the_head_has_stopped_meanwhile) {
 }
 GST_END_TEST
 
+GST_START_TEST(when_frames_stay_away_an_order_by_hand_is_over) {
+  Rig rig("watchdog-timeout=200000000 max-speed=40");
+  fail_unless(rig.call("move-to", 150, 0));
+  act(rig, CERBERUS_FUSION_TURN_LEFT, 0, 25);
+  rig.messages();
+  const auto poses = act(rig, CERBERUS_FUSION_TURN_LEFT, 75, 25);
+  const double stopped = 40 * (1.22 - 0.06 - 1 / 30.0) + 40 * 40 / 1200.0;  // as above
+  fail_unless(std::fabs(poses.back().pan - stopped) < 1e-6, "%g %g", poses.back().pan, stopped);
+  const std::string states = rig.states();
+  fail_unless_equals_string(states.c_str(), "stopped manual");
+}
+GST_END_TEST
+
 std::string trajectory(const char* properties) {
   Rig rig(properties);
   std::string text;
@@ -458,6 +471,7 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, a_gap_keeps_the_pace);
   tcase_add_test(tests, a_frame_may_come_in_the_middle_of_a_gap);
   tcase_add_test(tests, when_frames_stay_away_the_head_has_stopped_meanwhile);
+  tcase_add_test(tests, when_frames_stay_away_an_order_by_hand_is_over);
   tcase_add_test(tests, equal_seeds_give_equal_ways);
   tcase_add_test(tests, the_application_may_take_over_and_give_back);
   tcase_add_test(tests, what_the_application_asks_for_stays_within_the_limits);

@@ -117,6 +117,30 @@ GST_START_TEST(when_frames_stay_away_the_head_stops) {
 }
 GST_END_TEST
 
+GST_START_TEST(when_frames_stay_away_an_order_is_over) {
+  Rig rig("watchdog-timeout=300000000 max-speed=20", Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, 0));
+  fail_unless(rig.call("move-to", 90, 0));
+  while (time_of(rig) < GST_SECOND) crank(rig);
+  const CerberusPose stopped = rig.poses().back();
+  fail_unless(!stopped.moving && stopped.pan > 0 && stopped.pan < 20 * 0.4, "%g", stopped.pan);
+  auto messages = rig.messages();
+  fail_unless_equals_string(messages.back().state.c_str(), "stopped");
+  fail_unless_equals_string(messages.back().reason.c_str(), "no frame came for 300 ms");
+  // The head is still in the application's hand.
+  rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, GST_SECOND));
+  messages = rig.messages();
+  fail_unless_equals_int(messages.size(), 1);
+  fail_unless_equals_string(messages[0].state.c_str(), "manual");
+  while (time_of(rig) < 2 * GST_SECOND) crank(rig);
+  for (const CerberusPose& pose : rig.poses()) fail_unless(pose.pan == stopped.pan);
+  // Who orders now knows that no frames come.
+  fail_unless(rig.call("move-to", 30, 0));
+  while (time_of(rig) < 5 * GST_SECOND) crank(rig);
+  fail_unless(std::fabs(rig.poses().back().pan - 30) < 1e-9);
+}
+GST_END_TEST
+
 GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   Rig rig("watchdog-timeout=0", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
@@ -325,6 +349,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_moving_head_tells_where_it_is_fifty_times_a_second);
   tcase_add_test(tests, a_piece_that_ends_is_followed_by_the_next_at_that_time);
   tcase_add_test(tests, when_frames_stay_away_the_head_stops);
+  tcase_add_test(tests, when_frames_stay_away_an_order_is_over);
   tcase_add_test(tests, in_pause_a_head_with_a_clock_stands_still);
   tcase_add_test(tests, an_order_that_goes_on_says_so);
   tcase_add_test(tests, after_a_fault_an_order_that_goes_on_says_so);
