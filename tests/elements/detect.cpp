@@ -227,6 +227,22 @@ GST_START_TEST(a_fixed_camera_that_looks_down_tells_distances) {
 }
 GST_END_TEST
 
+// Of the same camera: one pixel at the feet is 5 / (48 / f cos 35 + sin 35) / f = 0.0252 m wide, so somebody 28 to 36 pixels
+// wide passes the limit of 1.44 m. Level, it would be 5 / 48 = 0.104 m, and he would not.
+GST_START_TEST(the_tilt_counts_for_the_limits_in_metres) {
+  for (const bool looks_down : {true, false}) {
+    Line line(std::string("motionregions horizontal-fov=60 mounting-height=5 ") +
+              (looks_down ? "tilt=-35 ! identity" : "! identity"));
+    const World world = entering();
+    guint seen = 0;
+    line.run(world, 0, 80, [&](int k, GstBuffer* out) {
+      if (k >= 40) seen += Regions(out).size();
+    });
+    fail_unless(looks_down ? seen >= 35 : seen == 0, "%u", seen);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(limits_of_speed_drop_what_is_outside) {
   const auto found = [](const std::string& properties) {
     guint count = 0;
@@ -323,6 +339,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
   tcase_add_loop_test(tests, the_tilt_of_the_camera_counts_for_the_distance, 0, 3);
   tcase_add_test(tests, a_fixed_camera_that_looks_down_tells_distances);
+  tcase_add_test(tests, the_tilt_counts_for_the_limits_in_metres);
   tcase_add_test(tests, limits_of_speed_drop_what_is_outside);
   tcase_add_test(tests, tracks_have_identity_velocity_age_and_state);
   tcase_add_test(tests, without_confirm_time_a_region_is_an_object_at_once);
