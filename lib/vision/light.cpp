@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 
 #include "vision/median.h"
@@ -13,12 +14,21 @@ namespace {
 
 constexpr int kBand = 8;  // rows; flicker at 100 Hz has a period of 70 rows and more
 constexpr int kColumnStep = 8, kRowStep = 2;
-constexpr int kBandReach = 16;        // grey levels a band may differ by
+constexpr int kBandReach = 64;     // a band may be this much brighter or darker, 1/256
+constexpr int kFullWeight = 64;    // grey levels from which a sample says all it can of a gain
+constexpr int kLeastSamples = 48;  // of a band that tells of its light
+// Grey levels from which a reference may have been brighter than it says, and from which noise makes the present so. To
+// choose by the present itself would leave out what noise brightens.
+constexpr int kWhite = 245, kNearWhite = 235;
 constexpr double kLeastBand = 1.0;    // grey levels: weaker bands are left alone
 constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
 
 RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
   return spans.empty() ? RowSpan{0, width} : spans[static_cast<std::size_t>(y)];
+}
+
+int lit(int value, RowLight light) {
+  return std::clamp((value * light.gain + light.offset + 128) >> 8, 0, 255);
 }
 
 }  // namespace
@@ -36,7 +46,21 @@ void LightChange::estimate(GrayView reference, GrayView present, std::span<const
   clear();
   if (present.empty()) return;
   estimate_global(reference, present, spans);
-  estimate_bands(reference, present, spans);
+  if (estimate_bands(reference, present, spans)) {
+    // Where bright and dark things lie in different bands, the line through all of the picture takes the bands for
+    // something that brightness does. Then the bands come first. Which is right shows in what remains.
+    const double remains = misfit(reference, present, spans);
+    const LightChange line_first = *this;
+    clear();
+    estimate_bands(reference, present, spans);
+    estimate_global(reference, present, spans);
+    estimate_bands(reference, present, spans);
+    if (misfit(reference, present, spans) > remains) *this = line_first;
+  }
+  double gain = 0, offset = 0;
+  for (const RowLight& r : rows_) gain += r.gain, offset += r.offset;
+  gain_ = gain / (256.0 * present.height);
+  offset_ = offset / (256.0 * present.height);
   none_ = std::ranges::all_of(rows_, [](const RowLight& r) { return r == RowLight{}; });
 }
 
@@ -48,8 +72,9 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
     const RowSpan s = span_of(spans, y, present.width);
     const std::uint8_t *a = reference.row(y), *b = present.row(y);
     for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
-      ++counts[a[x] >> 4][std::clamp(b[x] - a[x], -kReach, kReach) + kReach];
-      ++seen[a[x]];
+      const int now = lit(a[x], rows_[y]);
+      ++counts[now >> 4][std::clamp(b[x] - now, -kReach, kReach) + kReach];
+      ++seen[now];
     }
   }
   std::array<int, kClasses> number{};
@@ -69,7 +94,8 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   int used = 0;
   for (int k = 0; k < kClasses; ++k) {
     if (number[k] * 100 < total) continue;
-    const double a = static_cast<double>(sum[k]) / number[k], e = median_of_levels(counts[k], number[k], -kReach);
+    const double a = static_cast<double>(sum[k]) / number[k],
+                 e = median_of_levels(counts[k], number[k], -kReach);
     if (a + e > 250 || a + e < 4 || a > 250) continue;  // clipped: says nothing about gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
@@ -107,14 +133,24 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   agreement_ = static_cast<double>(agree) / total;
   // What is hardly visible between dark grey and light grey is not worth a correction.
   if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return;
-  gain_ = std::clamp(1 + slope, 0.25, 4.0);
-  offset_ = at_zero;
-  const RowLight light{static_cast<std::int32_t>(std::lround(256 * gain_)),
-                       static_cast<std::int32_t>(std::lround(256 * offset_))};
-  std::fill(rows_.begin(), rows_.end(), light);
+  const double gain = std::clamp(1 + slope, 0.25, 4.0);
+  for (RowLight& row : rows_) {
+    row.gain = static_cast<std::int32_t>(std::lround(row.gain * gain));
+    row.offset = static_cast<std::int32_t>(std::lround(row.offset * gain + 256 * at_zero));
+  }
 }
 
-// Calls each(third, value of the reference under the light so far, present value) for the samples of a band of rows.
+// What remains of the difference, grey levels a sample; objects count little.
+double LightChange::misfit(GrayView reference, GrayView present, std::span<const RowSpan> spans) const {
+  constexpr int kMost = 16;
+  std::int64_t sum = 0, number = 0;
+  for (int band = 0; band * kBand < present.height; ++band)
+    sample_band(reference, present, spans, band,
+                [&](int now, int value) { sum += std::min(std::abs(value - now), kMost), ++number; });
+  return number ? static_cast<double>(sum) / number : 0;
+}
+
+// Calls each(value of the reference under the light so far, present value) for the samples of a band of rows.
 template <typename Each>
 void LightChange::sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,
                               Each&& each) const {
@@ -122,67 +158,78 @@ void LightChange::sample_band(GrayView reference, GrayView present, std::span<co
     const RowSpan s = span_of(spans, y, present.width);
     const std::uint8_t *a = reference.row(y), *b = present.row(y);
     const RowLight light = rows_[y];
-    const bool lit = !(light == RowLight{});
-    for (int third = 0; third < 3; ++third) {
-      const int end = std::min(s.end, (third + 1) * present.width / 3);
-      for (int x = std::max(s.begin, third * present.width / 3) + (y / kRowStep) % kColumnStep; x < end;
-           x += kColumnStep)
-        each(third, lit ? std::clamp((a[x] * light.gain + light.offset + 128) >> 8, 0, 255) : a[x], b[x]);
+    for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
+      const int now = lit(a[x], light);
+      if (a[x] < kWhite && now < kNearWhite) each(now, static_cast<int>(b[x]));
     }
   }
 }
 
-// Whether more than half of what two thirds of a band show is at least one level brighter, or darker: no median is
-// as far from 0 as kLeastBand otherwise.
+// Whether more than half of a band is at least one level brighter, or darker: no median is as far from 0 as kLeastBand
+// otherwise.
 bool LightChange::may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans,
                              int band) const {
-  std::array<int, 3> number{}, brighter{}, darker{};
-  sample_band(reference, present, spans, band, [&](int third, int now, int value) {
-    ++number[third];
-    brighter[third] += value > now;
-    darker[third] += value < now;
+  int number = 0, brighter = 0, darker = 0;
+  sample_band(reference, present, spans, band, [&](int now, int value) {
+    ++number;
+    brighter += value > now;
+    darker += value < now;
   });
-  int thirds = 0;
-  for (int i = 0; i < 3; ++i) thirds += 2 * std::max(brighter[i], darker[i]) > number[i];
-  return thirds >= 2;
+  return 2 * std::max(brighter, darker) > number;
 }
 
-void LightChange::estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
+// True if there were any.
+bool LightChange::estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
   const int bands = (present.height + kBand - 1) / kBand;
   constexpr int kMaximumBands = 512;
-  if (bands < 4 || bands > kMaximumBands) return;
+  if (bands < 4 || bands > kMaximumBands) return false;
   int first = 0;
   while (first < bands && !may_differ(reference, present, spans, first)) ++first;
-  if (first == bands) return;
+  if (first == bands) return false;
   std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
+  std::bitset<kMaximumBands> known;
   double strongest = 0;
   for (int band = 0; band < bands; ++band) {
-    // A band of light goes through the whole row, an object rarely does: the middle one of three thirds' medians.
-    std::array<std::array<std::uint16_t, 2 * kBandReach + 1>, 3> counts{};
-    std::array<int, 3> number{};
-    std::int64_t sum = 0;
-    sample_band(reference, present, spans, band, [&](int third, int now, int value) {
-      ++counts[third][std::clamp(value - now, -kBandReach, kBandReach) + kBandReach];
+    // A band of light goes through the whole row, an object rarely does: the median of what the samples say of the gain.
+    // In the dark they say little; and whole levels make steps there, so half of each is counted half a level either way.
+    std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
+    int samples = 0;
+    std::int64_t weights = 0, sum = 0;
+    sample_band(reference, present, spans, band, [&](int now, int value) {
+      const int weight = std::min(now, kFullWeight), over = std::max(now, 1);
+      for (const int half : {-1, 1}) {
+        const int excess = 128 * (2 * (value - now) + half) / over;
+        counts[std::clamp(excess, -kBandReach, kBandReach) + kBandReach] += weight;
+      }
+      weights += 2 * weight;
       sum += now;
-      ++number[third];
+      ++samples;
     });
-    const int total = number[0] + number[1] + number[2];
-    const double bright = total ? std::max(static_cast<double>(sum) / total, 16.0) : 16.0;
-    std::array<double, 3> middle{};
-    for (int third = 0; third < 3; ++third)
-      if (number[third] >= 16) middle[third] = median_of_levels(counts[third], number[third], -kBandReach);
-    std::sort(middle.begin(), middle.end());
-    excess[band] = middle[1] / bright;
-    strongest = std::max(strongest, std::abs(middle[1]));
+    known[band] = samples >= kLeastSamples && weights > 0;
+    if (!known[band]) continue;
+    excess[band] = median_of_levels(counts, static_cast<double>(weights), -kBandReach) / 256;
+    strongest = std::max(strongest, std::abs(excess[band]) * sum / samples);
   }
-  if (strongest < kLeastBand) return;
-  for (int y = 0; y < present.height; ++y) {  // linear between the middles of bands
-    const double position = std::clamp((y + 0.5) / kBand - 0.5, 0.0, bands - 1.0);
-    const int low = static_cast<int>(position), high = std::min(low + 1, bands - 1);
-    const double k = 1 + excess[low] + (position - low) * (excess[high] - excess[low]);
+  if (strongest < kLeastBand) return false;
+  // Where all is white or hidden, the bands next to it tell.
+  for (int band = 0; band < bands; ++band) {
+    if (known[band]) continue;
+    int low = band, high = band;
+    while (low >= 0 && !known[low]) --low;
+    while (high < bands && !known[high]) ++high;
+    if (low < 0) low = high;
+    if (high == bands) high = low;
+    excess[band] =
+        excess[low] + (high > low ? (excess[high] - excess[low]) * (band - low) / (high - low) : 0);
+  }
+  for (int y = 0; y < present.height; ++y) {  // linear between the middles of bands, and beyond the outermost
+    const double position = (y + 0.5) / kBand - 0.5;
+    const int low = std::clamp(static_cast<int>(position), 0, bands - 2);
+    const double k = 1 + excess[low] + (position - low) * (excess[low + 1] - excess[low]);
     rows_[y].gain = static_cast<std::int32_t>(std::lround(rows_[y].gain * k));
     rows_[y].offset = static_cast<std::int32_t>(std::lround(rows_[y].offset * k));
   }
+  return true;
 }
 
 }  // namespace cerberus::vision

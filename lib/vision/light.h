@@ -22,14 +22,15 @@ struct RowLight {
 
 class LightChange {
  public:
-  // present ~ gain * reference + offset over the valid spans (empty: everywhere). gain and offset come from
-  // the median differences of 16 brightness classes, a line put robustly through them; what then remains in
-  // bands of 8 rows (median again) is a further gain of the band. Changes too small to tell from noise are
-  // not made.
+  // present ~ gain * reference + offset over the valid spans (empty: everywhere), and a further gain for each band of 8
+  // rows. The line goes robustly through the median differences of 16 brightness classes; a band's gain is the median of
+  // what its samples say. Either can be taken for the other where bright and dark lie apart: both orders are tried, and
+  // what leaves less is kept. Changes too small to tell from noise are not made.
   void estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans);
   void clear();
 
   bool none() const { return none_; }
+  // Of the picture as a whole: the mean of its rows.
   double gain() const { return gain_; }
   double offset() const { return offset_; }  // grey levels
   // Share of the sampled pixels that agree with the model to within a few levels: low when the picture as a
@@ -41,7 +42,8 @@ class LightChange {
  private:
   static constexpr int kClasses = 16, kReach = 127, kLevels = 2 * kReach + 1;
   void estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans);
-  void estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  bool estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  double misfit(GrayView reference, GrayView present, std::span<const RowSpan> spans) const;
   bool may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band) const;
   template <typename Each>
   void sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,

@@ -36,7 +36,10 @@ constexpr double kUsualPeriod = 0.04;  // seconds, where nobody knows
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
 constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
 constexpr int kUnsettled = 12;        // frames in which a memory still has its own errors of registration
-constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
+// Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
+constexpr double kOtherLight = 3, kFlicker = 40;
+constexpr int kClipped = 245;  // grey levels from which the scene may be brighter than a memory says
+constexpr double kStep = 12;   // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
 
@@ -104,7 +107,8 @@ struct SceneMemory::State {
   SceneParts parts;
   SceneSurroundings surroundings;
   SceneWindows windows;
-  double period = 0;  // seconds from frame to frame, smoothed
+  double brighter = 0;  // grey levels the last frame was brighter than the memory, in the middle of the scale
+  double period = 0;    // seconds from frame to frame, smoothed
   Warp warp;
   LightChange light;
   int columns = 0, rows = 0;  // of blocks
@@ -121,10 +125,12 @@ struct SceneMemory::State {
     return {v.data + v.stride + kMargin, size.width, size.height, v.stride};
   }
   void draw_known(bool lit);
+  void relight(int row);
   bool draw_present(const SceneMemoryInput& in, GrayView blurred);
   void measure_blocks();
   void align(const SceneMemoryInput& in, GrayView blurred);
   bool compensate(bool still);
+  void adopt_light();
   void forgive_step();
   void learn_noise(const SceneMemoryInput& in);
   void leave_valid(MutableBitView bits) const;
@@ -163,6 +169,7 @@ void SceneMemory::State::prepare(Size to) {
     for (auto* plane : {&spread, &age, &quiet}) plane->fill_bytes(0);
     surroundings.begin(to);
     to_frame = {};
+    brighter = 0;
   }
   ++frames;
 }
@@ -228,13 +235,28 @@ void SceneMemory::State::draw_known(bool lit) {
   for (int y = 0; y < size.height; ++y) {
     std::uint8_t* row = k.row(y);
     round_row(mean.view().row(y), size.width, row);
-    if (lit) relight_row(row, light.row(y), size.width, row);
+    if (lit) relight(y);
     row[-1] = row[0];
     row[size.width] = row[size.width - 1];
   }
   const std::size_t bytes = static_cast<std::size_t>(size.width) + 2;
   std::memcpy(k.row(-1) - 1, k.row(0) - 1, bytes);
   std::memcpy(k.row(size.height) - 1, k.row(size.height - 1) - 1, bytes);
+}
+
+// A row of `known` under the present light. What was too bright for the sensor may have been brighter than the memory says:
+// in less light it may be anything from there on.
+void SceneMemory::State::relight(int y) {
+  const auto k = known_view();
+  std::uint8_t* row = k.row(y);
+  const RowLight l = light.row(y);
+  const int white = (255 * l.gain + l.offset) >> 8;
+  if (white >= 255) return relight_row(row, l, size.width, row);
+  std::uint8_t* raw = tolerance.view().data;
+  std::memcpy(raw, row, static_cast<std::size_t>(size.width));
+  relight_row(row, l, size.width, row);
+  const std::uint8_t* f = present.view().row(y);
+  for (int x = 0; x < size.width; ++x) row[x] = raw[x] >= kClipped ? std::max(row[x], f[x]) : row[x];
 }
 
 bool SceneMemory::State::draw_present(const SceneMemoryInput& in, GrayView blurred) {
@@ -278,33 +300,42 @@ void SceneMemory::State::align(const SceneMemoryInput& in, GrayView blurred) {
   measure_blocks();
 }
 
-// Takes a change of light out: a strong one for good, a weak one or bands (flicker) for this comparison only. True if it
-// was a step.
+// Takes a change of light out of this comparison. True if it was a step.
 bool SceneMemory::State::compensate(bool still) {
+  const double before = brighter;
   light.estimate(known_view(), present.view(), warp.spans());
-  if (light.none()) return false;
+  brighter = light.gain() * 128 + light.offset() - 128;
+  const bool step = std::abs(brighter - before) > kStep;
+  if (light.none()) return step;
   if (light.agreement() < kAgreement && still) {  // not a change of light: another scene
     age.fill_bytes(0);
     surroundings.begin(size);
     light.clear();
+    brighter = 0;
     return false;
   }
-  const double at_middle = light.gain() * 128 + light.offset() - 128;
-  if (std::abs(at_middle) > 3) {
-    const int gain = static_cast<int>(std::lround(light.gain() * 256));
-    const int offset = static_cast<int>(std::lround(light.offset() * 256));
-    for (int y = 0; y < size.height; ++y) {
-      std::uint16_t* row = mean.view().row(y);
-      for (int x = 0; x < size.width; ++x)
-        row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
-    }
-    surroundings.relight(gain, offset);
+  // Flicker comes back, and what it makes white in the memory is lost: the memory keeps the light it was learnt in. A
+  // stronger change is there to stay.
+  if (std::abs(brighter) > (still ? kFlicker : kOtherLight)) {
+    adopt_light();
     draw_known(false);
     light.estimate(known_view(), present.view(), warp.spans());
-    if (light.none()) return std::abs(at_middle) > kStep;
   }
   draw_known(true);
-  return std::abs(at_middle) > kStep;
+  return step;
+}
+
+// The memory under the light that was measured last.
+void SceneMemory::State::adopt_light() {
+  const int gain = static_cast<int>(std::lround(light.gain() * 256));
+  const int offset = static_cast<int>(std::lround(light.offset() * 256));
+  for (int y = 0; y < size.height; ++y) {
+    std::uint16_t* row = mean.view().row(y);
+    for (int x = 0; x < size.width; ++x)
+      row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
+  }
+  surroundings.relight(gain, offset);
+  brighter = 0;
 }
 
 // A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what a
@@ -462,6 +493,7 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
   s.measure_time(in.seconds);
+  if (!in.still && std::abs(s.brighter) > kOtherLight) s.adopt_light();  // alignment knows nothing of light
   s.follow(in);
   GrayView blurred = mask;
   if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);

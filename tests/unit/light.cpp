@@ -4,6 +4,10 @@
 
 #include <check.h>
 
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
 #include "support/suite.h"
 #include "vision/image.h"
 
@@ -16,6 +20,29 @@ void fill_ramp(MutableGrayView v, double gain, double offset) {
   for (int y = 0; y < v.height; ++y)
     for (int x = 0; x < v.width; ++x)
       v.at(x, y) = static_cast<std::uint8_t>(gain * (40 + 120 * x / v.width) + offset + 0.5);
+}
+
+constexpr Size kSize{320, 240};
+
+// Mains light under a rolling shutter: 140 rows a period.
+double band(int y) {
+  return 1 + 0.06 * std::sin(2 * std::numbers::pi * y / 140 + 1);
+}
+
+// The present is the reference in bands of light, but for white. How far any row is off then, grey levels at `level`.
+double worst_error(GrayView reference, double level) {
+  Image<std::uint8_t> present(kSize);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x)
+      present.view().at(x, y) =
+          static_cast<std::uint8_t>(std::min(reference.at(x, y) * band(y) + 0.5, 255.0));
+  LightChange light;
+  light.estimate(reference, present.view(), {});
+  double worst = 0;
+  for (int y = 0; y < kSize.height; ++y)
+    worst =
+        std::max(worst, std::abs((light.row(y).gain * level + light.row(y).offset) / 256 - band(y) * level));
+  return worst;
 }
 
 }  // namespace
@@ -47,7 +74,42 @@ START_TEST(gain_and_offset_are_found_at_every_size) {
 }
 END_TEST
 
+START_TEST(bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart) {
+  // Sky, a wall, a floor: every row has one brightness, and every brightness its own light.
+  Image<std::uint8_t> reference(kSize);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x)
+      reference.view().at(x, y) = static_cast<std::uint8_t>((y < 80 ? 190 : y < 160 ? 60 : 120) + x % 16);
+  ck_assert_double_le(worst_error(reference.view(), 120), 1.5);
+}
+END_TEST
+
+START_TEST(bands_go_on_where_all_is_white) {
+  Image<std::uint8_t> reference(kSize);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x)
+      reference.view().at(x, y) = static_cast<std::uint8_t>(y >= 96 && y < 120 ? 255 : 100 + x % 64);
+  ck_assert_double_le(worst_error(reference.view(), 100), 2);
+}
+END_TEST
+
+START_TEST(an_object_in_less_than_half_of_its_rows_is_no_band) {
+  Image<std::uint8_t> reference(kSize), present(kSize);
+  fill_ramp(reference.view(), 1, 0);
+  fill_ramp(present.view(), 1, 0);
+  for (int y = 60; y < 160; ++y)
+    for (int x = 90; x < 230; ++x) present.view().at(x, y) = 250;
+  LightChange light;
+  light.estimate(reference.view(), present.view(), {});
+  for (int y = 0; y < kSize.height; ++y)
+    ck_assert_msg(std::abs(light.row(y).gain * 100 + light.row(y).offset - 25600) <= 256, "row %d", y);
+}
+END_TEST
+
 int main() {
-  return run_suite("light", {equal_pictures_have_no_change_of_light_whatever_their_size,
-                             gain_and_offset_are_found_at_every_size});
+  return run_suite(
+      "light",
+      {equal_pictures_have_no_change_of_light_whatever_their_size, gain_and_offset_are_found_at_every_size,
+       bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart, bands_go_on_where_all_is_white,
+       an_object_in_less_than_half_of_its_rows_is_no_band});
 }
