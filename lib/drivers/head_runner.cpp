@@ -51,6 +51,8 @@ struct HeadRunner::Core {
   unsigned interrupts = 0;
   bool ended = false, obeys = true, speaks = true;
   std::string failure;           // not yet told
+  std::string unopened;          // as the head: why
+  std::string refusal;           // the same, not yet told
   bool asking = false;           // somebody waits in ask()
   bool failed = false;           // the last batch
   bool question_failed = false;  // that of the last question, whose answer is in `poses`
@@ -63,8 +65,8 @@ struct HeadRunner::Core {
 };
 
 std::string HeadRunner::Core::carry_out(const Batch& batch) {
-  if (batch.open)
-    if (std::string wrong = head->open(*batch.open); !wrong.empty()) return wrong;
+  if (batch.open) unopened = head->open(*batch.open);
+  if (!unopened.empty()) return unopened;
   if (batch.stop) head->stop(*batch.stop);
   std::string failed;
   if (batch.open) owed.reset();
@@ -106,6 +108,7 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   if (blocks) guard.lock();
   failed = !wrong.empty();
   if (failed) failure = wrong;
+  if (failed && batch.open) refusal = unopened;
   if (batch.open || batch.limiting || batch.command)
     obeys = !failed;
   else if (batch.question)
@@ -244,6 +247,11 @@ void HeadRunner::interrupt(bool on) {
 std::string HeadRunner::failure() {
   const std::lock_guard guard(core_->lock);
   return std::exchange(core_->failure, {});
+}
+
+std::string HeadRunner::refusal() {
+  const std::lock_guard guard(core_->lock);
+  return std::exchange(core_->refusal, {});
 }
 
 bool HeadRunner::healthy() const {

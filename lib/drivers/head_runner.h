@@ -52,6 +52,8 @@ class HeadRunner {
   void interrupt(bool on);
   // What the driver complained of since the last call; empty: nothing.
   std::string failure();
+  // Why the head could not be opened, which is what everything else fails of then; once. Empty: it is open, or being opened.
+  std::string refusal();
   // The driver carried out the last command, and told its state when last asked.
   bool healthy() const;
   // False while a request is on its way.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "head_names.hpp"
+#include "outbox.hpp"
 
 namespace cerberus::plugin {
 
@@ -34,9 +35,7 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
   auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease), std::move(notify));
   runner->set_close_patience(kClosePatience);
   if (runner->open(setup, kOpenPatience) == drivers::HeadRunner::Answer::failed) {
-    GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
-                      ("The head \"%s\" cannot be opened: %s.", name, runner->failure().c_str()),
-                      ("driver %s", s.driver.c_str()));
+    refuse(element, name, runner->refusal());
     return nullptr;
   }
   return runner;

@@ -31,6 +31,11 @@ CerberusPose to_c(const control::Pose& pose, const char* head) {
 
 }  // namespace
 
+void refuse(GstElement* element, const char* head, const std::string& why) {
+  GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
+                    ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
+}
+
 void send(const Outbox& out, GstBaseSink* sink, const char* head) {
   for (const control::Pose& pose : out.poses) {
     const CerberusPose event = to_c(pose, head);
@@ -42,6 +47,7 @@ void send(const Outbox& out, GstBaseSink* sink, const char* head) {
                              cerberus_message_new_pantilt(GST_OBJECT(sink), clock_time(status.time),
                                                           status.state, status.reason.c_str(), &pose));
   }
+  if (!out.refusal.empty()) refuse(GST_ELEMENT(sink), head, out.refusal);
   if (!out.fault.empty())
     GST_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, out.fault.c_str()),
                         (nullptr));

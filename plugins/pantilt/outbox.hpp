@@ -21,10 +21,13 @@ struct Status {
 struct Outbox {
   std::vector<control::Pose> poses;
   std::vector<Status> statuses;
-  std::string fault;  // new: for a warning
-  guint lost = 0;     // the identity that was to be followed and is not there: for a warning
+  std::string refusal;  // why the head cannot be opened: for an error
+  std::string fault;    // new: for a warning
+  guint lost = 0;       // the identity that was to be followed and is not there: for a warning
 };
 
+// The error of a head that cannot be opened.
+void refuse(GstElement* element, const char* head, const std::string& why);
 // Sends it off for `sink`, whose head is `head` (may be nullptr). No lock held.
 void send(const Outbox& out, GstBaseSink* sink, const char* head);
 

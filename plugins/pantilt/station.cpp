@@ -175,6 +175,8 @@ void Station::complain(const std::string& failure, Time head, Outbox& out) {
 // After an answer: is the head at fault, still or no longer?
 void Station::check(const std::string& failure, Time head, Outbox& out) {
   if (!runner_ || !runner_->healthy()) {
+    if (runner_) out.refusal = runner_->refusal();
+    if (!out.refusal.empty()) faulty_ = true;  // an error and no warning
     complain(failure, head, out);
     return;
   }

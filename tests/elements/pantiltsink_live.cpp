@@ -278,6 +278,29 @@ GST_START_TEST(what_cannot_be_is_refused_with_its_name) {
 }
 GST_END_TEST
 
+// Later than a change of state may wait for it.
+GST_START_TEST(a_head_that_cannot_be_opened_is_an_error_however_late) {
+  Pipe gate;
+  Rig rig("driver=scripted script=\"open wait " + gate.reader() + "; open fail no such serial port\"",
+          Source::live);
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
+  gate.close_writer();
+  GstMessage* message = nullptr;
+  while (!(message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ERROR))) crank(rig);
+  GError* error = nullptr;
+  gst_message_parse_error(message, &error, nullptr);
+  fail_unless_equals_string(error->message, "The head \"head\" cannot be opened: no such serial port.");
+  fail_unless(g_error_matches(error, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_OPEN_READ_WRITE));
+  g_error_free(error);
+  gst_message_unref(message);
+  // Once.
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, GST_SECOND));
+  for (int k = 0; k < 20; ++k) crank(rig);
+  fail_unless(gst_bus_pop_filtered(
+                  rig.bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)) == nullptr);
+}
+GST_END_TEST
+
 GST_START_TEST(one_head_has_one_sink) {
   {
     Rig first("head=door");
@@ -356,6 +379,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, an_order_does_not_survive_the_end_of_the_stream);
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
+  tcase_add_test(tests, a_head_that_cannot_be_opened_is_an_error_however_late);
   tcase_add_test(tests, one_head_has_one_sink);
   tcase_add_test(tests, a_strangers_pose_event_passes_and_changes_nothing);
   tcase_add_test(tests, caps_without_a_size_are_refused);

@@ -298,6 +298,12 @@ START_TEST(a_driver_that_does_not_open_says_why) {
   setup.script = "open fail no such device";
   ck_assert(runner.open(setup, 10s) == Answer::failed);
   assert_text(runner.failure(), "no such device");
+  assert_text(runner.refusal(), "no such device");
+  assert_text(runner.refusal(), "");  // told
+  // Nothing else fails of anything else.
+  std::vector<Pose> poses;
+  ck_assert(runner.ask(HeadCommand{}, {}, {}, poses, 10s) == Answer::failed);
+  assert_text(runner.failure(), "no such device");
   for (const char* nonsense :
        {"opn fail x", "record", "record x", "command", "command 3", "command wait", "stop jump 3"}) {
     setup.script = nonsense;
