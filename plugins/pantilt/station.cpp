@@ -323,11 +323,11 @@ void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunn
   guard.unlock();
   const Answer answer = runner->stop(now, patience);
   std::vector<Pose> poses;
-  if (answer == Answer::done && clock_driven_)
-    runner->ask({}, now, now + setup_.latency + kAhead, poses, kTickPatience);
+  if (answer == Answer::done && clock_driven_) runner->ask({}, now, control::kNever, poses, kTickPatience);
   guard.lock();
   remember(poses);
-  if (!poses.empty()) publish(poses, control::kNever, out);
+  for (const Pose& pose : poses)
+    out.poses.push_back(running(pose));  // until it rests: in PAUSED nobody asks again
   if (answer == Answer::late) complain("the head does not answer: it may not have stopped", now, out);
   if (!faulty_) say("stopped", reason, now, out);
 }

@@ -146,7 +146,14 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
   while (time_of(rig) < 500 * GST_MSECOND) crank(rig);
+  const double before = rig.poses().back().pan;
   fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
+  // Told to the end: at 40 degrees a second for the latency of 60 ms, then braking at 600.
+  const auto poses = rig.poses();
+  fail_unless(poses.front().moving && !poses.back().moving);
+  fail_unless_equals_uint64(poses.back().valid_until, GST_CLOCK_TIME_NONE);
+  const double way = 40 * 0.06 + 40 * 40 / 1200.0;
+  fail_unless(std::fabs(poses.back().pan - before - way) < 1e-6, "%g", poses.back().pan - before);
   const auto messages = rig.messages();
   fail_unless_equals_string(messages.back().reason.c_str(), "paused");
   // What the application wants meanwhile is done afterwards.
