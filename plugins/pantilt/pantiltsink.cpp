@@ -27,12 +27,13 @@
  * frames, never a clock: each frame is answered with the poses until its running time plus `latency` (or until the next
  * frame, if that is later), so that a source upstream can keep in step with it and two runs give the same.
  *
- * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by hand goes
- * on after PAUSED, but not after the end of the stream, nor when frames came and stay away for `watchdog-timeout`: then the head
- * stands until another order or `auto`. At the end of the stream `move-to`, `move-by`, `home` and `follow` are refused until a
- * flush begins it anew; where no frames come, an order is obeyed. Driver calls are made on a thread of
- * their own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be
- * opened is an error, however late it says so; one that fails later is a warning and the state `fault`, until it answers again: the video goes on.
+ * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by hand
+ * goes on after PAUSED, but not after the end of the stream, nor when frames came and stay away for `watchdog-timeout`: then
+ * the head stands until another order or `auto`. At the end of the stream `move-to`, `move-by`, `home` and `follow` are
+ * refused until a flush begins it anew; where no frames come, an order is obeyed. Driver calls are made on a thread of their
+ * own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be opened is an error,
+ * however late it says so; one that fails later is a warning and the state `fault`, until it answers again: the video goes
+ * on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`,
  * `manual`, `limited`, `fault`) and `reason` at every change of either.
@@ -40,10 +41,10 @@
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees; false
  * if the head is not there, the stream is over, or a number is none), `stop`, `home`, `auto`.
  *
- * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over) chooses whom
- * to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on no frame the head turns
- * to nobody else that the camera sees; after 5 s, also if it never came, a warning names it and the usual choice goes on. `auto`
- * takes the choice back, and so does each of the other signals: the last one counts.
+ * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over) chooses
+ * whom to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on no frame the
+ * head turns to nobody else that the camera sees; after 5 s, also if it never came, a warning names it and the usual choice
+ * goes on. `auto` takes the choice back, and so does each of the other signals: the last one counts.
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
  * tests: what `script` says). One head has one name (`head`) and in a process one sink.

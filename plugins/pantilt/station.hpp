@@ -58,7 +58,7 @@ class Station {
   // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.
   void halt(const char* reason, std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
   void resume(std::optional<Time> now, Outbox& out);
-  // The stream is over: a halt that only forget() and open() end; nothing moves the head meanwhile. An order by hand is over, too.
+  // The stream is over: a halt that only forget() and open() end; nothing moves the head meanwhile. An order by hand ends, too.
   void end(std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
 
   // Manual override until automatic(). now: as for halt(). false: not possible.
