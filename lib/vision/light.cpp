@@ -12,7 +12,8 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kBand = 8;  // rows; flicker at 100 Hz has a period of 70 rows and more
+constexpr int kBand = 8;            // rows; flicker at 100 Hz has a period of 70 rows and more
+constexpr int kMaximumBands = 512;  // more are not looked for
 constexpr int kColumnStep = 8, kRowStep = 2;
 constexpr int kBandReach = 64;     // a band may be this much brighter or darker, 1/256
 constexpr int kFullWeight = 64;    // grey levels from which a sample says all it can of a gain
@@ -26,6 +27,34 @@ constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
 RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
   return spans.empty() ? RowSpan{0, width} : spans[static_cast<std::size_t>(y)];
 }
+
+// 1/256 of a gain that half a grey level is, 8 bits of fraction, by the level it is added to.
+constexpr auto kInverse = [] {
+  std::array<int, 256> inverse{};
+  for (int level = 0; level < 256; ++level) inverse[level] = 128 * 256 / (level ? level : 1);
+  return inverse;
+}();
+
+// A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter, or
+// mostly darker. No median is as far from 0 as kLeastBand otherwise.
+struct Direction {
+  std::array<int, 3> number{}, brighter{}, darker{};
+  void add(int third, int difference) {
+    ++number[third];
+    brighter[third] += difference > 0;
+    darker[third] += difference < 0;
+  }
+  bool one() const {
+    int thirds = 0, up = 0, down = 0;
+    for (int i = 0; i < 3; ++i) {
+      if (number[i] < 8) continue;  // white
+      ++thirds;
+      up += 2 * brighter[i] > number[i];
+      down += 2 * darker[i] > number[i];
+    }
+    return thirds > 0 && std::max(up, down) >= std::min(thirds, 2);
+  }
+};
 
 int lit(int value, RowLight light) {
   return std::clamp((value * light.gain + light.offset + 128) >> 8, 0, 255);
@@ -41,21 +70,26 @@ void LightChange::clear() {
   std::fill(rows_.begin(), rows_.end(), RowLight{});
 }
 
-void LightChange::estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
+void LightChange::estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans, bool still) {
   rows_.resize(static_cast<std::size_t>(present.height));
   clear();
   if (present.empty()) return;
-  estimate_global(reference, present, spans);
-  if (estimate_bands(reference, present, spans)) {
+  const bool line = estimate_global(reference, present, spans);
+  const bool bands = estimate_bands(reference, present, spans);
+  if (still && line && bands) {
     // Where bright and dark things lie in different bands, the line through all of the picture takes the bands for
     // something that brightness does. Then the bands come first. Which is right shows in what remains.
-    const double remains = misfit(reference, present, spans);
-    const LightChange line_first = *this;
-    clear();
+    const double remains = misfit(reference, present, spans), agreement = agreement_;
+    std::array<RowLight, kMaximumBands * kBand> line_first;
+    std::ranges::copy(rows_, line_first.begin());
+    std::ranges::fill(rows_, RowLight{});
     estimate_bands(reference, present, spans);
     estimate_global(reference, present, spans);
     estimate_bands(reference, present, spans);
-    if (misfit(reference, present, spans) > remains) *this = line_first;
+    if (misfit(reference, present, spans) > remains) {
+      std::copy_n(line_first.begin(), rows_.size(), rows_.begin());
+      agreement_ = agreement;
+    }
   }
   double gain = 0, offset = 0;
   for (const RowLight& r : rows_) gain += r.gain, offset += r.offset;
@@ -64,7 +98,8 @@ void LightChange::estimate(GrayView reference, GrayView present, std::span<const
   none_ = std::ranges::all_of(rows_, [](const RowLight& r) { return r == RowLight{}; });
 }
 
-void LightChange::estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
+// True if there was any.
+bool LightChange::estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
   // 32 bits: a sixteenth of 3840 x 2160 pixels may all be alike.
   std::array<std::array<std::uint32_t, kLevels>, kClasses> counts{};
   std::array<std::uint32_t, 256> seen{};  // samples by level of the reference
@@ -85,7 +120,7 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   }
   int total = 0;
   for (const int n : number) total += n;
-  if (total < 64) return;
+  if (total < 64) return false;
 
   struct Entry {
     double a, e, weight;
@@ -99,7 +134,7 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
     if (a + e > 250 || a + e < 4 || a > 250) continue;  // clipped: says nothing about gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
-  if (!used) return;
+  if (!used) return false;
   // e = offset + slope (a - mean), by least squares whose weights fall with the distance from the line
   // (Cauchy, scale one grey level). With a narrow range of brightness only the offset can be told.
   double slope = 0, offset = 0, mean = 0;
@@ -132,12 +167,13 @@ void LightChange::estimate_global(GrayView reference, GrayView present, std::spa
   }
   agreement_ = static_cast<double>(agree) / total;
   // What is hardly visible between dark grey and light grey is not worth a correction.
-  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return;
+  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return false;
   const double gain = std::clamp(1 + slope, 0.25, 4.0);
   for (RowLight& row : rows_) {
     row.gain = static_cast<std::int32_t>(std::lround(row.gain * gain));
     row.offset = static_cast<std::int32_t>(std::lround(row.offset * gain + 256 * at_zero));
   }
+  return true;
 }
 
 // What remains of the difference, grey levels a sample; objects count little.
@@ -146,11 +182,11 @@ double LightChange::misfit(GrayView reference, GrayView present, std::span<const
   std::int64_t sum = 0, number = 0;
   for (int band = 0; band * kBand < present.height; ++band)
     sample_band(reference, present, spans, band,
-                [&](int now, int value) { sum += std::min(std::abs(value - now), kMost), ++number; });
+                [&](int, int now, int value) { sum += std::min(std::abs(value - now), kMost), ++number; });
   return number ? static_cast<double>(sum) / number : 0;
 }
 
-// Calls each(value of the reference under the light so far, present value) for the samples of a band of rows.
+// Calls each(third of the row, value of the reference under the light so far, present value) for the samples of a band.
 template <typename Each>
 void LightChange::sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,
                               Each&& each) const {
@@ -158,30 +194,26 @@ void LightChange::sample_band(GrayView reference, GrayView present, std::span<co
     const RowSpan s = span_of(spans, y, present.width);
     const std::uint8_t *a = reference.row(y), *b = present.row(y);
     const RowLight light = rows_[y];
-    for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
-      const int now = lit(a[x], light);
-      if (a[x] < kWhite && now < kNearWhite) each(now, static_cast<int>(b[x]));
-    }
+    const bool same = light == RowLight{};
+    for (int third = 0, x = s.begin + (y / kRowStep) % kColumnStep; third < 3; ++third)
+      for (const int end = std::min(s.end, (third + 1) * present.width / 3); x < end; x += kColumnStep) {
+        const int now = same ? a[x] : lit(a[x], light);
+        if (a[x] < kWhite && now < kNearWhite) each(third, now, static_cast<int>(b[x]));
+      }
   }
 }
 
-// Whether more than half of a band is at least one level brighter, or darker: no median is as far from 0 as kLeastBand
-// otherwise.
 bool LightChange::may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans,
                              int band) const {
-  int number = 0, brighter = 0, darker = 0;
-  sample_band(reference, present, spans, band, [&](int now, int value) {
-    ++number;
-    brighter += value > now;
-    darker += value < now;
-  });
-  return 2 * std::max(brighter, darker) > number;
+  Direction direction;
+  sample_band(reference, present, spans, band,
+              [&](int third, int now, int value) { direction.add(third, value - now); });
+  return direction.one();
 }
 
 // True if there were any.
 bool LightChange::estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
   const int bands = (present.height + kBand - 1) / kBand;
-  constexpr int kMaximumBands = 512;
   if (bands < 4 || bands > kMaximumBands) return false;
   int first = 0;
   while (first < bands && !may_differ(reference, present, spans, first)) ++first;
@@ -190,15 +222,17 @@ bool LightChange::estimate_bands(GrayView reference, GrayView present, std::span
   std::bitset<kMaximumBands> known;
   double strongest = 0;
   for (int band = 0; band < bands; ++band) {
-    // A band of light goes through the whole row, an object rarely does: the median of what the samples say of the gain.
+    // The median of what the samples say of the gain, in 1/256.
     // In the dark they say little; and whole levels make steps there, so half of each is counted half a level either way.
     std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
+    Direction direction;
     int samples = 0;
     std::int64_t weights = 0, sum = 0;
-    sample_band(reference, present, spans, band, [&](int now, int value) {
-      const int weight = std::min(now, kFullWeight), over = std::max(now, 1);
+    sample_band(reference, present, spans, band, [&](int third, int now, int value) {
+      direction.add(third, value - now);
+      const int weight = std::min(now, kFullWeight), inverse = kInverse[now];
       for (const int half : {-1, 1}) {
-        const int excess = 128 * (2 * (value - now) + half) / over;
+        const int excess = ((2 * (value - now) + half) * inverse) >> 8;
         counts[std::clamp(excess, -kBandReach, kBandReach) + kBandReach] += weight;
       }
       weights += 2 * weight;
@@ -207,7 +241,8 @@ bool LightChange::estimate_bands(GrayView reference, GrayView present, std::span
     });
     known[band] = samples >= kLeastSamples && weights > 0;
     if (!known[band]) continue;
-    excess[band] = median_of_levels(counts, static_cast<double>(weights), -kBandReach) / 256;
+    excess[band] =
+        direction.one() ? median_of_levels(counts, static_cast<double>(weights), -kBandReach) / 256 : 0;
     strongest = std::max(strongest, std::abs(excess[band]) * sum / samples);
   }
   if (strongest < kLeastBand) return false;

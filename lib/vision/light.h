@@ -24,9 +24,9 @@ class LightChange {
  public:
   // present ~ gain * reference + offset over the valid spans (empty: everywhere), and a further gain for each band of 8
   // rows. The line goes robustly through the median differences of 16 brightness classes; a band's gain is the median of
-  // what its samples say. Either can be taken for the other where bright and dark lie apart: both orders are tried, and
-  // what leaves less is kept. Changes too small to tell from noise are not made.
-  void estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  // what its samples say. Either can be taken for the other where bright and dark lie apart: if the camera is still both
+  // orders are tried, and what leaves less is kept; else registration's errors would be what is told apart. Changes too small to tell from noise are not made.
+  void estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans, bool still);
   void clear();
 
   bool none() const { return none_; }
@@ -41,7 +41,7 @@ class LightChange {
 
  private:
   static constexpr int kClasses = 16, kReach = 127, kLevels = 2 * kReach + 1;
-  void estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans);
+  bool estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans);
   bool estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans);
   double misfit(GrayView reference, GrayView present, std::span<const RowSpan> spans) const;
   bool may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band) const;

@@ -303,7 +303,7 @@ void SceneMemory::State::align(const SceneMemoryInput& in, GrayView blurred) {
 // Takes a change of light out of this comparison. True if it was a step.
 bool SceneMemory::State::compensate(bool still) {
   const double before = brighter;
-  light.estimate(known_view(), present.view(), warp.spans());
+  light.estimate(known_view(), present.view(), warp.spans(), still);
   brighter = light.gain() * 128 + light.offset() - 128;
   const bool step = std::abs(brighter - before) > kStep;
   if (light.none()) return step;
@@ -319,7 +319,7 @@ bool SceneMemory::State::compensate(bool still) {
   if (std::abs(brighter) > (still ? kFlicker : kOtherLight)) {
     adopt_light();
     draw_known(false);
-    light.estimate(known_view(), present.view(), warp.spans());
+    light.estimate(known_view(), present.view(), warp.spans(), still);
   }
   draw_known(true);
   return step;

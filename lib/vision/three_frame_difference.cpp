@@ -110,7 +110,7 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   }
   std::swap(s.light, s.light_before);
   if (s.options.compensate_light)
-    s.light.estimate(first, present, s.spans);
+    s.light.estimate(first, present, s.spans, s.warp1.is_identity());
   else
     s.light.clear();
 
