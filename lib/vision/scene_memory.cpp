@@ -34,8 +34,9 @@ constexpr double kLeastSigma = 0.7;    // grey levels: rounding alone makes 0.3,
 constexpr int kClosing = 9;            // side of the closing at 320 columns
 constexpr double kUsualPeriod = 0.04;  // seconds, where nobody knows
 constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
-constexpr std::uint8_t kRelearn = 4;  // ... as if it were this old
-constexpr int kUnsettled = 12;        // frames in which a memory still has its own errors of registration
+constexpr std::uint8_t kRelearn = 4;     // ... as if it were this old
+constexpr double kMostUnreliable = 0.1;  // share of the blocks up to which a memory fits the frame
+constexpr int kUnsettled = 12;           // frames in which a memory still has its own errors of registration
 // Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
 constexpr double kOtherLight = 3, kFlicker = 40;
 constexpr int kClipped = 245;  // grey levels from which the scene may be brighter than a memory says
@@ -107,6 +108,7 @@ struct SceneMemory::State {
   SceneParts parts;
   SceneSurroundings surroundings;
   SceneWindows windows;
+  int unreliable = 0;   // blocks of this frame that the memory does not fit
   double brighter = 0;  // grey levels the last frame was brighter than the memory, in the middle of the scale
   double period = 0;    // seconds from frame to frame, smoothed
   Warp warp;
@@ -407,6 +409,7 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   // Mean of |e| of normal noise: 0.8 sigma.
   const double noise = 0.8 * std::max(in.sigma * std::sqrt(0.5), kLeastSigma);
   const bool unsettled = frames < kUnsettled;
+  unreliable = 0;
   const auto k = known_view();
   CompareRow row;
   row.width = size.width;
@@ -435,6 +438,7 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
         // sum of g <= sqrt(n x sum of g^2)
         const double beyond_noise = 2 * 2 * (ge - noise * std::sqrt(gg * n)) / (gg + 400);
         if (beyond_noise > kUnreliable) {
+          ++unreliable;
           for (int v = y; v < std::min(y + kSceneBlock, size.height); ++v)
             for (int u = bx * kSceneBlock; u < std::min((bx + 1) * kSceneBlock, size.width); ++u)
               age.view().at(u, v) = std::min(age.view().at(u, v), kRelearn);
@@ -462,7 +466,9 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   morphology.vote(seeds, w, 4);
   morphology.reconstruct(seeds, weak.view(), w);
   std::memcpy(weak.view().data, seeds.data, weak.bytes());
-  const ScenePlanes planes{present.view(), known_view(), age.view(), quiet.view(), in.still};
+  const ScenePlanes planes{present.view(), known_view(),
+                           age.view(),     quiet.view(),
+                           in.still,       !in.still && unreliable < kMostUnreliable * columns * rows};
   const bool young = parts.judge(planes, windows, seeds, absorb.view());
   const int side = std::max(3, kClosing * w / 320 | 1);
   std::memcpy(plain.view().data, seeds.data, plain.bytes());

@@ -78,7 +78,10 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
     // stopped has the outline of an object.
     const bool young = planes.still && (part.newest > area / 2 || (part.young > area / 2 && !object));
     const bool doubtful = ghost || young;
-    if (moving && (fresh || !doubtful)) {
+    // Where the camera turns, a place that was left is soon far from its owner, and no join() will bring them together.
+    const bool left =
+        planes.followed && part.memory > 2 * part.frame + 4 * part.outline && part.young > area / 2;
+    if (moving && (fresh || !doubtful) && !left) {
       young_objects = young_objects || part.young > area / 2;
       continue;
     }

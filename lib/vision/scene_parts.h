@@ -27,6 +27,7 @@ struct ScenePlanes {
   GrayView age;              // frames the memory has learnt a pixel for
   GrayView quiet;            // frames since a pixel moved
   bool still = false;        // the camera stands
+  bool followed = false;     // it moves, and the memory fits the frame nearly everywhere
 };
 
 class SceneParts {

@@ -340,6 +340,39 @@ START_TEST(after_a_cut_to_a_camera_that_pans_regions_are_right) {
 }
 END_TEST
 
+// A figure brighter than the wall, and a camera that turns slower than it walks: the place where it stood when the scene
+// began is soon far from it.
+START_TEST(after_a_cut_to_a_turning_camera_the_place_that_was_left_is_no_region) {
+  const std::vector<float> scene = wall({2 * kSize.width, kSize.height}, 61);
+  for (const double pan : {2.0, 5.0, 8.0}) {
+    Chain chain;
+    Image<std::uint8_t> frame(kSize);
+    Noise noise;
+    int found = 0;
+    for (int k = 0; k < 20; ++k) {
+      const int shift = static_cast<int>(pan * k), left = 40 + 4 * k;
+      std::vector<float> picture(static_cast<std::size_t>(kSize.area()));
+      for (int y = 0; y < kSize.height; ++y)
+        for (int x = 0; x < kSize.width; ++x)
+          picture[static_cast<std::size_t>(y) * kSize.width + x] =
+              x >= left && x < left + 28 && y >= 96 && y < 168
+                  ? 200.0f + 2 * (y % 7)
+                  : 0.5f * scene[static_cast<std::size_t>(y) * 2 * kSize.width + x + shift];
+      expose(picture.data(), kSize.width, {}, noise, frame.view());
+      chain.step(source(frame.view()), kFrame);
+      const Box figure{static_cast<double>(left), 96, 28, 72};
+      for (const Region& r : chain.regions()) {
+        const bool right = overlap_area(r.box, figure) > 0;
+        ck_assert_msg(right, "pan %.0f frame %d: %.0f,%.0f %.0fx%.0f", pan, k, r.box.x, r.box.y, r.box.width,
+                      r.box.height);
+        found += right;
+      }
+    }
+    ck_assert_int_ge(found, 15);
+  }
+}
+END_TEST
+
 START_TEST(after_a_cut_to_people_in_even_coats_regions_are_right) {
   Walk walk(kSize);
   for (int scene = 0; scene < 4; ++scene) {
@@ -383,6 +416,7 @@ int main() {
        steps_of_exposure_make_no_region, all_of_it_together_makes_no_region,
        what_moves_is_seen_through_steps_of_exposure, after_a_cut_regions_begin_with_the_third_frame,
        after_a_cut_to_a_camera_that_pans_regions_are_right,
+       after_a_cut_to_a_turning_camera_the_place_that_was_left_is_no_region,
        after_a_cut_to_people_in_even_coats_regions_are_right, after_a_seek_regions_begin_with_the_third_frame,
        what_moves_is_seen_in_the_largest_frame_at_its_own_size},
       120);
