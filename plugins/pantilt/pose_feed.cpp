@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "times.hpp"
+
 namespace cerberus::plugin {
 
 using control::Time;
@@ -10,10 +12,7 @@ using sensing::degrees;
 using sensing::radians;
 
 control::Pose from_c(const CerberusPose& pose) {
-  const auto time = [](GstClockTime t) {
-    return t == GST_CLOCK_TIME_NONE ? control::kNever
-                                    : Time(static_cast<Time::rep>(std::min<GstClockTime>(t, G_MAXINT64 / 4)));
-  };
+  const auto time = [](GstClockTime t) { return t == GST_CLOCK_TIME_NONE ? control::kNever : time_of(t); };
   return {.from = time(pose.valid_from),
           .until = time(pose.valid_until),
           .pan = {radians(pose.pan), radians(pose.pan_speed), radians(pose.pan_acceleration)},
@@ -31,9 +30,8 @@ CerberusPose to_c(const control::Pose& pose) {
   out.tilt_speed = degrees(pose.tilt.speed);
   out.pan_acceleration = degrees(pose.pan.acceleration);
   out.tilt_acceleration = degrees(pose.tilt.acceleration);
-  out.valid_from = static_cast<GstClockTime>(std::max(pose.from, Time::zero()).count());
-  out.valid_until =
-      pose.until == control::kNever ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>(pose.until.count());
+  out.valid_from = clock_time(std::max(pose.from, Time::zero()));
+  out.valid_until = pose.until == control::kNever ? GST_CLOCK_TIME_NONE : clock_time(pose.until);
   out.source = pose.measured ? CERBERUS_POSE_MEASURED : CERBERUS_POSE_COMMANDED;
   out.moving = pose.moving();
   out.settled = pose.settled;
