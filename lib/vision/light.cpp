@@ -18,9 +18,8 @@ constexpr int kColumnStep = 8, kRowStep = 2;
 constexpr int kBandReach = 64;     // a band may be this much brighter or darker, 1/256
 constexpr int kFullWeight = 64;    // grey levels from which a sample says all it can of a gain
 constexpr int kLeastSamples = 48;  // of a band that tells of its light
-// Grey levels from which a reference may have been brighter than it says, and from which noise makes the present so. To
-// choose by the present itself would leave out what noise brightens.
-constexpr int kWhite = 245, kNearWhite = 235;
+// Grey levels from which noise makes white. To choose by the present itself would leave out what noise brightens.
+constexpr int kNearWhite = 235;
 constexpr double kLeastBand = 1.0;    // grey levels: weaker bands are left alone
 constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
 

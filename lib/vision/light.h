@@ -13,6 +13,8 @@
 
 namespace cerberus::vision {
 
+constexpr int kWhite = 245;  // grey levels from which a scene may have been brighter than its picture says
+
 // What a row of the reference has to become to be compared with the present: (value * gain + offset) / 256.
 struct RowLight {
   std::int32_t gain = 256;

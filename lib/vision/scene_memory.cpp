@@ -39,8 +39,7 @@ constexpr double kMostUnreliable = 0.1;  // share of the blocks up to which a me
 constexpr int kUnsettled = 12;           // frames in which a memory still has its own errors of registration
 // Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
 constexpr double kOtherLight = 3, kFlicker = 40;
-constexpr int kClipped = 245;  // grey levels from which the scene may be brighter than a memory says
-constexpr double kStep = 12;   // grey levels from one frame to the next: a step of the exposure, not flicker
+constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
 
@@ -258,7 +257,7 @@ void SceneMemory::State::relight(int y) {
   std::memcpy(raw, row, static_cast<std::size_t>(size.width));
   relight_row(row, l, size.width, row);
   const std::uint8_t* f = present.view().row(y);
-  for (int x = 0; x < size.width; ++x) row[x] = raw[x] >= kClipped ? std::max(row[x], f[x]) : row[x];
+  for (int x = 0; x < size.width; ++x) row[x] = raw[x] >= kWhite ? std::max(row[x], f[x]) : row[x];
 }
 
 bool SceneMemory::State::draw_present(const SceneMemoryInput& in, GrayView blurred) {
