@@ -157,10 +157,8 @@ void real() {
     double confidence = 0;
     int cuts = 0;
     for (std::size_t k = 0; k < frames->data.size(); ++k) {
-      LumaSource source;
-      source.data = frames->data[k].data();
-      source.width = size.width, source.height = size.height;
-      source.stride = static_cast<std::ptrdiff_t>(frames->data[k].size()) / size.height;
+      const GrayView frame = frames->grey(k);
+      const LumaSource source{frame.data, frame.width, frame.height, frame.stride};
       const Size small = analysis_size(size, kAnalysisWidth);
       Image<std::uint8_t> picture(small);
       scaler.scale(source, picture.view());

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "vision/image.h"
+
 namespace cerberus::bench {
 
 // Raw frames of one format and size, each in its own tightly described buffer as GStreamer lays it out.
@@ -18,6 +20,10 @@ struct Frames {
   std::vector<std::vector<std::uint8_t>> data;
   // Index of the n-th frame of an endless forward-and-back loop, so that looping is never a cut.
   std::size_t loop(std::size_t n) const;
+  // A frame of format GRAY8.
+  vision::GrayView grey(std::size_t n) const {
+    return {data[n].data(), width, height, static_cast<std::ptrdiff_t>(data[n].size()) / height};
+  }
 };
 
 // `source`: a launch line that ends in decoded video. Takes at most `count` frames at width x height (0: as

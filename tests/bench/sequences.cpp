@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "sequences.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <vector>
+
+namespace cerberus::bench {
+
+namespace {
+
+// CDnet: 255 moving, 0 and 50 not, the rest ignored. DAVIS: > 0 moving (tennis: 170 ignored).
+constexpr Sequence kSequences[] = {
+    {"jitter_traffic",
+     "multifilesrc location=%s/cdnet_jitter_traffic/input/in%%06d.jpg start-index=950 stop-index=1050 "
+     "caps=image/jpeg,framerate=30/1 ! jpegdec",
+     "cdnet_jitter_traffic/groundtruth/gt%06d.png", 950, 1050, 0, 255, 51, 254,
+     "MOG2 .509  KNN .485  SGM .574"},
+    {"dogs-jump", "filesrc location=%s/davis_dogs-jump/dogs_jump_orig.mp4 ! decodebin",
+     "davis_dogs-jump/gt/%05d.png", 0, 65, 0, 1, 256, 0, "MOG2 .453  KNN .536  SGM .589"},
+    {"tennis",
+     "multifilesrc location=%s/davis_tennis/frames/%%05d.jpg start-index=0 stop-index=69 "
+     "caps=image/jpeg,framerate=24/1 ! jpegdec",
+     "davis_tennis/gt/%05d.png", 0, 69, 0, 255, 170, 170, "MOG2 .325  KNN .265  SGM .766"},
+    {"highway",
+     "multifilesrc location=%s/cdnet_baseline_highway/input/in%%06d.jpg start-index=300 stop-index=700 "
+     "caps=image/jpeg,framerate=30/1 ! jpegdec",
+     "cdnet_baseline_highway/groundtruth/gt%06d.png", 470, 700, 170, 255, 51, 254,
+     "MOG2 .781  KNN .839  SGM .721"},
+};
+
+}  // namespace
+
+std::span<const Sequence> sequences() {
+  return kSequences;
+}
+
+const Sequence& sequence(const std::string& name) {
+  return *std::ranges::find(kSequences, name, [](const Sequence& s) { return std::string(s.name); });
+}
+
+std::string source_of(const Sequence& s, const std::filesystem::path& data) {
+  std::vector<char> out(static_cast<std::size_t>(std::snprintf(nullptr, 0, s.source, data.c_str())) + 1);
+  std::snprintf(out.data(), out.size(), s.source, data.c_str());
+  return out.data();
+}
+
+std::optional<Frames> load_truth(const Sequence& s, const std::filesystem::path& data, int width,
+                                 int height) {
+  std::string line = "multifilesrc location=" + (data / s.truth).string() +
+                     " start-index=" + std::to_string(s.first) + " stop-index=" + std::to_string(s.last) +
+                     " caps=image/png,framerate=1/1 ! pngdec";
+  if (width > 0)
+    line += " ! videoscale method=nearest-neighbour add-borders=false ! video/x-raw,width=" +
+            std::to_string(width) + ",height=" + std::to_string(height) + ",pixel-aspect-ratio=1/1";
+  return load_frames(line, "GRAY8", width, height, s.last - s.first + 1);
+}
+
+}  // namespace cerberus::bench

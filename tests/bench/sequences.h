@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sequences whose moving pixels are known, as the data folder's README says what their truth means.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "frames.h"
+
+namespace cerberus::bench {
+
+struct Sequence {
+  const char* name;
+  const char* source;            // launch line with one %s for the data folder
+  const char* truth;             // multifilesrc's pattern below the data folder
+  int first, last;               // numbers of the files of `truth` ...
+  int ahead;                     // ... and how many frames come before the first of them
+  int positive_from;             // truth values from here on count as moving
+  int ignored_from, ignored_to;  // values that are not scored (from > to: none)
+  const char* reference;         // F of others, from the data folder's README
+};
+
+std::span<const Sequence> sequences();
+const Sequence& sequence(const std::string& name);
+std::string source_of(const Sequence& s, const std::filesystem::path& data);
+// The truth from frame `ahead` on, at its own size or at this one, by nearest neighbour.
+std::optional<Frames> load_truth(const Sequence& s, const std::filesystem::path& data, int width = 0,
+                                 int height = 0);
+
+}  // namespace cerberus::bench

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Does it report only what moves? After cuts, seeks and in shaking pictures: what of it overlaps nothing that moves, by the
+// ground truth, and what is told before three frames of the new scene were seen.
+//
+//   bench-steady [--list]    with a line for everything that is wrong
+#include <gst/gst.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "sequences.h"
+#include "support/chain.h"
+#include "support/data.h"
+
+using namespace cerberus;
+using namespace cerberus::bench;
+using vision::Box;
+using vision::GrayView;
+
+namespace {
+
+constexpr double kFrame = 1.0 / 25;
+constexpr int kOutside = 85;  // CDnet's, of what was not looked at
+bool list = false;
+
+// Frames and their truth at the same size; frame k of the one is frame k of the other.
+struct Pictures {
+  const char* name;
+  Frames frames, truth;
+  int moves_from;  // truth values from here on move, or may do so
+};
+
+std::optional<Pictures> load(const char* name, const std::filesystem::path& data, int height) {
+  const Sequence& s = sequence(name);
+  auto frames =
+      load_frames(source_of(s, data) + " ! videoscale add-borders=false ! video/x-raw,width=320,height=" +
+                      std::to_string(height) + ",pixel-aspect-ratio=1/1",
+                  "GRAY8", 320, height, s.ahead + s.last - s.first + 1);
+  auto truth = load_truth(s, data, 320, height);
+  if (!frames || !truth || frames->data.size() != truth->data.size() + static_cast<std::size_t>(s.ahead)) {
+    std::fprintf(stderr, "bench: %s is not complete\n", name);
+    return std::nullopt;
+  }
+  frames->data.erase(frames->data.begin(), frames->data.begin() + s.ahead);
+  const bool cdnet = s.ignored_from < kOutside && kOutside < s.ignored_to;
+  return Pictures{name, std::move(*frames), std::move(*truth), cdnet ? kOutside + 1 : 1};
+}
+
+// Something that moves, or may do so, is under it; or nobody looked at any of it.
+bool right(const Box& b, GrayView truth, int moves_from) {
+  const int x0 = std::max(static_cast<int>(b.x), 0), y0 = std::max(static_cast<int>(b.y), 0);
+  const int x1 = std::min(static_cast<int>(std::ceil(b.right())), truth.width);
+  const int y1 = std::min(static_cast<int>(std::ceil(b.bottom())), truth.height);
+  bool outside = true;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      if (truth.at(x, y) >= moves_from) return true;
+      outside = outside && truth.at(x, y) == kOutside;
+    }
+  return outside;
+}
+
+struct Tally {
+  int frames = 0, regions = 0, wrong_regions = 0, tracks = 0, wrong_tracks = 0;
+  int early = 0;  // frames with something, of the first two of a scene
+};
+
+// A chain, and how many frames it is since a cut or its start.
+struct Watch {
+  tests::Chain chain;
+  int age = 0;
+
+  void see(const Pictures& pictures, std::size_t k, Tally& tally) {
+    const GrayView frame = pictures.frames.grey(k), truth = pictures.truth.grey(k);
+    chain.step({frame.data, frame.width, frame.height, frame.stride}, kFrame);
+    ++age;
+    ++tally.frames;
+    const auto judge = [&](const auto& found, const char* what, int& all, int& wrong) {
+      for (const auto& f : found) {
+        ++all;
+        if (right(f.box, truth, pictures.moves_from)) continue;
+        ++wrong;
+        if (list)
+          std::printf("    %s frame %zu, %d since the cut: %s %.0f,%.0f %.0fx%.0f\n", pictures.name, k, age,
+                      what, f.box.x, f.box.y, f.box.width, f.box.height);
+      }
+    };
+    judge(chain.regions(), "region", tally.regions, tally.wrong_regions);
+    judge(chain.tracks(), "track", tally.tracks, tally.wrong_tracks);
+    tally.early += age < 3 && !(chain.regions().empty() && chain.tracks().empty());
+  }
+};
+
+void print(const std::string& name, const Tally& t) {
+  std::printf("  %-40s %8d %12d / %-6d %9d / %-6d %8d\n", name.c_str(), t.frames, t.wrong_regions, t.regions,
+              t.wrong_tracks, t.tracks, t.early);
+}
+
+// Pieces of the two by turns, of 8 to 40 frames each from anywhere; nothing marks where one ends.
+Tally cuts(const Pictures& one, const Pictures& other, int runs, int pieces) {
+  Tally all;
+  for (int run = 0; run < runs; ++run) {
+    std::mt19937 random(static_cast<unsigned>(run));
+    Watch watch;
+    Tally before;  // the first piece comes after no cut
+    for (int piece = 0; piece < pieces; ++piece) {
+      const Pictures& now = piece % 2 ? one : other;
+      const std::size_t length = 8 + random() % 33, first = random() % (now.frames.data.size() - length + 1);
+      watch.age = 0;
+      for (std::size_t k = first; k < first + length; ++k) watch.see(now, k, piece ? all : before);
+    }
+  }
+  return all;
+}
+
+// From the start to the end, forgetting all `each` frames, as a seek does: `shifts` ways, so that all ages meet all pictures.
+Tally restarts(const Pictures& pictures, int each, int shifts) {
+  Tally all;
+  for (int shift = 0; shift < shifts; ++shift) {
+    Watch watch;
+    for (int k = shift * each / shifts; k < static_cast<int>(pictures.frames.data.size()); ++k) {
+      if (k % each == shift * each / shifts) watch.chain.reset(), watch.age = 0;
+      watch.see(pictures, static_cast<std::size_t>(k), all);
+    }
+  }
+  return all;
+}
+
+// What comes after the first 30 frames of one that is never restarted.
+Tally standing(const Pictures& pictures) {
+  Tally young, all;
+  Watch watch;
+  for (std::size_t k = 0; k < pictures.frames.data.size(); ++k)
+    watch.see(pictures, k, watch.age < 30 ? young : all);
+  return all;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  list = argc > 1 && std::strcmp(argv[1], "--list") == 0;
+  const auto data = tests::data_folder();
+  if (!data) {
+    std::printf("skipped: %s\n", tests::kNoData);
+    return 77;
+  }
+  const auto tennis = load("tennis", *data, 180), dogs = load("dogs-jump", *data, 180);
+  const auto highway = load("highway", *data, 240), jitter = load("jitter_traffic", *data, 240);
+  if (!tennis || !dogs || !highway || !jitter) return 1;
+  std::printf(
+      "Overlaps nothing that moves / all               frames          regions             tracks    too "
+      "early\n");
+  print("tennis and dogs-jump, 236 cuts", cuts(*tennis, *dogs, 4, 60));
+  for (const Pictures* p : {&*highway, &*jitter})
+    print(std::string(p->name) + ", a restart each 60 frames", restarts(*p, 60, 6));
+  for (const Pictures* p : {&*tennis, &*dogs, &*highway, &*jitter})
+    print(std::string(p->name) + ", never restarted", standing(*p));
+  return 0;
+}
