@@ -69,6 +69,15 @@ void LightChange::clear() {
   std::fill(rows_.begin(), rows_.end(), RowLight{});
 }
 
+void LightChange::relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
+                          std::uint8_t* out) const {
+  const RowLight l = row(y);
+  relight_row(reference, l, count, out);
+  const int white = (255 * l.gain + l.offset) >> 8;
+  if (white >= 255) return;
+  for (int x = 0; x < count; ++x) out[x] = reference[x] >= kWhite ? std::max(out[x], present[x]) : out[x];
+}
+
 void LightChange::estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans, bool still) {
   rows_.resize(static_cast<std::size_t>(present.height));
   clear();

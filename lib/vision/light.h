@@ -38,6 +38,10 @@ class LightChange {
   // Share of the sampled pixels that agree with the model to within a few levels: low when the picture as a
   // whole cannot be explained by a change of light.
   double agreement() const { return agreement_; }
+  // out := row y of the reference under the present light. What was too bright for the sensor there may have been brighter
+  // than the reference says: in less light it may be anything from there on, and what `present` shows is as good.
+  void relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
+               std::uint8_t* out) const;
   RowLight row(int y) const { return y < static_cast<int>(rows_.size()) ? rows_[y] : RowLight{}; }
   std::size_t bytes() const { return rows_.capacity() * sizeof(RowLight); }  // beside the object itself
 

@@ -11,12 +11,12 @@
 #include <vector>
 
 #include "vision/blur.h"
-#include "vision/light.h"
 #include "vision/mask.h"
 #include "vision/median.h"
 #include "vision/morphology.h"
 #include "vision/scene_alignment.h"
 #include "vision/scene_kernels.h"
+#include "vision/scene_light.h"
 #include "vision/scene_parts.h"
 #include "vision/scene_surroundings.h"
 #include "vision/shift_content.h"
@@ -25,7 +25,6 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr int kMargin = 16;  // columns beside the compared memory, so that kernels may look beyond the border
 // Pixels a corner may be off by turning and zooming before the memory is redrawn.
 constexpr double kFarthest = 12;
 constexpr double kRedo = 1;   // pixels: a smaller correction is used from the next frame on
@@ -37,11 +36,6 @@ constexpr double kUnreliable = 1.5;  // pixels of registration error above which
 constexpr std::uint8_t kRelearn = 4;     // ... as if it were this old
 constexpr double kMostUnreliable = 0.1;  // share of the blocks up to which a memory fits the frame
 constexpr int kUnsettled = 12;           // frames in which a memory still has its own errors of registration
-// Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
-constexpr double kOtherLight = 3, kFlicker = 40;
-constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
-// Share of pixels a change of light has to explain, else it is another scene.
-constexpr double kAgreement = 0.3;
 
 // 64 bits of a row from x on, zeros outside the row.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
@@ -98,7 +92,6 @@ struct SceneMemory::State {
   Image<std::uint16_t> mean;
   Image<std::uint8_t> spread, age, quiet;
   Image<std::uint8_t> present;    // the frame in memory coordinates, blurred
-  Image<std::uint8_t> known;      // the mean as compared: 8 bits, under the present light; with margins
   Image<std::uint8_t> tolerance;  // one row of blocks, per pixel
   BitMask weak, strong, moved, absorb;
   BitMask valid;  // one row
@@ -107,11 +100,10 @@ struct SceneMemory::State {
   SceneParts parts;
   SceneSurroundings surroundings;
   SceneWindows windows;
-  int unreliable = 0;   // blocks of this frame that the memory does not fit
-  double brighter = 0;  // grey levels the last frame was brighter than the memory, in the middle of the scale
-  double period = 0;    // seconds from frame to frame, smoothed
+  int unreliable = 0;  // blocks of this frame that the memory does not fit
+  double period = 0;   // seconds from frame to frame, smoothed
   Warp warp;
-  LightChange light;
+  SceneLight light;
   int columns = 0, rows = 0;  // of blocks
   std::vector<BlockSums> blocks;
   std::array<double, kBrightness> sigma{};  // of frame - memory by brightness, grey levels
@@ -121,18 +113,9 @@ struct SceneMemory::State {
   void follow(const SceneMemoryInput& in);
   void redraw();
   ScenePixels pixels() { return {mean.view(), spread.view(), age.view(), quiet.view()}; }
-  View<std::uint8_t> known_view() {
-    const auto v = known.view();
-    return {v.data + v.stride + kMargin, size.width, size.height, v.stride};
-  }
-  void draw_known(bool lit);
-  void relight(int row);
   bool draw_present(const SceneMemoryInput& in, GrayView blurred);
   void measure_blocks();
   void align(const SceneMemoryInput& in, GrayView blurred);
-  bool compensate(bool still);
-  void adopt_light();
-  void forgive_step();
   void learn_noise(const SceneMemoryInput& in);
   void leave_valid(MutableBitView bits) const;
   void compare(const SceneMemoryInput& in);
@@ -154,7 +137,7 @@ void SceneMemory::State::prepare(Size to) {
     size = to;
     mean.resize(to);
     for (auto* plane : {&spread, &age, &quiet, &present}) plane->resize(to);
-    known.resize({to.width + 2 * kMargin, to.height + 2});
+    light.make_room(to);
     tolerance.resize({to.width, 1});
     for (auto* bits : {&weak, &strong, &moved, &absorb, &plain}) bits->resize(bit_mask_size(to));
     valid.resize({bit_mask_size(to).width, 1});
@@ -170,7 +153,7 @@ void SceneMemory::State::prepare(Size to) {
     for (auto* plane : {&spread, &age, &quiet}) plane->fill_bytes(0);
     surroundings.begin(to);
     to_frame = {};
-    brighter = 0;
+    light.begin();
   }
   ++frames;
 }
@@ -216,8 +199,8 @@ void SceneMemory::State::redraw() {
     return;
   }
   surroundings.keep(pixels(), to_frame);
-  draw_known(false);
-  warp.bilinear(known_view(), present.view());
+  light.draw(mean.view());
+  warp.bilinear(light.known(), present.view());
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
       mean.view().at(x, y) = static_cast<std::uint16_t>(present.view().at(x, y) << 8);
@@ -228,36 +211,6 @@ void SceneMemory::State::redraw() {
   surroundings.recall(pixels(), to_frame);
   to_frame = {};
   standing = 0;
-}
-
-// known := the mean, lit as the frame is when asked to; borders repeated by one pixel.
-void SceneMemory::State::draw_known(bool lit) {
-  const auto k = known_view();
-  for (int y = 0; y < size.height; ++y) {
-    std::uint8_t* row = k.row(y);
-    round_row(mean.view().row(y), size.width, row);
-    if (lit) relight(y);
-    row[-1] = row[0];
-    row[size.width] = row[size.width - 1];
-  }
-  const std::size_t bytes = static_cast<std::size_t>(size.width) + 2;
-  std::memcpy(k.row(-1) - 1, k.row(0) - 1, bytes);
-  std::memcpy(k.row(size.height) - 1, k.row(size.height - 1) - 1, bytes);
-}
-
-// A row of `known` under the present light. What was too bright for the sensor may have been brighter than the memory says:
-// in less light it may be anything from there on.
-void SceneMemory::State::relight(int y) {
-  const auto k = known_view();
-  std::uint8_t* row = k.row(y);
-  const RowLight l = light.row(y);
-  const int white = (255 * l.gain + l.offset) >> 8;
-  if (white >= 255) return relight_row(row, l, size.width, row);
-  std::uint8_t* raw = tolerance.view().data;
-  std::memcpy(raw, row, static_cast<std::size_t>(size.width));
-  relight_row(row, l, size.width, row);
-  const std::uint8_t* f = present.view().row(y);
-  for (int x = 0; x < size.width; ++x) row[x] = raw[x] >= kWhite ? std::max(row[x], f[x]) : row[x];
 }
 
 bool SceneMemory::State::draw_present(const SceneMemoryInput& in, GrayView blurred) {
@@ -271,7 +224,7 @@ bool SceneMemory::State::draw_present(const SceneMemoryInput& in, GrayView blurr
 
 void SceneMemory::State::measure_blocks() {
   const auto spans = warp.spans();
-  BlockRows r{present.view(), known_view(), age.view(), quiet.view(), 0, 0, 2, 3};
+  BlockRows r{present.view(), light.known(), age.view(), quiet.view(), 0, 0, 2, 3};
   for (int by = 0; by < rows; ++by) {
     r.first = std::max(by * kSceneBlock, 1);
     r.end = std::min((by + 1) * kSceneBlock, size.height - 1);
@@ -301,73 +254,13 @@ void SceneMemory::State::align(const SceneMemoryInput& in, GrayView blurred) {
   measure_blocks();
 }
 
-// Takes a change of light out of this comparison. True if it was a step.
-bool SceneMemory::State::compensate(bool still) {
-  const double before = brighter;
-  light.estimate(known_view(), present.view(), warp.spans(), still);
-  brighter = light.gain() * 128 + light.offset() - 128;
-  const bool step = std::abs(brighter - before) > kStep;
-  if (light.none()) return step;
-  if (light.agreement() < kAgreement && still) {  // not a change of light: another scene
-    age.fill_bytes(0);
-    surroundings.begin(size);
-    light.clear();
-    brighter = 0;
-    return false;
-  }
-  // Flicker comes back, and what it makes white in the memory is lost: the memory keeps the light it was learnt in. A
-  // stronger change is there to stay.
-  if (std::abs(brighter) > (still ? kFlicker : kOtherLight)) {
-    adopt_light();
-    draw_known(false);
-    light.estimate(known_view(), present.view(), warp.spans(), still);
-  }
-  draw_known(true);
-  return step;
-}
-
-// The memory under the light that was measured last.
-void SceneMemory::State::adopt_light() {
-  const int gain = static_cast<int>(std::lround(light.gain() * 256));
-  const int offset = static_cast<int>(std::lround(light.offset() * 256));
-  for (int y = 0; y < size.height; ++y) {
-    std::uint16_t* row = mean.view().row(y);
-    for (int x = 0; x < size.width; ++x)
-      row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
-  }
-  surroundings.relight(gain, offset);
-  brighter = 0;
-}
-
-// A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what a
-// line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the foreground one
-// frame ago, neither is motion, and where the memory is wrong now it starts anew.
-void SceneMemory::State::forgive_step() {
-  const auto k = known_view();
-  for (int y = 0; y < size.height; ++y) {
-    const std::uint64_t* foreground = weak.view().row(y);
-    std::uint64_t* now = moved.view().row(y);
-    for (int word = 0; word < moved.view().width; ++word) now[word] &= foreground[word];
-    const std::uint8_t* f = present.view().row(y);
-    std::uint8_t* m = k.row(y);
-    std::uint8_t* a = age.view().row(y);
-    for (int x = 0; x < size.width; ++x) {
-      const bool free = !(foreground[x / 64] >> (x % 64) & 1);
-      if (!free || std::abs(f[x] - m[x]) <= 2 * sigma[m[x] >> 4]) continue;
-      mean.view().at(x, y) = static_cast<std::uint16_t>(f[x] << 8);
-      m[x] = f[x];
-      a[x] = std::min<std::uint8_t>(a[x], kRelearn);
-    }
-  }
-}
-
 // sigma of frame - memory by brightness. While the memory is young its own noise and the frame's cannot be told apart
 // there, and D(k) stands in: sqrt(1/2) of its sigma, times sqrt(1 + 1 / age) for a mean of that many frames.
 void SceneMemory::State::learn_noise(const SceneMemoryInput& in) {
   const bool start = frames < 8;
   NoiseSamples samples;
   const auto spans = warp.spans();
-  const auto k = known_view();
+  const auto k = light.known();
   for (int y = 1 + frames % 4; y < size.height; y += 4) {
     const RowSpan span = spans[static_cast<std::size_t>(y)];
     const std::uint8_t *f = present.view().row(y), *m = k.row(y), *a = age.view().row(y);
@@ -409,7 +302,7 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   const double noise = 0.8 * std::max(in.sigma * std::sqrt(0.5), kLeastSigma);
   const bool unsettled = frames < kUnsettled;
   unreliable = 0;
-  const auto k = known_view();
+  const auto k = light.known();
   CompareRow row;
   row.width = size.width;
   row.tolerance = tolerance.view().data;
@@ -465,7 +358,7 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   morphology.vote(seeds, w, 4);
   morphology.reconstruct(seeds, weak.view(), w);
   std::memcpy(weak.view().data, seeds.data, weak.bytes());
-  const ScenePlanes planes{present.view(), known_view(),
+  const ScenePlanes planes{present.view(), light.known(),
                            age.view(),     quiet.view(),
                            in.still,       !in.still && unreliable < kMostUnreliable * columns * rows};
   const bool young = parts.judge(planes, windows, seeds, absorb.view());
@@ -484,7 +377,7 @@ void SceneMemory::State::learn() {
   row.phase = frames % 2 ? 15 : 0;
   row.valid = valid.view().data;
   for (int y = 0; y < size.height; ++y) {
-    row.present = present.view().row(y), row.memory = known_view().row(y), row.quiet = quiet.view().row(y);
+    row.present = present.view().row(y), row.memory = light.known().row(y), row.quiet = quiet.view().row(y);
     row.keep = weak.view().row(y), row.absorb = absorb.view().row(y);
     const RowSpan span = warp.spans()[static_cast<std::size_t>(y)];
     valid.fill_bytes(0);
@@ -498,11 +391,11 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
   s.measure_time(in.seconds);
-  if (!in.still && std::abs(s.brighter) > kOtherLight) s.adopt_light();  // alignment knows nothing of light
+  if (!in.still && s.light.is_other()) s.light.adopt(s.pixels(), s.surroundings);
   s.follow(in);
   GrayView blurred = mask;
   if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);
-  s.draw_known(false);
+  s.light.draw(s.mean.view());
   // False for a perspective whose inverse is beyond reason. The mask holds the blurred picture then.
   if (!s.draw_present(in, blurred)) {
     s.frames = 0;
@@ -510,16 +403,17 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
     return;
   }
   if (!in.still && s.frames > 1) s.align(in, blurred);
-  s.light.clear();
-  const bool step = s.frames > 1 && s.compensate(in.still);
-  s.surroundings.doubt(s.pixels(), s.present.view(), s.known_view(), s.warp.spans());
+  const bool step = s.frames > 1 && s.light.compensate(s.pixels(), s.surroundings, s.present.view(),
+                                                       s.warp.spans(), in.still);
+  s.surroundings.doubt(s.pixels(), s.present.view(), s.light.known(), s.warp.spans());
   if (s.warp.is_identity()) {
     binarise(in.difference, in.threshold, s.moved.view());
   } else {
     binarise(in.difference, in.threshold, s.absorb.view());
     map_bits(s.absorb.view(), s.to_frame, s.moved.view(), s.size.width);
   }
-  if (step && in.still) s.forgive_step();
+  if (step && in.still)
+    s.light.forgive_step(s.pixels(), s.present.view(), s.weak.view(), s.sigma, kRelearn, s.moved.view());
   s.learn_noise(in);
   s.compare(in);
   s.decide(in);
@@ -534,9 +428,8 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
 
 std::size_t SceneMemory::bytes() const {
   const State& s = *state_;
-  std::size_t total = sizeof(State) + s.mean.bytes() + s.known.bytes() + s.tolerance.bytes() +
-                      s.morphology.bytes() + s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() +
-                      s.light.bytes();
+  std::size_t total = sizeof(State) + s.mean.bytes() + s.tolerance.bytes() + s.morphology.bytes() +
+                      s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() + s.light.bytes();
   for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
   for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
     total += bits->bytes();

@@ -106,10 +106,32 @@ START_TEST(an_object_in_less_than_half_of_its_rows_is_no_band) {
 }
 END_TEST
 
+START_TEST(white_in_less_light_may_be_anything_brighter_than_its_share) {
+  // 250 may have been 250 or much more: in half the light what is brighter than about 125 is as it has to be, and what is
+  // darker is not. 100 was 100, and in the same light so was 250.
+  for (const double gain : {0.5, 1.0}) {
+    Image<std::uint8_t> before(kSize), after(kSize);
+    fill_ramp(before.view(), 1, 0);
+    fill_ramp(after.view(), gain, 0);
+    LightChange light;
+    light.estimate(before.view(), after.view(), {}, true);
+    const auto lit = [&](int level) { return level * light.gain() + light.offset(); };
+    const std::uint8_t reference[]{100, 100, 250, 250, 250}, present[]{10, 200, 10, 200, 255};
+    const double brighter = gain < 1 ? 200 : 250, brightest = gain < 1 ? 255 : 250;
+    const double expected[]{lit(100), lit(100), lit(250), brighter, brightest};
+    std::uint8_t out[5];
+    light.relight(reference, present, 7, 5, out);
+    for (int i = 0; i < 5; ++i) ck_assert_double_eq_tol(out[i], expected[i], 1);
+    ck_assert_double_eq_tol(lit(100), 100 * gain, 2);
+  }
+}
+END_TEST
+
 int main() {
   return run_suite(
       "light",
       {equal_pictures_have_no_change_of_light_whatever_their_size, gain_and_offset_are_found_at_every_size,
        bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart, bands_go_on_where_all_is_white,
-       an_object_in_less_than_half_of_its_rows_is_no_band});
+       an_object_in_less_than_half_of_its_rows_is_no_band,
+       white_in_less_light_may_be_anything_brighter_than_its_share});
 }

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/scene_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+namespace cerberus::vision {
+namespace {
+
+constexpr int kMargin = 16;  // columns beside the compared memory, so that kernels may look beyond the border
+// Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
+constexpr double kOtherLight = 3, kFlicker = 40;
+constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
+// Share of pixels a change of light has to explain, else it is another scene.
+constexpr double kAgreement = 0.3;
+
+}  // namespace
+
+void SceneLight::make_room(Size picture) {
+  known_.resize({picture.width + 2 * kMargin, picture.height + 2});
+  row_.resize({picture.width, 1});
+}
+
+MutableGrayView SceneLight::known() {
+  const auto v = known_.view();
+  return {v.data + v.stride + kMargin, v.width - 2 * kMargin, v.height - 2, v.stride};
+}
+
+void SceneLight::repeat_borders() {
+  const MutableGrayView k = known();
+  for (int y = 0; y < k.height; ++y) {
+    std::uint8_t* row = k.row(y);
+    row[-1] = row[0];
+    row[k.width] = row[k.width - 1];
+  }
+  const std::size_t bytes = static_cast<std::size_t>(k.width) + 2;
+  std::memcpy(k.row(-1) - 1, k.row(0) - 1, bytes);
+  std::memcpy(k.row(k.height) - 1, k.row(k.height - 1) - 1, bytes);
+}
+
+void SceneLight::draw(View<const std::uint16_t> mean) {
+  const MutableGrayView k = known();
+  for (int y = 0; y < k.height; ++y) round_row(mean.row(y), k.width, k.row(y));
+  repeat_borders();
+}
+
+void SceneLight::draw_lit(View<const std::uint16_t> mean, GrayView present) {
+  const MutableGrayView k = known();
+  std::uint8_t* reference = row_.view().data;
+  for (int y = 0; y < k.height; ++y) {
+    round_row(mean.row(y), k.width, reference);
+    change_.relight(reference, present.row(y), y, k.width, k.row(y));
+  }
+  repeat_borders();
+}
+
+bool SceneLight::is_other() const {
+  return std::abs(brighter_) > kOtherLight;
+}
+
+void SceneLight::adopt(const ScenePixels& pixels, SceneSurroundings& surroundings) {
+  const int gain = static_cast<int>(std::lround(change_.gain() * 256));
+  const int offset = static_cast<int>(std::lround(change_.offset() * 256));
+  for (int y = 0; y < pixels.mean.height; ++y) {
+    std::uint16_t* row = pixels.mean.row(y);
+    for (int x = 0; x < pixels.mean.width; ++x)
+      row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
+  }
+  surroundings.relight(gain, offset);
+  begin();
+}
+
+bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surroundings, GrayView present,
+                            std::span<const RowSpan> shown, bool still) {
+  const double before = brighter_;
+  change_.estimate(known(), present, shown, still);
+  brighter_ = change_.gain() * 128 + change_.offset() - 128;
+  const bool step = std::abs(brighter_ - before) > kStep;
+  if (change_.none()) return step;
+  if (change_.agreement() < kAgreement && still) {  // not a change of light: another scene
+    for (int y = 0; y < present.height; ++y) std::fill_n(pixels.age.row(y), present.width, std::uint8_t{0});
+    surroundings.begin(present.size());
+    begin();
+    return false;
+  }
+  // Flicker comes back, and what it makes white in the memory is lost: the memory keeps the light it was learnt in. A
+  // stronger change is there to stay.
+  if (std::abs(brighter_) > (still ? kFlicker : kOtherLight)) {
+    adopt(pixels, surroundings);
+    draw(pixels.mean);
+    change_.estimate(known(), present, shown, still);
+  }
+  draw_lit(pixels.mean, present);
+  return step;
+}
+
+void SceneLight::forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
+                              const std::array<double, kBrightness>& sigma, std::uint8_t age,
+                              MutableBitView moved) {
+  const MutableGrayView k = known();
+  intersect(moved, foreground, moved);
+  for (int y = 0; y < k.height; ++y) {
+    const std::uint64_t* there = foreground.row(y);
+    const std::uint8_t* f = present.row(y);
+    std::uint8_t* m = k.row(y);
+    std::uint8_t* a = pixels.age.row(y);
+    for (int x = 0; x < k.width; ++x) {
+      const bool free = !(there[x / 64] >> (x % 64) & 1);
+      if (!free || std::abs(f[x] - m[x]) <= 2 * sigma[m[x] >> 4]) continue;
+      pixels.mean.at(x, y) = static_cast<std::uint16_t>(f[x] << 8);
+      m[x] = f[x];
+      a[x] = std::min(a[x], age);
+    }
+  }
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The scene's memory under the light of the frame it is compared with, and what becomes of it when the light has changed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "vision/image.h"
+#include "vision/light.h"
+#include "vision/mask.h"
+#include "vision/scene_kernels.h"
+#include "vision/scene_surroundings.h"
+#include "vision/warp.h"
+
+namespace cerberus::vision {
+
+class SceneLight {
+ public:
+  void make_room(Size picture);
+  // The memory begins: there is no light but the frame's.
+  void begin() { brighter_ = 0; }
+
+  // The memory's mean as it is compared, in 8 bits; borders repeated by one pixel, readable a little beyond.
+  MutableGrayView known();
+  // known := the mean, under the light it was learnt in.
+  void draw(View<const std::uint16_t> mean);
+
+  // Whether the last frame's light was so different that it cannot be aligned with the memory (alignment knows nothing of
+  // light).
+  bool is_other() const;
+  // The memory under the light that was measured last.
+  void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings);
+
+  // known := the mean, under the light of `present`. Where that explains too little, the scene is another one: ages become
+  // 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.
+  bool compensate(const ScenePixels& pixels, SceneSurroundings& surroundings, GrayView present,
+                  std::span<const RowSpan> shown, bool still);
+  // A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what a
+  // line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the foreground
+  // one frame ago, neither is motion (moved), and where the memory is wrong now it starts anew, as if it were `age` old.
+  // sigma: noise by brightness.
+  void forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
+                    const std::array<double, kBrightness>& sigma, std::uint8_t age, MutableBitView moved);
+
+  std::size_t bytes() const { return known_.bytes() + row_.bytes() + change_.bytes(); }
+
+ private:
+  void draw_lit(View<const std::uint16_t> mean, GrayView present);
+  void repeat_borders();
+
+  Image<std::uint8_t> known_;  // with margins
+  Image<std::uint8_t> row_;    // scratch
+  LightChange change_;         // from the memory to the frame
+  double brighter_ =
+      0;  // grey levels the last frame was brighter than the memory, in the middle of the scale
+};
+
+}  // namespace cerberus::vision
