@@ -23,16 +23,15 @@ struct Question {
 
 }  // namespace
 
-// Shared by owner and worker; whoever is last destroys it. Locks: `lock` guards everything but `notify` (`notify_lock`) and,
-// where there is a worker, the head, which is its own. `lock` is never taken under `notify_lock`.
+// Shared by owner and worker; whoever is last destroys it. `lock` guards what is below it; where there is a worker, the head is
+// its own.
 struct HeadRunner::Core {
   std::unique_ptr<Head> head;
   bool blocks = true;                // the head has a worker
   std::vector<control::Pose> found;  // as the head
   std::optional<Limiting> owed;      // as the head: limits that it has refused so far
   std::shared_ptr<void> lease;
-  std::mutex notify_lock;
-  std::function<void()> notify;
+  Bell<> moved;
 
   mutable std::mutex lock;
   std::condition_variable work, answer;
@@ -58,6 +57,7 @@ struct HeadRunner::Core {
   bool question_failed = false;  // that of the last question, whose answer is in `poses`
   std::vector<control::Pose> poses;
 
+  explicit Core(std::function<void()> notify) : moved(std::move(notify)) {}
   void run();
   void serve(std::unique_lock<std::mutex>& guard);
   unsigned long hand_over(std::unique_lock<std::mutex>& guard);
@@ -125,10 +125,7 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   answer.notify_all();
   if (batch.quit || !batch.moves()) return;
   if (blocks) guard.unlock();
-  {
-    const std::lock_guard quiet(notify_lock);
-    if (notify) notify();
-  }
+  moved.ring();
   if (blocks) guard.lock();
 }
 
@@ -151,32 +148,23 @@ unsigned long HeadRunner::Core::hand_over(std::unique_lock<std::mutex>& guard) {
 }
 
 HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> notify)
-    : core_(std::make_shared<Core>()), simulated_(head->simulated()) {
+    : core_(std::make_shared<Core>(std::move(notify))), simulated_(head->simulated()) {
   core_->head = std::move(head);
   core_->lease = std::move(lease);
-  core_->notify = std::move(notify);
   core_->found.reserve(kMostPieces);
   core_->poses.reserve(kMostPieces);
   core_->blocks = core_->head->blocks();
-  if (core_->blocks) worker_ = std::thread([core = core_] { core->run(); });
+  if (core_->blocks) worker_.emplace([core = core_] { core->run(); });
 }
 
 HeadRunner::~HeadRunner() {
-  {
-    const std::lock_guard quiet(core_->notify_lock);
-    core_->notify = nullptr;
-  }
+  core_->moved.silence();
   std::unique_lock guard(core_->lock);
   core_->todo = {};
   core_->todo.quit = true;
   core_->hand_over(guard);
-  const bool ended = core_->answer.wait_for(guard, close_patience_, [this] { return core_->ended; });
   guard.unlock();
-  if (!worker_.joinable()) return;
-  if (ended)
-    worker_.join();
-  else
-    worker_.detach();
+  if (worker_) worker_->leave(close_patience_);
 }
 
 HeadRunner::Answer HeadRunner::wait(std::unique_lock<std::mutex>& guard, unsigned long ticket,

@@ -10,16 +10,16 @@
 #include <functional>
 #include <mutex>
 #include <optional>
-#include <thread>
 #include <vector>
 
 #include "drivers/head.h"
+#include "drivers/worker.h"
 
 namespace cerberus::drivers {
 
 class HeadRunner {
  public:
-  using Patience = std::chrono::steady_clock::duration;
+  using Patience = drivers::Patience;
   enum class Answer : std::uint8_t {
     done,
     failed,       // the driver said no; failure() tells why
@@ -65,7 +65,7 @@ class HeadRunner {
               bool interruptible);
 
   std::shared_ptr<Core> core_;
-  std::thread worker_;
+  std::optional<Worker> worker_;
   bool simulated_;
   Patience close_patience_ = std::chrono::milliseconds(80);
 };

@@ -20,7 +20,6 @@ class IioSensor final : public Sensor {
   SensorError read(Time now, std::vector<SensorEdge>& edges) override;
   std::string place(int sensor) const override;
   bool measures() const override { return true; }
-  bool blocks() const override { return true; }  // sysfs answers when the converter is through
 
  private:
   struct Input {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/scripted_head.h"
 
-#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,6 +8,8 @@
 #include <charconv>
 #include <cmath>
 #include <optional>
+
+#include "drivers/gate.h"
 
 namespace cerberus::drivers {
 
@@ -117,9 +118,7 @@ std::string ScriptedHead::play(Call call, Time time, const std::string& details)
   for (const Part& part : parts_) {
     if (part.call != call || count < part.from) continue;
     if (part.wait_fd < 0) return part.text;
-    pollfd waits{part.wait_fd, POLLIN, 0};
-    while (::poll(&waits, 1, -1) < 0 && errno == EINTR) {
-    }
+    wait_at(part.wait_fd);
   }
   return {};
 }

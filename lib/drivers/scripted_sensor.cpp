@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/scripted_sensor.h"
 
-#include <poll.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -10,12 +9,15 @@
 #include <charconv>
 #include <utility>
 
+#include "drivers/gate.h"
+
 namespace cerberus::drivers {
 
 namespace {
 
 constexpr std::string_view kFail = "fail ";
 constexpr std::string_view kWait = "wait ";
+constexpr std::string_view kOpenWait = "open wait ";
 
 std::string_view next_line(std::string_view& script) {
   const auto end = script.find(';');
@@ -25,7 +27,15 @@ std::string_view next_line(std::string_view& script) {
   return line;
 }
 
+bool parse_fd(std::string_view text, int& fd) {
+  return std::from_chars(text.data(), text.data() + text.size(), fd).ec == std::errc();
+}
+
 }  // namespace
+
+bool ScriptedSensor::opens_at_once(const SensorSetup& setup) const {
+  return setup.script.find(kWait) == std::string::npos;
+}
 
 SensorError ScriptedSensor::open(const SensorSetup& setup) {
   close();
@@ -34,6 +44,12 @@ SensorError ScriptedSensor::open(const SensorSetup& setup) {
     const std::string_view line = next_line(script);
     if (line.starts_with(kWait) && parse_wait(line.substr(kWait.size()))) {
       levels.append("\n");  // lines are counted
+      continue;
+    }
+    int gate = -1;
+    if (line.starts_with(kOpenWait) && parse_fd(line.substr(kOpenWait.size()), gate)) {
+      wait_at(gate);
+      levels.append("\n");
       continue;
     }
     const auto fail = line.find(kFail);
@@ -67,7 +83,7 @@ void ScriptedSensor::close() noexcept {
   led_failure_.clear();
   if (device_ >= 0) ::close(device_);
   gate_ = bell_ = device_ = -1;
-  begun_ = false;
+  reads_ = 0;
 }
 
 bool ScriptedSensor::parse_wait(std::string_view fds) {
@@ -79,22 +95,20 @@ bool ScriptedSensor::parse_wait(std::string_view fds) {
   return device_ >= 0;
 }
 
-void ScriptedSensor::wait() {
+void ScriptedSensor::block() {
   eventfd_t ignored = 0;
   ::eventfd_read(device_, &ignored);
   while (::write(bell_, "!", 1) < 0 && errno == EINTR) {
   }
-  pollfd gate{gate_, POLLIN, 0};
-  while (::poll(&gate, 1, -1) < 0 && errno == EINTR) {
-  }
+  wait_at(gate_);
 }
 
 SensorError ScriptedSensor::read(Time now, std::vector<SensorEdge>& edges) {
-  if (blocks()) {
+  if (!recorded()) {
     const std::size_t before = edges.size();
-    const bool later = std::exchange(begun_, true);
-    if (later) wait();
-    RecordedSensor::read(later ? sensing::kNever : Time::zero(), edges);
+    const bool first = reads_++ == 0;
+    if (reads_ == 2) block();
+    RecordedSensor::read(first ? Time::zero() : sensing::kNever, edges);
     for (std::size_t i = before; i < edges.size(); ++i) edges[i].time = now;
     return {};
   }

@@ -3,6 +3,7 @@
 //
 //   script = line {";" line}
 //   line   = SECONDS "," LEVEL {"," LEVEL}     as in recording.h: "0,0,0,0; 2.5,1,0,0", or volts: "0,0.1V,3V,0V"
+//          | "open wait" FD                    opening waits for something to read, or the end, at the descriptor
 //          | "open fail" TEXT                  opening fails
 //          | SECONDS "fail" TEXT               from then on reading fails
 //          | "show fail" TEXT                  the LEDs fail
@@ -19,24 +20,24 @@ namespace cerberus::drivers {
 class ScriptedSensor final : public RecordedSensor {
  public:
   SensorError open(const SensorSetup& setup) override;
+  bool opens_at_once(const SensorSetup& setup) const override;
   void close() noexcept override;
   SensorError read(Time now, std::vector<SensorEdge>& edges) override;
   SensorError show(std::span<const sensing::Presence> readings) override;
   Time next() const override;
   Time end() const override;
-  bool recorded() const override { return !blocks(); }
-  bool blocks() const override { return device_ >= 0; }
+  bool recorded() const override { return device_ < 0; }
   int fd() const override { return device_; }
   ~ScriptedSensor() override { close(); }
 
  private:
   bool parse_wait(std::string_view fds);
-  void wait();
+  void block();
   Time fails_at_ = sensing::kNever;
   std::string failure_, led_failure_;
   int gate_ = -1, bell_ = -1;  // to wait for, to tell of it
   int device_ = -1;            // readable until the second read()
-  bool begun_ = false;
+  int reads_ = 0;              // of the device
 };
 
 }  // namespace cerberus::drivers

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The interface to a set of PIR sensors: a driver tells what its lines do, it does not think (polarity, debounce and the
-// rest are sensing::PirModel's). Nothing blocks but what blocks() says. One thread calls at a time. A default SensorError = good.
+// rest are sensing::PirModel's). One thread calls at a time. A default SensorError = good. Calls may block, so a device has a
+// thread of its own (sensor_runner.h), and so has the opening of a recording, which from then on answers at once.
 //
 // A device has a clock of its own, CLOCK_MONOTONIC: wait for fd(), then read(). A recording lives in the time that it is
 // told, 0 = its begin, however slow or fast that runs: read() when next() has come.
@@ -29,14 +30,13 @@ class Sensor {
  public:
   virtual ~Sensor() = default;
   virtual SensorError open(const SensorSetup& setup) = 0;
+  // Opening takes no time, and what is opened is a recording.
+  virtual bool opens_at_once(const SensorSetup&) const { return false; }
   virtual void close() noexcept = 0;  // LEDs off, lines free; safe at any time and any number of times
   virtual void stop() noexcept = 0;   // LEDs off; as close()
 
   // Readable when read() has something; -1: a recording, or not open.
   virtual int fd() const { return -1; }
-  // Of a device, once it is open: read() may take its time. It is given a thread of its own then (sensor_runner.h), and has
-  // an fd(), and no LEDs.
-  virtual bool blocks() const { return false; }
   // Appends what happened until `now`, oldest first. The first edge of each sensor is the level that it began with.
   // An error is final: close.
   virtual SensorError read(Time now, std::vector<SensorEdge>& edges) = 0;
@@ -47,7 +47,7 @@ class Sensor {
   virtual std::string place(int sensor) const = 0;
   // Every edge has its volts, and there is one for each sample.
   virtual bool measures() const { return false; }
-  virtual bool recorded() const { return false; }
+  virtual bool recorded() const { return false; }        // what it is before open() may change with that
   virtual Time next() const { return sensing::kNever; }  // of a recording: time of the next edge
   virtual void rewind() {}                               // a recording begins again
   virtual Time end() const { return sensing::kNever; }   // of a recording: nothing is known of later times

@@ -12,32 +12,73 @@ namespace cerberus::drivers {
 
 using sensing::kNever;
 
+SensorArray::SensorArray() = default;
+SensorArray::~SensorArray() = default;
+
 SensorError SensorArray::open(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
-                              const sensing::PirOptions& options, Time heartbeat) {
+                              const sensing::PirOptions& options, Time heartbeat, Patience patience,
+                              std::function<void()> refused) {
   close();
   const auto count = static_cast<std::size_t>(std::clamp(setup.sensors, 1, sensing::kMaxSensors));
-  if (SensorError error = sensor->open(setup)) return error;
-  if (sensor->blocks()) {
-    auto runner = std::make_unique<SensorRunner>();
-    if (SensorError error = runner->take(std::move(sensor), setup.sensors)) return error;
-    sensor = std::move(runner);
-  }
-  sensor_ = std::move(sensor);
   options_ = options;
   models_.assign(count, sensing::PirModel(options));
   faults_.assign(count, sensing::PirFault::none);
   edges_.reserve(1024);
   heartbeat_ = std::max(heartbeat, Time(1));
   volts_.fill(std::numeric_limits<float>::quiet_NaN());
+  recorded_ = sensor->recorded();
+  if (sensor->opens_at_once(setup)) {
+    error_ = sensor->open(setup);
+    if (!error_) begin(std::move(sensor));
+  } else {
+    opening_ = std::make_unique<SensorRunner>();
+    opening_->begin(std::move(sensor), setup, std::move(refused));
+    opening_->opened(patience);
+    opened();
+  }
+  if (!error_) return {};
+  SensorError error = error_;
+  close();
+  return error;
+}
+
+bool SensorArray::opened() {
+  if (!opening_) return true;
+  if (!opening_->opened()) return false;
+  auto runner = std::move(opening_);
+  error_ = runner->error();
+  if (error_) return true;
+  if (auto recording = runner->recording())
+    begin(std::move(recording));
+  else
+    begin(std::move(runner));
+  return true;
+}
+
+void SensorArray::begin(std::unique_ptr<Sensor> sensor) {
+  sensor_ = std::move(sensor);
+  recorded_ = sensor_->recorded();
   // What the last line of a recording says shows only after the debounce time.
   end_ = sensor_->end();
   if (end_ < kNever) end_ += models_.front().options().debounce;
-  return {};
+  if (recorded_) seek(start_);
+}
+
+SensorError SensorArray::error() const {
+  return opening_ && opening_->opened() ? opening_->error() : error_;
+}
+
+int SensorArray::fd() const {
+  if (opening_) return opening_->fd();
+  return sensor_ ? sensor_->fd() : -1;
 }
 
 void SensorArray::close() noexcept {
+  opening_.reset();
   if (sensor_) sensor_->close();
   sensor_.reset();
+  recorded_ = false;
+  start_ = {};
   models_.clear();
   faults_.clear();
   edges_.clear();
@@ -67,9 +108,10 @@ Time SensorArray::deadline() const {
 }
 
 Time SensorArray::due() const {
-  if (!sensor_) return kNever;
+  if (!sensor_ && !opening_) return kNever;
   const Time queued = next_edge_ < edges_.size() ? edges_[next_edge_].time : kNever;
-  return std::max(last_.time, std::min({queued, sensor_->next(), deadline(), beat_}));
+  const Time recorded = sensor_ ? sensor_->next() : kNever;
+  return std::max(last_.time, std::min({queued, recorded, deadline(), beat_}));
 }
 
 void SensorArray::let_pass(Time until) {
@@ -121,15 +163,17 @@ SensorArray::Step SensorArray::fail(SensorError error, Time now, SensorReading& 
 }
 
 SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
-  if (!sensor_ || error_) return Step::failed;
-  if (SensorError error = sensor_->read(now, edges_)) return fail(std::move(error), now, reading);
+  const bool open = opened();
+  if (error_ || (open && !sensor_)) return Step::failed;
+  if (open)
+    if (SensorError error = sensor_->read(now, edges_)) return fail(std::move(error), now, reading);
   if (!begun_) {
     let_pass(now);  // what was before is nobody's business
     beat_ = now;
   }
   for (;;) {
     const Time time = due();
-    if (recorded() && begun_ && time > end_) return now >= end_ ? Step::ended : Step::wait;
+    if (open && recorded() && begun_ && time > end_) return now >= end_ ? Step::ended : Step::wait;
     if (time > now) return Step::wait;
     let_pass(time);
     const bool sampled = std::exchange(sampled_, false) && tell_samples_;
@@ -139,7 +183,7 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
     begun_ = true;
     last_ = reading;
     for (std::size_t i = 0; i < models_.size(); ++i) faults_[i] = models_[i].fault();
-    if (!reading.changed) return Step::reading;
+    if (!reading.changed || !open) return Step::reading;
     SensorError error = sensor_->show(std::span(reading.presence).first(models_.size()));
     return error ? fail(std::move(error), now, reading) : Step::reading;
   }
@@ -147,6 +191,8 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
 
 void SensorArray::seek(Time start) {
   if (!recorded()) return;
+  start_ = start;  // if they are being opened
+  if (!sensor_) return;
   sensor_->rewind();
   for (auto& model : models_) model = sensing::PirModel(options_);
   std::ranges::fill(faults_, sensing::PirFault::none);

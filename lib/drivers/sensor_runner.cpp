@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
@@ -20,34 +19,59 @@ namespace {
 
 constexpr std::size_t kMost = 1024;  // edges that nobody takes; then the oldest go
 constexpr auto kClosePatience = std::chrono::milliseconds(80);
+// Sensors are read now and then whatever happens: not every device that goes away wakes who waits for it.
+constexpr int kLookMs = 100;
 
 Time now() {
   return std::chrono::steady_clock::now().time_since_epoch();  // CLOCK_MONOTONIC
 }
 
+int new_event() {
+  return ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+}
+
+struct Leds {
+  std::array<sensing::Presence, sensing::kMaxSensors> readings{};
+  std::size_t count = 0;
+};
+
 }  // namespace
 
-// Shared by owner and worker; whoever is last destroys it. `lock` guards what is below it, and `sensor` is the worker's.
+// Shared by owner and worker; whoever is last destroys it. `lock` guards what is below it; `sensor` is the worker's, a
+// recording until it is `opened`.
 struct SensorRunner::Core {
   std::unique_ptr<Sensor> sensor;
-  const int news = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);  // readable: there are edges, or an error
-  const int quits = ::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  const int news = new_event();   // readable: they are open, there are edges, or an error
+  const int hints = new_event();  // to the worker: there are LEDs to be lit, or it is time to go
+  Bell<> refused;
 
   std::mutex lock;
   std::condition_variable over;
-  bool ended = false;
+  bool opened = false, quits = false;
+  std::optional<Leds> leds;
   std::vector<SensorEdge> edges;
   SensorError error;
+  std::vector<std::string> places;
+  bool measures = false, recorded = false;
 
-  Core() { edges.reserve(kMost); }
+  Core(std::unique_ptr<Sensor> taken, std::function<void()> told)
+      : sensor(std::move(taken)), refused(std::move(told)) {
+    edges.reserve(kMost);
+    if (news >= 0 && hints >= 0) return;
+    error = {SensorFault::gone, "No file descriptors are left to watch the sensors with.",
+             std::strerror(errno)};
+    opened = true;
+  }
   ~Core() {
-    for (const int fd : {news, quits})
+    for (const int fd : {news, hints})
       if (fd >= 0) ::close(fd);
   }
   Core(const Core&) = delete;
   Core& operator=(const Core&) = delete;
 
-  void run();
+  void run(const SensorSetup& setup);
+  bool open(const SensorSetup& setup);
+  void watch(bool good);
   bool hear(const std::vector<SensorEdge>& found, SensorError wrong);
 };
 
@@ -62,50 +86,90 @@ bool SensorRunner::Core::hear(const std::vector<SensorEdge>& found, SensorError 
   return !error;
 }
 
-void SensorRunner::Core::run() {
+// False: nothing more will come.
+bool SensorRunner::Core::open(const SensorSetup& setup) {
   std::vector<SensorEdge> found;
-  std::array<pollfd, 2> fds{{{quits, POLLIN, 0}, {sensor->fd(), POLLIN, 0}}};
-  for (bool good = true;;) {
-    if (::poll(fds.data(), good ? 2 : 1, -1) < 0) continue;  // EINTR
-    if (fds[0].revents != 0) break;
+  SensorError wrong = sensor->open(setup);
+  const bool recording = sensor->recorded();
+  if (!wrong && !recording) wrong = sensor->read(now(), found);
+  const bool good = hear(found, std::move(wrong));
+  {
+    const std::lock_guard guard(lock);
+    for (int i = 0; i < setup.sensors; ++i) places.push_back(sensor->place(i));
+    measures = sensor->measures();
+    recorded = recording;
+    opened = true;
+    ::eventfd_write(news, 1);
+  }
+  over.notify_all();
+  if (!good) refused.ring();
+  return good;
+}
+
+void SensorRunner::Core::watch(bool good) {
+  std::vector<SensorEdge> found;
+  std::array<pollfd, 2> fds{{{hints, POLLIN, 0}, {sensor->fd(), POLLIN, 0}}};
+  for (;;) {
+    if (::poll(fds.data(), good ? 2 : 1, good ? kLookMs : -1) < 0) continue;  // EINTR
+    std::optional<Leds> lit;
+    {
+      const std::lock_guard guard(lock);
+      if (quits) break;
+      lit = std::exchange(leds, {});
+      eventfd_t ignored = 0;
+      ::eventfd_read(hints, &ignored);
+    }
+    if (!good) continue;
+    SensorError wrong;
     found.clear();
-    SensorError wrong = sensor->read(now(), found);
+    if (lit) wrong = sensor->show(std::span(lit->readings).first(lit->count));
+    if (!wrong) wrong = sensor->read(now(), found);
     good = hear(found, std::move(wrong));
   }
   sensor->close();
-  const std::lock_guard guard(lock);
-  ended = true;
-  over.notify_all();
 }
 
-SensorError SensorRunner::take(std::unique_ptr<Sensor> sensor, int count) {
+void SensorRunner::Core::run(const SensorSetup& setup) {
+  const bool good = open(setup);
+  if (!recorded) watch(good);
+}
+
+void SensorRunner::begin(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
+                         std::function<void()> refused) {
   close();
-  auto core = std::make_shared<Core>();
-  if (core->news < 0 || core->quits < 0)
-    return {SensorFault::gone, "No file descriptors are left to watch the sensors with.",
-            std::strerror(errno)};
-  if (SensorError error = sensor->read(now(), core->edges)) return error;
-  for (int i = 0; i < count; ++i) places_.push_back(sensor->place(i));
-  measures_ = sensor->measures();
-  core->sensor = std::move(sensor);
-  ::eventfd_write(core->news, 1);
-  core_ = std::move(core);
-  worker_ = std::thread([shared = core_] { shared->run(); });
-  return {};
+  core_ = std::make_shared<Core>(std::move(sensor), std::move(refused));
+  if (!core_->opened) worker_.emplace([core = core_, setup] { core->run(setup); });
+}
+
+bool SensorRunner::opened(Patience patience) const {
+  if (!core_) return true;
+  std::unique_lock guard(core_->lock);
+  return core_->over.wait_for(guard, patience, [this] { return core_->opened; });
+}
+
+SensorError SensorRunner::error() const {
+  if (!core_) return {SensorFault::gone, "The sensors are not open.", ""};
+  const std::lock_guard guard(core_->lock);
+  return core_->error;
+}
+
+std::unique_ptr<Sensor> SensorRunner::recording() {
+  if (!core_) return nullptr;
+  const std::lock_guard guard(core_->lock);
+  return core_->opened && core_->recorded && !core_->error ? std::move(core_->sensor) : nullptr;
 }
 
 void SensorRunner::close() noexcept {
   if (!core_) return;
-  std::unique_lock guard(core_->lock);
-  ::eventfd_write(core_->quits, 1);
-  const bool ended = core_->over.wait_for(guard, kClosePatience, [this] { return core_->ended; });
-  guard.unlock();
-  if (ended)
-    worker_.join();
-  else
-    worker_.detach();
+  core_->refused.silence();
+  {
+    const std::lock_guard guard(core_->lock);
+    core_->quits = true;
+    ::eventfd_write(core_->hints, 1);
+  }
+  if (worker_) worker_->leave(kClosePatience);
+  worker_.reset();
   core_.reset();
-  places_.clear();
 }
 
 int SensorRunner::fd() const {
@@ -113,13 +177,36 @@ int SensorRunner::fd() const {
 }
 
 SensorError SensorRunner::read(Time, std::vector<SensorEdge>& edges) {
-  if (!core_) return {SensorFault::gone, "The sensors are not open.", ""};
+  if (!core_) return error();
   const std::lock_guard guard(core_->lock);
   eventfd_t ignored = 0;
   ::eventfd_read(core_->news, &ignored);
   edges.insert(edges.end(), core_->edges.begin(), core_->edges.end());
   core_->edges.clear();
   return core_->error;
+}
+
+SensorError SensorRunner::show(std::span<const sensing::Presence> readings) {
+  if (!core_) return error();
+  const std::lock_guard guard(core_->lock);
+  Leds& leds = core_->leds.emplace();
+  leds.count = std::min(readings.size(), leds.readings.size());
+  std::copy_n(readings.begin(), leds.count, leds.readings.begin());
+  ::eventfd_write(core_->hints, 1);
+  return core_->error;
+}
+
+std::string SensorRunner::place(int sensor) const {
+  if (!core_) return {};
+  const std::lock_guard guard(core_->lock);
+  const auto i = static_cast<std::size_t>(sensor);
+  return i < core_->places.size() ? core_->places[i] : std::string();
+}
+
+bool SensorRunner::measures() const {
+  if (!core_) return false;
+  const std::lock_guard guard(core_->lock);
+  return core_->measures;
 }
 
 }  // namespace cerberus::drivers

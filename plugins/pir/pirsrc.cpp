@@ -26,6 +26,10 @@
  * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last reading
  * is invalid for all sensors; then comes the error.
  *
+ * A driver's calls are made on a thread of its own: one that blocks delays no change of state by more than 100 ms. While it is
+ * still being opened a live source says that nothing is known (2), and one that is not live waits for it. That it cannot be
+ * opened is an error, however late.
+ *
  * ## Examples
  * |[
  * gst-launch-1.0 -m pirsrc driver=scripted script="0,0,0,0; 1,1,0,0; 3,0,0,0" ! fakesink
@@ -36,7 +40,7 @@
  * Since: 0.1
  */
 // The sensors are lib/drivers', the model of each is sensing::PirModel, what is told when is drivers::SensorArray's.
-// Live, the element sleeps on the device's fd until the next thing that can happen (an edge, a deadline of a model, a
+// Live, the element sleeps on the sensors' fd until the next thing that can happen (an edge, a deadline of a model, a
 // heartbeat). A device's stamps are monotonic time: the distance from the stamp to now is taken off the clock's now.
 // Not live, the stream is made as fast as it is taken, from the recording alone.
 #include <cerberus/base.h>
@@ -62,6 +66,8 @@ using drivers::SensorReading;
 using sensing::Time;
 
 constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);
+// A change of state waits for a driver so long (100 ms is promised), then plays while that is still being opened.
+constexpr auto kOpenPatience = std::chrono::milliseconds(60);
 
 GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_PIR_CAPS ", sensors = (int) [ 1, 16 ]"));
@@ -75,6 +81,8 @@ struct Private {
   CerberusPirInfo info{};
   bool running = false;
   bool live = false;
+  bool late = false;      // the sensors were still being opened when the source began
+  bool reported = false;  // what they failed of
   SensorArray sensors;
   GstPollFD device = GST_POLL_FD_INIT;
   GstClockTime last = 0;  // time stamp of the last buffer: running time, or of a recording its own
@@ -103,6 +111,38 @@ GstClockTime running_time(CerberusPirSrc* self, Time time) {
 
 // ---- the stream
 
+// The device may have got another descriptor; lock held, and nobody waits.
+void watch(Private& priv) {
+  const int fd = priv.sensors.fd();
+  if (fd == priv.device.fd) return;
+  if (priv.device.fd >= 0) gst_poll_remove_fd(priv.poll, &priv.device);
+  gst_poll_fd_init(&priv.device);
+  priv.device.fd = fd;
+  if (fd < 0) return;
+  gst_poll_add_fd(priv.poll, &priv.device);
+  gst_poll_fd_ctl_read(priv.poll, &priv.device, TRUE);
+}
+
+// What the sensors failed of, once.
+void report_failure(CerberusPirSrc* self) {
+  Private& priv = *self->priv;
+  std::unique_lock guard(priv.lock);
+  if (!priv.running) return;  // it is told otherwise, or nobody wants to know any more
+  const drivers::SensorError error = priv.sensors.error();
+  if (!error || std::exchange(priv.reported, true)) return;
+  guard.unlock();
+  report_error(GST_ELEMENT(self), error);
+}
+
+// At once: in PAUSED a live source makes no buffer that could end in an error. On a thread of GStreamer's, since a message may
+// keep whoever posts it.
+void refused(CerberusPirSrc* self) {
+  gst_element_call_async(
+      GST_ELEMENT(self),
+      [](GstElement* element, gpointer) { report_failure(cerberus_pir_src_self(element)); }, nullptr,
+      nullptr);
+}
+
 bool open_sensors(CerberusPirSrc* self) {
   Private& priv = *self->priv;
   const PirSettings settings = priv.settings.snapshot();
@@ -123,8 +163,9 @@ bool open_sensors(CerberusPirSrc* self) {
   const Time heartbeat = std::max(
       Time(static_cast<Time::rep>(std::min<guint64>(settings.heartbeat, G_MAXINT64 / 4))), kLeastHeartbeat);
   std::unique_lock guard(priv.lock);
-  const drivers::SensorError error = priv.sensors.open(
-      std::move(sensor), sensor_setup(settings, info.sensors), pir_options(settings), heartbeat);
+  const drivers::SensorError error =
+      priv.sensors.open(std::move(sensor), sensor_setup(settings, info.sensors), pir_options(settings),
+                        heartbeat, kOpenPatience, [self] { refused(self); });
   if (error) {
     guard.unlock();
     report_error(GST_ELEMENT(self), error);
@@ -133,11 +174,9 @@ bool open_sensors(CerberusPirSrc* self) {
   priv.info = info;
   priv.live = gst_base_src_is_live(GST_BASE_SRC(self));
   priv.last = 0;
-  priv.device.fd = priv.sensors.fd();
-  if (priv.device.fd >= 0) {
-    gst_poll_add_fd(priv.poll, &priv.device);
-    gst_poll_fd_ctl_read(priv.poll, &priv.device, TRUE);
-  }
+  priv.late = !priv.sensors.opened();
+  priv.reported = false;
+  watch(priv);
   priv.running = true;
   guard.unlock();
   if (settings.driver == "scripted" && settings.script.empty())
@@ -147,13 +186,13 @@ bool open_sensors(CerberusPirSrc* self) {
   return true;
 }
 
-// What the sensors can give, presence first; lock held.
+// What the sensors can give, or while they are being opened may, presence first; lock held.
 GstCaps* possible_caps(const Private& priv) {
   CerberusPirInfo info = priv.info;
   info.format = CERBERUS_PIR_PRESENCE;
   GstCaps* caps = cerberus_pir_info_to_caps(&info);
   info.format = CERBERUS_PIR_LEVEL;
-  if (priv.sensors.measures()) gst_caps_append(caps, cerberus_pir_info_to_caps(&info));
+  if (priv.late || priv.sensors.measures()) gst_caps_append(caps, cerberus_pir_info_to_caps(&info));
   return caps;
 }
 
@@ -180,7 +219,7 @@ gboolean set_caps(GstBaseSrc* base, GstCaps* caps) {
   return TRUE;
 }
 
-// Said before anything flows: else all that a user would see is "not-negotiated".
+// Said before anything flows, if it is known: else all that a user would see is "not-negotiated".
 bool fits_downstream(CerberusPirSrc* self) {
   g_autoptr(GstCaps) wanted = gst_pad_peer_query_caps(GST_BASE_SRC_PAD(self), nullptr);
   g_autoptr(GstCaps) given = get_caps(GST_BASE_SRC(self), nullptr);
@@ -202,7 +241,7 @@ gboolean stop(GstBaseSrc* base) {
   if (priv.device.fd >= 0) gst_poll_remove_fd(priv.poll, &priv.device);
   gst_poll_fd_init(&priv.device);
   priv.sensors.close();
-  priv.running = false;
+  priv.running = priv.late = false;
   return TRUE;
 }
 
@@ -223,53 +262,43 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange transition
   return result;
 }
 
-// What a step of the sensors left to be said, outside the lock.
-struct News {
-  SensorReading reading;
-  GstClockTime time = 0;
-  CerberusPirInfo info{};
-  std::array<sensing::PirFault, sensing::kMaxSensors> faults{};
-  std::array<std::string, sensing::kMaxSensors> places;
-};
-
-GstBuffer* publish(CerberusPirSrc* self, const News& news) {
-  const SensorReading& reading = news.reading;
-  const guint count = news.info.sensors;
-  guint8 presence[CERBERUS_PIR_MAX_SENSORS] = {};
-  for (guint i = 0; i < count; ++i) presence[i] = static_cast<guint8>(reading.presence[i]);
-  for (guint i = 0; i < count; ++i)
-    if (reading.faulty >> i & 1)
-      report_fault(GST_ELEMENT(self), static_cast<int>(i), news.faults[i], news.info.bearings[i],
-                   news.places[i]);
-  if (reading.changed) {
-    const GstClockTime running =
-        gst_segment_to_running_time(&GST_BASE_SRC(self)->segment, GST_FORMAT_TIME, news.time);
-    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(self), running, &news.info, presence);
-    GstStructure* fields = gst_message_writable_structure(message);
-    gst_structure_set(fields, "doubtful", G_TYPE_UINT, static_cast<guint>(reading.doubtful), nullptr);
-    gst_element_post_message(GST_ELEMENT(self), message);
-  }
-  const gsize size = cerberus_pir_info_buffer_size(&news.info);
-  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
-  const bool volts = news.info.format == CERBERUS_PIR_LEVEL;
-  gst_buffer_fill(buffer, 0, volts ? static_cast<const void*>(reading.volts.data()) : presence, size);
-  GST_BUFFER_PTS(buffer) = news.time;
-  return buffer;
+// They turned out to be what they are after the caps had to be agreed upon.
+GstFlowReturn agree_again(CerberusPirSrc* self) {
+  if (!fits_downstream(self)) return GST_FLOW_EOS;
+  if (gst_base_src_negotiate(GST_BASE_SRC(self))) return GST_FLOW_OK;
+  return GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(self)) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
 }
 
+// Until something may have happened, or so long. False: flushing.
+bool sleep(CerberusPirSrc* self, GstClockTime most) {
+  return gst_poll_wait(self->priv->poll, most) >= 0 || errno != EBUSY;
+}
+
+// What ends in EOS behind an error message would end so in any case; behind GST_FLOW_ERROR the base class would tell it again.
 GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
   Private& priv = *self->priv;
   for (;;) {
     News news;
     std::unique_lock guard(priv.lock);
+    const bool open = priv.sensors.opened();
+    watch(priv);
+    if (!open && !priv.live) {  // its first word is not known yet
+      guard.unlock();
+      if (!sleep(self, GST_CLOCK_TIME_NONE)) return GST_FLOW_FLUSHING;
+      continue;
+    }
+    if (open && std::exchange(priv.late, false) && !priv.sensors.error()) {
+      guard.unlock();
+      if (const GstFlowReturn flow = agree_again(self); flow != GST_FLOW_OK) return flow;
+      continue;
+    }
     const Time now = sensors_now(self);
     const SensorArray::Step step = priv.sensors.next(now, news.reading);
     if (step == SensorArray::Step::ended) return GST_FLOW_EOS;
     if (step == SensorArray::Step::failed) {
-      const drivers::SensorError error = priv.sensors.error();
       guard.unlock();
-      report_error(GST_ELEMENT(self), error);
-      return GST_FLOW_ERROR;
+      report_failure(self);
+      return GST_FLOW_EOS;
     }
     if (step == SensorArray::Step::reading) {
       news.time = priv.last = std::max(priv.last, running_time(self, news.reading.time));
@@ -280,15 +309,15 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
         news.places[static_cast<std::size_t>(i)] = priv.sensors.place(i);
       }
       guard.unlock();
-      *buffer = publish(self, news);
+      *buffer = publish(GST_BASE_SRC(self), news);
       return GST_FLOW_OK;
     }
     const Time due = priv.sensors.due();
     guard.unlock();
     if (!priv.live) continue;
-    const GstClockTime sleep =
+    const GstClockTime wait =
         due == sensing::kNever ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>((due - now).count());
-    if (gst_poll_wait(priv.poll, sleep) < 0 && errno == EBUSY) return GST_FLOW_FLUSHING;
+    if (!sleep(self, wait)) return GST_FLOW_FLUSHING;
   }
 }
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is wrong with sensors, as messages of an element.
+// What sensors say and what is wrong with them, as buffers and messages of an element.
 #pragma once
 
-#include <gst/gst.h>
+#include <cerberus/pir.h>
+#include <gst/base/gstbasesrc.h>
 
+#include <array>
 #include <string>
 
-#include "drivers/sensor_setup.h"
+#include "drivers/sensor_array.h"
 
 namespace cerberus::plugin {
 
@@ -14,5 +16,17 @@ void report_error(GstElement* element, const drivers::SensorError& error);
 // A warning that names the sensor (counted from 0) by its number and place; that it works again, for no fault.
 void report_fault(GstElement* element, int sensor, sensing::PirFault fault, double bearing,
                   const std::string& place);
+
+// What a step of the sensors left to be said, outside the lock.
+struct News {
+  drivers::SensorReading reading;
+  GstClockTime time = 0;
+  CerberusPirInfo info{};
+  std::array<sensing::PirFault, sensing::kMaxSensors> faults{};
+  std::array<std::string, sensing::kMaxSensors> places;
+};
+
+// Posts it, and makes a buffer of it.
+GstBuffer* publish(GstBaseSrc* source, const News& news);
 
 }  // namespace cerberus::plugin

@@ -269,8 +269,7 @@ GST_START_TEST(a_wrong_setting_is_an_error_that_names_it) {
   // Without hardware, and without the libraries: a clear word, and nothing hangs.
   for (const char* line : {"driver=gpio chip=/dev/attic lines=0,1,2", "driver=iio iio-device=attic"}) {
     Source source(line);
-    fail_unless_equals_int(gst_element_set_state(source.element(), GST_STATE_PAUSED),
-                           GST_STATE_CHANGE_FAILURE);
+    gst_element_set_state(source.element(), GST_STATE_PAUSED);
     GstMessage* message = source.wait_for(GST_MESSAGE_ERROR);
     GError* error = nullptr;
     gst_message_parse_error(message, &error, nullptr);

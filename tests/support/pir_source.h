@@ -67,9 +67,9 @@ class PirSource {
     gst_message_unref(message);
     return text;
   }
-  // It must not start; why.
+  // It must not start, or say so later if its driver takes its time; why.
   std::string refusal(GQuark domain, gint code) {
-    fail_unless_equals_int(gst_element_set_state(element_, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+    gst_element_set_state(element_, GST_STATE_PAUSED);
     const std::string why = words(GST_MESSAGE_ERROR, domain, code);
     fail_unless(pop(GST_MESSAGE_ERROR) == nullptr, "one message a failure");
     return why;

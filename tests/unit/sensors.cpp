@@ -177,6 +177,14 @@ START_TEST(places_have_names_and_leds_may_be_absent) {
 }
 END_TEST
 
+START_TEST(only_what_is_in_memory_opens_at_once) {
+  SensorSetup setup;
+  setup.script = "0,0,0,0; 1,1,0,0";
+  for (const char* driver : {"gpio", "iio", "replay", "scripted"})
+    ck_assert(make_sensor(driver)->opens_at_once(setup) == (driver == std::string("scripted")));
+}
+END_TEST
+
 START_TEST(every_driver_is_known_by_name) {
   ck_assert(sensor_drivers() == "gpio, iio, replay, scripted");
   ck_assert(!make_sensor("none such") && !is_device("none such"));
@@ -199,10 +207,11 @@ int main() {
   const std::string recording =
       every_backend().front().good.location;  // made before the tests' own processes are
   const int status = cerberus::tests::run_suite(
-      "sensors", {the_first_edges_tell_where_each_line_stands, a_driver_has_something_to_wait_for,
-                  closing_is_safe_at_any_time_and_opening_begins_anew,
-                  an_error_names_the_thing_and_leaves_the_driver_closed,
-                  places_have_names_and_leds_may_be_absent, every_driver_is_known_by_name});
+      "sensors",
+      {the_first_edges_tell_where_each_line_stands, a_driver_has_something_to_wait_for,
+       closing_is_safe_at_any_time_and_opening_begins_anew,
+       an_error_names_the_thing_and_leaves_the_driver_closed, places_have_names_and_leds_may_be_absent,
+       only_what_is_in_memory_opens_at_once, every_driver_is_known_by_name});
   unlink(recording.c_str());
   return status;
 }

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A thread for calls that may never return. A head has one (head_runner.h), and so have sensors (sensor_runner.h).
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <future>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace cerberus::drivers {
+
+using Patience = std::chrono::steady_clock::duration;
+
+class Worker {
+ public:
+  // `work` owns or shares all that it touches: if it hangs, it keeps that until it returns, and whoever began it may be long
+  // gone.
+  template <typename Work>
+  explicit Worker(Work work) {
+    std::promise<void> over;
+    over_ = over.get_future();
+    thread_ = std::thread([work = std::move(work), over = std::move(over)]() mutable {
+      work();
+      over.set_value();
+    });
+  }
+  ~Worker() { leave({}); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  // Waits for the end of the work, so long; then it is on its own.
+  void leave(Patience patience) {
+    if (!thread_.joinable()) return;
+    if (over_.wait_for(patience) == std::future_status::ready)
+      thread_.join();
+    else
+      thread_.detach();
+  }
+
+ private:
+  std::future<void> over_;
+  std::thread thread_;
+};
+
+// Whom a worker tells something, until he does not want to hear any more.
+template <typename... News>
+class Bell {
+ public:
+  explicit Bell(std::function<void(News...)> told) : told_(std::move(told)) {}
+  // On the worker's thread. Who is told must not block, nor silence the bell.
+  void ring(News... news) {
+    const std::lock_guard guard(lock_);
+    if (told_) told_(news...);
+  }
+  // When it returns nobody is being told.
+  void silence() {
+    const std::lock_guard guard(lock_);
+    told_ = nullptr;
+  }
+
+ private:
+  std::mutex lock_;
+  std::function<void(News...)> told_;
+};
+
+}  // namespace cerberus::drivers
