@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numbers>
 #include <string>
 #include <vector>
 
 #include "support/chain.h"
 #include "support/pictures.h"
+#include "support/sensor.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -19,25 +19,6 @@ namespace {
 
 constexpr Size kSize{320, 240};
 constexpr double kFrame = 1.0 / 25;
-
-// Normal deviates, 1/64, from a table whose place every row chooses anew: cheap, and no two frames alike.
-class Noise {
- public:
-  Noise() : table_(kTable) {
-    std::mt19937 random(7);
-    std::normal_distribution<float> normal;
-    for (auto& t : table_) t = static_cast<std::int16_t>(std::lround(64 * normal(random)));
-  }
-  const std::int16_t* row(int width) {
-    state_ = state_ * 6364136223846793005u + 1442695040888963407u;
-    return table_.data() + (state_ >> 33) % static_cast<std::uint64_t>(kTable - width);
-  }
-
- private:
-  static constexpr int kTable = 1 << 18;
-  std::vector<std::int16_t> table_;
-  std::uint64_t state_ = 1;
-};
 
 // A wall: smooth texture, panels with sharp edges, all brightnesses, no two frames of it needed.
 std::vector<float> wall(Size size, std::uint32_t seed) {
@@ -57,32 +38,6 @@ std::vector<float> wall(Size size, std::uint32_t seed) {
   }
   for (float& v : out) v = std::clamp(v, 5.0f, 250.0f);
   return out;
-}
-
-// Light of a frame: the exposure, mains light that beats against the frame rate, and its bands under a rolling shutter.
-struct Light {
-  double exposure = 1, global = 0, bands = 0, period = 80;
-  double phase = 0;
-  double at(int y) const {
-    return exposure * (1 + global * std::sin(phase)) *
-           (1 + bands * std::sin(2 * std::numbers::pi * y / period + 1.7 * phase));
-  }
-};
-
-// What the sensor makes of it: noise of sigma 2 in the dark to 6 in the bright, clipped.
-void expose(const float* scene, std::ptrdiff_t stride, const Light& light, Noise& noise,
-            MutableGrayView out) {
-  for (int y = 0; y < out.height; ++y) {
-    const auto gain = static_cast<float>(light.at(y));
-    const float* s = scene + y * stride;
-    const std::int16_t* n = noise.row(out.width);
-    std::uint8_t* to = out.row(y);
-    for (int x = 0; x < out.width; ++x) {
-      const float value = std::min(gain * s[x], 255.0f);
-      const float seen = value + (2 + value * (4 / 255.0f)) * n[x] * (1 / 64.0f) + 0.5f;
-      to[x] = static_cast<std::uint8_t>(std::clamp(seen, 0.0f, 255.0f));
-    }
-  }
 }
 
 LumaSource source(GrayView v) {
