@@ -73,7 +73,9 @@ bool for_each_sample(const std::string& line, const std::function<void(GstSample
     gst_sample_unref(sample);
   }
   GstBus* bus = gst_element_get_bus(pipeline);
-  if (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
+  GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+  const bool whole = n > 0 && !message;
+  if (message) {
     GError* what = nullptr;
     gst_message_parse_error(message, &what, nullptr);
     std::fprintf(stderr, "bench: %s\n", what->message);
@@ -84,7 +86,7 @@ bool for_each_sample(const std::string& line, const std::function<void(GstSample
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(out);
   gst_object_unref(pipeline);
-  return n > 0;
+  return whole;
 }
 
 }  // namespace cerberus::bench

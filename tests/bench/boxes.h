@@ -12,16 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "counts.h"
 #include "vision/regions.h"
 
 namespace cerberus::bench {
-
-struct Counts {
-  double hit = 0, extra = 0, missed = 0;
-  double precision() const { return hit + extra > 0 ? hit / (hit + extra) : 0; }
-  double recall() const { return hit + missed > 0 ? hit / (hit + missed) : 0; }
-  double f() const { return hit > 0 ? 2 * hit / (2 * hit + extra + missed) : 0; }
-};
 
 struct Person {
   int id = 0;
@@ -40,7 +34,7 @@ std::vector<vision::Box> found_boxes(GstBuffer* frame);
 void match(Counts& counts, std::span<const vision::Box> found, std::span<const vision::Box> truth);
 
 // Calls `each` with every sample that comes out of `line`, which must name an appsink "out". `begin` sees the pipeline
-// before it plays.
+// before it plays. False where nothing came, or an error ended it.
 bool for_each_sample(const std::string& line, const std::function<void(GstSample*, int)>& each,
                      const std::function<void(GstElement*)>& begin = {});
 

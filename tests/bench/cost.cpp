@@ -113,13 +113,15 @@ Cost loop_cost(const Frames& frames, std::size_t count, const std::function<void
   return summarise(runs);
 }
 
-void print(const char* name, const Cost& cost, const Cost& unit) {
+// `most`: what the ratio is asked to be at most, where it is; time is not judged.
+void print(const char* name, const Cost& cost, const Cost& unit, const char* most = nullptr) {
   if (!cost.measured) {
     std::printf("  %-58s %s\n", name, "not there");
     return;
   }
   std::printf("  %-58s %8.3f ms  (%.3f .. %.3f)", name, cost.milliseconds, cost.lowest, cost.highest);
   if (unit.measured) std::printf("   %6.2f", cost.milliseconds / unit.milliseconds);
+  if (unit.measured && most) std::printf("   asked: at most %s", most);
   std::printf("\n");
 }
 
@@ -171,7 +173,7 @@ void against_opencv(const Frames& frames, const char* what) {
   const Cost unit = loop_cost(frames, count, [&](const cv::Mat& f) { mog2->apply(f, mask); });
   print("OpenCV MOG2", unit, unit);
   print("OpenCV KNN", loop_cost(frames, count, [&](const cv::Mat& f) { knn->apply(f, mask); }), unit);
-  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit);
+  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit, "1.00");
   print("motiondetect preset=paper", pipeline_cost("motiondetect preset=paper", frames, count), unit);
   print("no element at all", pipeline_cost("identity", frames, count), unit);
 }
@@ -189,7 +191,8 @@ void against_gstreamer(const Frames& frames) {
           pipeline_cost("videoconvert n-threads=1 ! segmentation method=mog2", frames, count), unit);
   else
     std::printf("  segmentation is not there (package gstreamer1.0-opencv)\n");
-  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit);
+  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit,
+        frames.width == 1920 ? "0.20" : nullptr);
   print("cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack",
         pipeline_cost("cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack", frames,
                       count),

@@ -56,4 +56,24 @@ std::optional<Frames> load_truth(const Sequence& s, const std::filesystem::path&
   return load_frames(line, "GRAY8", width, height, s.last - s.first + 1);
 }
 
+std::optional<std::size_t> scored_truth(const Sequence& s, const Frames& truth, int n) {
+  const int k = n - s.ahead;
+  if (n < 3 || k < 0 || k >= static_cast<int>(truth.data.size())) return std::nullopt;
+  return static_cast<std::size_t>(k);
+}
+
+void score(Counts& counts, vision::GrayView mask, vision::GrayView truth, const Sequence& s) {
+  for (int y = 0; y < truth.height; ++y) {
+    const std::uint8_t* m = mask.row(y * mask.height / truth.height);
+    const std::uint8_t* t = truth.row(y);
+    for (int x = 0; x < truth.width; ++x) {
+      if (t[x] >= s.ignored_from && t[x] <= s.ignored_to) continue;
+      const bool found = m[x * mask.width / truth.width], moves = t[x] >= s.positive_from;
+      counts.hit += found && moves;
+      counts.extra += found && !moves;
+      counts.missed += !found && moves;
+    }
+  }
+}
+
 }  // namespace cerberus::bench

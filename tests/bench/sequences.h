@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 
+#include "counts.h"
 #include "frames.h"
 
 namespace cerberus::bench {
@@ -28,5 +29,10 @@ std::string source_of(const Sequence& s, const std::filesystem::path& data);
 // The truth from frame `ahead` on, at its own size or at this one, by nearest neighbour.
 std::optional<Frames> load_truth(const Sequence& s, const std::filesystem::path& data, int width = 0,
                                  int height = 0);
+
+// Which frame of the truth is scored with frame n of the sequence: none with the first three, nor before it begins.
+std::optional<std::size_t> scored_truth(const Sequence& s, const Frames& truth, int n);
+// The mask is scaled to the truth by nearest neighbour.
+void score(Counts& counts, vision::GrayView mask, vision::GrayView truth, const Sequence& s);
 
 }  // namespace cerberus::bench

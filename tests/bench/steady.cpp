@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Does it report only what moves? After cuts, seeks and in shaking pictures: what of it overlaps nothing that moves, by the
-// ground truth, and what is told before three frames of the new scene were seen.
+// ground truth, and what is told before three frames of the new scene were seen. And before still pictures of real places,
+// lit by what flickers, whose exposure changes: every region is wrong.
 //
 //   bench-steady [--list]    with a line for everything that is wrong
 #include <gst/gst.h>
@@ -11,11 +12,14 @@
 #include <cstring>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
+#include "asked.h"
 #include "sequences.h"
 #include "support/chain.h"
 #include "support/data.h"
+#include "support/sensor.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
@@ -96,9 +100,15 @@ struct Watch {
   }
 };
 
-void print(const std::string& name, const Tally& t) {
-  std::printf("  %-40s %8d %12d / %-6d %9d / %-6d %8d\n", name.c_str(), t.frames, t.wrong_regions, t.regions,
+Tally operator+(const Tally& a, const Tally& b) {
+  return {a.frames + b.frames, a.regions + b.regions,           a.wrong_regions + b.wrong_regions,
+          a.tracks + b.tracks, a.wrong_tracks + b.wrong_tracks, a.early + b.early};
+}
+
+Tally print(const std::string& name, const Tally& t) {
+  std::printf("  %-40s %8d %6d / %-6d %5d / %-6d %8d\n", name.c_str(), t.frames, t.wrong_regions, t.regions,
               t.wrong_tracks, t.tracks, t.early);
+  return t;
 }
 
 // Pieces of the two by turns, of 8 to 40 frames each from anywhere; nothing marks where one ends.
@@ -140,6 +150,70 @@ Tally standing(const Pictures& pictures) {
   return all;
 }
 
+// ---- light
+
+struct Lamp {
+  const char* name;
+  double flicker, bands;  // share of the light
+  bool steps;             // of exposure, 0.7 to 1.4, each of which may cost three frames
+  bool promised;
+};
+constexpr Lamp kLamps[] = {{"noise alone", 0, 0, false, true},
+                           {"5 % flicker", 0.05, 0, false, true},
+                           {"5 % bands", 0, 0.05, false, true},
+                           {"steps of exposure", 0, 0, true, false},
+                           {"3 % flicker, 3 % bands, steps", 0.03, 0.03, true, false},
+                           {"8 % flicker, 8 % bands", 0.08, 0.08, false, false}};
+
+// The first frame of each, 320 x 240 from its middle.
+struct Place {
+  std::string name;
+  Frames frame;
+};
+std::vector<Place> places(const std::filesystem::path& data) {
+  std::vector<std::pair<std::string, std::string>> sources;
+  for (const Sequence& s : sequences()) sources.emplace_back(s.name, source_of(s, data));
+  for (const char* name : {"lebombo", "st_fagans_interior"})
+    sources.emplace_back(
+        name, "filesrc location=" + (data / "pano_indoor" / name).string() + "_1k_tonemapped.png ! pngdec");
+  std::vector<Place> all;
+  for (const auto& [name, source] : sources)
+    if (auto frame = load_frames(source + " ! aspectratiocrop aspect-ratio=4/3", "GRAY8", 320, 240, 1))
+      all.push_back({name, std::move(*frame)});
+  return all;
+}
+
+struct Dark {
+  int frames = 0, regions = 0, tracks = 0;  // with any
+};
+
+void watch(const Place& place, const Lamp& lamp, Dark& dark) {
+  const GrayView picture = place.frame.grey(0);
+  std::vector<float> scene;
+  for (int y = 0; y < picture.height; ++y)
+    scene.insert(scene.end(), picture.row(y), picture.row(y) + picture.width);
+  tests::Noise noise;
+  tests::Chain chain;
+  vision::Image<std::uint8_t> frame(picture.size());
+  tests::Light light{.global = lamp.flicker, .bands = lamp.bands, .period = 140};
+  for (int k = 0, since = 100; k < 1000; ++k, ++since) {
+    static constexpr double kSteps[] = {1, 0.7, 1.25, 0.8, 1.4, 1, 1.25};
+    if (lamp.steps && k % 100 == 50) light.exposure = kSteps[(k / 100 + 1) % 7], since = 0;
+    light.phase = 0.17 * k;
+    tests::expose(scene.data(), picture.width, light, noise, frame.view());
+    const GrayView seen = frame.view();
+    chain.step({seen.data, seen.width, seen.height, seen.stride}, kFrame);
+    if (since < 3) continue;
+    if (list)
+      for (const vision::Region& r : chain.regions())
+        std::printf("    %s, frame %d, %d since a step: %.0f,%.0f %.0fx%.0f\n", place.name.c_str(), k, since,
+                    r.box.x, r.box.y, r.box.width, r.box.height);
+    ++dark.frames;
+    dark.regions += !chain.regions().empty();
+    dark.tracks += !chain.tracks().empty();
+  }
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -153,13 +227,26 @@ int main(int argc, char** argv) {
   const auto tennis = load("tennis", *data, 180), dogs = load("dogs-jump", *data, 180);
   const auto highway = load("highway", *data, 240), jitter = load("jitter_traffic", *data, 240);
   if (!tennis || !dogs || !highway || !jitter) return 1;
-  std::printf(
-      "Overlaps nothing that moves / all               frames          regions             tracks    too "
-      "early\n");
-  print("tennis and dogs-jump, 236 cuts", cuts(*tennis, *dogs, 4, 60));
+  Asked asked;
+  std::printf("Overlaps nothing that moves / all            frames       regions        tracks  too early\n");
+  Tally all = print("tennis and dogs-jump, 236 cuts", cuts(*tennis, *dogs, 4, 60));
   for (const Pictures* p : {&*highway, &*jitter})
-    print(std::string(p->name) + ", a restart each 60 frames", restarts(*p, 60, 6));
+    all = all + print(std::string(p->name) + ", a restart each 60 frames", restarts(*p, 60, 6));
+  for (const auto& [name, figure, promised] : {std::tuple{"too early", all.early, true},
+                                               {"wrong regions", all.wrong_regions, false},
+                                               {"wrong tracks", all.wrong_tracks, false}})
+    std::printf("  %-40s %8d%s\n", name, figure, asked.at_most(name, figure, 0, promised).c_str());
+  std::printf("for comparison, what is wrong without any cut\n");
   for (const Pictures* p : {&*tennis, &*dogs, &*highway, &*jitter})
-    print(std::string(p->name) + ", never restarted", standing(*p));
-  return 0;
+    print(std::string(p->name) + ", from frame 30 on", standing(*p));
+
+  const std::vector<Place> still = places(*data);
+  std::printf("\n%zu places where nothing moves, frames with any     of  regions   tracks\n", still.size());
+  for (const Lamp& lamp : kLamps) {
+    Dark dark;
+    for (const Place& place : still) watch(place, lamp, dark);
+    std::printf("  %-40s %12d %8d %8d%s\n", lamp.name, dark.frames, dark.regions, dark.tracks,
+                asked.at_most(lamp.name, dark.regions + dark.tracks, 0, lamp.promised).c_str());
+  }
+  return asked.verdict();
 }

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a figure must reach is said beside it, and judged at the end.
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace cerberus::bench {
+
+// No property set.
+inline constexpr char kJudged[] = "motiondetect";
+
+class Asked {
+ public:
+  // What to print after the figure. `promised` false: it is asked, but known to be missed; said so, and no fault.
+  std::string at_least(const std::string& what, double figure, double least, bool promised = true) {
+    return judge(what, figure, figure >= least, "at least " + text(least), promised);
+  }
+  std::string at_most(const std::string& what, double figure, double most, bool promised = true) {
+    return judge(what, figure, figure <= most, "at most " + text(most), promised);
+  }
+  // Names what is missed. The program's exit status.
+  int verdict() const {
+    for (const std::string& m : missed_) std::printf("missed: %s\n", m.c_str());
+    return missed_.empty() ? 0 : 1;
+  }
+
+ private:
+  static std::string text(double value) {
+    char out[40];
+    std::snprintf(out, sizeof out, "%.3g", value);
+    return out;
+  }
+  // What is no number reaches nothing.
+  std::string judge(const std::string& what, double figure, bool reached, const std::string& asked,
+                    bool promised) {
+    if (!reached && promised) missed_.push_back(what + " is " + text(figure) + ", asked: " + asked);
+    return "   asked: " + asked + (reached ? "" : promised ? ", MISSED" : ", not reached yet");
+  }
+  std::vector<std::string> missed_;
+};
+
+}  // namespace cerberus::bench
