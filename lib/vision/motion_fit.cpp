@@ -110,14 +110,38 @@ class Contenders {
   std::array<Entry, kMost> entries_;
 };
 
+// Least squares with Tukey's biweight, a round for each width. step(weights, next) solves.
+template <typename Step>
+void reweight(const MotionSamples& s, std::span<const float> gates, Size picture, Transform& motion,
+              Step&& step) {
+  Distances distances, weights{};
+  for (const float gate : gates) {
+    measure(s, motion, distances);
+    const float per_gate = 1 / (gate * kGate);
+    for (int i = 0; i < s.count; ++i) {
+      const float inside = 1.0f - distances[i] * per_gate;
+      weights[i] = inside > 0 ? inside * inside : 0;
+    }
+    Transform next = motion;
+    if (!step(weights, next) || !next.is_sane(picture)) break;
+    motion = next;
+  }
+}
+
+// A turning camera's picture is bent, by what its lens alone decides; `motion` is the similarity to begin with.
+MotionFit turned(const MotionSamples& s, Size picture, Transform motion) {
+  const MotionLeastSquares squares(picture);
+  reweight(s, std::span(kGates).subspan(1), picture, motion,
+           [&](const Distances& weights, Transform& next) { return squares.step_turned(s, weights, next); });
+  return rate_motion(s, motion);
+}
+
 // Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at about
 // one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
-bool is_worth(const MotionFit& finer, const MotionFit& fit, MotionModel model) {
-  constexpr double kCritical = 4.6;  // F(4, many), .999
-  const double extra = model == MotionModel::homography ? 4 : 2;
+constexpr double kBendEarns = 10.8, kAffineEarns = 2 * 4.6, kHomographyEarns = 4 * 4.6;  // F(1), F(4), many
+bool is_worth(const MotionFit& finer, const MotionFit& fit, double earns) {
   const double unexplained = finer.agreeing > 1 ? finer.cost / (2 * finer.agreeing) : 1;
-  return finer.support > 0.95 * fit.support &&
-         fit.cost - finer.cost > kCritical * extra * std::max(unexplained, 0.2);
+  return finer.support > 0.95 * fit.support && fit.cost - finer.cost > earns * std::max(unexplained, 0.2);
 }
 
 }  // namespace
@@ -149,18 +173,8 @@ MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
 
 double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Transform& motion) {
   const MotionLeastSquares squares(picture);
-  Distances distances, weights{};
-  for (const float gates : kGates) {
-    measure(s, motion, distances);
-    const float per_gate = 1 / (gates * kGate);
-    for (int i = 0; i < s.count; ++i) {
-      const float inside = 1.0f - distances[i] * per_gate;
-      weights[i] = inside > 0 ? inside * inside : 0;  // Tukey's biweight
-    }
-    Transform next;
-    if (!squares.step(model, s, weights, next) || !next.is_sane(picture)) break;
-    motion = next;
-  }
+  reweight(s, kGates, picture, motion,
+           [&](const Distances& weights, Transform& next) { return squares.step(model, s, weights, next); });
   return support_of(s, motion);
 }
 
@@ -195,10 +209,14 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     if (after > most) most = after, best = refined;
   }
   const MotionFit fit = rate_motion(s, best);
-  if (model == simple) return fit;
+  if (model < MotionModel::similarity) return fit;
+  if (model == MotionModel::similarity) {
+    const MotionFit bent = turned(s, picture, best);
+    return is_worth(bent, fit, kBendEarns) ? bent : fit;
+  }
   refine_motion(s, model, picture, best);
   const MotionFit finer = rate_motion(s, best);
-  return is_worth(finer, fit, model) ? finer : fit;
+  return is_worth(finer, fit, model == MotionModel::affine ? kAffineEarns : kHomographyEarns) ? finer : fit;
 }
 
 }  // namespace cerberus::vision

@@ -10,6 +10,8 @@
 
 namespace cerberus::vision {
 
+// A similarity is shift, roll and zoom, and of a camera that turns also the bend of its picture (one unknown more, where the
+// picture shows it): a lens of 60 degrees shifts its edges by a third more.
 enum class MotionModel { none, translation, similarity, affine, homography };
 
 // Where patches of frame k-1 were found in frame k, with what each is worth.

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/motion_least_squares.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace cerberus::vision {
 
 namespace {
+
+// (half diagonal / focal length)^2 of a lens of 110 degrees: wider ones are no longer plane.
+constexpr double kMostBend = 3.2;
 
 using Distances = std::array<float, MotionSamples::kMax>;
 
@@ -63,8 +67,9 @@ template <int N, typename Design, typename Compose>
 bool MotionLeastSquares::solve(const MotionSamples& s, const Distances& weights, Transform& t,
                                Design&& design, Compose&& compose) const {
   Normal<N> normal;
-  for (int i = 0; i < N; ++i) {  // priors: shift free, linear part 10 % of the scale, perspective 3 %
-    const double sigma = (i < 2 ? 10.0 : i < 6 ? 0.1 : 0.03) * scale_;
+  for (int i = 0; i < N;
+       ++i) {  // priors: shift free, linear part 10 % of the scale, perspective 3 %, bend any lens
+    const double sigma = (i < 2 ? 10.0 : N == 5 && i == 4 ? kMostBend : i < 6 ? 0.1 : 0.03) * scale_;
     normal.a[i][i] = 1 / (sigma * sigma);
   }
   std::array<double, N> jx, jy, p{};
@@ -122,6 +127,22 @@ bool MotionLeastSquares::step(MotionModel model, const MotionSamples& s, const D
           });
   }
   return false;
+}
+
+bool MotionLeastSquares::step_turned(const MotionSamples& s, const Distances& weights, Transform& t) const {
+  using Row5 = std::array<double, 5>;
+  const Point moved = t.apply({cx_, cy_});
+  const double tx = (moved.x - cx_) / scale_, ty = (moved.y - cy_) / scale_;
+  return solve<5>(
+      s, weights, t,
+      [&](double X, double Y, double U, double V, Row5& jx, Row5& jy) {
+        const double along = tx * X + ty * Y;
+        jx = {1, 0, X, -Y, along * U}, jy = {0, 1, Y, X, along * V};
+      },
+      [&](const Row5& p) {
+        const double bend = std::clamp(p[4], 0.0, kMostBend);
+        return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], -bend * tx, -bend * ty, 1}};
+      });
 }
 
 }  // namespace cerberus::vision

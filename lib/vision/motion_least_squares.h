@@ -19,6 +19,12 @@ class MotionLeastSquares {
   bool step(MotionModel model, const MotionSamples& samples,
             const std::array<float, MotionSamples::kMax>& weights, Transform& motion) const;
 
+  // The same for a similarity and the bend of a camera that turns about its own centre, H = K R K^-1 (Hartley, Zisserman,
+  // Multiple View Geometry, 2nd ed., 8.4): to first order in the angle it adds (t . x) x / f^2 to every point, with the
+  // shift t of the middle and the focal length f, one unknown more. t is that of `motion`, in and out.
+  bool step_turned(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,
+                   Transform& motion) const;
+
  private:
   template <int N, typename Design, typename Compose>
   bool solve(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,

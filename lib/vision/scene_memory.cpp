@@ -14,6 +14,7 @@
 #include "vision/mask.h"
 #include "vision/median.h"
 #include "vision/morphology.h"
+#include "vision/motion_blur.h"
 #include "vision/scene_alignment.h"
 #include "vision/scene_kernels.h"
 #include "vision/scene_light.h"
@@ -36,6 +37,7 @@ constexpr double kUnreliable = 1.5;  // pixels of registration error above which
 constexpr std::uint8_t kRelearn = 4;     // ... as if it were this old
 constexpr double kMostUnreliable = 0.1;  // share of the blocks up to which a memory fits the frame
 constexpr int kUnsettled = 12;           // frames in which a memory still has its own errors of registration
+constexpr double kBlurred = 0.8;  // sharpness from which on blur is the motion's, not the interpolation's
 
 // 64 bits of a row from x on, zeros outside the row.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
@@ -104,6 +106,7 @@ struct SceneMemory::State {
   double period = 0;   // seconds from frame to frame, smoothed
   Warp warp;
   SceneLight light;
+  MotionBlur blur;
   int columns = 0, rows = 0;  // of blocks
   std::vector<BlockSums> blocks;
   std::array<double, kBrightness> sigma{};  // of frame - memory by brightness, grey levels
@@ -119,6 +122,7 @@ struct SceneMemory::State {
   void learn_noise(const SceneMemoryInput& in);
   void leave_valid(MutableBitView bits) const;
   void compare(const SceneMemoryInput& in);
+  void forgive_blur();
   void decide(const SceneMemoryInput& in);
   void learn();
 };
@@ -143,6 +147,7 @@ void SceneMemory::State::prepare(Size to) {
     valid.resize({bit_mask_size(to).width, 1});
     parts.make_room(to);
     surroundings.make_room(to);
+    blur.make_room(to);
     columns = (to.width + kSceneBlock - 1) / kSceneBlock;
     rows = (to.height + kSceneBlock - 1) / kSceneBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
@@ -348,6 +353,21 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   }
   leave_valid(weak.view());
   leave_valid(strong.view());
+  if (!in.still) forgive_blur();
+}
+
+// A camera that moves blurs its pictures, a camera that shakes blurs some of them. The other way round, a memory that is
+// still young may be of blurred frames; later it is softer than a frame for other reasons.
+void SceneMemory::State::forgive_blur() {
+  const GrayView frame = present.view(), memory = light.known();
+  const double sharpness = blur.sharpness(frame, memory, age.view(), warp.spans());
+  const bool memory_blurred = sharpness > 1 / kBlurred && frames < kUnsettled;
+  if (sharpness >= kBlurred && !memory_blurred) return;
+  std::array<std::uint8_t, kBrightness> tolerance;
+  for (int c = 0; c < kBrightness; ++c)
+    tolerance[c] = static_cast<std::uint8_t>(std::clamp(3 * sigma[c], 6.0, 255.0));
+  blur.forgive(memory_blurred ? memory : frame, memory_blurred ? frame : memory, tolerance, weak.view(),
+               strong.view());
 }
 
 // strong := the mask, closed; plain: as it is published. weak := what must not be learnt. absorb := what is to be taken over.
@@ -429,7 +449,8 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
 std::size_t SceneMemory::bytes() const {
   const State& s = *state_;
   std::size_t total = sizeof(State) + s.mean.bytes() + s.tolerance.bytes() + s.morphology.bytes() +
-                      s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() + s.light.bytes();
+                      s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() + s.light.bytes() +
+                      s.blur.bytes();
   for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
   for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
     total += bits->bytes();

@@ -42,18 +42,20 @@ START_TEST(turning_and_zooming_are_found) {
 }
 END_TEST
 
-START_TEST(a_real_pan_is_a_homography_and_found_as_one) {
+START_TEST(a_real_pan_is_a_homography_and_found_without_a_word_from_the_head) {
   // 1.5 degrees of pan and half a degree of roll through a 60 degree lens: K R K^-1.
   const double f = 0.5 * kSize.width / std::tan(30 * M_PI / 180), a = 1.5 * M_PI / 180;
   const double cx = 0.5 * (kSize.width - 1), cy = 0.5 * (kSize.height - 1);
   const Transform k{{f, 0, cx, 0, f, cy, 0, 0, 1}};
   const Transform pan{{std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a)}};
   const Transform truth = k * pan * Transform::similarity(1, 0.5 * M_PI / 180, 0, 0) * k.inverse();
-  const CameraMotionResult homography = between(Scene(4), truth, MotionModel::homography);
-  ck_assert_msg(disagreement(homography.transform, truth) < 0.25, "off by %g",
-                disagreement(homography.transform, truth));
-  // The simpler models do what they can: the middle of the picture is right.
-  for (const MotionModel model : {MotionModel::translation, MotionModel::similarity, MotionModel::affine}) {
+  // A similarity with the bend of a turning camera is all that a turn needs.
+  for (const MotionModel model : {MotionModel::homography, MotionModel::similarity}) {
+    const double off = disagreement(between(Scene(4), truth, model).transform, truth);
+    ck_assert_msg(off < 0.25, "model %d is off by %g", static_cast<int>(model), off);
+  }
+  // The other models do what they can: the middle of the picture is right.
+  for (const MotionModel model : {MotionModel::translation, MotionModel::affine}) {
     const CameraMotionResult r = between(Scene(4), truth, model);
     const Point p = truth.apply({cx, cy}), q = r.transform.apply({cx, cy});
     ck_assert_double_lt(std::hypot(p.x - q.x, p.y - q.y), 1.0);
@@ -62,13 +64,13 @@ START_TEST(a_real_pan_is_a_homography_and_found_as_one) {
 }
 END_TEST
 
-// A similarity is off by up to 8 pixels at the corners; over the turn that the head told it need not be.
+// A shift is off by up to 8 pixels at the corners; over the turn that the head told it need not be.
 START_TEST(over_a_heads_turn_a_simple_model_is_as_good_as_a_homography) {
   const Lens lens(60 * M_PI / 180, kSize);
   const double pan = 3 * M_PI / 180, tilt = -0.5 * M_PI / 180;
   const Transform truth = lens.turn(0, 0, pan, tilt);
   const auto off = [&](const std::optional<Transform>& prior) {
-    return disagreement(between(Scene(4), truth, MotionModel::similarity, 2, prior).transform, truth);
+    return disagreement(between(Scene(4), truth, MotionModel::translation, 2, prior).transform, truth);
   };
   ck_assert_double_gt(off(std::nullopt), 5);
   ck_assert_double_lt(off(truth), 0.3);
@@ -77,7 +79,7 @@ START_TEST(over_a_heads_turn_a_simple_model_is_as_good_as_a_homography) {
   // A picture that shifts though the head turned (virtualptz: a window over a flat picture) is found as it is.
   const Transform shift = Transform::translation(-14.5, 2);
   ck_assert_double_lt(
-      disagreement(between(Scene(4), shift, MotionModel::similarity, 2, truth).transform, shift), 0.2);
+      disagreement(between(Scene(4), shift, MotionModel::translation, 2, truth).transform, shift), 0.2);
 }
 END_TEST
 
@@ -198,7 +200,7 @@ int main() {
   return run_suite(
       "camera_motion",
       {a_shift_is_found_to_a_twentieth_of_a_pixel_up_to_a_quarter_of_the_width, turning_and_zooming_are_found,
-       a_real_pan_is_a_homography_and_found_as_one,
+       a_real_pan_is_a_homography_and_found_without_a_word_from_the_head,
        over_a_heads_turn_a_simple_model_is_as_good_as_a_homography,
        an_affine_motion_is_found_by_the_affine_model,
        translation_alone_gives_translation_alone_and_none_gives_identity,

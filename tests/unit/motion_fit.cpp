@@ -9,6 +9,7 @@
 
 #include "support/allocations.h"
 #include "support/suite.h"
+#include "vision/lens.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -16,6 +17,7 @@ using namespace cerberus::tests;
 namespace {
 
 constexpr Size kSize{320, 240};
+constexpr double kDegree = M_PI / 180;
 
 // A grid of 16 x 12 honest samples of standard deviation 0.1.
 MotionSamples samples_of(const Transform& motion, std::mt19937& random, double sigma = 0.1) {
@@ -146,6 +148,42 @@ START_TEST(a_richer_model_is_taken_only_where_it_earns_its_unknowns) {
 }
 END_TEST
 
+// K R K^-1 with the principal point in the middle.
+Transform turn_of(double field_of_view, double pan, double tilt, double roll) {
+  return Lens(field_of_view, kSize).turn(0, 0, pan, tilt) * Transform::translation(159.5, 119.5) *
+         Transform::similarity(1, roll, 0, 0) * Transform::translation(-159.5, -119.5);
+}
+
+START_TEST(a_similarity_bends_as_a_turning_camera_does_whatever_its_lens) {
+  std::mt19937 random(11);
+  for (const double view : {30.0, 60.0, 90.0})
+    for (const auto& [pan, tilt, roll] :
+         {std::array{2.0, 0.0, 0.0}, std::array{-1.5, 0.7, 0.3}, std::array{0.0, -2.0, 0.0}}) {
+      const Transform truth = turn_of(view * kDegree, pan * kDegree, tilt * kDegree, roll * kDegree);
+      const Transform t =
+          fit_motion(samples_of(truth, random), MotionModel::similarity, kSize, {}, 96).transform;
+      ck_assert_msg(disagreement(t, truth) < 0.25, "a lens of %g degrees, %g %g %g: off by %g", view, pan,
+                    tilt, roll, disagreement(t, truth));
+    }
+}
+END_TEST
+
+START_TEST(what_is_not_bent_stays_a_similarity) {
+  std::mt19937 random(12);
+  int affine = 0;
+  for (int i = 0; i < 50; ++i)
+    affine +=
+        fit_motion(samples_of(kTurn, random), MotionModel::similarity, kSize, {}, 96).transform.is_affine();
+  ck_assert_int_ge(affine, 48);
+  // No lens bends the other way.
+  const Transform inside_out = Transform::translation(159.5, 119.5) *
+                               Transform{{1, 0, 12, 0, 1, 0, 3e-4, 0, 1}} *
+                               Transform::translation(-159.5, -119.5);
+  ck_assert(fit_motion(samples_of(inside_out, random), MotionModel::similarity, kSize, {}, 96)
+                .transform.is_affine());
+}
+END_TEST
+
 START_TEST(few_samples_give_the_simplest_motion_that_they_carry) {
   std::mt19937 random(7);
   MotionSamples s = samples_of(Transform::translation(4, 2), random, 0);
@@ -187,6 +225,7 @@ int main() {
                     agreement_all_over_the_picture_beats_the_same_number_in_one_place,
                     edges_that_know_one_direction_only_are_combined,
                     a_richer_model_is_taken_only_where_it_earns_its_unknowns,
-                    few_samples_give_the_simplest_motion_that_they_carry,
+                    a_similarity_bends_as_a_turning_camera_does_whatever_its_lens,
+                    what_is_not_bent_stays_a_similarity, few_samples_give_the_simplest_motion_that_they_carry,
                     no_model_takes_the_best_guess_as_it_is, a_fit_allocates_nothing});
 }
