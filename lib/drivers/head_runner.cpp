@@ -31,7 +31,7 @@ struct HeadRunner::Core {
   std::vector<control::Pose> found;  // as the head
   std::optional<Limiting> owed;      // as the head: limits that it has refused so far
   std::shared_ptr<void> lease;
-  Bell<> moved;
+  Bell moved, refused;
 
   mutable std::mutex lock;
   std::condition_variable work, answer;
@@ -57,7 +57,8 @@ struct HeadRunner::Core {
   bool question_failed = false;  // that of the last question, whose answer is in `poses`
   std::vector<control::Pose> poses;
 
-  explicit Core(std::function<void()> notify) : moved(std::move(notify)) {}
+  Core(std::function<void()> when_moved, std::function<void()> when_refused)
+      : moved(std::move(when_moved)), refused(std::move(when_refused)) {}
   void run();
   void serve(std::unique_lock<std::mutex>& guard);
   unsigned long hand_over(std::unique_lock<std::mutex>& guard);
@@ -108,7 +109,8 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   if (blocks) guard.lock();
   failed = !wrong.empty();
   if (failed) failure = wrong;
-  if (failed && batch.open) refusal = unopened;
+  const bool failed_to_open = failed && batch.open;
+  if (failed_to_open) refusal = unopened;
   if (batch.open || batch.limiting || batch.command)
     obeys = !failed;
   else if (batch.question)
@@ -125,7 +127,7 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   answer.notify_all();
   if (batch.quit || !batch.moves()) return;
   if (blocks) guard.unlock();
-  moved.ring();
+  (failed_to_open ? refused : moved).ring();
   if (blocks) guard.lock();
 }
 
@@ -147,8 +149,9 @@ unsigned long HeadRunner::Core::hand_over(std::unique_lock<std::mutex>& guard) {
   return ticket;
 }
 
-HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> notify)
-    : core_(std::make_shared<Core>(std::move(notify))), simulated_(head->simulated()) {
+HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> moved,
+                       std::function<void()> refused)
+    : core_(std::make_shared<Core>(std::move(moved), std::move(refused))), simulated_(head->simulated()) {
   core_->head = std::move(head);
   core_->lease = std::move(lease);
   core_->found.reserve(kMostPieces);
@@ -159,6 +162,7 @@ HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, 
 
 HeadRunner::~HeadRunner() {
   core_->moved.silence();
+  core_->refused.silence();
   std::unique_lock guard(core_->lock);
   core_->todo = {};
   core_->todo.quit = true;

@@ -26,9 +26,10 @@ class HeadRunner {
     late,         // no answer yet; it goes on
     interrupted,  // somebody called interrupt(true)
   };
-  // notify: called when the head was opened, stopped or commanded, on the worker's thread if there is one; must not block
-  // nor call the runner.
-  HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> notify = {});
+  // moved: called when the head was opened, stopped or commanded; refused: when it cannot be opened, however late. On the
+  // worker's thread if there is one; must not block nor call the runner.
+  HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> moved = {},
+             std::function<void()> refused = {});
   // Gives the driver close_patience to stop and close.
   ~HeadRunner();
   HeadRunner(const HeadRunner&) = delete;

@@ -43,7 +43,7 @@ struct SensorRunner::Core {
   std::unique_ptr<Sensor> sensor;
   const int news = new_event();   // readable: they are open, there are edges, or an error
   const int hints = new_event();  // to the worker: there are LEDs to be lit, or it is time to go
-  Bell<> refused;
+  Bell refused;
 
   std::mutex lock;
   std::condition_variable over;

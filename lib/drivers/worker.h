@@ -45,14 +45,13 @@ class Worker {
 };
 
 // Whom a worker tells something, until he does not want to hear any more.
-template <typename... News>
 class Bell {
  public:
-  explicit Bell(std::function<void(News...)> told) : told_(std::move(told)) {}
+  explicit Bell(std::function<void()> told) : told_(std::move(told)) {}
   // On the worker's thread. Who is told must not block, nor silence the bell.
-  void ring(News... news) {
+  void ring() {
     const std::lock_guard guard(lock_);
-    if (told_) told_(news...);
+    if (told_) told_();
   }
   // When it returns nobody is being told.
   void silence() {
@@ -62,7 +61,7 @@ class Bell {
 
  private:
   std::mutex lock_;
-  std::function<void(News...)> told_;
+  std::function<void()> told_;
 };
 
 }  // namespace cerberus::drivers

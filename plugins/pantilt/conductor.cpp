@@ -12,15 +12,33 @@ constexpr auto kHaltPatience = std::chrono::milliseconds(30);
 
 }  // namespace
 
+// On a thread of GStreamer's: a message may keep whoever posts it, and a driver's thread is not to be kept.
+void Conductor::hear_soon() {
+  gst_element_call_async(
+      GST_ELEMENT(sink),
+      [](GstElement*, gpointer conductor) {
+        auto* self = static_cast<Conductor*>(conductor);
+        guarded(self->sink, [&] { self->hear(); });
+      },
+      this, nullptr);
+}
+
+void Conductor::hear() {
+  Outbox out;
+  station.hear(out);
+  tell(out);
+}
+
 bool Conductor::open() {
   const HeadSettings s = settings.snapshot();
-  auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); });
+  auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); }, [this] { hear_soon(); });
   if (!runner) return false;
   head = g_intern_string(s.head.c_str());
   clock_driven = real_ = !runner->simulated();
   station.open(std::move(runner), head_setup(s));
   station.set_clock_driven(clock_driven);
   configure();  // what has changed meanwhile, too
+  hear();       // what the driver said while the station had no head
   return true;
 }
 

@@ -50,6 +50,8 @@ struct Conductor {
   }
 
  private:
+  void hear_soon();
+  void hear();
   GstClockTime tick(GstClockTime time);
 
   bool real_ = false;       // the head has a clock of its own

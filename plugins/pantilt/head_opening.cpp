@@ -9,7 +9,7 @@
 namespace cerberus::plugin {
 
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
-                                               std::function<void()> notify) {
+                                               std::function<void()> moved, std::function<void()> refused) {
   const char* name = s.head.c_str();
   const drivers::HeadSetup setup = head_setup(s);
   if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
@@ -32,7 +32,8 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
         (nullptr));
     return nullptr;
   }
-  auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease), std::move(notify));
+  auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease), std::move(moved),
+                                                      std::move(refused));
   runner->set_close_patience(kClosePatience);
   if (runner->open(setup, kOpenPatience) == drivers::HeadRunner::Answer::failed) {
     refuse(element, name, runner->refusal());

@@ -16,8 +16,8 @@ namespace cerberus::plugin {
 constexpr auto kOpenPatience = std::chrono::milliseconds(60);
 constexpr auto kClosePatience = std::chrono::milliseconds(30);
 
-// nullptr: it cannot be, and `element` has said why. notify: as of the runner.
+// nullptr: it cannot be, and `element` has said why. moved, refused: as of the runner.
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& settings,
-                                               std::function<void()> notify);
+                                               std::function<void()> moved, std::function<void()> refused);
 
 }  // namespace cerberus::plugin

@@ -32,8 +32,8 @@
  * the head stands until another order or `auto`. At the end of the stream `move-to`, `move-by`, `home` and `follow` are
  * refused until a flush begins it anew; where no frames come, an order is obeyed. Driver calls are made on a thread of their
  * own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be opened is an error,
- * however late it says so; one that fails later is a warning and the state `fault`, until it answers again: the video goes
- * on.
+ * however late it says so, and in PAUSED too; one that fails later is a warning and the state `fault`, until it answers
+ * again: the video goes on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`,
  * `manual`, `limited`, `fault`) and `reason` at every change of either.

@@ -66,6 +66,15 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
   status_ = {};
 }
 
+void Station::hear(Outbox& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_) return;
+  out.refusal = runner_->refusal();
+  if (out.refusal.empty()) return;
+  faulty_ = true;  // an error and no warning
+  say("fault", out.refusal, told_, out);
+}
+
 void Station::close(drivers::HeadRunner::Patience patience) {
   std::shared_ptr<drivers::HeadRunner> runner;
   {

@@ -28,6 +28,8 @@ class Station {
 
   // The head is open or being opened.
   void open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::HeadSetup& setup);
+  // What there is to be told of a head that could not be opened, however late.
+  void hear(Outbox& out);
   // Gives the driver the rest of its patience, then leaves it to itself.
   void close(drivers::HeadRunner::Patience patience);
 

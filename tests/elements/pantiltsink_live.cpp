@@ -308,6 +308,29 @@ GST_START_TEST(a_head_that_cannot_be_opened_is_an_error_however_late) {
 }
 GST_END_TEST
 
+// Nothing else happens in PAUSED that could tell it.
+GST_START_TEST(a_head_that_cannot_be_opened_says_so_in_paused_too) {
+  Pipe gate;
+  const std::string line =
+      "pantiltsink driver=scripted script=\"open wait " + gate.reader() + "; open fail no such serial port\"";
+  g_autoptr(GstElement) element = gst_parse_launch(line.c_str(), nullptr);
+  gst_object_ref_sink(element);
+  g_autoptr(GstBus) bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  fail_if(gst_element_set_state(element, GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE);
+  gate.close_writer();
+  g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(bus, 60 * GST_SECOND, GST_MESSAGE_ERROR);
+  fail_unless(message != nullptr);
+  g_autoptr(GError) error = nullptr;
+  gst_message_parse_error(message, &error, nullptr);
+  fail_unless_equals_string(error->message, "The head \"head\" cannot be opened: no such serial port.");
+  for (const GstState state : {GST_STATE_PLAYING, GST_STATE_NULL}) gst_element_set_state(element, state);
+  fail_unless(gst_bus_pop_filtered(
+                  bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)) == nullptr);
+  gst_element_set_bus(element, nullptr);
+}
+GST_END_TEST
+
 GST_START_TEST(one_head_has_one_sink) {
   {
     Rig first("head=door");
@@ -387,6 +410,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
   tcase_add_test(tests, a_head_that_cannot_be_opened_is_an_error_however_late);
+  tcase_add_test(tests, a_head_that_cannot_be_opened_says_so_in_paused_too);
   tcase_add_test(tests, one_head_has_one_sink);
   tcase_add_test(tests, a_strangers_pose_event_passes_and_changes_nothing);
   tcase_add_test(tests, caps_without_a_size_are_refused);

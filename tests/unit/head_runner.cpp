@@ -7,6 +7,7 @@
 #include <poll.h>
 
 #include <atomic>
+#include <future>
 #include <string>
 #include <thread>
 
@@ -128,6 +129,22 @@ START_TEST(two_who_interrupt_must_both_be_done) {
   runner->interrupt(false);  // one too many does no harm
   runner->interrupt(true);
   ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::interrupted);
+}
+END_TEST
+
+START_TEST(whoever_is_refused_is_told_so_and_of_nothing_else) {
+  Pipe gate;
+  std::promise<void> told;
+  HeadRunner runner(
+      make_head("scripted"), {}, [] { ck_abort_msg("it did not move"); }, [&] { told.set_value(); });
+  HeadSetup setup;
+  setup.script = "open wait " + gate.reader() + "; open fail no such port";
+  ck_assert(runner.open(setup, 1ms) == Answer::late);
+  ck_assert(runner.refusal().empty());
+  gate.close_writer();
+  told.get_future().wait();
+  assert_text(runner.refusal(), "no such port");
+  assert_text(runner.refusal(), "");
 }
 END_TEST
 
@@ -328,7 +345,8 @@ int main() {
       {questions_are_answered_with_all_pieces_of_the_way,
        a_failure_is_told_once_and_healed_by_the_next_success, a_head_that_fails_is_stopped,
        who_cannot_wait_is_not_kept, interrupt_wakes_who_waits, two_who_interrupt_must_both_be_done,
-       a_head_that_never_blocks_is_nobodys_but_the_callers, two_who_ask_at_once_are_both_answered,
+       whoever_is_refused_is_told_so_and_of_nothing_else, a_head_that_never_blocks_is_nobodys_but_the_callers,
+       two_who_ask_at_once_are_both_answered,
        who_asks_second_waits_no_longer_than_patience_and_is_interrupted,
        new_limits_come_before_the_command_that_waits,
        a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
