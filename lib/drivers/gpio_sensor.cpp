@@ -18,10 +18,6 @@ bool number_of(const std::string& text, unsigned& number) {
   return !text.empty() && error == std::errc() && end == text.data() + text.size();
 }
 
-std::string errno_text(int error) {
-  return "errno " + std::to_string(error) + ": " + std::strerror(error);
-}
-
 std::vector<std::string> chip_paths() {
   std::vector<std::string> paths;
   std::error_code ignored;

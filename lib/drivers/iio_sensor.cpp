@@ -12,10 +12,6 @@ namespace cerberus::drivers {
 
 namespace {
 
-std::string errno_text(int error) {
-  return "errno " + std::to_string(error) + ": " + std::strerror(error);
-}
-
 const char* name_of(const iio_device* device) {
   const char* name = iio_device_get_name(device);
   return name ? name : "";

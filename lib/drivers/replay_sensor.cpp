@@ -22,7 +22,7 @@ SensorError failed(const std::string& location, int error) {
                      : fault == SensorFault::denied  ? " Make sure that this user may read it."
                                                      : "";
   return {fault, "Cannot read the PIR recording " + location + ": " + std::strerror(error) + "." + help,
-          "errno " + std::to_string(error)};
+          errno_text(error)};
 }
 
 // All of a regular file: a pipe or a device could block. Returns errno, 0: good.

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -53,5 +54,10 @@ struct SensorError {
   std::string detail;  // for a developer
   explicit operator bool() const { return fault != SensorFault::none; }
 };
+
+// For a detail.
+inline std::string errno_text(int error) {
+  return "errno " + std::to_string(error) + ": " + std::strerror(error);
+}
 
 }  // namespace cerberus::drivers

@@ -65,11 +65,6 @@ std::span<const PirPreset> pir_presets() {
   return kPresets;
 }
 
-const PirPreset* find_pir_preset(std::string_view name) {
-  const auto found = std::ranges::find(kPresets, name, &PirPreset::name);
-  return found == std::end(kPresets) ? nullptr : found;
-}
-
 PirModel::PirModel(const PirOptions& options) : options_(options) {
   options_.debounce = std::clamp(options_.debounce, Time::zero(), kMostDebounce);
   options_.hold = not_negative(options_.hold);

@@ -54,7 +54,6 @@ struct PirPreset {
   double field_of_view = 0;  // radians
 };
 std::span<const PirPreset> pir_presets();
-const PirPreset* find_pir_preset(std::string_view name);  // nullptr: no such
 
 class PirModel {
  public:

@@ -40,10 +40,7 @@ bool passes(const SizeGate& gate, const Box& box, const Placement& place);
 // walking and stands is still somebody, a swaying bush never was.
 bool passes(const SpeedGate& gate, double speed, double top_speed, const Placement& place);
 
-// Speed across the line of sight: v metres a second are v / metres per pixel pixels a second, and back.
-inline double to_pixels(double metres, const Placement& place) {
-  return metres / place.metres_per_pixel;
-}
+// Of lengths and speeds across the line of sight.
 inline double to_metres(double pixels, const Placement& place) {
   return pixels * place.metres_per_pixel;
 }

@@ -77,7 +77,7 @@ bool Inputs::frame_came(Time time, std::optional<guint64> max_wait, std::vector<
   };
   if (*max_wait == GST_CLOCK_TIME_NONE) {
     news_.wait(guard, ready);
-  } else if (!news_.wait_for(guard, std::min(duration(*max_wait), kLongest), ready)) {
+  } else if (!news_.wait_for(guard, std::min(time_of(*max_wait), kLongest), ready)) {
     for (GstPad* pad : pads_)
       if (is_missing(pad, time)) {
         pir_pad(pad).given_up = true;
@@ -121,7 +121,7 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
     pose = poses_.at(time) ? poses_.at(time) : poses_.first();  // before the first one: where it begins
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }
-  if (pose) cerberus_pose_evaluate(pose, nanoseconds(time), &moment.pan_degrees, nullptr);
+  if (pose) cerberus_pose_evaluate(pose, clock_time(time), &moment.pan_degrees, nullptr);
   if (const auto rate = base_.at(time)) {
     moment.base_degrees = *rate;
     moment.base_heard = true;
@@ -136,7 +136,7 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
 void Inputs::hear(const CerberusPose& pose) {
   const std::lock_guard guard(lock_);
   if (poses_.last() && poses_.last()->value.head != pose.head) poses_.clear();
-  poses_.insert(duration(pose.valid_from), pose);
+  poses_.insert(time_of(pose.valid_from), pose);
 }
 
 void Inputs::hear_base(double degrees_a_second, Time from) {

@@ -92,7 +92,7 @@ bool segment_event(GstElement* element, GstPad* pad, GstEvent* event) {
 // Whoever speaks is there now, however old what he says is.
 Time now_or(GstElement* element, Time time) {
   const GstClockTime now = gst_element_get_current_running_time(element);
-  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, duration(now)) : time;
+  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, time_of(now)) : time;
 }
 
 void gap_event(GstElement* element, PirPad& pir, GstEvent* event) {
@@ -101,7 +101,7 @@ void gap_event(GstElement* element, PirPad& pir, GstEvent* event) {
   const auto from = running_time(pir.segment, begin);
   if (!from) return;
   const bool has_length = GST_CLOCK_TIME_IS_VALID(length) && length > 0;
-  const Time until = *from + (has_length ? std::min(duration(length), Time::max() / 4) : Time(1));
+  const Time until = *from + (has_length ? time_of(length) : Time(1));
   const Time spoken = now_or(element, until);
   const std::lock_guard guard(pir.inputs->lock());
   pir.history.cover(until);
@@ -307,9 +307,7 @@ std::optional<Time> running_time(const GstSegment& segment, GstClockTime positio
   guint64 time = 0;
   const gint sign = gst_segment_to_running_time_full(&segment, GST_FORMAT_TIME, position, &time);
   if (sign == 0) return std::nullopt;
-  // Half of what fits: sums of two times stay times.
-  constexpr auto latest = static_cast<guint64>(std::numeric_limits<Time::rep>::max() / 2);
-  return Time(sign < 0 ? 0 : static_cast<Time::rep>(MIN(time, latest)));
+  return sign < 0 ? Time::zero() : time_of(time);
 }
 
 std::optional<bool> is_live(GstPad* sinkpad) {

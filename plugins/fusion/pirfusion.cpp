@@ -151,7 +151,7 @@ void apply_settings(CerberusPirFusion* self) {
 Time heard_until(CerberusPirFusion* self, Time time, bool live) {
   const GstClockTime now =
       live ? gst_element_get_current_running_time(GST_ELEMENT(self)) : GST_CLOCK_TIME_NONE;
-  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, duration(now)) : time;
+  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, time_of(now)) : time;
 }
 
 void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guint64 patience) {
@@ -161,7 +161,7 @@ void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guin
         self, RESOURCE, READ,
         ("%s pad %s, for %.3g s now: its sensors are invalid and nobody waits for them.", what,
          pad.name.c_str(), static_cast<double>(patience) / GST_SECOND),
-        ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(nanoseconds(self->priv->state->time))));
+        ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(self->priv->state->time))));
   }
 }
 
@@ -186,7 +186,7 @@ GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time,
   cerberus_buffer_set_fusion(buffer.get(), &fusion);
   if (decision.changed)
     gst_element_post_message(GST_ELEMENT(self),
-                             cerberus_message_new_fusion(GST_OBJECT(self), nanoseconds(time), &fusion));
+                             cerberus_message_new_fusion(GST_OBJECT(self), clock_time(time), &fusion));
   return gst_pad_push(self->priv->src, buffer.release());
 }
 
@@ -213,7 +213,7 @@ void pass_base_on(CerberusPirFusion* self, Time time, const Moment& moment) {
   if (same && (fresh || rate == 0)) return;
   state.base_told = rate;
   state.base_told_at = time;
-  g_autoptr(GstEvent) event = cerberus_event_new_base(rate, nanoseconds(time));
+  g_autoptr(GstEvent) event = cerberus_event_new_base(rate, clock_time(time));
   push_to_pirs(self, event);
 }
 
@@ -236,7 +236,7 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     if (!priv.inputs.frame_came(state.time, max_wait, silent)) return GST_FLOW_FLUSHING;
     const Time heard = heard_until(self, state.time, state.live == true);
     if (state.live != false && settings.lost_after > 0)
-      priv.inputs.give_up_silent(heard, duration(settings.lost_after), silent);
+      priv.inputs.give_up_silent(heard, time_of(settings.lost_after), silent);
     warn_of(self, silent, max_wait ? *max_wait : settings.lost_after);
     const Moment moment = priv.inputs.at(state.time, heard, settings.head, buffer.get());
     pass_base_on(self, state.time, moment);
@@ -300,7 +300,7 @@ void listen(Private& priv, GstEvent* event) {
   if (pose && (head.empty() || head == pose->head))
     priv.inputs.hear(*pose);
   else if (cerberus_event_parse_base(event, &rate, &from))
-    priv.inputs.hear_base(rate, duration(from));
+    priv.inputs.hear_base(rate, time_of(from));
 }
 
 gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {

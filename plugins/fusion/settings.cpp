@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "settings.hpp"
 
+#include "choices.hpp"
 #include "control/head_limits.h"
-
 #include "sensing/angles.h"
 
 namespace cerberus::plugin {
@@ -18,14 +18,7 @@ GType rules_type() {
 }
 
 GType target_type() {
-  using fusion::TargetChoice;
-  static const GEnumValue values[] = {
-      {static_cast<int>(TargetChoice::nearest), "The nearest (without distances: feet lowest in the picture)",
-       "nearest"},
-      {static_cast<int>(TargetChoice::largest), "The largest in the picture", "largest"},
-      {static_cast<int>(TargetChoice::newest), "The one that came last", "newest"},
-      {0, nullptr, nullptr}};
-  static const GType type = g_enum_register_static("CerberusFusionTarget", values);
+  static const GType type = register_target_choice("CerberusFusionTarget");
   return type;
 }
 
@@ -93,10 +86,10 @@ fusion::FuserOptions fuser_options(const Settings& s, bool own_table) {
   if (paper) options = fusion::paper_options();
   options.rules = paper || own_table ? fusion::RuleSet::table : fusion::RuleSet::complete;
   options.choice = static_cast<fusion::TargetChoice>(s.target);
-  options.camera_hold = duration(s.camera_hold);
-  options.hold_stopped = duration(s.hold_stopped);
+  options.camera_hold = time_of(s.camera_hold);
+  options.hold_stopped = time_of(s.hold_stopped);
   if (!paper) {
-    options.return_delay = duration(s.return_delay);
+    options.return_delay = time_of(s.return_delay);
     options.hysteresis = sensing::radians(s.hysteresis);
   }
   options.lens = sensing::radians(s.horizontal_fov);

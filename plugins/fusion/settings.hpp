@@ -2,23 +2,16 @@
 // What pirfusion can be told, and what that means to the fuser.
 #pragma once
 
-#include <limits>
 #include <string>
 
 #include "fusion/fuser.h"
-#include "properties.hpp"
 #include "sensing/levels.h"
+#include "vision/clock_times.hpp"
+#include "vision/properties.hpp"
 
 namespace cerberus::plugin {
 
 using Time = std::chrono::nanoseconds;
-
-constexpr guint64 nanoseconds(Time time) {
-  return static_cast<guint64>(time.count());
-}
-constexpr Time duration(guint64 nanoseconds) {
-  return Time(static_cast<Time::rep>(std::min<guint64>(nanoseconds, std::numeric_limits<Time::rep>::max())));
-}
 
 enum Rules { RULES_COMPLETE, RULES_PAPER };
 
@@ -26,9 +19,9 @@ struct Settings {
   int rules = RULES_COMPLETE;
   std::string rules_file;
   int target = static_cast<int>(fusion::FuserOptions{}.choice);
-  guint64 return_delay = nanoseconds(fusion::FuserOptions{}.return_delay);
-  guint64 hold_stopped = nanoseconds(fusion::FuserOptions{}.hold_stopped);
-  guint64 camera_hold = nanoseconds(fusion::FuserOptions{}.camera_hold);
+  guint64 return_delay = clock_time(fusion::FuserOptions{}.return_delay);
+  guint64 hold_stopped = clock_time(fusion::FuserOptions{}.hold_stopped);
+  guint64 camera_hold = clock_time(fusion::FuserOptions{}.camera_hold);
   double hysteresis = 2;
   double horizontal_fov = 60;
   double pan_minimum = -170, pan_maximum = 170;

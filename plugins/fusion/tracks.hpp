@@ -10,6 +10,7 @@
 
 #include "fusion/fuser.h"
 #include "sensing/angles.h"
+#include "vision/clock_times.hpp"
 
 namespace cerberus::plugin {
 
@@ -31,7 +32,7 @@ inline void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
                       .height = region.height,
                       .bearing = sensing::radians(region.bearing),
                       .distance = region.distance,
-                      .age = std::chrono::nanoseconds(std::min<guint64>(region.age, G_MAXINT64)),
+                      .age = time_of(region.age),
                       .state = region.state <= CERBERUS_REGION_STOPPED
                                    ? static_cast<fusion::TrackState>(region.state)
                                    : fusion::TrackState::seen});

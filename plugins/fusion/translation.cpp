@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "choices.hpp"
 #include "sensing/angles.h"
 #include "settings.hpp"
 
@@ -15,16 +16,6 @@ namespace {
 double degrees_told(double radians) {
   return std::round(sensing::degrees(radians) * 1e6) / 1e6;
 }
-
-constexpr bool same(fusion::Action ours, CerberusFusionAction theirs) {
-  return static_cast<int>(ours) == static_cast<int>(theirs);
-}
-static_assert(same(fusion::Action::track, CERBERUS_FUSION_TRACK) &&
-              same(fusion::Action::turn_left, CERBERUS_FUSION_TURN_LEFT) &&
-              same(fusion::Action::turn_right, CERBERUS_FUSION_TURN_RIGHT) &&
-              same(fusion::Action::search, CERBERUS_FUSION_SEARCH) &&
-              same(fusion::Action::zero, CERBERUS_FUSION_ZERO) &&
-              same(fusion::Action::hold, CERBERUS_FUSION_HOLD));
 
 }  // namespace
 
@@ -41,7 +32,7 @@ CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment,
   cerberus_fusion_init(&fusion);
   if (!decision.rule_name.empty()) fusion.rule_name = name.of(decision.rule_name);
   fusion.rule = decision.rule;
-  fusion.action = static_cast<CerberusFusionAction>(decision.action);
+  fusion.action = told(decision.action);
   fusion.target = decision.target;
   fusion.pan = moment.pan_degrees;
   fusion.sector_from = degrees_told(decision.sector.from);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "head_settings.hpp"
 
+#include "fusion/choices.hpp"
 #include "times.hpp"
 
 namespace cerberus::plugin {
@@ -75,12 +76,7 @@ const Property<HeadSettings> kProperties[] = {
 }  // namespace
 
 GType pan_tilt_target_type() {
-  static const GEnumValue values[] = {
-      {static_cast<int>(fusion::TargetChoice::nearest), "The one whose feet are nearest", "nearest"},
-      {static_cast<int>(fusion::TargetChoice::largest), "The one that covers most of the picture", "largest"},
-      {static_cast<int>(fusion::TargetChoice::newest), "The one that came last", "newest"},
-      {0, nullptr, nullptr}};
-  static const GType type = g_enum_register_static("CerberusPanTiltTarget", values);
+  static const GType type = register_target_choice("CerberusPanTiltTarget");
   return type;
 }
 

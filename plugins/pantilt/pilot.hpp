@@ -6,6 +6,7 @@
 
 #include <cerberus/fusion.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,13 +32,14 @@ class Pilot {
   Verdict look(GstBuffer* frame, control::Time time, double pan);
 
  private:
-  Verdict obey(GstBuffer* frame, const CerberusFusion& fusion);
-  Verdict decide(GstBuffer* frame, control::Time time, double pan);
-  void prefer(GstBuffer* frame, control::Time time, Verdict& verdict);
+  std::optional<vision::Point> middle_of(guint id) const;
+  Verdict obey(const CerberusFusion& fusion) const;
+  Verdict decide(control::Time time, double pan);
+  void prefer(control::Time time, Verdict& verdict);
 
   fusion::Fuser fuser_;
   fusion::Chosen chosen_;
-  std::vector<fusion::Track> tracks_;
+  std::vector<fusion::Track> tracks_;  // on the frame
 };
 
 }  // namespace cerberus::plugin

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GStreamer's times and lib's.
+// Running times of frames and of the clock.
 #pragma once
 
 #include <gst/video/video.h>
@@ -9,15 +9,9 @@
 #include <optional>
 
 #include "control/head_limits.h"
+#include "vision/clock_times.hpp"
 
 namespace cerberus::plugin {
-
-constexpr GstClockTime clock_time(control::Time time) {
-  return static_cast<GstClockTime>(time.count());
-}
-constexpr control::Time time_of(GstClockTime time) {
-  return control::Time(static_cast<control::Time::rep>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
-}
 
 // How long a frame or a gap of `duration` (none: as the rate of frames says) lasts in running time; 0: nobody knows. Who
 // waits for a head and who drives it count alike.

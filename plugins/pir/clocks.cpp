@@ -30,11 +30,8 @@ Time monotonic_now() {
 }
 
 GstClockTime running_now(GstElement* element) {
-  GstClock* clock = gst_element_get_clock(element);
-  if (!clock) return 0;
-  const GstClockTime now = gst_clock_get_time(clock), base = gst_element_get_base_time(element);
-  gst_object_unref(clock);
-  return now > base ? now - base : 0;
+  const GstClockTime now = gst_element_get_current_running_time(element);
+  return GST_CLOCK_TIME_IS_VALID(now) ? now : 0;
 }
 
 GstClockTime running_time_of(GstElement* element, Time monotonic) {

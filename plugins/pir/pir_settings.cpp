@@ -3,13 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace cerberus::plugin {
 
 namespace {
-
-using sensing::Time;
 
 GType preset_type() {
   static const auto values = [] {
@@ -101,10 +98,6 @@ const Property<PirSettings> kProperties[] = {
     property("script", &S::script, "scripted: lines as in a replayed file, separated by semicolons"),
 };
 
-Time duration(guint64 nanoseconds) {
-  return Time(static_cast<Time::rep>(std::min<guint64>(nanoseconds, std::numeric_limits<Time::rep>::max())));
-}
-
 std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> parts;
   if (list.empty()) return parts;
@@ -142,7 +135,7 @@ void apply_preset(PirSettings& settings, const PirChosen& chosen) {
   if (!chosen[id_of("active-low")])
     settings.active_low = preset ? preset->options.active_low : defaults.active_low;
   if (!chosen[id_of("warm-up")])
-    settings.warm_up = preset ? nanoseconds(preset->options.warm_up) : defaults.warm_up;
+    settings.warm_up = preset ? clock_time(preset->options.warm_up) : defaults.warm_up;
   if (!chosen[id_of("field-of-view")])  // as somebody would write it: no 119.99999999999999
     settings.field_of_view =
         preset ? std::round(sensing::degrees(preset->field_of_view) * 1e6) / 1e6 : defaults.field_of_view;
@@ -177,7 +170,7 @@ drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors) {
   setup.device = settings.iio_device;
   setup.channels = split(settings.channels);
   setup.level = {settings.threshold, settings.hysteresis};
-  setup.interval = std::max(duration(settings.sample_interval), Time(std::chrono::milliseconds(1)));
+  setup.interval = std::max(time_of(settings.sample_interval), sensing::Time(std::chrono::milliseconds(1)));
   setup.location = settings.location;
   setup.script = settings.script;
   return setup;
@@ -187,13 +180,13 @@ sensing::PirOptions pir_options(const PirSettings& settings) {
   sensing::PirOptions options;
   options.active_low = settings.active_low;
   options.retrigger = settings.retrigger;
-  options.debounce = duration(settings.debounce);
-  options.hold = duration(settings.hold);
-  options.block = duration(settings.block_time);
-  options.warm_up = duration(settings.warm_up);
-  options.stuck_after = duration(settings.stuck_after);
+  options.debounce = time_of(settings.debounce);
+  options.hold = time_of(settings.hold);
+  options.block = time_of(settings.block_time);
+  options.warm_up = time_of(settings.warm_up);
+  options.stuck_after = time_of(settings.stuck_after);
   options.chatter_edges = static_cast<unsigned>(settings.chatter_edges);
-  options.chatter_window = duration(settings.chatter_window);
+  options.chatter_window = time_of(settings.chatter_window);
   return options;
 }
 

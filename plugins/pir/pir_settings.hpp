@@ -9,13 +9,10 @@
 #include <string>
 
 #include "drivers/sensor_setup.h"
-#include "properties.hpp"
+#include "vision/clock_times.hpp"
+#include "vision/properties.hpp"
 
 namespace cerberus::plugin {
-
-constexpr guint64 nanoseconds(sensing::Time time) {
-  return static_cast<guint64>(time.count());
-}
 
 struct PirSettings {
   std::string driver = "scripted";
@@ -27,13 +24,13 @@ struct PirSettings {
   int preset = 0;  // 0: none, else 1 + its place in sensing::pir_presets()
   bool active_low = sensing::PirOptions{}.active_low;
   bool retrigger = sensing::PirOptions{}.retrigger;
-  guint64 debounce = nanoseconds(sensing::PirOptions{}.debounce);
-  guint64 hold = nanoseconds(sensing::PirOptions{}.hold);
-  guint64 block_time = nanoseconds(sensing::PirOptions{}.block);
-  guint64 warm_up = nanoseconds(sensing::PirOptions{}.warm_up);
-  guint64 stuck_after = nanoseconds(sensing::PirOptions{}.stuck_after);
+  guint64 debounce = clock_time(sensing::PirOptions{}.debounce);
+  guint64 hold = clock_time(sensing::PirOptions{}.hold);
+  guint64 block_time = clock_time(sensing::PirOptions{}.block);
+  guint64 warm_up = clock_time(sensing::PirOptions{}.warm_up);
+  guint64 stuck_after = clock_time(sensing::PirOptions{}.stuck_after);
   int chatter_edges = static_cast<int>(sensing::PirOptions{}.chatter_edges);
-  guint64 chatter_window = nanoseconds(sensing::PirOptions{}.chatter_window);
+  guint64 chatter_window = clock_time(sensing::PirOptions{}.chatter_window);
 
   std::string chip = "/dev/gpiochip0";
   std::string lines, leds_red, leds_blue;
@@ -43,7 +40,7 @@ struct PirSettings {
   std::string channels = "0,1,2";
   double threshold = sensing::LevelOptions{}.threshold;
   double hysteresis = sensing::LevelOptions{}.hysteresis;
-  guint64 sample_interval = nanoseconds(drivers::SensorSetup{}.interval);
+  guint64 sample_interval = clock_time(drivers::SensorSetup{}.interval);
 
   std::string location, script;
 };

@@ -99,8 +99,7 @@ CERBERUS_DEFINE_TYPE(CerberusPirSrc, cerberus_pir_src, GstPushSrc, GST_TYPE_PUSH
 Time sensors_now(CerberusPirSrc* self) {
   const Private& priv = *self->priv;
   if (!priv.live) return priv.sensors.due();
-  return priv.sensors.recorded() ? Time(static_cast<Time::rep>(running_now(GST_ELEMENT(self))))
-                                 : monotonic_now();
+  return priv.sensors.recorded() ? time_of(running_now(GST_ELEMENT(self))) : monotonic_now();
 }
 
 // The running time of something that happened at `time` on the sensors' clock.
@@ -160,8 +159,7 @@ bool open_sensors(CerberusPirSrc* self) {
                       (nullptr));
     return false;
   }
-  const Time heartbeat = std::max(
-      Time(static_cast<Time::rep>(std::min<guint64>(settings.heartbeat, G_MAXINT64 / 4))), kLeastHeartbeat);
+  const Time heartbeat = std::max(time_of(settings.heartbeat), kLeastHeartbeat);
   std::unique_lock guard(priv.lock);
   const drivers::SensorError error =
       priv.sensors.open(std::move(sensor), sensor_setup(settings, info.sensors), pir_options(settings),
@@ -339,7 +337,7 @@ gboolean do_seek(GstBaseSrc* base, GstSegment* segment) {
   if (segment->rate < 0) return FALSE;
   Private& priv = *cerberus_pir_src_self(base)->priv;
   const std::lock_guard guard(priv.lock);
-  const Time start(static_cast<Time::rep>(std::min<guint64>(segment->start, G_MAXINT64 / 4)));
+  const Time start = time_of(segment->start);
   priv.sensors.seek(start);
   priv.last = static_cast<GstClockTime>(start.count());
   segment->time = segment->start;
@@ -363,8 +361,7 @@ gboolean event(GstBaseSrc* base, GstEvent* event) {
   if (cerberus_event_parse_base(event, &yaw_rate, nullptr)) {
     const std::lock_guard guard(priv.lock);
     if (priv.running)
-      priv.sensors.base(priv.live ? sensors_now(self) : Time(static_cast<Time::rep>(priv.last)),
-                        sensing::radians(yaw_rate));
+      priv.sensors.base(priv.live ? sensors_now(self) : time_of(priv.last), sensing::radians(yaw_rate));
     gst_poll_restart(priv.poll);
     return TRUE;
   }

@@ -10,6 +10,7 @@
 #include <thread>
 
 // gst-check's macros bite standard headers: last.
+#include "../support/entries.h"
 #include "loop.h"
 
 namespace {
@@ -27,14 +28,6 @@ struct Holds {
   int threads, descriptors;
   std::size_t bytes;
 };
-
-int entries(const char* folder) {
-  int count = 0;
-  GDir* dir = g_dir_open(folder, 0, nullptr);
-  while (dir && g_dir_read_name(dir)) ++count;
-  if (dir) g_dir_close(dir);
-  return count;
-}
 
 Holds held() {
   g_thread_pool_stop_unused_threads();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pantiltsink with a clock: poses by the clock, the watchdog, drivers that fail, and every way of asking for what cannot be.
+#include "../support/entries.h"
 #include "head_rig.h"
 
 namespace {
@@ -371,11 +372,7 @@ GST_START_TEST(caps_without_a_size_are_refused) {
 GST_END_TEST
 
 int threads() {
-  int count = 0;
-  GDir* dir = g_dir_open("/proc/self/task", 0, nullptr);
-  while (dir && g_dir_read_name(dir)) ++count;
-  if (dir) g_dir_close(dir);
-  return count;
+  return entries("/proc/self/task");
 }
 
 GST_START_TEST(many_starts_and_stops_leave_no_thread) {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <string>
 
+#include "../support/entries.h"
 #include "../support/pipe.h"
 #include "../support/pir_source.h"
 #include "promises.h"
@@ -57,14 +58,6 @@ class Hanging {
 void assert_next(Hanging& hanging, const char* expected) {
   const std::string told = hanging.next();
   ck_assert_str_eq(told.c_str(), expected);
-}
-
-int entries(const char* folder) {
-  int count = 0;
-  GDir* dir = g_dir_open(folder, 0, nullptr);
-  while (dir && g_dir_read_name(dir)) ++count;
-  if (dir) g_dir_close(dir);
-  return count;
 }
 
 int held() {

@@ -72,17 +72,16 @@ START_TEST(who_came_walking_may_stand_but_what_only_sways_may_not) {
 }
 END_TEST
 
-START_TEST(pixels_and_metres_convert_both_ways) {
-  ck_assert_double_eq_tol(to_pixels(1.4, kNear), 112, 1e-9);
+START_TEST(pixels_are_metres_by_the_scale_of_the_place) {
   ck_assert_double_eq_tol(to_metres(112, kNear), 1.4, 1e-9);
 }
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite(
-      "gates", {a_range_holds_its_ends_and_what_is_unknown,
-                sizes_are_judged_in_pixels_everywhere_and_in_metres_where_known,
-                the_human_size_takes_people_and_leaves_cats_and_cars,
-                the_human_speed_is_a_tenth_to_four_metres_a_second,
-                who_came_walking_may_stand_but_what_only_sways_may_not, pixels_and_metres_convert_both_ways});
+  return cerberus::tests::run_suite("gates", {a_range_holds_its_ends_and_what_is_unknown,
+                                              sizes_are_judged_in_pixels_everywhere_and_in_metres_where_known,
+                                              the_human_size_takes_people_and_leaves_cats_and_cars,
+                                              the_human_speed_is_a_tenth_to_four_metres_a_second,
+                                              who_came_walking_may_stand_but_what_only_sways_may_not,
+                                              pixels_are_metres_by_the_scale_of_the_place});
 }

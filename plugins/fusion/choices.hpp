@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What lib/fusion can choose, as the C API and properties have it.
+#pragma once
+
+#include <cerberus/fusion.h>
+
+#include "fusion/fuser.h"
+
+namespace cerberus::plugin {
+
+// The C API's actions are lib's, number by number.
+constexpr CerberusFusionAction told(fusion::Action action) {
+  return static_cast<CerberusFusionAction>(action);
+}
+constexpr fusion::Action heard(CerberusFusionAction action) {
+  return static_cast<fusion::Action>(action);
+}
+static_assert(told(fusion::Action::track) == CERBERUS_FUSION_TRACK &&
+              told(fusion::Action::turn_left) == CERBERUS_FUSION_TURN_LEFT &&
+              told(fusion::Action::turn_right) == CERBERUS_FUSION_TURN_RIGHT &&
+              told(fusion::Action::search) == CERBERUS_FUSION_SEARCH &&
+              told(fusion::Action::zero) == CERBERUS_FUSION_ZERO &&
+              told(fusion::Action::hold) == CERBERUS_FUSION_HOLD);
+
+// Whom to follow. Each module registers the enumeration under a name of its own.
+inline GType register_target_choice(const char* name) {
+  using fusion::TargetChoice;
+  static const GEnumValue values[] = {
+      {static_cast<int>(TargetChoice::nearest), "The nearest (without distances: feet lowest in the picture)",
+       "nearest"},
+      {static_cast<int>(TargetChoice::largest), "The largest in the picture", "largest"},
+      {static_cast<int>(TargetChoice::newest), "The one that came last", "newest"},
+      {0, nullptr, nullptr}};
+  return g_enum_register_static(name, values);
+}
+
+}  // namespace cerberus::plugin
