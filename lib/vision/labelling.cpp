@@ -22,20 +22,6 @@ Labeller::Limits usual_limits(Size picture) {
           std::clamp<std::size_t>(area / 256, 64, kMost)};
 }
 
-// A run begins at every bit whose left neighbour is not set.
-std::size_t count_runs(BitView bits) {
-  std::size_t runs = 0;
-  for (int y = 0; y < bits.height; ++y) {
-    std::uint64_t before = 0;
-    for (int i = 0; i < bits.width; ++i) {
-      const std::uint64_t word = bits.row(y)[i];
-      runs += static_cast<std::size_t>(std::popcount(word & ~(word << 1 | before >> 63)));
-      before = word;
-    }
-  }
-  return runs;
-}
-
 // The first column from x on whose bit is (not) set, 64 * words if there is none.
 template <bool set>
 int search(const std::uint64_t* row, int words, int x) {
@@ -65,15 +51,31 @@ std::int32_t Labeller::root(std::int32_t i) {
   return i;
 }
 
-void Labeller::cut_row(const std::uint64_t* row, int words, int y) {
+// False where there are more than `most` runs.
+bool Labeller::cut_row(const std::uint64_t* row, int words, int y, std::size_t most) {
   const int width = 64 * words;
   for (int x = search<true>(row, words, 0); x < width; x = search<true>(row, words, x)) {
+    if (runs_.size() == most) return false;
     const int end = search<false>(row, words, x);
     runs_.push_back(
         {static_cast<std::uint16_t>(y), static_cast<std::uint16_t>(x), static_cast<std::uint16_t>(end), 0});
     forest_.push_back(x - end);
     x = end;
   }
+  return true;
+}
+
+bool Labeller::cut(BitView bits, std::size_t most) {
+  runs_.clear();
+  forest_.clear();
+  std::size_t above = 0;
+  for (int y = 0; y < bits.height; ++y) {
+    const std::size_t here = runs_.size();
+    if (!cut_row(bits.row(y), bits.width, y, most)) return false;
+    join_rows(above, here, runs_.size());
+    above = here;
+  }
+  return true;
 }
 
 // Runs [above, here) are the row above, [here, end) this one; both sorted by column. Touching, diagonals
@@ -95,19 +97,9 @@ void Labeller::join_rows(std::size_t above, std::size_t here, std::size_t end) {
 std::span<const Component> Labeller::find(MutableBitView bits, int width, std::uint32_t least) {
   make_room({width, bits.height});
   Morphology morphology;  // opening needs no memory of its own
-  for (int side = 3; count_runs(bits) > limits_.runs && side < 2 * width; side += 2)
+  for (int side = 3; !cut(bits, side < 2 * width ? limits_.runs : kMost * kMost); side += 2)
     morphology.open(bits, width, side);
-
-  runs_.clear();
-  forest_.clear();
   components_.clear();
-  std::size_t above = 0;
-  for (int y = 0; y < bits.height; ++y) {
-    const std::size_t here = runs_.size();
-    cut_row(bits.row(y), bits.width, y);
-    join_rows(above, here, runs_.size());
-    above = here;
-  }
 
   const auto area = [&](std::size_t i) {
     return forest_[i] < 0 ? static_cast<std::uint32_t>(-forest_[i]) : 0;

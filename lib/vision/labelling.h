@@ -70,7 +70,8 @@ class Labeller {
   std::size_t bytes() const;
 
  private:
-  void cut_row(const std::uint64_t* row, int words, int y);
+  bool cut(BitView bits, std::size_t most);
+  bool cut_row(const std::uint64_t* row, int words, int y, std::size_t most);
   void join_rows(std::size_t above, std::size_t here, std::size_t end);
   std::int32_t root(std::int32_t i);
 

@@ -12,20 +12,14 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kBand = 8;            // rows; flicker at 100 Hz has a period of 70 rows and more
-constexpr int kMaximumBands = 512;  // more are not looked for
-constexpr int kColumnStep = 8, kRowStep = 2;
-constexpr int kBandReach = 64;     // a band may be this much brighter or darker, 1/256
-constexpr int kFullWeight = 64;    // grey levels from which a sample says all it can of a gain
-constexpr int kLeastSamples = 48;  // of a band that tells of its light
-// Grey levels from which noise makes white. To choose by the present itself would leave out what noise brightens.
-constexpr int kNearWhite = 235;
-constexpr double kLeastBand = 1.0;    // grey levels: weaker bands are left alone
-constexpr double kLeastGlobal = 0.7;  // the same for the picture as a whole
-
-RowSpan span_of(std::span<const RowSpan> spans, int y, int width) {
-  return spans.empty() ? RowSpan{0, width} : spans[static_cast<std::size_t>(y)];
-}
+constexpr int kBand = LightSamples::kBandRows *
+                      LightSamples::kRowStep;  // rows; flicker at 100 Hz has a period of 70 rows and more
+constexpr int kMaximumBands = 512;             // more are not looked for
+constexpr int kBandReach = 64;                 // a band may be this much brighter or darker, 1/256
+constexpr int kFullWeight = 64;                // grey levels from which a sample says all it can of a gain
+constexpr int kLeastSamples = 48;              // of a band that tells of its light
+constexpr double kLeastBand = 1.0;             // grey levels: weaker bands are left alone
+constexpr double kLeastGlobal = 0.7;           // the same for the picture as a whole
 
 // 1/256 of a gain that half a grey level is, 8 bits of fraction, by the level it is added to.
 constexpr auto kInverse = [] {
@@ -36,27 +30,19 @@ constexpr auto kInverse = [] {
 
 // A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter, or
 // mostly darker. No median is as far from 0 as kLeastBand otherwise.
-struct Direction {
-  std::array<int, 3> number{}, brighter{}, darker{};
-  void add(int third, int difference) {
-    ++number[third];
-    brighter[third] += difference > 0;
-    darker[third] += difference < 0;
+bool has_one_direction(const LightSums& sums) {
+  int thirds = 0, up = 0, down = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sums.number[i] < 8) continue;  // white
+    ++thirds;
+    up += 2 * sums.brighter[i] > sums.number[i];
+    down += 2 * sums.darker[i] > sums.number[i];
   }
-  bool one() const {
-    int thirds = 0, up = 0, down = 0;
-    for (int i = 0; i < 3; ++i) {
-      if (number[i] < 8) continue;  // white
-      ++thirds;
-      up += 2 * brighter[i] > number[i];
-      down += 2 * darker[i] > number[i];
-    }
-    return thirds > 0 && std::max(up, down) >= std::min(thirds, 2);
-  }
-};
+  return thirds > 0 && std::max(up, down) >= std::min(thirds, 2);
+}
 
-int lit(int value, RowLight light) {
-  return std::clamp((value * light.gain + light.offset + 128) >> 8, 0, 255);
+int number_of(const LightSums& sums) {
+  return sums.number[0] + sums.number[1] + sums.number[2];
 }
 
 }  // namespace
@@ -71,60 +57,62 @@ void LightChange::clear() {
 
 void LightChange::relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
                           std::uint8_t* out) const {
-  const RowLight l = row(y);
-  relight_row(reference, l, count, out);
-  const int white = (255 * l.gain + l.offset) >> 8;
-  if (white >= 255) return;
-  for (int x = 0; x < count; ++x) out[x] = reference[x] >= kWhite ? std::max(out[x], present[x]) : out[x];
+  relight_row_with_white(reference, present, row(y), count, out);
 }
 
-void LightChange::estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans, bool still) {
-  rows_.resize(static_cast<std::size_t>(present.height));
+RowLight LightChange::light_of(int row) const {
+  return rows_[static_cast<std::size_t>(LightSamples::picture_row(row))];
+}
+
+void LightChange::estimate(const LightSamples& samples, bool still) {
+  rows_.resize(static_cast<std::size_t>(samples.height()));
   clear();
-  if (present.empty()) return;
-  const bool line = estimate_global(reference, present, spans);
-  const bool bands = estimate_bands(reference, present, spans);
+  if (rows_.empty()) return;
+  const bool line = estimate_global(samples);
+  const bool bands = estimate_bands(samples);
   if (still && line && bands) {
     // Where bright and dark things lie in different bands, the line through all of the picture takes the bands for
     // something that brightness does. Then the bands come first. Which is right shows in what remains.
-    const double remains = misfit(reference, present, spans), agreement = agreement_;
+    const double remains = misfit(samples), agreement = agreement_;
     std::array<RowLight, kMaximumBands * kBand> line_first;
     std::ranges::copy(rows_, line_first.begin());
     std::ranges::fill(rows_, RowLight{});
-    estimate_bands(reference, present, spans);
-    estimate_global(reference, present, spans);
-    estimate_bands(reference, present, spans);
-    if (misfit(reference, present, spans) > remains) {
+    estimate_bands(samples);
+    estimate_global(samples);
+    estimate_bands(samples);
+    if (misfit(samples) > remains) {
       std::copy_n(line_first.begin(), rows_.size(), rows_.begin());
       agreement_ = agreement;
     }
   }
   double gain = 0, offset = 0;
   for (const RowLight& r : rows_) gain += r.gain, offset += r.offset;
-  gain_ = gain / (256.0 * present.height);
-  offset_ = offset / (256.0 * present.height);
+  gain_ = gain / (256.0 * samples.height());
+  offset_ = offset / (256.0 * samples.height());
   none_ = std::ranges::all_of(rows_, [](const RowLight& r) { return r == RowLight{}; });
 }
 
+// Samples by brightness of the reference under the light so far (16 levels a class) and by what the present differs by.
+LightChange::Counts LightChange::count_differences(const LightSamples& samples) const {
+  Counts counts{};
+  for (int row = 0; row < samples.rows(); ++row)
+    samples.for_each(row, light_of(row), [&](int, int now, int value) {
+      const int difference = std::clamp(value - now, -kReach, kReach);
+      counts[now >> 4][difference + kReach] += 1 | static_cast<std::uint64_t>(now & 15) << 32;
+    });
+  return counts;
+}
+
 // True if there was any.
-bool LightChange::estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
-  // 32 bits: a sixteenth of 3840 x 2160 pixels may all be alike.
-  std::array<std::array<std::uint32_t, kLevels>, kClasses> counts{};
-  std::array<std::uint32_t, 256> seen{};  // samples by level of the reference
-  for (int y = 0; y < present.height; y += kRowStep) {
-    const RowSpan s = span_of(spans, y, present.width);
-    const std::uint8_t *a = reference.row(y), *b = present.row(y);
-    for (int x = s.begin + (y / kRowStep) % kColumnStep; x < s.end; x += kColumnStep) {
-      const int now = lit(a[x], rows_[y]);
-      ++counts[now >> 4][std::clamp(b[x] - now, -kReach, kReach) + kReach];
-      ++seen[now];
-    }
-  }
+bool LightChange::estimate_global(const LightSamples& samples) {
+  const auto counts = count_differences(samples);
   std::array<int, kClasses> number{};
   std::array<std::int64_t, kClasses> sum{};
-  for (int level = 0; level < 256; ++level) {
-    number[level >> 4] += static_cast<int>(seen[level]);
-    sum[level >> 4] += std::int64_t{level} * seen[level];
+  for (int k = 0; k < kClasses; ++k) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t count : counts[k]) all += count;
+    number[k] = static_cast<int>(all & 0xffffffffu);
+    sum[k] = std::int64_t{16} * k * number[k] + static_cast<std::int64_t>(all >> 32);
   }
   int total = 0;
   for (const int n : number) total += n;
@@ -171,87 +159,68 @@ bool LightChange::estimate_global(GrayView reference, GrayView present, std::spa
     if (!number[k]) continue;
     const double a = static_cast<double>(sum[k]) / number[k];
     const int e = static_cast<int>(std::lround(std::clamp(a + at_zero + slope * a, 0.0, 255.0) - a));
-    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d) agree += counts[k][d + kReach];
+    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d)
+      agree += static_cast<int>(counts[k][d + kReach]);
   }
   agreement_ = static_cast<double>(agree) / total;
   // What is hardly visible between dark grey and light grey is not worth a correction.
   if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return false;
   const double gain = std::clamp(1 + slope, 0.25, 4.0);
+  const auto relit = [&](RowLight row) {
+    return RowLight{static_cast<std::int32_t>(std::lround(row.gain * gain)),
+                    static_cast<std::int32_t>(std::lround(row.offset * gain + 256 * at_zero))};
+  };
+  RowLight before, after = relit(before);  // most rows are alike
   for (RowLight& row : rows_) {
-    row.gain = static_cast<std::int32_t>(std::lround(row.gain * gain));
-    row.offset = static_cast<std::int32_t>(std::lround(row.offset * gain + 256 * at_zero));
+    if (row != before) before = row, after = relit(row);
+    row = after;
   }
   return true;
 }
 
 // What remains of the difference, grey levels a sample; objects count little.
-double LightChange::misfit(GrayView reference, GrayView present, std::span<const RowSpan> spans) const {
-  constexpr int kMost = 16;
+double LightChange::misfit(const LightSamples& samples) const {
   std::int64_t sum = 0, number = 0;
-  for (int band = 0; band * kBand < present.height; ++band)
-    sample_band(reference, present, spans, band,
-                [&](int, int now, int value) { sum += std::min(std::abs(value - now), kMost), ++number; });
+  for (int band = 0; band < samples.bands(); ++band) {
+    const LightSums sums = samples.sums_of_band(band, rows_);
+    sum += sums.misfit;
+    number += number_of(sums);
+  }
   return number ? static_cast<double>(sum) / number : 0;
 }
 
-// Calls each(third of the row, value of the reference under the light so far, present value) for the samples of a band.
-template <typename Each>
-void LightChange::sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,
-                              Each&& each) const {
-  for (int y = band * kBand; y < std::min((band + 1) * kBand, present.height); y += kRowStep) {
-    const RowSpan s = span_of(spans, y, present.width);
-    const std::uint8_t *a = reference.row(y), *b = present.row(y);
-    const RowLight light = rows_[y];
-    const bool same = light == RowLight{};
-    for (int third = 0, x = s.begin + (y / kRowStep) % kColumnStep; third < 3; ++third)
-      for (const int end = std::min(s.end, (third + 1) * present.width / 3); x < end; x += kColumnStep) {
-        const int now = same ? a[x] : lit(a[x], light);
-        if (a[x] < kWhite && now < kNearWhite) each(third, now, static_cast<int>(b[x]));
-      }
-  }
-}
-
-bool LightChange::may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans,
-                             int band) const {
-  Direction direction;
-  sample_band(reference, present, spans, band,
-              [&](int third, int now, int value) { direction.add(third, value - now); });
-  return direction.one();
-}
-
-// True if there were any.
-bool LightChange::estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
-  const int bands = (present.height + kBand - 1) / kBand;
-  if (bands < 4 || bands > kMaximumBands) return false;
-  int first = 0;
-  while (first < bands && !may_differ(reference, present, spans, first)) ++first;
-  if (first == bands) return false;
-  std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
-  std::bitset<kMaximumBands> known;
-  double strongest = 0;
-  for (int band = 0; band < bands; ++band) {
-    // The median of what the samples say of the gain, in 1/256.
-    // In the dark they say little; and whole levels make steps there, so half of each is counted half a level either way.
-    std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
-    Direction direction;
-    int samples = 0;
-    std::int64_t weights = 0, sum = 0;
-    sample_band(reference, present, spans, band, [&](int third, int now, int value) {
-      direction.add(third, value - now);
+// The median of what a band's samples say of its gain, less 1. In the dark they say little; and whole levels make steps
+// there, so half of each is counted half a level either way.
+double LightChange::excess_of_band(const LightSamples& samples, int band) const {
+  std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
+  std::int64_t weights = 0;
+  for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row)
+    samples.for_each(row, light_of(row), [&](int level, int now, int value) {
+      if (level >= kWhite || now >= kNearWhite) return;
       const int weight = std::min(now, kFullWeight), inverse = kInverse[now];
       for (const int half : {-1, 1}) {
         const int excess = ((2 * (value - now) + half) * inverse) >> 8;
         counts[std::clamp(excess, -kBandReach, kBandReach) + kBandReach] += weight;
       }
       weights += 2 * weight;
-      sum += now;
-      ++samples;
     });
-    known[band] = samples >= kLeastSamples && weights > 0;
+  return median_of_levels(counts, weights, -kBandReach) / 256;
+}
+
+// True if there were any.
+bool LightChange::estimate_bands(const LightSamples& samples) {
+  const int bands = samples.bands();
+  if (bands < 4 || bands > kMaximumBands) return false;
+  std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
+  std::bitset<kMaximumBands> known;
+  double strongest = 0;
+  for (int band = 0; band < bands; ++band) {
+    const LightSums sums = samples.sums_of_band(band, rows_);
+    const int number = number_of(sums);
+    known[band] = number >= kLeastSamples && sums.level > 0;
     if (!known[band]) continue;
-    excess[band] =
-        direction.one() ? median_of_levels(counts, static_cast<double>(weights), -kBandReach) / 256 : 0;
-    strongest = std::max(strongest, std::abs(excess[band]) * sum / samples);
+    excess[band] = has_one_direction(sums) ? excess_of_band(samples, band) : 0;
+    strongest = std::max(strongest, std::abs(excess[band]) * sums.level / number);
   }
   if (strongest < kLeastBand) return false;
   // Where all is white or hidden, the bands next to it tell.
@@ -265,7 +234,8 @@ bool LightChange::estimate_bands(GrayView reference, GrayView present, std::span
     excess[band] =
         excess[low] + (high > low ? (excess[high] - excess[low]) * (band - low) / (high - low) : 0);
   }
-  for (int y = 0; y < present.height; ++y) {  // linear between the middles of bands, and beyond the outermost
+  for (int y = 0; y < static_cast<int>(rows_.size());
+       ++y) {  // linear between the middles of bands, and beyond the outermost
     const double position = (y + 0.5) / kBand - 0.5;
     const int low = std::clamp(static_cast<int>(position), 0, bands - 2);
     const double k = 1 + excess[low] + (position - low) * (excess[low + 1] - excess[low]);

@@ -4,31 +4,24 @@
 // before pictures are compared.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "vision/image.h"
-#include "vision/warp.h"
+#include "vision/light_kernels.h"
+#include "vision/light_samples.h"
 
 namespace cerberus::vision {
 
-constexpr int kWhite = 245;  // grey levels from which a scene may have been brighter than its picture says
-
-// What a row of the reference has to become to be compared with the present: (value * gain + offset) / 256.
-struct RowLight {
-  std::int32_t gain = 256;
-  std::int32_t offset = 0;
-  bool operator==(const RowLight&) const = default;
-};
-
 class LightChange {
  public:
-  // present ~ gain * reference + offset over the valid spans (empty: everywhere), and a further gain for each band of 8
-  // rows. The line goes robustly through the median differences of 16 brightness classes; a band's gain is the median of
-  // what its samples say. Either can be taken for the other where bright and dark lie apart: if the camera is still both
-  // orders are tried, and what leaves less is kept; else registration's errors would be what is told apart. Changes too small to tell from noise are not made.
-  void estimate(GrayView reference, GrayView present, std::span<const RowSpan> spans, bool still);
+  // present ~ gain * reference + offset over the samples, and a further gain for each band of 8 rows. The line goes robustly
+  // through the median differences of 16 brightness classes; a band's gain is the median of what its samples say. Either
+  // can be taken for the other where bright and dark lie apart: if the camera is still both orders are tried, and what
+  // leaves less is kept; else registration's errors would be what is told apart. Changes too small to tell from noise are
+  // not made.
+  void estimate(const LightSamples& samples, bool still);
   void clear();
 
   bool none() const { return none_; }
@@ -47,20 +40,19 @@ class LightChange {
 
  private:
   static constexpr int kClasses = 16, kReach = 127, kLevels = 2 * kReach + 1;
-  bool estimate_global(GrayView reference, GrayView present, std::span<const RowSpan> spans);
-  bool estimate_bands(GrayView reference, GrayView present, std::span<const RowSpan> spans);
-  double misfit(GrayView reference, GrayView present, std::span<const RowSpan> spans) const;
-  bool may_differ(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band) const;
-  template <typename Each>
-  void sample_band(GrayView reference, GrayView present, std::span<const RowSpan> spans, int band,
-                   Each&& each) const;
+  bool estimate_global(const LightSamples& samples);
+  bool estimate_bands(const LightSamples& samples);
+  double misfit(const LightSamples& samples) const;
+  double excess_of_band(const LightSamples& samples, int band) const;
+  // Lower half: number of samples; upper half: the sum of their levels' lower 4 bits, so that one addition counts both.
+  // 32 bits each: a sixteenth of 3840 x 2160 pixels may all be alike.
+  using Counts = std::array<std::array<std::uint64_t, kLevels>, kClasses>;
+  Counts count_differences(const LightSamples& samples) const;
+  RowLight light_of(int row) const;  // of samples
 
   bool none_ = true;
   double gain_ = 1, offset_ = 0, agreement_ = 1;
   std::vector<RowLight> rows_;
 };
-
-// out := the row of the reference under the present light, clamped to 0..255.
-void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out);
 
 }  // namespace cerberus::vision

@@ -3,22 +3,24 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <numeric>
 
 namespace cerberus::vision {
 
 // The median of `total` > 0 values of which counts[i] were rounded to the level first + i: a level stands for all values
 // within half a level of it, spread evenly. `folded`: they are absolute values, so that level 0 is only half as wide.
-// 0 where counts are fewer than said.
+// 0 where counts are fewer than said. Counts are what the lower 32 bits of their elements are.
 template <typename Counts>
-double median_of_levels(const Counts& counts, double total, int first = 0, bool folded = false) {
-  double below = 0;
+double median_of_levels(const Counts& counts, std::int64_t total, int first = 0, bool folded = false) {
+  std::int64_t below = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    const double count = counts[i];
-    if (count > 0 && below + count >= total / 2) {
+    const std::int64_t count = static_cast<std::uint32_t>(counts[i]);
+    if (2 * (below + count) >= total && count > 0) {
       const bool half = folded && i == 0;
       const double low = half ? 0 : first + static_cast<double>(i) - 0.5, width = half ? 0.5 : 1.0;
-      return low + width * (total / 2 - below) / count;
+      return low + width * (static_cast<double>(total) / 2 - static_cast<double>(below)) /
+                       static_cast<double>(count);
     }
     below += count;
   }
@@ -29,7 +31,8 @@ double median_of_levels(const Counts& counts, double total, int first = 0, bool 
 // deviation). 0 for no counts.
 template <typename Counts>
 double noise_sigma(const Counts& counts) {
-  return 1.4826 * median_of_levels(counts, std::accumulate(counts.begin(), counts.end(), 0.0), 0, true);
+  return 1.4826 *
+         median_of_levels(counts, std::accumulate(counts.begin(), counts.end(), std::int64_t{0}), 0, true);
 }
 
 }  // namespace cerberus::vision

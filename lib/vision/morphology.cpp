@@ -2,8 +2,10 @@
 #include "vision/morphology.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
+#include <utility>
+
+#include "vision/mask_kernels.h"
 
 namespace cerberus::vision {
 
@@ -11,65 +13,28 @@ namespace {
 
 using Word = std::uint64_t;
 
-void copy(BitView from, MutableBitView to) {
-  for (int y = 0; y < to.height; ++y)
-    std::memcpy(to.row(y), from.row(y), static_cast<std::size_t>(to.width) * sizeof(Word));
-}
-
-// One row united with itself moved by -radius .. +radius, radius at most 64: the reach doubles with every step. What a
-// neighbouring word moves in needs to be right only as far as it reaches.
-void spread_row_near(Word* row, int words, int radius) {
-  Word before = 0;  // the word to the left, as it was
-  for (int i = 0; i < words; ++i) {
-    const Word here = row[i], after = i + 1 < words ? row[i + 1] : 0;
-    if (here | before | after) {
-      Word up = here, from_below = before, down = here, from_above = after;
-      for (int reach = 0; reach < radius;) {
-        const int step = std::min(reach + 1, radius - reach);  // at most 32
-        up |= up << step | from_below >> (64 - step);
-        from_below |= from_below << step;
-        down |= down >> step | from_above << (64 - step);
-        from_above |= from_above >> step;
-        reach += step;
-      }
-      row[i] = up | down;
-    }
-    before = here;
-  }
-}
-
-// The same for any radius.
-void spread_row(Word* row, int words, int radius, Word last) {
-  for (; radius > 0; radius -= 64) spread_row_near(row, words, std::min(radius, 64));
-  row[words - 1] &= last;
-}
-
-// Rows united with their neighbours up to `radius` rows away, again by doubling: first upwards, then
-// downwards, in an order in which every row read is still the one of the step before.
+// Rows united with their neighbours up to `radius` rows away, the reach doubling: first upwards, then downwards.
 void spread_columns(MutableBitView bits, int radius) {
-  const auto unite_row = [&](int y, int other) {
-    Word* row = bits.row(y);
-    const Word* from = bits.row(other);
-    for (int i = 0; i < bits.width; ++i) row[i] |= from[i];
+  const auto words = [&](int rows) { return static_cast<std::size_t>(rows) * bits.width; };
+  const auto spread = [&](auto&& unite) {
+    for (int reach = 0; reach < radius;) {
+      const int step = std::min(reach + 1, radius - reach);
+      if (step < bits.height) unite(bits.data, words(bits.height - step), words(step));
+      reach += step;
+    }
   };
-  for (int reach = 0; reach < radius;) {
-    const int step = std::min(reach + 1, radius - reach);
-    for (int y = 0; y + step < bits.height; ++y) unite_row(y, y + step);
-    reach += step;
-  }
-  for (int reach = 0; reach < radius;) {
-    const int step = std::min(reach + 1, radius - reach);
-    for (int y = bits.height - 1; y >= step; --y) unite_row(y, y - step);
-    reach += step;
-  }
+  spread(unite_with_later);
+  spread(unite_with_earlier);
+}
+
+void clear_beyond(MutableBitView bits, int width) {
+  const Word last = last_word_bits(width);
+  for (int y = 0; y < bits.height; ++y) bits.row(y)[bits.width - 1] &= last;
 }
 
 void invert(MutableBitView bits, int width) {
-  const Word last = last_word_bits(width);
-  for (int y = 0; y < bits.height; ++y) {
-    for (int i = 0; i < bits.width; ++i) bits.row(y)[i] = ~bits.row(y)[i];
-    bits.row(y)[bits.width - 1] &= last;
-  }
+  for (long i = 0; i < bits.size().area(); ++i) bits.data[i] = ~bits.data[i];
+  clear_beyond(bits, width);
 }
 
 // Every run of `within` that holds a seed becomes seeded: adding the seed to the run carries a 1 through its
@@ -139,11 +104,11 @@ void grow(MutableBitView seeds, BitView within, Word* scratch) {
 }  // namespace
 
 void Morphology::dilate(MutableBitView bits, int width, int side) {
-  const int radius = side / 2;
-  if (radius < 1 || bits.empty()) return;
-  const Word last = last_word_bits(width);
-  for (int y = 0; y < bits.height; ++y) spread_row(bits.row(y), bits.width, radius, last);
-  spread_columns(bits, radius);
+  if (side / 2 < 1 || bits.empty()) return;
+  for (int radius = side / 2; radius > 0; radius -= 64)
+    spread_rows(bits.data, bits.width, bits.height, bits.stride, std::min(radius, 64));
+  clear_beyond(bits, width);
+  spread_columns(bits, side / 2);
 }
 
 void Morphology::erode(MutableBitView bits, int width, int side) {
@@ -166,13 +131,18 @@ void Morphology::open(MutableBitView bits, int width, int side) {
 // Counts by bit-sliced addition: three bits of sum for each row's triple, then the column's.
 void Morphology::vote(MutableBitView bits, int width, int least) {
   if (bits.empty()) return;
-  scratch_.resize(bits.size());
-  copy(bits, scratch_.view());
-  const Word last = last_word_bits(width);
-  const MutableBitView in = scratch_.view();
+  scratch_.resize({bits.width, 2});
+  const auto copy = [&](int y, Word* to) {
+    std::memcpy(to, bits.row(y), static_cast<std::size_t>(bits.width) * sizeof(Word));
+  };
+  // The row above and this one, as they were.
+  Word *above = scratch_.view().row(0), *here = scratch_.view().row(1);
+  copy(0, here);
   for (int y = 0; y < bits.height; ++y) {
+    const Word* const rows[] = {here, y > 0 ? above : nullptr,
+                                y + 1 < bits.height ? bits.row(y + 1) : nullptr};
     for (int i = 0; i < bits.width; ++i) {
-      if (in.row(y)[i] == 0) continue;  // most of a mask; only what is set can be kept
+      if (here[i] == 0) continue;  // most of a mask; only what is set can be kept
       Word ones = 0, twos = 0, fours = 0, eights = 0;
       const auto add = [&](Word value) {
         Word carry = ones & value;
@@ -183,8 +153,8 @@ void Morphology::vote(MutableBitView bits, int width, int least) {
         fours ^= next;
         eights |= carry;
       };
-      for (int v = std::max(y - 1, 0); v <= std::min(y + 1, bits.height - 1); ++v) {
-        const Word* row = in.row(v);
+      for (const Word* row : rows) {
+        if (!row) continue;
         add(row[i]);
         add(row[i] << 1 | (i > 0 ? row[i - 1] >> 63 : 0));
         add(row[i] >> 1 | (i + 1 < bits.width ? row[i + 1] << 63 : 0));
@@ -194,16 +164,18 @@ void Morphology::vote(MutableBitView bits, int width, int least) {
         const auto is = [](Word slice, int bit) { return bit ? slice : ~slice; };
         keep |= is(ones, n & 1) & is(twos, n >> 1 & 1) & is(fours, n >> 2 & 1) & is(eights, n >> 3 & 1);
       }
-      bits.row(y)[i] = keep & in.row(y)[i];
+      bits.row(y)[i] = keep & here[i];
     }
-    bits.row(y)[bits.width - 1] &= last;
+    std::swap(above, here);
+    if (y + 1 < bits.height) copy(y + 1, here);
   }
+  clear_beyond(bits, width);
 }
 
 void Morphology::reconstruct(MutableBitView seeds, BitView within, int width) {
   (void)width;
   if (seeds.empty()) return;
-  scratch_.resize(seeds.size());
+  scratch_.resize({seeds.width, 2});
   intersect(seeds, within, seeds);
   grow(seeds, within, scratch_.view().row(0));
 }

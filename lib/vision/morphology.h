@@ -14,7 +14,7 @@ namespace cerberus::vision {
 // allocation at one picture size.
 class Morphology {
  public:
-  // `width` is the picture's width in pixels (a BitView knows words only).
+  // `width` is the picture's width in pixels (a BitView knows words only). Masks are whole ones: no words between rows.
   void dilate(MutableBitView bits, int width, int side);
   void erode(MutableBitView bits, int width, int side);
   void close(MutableBitView bits, int width, int side);

@@ -9,7 +9,6 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr int kMargin = 16;  // columns beside the compared memory, so that kernels may look beyond the border
 // Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
 constexpr double kOtherLight = 3, kFlicker = 40;
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
@@ -20,7 +19,6 @@ constexpr double kAgreement = 0.3;
 
 void SceneLight::make_room(Size picture) {
   known_.resize({picture.width + 2 * kMargin, picture.height + 2});
-  row_.resize({picture.width, 1});
 }
 
 MutableGrayView SceneLight::known() {
@@ -46,13 +44,15 @@ void SceneLight::draw(View<const std::uint16_t> mean) {
   repeat_borders();
 }
 
-void SceneLight::draw_lit(View<const std::uint16_t> mean, GrayView present) {
+void SceneLight::estimate(GrayView present, std::span<const RowSpan> shown, bool still) {
+  samples_.take(known(), present, shown);
+  change_.estimate(samples_, still);
+}
+
+// known, as it was drawn, under the light of the present.
+void SceneLight::relight(GrayView present) {
   const MutableGrayView k = known();
-  std::uint8_t* reference = row_.view().data;
-  for (int y = 0; y < k.height; ++y) {
-    round_row(mean.row(y), k.width, reference);
-    change_.relight(reference, present.row(y), y, k.width, k.row(y));
-  }
+  for (int y = 0; y < k.height; ++y) change_.relight(k.row(y), present.row(y), y, k.width, k.row(y));
   repeat_borders();
 }
 
@@ -75,7 +75,7 @@ void SceneLight::adopt(const ScenePixels& pixels, SceneSurroundings& surrounding
 bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surroundings, GrayView present,
                             std::span<const RowSpan> shown, bool still) {
   const double before = brighter_;
-  change_.estimate(known(), present, shown, still);
+  estimate(present, shown, still);
   brighter_ = change_.gain() * 128 + change_.offset() - 128;
   const bool step = std::abs(brighter_ - before) > kStep;
   if (change_.none()) return step;
@@ -90,9 +90,9 @@ bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surrou
   if (std::abs(brighter_) > (still ? kFlicker : kOtherLight)) {
     adopt(pixels, surroundings);
     draw(pixels.mean);
-    change_.estimate(known(), present, shown, still);
+    estimate(present, shown, still);
   }
-  draw_lit(pixels.mean, present);
+  relight(present);
   return step;
 }
 

@@ -9,6 +9,7 @@
 
 #include "vision/image.h"
 #include "vision/light.h"
+#include "vision/light_samples.h"
 #include "vision/mask.h"
 #include "vision/scene_kernels.h"
 #include "vision/scene_surroundings.h"
@@ -33,7 +34,7 @@ class SceneLight {
   // The memory under the light that was measured last.
   void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings);
 
-  // known := the mean, under the light of `present`. Where that explains too little, the scene is another one: ages become
+  // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one: ages become
   // 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.
   bool compensate(const ScenePixels& pixels, SceneSurroundings& surroundings, GrayView present,
                   std::span<const RowSpan> shown, bool still);
@@ -44,15 +45,18 @@ class SceneLight {
   void forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
                     const std::array<double, kBrightness>& sigma, std::uint8_t age, MutableBitView moved);
 
-  std::size_t bytes() const { return known_.bytes() + row_.bytes() + change_.bytes(); }
+  std::size_t bytes() const { return known_.bytes() + samples_.bytes() + change_.bytes(); }
 
  private:
-  void draw_lit(View<const std::uint16_t> mean, GrayView present);
+  void estimate(GrayView present, std::span<const RowSpan> shown, bool still);
+  void relight(GrayView present);
   void repeat_borders();
 
-  Image<std::uint8_t> known_;  // with margins
-  Image<std::uint8_t> row_;    // scratch
-  LightChange change_;         // from the memory to the frame
+  static constexpr int kMargin =
+      16;  // columns beside the compared memory, so that kernels may look beyond the border
+  Image<std::uint8_t, kMargin> known_;  // with margins
+  LightSamples samples_;
+  LightChange change_;  // from the memory to the frame
   double brighter_ =
       0;  // grey levels the last frame was brighter than the memory, in the middle of the scale
 };

@@ -97,7 +97,6 @@ struct SceneMemory::State {
   Image<std::uint8_t> tolerance;  // one row of blocks, per pixel
   BitMask weak, strong, moved, absorb;
   BitMask valid;  // one row
-  BitMask plain;  // the mask before it is closed: who makes regions of it needs the gaps between people
   Morphology morphology;
   SceneParts parts;
   SceneSurroundings surroundings;
@@ -115,6 +114,9 @@ struct SceneMemory::State {
   void measure_time(double seconds);
   void follow(const SceneMemoryInput& in);
   void redraw();
+  // The mask before it is closed: who makes regions of it needs the gaps between people. What moved is not needed any more
+  // once the frame is compared.
+  MutableBitView plain() { return moved.view(); }
   ScenePixels pixels() { return {mean.view(), spread.view(), age.view(), quiet.view()}; }
   bool draw_present(const SceneMemoryInput& in, GrayView blurred);
   void measure_blocks();
@@ -143,7 +145,7 @@ void SceneMemory::State::prepare(Size to) {
     for (auto* plane : {&spread, &age, &quiet, &present}) plane->resize(to);
     light.make_room(to);
     tolerance.resize({to.width, 1});
-    for (auto* bits : {&weak, &strong, &moved, &absorb, &plain}) bits->resize(bit_mask_size(to));
+    for (auto* bits : {&weak, &strong, &moved, &absorb}) bits->resize(bit_mask_size(to));
     valid.resize({bit_mask_size(to).width, 1});
     parts.make_room(to);
     surroundings.make_room(to);
@@ -383,12 +385,12 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
                            in.still,       !in.still && unreliable < kMostUnreliable * columns * rows};
   const bool young = parts.judge(planes, windows, seeds, absorb.view());
   const int side = std::max(3, kClosing * w / 320 | 1);
-  std::memcpy(plain.view().data, seeds.data, plain.bytes());
+  std::memcpy(plain().data, seeds.data, moved.bytes());
   morphology.close(seeds, w, side);
   leave_valid(seeds);
   unite(weak.view(), seeds, weak.view());
   morphology.dilate(weak.view(), w, 3);
-  if (young) parts.join(planes, windows, seeds, plain.view());
+  if (young) parts.join(planes, windows, seeds, plain());
 }
 
 void SceneMemory::State::learn() {
@@ -439,9 +441,9 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   s.decide(in);
   s.learn();
   if (s.to_frame.is_identity()) {
-    unpack(s.plain.view(), mask);
+    unpack(s.plain(), mask);
   } else {
-    map_bits(s.plain.view(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
+    map_bits(s.plain(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
     unpack(s.absorb.view(), mask);
   }
 }
@@ -452,8 +454,7 @@ std::size_t SceneMemory::bytes() const {
                       s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() + s.light.bytes() +
                       s.blur.bytes();
   for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
-  for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb, &s.plain})
-    total += bits->bytes();
+  for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb}) total += bits->bytes();
   return total + s.blocks.capacity() * sizeof(BlockSums);
 }
 

@@ -29,6 +29,7 @@ struct ThreeFrameDifference::State {
   std::array<Image<std::uint8_t>, 3> ring;
   Transform before;  // frame k-2 to k-1
   Warp warp1, warp2;
+  LightSamples samples;
   LightChange light, light_before;
   Image<std::uint8_t> rows;  // scratch for relit rows
   std::vector<RowSpan> spans;
@@ -109,10 +110,12 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     }
   }
   std::swap(s.light, s.light_before);
-  if (s.options.compensate_light)
-    s.light.estimate(first, present, s.spans, s.warp1.is_identity());
-  else
+  if (s.options.compensate_light) {
+    s.samples.take(first, present, s.spans);
+    s.light.estimate(s.samples, s.warp1.is_identity());
+  } else {
     s.light.clear();
+  }
 
   LevelCounter counter;
   for (int y = 0; y < size.height; ++y) {
@@ -154,8 +157,8 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
 
 std::size_t ThreeFrameDifference::bytes() const {
   const State& s = *state_;
-  return s.ring[0].bytes() * 3 + s.rows.bytes() + s.warp1.bytes() + s.warp2.bytes() + s.light.bytes() +
-         s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
+  return s.ring[0].bytes() * 3 + s.rows.bytes() + s.warp1.bytes() + s.warp2.bytes() + s.samples.bytes() +
+         s.light.bytes() + s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
 }
 
 }  // namespace cerberus::vision

@@ -29,6 +29,14 @@ double band(int y) {
   return 1 + 0.06 * std::sin(2 * std::numbers::pi * y / 140 + 1);
 }
 
+LightChange change(GrayView reference, GrayView present) {
+  LightSamples samples;
+  samples.take(reference, present, {});
+  LightChange light;
+  light.estimate(samples, true);
+  return light;
+}
+
 // The present is the reference in bands of light, but for white. How far any row is off then, grey levels at `level`.
 double worst_error(GrayView reference, double level) {
   Image<std::uint8_t> present(kSize);
@@ -36,8 +44,7 @@ double worst_error(GrayView reference, double level) {
     for (int x = 0; x < kSize.width; ++x)
       present.view().at(x, y) =
           static_cast<std::uint8_t>(std::min(reference.at(x, y) * band(y) + 0.5, 255.0));
-  LightChange light;
-  light.estimate(reference, present.view(), {}, true);
+  const LightChange light = change(reference, present.view());
   double worst = 0;
   for (int y = 0; y < kSize.height; ++y)
     worst =
@@ -52,8 +59,7 @@ START_TEST(equal_pictures_have_no_change_of_light_whatever_their_size) {
   for (const Size size : {Size{64, 48}, Size{2048, 1040}, Size{3840, 2160}}) {
     Image<std::uint8_t> picture(size);
     picture.fill_bytes(32);
-    LightChange light;
-    light.estimate(picture.view(), picture.view(), {}, true);
+    const LightChange light = change(picture.view(), picture.view());
     ck_assert(light.none());
     ck_assert_double_eq(light.agreement(), 1);
   }
@@ -65,8 +71,7 @@ START_TEST(gain_and_offset_are_found_at_every_size) {
     Image<std::uint8_t> before(size), after(size);
     fill_ramp(before.view(), 1, 0);
     fill_ramp(after.view(), 1.2, -5);
-    LightChange light;
-    light.estimate(before.view(), after.view(), {}, true);
+    const LightChange light = change(before.view(), after.view());
     ck_assert(!light.none());
     ck_assert_double_eq_tol(light.gain() * 100 + light.offset(), 115, 1);
     ck_assert_double_ge(light.agreement(), 0.95);
@@ -99,8 +104,7 @@ START_TEST(an_object_in_less_than_half_of_its_rows_is_no_band) {
   fill_ramp(present.view(), 1, 0);
   for (int y = 60; y < 160; ++y)
     for (int x = 90; x < 230; ++x) present.view().at(x, y) = 250;
-  LightChange light;
-  light.estimate(reference.view(), present.view(), {}, true);
+  const LightChange light = change(reference.view(), present.view());
   for (int y = 0; y < kSize.height; ++y)
     ck_assert_msg(std::abs(light.row(y).gain * 100 + light.row(y).offset - 25600) <= 256, "row %d", y);
 }
@@ -113,8 +117,7 @@ START_TEST(white_in_less_light_may_be_anything_brighter_than_its_share) {
     Image<std::uint8_t> before(kSize), after(kSize);
     fill_ramp(before.view(), 1, 0);
     fill_ramp(after.view(), gain, 0);
-    LightChange light;
-    light.estimate(before.view(), after.view(), {}, true);
+    const LightChange light = change(before.view(), after.view());
     const auto lit = [&](int level) { return level * light.gain() + light.offset(); };
     const std::uint8_t reference[]{100, 100, 250, 250, 250}, present[]{10, 200, 10, 200, 255};
     const double brighter = gain < 1 ? 200 : 250, brightest = gain < 1 ? 255 : 250;

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The kernels of light against their scalar references, on every vector target of this processor, and the references
+// against values computed by hand.
+#include "vision/light_kernels.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+#include "support/targets.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+std::vector<std::uint8_t> levels(std::size_t count, unsigned from, std::mt19937& random) {
+  std::vector<std::uint8_t> out(count);
+  for (auto& level : out) level = static_cast<std::uint8_t>(from + random() % (256 - from));
+  return out;
+}
+
+RowLight any_light(std::mt19937& random) {
+  return {static_cast<std::int32_t>(64 + random() % 900),
+          static_cast<std::int32_t>(random() % 20000) - 10000};
+}
+
+}  // namespace
+
+START_TEST(sums_agree_with_the_reference) {
+  std::mt19937 random(1);
+  for (const int third : {16, 32, 48, 255 * 16})
+    for (int rows = 1; rows <= 4; ++rows)
+      for (const unsigned from : {0u, 220u}) {
+        const std::size_t count = static_cast<std::size_t>(3 * third * rows);
+        const auto reference = levels(count, from, random), present = levels(count, from, random);
+        std::vector<RowLight> lights(static_cast<std::size_t>(rows));
+        for (std::size_t i = 1; i < lights.size(); ++i) lights[i] = any_light(random);
+        ck_assert(sum_samples(reference.data(), present.data(), lights.data(), rows, third) ==
+                  sum_samples_reference(reference.data(), present.data(), lights.data(), rows, third));
+      }
+}
+END_TEST
+
+START_TEST(sums_leave_white_out_and_limit_what_remains) {
+  // Half the light and 10 levels more: 100 becomes 60, 20 becomes 20; 244 is 132, 245 is white and says nothing. In four
+  // times the light 58 is 232 and 59 is near white.
+  std::vector<std::uint8_t> reference(96, 255), present(96, 0);
+  const auto put = [&](std::size_t at, int from, int to) {
+    reference[at] = static_cast<std::uint8_t>(from), present[at] = static_cast<std::uint8_t>(to);
+  };
+  put(0, 100, 65), put(1, 100, 40), put(16, 20, 20), put(32, 244, 133), put(33, 245, 90);
+  put(48, 58, 230), put(49, 59, 90);
+  const RowLight lights[]{{128, 10 * 256}, {1024, 0}};
+  LightSums expected;
+  expected.number = {3, 1, 1}, expected.brighter = {1, 0, 1}, expected.darker = {2, 0, 0};
+  expected.level = 60 + 60 + 20 + 132 + 232;
+  expected.misfit = 5 + 16 + 0 + 1 + 2;
+  ck_assert(sum_samples_reference(reference.data(), present.data(), lights, 2, 16) == expected);
+  ck_assert(sum_samples(reference.data(), present.data(), lights, 2, 16) == expected);
+}
+END_TEST
+
+START_TEST(rows_are_relit_as_the_reference_does_in_place_too) {
+  std::mt19937 random(2);
+  for (const int width : {1, 7, 16, 33, 320, 321})
+    for (int round = 0; round < 40; ++round) {
+      const auto reference = levels(static_cast<std::size_t>(width), round % 2 ? 230 : 0, random),
+                 present = levels(static_cast<std::size_t>(width), 0, random);
+      const RowLight light = any_light(random);
+      auto fast = reference, slow = reference;
+      relight_row_with_white(fast.data(), present.data(), light, width, fast.data());
+      relight_row_with_white_reference(reference.data(), present.data(), light, width, slow.data());
+      ck_assert(fast == slow);
+    }
+}
+END_TEST
+
+START_TEST(white_in_less_light_is_what_the_present_has_if_that_is_brighter) {
+  const std::uint8_t reference[]{244, 245, 245, 255}, present[]{200, 100, 200, 255};
+  std::uint8_t out[4];
+  relight_row_with_white_reference(reference, present, {128, 0}, 4, out);
+  const std::uint8_t half[]{122, 123, 200, 255};  // 245 / 2, rounded up
+  ck_assert(std::equal(out, out + 4, half));
+  relight_row_with_white_reference(reference, present, {256, 0}, 4, out);
+  ck_assert(std::equal(out, out + 4, reference));
+}
+END_TEST
+
+int main() {
+  return run_suite_on_every_target(
+      "light_kernels", {sums_agree_with_the_reference, sums_leave_white_out_and_limit_what_remains,
+                        rows_are_relit_as_the_reference_does_in_place_too,
+                        white_in_less_light_is_what_the_present_has_if_that_is_brighter});
+}
