@@ -14,17 +14,31 @@ FrameTimes::Time FrameTimes::taken(const GstSegment& segment, GstBuffer* frame) 
   return GST_CLOCK_TIME_IS_VALID(running) ? time_of(running) : end_.value_or(Time::zero());
 }
 
-GstEvent* FrameTimes::gap_before(const GstSegment& segment, GstBuffer* frame) const {
-  if (!end_ || taken(segment, frame) <= *end_) return nullptr;
+namespace {
+
+// From running time `begin` until `frame`; nullptr: nothing is between them.
+GstEvent* gap(const GstSegment& segment, control::Time begin, GstBuffer* frame) {
   const GstClockTime until = GST_BUFFER_PTS(frame);
-  guint64 from = gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, clock_time(*end_));
-  if (!GST_CLOCK_TIME_IS_VALID(from)) from = segment.start;  // the last frame was of the segment before
+  if (!GST_CLOCK_TIME_IS_VALID(until)) return nullptr;
+  guint64 from = gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, clock_time(begin));
+  if (!GST_CLOCK_TIME_IS_VALID(from)) from = segment.start;  // it was in the segment before
   return from < until ? gst_event_new_gap(from, until - from) : nullptr;
+}
+
+}  // namespace
+
+GstEvent* FrameTimes::gap_before(const GstSegment& segment, GstBuffer* frame) const {
+  return end_ && taken(segment, frame) > *end_ ? gap(segment, *end_, frame) : nullptr;
+}
+
+GstEvent* FrameTimes::gap_from_last(const GstSegment& segment, GstBuffer* frame) const {
+  return last_ ? gap(segment, *last_, frame) : nullptr;
 }
 
 void FrameTimes::add(const GstSegment& segment, const GstVideoInfo& info, GstBuffer* frame) {
   // As long as nobody knows how long it lasts, it does: a gap begins later than a frame.
-  end_ = taken(segment, frame) + std::max(running_length(GST_BUFFER_DURATION(frame), info, segment), Time(1));
+  last_ = taken(segment, frame);
+  end_ = *last_ + std::max(running_length(GST_BUFFER_DURATION(frame), info, segment), Time(1));
 }
 
 }  // namespace cerberus::plugin

@@ -18,15 +18,17 @@ class FrameTimes {
   using Time = control::Time;
 
   // Running time begins anew.
-  void forget() { end_.reset(); }
+  void forget() { last_ = end_ = {}; }
   // When this frame is taken. Without a time stamp: when the last one ended, as pantiltsink counts.
   Time taken(const GstSegment& segment, GstBuffer* frame) const;
   // What is missing between the last frame and this one, as an event for those behind; nullptr: nothing.
   GstEvent* gap_before(const GstSegment& segment, GstBuffer* frame) const;
+  // The same if the last frame was lost on its way to the head, too.
+  GstEvent* gap_from_last(const GstSegment& segment, GstBuffer* frame) const;
   void add(const GstSegment& segment, const GstVideoInfo& info, GstBuffer* frame);
 
  private:
-  std::optional<Time> end_;  // of the last frame
+  std::optional<Time> last_, end_;  // begin and end of the last frame
 };
 
 }  // namespace cerberus::plugin

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // virtualptz with the head behind it that turns it: over somebody who walks before a wall, 320 x 240 pixels, a window of
 // 160 x 120 that reaches 16.1 degrees (80 pixels) to each side.
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -11,8 +13,9 @@
 namespace {
 
 std::string line(int frames, const std::string& detect = "", const std::string& head = "") {
-  return loop::film(frames) + "virtualptz width=160 height=120 ! motiondetect " + detect +
-         " ! queue ! pantiltsink name=head driver=simulated horizontal-fov=32.2 pan-min=-16 pan-max=16 " +
+  return loop::film(frames) + "virtualptz name=ptz width=160 height=120 ! motiondetect " + detect +
+         " ! queue name=queue ! pantiltsink name=head driver=simulated horizontal-fov=32.2 pan-min=-16 "
+         "pan-max=16 " +
          head;
 }
 
@@ -108,6 +111,74 @@ GST_START_TEST(frames_may_be_missing) {
 }
 GST_END_TEST
 
+// A leaky queue, or whoever else drops frames between window and head. (Each costs half a second.)
+GST_START_TEST(a_frame_may_be_lost_on_its_way_to_the_head) {
+  for (const char* latency : {"0", "60000000"}) {
+    loop::Pipeline pipeline(line(30, "name=detect", std::string("latency=") + latency));
+    g_autoptr(GstElement) detect = gst_bin_get_by_name(GST_BIN(pipeline.element()), "detect");
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
+    int number = 0;
+    gst_pad_add_probe(
+        pad, GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad*, GstPadProbeInfo*, gpointer count) {
+          const int frame = (*static_cast<int*>(count))++;
+          return frame == 0 || frame == 9 || frame == 10 ? GST_PAD_PROBE_DROP : GST_PAD_PROBE_OK;
+        },
+        &number, nullptr);
+    int come = 0;
+    auto count = [&](GstBuffer*) { ++come; };
+    pipeline.watch("head", count);
+    pipeline.play();
+    pipeline.wait_for_end();
+    fail_unless_equals_int(come, 27);
+  }
+}
+GST_END_TEST
+
+// Holds a frame back on its way to the head until the window takes it for lost.
+struct Held {
+  std::atomic<int> frame = -1;  // none
+  int number = 0;
+  std::promise<void> gap;
+};
+
+std::vector<double> pans(int held_frame) {
+  loop::Pipeline pipeline(line(100), stroll());
+  Held held;
+  held.frame = held_frame;
+  const auto watch = [&](const char* name, const char* pad_name, GstPadProbeType type,
+                         GstPadProbeCallback see) {
+    g_autoptr(GstElement) element = gst_bin_get_by_name(GST_BIN(pipeline.element()), name);
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(element, pad_name);
+    gst_pad_add_probe(pad, type, see, &held, nullptr);
+  };
+  watch("ptz", "src", GST_PAD_PROBE_TYPE_EVENT_DOWNSTREAM, [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+    auto& held = *static_cast<Held*>(data);
+    if (GST_EVENT_TYPE(GST_PAD_PROBE_INFO_EVENT(info)) == GST_EVENT_GAP && held.frame.exchange(-1) >= 0)
+      held.gap.set_value();
+    return GST_PAD_PROBE_OK;
+  });
+  watch("queue", "src", GST_PAD_PROBE_TYPE_BUFFER, [](GstPad*, GstPadProbeInfo*, gpointer data) {
+    auto& held = *static_cast<Held*>(data);
+    if (held.number++ == held.frame) held.gap.get_future().wait();
+    return GST_PAD_PROBE_OK;
+  });
+  std::vector<double> all;
+  auto see = [&](GstBuffer* buffer) { all.push_back(cerberus_buffer_peek_pose(buffer)->pan); };
+  pipeline.watch("head", see);
+  pipeline.play();
+  pipeline.wait_for_end();
+  fail_unless_equals_int(held.frame.load(), -1);  // it was held
+  return all;
+}
+
+GST_START_TEST(a_frame_that_was_late_and_not_lost_changes_nothing) {
+  const std::vector<double> all = pans(-1);
+  fail_unless(all.size() == 100 && all[60] != 0);
+  for (const int held : {5, 60}) fail_unless(pans(held) == all);
+}
+GST_END_TEST
+
 // At half the speed a frame lasts twice as long as it says.
 GST_START_TEST(it_may_be_played_slowly) {
   loop::Pipeline pipeline(line(30, "", "latency=0"));
@@ -132,6 +203,8 @@ static Suite* virtualptz_loop_suite() {
   tcase_set_timeout(tc, 60);
   tcase_add_test(tc, who_is_left_by_the_window_is_the_same_when_it_comes_back);
   tcase_add_test(tc, frames_may_be_missing);
+  tcase_add_test(tc, a_frame_may_be_lost_on_its_way_to_the_head);
+  tcase_add_test(tc, a_frame_that_was_late_and_not_lost_changes_nothing);
   tcase_add_test(tc, it_may_be_played_slowly);
   return s;
 }
