@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "fusion/rule_file.h"
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
@@ -170,6 +173,20 @@ START_TEST(a_file_that_cannot_be_read_is_named) {
 }
 END_TEST
 
+START_TEST(a_file_that_may_not_be_read_is_named) {
+  char path[] = "/tmp/cerberus-rules-XXXXXX";
+  close(mkstemp(path));
+  chmod(path, 0);
+  const bool root = geteuid() == 0;
+  ck_assert(!root || seteuid(65534) == 0);
+  const RuleFile forbidden = load_rules(path);
+  ck_assert(!root || seteuid(0) == 0);
+  unlink(path);
+  ck_assert(!forbidden.table.has_value());
+  ck_assert(forbidden.error == std::string(path) + ": Permission denied");
+}
+END_TEST
+
 START_TEST(a_file_is_read_as_its_text_is) {
   char path[] = "/tmp/cerberus-rules-XXXXXX";
   const int descriptor = mkstemp(path);
@@ -218,6 +235,7 @@ int main() {
       "rule_file",
       {the_manuals_first_example_is_the_papers_table, the_manuals_second_example_does_what_it_says,
        what_is_left_out_has_a_default, a_gap_and_a_contradiction_are_named, a_mistake_is_named_with_its_line,
-       all_mistakes_are_told_at_once, a_file_that_cannot_be_read_is_named, a_file_is_read_as_its_text_is,
+       all_mistakes_are_told_at_once, a_file_that_cannot_be_read_is_named,
+       a_file_that_may_not_be_read_is_named, a_file_is_read_as_its_text_is,
        damaged_files_are_refused_or_read_but_never_harm});
 }
