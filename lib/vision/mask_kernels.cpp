@@ -67,40 +67,6 @@ void unpack_row(const std::uint64_t* bits, int width, std::uint8_t* row) {
 
 using Words = hn::ScalableTag<std::uint64_t>;
 
-// The reach doubles with every step. What a neighbouring word moves in needs to be right only as far as it reaches.
-void spread_rows(std::uint64_t* bits, int words, int rows, std::ptrdiff_t stride, int radius) {
-  constexpr int kChunk = 64;  // words at a time, so that they stay on the stack
-  const Words d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  alignas(64) std::uint64_t in[kChunk + 2 + 64] = {}, out[kChunk + 64];  // a vector of room behind
-  for (; rows > 0; --rows, bits += stride) {
-    std::uint64_t before = 0;
-    for (int begin = 0; begin < words; begin += kChunk) {
-      const int count = std::min(kChunk, words - begin);
-      in[0] = before;
-      std::memcpy(in + 1, bits + begin, static_cast<std::size_t>(count) * sizeof(std::uint64_t));
-      in[count + 1] = begin + count < words ? bits[begin + count] : 0;
-      before = in[count];
-      for (int i = 0; i < count; i += lanes) {
-        auto from_below = hn::LoadU(d, in + i), up = hn::LoadU(d, in + i + 1),
-             from_above = hn::LoadU(d, in + i + 2);
-        auto down = up;
-        for (int reach = 0; reach < radius;) {
-          const int step = std::min(reach + 1, radius - reach);  // at most 32
-          up = hn::Or(up, hn::Or(hn::ShiftLeftSame(up, step), hn::ShiftRightSame(from_below, 64 - step)));
-          from_below = hn::Or(from_below, hn::ShiftLeftSame(from_below, step));
-          down =
-              hn::Or(down, hn::Or(hn::ShiftRightSame(down, step), hn::ShiftLeftSame(from_above, 64 - step)));
-          from_above = hn::Or(from_above, hn::ShiftRightSame(from_above, step));
-          reach += step;
-        }
-        hn::StoreU(hn::Or(up, down), d, out + i);
-      }
-      std::memcpy(bits + begin, out, static_cast<std::size_t>(count) * sizeof(std::uint64_t));
-    }
-  }
-}
-
 void unite_with_later(std::uint64_t* words, std::size_t count, std::size_t distance) {
   const Words d;
   const std::size_t lanes = hn::Lanes(d);
@@ -129,7 +95,6 @@ namespace cerberus::vision {
 
 HWY_EXPORT(binarise_row);
 HWY_EXPORT(unpack_row);
-HWY_EXPORT(spread_rows);
 HWY_EXPORT(unite_with_later);
 HWY_EXPORT(unite_with_earlier);
 
@@ -138,9 +103,6 @@ void binarise_row(const std::uint8_t* row, int width, std::uint8_t limit, std::u
 }
 void unpack_row(const std::uint64_t* bits, int width, std::uint8_t* row) {
   HWY_DYNAMIC_DISPATCH(unpack_row)(bits, width, row);
-}
-void spread_rows(std::uint64_t* bits, int words, int rows, std::ptrdiff_t stride, int radius) {
-  HWY_DYNAMIC_DISPATCH(spread_rows)(bits, words, rows, stride, radius);
 }
 void unite_with_later(std::uint64_t* words, std::size_t count, std::size_t distance) {
   HWY_DYNAMIC_DISPATCH(unite_with_later)(words, count, distance);

@@ -13,9 +13,6 @@ void binarise_row(const std::uint8_t* row, int width, std::uint8_t limit, std::u
 // row := 255 where a bit is set, else 0.
 void unpack_row(const std::uint64_t* bits, int width, std::uint8_t* row);
 
-// Each of `rows` rows, `stride` words apart, united with itself moved by -radius .. +radius; radius at most 64. What is
-// moved beyond the last word is lost.
-void spread_rows(std::uint64_t* bits, int words, int rows, std::ptrdiff_t stride, int radius);
 // words[k] |= words[k + distance] for the first `count` words, and words[k] |= words[k - distance] for `count` words from
 // the distance-th on, as if all were read before one is written.
 void unite_with_later(std::uint64_t* words, std::size_t count, std::size_t distance);

@@ -13,6 +13,28 @@ namespace {
 
 using Word = std::uint64_t;
 
+// One row united with itself moved by -radius .. +radius, radius at most 64: the reach doubles with every step. What a
+// neighbouring word moves in needs to be right only as far as it reaches. Most words are all alike.
+void spread_row(Word* row, int words, int radius) {
+  Word before = 0;  // the word to the left, as it was
+  for (int i = 0; i < words; ++i) {
+    const Word here = row[i], after = i + 1 < words ? row[i + 1] : 0;
+    if (~here && (here | before | after)) {
+      Word up = here, from_below = before, down = here, from_above = after;
+      for (int reach = 0; reach < radius;) {
+        const int step = std::min(reach + 1, radius - reach);  // at most 32
+        up |= up << step | from_below >> (64 - step);
+        from_below |= from_below << step;
+        down |= down >> step | from_above << (64 - step);
+        from_above |= from_above >> step;
+        reach += step;
+      }
+      row[i] = up | down;
+    }
+    before = here;
+  }
+}
+
 // Rows united with their neighbours up to `radius` rows away, the reach doubling: first upwards, then downwards.
 void spread_columns(MutableBitView bits, int radius) {
   const auto words = [&](int rows) { return static_cast<std::size_t>(rows) * bits.width; };
@@ -105,8 +127,9 @@ void grow(MutableBitView seeds, BitView within, Word* scratch) {
 
 void Morphology::dilate(MutableBitView bits, int width, int side) {
   if (side / 2 < 1 || bits.empty()) return;
-  for (int radius = side / 2; radius > 0; radius -= 64)
-    spread_rows(bits.data, bits.width, bits.height, bits.stride, std::min(radius, 64));
+  for (int y = 0; y < bits.height; ++y)
+    for (int radius = side / 2; radius > 0; radius -= 64)
+      spread_row(bits.row(y), bits.width, std::min(radius, 64));
   clear_beyond(bits, width);
   spread_columns(bits, side / 2);
 }
