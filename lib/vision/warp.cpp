@@ -82,10 +82,11 @@ bool Warp::prepare(const Transform& motion, Size size) {
     if (m[6] * centre.x + m[7] * centre.y + m[8] < 0)
       for (double& v : inverse_.m) v = -v;
   }
+  RowSpan span;
   for (int y = 0; y < size.height; ++y) {
-    const RowSpan span = kind_ == Kind::affine       ? affine_span(y)
-                         : kind_ == Kind::projective ? projective_span(y)
-                                                     : shift_span(y);
+    span = kind_ == Kind::affine       ? affine_span(y)
+           : kind_ == Kind::projective ? projective_span(y, span)
+                                       : shift_span(y);
     spans_.view().at(y, 0) = span;
     valid_ += span.end - span.begin;
   }
@@ -122,12 +123,19 @@ bool Warp::projective_position(int x, int y, std::int32_t& u, std::int32_t& v) c
   return true;
 }
 
-RowSpan Warp::projective_span(int y) const {
+// The valid pixels of a row are one span, which begins and ends near where that of the row above does.
+RowSpan Warp::projective_span(int y, RowSpan above) const {
   std::int32_t u, v;
-  RowSpan span{0, size_.width};
-  while (span.begin < span.end && !projective_position(span.begin, y, u, v)) ++span.begin;
-  while (span.begin < span.end && !projective_position(span.end - 1, y, u, v)) --span.end;
-  return span.begin < span.end ? span : RowSpan{};
+  const auto valid = [&](int x) { return projective_position(x, y, u, v); };
+  for (RowSpan span : {above, RowSpan{0, size_.width}}) {
+    while (span.begin < span.end && !valid(span.begin)) ++span.begin;
+    while (span.begin < span.end && !valid(span.end - 1)) --span.end;
+    if (span.begin == span.end) continue;
+    while (span.begin > 0 && valid(span.begin - 1)) --span.begin;
+    while (span.end < size_.width && valid(span.end)) ++span.end;
+    return span;
+  }
+  return {};
 }
 
 void Warp::find_positions(int y) {

@@ -53,7 +53,7 @@ class Warp {
 
   RowSpan shift_span(int y) const;
   RowSpan affine_span(int y) const;
-  RowSpan projective_span(int y) const;
+  RowSpan projective_span(int y, RowSpan above) const;
   bool projective_position(int x, int y, std::int32_t& u, std::int32_t& v) const;
   void find_positions(int y);
   template <typename T, typename Sample>

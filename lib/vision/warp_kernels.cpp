@@ -65,9 +65,10 @@ HWY_INLINE hn::Vec<D> blend(D, hn::Vec<D> p00, hn::Vec<D> p01, hn::Vec<D> p10, h
   return hn::ShiftRight<14>(hn::Add(sum, hn::Set(D(), 1 << 13)));
 }
 
-// A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly always
-// neighbours in the source: then whole vectors are read, otherwise one pixel at a time. No gather instruction
-// is needed.
+// A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly always neighbours in the
+// source: then whole vectors are read. Where a column or a row is left out or comes twice, or the next one begins, the
+// first part of the vector is as its first lane says and the rest as its last one does. Otherwise one pixel at a time: no
+// gather instruction is needed.
 template <class D, typename T>
 HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, const std::int32_t* y,
                               T* out) {
@@ -78,13 +79,28 @@ HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, 
   const auto ix = hn::Min(hn::ShiftRight<7>(px), right), iy = hn::Min(hn::ShiftRight<7>(py), low);
   const auto fx = hn::Sub(px, hn::ShiftLeft<7>(ix)), fy = hn::Sub(py, hn::ShiftLeft<7>(iy));
   const int x0 = hn::GetLane(ix), y0 = hn::GetLane(iy);
-  const bool neighbours = hn::AllTrue(
-      d, hn::And(hn::Eq(ix, hn::Add(hn::Iota(d, 0), hn::Set(d, x0))), hn::Eq(iy, hn::Set(d, y0))));
+  const auto begins =
+      hn::And(hn::Eq(ix, hn::Add(hn::Iota(d, 0), hn::Set(d, x0))), hn::Eq(iy, hn::Set(d, y0)));
   const auto load = [&](const T* p) { return hn::PromoteTo(d, hn::LoadU(dt, p)); };
-  if (neighbours) {
-    const T* p = &source.at(x0, y0);
+  const auto read = [&](std::ptrdiff_t offset) {
+    const T* p = source.data + offset;
     const T* q = p + source.stride;
-    hn::StoreU(hn::DemoteTo(dt, blend(d, load(p), load(p + 1), load(q), load(q + 1), fx, fy)), dt, out);
+    return blend(d, load(p), load(p + 1), load(q), load(q + 1), fx, fy);
+  };
+  const std::ptrdiff_t first = y0 * source.stride + x0;
+  if (hn::AllTrue(d, begins)) {
+    hn::StoreU(hn::DemoteTo(dt, read(first)), dt, out);
+    return;
+  }
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  const int x1 = std::min(x[lanes - 1] >> 7, source.width - 2),
+            y1 = std::min(y[lanes - 1] >> 7, source.height - 2);
+  const auto ends =
+      hn::And(hn::Eq(ix, hn::Add(hn::Iota(d, 0), hn::Set(d, x1 - lanes + 1))), hn::Eq(iy, hn::Set(d, y1)));
+  const std::ptrdiff_t last = y1 * source.stride + x1 - lanes + 1;
+  const std::ptrdiff_t room = (source.height - 2) * source.stride + source.width - 1 - lanes;
+  if (first <= room && last >= 0 && hn::AllTrue(d, hn::Or(begins, ends))) {
+    hn::StoreU(hn::DemoteTo(dt, hn::IfThenElse(begins, read(first), read(last))), dt, out);
     return;
   }
   HWY_ALIGN std::int32_t xs[kLanes], ys[kLanes];
