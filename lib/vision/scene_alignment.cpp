@@ -60,9 +60,15 @@ std::optional<Transform> align_to_memory(std::span<const BlockSums> blocks, int 
       const double xx = b.xx / 4.0, xy = b.xy / 4.0, yy = b.yy / 4.0, xe = b.xe / 2.0, ye = b.ye / 2.0;
       const double left = b.ee + 2 * (u * xe + v * ye) + u * u * xx + 2 * u * v * xy + v * v * yy;
       const double cauchy = 1 / (kScale + std::max(left, 0.0) / b.n), weight = cauchy * cauchy;
+      // J^T W J, where ju ends and jv begins with three zeros that are not multiplied.
+      const auto add = [&](int from, int to, int i, const auto& term) {
+        for (int j = from; j < to; ++j) m[i][j] += term(j);
+      };
       for (int i = 0; i < kUnknowns; ++i) {
         const double sx = weight * (xx * ju[i] + xy * jv[i]), sy = weight * (xy * ju[i] + yy * jv[i]);
-        for (int j = 0; j <= i; ++j) m[i][j] += ju[j] * sx + jv[j] * sy;
+        add(0, std::min(i + 1, 3), i, [&](int j) { return ju[j] * sx; });
+        add(3, std::min(i + 1, 6), i, [&](int j) { return jv[j] * sy; });
+        add(6, i + 1, i, [&](int j) { return ju[j] * sx + jv[j] * sy; });
         m[i][kUnknowns] -= weight * (ju[i] * xe + jv[i] * ye);
       }
     }

@@ -66,6 +66,16 @@ void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
   for (int y = 0; y < out.height; ++y) out.row(y)[out.width - 1] &= last_word_bits(width);
 }
 
+// A block's ages, at most kRelearn.
+void relearn(MutableGrayView age, int left, int top) {
+  const int columns = std::min(kSceneBlock, age.width - left),
+            bottom = std::min(top + kSceneBlock, age.height);
+  for (int y = top; y < bottom; ++y) {
+    std::uint8_t* row = age.row(y) + left;
+    for (int x = 0; x < columns; ++x) row[x] = std::min(row[x], kRelearn);
+  }
+}
+
 // Noise by brightness from sampled absolute differences.
 class NoiseSamples {
  public:
@@ -338,9 +348,7 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
         const double beyond_noise = 2 * 2 * (ge - noise * std::sqrt(gg * n)) / (gg + 400);
         if (beyond_noise > kUnreliable) {
           ++unreliable;
-          for (int v = y; v < std::min(y + kSceneBlock, size.height); ++v)
-            for (int u = bx * kSceneBlock; u < std::min((bx + 1) * kSceneBlock, size.width); ++u)
-              age.view().at(u, v) = std::min(age.view().at(u, v), kRelearn);
+          relearn(age.view(), bx * kSceneBlock, y);
         }
         std::fill_n(tolerance.view().data + bx * kSceneBlock,
                     std::min(kSceneBlock, size.width - bx * kSceneBlock),
