@@ -114,6 +114,7 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
   const auto weak_sigmas = set(limits.weak_sigmas), strong_sigmas = set(limits.strong_sigmas);
   const auto weak_least = set(limits.weak_least), strong_least = set(limits.strong_least);
   const auto young = set(limits.young), one = set(1), most = set(255);
+  const auto sure = hn::Eq(set(limits.registered), hn::Zero(d));
   for (int x = 0; x < padded; x += lanes) {
     const auto m = load(d, row.memory + x);
     const auto e = hn::ShiftLeft<4>(hn::Abs(hn::Sub(load(d, row.present + x), m)));
@@ -133,7 +134,8 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
     auto is_weak = hn::Or(hn::Gt(e, hn::Add(weak_limit, edge)), hn::And(moved, hn::Gt(e, weak_limit)));
     auto is_strong = hn::Gt(e, strong_limit);
     is_weak = hn::Or(hn::AndNot(unsure, is_weak), hn::And(unsure, moved));
-    is_strong = hn::Or(hn::AndNot(unsure, is_strong), hn::And(unsure, moved));
+    is_strong =
+        hn::Or(hn::AndNot(unsure, is_strong), hn::And(hn::And(unsure, moved), hn::Or(sure, hn::Gt(e, edge))));
     put_bits(d, is_weak, weak, x);
     put_bits(d, is_strong, strong, x);
     store(d, hn::IfThenZeroElse(moved, hn::Min(hn::Add(load(d, row.quiet + x), one), most)), row.quiet + x);
@@ -267,7 +269,7 @@ void compare_row_reference(const CompareRow& row, const CompareLimits& limits, s
     const bool moved = bit(row.moved, x);
     const bool unsure = row.age[x] < limits.young;
     set_bit(weak, x, unsure ? moved : e > weak_limit + edge || (moved && e > weak_limit));
-    set_bit(strong, x, unsure ? moved : e > strong_limit + edge);
+    set_bit(strong, x, unsure ? moved && (!limits.registered || e > edge) : e > strong_limit + edge);
     row.quiet[x] = static_cast<std::uint8_t>(moved ? 0 : std::min(row.quiet[x] + 1, 255));
   }
 }

@@ -57,12 +57,14 @@ struct CompareLimits {
   std::array<std::uint8_t, kBrightness> noise{};  // sigma of frame - memory by brightness, 1/16 level
   int weak_sigmas = 3, strong_sigmas = 5;
   int weak_least = 6 * 16, strong_least = 9 * 16;  // 1/16 level
-  int young = 2;                                   // below this age the memory says nothing and D(k) decides
+  int young = 2;            // below this age the memory says nothing and D(k) decides ...
+  bool registered = false;  // ... and may be an error of registration itself
 };
 // weak, strong: bits of the pixels that differ from the memory by more than noise and registration explain. With
 //   s = max(noise[m / 16], 5/4 spread), edge = |gradient of m| * tolerance, e = |present - m|:
 //   strong: e > max(strong_least, strong_sigmas s) + edge;  weak: the same with its own limits, or moved and
-//   e > max(weak_least, weak_sigmas s): two witnesses need no tolerance. Young pixels: both are `moved`.
+//   e > max(weak_least, weak_sigmas s): two witnesses need no tolerance. Young pixels: both are `moved`; where
+//   pictures had to be registered, strong also asks for e > edge.
 void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,
                  std::uint64_t* strong);
 void compare_row_reference(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,

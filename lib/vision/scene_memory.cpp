@@ -313,6 +313,7 @@ void SceneMemory::State::leave_valid(MutableBitView bits) const {
 
 void SceneMemory::State::compare(const SceneMemoryInput& in) {
   CompareLimits limits;
+  limits.registered = !in.still;
   for (int c = 0; c < kBrightness; ++c)
     limits.noise[c] = static_cast<std::uint8_t>(std::min(std::lround(16 * sigma[c]), 255L));
   // Mean of |e| of normal noise: 0.8 sigma.

@@ -26,7 +26,7 @@ SceneWindows SceneWindows::of(double seconds) {
   const auto frames = [seconds](double time, int least) {
     return static_cast<int>(std::clamp(std::round(time / seconds), static_cast<double>(least), 250.0));
   };
-  return {frames(0.12, 3), frames(1, 8), frames(2, 8), frames(10, 50)};
+  return {frames(0.04, 1), frames(0.12, 3), frames(1, 8), frames(2, 8), frames(10, 50)};
 }
 
 void SceneParts::make_room(Size picture) {
@@ -43,12 +43,14 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
   parts_.assign(components.size(), {});
   // A memory that has to be registered is believed less: what does not move now is not believed.
   const int lately = planes.still ? windows.lately : windows.now;
+  // Somebody whom the camera follows is away from the place he was in within a frame or two.
+  const int fresh_window = planes.still ? windows.now : windows.fresh;
   for (const Run& r : labeller_.runs()) {
     Part& part = parts_[r.component];
     const std::uint8_t *quiet = planes.quiet.row(r.row), *age = planes.age.row(r.row);
     int now = 0, before = 0, young = 0, newest = 0;
     for (int x = r.first; x < r.end; ++x)
-      now += quiet[x] < windows.now, before += quiet[x] < lately, young += age[x] < windows.young,
+      now += quiet[x] < fresh_window, before += quiet[x] < lately, young += age[x] < windows.young,
           newest += age[x] < windows.lately;
     part.now += now;
     part.lately += before;

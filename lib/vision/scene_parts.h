@@ -14,6 +14,7 @@ namespace cerberus::vision {
 
 // How many frames of this rate things take. Limits are those of the planes' 8 bits.
 struct SceneWindows {
+  int fresh = 1;    // what moves at this moment: the last frame, 0.04 s
   int now = 3;      // what moved so lately moves: 3 frames, 0.12 s
   int lately = 25;  // 1 s: what moved so lately may have stopped for a moment
   int young = 50;   // 2 s: what the memory has learnt for less may be an object's place

@@ -103,6 +103,7 @@ START_TEST(comparison_agrees_with_the_reference) {
       std::memcpy(slow_quiet.view().data, fast_quiet.view().data, static_cast<std::size_t>(width));
       const auto moved = random_bits(width, random);
       CompareLimits limits;
+      limits.registered = round % 4 < 2;
       for (auto& n : limits.noise) n = static_cast<std::uint8_t>(random() % (round % 2 ? 256 : 40));
       CompareRow row{present.view().data,    memory.view().row(0),
                      memory.view().row(1),   memory.view().row(2),
@@ -127,6 +128,7 @@ START_TEST(comparison_follows_its_definition_on_single_pixels) {
   struct Case {
     int difference, noise, spread, slope, tolerance, age;
     bool moved, weak, strong;
+    bool registered = false;
   };
   // Limits: weak max(6, 3 s), strong max(9, 5 s) levels, s = max(noise, 5/4 spread); edges add |gradient| x tolerance.
   const Case cases[] = {
@@ -143,7 +145,10 @@ START_TEST(comparison_follows_its_definition_on_single_pixels) {
       {30, 16, 0, 20, 16, 9, false, true, true},
       {30, 16, 0, 20, 32, 9, false, false, false},
       {40, 16, 0, 0, 16, 1, false, false, false},  // too young: D(k) decides
-      {0, 16, 0, 0, 16, 1, true, true, true}};
+      {0, 16, 0, 0, 16, 1, true, true, true},
+      {20, 16, 0, 20, 16, 1, true, true, false, true},  // which may be an error of registration
+      {21, 16, 0, 20, 16, 1, true, true, true, true},
+      {20, 16, 0, 20, 16, 1, true, true, true, false}};
   for (const Case& c : cases) {
     const Size size{1, 1};
     Margined memory({1, 3});
@@ -157,6 +162,7 @@ START_TEST(comparison_follows_its_definition_on_single_pixels) {
     const std::uint64_t moved = c.moved;
     CompareLimits limits;
     limits.noise.fill(static_cast<std::uint8_t>(c.noise));
+    limits.registered = c.registered;
     std::uint64_t weak = 0, strong = 0;
     compare_row_reference({&present, memory.view().row(0), memory.view().row(1), memory.view().row(2),
                            &spread, &age, &tolerance, &moved, &quiet, 1},

@@ -68,6 +68,7 @@ constexpr Rect kPerson{100, 80, 30, 80};
 START_TEST(windows_are_times_not_frames) {
   const SceneWindows usual = SceneWindows::of(1 / 25.0), slow = SceneWindows::of(1 / 5.0),
                      fast = SceneWindows::of(1 / 100.0);
+  ck_assert_int_eq(usual.fresh, kWindows.fresh);
   ck_assert_int_eq(usual.now, kWindows.now);
   ck_assert_int_eq(usual.lately, kWindows.lately);
   ck_assert_int_eq(usual.young, kWindows.young);
@@ -75,6 +76,8 @@ START_TEST(windows_are_times_not_frames) {
   ck_assert_int_eq(slow.hold, 50);   // 10 s
   ck_assert_int_eq(slow.young, 10);  // 2 s
   ck_assert_int_eq(slow.now, 3);     // never fewer than three frames
+  ck_assert_int_eq(slow.fresh, 1);
+  ck_assert_int_eq(fast.fresh, 4);
   ck_assert_int_eq(fast.now, 12);
   ck_assert_int_eq(fast.lately, 100);
   ck_assert_int_eq(fast.hold, 250);  // as far as 8 bits count
@@ -151,6 +154,21 @@ START_TEST(before_a_camera_that_moves_only_what_moves_now_counts) {
     s.differs(kPerson, since);
     s.judge(false);
     ck_assert_int_eq(count(s.mask, kPerson), since < 3 ? all(kPerson) : 0);
+  }
+}
+END_TEST
+
+START_TEST(before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment) {
+  struct Case {
+    int since;
+    bool kept;
+  };
+  for (const Case& c : {Case{0, true}, {1, false}, {2, false}}) {
+    Scene s(255);
+    Scene::paint(s.memory, kPerson, 200);
+    s.differs(kPerson, c.since);
+    s.judge(false);
+    ck_assert_int_eq(count(s.mask, kPerson), c.kept ? all(kPerson) : 0);
   }
 }
 END_TEST
@@ -243,6 +261,7 @@ int main() {
       {windows_are_times_not_frames, what_moves_is_an_object, who_stopped_is_kept_for_ten_seconds,
        whose_place_is_empty_is_forgotten_at_once, what_the_memory_saw_for_moments_needs_motion_now,
        objects_before_a_young_memory_are_told, before_a_camera_that_moves_only_what_moves_now_counts,
+       before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
        two_fronts_are_one_where_the_memory_is_young, a_front_belongs_to_what_is_near,
        fronts_far_apart_or_of_other_heights_are_two,
        a_piece_near_a_big_part_is_dropped_where_the_memory_is_young, two_people_stay_two,
