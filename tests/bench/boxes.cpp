@@ -2,7 +2,6 @@
 #include "boxes.h"
 
 #include <cerberus/cerberus.h>
-#include <gst/app/gstappsink.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -68,25 +67,15 @@ bool for_each_sample(const std::string& line, const std::function<void(GstSample
   GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   int n = 0;
-  while (GstSample* sample = gst_app_sink_pull_sample(GST_APP_SINK(out))) {
+  bool failed = false;
+  while (GstSample* sample = pull(pipeline, out, failed)) {
     each(sample, n++);
     gst_sample_unref(sample);
   }
-  GstBus* bus = gst_element_get_bus(pipeline);
-  GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
-  const bool whole = n > 0 && !message;
-  if (message) {
-    GError* what = nullptr;
-    gst_message_parse_error(message, &what, nullptr);
-    std::fprintf(stderr, "bench: %s\n", what->message);
-    g_clear_error(&what);
-    gst_message_unref(message);
-  }
-  gst_object_unref(bus);
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(out);
   gst_object_unref(pipeline);
-  return whole;
+  return n > 0 && !failed;
 }
 
 }  // namespace cerberus::bench

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "frames.h"
 
-#include <gst/app/gstappsink.h>
 #include <gst/video/video.h>
 #include <time.h>
 
@@ -29,8 +28,9 @@ std::optional<Frames> load_frames(const std::string& source, const char* format,
   GstElement* out = gst_bin_get_by_name(GST_BIN(pipeline), "out");
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   Frames frames;
+  bool failed = false;
   while (static_cast<int>(frames.data.size()) < count) {
-    GstSample* sample = gst_app_sink_pull_sample(GST_APP_SINK(out));
+    GstSample* sample = pull(pipeline, out, failed);
     if (!sample) break;
     if (frames.data.empty()) {
       GstCaps* caps = gst_caps_copy(gst_sample_get_caps(sample));
@@ -54,7 +54,7 @@ std::optional<Frames> load_frames(const std::string& source, const char* format,
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(out);
   gst_object_unref(pipeline);
-  if (frames.data.empty()) {
+  if (failed || frames.data.empty()) {
     std::fprintf(stderr, "bench: no frame from: %s\n", line.c_str());
     return std::nullopt;
   }
