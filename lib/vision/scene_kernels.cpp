@@ -33,15 +33,16 @@ void learn_row(const LearnRow& row) {
 #else
 
 using D16 = hn::CappedTag<std::int16_t, 16>;
-using U16 = hn::RebindToUnsigned<D16>;
-using Half = hn::Rebind<std::uint8_t, D16>;
 using D32 = hn::RepartitionToWide<D16>;
 
-HWY_INLINE hn::Vec<D16> load(D16 d, const std::uint8_t* p) {
-  return hn::PromoteTo(d, hn::LoadU(Half(), p));
+template <class D>
+HWY_INLINE hn::Vec<D> load(D d, const std::uint8_t* p) {
+  return hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint8_t, D>(), p));
 }
-HWY_INLINE void store(D16, hn::Vec<D16> v, std::uint8_t* p) {
-  hn::StoreU(hn::DemoteTo(Half(), v), Half(), p);
+template <class D>
+HWY_INLINE void store(D, hn::Vec<D> v, std::uint8_t* p) {
+  const hn::Rebind<std::uint8_t, D> half;
+  hn::StoreU(hn::DemoteTo(half, v), half, p);
 }
 
 // Sum of products into 32 bits.
@@ -54,7 +55,8 @@ struct Sum {
   HWY_INLINE std::int32_t total() const { return hn::GetLane(hn::SumOfLanes(D32(), hn::Add(low, high))); }
 };
 
-HWY_INLINE hn::Vec<D16> length(hn::Vec<D16> gx, hn::Vec<D16> gy) {
+template <class V>
+HWY_INLINE V length(V gx, V gy) {
   const auto a = hn::Abs(gx), b = hn::Abs(gy);
   return hn::Add(hn::Max(a, b), hn::ShiftRight<1>(hn::Min(a, b)));
 }
@@ -91,31 +93,43 @@ BlockSums block_sums(const BlockRows& rows, int x0, int begin, int end) {
 }
 
 // The mask of the lanes from x on, and back. Eight lanes are a byte of the row; x is a multiple of the lanes.
-HWY_INLINE hn::Mask<D16> bits_at(D16 d, const std::uint64_t* row, int x) {
+template <class D>
+HWY_INLINE hn::Mask<D> bits_at(D d, const std::uint64_t* row, int x) {
   return hn::LoadMaskBits(d, reinterpret_cast<const std::uint8_t*>(row) + x / 8);
 }
-HWY_INLINE void put_bits(D16 d, hn::Mask<D16> mask, std::uint64_t* row, int x) {
+template <class D>
+HWY_INLINE void put_bits(D d, hn::Mask<D> mask, std::uint64_t* row, int x) {
   std::uint8_t bytes[8] = {};
   hn::StoreMaskBits(d, mask, bytes);
   std::memcpy(reinterpret_cast<std::uint8_t*>(row) + x / 8, bytes, hn::Lanes(d) / 8);
 }
 
+// Calls run(vectors, x) along a row: 32 samples at a time where the processor has such vectors, and the rest by 16 or what
+// there is. Planes are padded for that (scene_kernels.h).
+template <class Run>
+HWY_INLINE void along_row(int width, Run&& run) {
+  const hn::CappedTag<std::int16_t, 32> wide;
+  const D16 d;
+  const int many = static_cast<int>(hn::Lanes(wide)), lanes = static_cast<int>(hn::Lanes(d));
+  const int padded = (width + lanes - 1) / lanes * lanes;
+  int x = 0;
+  for (; x + many <= padded; x += many) run(wide, x);
+  for (; x < padded; x += lanes) run(d, x);
+}
+
 void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,
                  std::uint64_t* strong) {
-  const D16 d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  if (lanes < 8) return compare_row_reference(row, limits, weak, strong);
-  const int padded = (row.width + lanes - 1) / lanes * lanes;  // inside every plane's padding
+  if (hn::Lanes(D16()) < 8) return compare_row_reference(row, limits, weak, strong);
   alignas(16) std::uint8_t table_bytes[16];
   std::memcpy(table_bytes, limits.noise.data(), 16);
-  const hn::Repartition<std::uint8_t, D16> d8;
-  const auto table = hn::LoadDup128(d8, table_bytes);
-  const auto set = [&](int v) { return hn::Set(d, static_cast<std::int16_t>(v)); };
-  const auto weak_sigmas = set(limits.weak_sigmas), strong_sigmas = set(limits.strong_sigmas);
-  const auto weak_least = set(limits.weak_least), strong_least = set(limits.strong_least);
-  const auto young = set(limits.young), one = set(1), most = set(255);
-  const auto sure = hn::Eq(set(limits.registered), hn::Zero(d));
-  for (int x = 0; x < padded; x += lanes) {
+  along_row(row.width, [&](auto d, int x) HWY_ATTR {
+    const hn::Repartition<std::uint8_t, decltype(d)> d8;
+    const auto table = hn::LoadDup128(d8, table_bytes);
+    const auto set = [&](int v) { return hn::Set(d, static_cast<std::int16_t>(v)); };
+    const auto weak_sigmas = set(limits.weak_sigmas), strong_sigmas = set(limits.strong_sigmas);
+    const auto weak_least = set(limits.weak_least), strong_least = set(limits.strong_least);
+    const auto young = set(limits.young), one = set(1), most = set(255);
+    const auto sure = hn::Eq(set(limits.registered), hn::Zero(d));
     const auto m = load(d, row.memory + x);
     const auto e = hn::ShiftLeft<4>(hn::Abs(hn::Sub(load(d, row.present + x), m)));
     const auto gx = hn::Sub(load(d, row.memory + x + 1), load(d, row.memory + x - 1));
@@ -139,28 +153,25 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
     put_bits(d, is_weak, weak, x);
     put_bits(d, is_strong, strong, x);
     store(d, hn::IfThenZeroElse(moved, hn::Min(hn::Add(load(d, row.quiet + x), one), most)), row.quiet + x);
-  }
+  });
 }
 
 void learn_row(const LearnRow& row) {
-  const D16 d;
-  const U16 du;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  if (lanes < 8) return learn_row_reference(row);
-  const int padded = (row.width + lanes - 1) / lanes * lanes;  // inside every plane's padding
-  const hn::Repartition<std::uint8_t, D16> d8;
+  if (hn::Lanes(D16()) < 8) return learn_row_reference(row);
   alignas(16) std::uint8_t young_bytes[16], old_bytes[16];
   std::memcpy(young_bytes, kYoungRate.data(), 16);
   std::memcpy(old_bytes, kOldRate.data(), 16);
-  const auto young_table = hn::LoadDup128(d8, young_bytes), old_table = hn::LoadDup128(d8, old_bytes);
-  const auto set = [&](int v) { return hn::Set(d, static_cast<std::int16_t>(v)); };
-  const auto most = set(255), one = set(1), sixteen = set(16), high = set(-32768), phase = set(row.phase);
-  const auto white = hn::Set(du, 255 << 8);
-  const auto look_up = [&](auto table, hn::Vec<D16> index) {
-    return hn::And(hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, hn::Or(index, high)))),
-                   most);
-  };
-  for (int x = 0; x < padded; x += lanes) {
+  along_row(row.width, [&](auto d, int x) HWY_ATTR {
+    const hn::RebindToUnsigned<decltype(d)> du;
+    const hn::Repartition<std::uint8_t, decltype(d)> d8;
+    const auto young_table = hn::LoadDup128(d8, young_bytes), old_table = hn::LoadDup128(d8, old_bytes);
+    const auto set = [&](int v) { return hn::Set(d, static_cast<std::int16_t>(v)); };
+    const auto most = set(255), one = set(1), sixteen = set(16), high = set(-32768), phase = set(row.phase);
+    const auto white = hn::Set(du, 255 << 8);
+    const auto look_up = [&](auto table, auto index) {
+      return hn::And(hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, hn::Or(index, high)))),
+                     most);
+    };
     const auto f = load(d, row.present + x), m = load(d, row.memory + x);
     const auto age = load(d, row.age + x), quiet = load(d, row.quiet + x), spread = load(d, row.spread + x);
     const auto mean = hn::LoadU(du, row.mean + x);
@@ -192,7 +203,7 @@ void learn_row(const LearnRow& row) {
     hn::StoreU(next, du, row.mean + x);
     store(d, next_spread, row.spread + x);
     store(d, next_age, row.age + x);
-  }
+  });
 }
 #endif
 
