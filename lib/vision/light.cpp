@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "vision/median.h"
+#include "vision/rounding.h"
 
 namespace cerberus::vision {
 
@@ -167,8 +168,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return false;
   const double gain = std::clamp(1 + slope, 0.25, 4.0);
   const auto relit = [&](RowLight row) {
-    return RowLight{static_cast<std::int32_t>(std::lround(row.gain * gain)),
-                    static_cast<std::int32_t>(std::lround(row.offset * gain + 256 * at_zero))};
+    return RowLight{round_to_int(row.gain * gain), round_to_int(row.offset * gain + 256 * at_zero)};
   };
   RowLight before, after = relit(before);  // most rows are alike
   for (RowLight& row : rows_) {
@@ -239,8 +239,8 @@ bool LightChange::estimate_bands(const LightSamples& samples) {
     const double position = (y + 0.5) / kBand - 0.5;
     const int low = std::clamp(static_cast<int>(position), 0, bands - 2);
     const double k = 1 + excess[low] + (position - low) * (excess[low + 1] - excess[low]);
-    rows_[y].gain = static_cast<std::int32_t>(std::lround(rows_[y].gain * k));
-    rows_[y].offset = static_cast<std::int32_t>(std::lround(rows_[y].offset * k));
+    rows_[y].gain = round_to_int(rows_[y].gain * k);
+    rows_[y].offset = round_to_int(rows_[y].offset * k);
   }
   return true;
 }

@@ -3,6 +3,7 @@
 // a whole picture cost a few microseconds in plain portable code.
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "vision/image.h"
@@ -34,6 +35,14 @@ void for_words(int first, int end, Each&& each) {
     each(word, ones);
     x = stop;
   }
+}
+// Calls each(x) for the set ones of the bits first..end-1 of a row.
+template <typename Each>
+void for_bits(const std::uint64_t* row, int first, int end, Each&& each) {
+  for_words(first, end, [&](int word, std::uint64_t ones) {
+    for (std::uint64_t left = row[word] & ones; left; left &= left - 1)
+      each(64 * word + std::countr_zero(left));
+  });
 }
 inline void set_bits(std::uint64_t* row, int first, int end) {
   for_words(first, end, [row](int word, std::uint64_t ones) { row[word] |= ones; });

@@ -72,16 +72,16 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
     std::fill_n(cells(r) + inside_.left, inside_.width(), kCellCounted);
   // A cell moves when at least half of its pixels do (of one pixel: when it does).
   const int half = std::max(1, step_ * step_ / 2);
-  for (int r = window_.top; r < window_.bottom; ++r)
-    for (int c = window_.left; c < window_.right; ++c) {
-      int moving = 0;
-      for (int y = std::max(window.top, y0_ + r * step_); y < std::min(window.bottom, y0_ + (r + 1) * step_);
-           ++y)
-        for (int x = std::max(window.left, x0_ + c * step_);
-             x < std::min(window.right, x0_ + (c + 1) * step_); ++x)
-          moving += static_cast<int>(pixels.row(y)[x / 64] >> (x % 64) & 1);
-      if (moving >= half) cells(r)[c] |= kCellMoving;
-    }
+  std::vector<std::uint32_t>& moving = band_;  // not in use yet
+  for (int r = window_.top; r < window_.bottom; ++r) {
+    moving.assign(static_cast<std::size_t>(columns_), 0);
+    const int top = std::max(window.top, y0_ + r * step_),
+              bottom = std::min(window.bottom, y0_ + (r + 1) * step_);
+    for (int y = top; y < bottom; ++y)
+      for_bits(pixels.row(y), window.left, window.right, [&](int x) { ++moving[(x - x0_) / step_]; });
+    for (int c = window_.left; c < window_.right; ++c)
+      if (static_cast<int>(moving[c]) >= half) cells(r)[c] |= kCellMoving;
+  }
   shapes_.assign(static_cast<std::size_t>(rows_) + 1, {});
   for (int r = 0; r <= rows_; ++r) {
     const double height = prior_->height(y0_ + r * step_) / step_;

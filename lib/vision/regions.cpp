@@ -206,19 +206,18 @@ Box RegionFinder::State::fit(const Box& expected, const Window& window, std::siz
   Window seen{right, bottom, left, top};
   for (int y = top; y < bottom; ++y) {
     const std::uint64_t* bits = moving.view().row(y);
-    for (int x = left; x < right; ++x) {
-      if (!(bits[x / 64] >> (x % 64) & 1)) continue;
+    for_bits(bits, left, right, [&](int x) {
       const bool inside = x >= expected.x && x < expected.right() && y >= expected.y && y < expected.bottom();
       bool others = false;
       for (std::size_t k = 0; k < all.size() && !inside && !others; ++k)
         others = k != self && x >= all[k].box.x && x < all[k].box.right() && y >= all[k].box.y &&
                  y < all[k].box.bottom();
-      if (others) continue;
+      if (others) return;
       seen.left = std::min(seen.left, x);
       seen.right = std::max(seen.right, x + 1);
       seen.top = std::min(seen.top, y);
       seen.bottom = std::max(seen.bottom, y + 1);
-    }
+    });
   }
   if (seen.width() <= 0 || seen.height() <= 0) return expected;
   const auto blend = [](double a, double b) { return (a + b) / 2; };

@@ -15,6 +15,7 @@
 #include "vision/median.h"
 #include "vision/morphology.h"
 #include "vision/motion_blur.h"
+#include "vision/rounding.h"
 #include "vision/scene_alignment.h"
 #include "vision/scene_kernels.h"
 #include "vision/scene_light.h"
@@ -54,7 +55,7 @@ void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
   for (int y0 = 0; y0 < out.height; y0 += 8)
     for (int x0 = 0; x0 < out.width * 64; x0 += 32) {
       const Point q{x0 + 15.5, y0 + 3.5}, p = map.apply(q);
-      const int dx = static_cast<int>(std::lround(p.x - q.x)), dy = static_cast<int>(std::lround(p.y - q.y));
+      const int dx = round_to_int(p.x - q.x), dy = round_to_int(p.y - q.y);
       for (int y = y0; y < std::min(y0 + 8, out.height); ++y) {
         const int from = y + dy;
         const std::uint64_t half =
