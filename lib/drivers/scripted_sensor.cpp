@@ -87,10 +87,9 @@ void ScriptedSensor::close() noexcept {
 }
 
 bool ScriptedSensor::parse_wait(std::string_view fds) {
-  const char* const end = fds.data() + fds.size();
-  const auto gate = std::from_chars(fds.data(), end, gate_);
-  const bool more = gate.ec == std::errc() && gate.ptr != end;
-  if (!more || std::from_chars(gate.ptr + 1, end, bell_).ec != std::errc()) return false;
+  const auto space = fds.find(' ');
+  if (space == fds.npos || !parse_fd(fds.substr(0, space), gate_)) return false;
+  if (!parse_fd(fds.substr(space + 1), bell_)) return false;
   device_ = ::eventfd(1, EFD_CLOEXEC);
   return device_ >= 0;
 }
