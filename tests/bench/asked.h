@@ -36,7 +36,10 @@ class Asked {
   std::string judge(const std::string& what, double figure, bool reached, const std::string& asked,
                     bool promised) {
     if (!reached && promised) missed_.push_back(what + " is " + text(figure) + ", asked: " + asked);
-    return "   asked: " + asked + (reached ? "" : promised ? ", MISSED" : ", not reached yet");
+    const char* verdict = promised  ? (reached ? "" : ", MISSED")
+                          : reached ? ", reached now"
+                                    : ", not reached yet";
+    return "   asked: " + asked + verdict;
   }
   std::vector<std::string> missed_;
 };

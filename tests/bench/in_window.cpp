@@ -12,6 +12,7 @@
 #include <cstdio>
 #include <set>
 
+#include "asked.h"
 #include "boxes.h"
 #include "support/data.h"
 
@@ -28,6 +29,9 @@ const double kFov = 2 * std::atan(kWindowWidth / 2 / kFocal) * kRadian;
 const double kPan = std::atan((kWidth - kWindowWidth) / 2 / kFocal) * kRadian;
 const double kTilt = std::atan((kHeight - kWindowHeight) / 2 / kFocal) * kRadian;
 constexpr int kLeastFrames = 40;  // annotated
+constexpr double kAsked = 0.95;   // of the frames with the middle inside
+// Who, from which frame on, is known not to be kept as long: not with every processor's vectors, which round in other ways.
+constexpr std::pair<int, int> kNotYet[] = {{9, 4}, {11, 20}, {11, 354}};
 
 struct Run {
   Run(const People* t, int p, int f) : truth(t), person(p), first(f) {}
@@ -135,6 +139,7 @@ int main(int argc, char** argv) {
     std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
     return 77;
   }
+  const bool judged = argc == 1;
   std::string head;
   for (int i = 1; i < argc; ++i) head += std::string(argv[i]) + " ";
   const People truth = read_people(*data / "pets09_s2l1_view1" / "gt_interpolated.txt");
@@ -147,6 +152,7 @@ int main(int argc, char** argv) {
       " "
       "tracks\n");
   Run all(&truth, 0, 0);
+  Asked asked;
   for (const auto& [person, seen] : frames) {
     if (static_cast<int>(seen.size()) < kLeastFrames) continue;
     // Once from the start, and once more from each later stretch of annotation.
@@ -155,9 +161,12 @@ int main(int argc, char** argv) {
       Run run(&truth, person, seen[i]);
       if (!follow(run, *source, head)) return 1;
       const double n = std::max(run.annotated, 1);
-      std::printf("  %6d %5d %7d %10d %7d %14.3f %20.3f %21.3f %8zu\n", person, seen[i], run.waited,
+      const bool promised = std::ranges::find(kNotYet, std::pair{person, seen[i]}) == std::end(kNotYet);
+      const std::string who = "person " + std::to_string(person) + " from " + std::to_string(seen[i]);
+      const std::string judgement = judged ? asked.at_least(who, run.middle / n, kAsked, promised) : "";
+      std::printf("  %6d %5d %7d %10d %7d %14.3f %20.3f %21.3f %8zu%s\n", person, seen[i], run.waited,
                   run.chosen_at, run.annotated, run.middle / n, run.most / n, run.tracked / n,
-                  run.carriers.size());
+                  run.carriers.size(), judgement.c_str());
       all.annotated += run.annotated;
       all.middle += run.middle;
       all.most += run.most;
@@ -167,5 +176,5 @@ int main(int argc, char** argv) {
   const double n = std::max(all.annotated, 1);
   std::printf("  %-32s %7d %14.3f %20.3f %21.3f\n", "all", all.annotated, all.middle / n, all.most / n,
               all.tracked / n);
-  return 0;
+  return asked.verdict();
 }
