@@ -77,11 +77,13 @@ def coloured(frame):
     return max(chroma) > 160 or min(chroma) < 96
 
 
-def check_lines(path):
+def check_lines(path, kind):
     """The lines are sane, and the ball is in them; their number."""
     lines = json_lines(path)
     count = len(lines)
-    assert abs(count - FRAMES) <= 2, f'{count} lines'  # a live compositor may repeat a frame at its ends
+    # A live compositor may repeat a frame at its ends, and leaves out those that a busy machine is too late for.
+    least = FRAMES // 2 if kind == 'live' else FRAMES - 2
+    assert least <= count <= FRAMES + 2, f'{count} lines'
     assert [line['frame'] for line in lines] == list(range(lines[0]['frame'], lines[0]['frame'] + count))
     assert all(a['pts'] < b['pts'] for a, b in zip(lines, lines[1:])), 'timestamps do not rise'
     assert all((line['width'], line['height']) == (WIDTH, HEIGHT) for line in lines)
@@ -92,7 +94,7 @@ def check_lines(path):
 
 def test_annotate(kind):
     finish(start('annotate', SOURCE=source(kind), MP4='out.mp4', JSON='out.jsonl'))
-    count = check_lines('out.jsonl')
+    count = check_lines('out.jsonl', kind)
     check_players_can_play('out.mp4', 'qtdemux')
     pictures = decode('out.mp4')
     assert len(pictures) == count, f'{len(pictures)} frames in the MP4, {count} lines'
@@ -108,7 +110,7 @@ def test_live(kind):
 
 def test_record(kind):
     finish(start('record', SOURCE=source(kind), FILE='out.mkv', JSON='out.jsonl'))
-    count = check_lines('out.jsonl')
+    count = check_lines('out.jsonl', kind)
     check_players_can_play('out.mkv', 'matroskademux')
     pictures = decode('out.mkv')
     assert len(pictures) == count, f'{len(pictures)} frames in the recording, {count} lines'
@@ -219,7 +221,7 @@ def test_rtp(kind):
     wait_for('the frames', lambda: size('out.raw') >= (FRAMES - 5) * WIDTH * HEIGHT * 3 // 2, receiver)
     os.killpg(receiver.pid, signal.SIGINT)
     finish(receiver)
-    count = check_lines('out.jsonl')
+    count = check_lines('out.jsonl', kind)
     pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
     assert FRAMES - 5 <= len(pictures) <= count, f'{len(pictures)} frames were received of {count}'
     assert sum(map(coloured, pictures)) > FRAMES // 3, 'the received picture has no boxes'
@@ -236,7 +238,7 @@ def test_robot(kind):
                      PORT=stream.getsockname()[1]))
         packet = stream.recv(65536)
     assert packet[0] >> 6 == 2 and packet[1] & 127 == 96, f'no RTP of a dynamic type: {packet[:12].hex()}'
-    count = check_lines('out.jsonl')
+    count = check_lines('out.jsonl', kind)
     check_players_can_play('out.mkv', 'matroskademux')
     recorded = decode('out.mkv')
     assert len(recorded) == count, f'{len(recorded)} frames in the recording, {count} lines'
