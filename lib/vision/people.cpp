@@ -114,14 +114,14 @@ void PeopleFinder::add_up_window() {
   band_bottom_ = window_.bottom;
 }
 
-// Moves the band to these rows and sums its columns up.
-void PeopleFinder::slide(int top, int bottom) {
+// Moves the band to these rows and sums its columns [left, right) up.
+void PeopleFinder::slide(int top, int bottom, int left, int right) {
   while (band_bottom_ < bottom) add_cells(cells(band_bottom_++), columns_, band_.data());
   while (band_top_ > top) add_cells(cells(--band_top_), columns_, band_.data());
   while (band_bottom_ > bottom) subtract_cells(cells(--band_bottom_), columns_, band_.data());
   while (band_top_ < top) subtract_cells(cells(band_top_++), columns_, band_.data());
-  std::uint32_t sum = sums_[0] = 0;
-  for (int c = 0; c < columns_; ++c) sums_[c + 1] = sum += band_[c];
+  std::uint32_t sum = sums_[left] = 0;
+  for (int c = left; c < right; ++c) sums_[c + 1] = sum += band_[c];
 }
 
 // The best place for one more person whose left edge lies in [from, to). Score 0: nowhere. With an anchor, a column,
@@ -138,7 +138,7 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
     const int end = std::min({to, columns_ - w + 1, inside_.right - (w + 2) / 3 + 1});
     if (first >= end) continue;
     const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
-    slide(foot - h, foot);
+    slide(foot - h, foot, first, end - 1 + w);
     const BoxRow row{sums_.data(), w, q, inside_.left, inside_.right, high};
     int* scores = scores_.data();
     int highest = score_boxes(row, first, end, scores);

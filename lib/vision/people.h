@@ -53,7 +53,7 @@ class PeopleFinder {
   void forget_explained();
   void mark_explained(const Candidate& candidate);
   void add_up_window();
-  void slide(int top, int bottom);
+  void slide(int top, int bottom, int left, int right);
   Candidate best(int from, int to, int anchor);
   int explain(bool from_the_left);
   void settle();
@@ -67,7 +67,8 @@ class PeopleFinder {
   std::vector<Shape> shapes_;          // of each foot row 0..rows_
   std::vector<std::uint8_t> cells_;    // kCell... of people_kernels.h
   std::vector<std::uint32_t> moving_;  // moving cells not yet explained in the columns before each
-  // Sums of the cells in the rows [band_top_, band_bottom_): of each column, and of the columns before each.
+  // Sums of the cells in the rows [band_top_, band_bottom_): of each column, and of the columns before each from where they
+  // were asked for.
   int band_top_ = 0, band_bottom_ = 0;
   std::vector<std::uint32_t> band_, sums_;
   std::vector<int> scores_;
