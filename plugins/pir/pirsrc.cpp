@@ -62,7 +62,6 @@ namespace cerberus::plugin {
 namespace {
 
 using drivers::SensorArray;
-using drivers::SensorReading;
 using sensing::Time;
 
 constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);

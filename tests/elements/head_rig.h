@@ -66,9 +66,9 @@ inline void add(GstBuffer* buffer, CerberusFusionAction action, guint target = 0
 
 // A person of 20x60 pixels whose middle is this many degrees right of the camera's axis, behind 60 degrees.
 inline Person somebody(guint id, double degrees_right) {
-  const double focal = kWidth / 2 / std::tan(30 * std::numbers::pi / 180);
+  const double focal = kWidth / 2.0 / std::tan(30 * std::numbers::pi / 180);
   const double middle = kWidth / 2.0 + focal * std::tan(degrees_right * std::numbers::pi / 180);
-  return {.id = id, .x = middle - 10, .y = kHeight / 2 - 30, .width = 20, .height = 60};
+  return {.id = id, .x = middle - 10, .y = kHeight / 2.0 - 30, .width = 20, .height = 60};
 }
 
 struct Message {
