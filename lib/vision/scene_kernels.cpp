@@ -194,7 +194,7 @@ void learn_row(const LearnRow& row) {
                                hn::ShiftRight<4>(hn::Add(shrink, phase)));
     auto next_age = hn::Min(hn::Add(age, one), most);
 
-    const auto fresh = hn::ShiftLeft<8>(hn::BitCast(du, f));
+    const auto fresh = hn::ShiftLeft<8>(hn::BitCast(du, load(d, row.taken + x)));
     const auto young = hn::IfThenElse(unknown, one, hn::Max(set(2), hn::ShiftRight<1>(hn::Min(age, quiet))));
     next = hn::IfThenElse(hn::RebindMask(du, take), fresh,
                           hn::IfThenElse(hn::RebindMask(du, follow), next, mean));
@@ -290,7 +290,7 @@ void learn_row_reference(const LearnRow& row) {
     if (!bit(row.valid, x)) continue;
     const int f = row.present[x], age = row.age[x];
     if (age == 0 || bit(row.absorb, x)) {
-      row.mean[x] = static_cast<std::uint16_t>(f << 8);
+      row.mean[x] = static_cast<std::uint16_t>(row.taken[x] << 8);
       row.spread[x] = 16;
       row.age[x] =
           static_cast<std::uint8_t>(age == 0 ? 1 : std::max(2, std::min<int>(age, row.quiet[x]) / 2));

@@ -79,6 +79,7 @@ inline constexpr std::array<std::uint8_t, 16> kOldRate{28, 10, 6, 5, 4, 3, 3, 3,
 struct LearnRow {
   const std::uint8_t* present = nullptr;
   const std::uint8_t* memory = nullptr;  // as compared: under the present light
+  const std::uint8_t* taken = nullptr;   // what is taken over of the present: it under the memory's light
   const std::uint8_t* quiet = nullptr;
   const std::uint64_t* keep = nullptr;    // not to be learnt: foreground
   const std::uint64_t* absorb = nullptr;  // to be taken over at once
@@ -89,7 +90,7 @@ struct LearnRow {
   int phase = 0;  // 0 or 15, alternating: rounding of the spread
 };
 // mean += rate(age) (present - memory), rate = 1 / (age + 1) down to 3 / 256; spread follows 16 |present - memory| with
-// 1/16; age + 1. Unknown pixels (age 0) and absorbed ones take the present over.
+// 1/16; age + 1. Unknown pixels (age 0) and absorbed ones take `taken` over.
 void learn_row(const LearnRow& row);
 void learn_row_reference(const LearnRow& row);
 

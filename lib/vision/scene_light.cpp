@@ -19,6 +19,7 @@ constexpr double kAgreement = 0.3;
 
 void SceneLight::make_room(Size picture) {
   known_.resize({picture.width + 2 * kMargin, picture.height + 2});
+  row_.resize({picture.width, 1});
 }
 
 MutableGrayView SceneLight::known() {
@@ -56,6 +57,17 @@ void SceneLight::relight(GrayView present) {
   repeat_borders();
 }
 
+// White stays white: it may have been anything from there on.
+const std::uint8_t* SceneLight::remembered(int y, const std::uint8_t* present) {
+  const RowLight light = change_.row(y);
+  if (light == RowLight{}) return present;
+  const auto whole = [&](double v) { return static_cast<std::int32_t>(std::lround(v * 256 / light.gain)); };
+  const MutableGrayView row = row_.view();
+  relight_row(present, {whole(256), whole(-light.offset)}, row.width, row.data);
+  for (int x = 0; x < row.width; ++x) row.data[x] = present[x] >= kWhite ? present[x] : row.data[x];
+  return row.data;
+}
+
 bool SceneLight::is_other() const {
   return std::abs(brighter_) > kOtherLight;
 }
@@ -89,6 +101,12 @@ bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surrou
   // stronger change is there to stay.
   if (std::abs(brighter_) > (still ? kFlicker : kOtherLight)) {
     adopt(pixels, surroundings);
+    const GrayView unlit = known();
+    for (int y = 0; y < present.height; ++y)
+      for (int x = 0; x < present.width; ++x)
+        if (unlit.at(x, y) >= kWhite)  // which may be anything from there on
+          pixels.mean.at(x, y) =
+              std::max(pixels.mean.at(x, y), static_cast<std::uint16_t>(present.at(x, y) << 8));
     draw(pixels.mean);
     estimate(present, shown, still);
   }
@@ -104,12 +122,13 @@ void SceneLight::forgive_step(const ScenePixels& pixels, GrayView present, BitVi
   for (int y = 0; y < k.height; ++y) {
     const std::uint64_t* there = foreground.row(y);
     const std::uint8_t* f = present.row(y);
+    const std::uint8_t* taken = remembered(y, f);
     std::uint8_t* m = k.row(y);
     std::uint8_t* a = pixels.age.row(y);
     for (int x = 0; x < k.width; ++x) {
       const bool free = !(there[x / 64] >> (x % 64) & 1);
       if (!free || std::abs(f[x] - m[x]) <= 2 * sigma[m[x] >> 4]) continue;
-      pixels.mean.at(x, y) = static_cast<std::uint16_t>(f[x] << 8);
+      pixels.mean.at(x, y) = static_cast<std::uint16_t>(taken[x] << 8);
       m[x] = f[x];
       a[x] = std::min(a[x], age);
     }

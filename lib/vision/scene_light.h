@@ -21,7 +21,10 @@ class SceneLight {
  public:
   void make_room(Size picture);
   // The memory begins: there is no light but the frame's.
-  void begin() { brighter_ = 0; }
+  void begin() {
+    brighter_ = 0;
+    change_.clear();
+  }
 
   // The memory's mean as it is compared, in 8 bits; borders repeated by one pixel, readable a little beyond.
   MutableGrayView known();
@@ -31,6 +34,8 @@ class SceneLight {
   // Whether the last frame's light was so different that it cannot be aligned with the memory (alignment knows nothing of
   // light).
   bool is_other() const;
+  // A row of the present under the memory's light, as it would be remembered: itself, or valid until the next call.
+  const std::uint8_t* remembered(int y, const std::uint8_t* present);
   // The memory under the light that was measured last.
   void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings);
 
@@ -45,7 +50,7 @@ class SceneLight {
   void forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
                     const std::array<double, kBrightness>& sigma, std::uint8_t age, MutableBitView moved);
 
-  std::size_t bytes() const { return known_.bytes() + samples_.bytes() + change_.bytes(); }
+  std::size_t bytes() const { return known_.bytes() + row_.bytes() + samples_.bytes() + change_.bytes(); }
 
  private:
   void estimate(GrayView present, std::span<const RowSpan> shown, bool still);
@@ -55,6 +60,7 @@ class SceneLight {
   static constexpr int kMargin =
       16;  // columns beside the compared memory, so that kernels may look beyond the border
   Image<std::uint8_t, kMargin> known_;  // with margins
+  Image<std::uint8_t> row_;             // of the present under the memory's light
   LightSamples samples_;
   LightChange change_;  // from the memory to the frame
   double brighter_ =

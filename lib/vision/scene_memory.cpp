@@ -137,7 +137,7 @@ struct SceneMemory::State {
   void compare(const SceneMemoryInput& in);
   void forgive_blur();
   void decide(const SceneMemoryInput& in);
-  void learn();
+  void learn(bool still);
 };
 
 SceneMemory::SceneMemory() : state_(std::make_unique<State>()) {}
@@ -403,13 +403,15 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   if (young) parts.join(planes, windows, seeds, plain());
 }
 
-void SceneMemory::State::learn() {
+// Before a camera that moves a change of light is adopted before it is worth to be taken out.
+void SceneMemory::State::learn(bool still) {
   LearnRow row;
   row.width = size.width;
   row.phase = frames % 2 ? 15 : 0;
   row.valid = valid.view().data;
   for (int y = 0; y < size.height; ++y) {
     row.present = present.view().row(y), row.memory = light.known().row(y), row.quiet = quiet.view().row(y);
+    row.taken = still ? light.remembered(y, row.present) : row.present;
     row.keep = weak.view().row(y), row.absorb = absorb.view().row(y);
     const RowSpan span = warp.spans()[static_cast<std::size_t>(y)];
     valid.fill_bytes(0);
@@ -449,7 +451,7 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   s.learn_noise(in);
   s.compare(in);
   s.decide(in);
-  s.learn();
+  s.learn(in.still);
   if (s.to_frame.is_identity()) {
     unpack(s.plain(), mask);
   } else {

@@ -161,7 +161,7 @@ struct Lamp {
 constexpr Lamp kLamps[] = {{"noise alone", 0, 0, false, true},
                            {"5 % flicker", 0.05, 0, false, true},
                            {"5 % bands", 0, 0.05, false, true},
-                           {"steps of exposure", 0, 0, true, false},
+                           {"steps of exposure", 0, 0, true, true},
                            {"3 % flicker, 3 % bands, steps", 0.03, 0.03, true, false},
                            {"8 % flicker, 8 % bands", 0.08, 0.08, false, false}};
 

@@ -179,11 +179,12 @@ START_TEST(learning_agrees_with_the_reference) {
   for (const int width : kWidths)
     for (int round = 0; round < 12; ++round) {
       const Size size{width, 1};
-      Image<std::uint8_t> present(size), memory(size), quiet(size), spread[2], age[2];
+      Image<std::uint8_t> present(size), memory(size), taken(size), quiet(size), spread[2], age[2];
       Image<std::uint16_t> mean[2];
       for (int i = 0; i < 2; ++i) spread[i].resize(size), age[i].resize(size), mean[i].resize(size);
       scatter(present.view(), random, 256);
       scatter(memory.view(), random, 256);
+      scatter(taken.view(), random, 256);
       scatter(quiet.view(), random, 256);
       for (int x = 0; x < width; ++x)
         for (int i = 0; i < 2; ++i) {
@@ -196,11 +197,17 @@ START_TEST(learning_agrees_with_the_reference) {
       const auto keep = random_bits(width, random), absorb = random_bits(width, random),
                  valid = random_bits(width, random);
       for (int i = 0; i < 2; ++i) {
-        const LearnRow row{present.view().data, memory.view().data,
-                           quiet.view().data,   keep.data(),
-                           absorb.data(),       valid.data(),
-                           mean[i].view().data, spread[i].view().data,
-                           age[i].view().data,  width,
+        const LearnRow row{present.view().data,
+                           memory.view().data,
+                           taken.view().data,
+                           quiet.view().data,
+                           keep.data(),
+                           absorb.data(),
+                           valid.data(),
+                           mean[i].view().data,
+                           spread[i].view().data,
+                           age[i].view().data,
+                           width,
                            round % 3 ? 15 : 0};
         if (i)
           learn_row_reference(row);
@@ -225,17 +232,18 @@ START_TEST(a_steady_picture_is_averaged_over_its_first_frames) {
   for (const int value : {100, 110, 120, 130}) {
     const std::uint8_t present = static_cast<std::uint8_t>(value),
                        memory = static_cast<std::uint8_t>((mean + 128) >> 8);
-    learn_row_reference({&present, &memory, &quiet, &none, &none, &all, &mean, &spread, &age, 1, 0});
+    learn_row_reference(
+        {&present, &memory, &present, &quiet, &none, &none, &all, &mean, &spread, &age, 1, 0});
   }
   ck_assert_int_eq(age, 4);
   ck_assert_double_eq_tol(mean / 256.0, 115, 0.2);
-  const std::uint8_t other = 10, memory = 115;
-  learn_row_reference(
-      {&other, &memory, &quiet, &all, &none, &all, &mean, &spread, &age, 1, 0});  // foreground: kept out
+  const std::uint8_t other = 10, in_its_light = 12, memory = 115;
+  learn_row_reference({&other, &memory, &other, &quiet, &all, &none, &all, &mean, &spread, &age, 1,
+                       0});  // foreground: kept out
   ck_assert_double_eq_tol(mean / 256.0, 115, 0.2);
-  learn_row_reference(
-      {&other, &memory, &quiet, &all, &all, &all, &mean, &spread, &age, 1, 0});  // absorbed: at once
-  ck_assert_int_eq(mean, 10 << 8);
+  learn_row_reference({&other, &memory, &in_its_light, &quiet, &all, &all, &all, &mean, &spread, &age, 1,
+                       0});  // absorbed: at once
+  ck_assert_int_eq(mean, 12 << 8);
   ck_assert_int_eq(age, 2);
 }
 END_TEST
