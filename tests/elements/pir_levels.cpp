@@ -241,7 +241,7 @@ GST_START_TEST(volts_say_the_same_whether_pirsrc_compares_them_or_pirfusion) {
 }
 GST_END_TEST
 
-static Suite* pir_levels_suite(void) {
+static Suite* pir_levels_suite() {
   watch_library_log();
   Suite* s = suite_create("pir_levels");
   TCase* tc = tcase_create("pir_levels");

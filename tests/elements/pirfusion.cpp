@@ -298,7 +298,7 @@ GST_START_TEST(a_seek_reaches_the_pir_sources_and_the_video_source) {
 }
 GST_END_TEST
 
-static Suite* pirfusion_suite(void) {
+static Suite* pirfusion_suite() {
   watch_library_log();
   Suite* s = suite_create("pirfusion");
   TCase* tc = tcase_create("decisions");

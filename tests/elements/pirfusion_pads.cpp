@@ -399,7 +399,7 @@ GST_START_TEST(running_time_counts_not_the_timestamps) {
 }
 GST_END_TEST
 
-static Suite* pirfusion_pads_suite(void) {
+static Suite* pirfusion_pads_suite() {
   watch_library_log();
   Suite* s = suite_create("pirfusion_pads");
   TCase* tc = tcase_create("readings");

@@ -418,13 +418,13 @@ GST_END_TEST
 
 GST_START_TEST(not_live_every_run_gives_the_same) {
   const std::string first = run(1);
-  fail_unless(first.find("1") != std::string::npos && first.find("search") != std::string::npos, "%s",
+  fail_unless(first.find('1') != std::string::npos && first.find("search") != std::string::npos, "%s",
               first.c_str());
   for (unsigned seed = 2; seed < 12; ++seed) fail_unless(run(seed) == first, "seed %u differs", seed);
 }
 GST_END_TEST
 
-static Suite* pirfusion_waiting_suite(void) {
+static Suite* pirfusion_waiting_suite() {
   watch_library_log();
   Suite* s = suite_create("pirfusion_waiting");
   TCase* tc = tcase_create("live");
