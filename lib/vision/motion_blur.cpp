@@ -80,9 +80,11 @@ double MotionBlur::sharpness(GrayView frame, GrayView memory, GrayView age, std:
     for (int left = 0; left < frame.width; left += kSceneBlock) {
       int in_frame = 0, in_memory = 0, pixels = 0;
       for (int y = std::max(top, 1); y < bottom; y += kRowStep) {
-        const RowSpan& span = spans[static_cast<std::size_t>(y)];
-        const int begin = std::max(left, span.begin + 1);
-        const int end = std::min(left + kSceneBlock, span.end - 1);
+        int begin = left, end = left + kSceneBlock;
+        for (const RowSpan& span : spans.subspan(static_cast<std::size_t>(y) - 1, 3)) {
+          begin = std::max(begin, span.begin + 1);
+          end = std::min(end, span.end - 1);
+        }
         if (begin >= end || !age.at(begin, y) || !age.at(end - 1, y)) continue;
         in_frame += energy(frame, y, begin, end);
         in_memory += energy(memory, y, begin, end);

@@ -3,7 +3,7 @@
 
 namespace cerberus::vision {
 
-// std::lround of what an int holds, without a call.
+// std::lround without a call. |value| < 2^31.
 inline int round_to_int(double value) {
   const int whole = static_cast<int>(value);
   const double rest = value - whole;  // exact

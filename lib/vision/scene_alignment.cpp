@@ -60,7 +60,7 @@ std::optional<Transform> align_to_memory(std::span<const BlockSums> blocks, int 
       const double xx = b.xx / 4.0, xy = b.xy / 4.0, yy = b.yy / 4.0, xe = b.xe / 2.0, ye = b.ye / 2.0;
       const double left = b.ee + 2 * (u * xe + v * ye) + u * u * xx + 2 * u * v * xy + v * v * yy;
       const double cauchy = 1 / (kScale + std::max(left, 0.0) / b.n), weight = cauchy * cauchy;
-      // J^T W J, where ju ends and jv begins with three zeros that are not multiplied.
+      // J^T W J; the three zeros in the middle of ju and at the beginning of jv are not multiplied.
       const auto add = [&](int from, int to, int i, const auto& term) {
         for (int j = from; j < to; ++j) m[i][j] += term(j);
       };

@@ -79,7 +79,7 @@ inline constexpr std::array<std::uint8_t, 16> kOldRate{28, 10, 6, 5, 4, 3, 3, 3,
 struct LearnRow {
   const std::uint8_t* present = nullptr;
   const std::uint8_t* memory = nullptr;  // as compared: under the present light
-  const std::uint8_t* taken = nullptr;   // what is taken over of the present: it under the memory's light
+  const std::uint8_t* taken = nullptr;   // what is taken over of the present, mostly in the memory's light
   const std::uint8_t* quiet = nullptr;
   const std::uint64_t* keep = nullptr;    // not to be learnt: foreground
   const std::uint64_t* absorb = nullptr;  // to be taken over at once

@@ -11,6 +11,7 @@ namespace {
 
 // Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
 constexpr double kOtherLight = 3, kFlicker = 40;
+constexpr std::uint8_t kGuessed = 4;  // frames: how old what one frame told of white counts as
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
@@ -77,8 +78,12 @@ void SceneLight::adopt(const ScenePixels& pixels, SceneSurroundings& surrounding
   const int offset = static_cast<int>(std::lround(change_.offset() * 256));
   for (int y = 0; y < pixels.mean.height; ++y) {
     std::uint16_t* row = pixels.mean.row(y);
-    for (int x = 0; x < pixels.mean.width; ++x)
-      row[x] = static_cast<std::uint16_t>(std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8));
+    for (int x = 0; x < pixels.mean.width; ++x) {
+      const int now = std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8);
+      // White in less light may be anything from there on: nobody knows.
+      if (row[x] >= kWhite << 8 && now < row[x]) pixels.age.at(x, y) = 0;
+      row[x] = static_cast<std::uint16_t>(now);
+    }
   }
   surroundings.relight(gain, offset);
   begin();
@@ -101,12 +106,15 @@ bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surrou
   // stronger change is there to stay.
   if (std::abs(brighter_) > (still ? kFlicker : kOtherLight)) {
     adopt(pixels, surroundings);
-    const GrayView unlit = known();
     for (int y = 0; y < present.height; ++y)
-      for (int x = 0; x < present.width; ++x)
-        if (unlit.at(x, y) >= kWhite)  // which may be anything from there on
-          pixels.mean.at(x, y) =
-              std::max(pixels.mean.at(x, y), static_cast<std::uint16_t>(present.at(x, y) << 8));
+      for (int x = shown[static_cast<std::size_t>(y)].begin; x < shown[static_cast<std::size_t>(y)].end;
+           ++x) {
+        if (pixels.age.at(x, y)) continue;
+        // Not darker than it was said to be: then somebody is before it.
+        const int value = std::max<int>(pixels.mean.at(x, y), present.at(x, y) << 8);
+        pixels.mean.at(x, y) = static_cast<std::uint16_t>(value);
+        pixels.age.at(x, y) = kGuessed;
+      }
     draw(pixels.mean);
     estimate(present, shown, still);
   }

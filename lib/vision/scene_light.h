@@ -36,7 +36,7 @@ class SceneLight {
   bool is_other() const;
   // A row of the present under the memory's light, as it would be remembered: itself, or valid until the next call.
   const std::uint8_t* remembered(int y, const std::uint8_t* present);
-  // The memory under the light that was measured last.
+  // The memory under the light that was measured last. What that leaves unknown has age 0.
   void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings);
 
   // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one: ages become

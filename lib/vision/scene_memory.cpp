@@ -52,10 +52,12 @@ std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
 // out(q) := in(map q), to the nearest pixel, with one displacement for 32 x 8 pixels: what is left of a registration by
 // whole pixels turns so little that this is exact to about half a pixel.
 void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
+  constexpr double kFar = 1 << 20;  // beyond every picture, where a perspective may point
   for (int y0 = 0; y0 < out.height; y0 += 8)
     for (int x0 = 0; x0 < out.width * 64; x0 += 32) {
       const Point q{x0 + 15.5, y0 + 3.5}, p = map.apply(q);
-      const int dx = round_to_int(p.x - q.x), dy = round_to_int(p.y - q.y);
+      const int dx = round_to_int(std::clamp(p.x - q.x, -kFar, kFar)),
+                dy = round_to_int(std::clamp(p.y - q.y, -kFar, kFar));
       for (int y = y0; y < std::min(y0 + 8, out.height); ++y) {
         const int from = y + dy;
         const std::uint64_t half =
@@ -403,7 +405,7 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   if (young) parts.join(planes, windows, seeds, plain());
 }
 
-// Before a camera that moves a change of light is adopted before it is worth to be taken out.
+// Before a camera that moves what is measured of the light is half errors of registration: better the frame as it is.
 void SceneMemory::State::learn(bool still) {
   LearnRow row;
   row.width = size.width;

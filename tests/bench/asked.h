@@ -23,7 +23,8 @@ class Asked {
   // Names what is missed. The program's exit status.
   int verdict() const {
     for (const std::string& m : missed_) std::printf("missed: %s\n", m.c_str());
-    return missed_.empty() ? 0 : 1;
+    if (!asked_) std::printf("missed: everything, as nothing was measured\n");
+    return asked_ && missed_.empty() ? 0 : 1;
   }
 
  private:
@@ -35,12 +36,14 @@ class Asked {
   // What is no number reaches nothing.
   std::string judge(const std::string& what, double figure, bool reached, const std::string& asked,
                     bool promised) {
+    asked_ = asked_ || promised;
     if (!reached && promised) missed_.push_back(what + " is " + text(figure) + ", asked: " + asked);
     const char* verdict = promised  ? (reached ? "" : ", MISSED")
                           : reached ? ", reached now"
                                     : ", not reached yet";
     return "   asked: " + asked + verdict;
   }
+  bool asked_ = false;
   std::vector<std::string> missed_;
 };
 

@@ -30,6 +30,7 @@ inline GstSample* pull(GstElement* pipeline, GstElement* out, bool& failed) {
     sample = gst_app_sink_try_pull_sample(GST_APP_SINK(out), 200 * GST_MSECOND);
     message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
   }
+  if (!sample && !message) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);  // before the end
   gst_object_unref(bus);
   if (!message) return sample;
   GError* what = nullptr;

@@ -76,10 +76,13 @@ START_TEST(over_a_heads_turn_a_simple_model_is_as_good_as_a_homography) {
   ck_assert_double_lt(off(truth), 0.3);
   ck_assert_double_lt(off(lens.turn(0, 0, 0.85 * pan, 0)), 2.0);  // a head that is a little late
   ck_assert_double_lt(off(lens.turn(0, 0, -pan, 0)), off(std::nullopt) + 0.3);
+  for (const auto& prior : {truth, lens.turn(0, 0, 0.85 * pan, 0), lens.turn(0, 0, -pan, 0)})
+    ck_assert_double_lt(
+        disagreement(between(Scene(4), truth, MotionModel::similarity, 2, prior).transform, truth), 0.3);
   // A picture that shifts though the head turned (virtualptz: a window over a flat picture) is found as it is.
   const Transform shift = Transform::translation(-14.5, 2);
-  ck_assert_double_lt(
-      disagreement(between(Scene(4), shift, MotionModel::translation, 2, truth).transform, shift), 0.2);
+  for (const MotionModel model : {MotionModel::translation, MotionModel::similarity})
+    ck_assert_double_lt(disagreement(between(Scene(4), shift, model, 2, truth).transform, shift), 0.2);
 }
 END_TEST
 

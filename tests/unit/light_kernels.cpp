@@ -74,6 +74,12 @@ START_TEST(rows_are_relit_as_the_reference_does_in_place_too) {
       relight_row_with_white(fast.data(), present.data(), light, width, fast.data());
       relight_row_with_white_reference(reference.data(), present.data(), light, width, slow.data());
       ck_assert(fast == slow);
+      relight_row(reference.data(), light, width, fast.data());
+      for (int x = 0; x < width; ++x)
+        ck_assert_int_eq(
+            fast[static_cast<std::size_t>(x)],
+            std::clamp((reference[static_cast<std::size_t>(x)] * light.gain + light.offset + 128) >> 8, 0,
+                       255));
     }
 }
 END_TEST

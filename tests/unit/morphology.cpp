@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/pictures.h"
 #include "support/targets.h"
 #include "support/wrong.h"
 
@@ -68,6 +69,26 @@ START_TEST(a_mask_survives_packing_at_every_size) {
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) set += mask.view().at(x, y) != 0;
     ck_assert_int_eq(count(bits.view()), set);
+  }
+}
+END_TEST
+
+// Bit by bit, with nothing readable or writable beyond the picture.
+START_TEST(masks_are_spread_and_packed_as_they_are_defined) {
+  std::mt19937 random(7);
+  for (const Size size : kSizes) {
+    const GuardedPicture picture(size), back(size);
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < size.width; ++x) picture.view().at(x, y) = static_cast<std::uint8_t>(random());
+    BitMask bits(bit_mask_size(size));
+    binarise(picture.view(), 127, bits.view());
+    unpack(bits.view(), back.view());
+    for (int y = 0; y < size.height; ++y)
+      for (int x = 0; x < 64 * bits.view().width; ++x) {
+        const bool in = x < size.width && picture.view().at(x, y) > 127;
+        ck_assert_int_eq(bits.view().at(x / 64, y) >> (x % 64) & 1, in);
+        if (x < size.width) ck_assert_int_eq(back.view().at(x, y), in ? 255 : 0);
+      }
   }
 }
 END_TEST
@@ -224,10 +245,11 @@ END_TEST
 int main() {
   return run_suite_on_every_target(
       "morphology",
-      {a_mask_survives_packing_at_every_size, binarise_is_strictly_above_the_threshold,
-       set_algebra_follows_the_three_frames, dilation_and_erosion_agree_with_the_definition,
-       closing_fills_gaps_and_opening_drops_specks, closing_never_removes_and_opening_never_adds,
-       vote_counts_the_neighbourhood, reconstruction_keeps_the_parts_that_hold_a_seed,
+      {a_mask_survives_packing_at_every_size, masks_are_spread_and_packed_as_they_are_defined,
+       binarise_is_strictly_above_the_threshold, set_algebra_follows_the_three_frames,
+       dilation_and_erosion_agree_with_the_definition, closing_fills_gaps_and_opening_drops_specks,
+       closing_never_removes_and_opening_never_adds, vote_counts_the_neighbourhood,
+       reconstruction_keeps_the_parts_that_hold_a_seed,
        reconstruction_agrees_with_flooding_on_random_pictures,
        a_second_picture_of_the_same_size_allocates_nothing});
 }
