@@ -18,7 +18,7 @@ namespace cerberus::drivers {
 namespace {
 
 constexpr std::size_t kMost = 1024;  // edges that nobody takes; then the oldest go
-constexpr auto kClosePatience = std::chrono::milliseconds(80);
+constexpr auto kClosePatience = std::chrono::milliseconds(30);
 // Sensors are read now and then whatever happens: not every device that goes away wakes who waits for it.
 constexpr int kLookMs = 100;
 

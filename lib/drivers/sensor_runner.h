@@ -30,7 +30,7 @@ class SensorRunner final : public Sensor {
   std::unique_ptr<Sensor> recording();
 
   SensorError open(const SensorSetup&) override { return error(); }
-  // Gives the driver 80 ms to end.
+  // Gives the driver 30 ms to end.
   void close() noexcept override;
   void stop() noexcept override { close(); }
   int fd() const override;

@@ -65,7 +65,8 @@ using drivers::SensorArray;
 using sensing::Time;
 
 constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);
-// A change of state waits for a driver so long (100 ms is promised), then plays while that is still being opened.
+// A change of state waits for a driver so long, then plays while that is still being opened. 100 ms is promised, and one
+// that fails behind it waits 30 ms more for the driver to end (see drivers::SensorRunner).
 constexpr auto kOpenPatience = std::chrono::milliseconds(60);
 
 GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(

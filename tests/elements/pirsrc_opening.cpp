@@ -84,6 +84,17 @@ GST_START_TEST(an_opening_that_hangs_delays_no_change_of_state) {
 }
 GST_END_TEST
 
+GST_START_TEST(who_hangs_and_does_not_fit_fails_in_time) {
+  assert_prompt("a start that fails", [] {
+    Hanging hanging("0,0,0,1", "is-live=true", "application/x-other");
+    return time_taken([&] {
+      fail_unless_equals_int(gst_element_set_state(hanging.source.element(), GST_STATE_PAUSED),
+                             GST_STATE_CHANGE_FAILURE);
+    });
+  });
+}
+GST_END_TEST
+
 void hang_and_leave() {
   for (const char* script : {"0,0,0,1", "open fail no such chip", "0,0,0,1; wait 0 0"}) {
     Hanging hanging(script, "is-live=true");
@@ -238,6 +249,7 @@ static Suite* pirsrc_opening_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, an_opening_that_hangs_delays_no_change_of_state);
+  tcase_add_test(tests, who_hangs_and_does_not_fit_fails_in_time);
   tcase_add_test(tests, whoever_hangs_for_longer_than_his_source_leaves_nothing_when_he_is_through);
   tcase_add_test(tests, live_nothing_is_known_until_they_are_open);
   tcase_add_test(tests, a_device_is_read_as_soon_as_it_is_open);

@@ -171,7 +171,7 @@ START_TEST(a_device_is_closed_by_its_own_thread_and_before_the_runner_is) {
     wire = rig.wire;
     ck_assert(!wire->closed);
   }
-  // 80 ms are enough on any machine that has a moment for it; then it is late, and not lost.
+  // 30 ms are enough on any machine that has a moment for it; then it is late, and not lost.
   while (!wire->closed) usleep(1000);
 }
 END_TEST
