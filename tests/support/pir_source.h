@@ -2,13 +2,26 @@
 // A pirsrc, somebody who takes what it sends, and what it says on the bus.
 #pragma once
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
 #include "says.h"
 
 #include <cerberus/pir.h>
 #include <gst/check/gstcheck.h>  // after the standard library, whose names its macros take
 #include <gst/check/gstharness.h>
+
+// Of a live source's first readings: a device that takes its time is still being opened.
+inline bool nothing_is_known(const std::vector<int>& readings) {
+  return std::ranges::all_of(readings, [](int reading) { return reading == 2; });
+}
+
+inline std::vector<int> readings_of(GstBuffer* buffer) {
+  guint8 bytes[CERBERUS_PIR_MAX_SENSORS];
+  const gsize size = gst_buffer_extract(buffer, 0, bytes, sizeof bytes);
+  return {bytes, bytes + size};
+}
 
 class PirSource {
  public:
