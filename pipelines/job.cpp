@@ -19,6 +19,7 @@ constexpr int kPatience = 60;  // seconds for which the watchdog waits for a fra
 
 Job::Job(GstElement* pipeline, std::string path, std::string folder, const VideoFile& video)
     : pipeline_(pipeline), path_(std::move(path)), folder_(std::move(folder)), video_(video) {
+  decode_with_care(pipeline);
   g_autoptr(GstElement) detect = gst_bin_get_by_name(GST_BIN(pipeline), "detect");
   g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
   gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, on_frame, this, nullptr);

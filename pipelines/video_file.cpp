@@ -26,6 +26,11 @@ void on_no_more_pads(GstElement* decoder, gpointer) {
                       (nullptr));
 }
 
+void on_element(GstBin*, GstBin*, GstElement* element, gpointer) {
+  if (g_object_class_find_property(G_OBJECT_GET_CLASS(element), "direct-rendering"))
+    g_object_set(element, "direct-rendering", FALSE, nullptr);
+}
+
 std::string explain(const std::string& path, GstMessage* message) {
   if (!message) return not_a_video(path) + "no frame came out of it";
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) return not_a_video(path) + "it has no frame";
@@ -49,6 +54,10 @@ std::string not_a_video(const std::string& path) {
          "picture): ";
 }
 
+void decode_with_care(GstElement* pipeline) {
+  g_signal_connect(pipeline, "deep-element-added", G_CALLBACK(on_element), nullptr);
+}
+
 VideoFile look_at(const std::string& path) {
   VideoFile video;
   g_autoptr(GError) error = nullptr;
@@ -63,6 +72,7 @@ VideoFile look_at(const std::string& path) {
   g_autoptr(GstElement) file = named(pipeline, "file");
   g_autoptr(GstElement) decoder = named(pipeline, "decoder");
   g_autoptr(GstElement) end = named(pipeline, "end");
+  decode_with_care(pipeline);
   g_object_set(file, "location", path.c_str(), nullptr);
   g_signal_connect(decoder, "no-more-pads", G_CALLBACK(on_no_more_pads), nullptr);
   g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);

@@ -18,6 +18,10 @@ struct VideoFile {
 
 VideoFile look_at(const std::string& path);
 
+// Before anything is decoded in it: GStreamer 1.26's libav decoders end the process now and then where rows are padded
+// (H.264 of a width that is no multiple of 16), unless they do not draw straight into the buffers.
+void decode_with_care(GstElement* pipeline);
+
 // Begins what is said about a file that is no good.
 std::string not_a_video(const std::string& path);
 

@@ -35,8 +35,9 @@ def refuses(file, *words, output='out'):
 
 
 def decoded(path):
-    must(gst_launch(f'filesrc location={path} ! decodebin ! videoconvert ! video/x-raw,format=GRAY8 ! '
-                    'filesink location=decoded.raw'))
+    # direct-rendering: see pipelines/video_file.h
+    must(gst_launch(f'filesrc location={path} ! qtdemux ! h264parse ! avdec_h264 direct-rendering=false ! '
+                    'videoconvert ! video/x-raw,format=GRAY8 ! filesink location=decoded.raw'))
     return os.path.getsize('decoded.raw')
 
 
