@@ -49,6 +49,7 @@
 #include <cerberus/private/element.hpp>
 
 #include <chrono>
+#include <condition_variable>
 
 #include "clocks.hpp"
 #include "drivers/sensor_array.h"
@@ -83,6 +84,9 @@ struct Private {
   bool live = false;
   bool late = false;      // the sensors were still being opened when the source began
   bool reported = false;  // what they failed of
+  int reporting = 0;      // who is just doing so
+  bool flushing = false;
+  std::condition_variable news;  // of these two
   SensorArray sensors;
   GstPollFD device = GST_POLL_FD_INIT;
   GstClockTime last = 0;  // time stamp of the last buffer: running time, or of a recording its own
@@ -129,8 +133,21 @@ void report_failure(CerberusPirSrc* self) {
   if (!priv.running) return;  // it is told otherwise, or nobody wants to know any more
   const drivers::SensorError error = priv.sensors.error();
   if (!error || std::exchange(priv.reported, true)) return;
+  ++priv.reporting;
   guard.unlock();
   report_error(GST_ELEMENT(self), error);
+  guard.lock();
+  --priv.reporting;
+  priv.news.notify_all();
+}
+
+// The end of the stream behind that: whoever hears of the end first would take it for a good one.
+GstFlowReturn end_of_failure(CerberusPirSrc* self) {
+  report_failure(self);
+  Private& priv = *self->priv;
+  std::unique_lock guard(priv.lock);
+  priv.news.wait(guard, [&] { return priv.flushing || priv.reporting == 0; });
+  return priv.flushing ? GST_FLOW_FLUSHING : GST_FLOW_EOS;
 }
 
 // At once: in PAUSED a live source makes no buffer that could end in an error. On a thread of GStreamer's, since a message may
@@ -138,8 +155,11 @@ void report_failure(CerberusPirSrc* self) {
 void refused(CerberusPirSrc* self) {
   gst_element_call_async(
       GST_ELEMENT(self),
-      [](GstElement* element, gpointer) { report_failure(cerberus_pir_src_self(element)); }, nullptr,
-      nullptr);
+      [](GstElement* element, gpointer) {
+        auto* self = cerberus_pir_src_self(element);
+        guarded(self, [&] { report_failure(self); });
+      },
+      nullptr, nullptr);
 }
 
 bool open_sensors(CerberusPirSrc* self) {
@@ -295,8 +315,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     if (step == SensorArray::Step::ended) return GST_FLOW_EOS;
     if (step == SensorArray::Step::failed) {
       guard.unlock();
-      report_failure(self);
-      return GST_FLOW_EOS;
+      return end_of_failure(self);
     }
     if (step == SensorArray::Step::reading) {
       news.time = priv.last = std::max(priv.last, running_time(self, news.reading.time));
@@ -339,18 +358,27 @@ gboolean do_seek(GstBaseSrc* base, GstSegment* segment) {
   const std::lock_guard guard(priv.lock);
   const Time start = time_of(segment->start);
   priv.sensors.seek(start);
+  if (!priv.sensors.error()) priv.reported = false;  // it may fail again
   priv.last = static_cast<GstClockTime>(start.count());
   segment->time = segment->start;
   return TRUE;
 }
 
+void flush(GstBaseSrc* base, bool flushing) {
+  Private& priv = *cerberus_pir_src_self(base)->priv;
+  gst_poll_set_flushing(priv.poll, flushing);
+  const std::lock_guard guard(priv.lock);
+  priv.flushing = flushing;
+  priv.news.notify_all();
+}
+
 gboolean unlock(GstBaseSrc* base) {
-  gst_poll_set_flushing(cerberus_pir_src_self(base)->priv->poll, TRUE);
+  flush(base, true);
   return TRUE;
 }
 
 gboolean unlock_stop(GstBaseSrc* base) {
-  gst_poll_set_flushing(cerberus_pir_src_self(base)->priv->poll, FALSE);
+  flush(base, false);
   return TRUE;
 }
 

@@ -313,6 +313,17 @@ GST_START_TEST(a_driver_that_fails_ends_the_stream_with_its_words) {
 }
 GST_END_TEST
 
+GST_START_TEST(who_fails_again_behind_a_seek_says_so_again) {
+  Source source("script=\"0,0,0,0; 0.15 fail the cable broke\"");
+  source.play();
+  for (int round = 0; round < 3; ++round) {
+    fail_unless(says(source.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ), "the cable broke"));
+    fail_unless(source.pop(GST_MESSAGE_ERROR) == nullptr, "one message a failure");
+    fail_unless(seek(source, 1, 0));
+  }
+}
+GST_END_TEST
+
 // The head must not look for somebody whom nobody sees any more.
 GST_START_TEST(whom_failing_sensors_saw_last_does_not_stand) {
   Source source("heartbeat=1000000000 script=\"0,0,0,0; 0.5,0,1,0; 1.5 fail the cable broke\"");
@@ -417,6 +428,7 @@ Suite* pirsrc_suite() {
   tcase_add_test(tests, a_wrong_setting_is_an_error_that_names_it);
   tcase_add_test(tests, a_bad_recording_is_named_with_its_line);
   tcase_add_test(tests, a_driver_that_fails_ends_the_stream_with_its_words);
+  tcase_add_test(tests, who_fails_again_behind_a_seek_says_so_again);
   tcase_add_test(tests, whom_failing_sensors_saw_last_does_not_stand);
   tcase_add_test(tests, live_it_keeps_the_clocks_time);
   tcase_add_test(tests, stopping_takes_no_time_while_it_waits);

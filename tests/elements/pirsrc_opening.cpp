@@ -3,6 +3,7 @@
 // of it is told, however late.
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <chrono>
 #include <string>
 
@@ -190,6 +191,33 @@ GST_START_TEST(who_cannot_be_opened_says_so_at_once_and_once_however_late) {
 }
 GST_END_TEST
 
+// Whoever stops at the first that ends the stream must hear that it did not end well.
+GST_START_TEST(no_end_of_the_stream_overtakes_the_error) {
+  for (int round = 0; round < 5; ++round) {
+    Hanging hanging("open fail no such converter", "is-live=true");
+    std::atomic<bool> told = false;
+    GstBus* bus = gst_element_get_bus(hanging.source.element());
+    gst_bus_set_sync_handler(
+        bus,
+        [](GstBus*, GstMessage* message, gpointer heard) {
+          if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ERROR) return GST_BUS_PASS;
+          g_usleep(50000);
+          *static_cast<std::atomic<bool>*>(heard) = true;
+          return GST_BUS_PASS;
+        },
+        &told, nullptr);
+    hanging.change(GST_STATE_PLAYING);
+    hanging.gate.close_writer();
+    hanging.ends();
+    const bool first = told;
+    hanging.change(GST_STATE_NULL);
+    gst_bus_set_sync_handler(bus, nullptr, nullptr, nullptr);
+    gst_object_unref(bus);
+    fail_unless(first);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(who_failed_may_be_started_again) {
   Hanging hanging("open fail no such converter", "is-live=true");
   for (int round = 0; round < 3; ++round) {  // after the first, at once: the gate is open
@@ -256,6 +284,7 @@ static Suite* pirsrc_opening_suite() {
   tcase_add_test(tests, a_recording_is_the_same_however_late_it_opens);
   tcase_add_test(tests, a_recording_that_is_being_opened_can_be_sought_in);
   tcase_add_test(tests, who_cannot_be_opened_says_so_at_once_and_once_however_late);
+  tcase_add_test(tests, no_end_of_the_stream_overtakes_the_error);
   tcase_add_test(tests, who_failed_may_be_started_again);
   tcase_add_test(tests, volts_that_are_not_measured_are_refused_however_late);
   tcase_add_test(tests, who_likes_volts_best_gets_readings_where_there_are_no_volts);
