@@ -18,7 +18,8 @@
  *
  * In a pipeline that is not live, each frame but the first waits until the head's way is known up to its running time
  * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event tells those
- * behind. So it does after half a second without a pose, in case a frame was lost on its way to the head (a leaky queue).
+ * behind. So it does after half the `lockstep-timeout`, at most half a second, without a pose, in case a frame was lost on
+ * its way to the head (a leaky queue).
  * When no pose comes for `lockstep-timeout` the element gives up with an error. The first frame (also after a flush)
  * shows where the head looked last, `start-pan` and `start-tilt` at the start. In a live pipeline nothing waits: the newest
  * pose counts.
@@ -248,7 +249,7 @@ void attach_base(GstBuffer* in, GstBuffer* out) {
   cerberus_buffer_set_base(out, &base);
 }
 
-// When no pose came for so long, the last frame may have been lost on its way to the head.
+// When no pose came for half the time-out, at most for so long, the last frame may have been lost on its way to the head.
 constexpr Time kLost = std::chrono::milliseconds(500);
 
 // Until the head's way is known up to `time`, when `in` was taken.
@@ -259,12 +260,13 @@ GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* i
   };
   tell(self.state.times.gap_before(trans->segment, in));
   const Time patience = time_of(s.lockstep_timeout);
-  const Time lost_after = s.lockstep_timeout > 0 ? std::min(kLost, patience / 2) : kLost;
+  const Time least(1);  // none at all would be for ever
+  const Time lost_after = s.lockstep_timeout > 0 ? std::clamp(patience / 2, least, kLost) : kLost;
   PoseFeed::Answer answer = self.feed.wait(time, lost_after);
   if (answer == PoseFeed::Answer::silent) {
     // A head that has had the last frame drops this gap as old, however late it comes to it: the result stays the same.
     tell(self.state.times.gap_from_last(trans->segment, in));
-    answer = self.feed.wait(time, s.lockstep_timeout > 0 ? patience - lost_after : patience);
+    answer = self.feed.wait(time, s.lockstep_timeout > 0 ? std::max(patience - lost_after, least) : patience);
   }
   switch (answer) {
     case PoseFeed::Answer::known:
