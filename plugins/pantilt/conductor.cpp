@@ -26,7 +26,7 @@ void Conductor::hear_soon() {
 void Conductor::hear() {
   Outbox out;
   station.hear(out);
-  tell(out);
+  if (!out.refusal.empty()) tell(out);
 }
 
 bool Conductor::open() {
