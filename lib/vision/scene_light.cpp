@@ -11,7 +11,6 @@ namespace {
 
 // Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
 constexpr double kOtherLight = 3, kFlicker = 40;
-constexpr std::uint8_t kGuessed = 4;  // frames: how old what one frame told of white counts as
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.
 constexpr double kAgreement = 0.3;
@@ -113,7 +112,7 @@ bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surrou
         // Not darker than it was said to be: then somebody is before it.
         const int value = std::max<int>(pixels.mean.at(x, y), present.at(x, y) << 8);
         pixels.mean.at(x, y) = static_cast<std::uint16_t>(value);
-        pixels.age.at(x, y) = kGuessed;
+        pixels.age.at(x, y) = kRelearn;
       }
     draw(pixels.mean);
     estimate(present, shown, still);
@@ -123,8 +122,7 @@ bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surrou
 }
 
 void SceneLight::forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
-                              const std::array<double, kBrightness>& sigma, std::uint8_t age,
-                              MutableBitView moved) {
+                              const std::array<double, kBrightness>& sigma, MutableBitView moved) {
   const MutableGrayView k = known();
   intersect(moved, foreground, moved);
   for (int y = 0; y < k.height; ++y) {
@@ -138,7 +136,7 @@ void SceneLight::forgive_step(const ScenePixels& pixels, GrayView present, BitVi
       if (!free || std::abs(f[x] - m[x]) <= 2 * sigma[m[x] >> 4]) continue;
       pixels.mean.at(x, y) = static_cast<std::uint16_t>(taken[x] << 8);
       m[x] = f[x];
-      a[x] = std::min(a[x], age);
+      a[x] = std::min(a[x], kRelearn);
     }
   }
 }

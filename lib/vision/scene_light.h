@@ -17,6 +17,9 @@
 
 namespace cerberus::vision {
 
+// Frames: what is learnt anew because it was wrong, or known from one frame only, counts as if it were this old.
+inline constexpr std::uint8_t kRelearn = 4;
+
 class SceneLight {
  public:
   void make_room(Size picture);
@@ -45,10 +48,10 @@ class SceneLight {
                   std::span<const RowSpan> shown, bool still);
   // A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what a
   // line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the foreground
-  // one frame ago, neither is motion (moved), and where the memory is wrong now it starts anew, as if it were `age` old.
+  // one frame ago, neither is motion (moved), and where the memory is wrong now it starts anew (kRelearn).
   // sigma: noise by brightness.
   void forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
-                    const std::array<double, kBrightness>& sigma, std::uint8_t age, MutableBitView moved);
+                    const std::array<double, kBrightness>& sigma, MutableBitView moved);
 
   std::size_t bytes() const { return known_.bytes() + row_.bytes() + samples_.bytes() + change_.bytes(); }
 

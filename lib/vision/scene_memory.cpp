@@ -31,11 +31,10 @@ namespace {
 constexpr double kFarthest = 12;
 constexpr double kRedo = 1;   // pixels: a smaller correction is used from the next frame on
 constexpr int kStanding = 5;  // frames after which a standing camera's memory is redrawn to fit it exactly
-constexpr double kLeastSigma = 0.7;    // grey levels: rounding alone makes 0.3, compression more
-constexpr int kClosing = 9;            // side of the closing at 320 columns
-constexpr double kUsualPeriod = 0.04;  // seconds, where nobody knows
-constexpr double kUnreliable = 1.5;  // pixels of registration error above which the memory is learnt anew ...
-constexpr std::uint8_t kRelearn = 4;     // ... as if it were this old
+constexpr double kLeastSigma = 0.7;      // grey levels: rounding alone makes 0.3, compression more
+constexpr int kClosing = 9;              // side of the closing at 320 columns
+constexpr double kUsualPeriod = 0.04;    // seconds, where nobody knows
+constexpr double kUnreliable = 1.5;      // pixels of registration error above which the memory is learnt anew
 constexpr double kMostUnreliable = 0.1;  // share of the blocks up to which a memory fits the frame
 constexpr int kUnsettled = 12;           // frames in which a memory still has its own errors of registration
 constexpr double kBlurred = 0.8;  // sharpness from which on blur is the motion's, not the interpolation's
@@ -377,9 +376,11 @@ void SceneMemory::State::forgive_blur() {
   const double sharpness = blur.sharpness(frame, memory, age.view(), warp.spans());
   const bool memory_blurred = sharpness > 1 / kBlurred && frames < kUnsettled;
   if (sharpness >= kBlurred && !memory_blurred) return;
+  constexpr CompareLimits limits;  // what is noise to the comparison is so here
   std::array<std::uint8_t, kBrightness> tolerance;
   for (int c = 0; c < kBrightness; ++c)
-    tolerance[c] = static_cast<std::uint8_t>(std::clamp(3 * sigma[c], 6.0, 255.0));
+    tolerance[c] =
+        static_cast<std::uint8_t>(std::clamp(limits.weak_sigmas * sigma[c], limits.weak_least / 16.0, 255.0));
   blur.forgive(memory_blurred ? memory : frame, memory_blurred ? frame : memory, tolerance, weak.view(),
                strong.view());
 }
@@ -449,7 +450,7 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
     map_bits(s.absorb.view(), s.to_frame, s.moved.view(), s.size.width);
   }
   if (step && in.still)
-    s.light.forgive_step(s.pixels(), s.present.view(), s.weak.view(), s.sigma, kRelearn, s.moved.view());
+    s.light.forgive_step(s.pixels(), s.present.view(), s.weak.view(), s.sigma, s.moved.view());
   s.learn_noise(in);
   s.compare(in);
   s.decide(in);
