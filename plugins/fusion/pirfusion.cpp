@@ -54,6 +54,7 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/text.hpp"
 #include "fusion/rule_file.h"
 #include "inputs.hpp"
 #include "pir_pad.hpp"
@@ -113,7 +114,7 @@ bool load_rules(CerberusPirFusion* self, std::string& error) {
   if (!settings.rules_file.empty()) {
     fusion::RuleFile file = fusion::load_rules(settings.rules_file);
     if (!file.table) {
-      error = std::move(file.error);
+      error = printable(file.error);
       return false;
     }
     table = std::make_shared<const fusion::RuleTable>(std::move(*file.table));

@@ -18,7 +18,8 @@
  *   JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
  * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
  *
- * A recording that is not live can be sought in: readings go on with what it says of that time.
+ * A recording that is not live can be sought in: readings go on with what it says of that time. A seek backwards in time (a
+ * negative rate) is refused. A last line without its line feed counts if it is complete in itself.
  *
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
  * knows modules. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
@@ -167,16 +168,16 @@ bool open_sensors(CerberusPirSrc* self) {
   const PirSettings settings = priv.settings.snapshot();
   CerberusPirInfo info;
   if (const std::string why = pir_info(settings, info); !why.empty()) {
-    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("PIR sensors cannot be arranged so: %s.", why.c_str()),
-                      (nullptr));
+    report_error(GST_ELEMENT(self),
+                 {drivers::SensorFault::settings, "PIR sensors cannot be arranged so: " + why + ".", ""});
     return false;
   }
   auto sensor = drivers::make_sensor(settings.driver);
   if (!sensor) {
-    GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
-                      ("There is no PIR driver \"%s\". Drivers: %s.", settings.driver.c_str(),
-                       drivers::sensor_drivers().c_str()),
-                      (nullptr));
+    report_error(GST_ELEMENT(self), {drivers::SensorFault::settings,
+                                     "There is no PIR driver \"" + settings.driver +
+                                         "\". Drivers: " + drivers::sensor_drivers() + ".",
+                                     ""});
     return false;
   }
   const Time heartbeat = std::max(time_of(settings.heartbeat), kLeastHeartbeat);
@@ -353,7 +354,6 @@ gboolean is_seekable(GstBaseSrc* base) {
 
 gboolean do_seek(GstBaseSrc* base, GstSegment* segment) {
   if (!is_seekable(base)) return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->do_seek(base, segment);
-  if (segment->rate < 0) return FALSE;
   Private& priv = *cerberus_pir_src_self(base)->priv;
   const std::lock_guard guard(priv.lock);
   const Time start = time_of(segment->start);
@@ -362,6 +362,22 @@ gboolean do_seek(GstBaseSrc* base, GstSegment* segment) {
   priv.last = static_cast<GstClockTime>(start.count());
   segment->time = segment->start;
   return TRUE;
+}
+
+// Readings are made onwards only. The base class would ask do_seek() behind the flush, which takes the segment away: what is
+// refused there goes on without one.
+bool is_backwards(GstEvent* event) {
+  if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return false;
+  gdouble rate = 1;
+  gst_event_parse_seek(event, &rate, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr);
+  return rate < 0;
+}
+
+gboolean send_event(GstElement* element, GstEvent* event) {
+  if (!is_backwards(event))
+    return GST_ELEMENT_CLASS(cerberus_pir_src_parent_class())->send_event(element, event);
+  gst_event_unref(event);
+  return FALSE;
 }
 
 void flush(GstBaseSrc* base, bool flushing) {
@@ -385,6 +401,7 @@ gboolean unlock_stop(GstBaseSrc* base) {
 gboolean event(GstBaseSrc* base, GstEvent* event) {
   auto* self = cerberus_pir_src_self(base);
   Private& priv = *self->priv;
+  if (is_backwards(event)) return FALSE;
   gdouble yaw_rate = 0;
   if (cerberus_event_parse_base(event, &yaw_rate, nullptr)) {
     const std::lock_guard guard(priv.lock);
@@ -434,6 +451,7 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   object->get_property = get_property;
   Adjustable<PirSettings>::install(object, pir_properties(), GParamFlags(GST_PARAM_MUTABLE_READY));
   GST_ELEMENT_CLASS(klass)->change_state = change_state;
+  GST_ELEMENT_CLASS(klass)->send_event = send_event;
   auto* src = GST_BASE_SRC_CLASS(klass);
   src->stop = stop;
   src->is_seekable = is_seekable;

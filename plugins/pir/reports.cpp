@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "reports.hpp"
 
+#include <cerberus/private/text.hpp>
 #include <cmath>
 
 namespace cerberus::plugin {
@@ -8,8 +9,9 @@ namespace cerberus::plugin {
 using drivers::SensorFault;
 
 void report_error(GstElement* element, const drivers::SensorError& error) {
-  const char* detail = error.detail.c_str();
-  const char* text = error.text.c_str();
+  // They quote a recording's bytes, whatever those are.
+  const std::string all_text = printable(error.text), all_detail = printable(error.detail);
+  const char *text = all_text.c_str(), *detail = all_detail.c_str();
   switch (error.fault) {
     case SensorFault::none:
       return;
@@ -37,8 +39,8 @@ void report_error(GstElement* element, const drivers::SensorError& error) {
 
 void report_fault(GstElement* element, int sensor, sensing::PirFault fault, double bearing,
                   const std::string& place) {
-  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + place + ", bearing " +
-                           std::to_string(std::lround(bearing)) + ")";
+  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + printable(place) +
+                           ", bearing " + std::to_string(std::lround(bearing)) + ")";
   if (fault == sensing::PirFault::none) {
     GST_ELEMENT_INFO(element, RESOURCE, READ, ("%s works again.", name.c_str()), (nullptr));
     return;

@@ -98,11 +98,24 @@ GST_START_TEST(a_recording_is_sought_in_and_a_live_source_is_not) {
     g_autoptr(GBytes) readings = cerberus_message_parse_pir(message, &time);
     fail_unless_equals_uint64(time, running * GST_MSECOND);
   }
-  fail_if(seek(source, -1, 2 * GST_SECOND));
   Source live("is-live=true " + script);
   live.play();
   live.pull();
   fail_if(seek(live, 1, 2 * GST_SECOND));
+}
+GST_END_TEST
+
+// Nothing is flushed for it: what flows on would have no segment.
+GST_START_TEST(a_seek_backwards_is_refused_and_leaves_the_stream_as_it_is) {
+  Source source(std::string("name=source ") + kWalk);
+  source.play();
+  source.pull();
+  fail_if(seek(source, -1, GST_SECOND));
+  fail_if(gst_element_seek(source.child("source"), -1, GST_FORMAT_TIME, GST_SEEK_FLAG_FLUSH,
+                           GST_SEEK_TYPE_SET, 0, GST_SEEK_TYPE_SET, GST_SECOND));
+  g_autoptr(GstEvent) segment = gst_pad_get_sticky_event(source.harness()->sinkpad, GST_EVENT_SEGMENT, 0);
+  fail_unless(segment != nullptr, "the segment is gone");
+  fail_unless_equals_int(source.all().size(), 6);
 }
 GST_END_TEST
 
@@ -291,6 +304,20 @@ GST_START_TEST(a_bad_recording_is_named_with_its_line) {
     const std::string why = Source(properties).refusal(GST_STREAM_ERROR, GST_STREAM_ERROR_DECODE);
     fail_unless(says(why, path) && says(why, text[10] == '1' ? "line 2" : "line 4"));
   }
+  // Whatever bytes it has, a message is UTF-8 (else GStreamer itself complains) and does not end at a NUL.
+  using namespace std::string_literals;
+  for (const auto& [text, told] :
+       {std::pair("0,0,0,0\n\xff\xfe,1,0,0\n"s, "\"\\xff\\xfe\" is no time"),
+        {"0,0,0,0\n\0\0,1,0,0\n"s, "\"\\x00\\x00\" is no time"},
+        {"0,0,0,0\n1,\u00e9\x1b,0,0\n"s, "\"\u00e9\\x1b\" is no reading"},
+        {"0,0,0,0\n{\"time\":1,\"pir\":[\"\xc3\"]}"s, "no complete JSON object"}}) {
+    g_file_set_contents(path, text.data(), static_cast<gssize>(text.size()), nullptr);
+    const std::string why = Source(properties).refusal(GST_STREAM_ERROR, GST_STREAM_ERROR_DECODE);
+    fail_unless(says(why, "line 2: ") && says(why, told), "%s", why.c_str());
+  }
+  Source nowhere("name=source driver=replay");
+  g_object_set(nowhere.child("source"), "location", "/nowhere\xff.csv", nullptr);
+  fail_unless(says(nowhere.refusal(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_NOT_FOUND), "/nowhere\\xff.csv"));
   g_file_set_contents(path, "{\"pts\":0,\"pir\":[0,0,0]}\n{\"pts\":50000000,\"pir\":[0,0,1]}\n", -1, nullptr);
   fail_unless(Source(properties).all() == std::vector<std::string>({"0 000", "50 001"}));
   g_unlink(path);
@@ -419,6 +446,7 @@ Suite* pirsrc_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, a_recording_becomes_a_stream_of_its_own_times);
   tcase_add_test(tests, a_recording_is_sought_in_and_a_live_source_is_not);
+  tcase_add_test(tests, a_seek_backwards_is_refused_and_leaves_the_stream_as_it_is);
   tcase_add_test(tests, after_a_seek_frames_meet_the_readings_of_their_time);
   tcase_add_test(tests, caps_tell_where_the_sensors_look);
   tcase_add_test(tests, every_change_is_a_message_and_a_heartbeat_is_none);
