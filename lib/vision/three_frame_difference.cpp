@@ -25,15 +25,21 @@ struct ThreeFrameDifference::State {
   DifferenceOptions options;
   Size size;
   int frames = 0;  // of this scene, at most 3
-  // Blurred pictures, [0] of the newest frame; never an old difference.
-  std::array<Image<std::uint8_t>, 3> ring;
+  // Blurred pictures, [0] of the newest frame; never an old difference. Between two frames there are two of them: when
+  // frame k comes, D(k-1) is made first, and F(k) takes the place of F(k-2).
+  std::array<Image<std::uint8_t>, 2> ring;
   Transform before;  // frame k-2 to k-1
-  Warp warp1, warp2;
+  Warp warp;
   LightSamples samples;
   LightChange light, light_before;
-  Image<std::uint8_t> rows;  // scratch for relit rows
+  Image<std::uint8_t> relit;  // a row
   std::vector<RowSpan> spans;
 
+  void take(GrayView picture) {
+    std::swap(ring[0], ring[1]);
+    blur3(picture, options.blur, ring[0].view());
+  }
+  void subtract_before(GrayView first, GrayView second, MutableGrayView previous);
   void forget() {
     frames = 0;
     before = {};
@@ -41,6 +47,23 @@ struct ThreeFrameDifference::State {
     light_before.clear();
   }
 };
+
+// previous := D(k-1), of both pictures where frame k sees them. It knows its light since frame k-1.
+void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView second, MutableGrayView previous) {
+  for (int y = 0; y < size.height; ++y) {
+    const RowSpan span = spans[static_cast<std::size_t>(y)];
+    const int count = span.end - span.begin;
+    std::uint8_t* row = previous.row(y);
+    const std::uint8_t* f2 = second.row(y) + span.begin;
+    if (!light_before.none()) {
+      relight_row(f2, light_before.row(y), count, relit.view().data);
+      f2 = relit.view().data;
+    }
+    difference_row(first.row(y) + span.begin, f2, count, row + span.begin);
+    std::fill(row, row + span.begin, std::uint8_t{0});
+    std::fill(row + span.end, row + size.width, std::uint8_t{0});
+  }
+}
 
 ThreeFrameDifference::ThreeFrameDifference() : state_(std::make_unique<State>()) {}
 ThreeFrameDifference::~ThreeFrameDifference() = default;
@@ -65,7 +88,7 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   if (size != s.size) {
     s.size = size;
     for (auto& image : s.ring) image.resize(size);
-    s.rows.resize({size.width, 2});
+    s.relit.resize({size.width, 1});
     s.spans.assign(height, {});
     s.forget();
   }
@@ -73,15 +96,13 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   DifferenceResult result;
   if (picture.empty()) return result;
 
-  std::swap(s.ring[1], s.ring[2]);
-  std::swap(s.ring[0], s.ring[1]);
-  blur3(picture, s.options.blur, s.ring[0].view());
   s.frames = std::min(s.frames + 1, 3);
   result.frames = s.frames;
   const auto clear = [&](MutableGrayView v) {
     for (int y = 0; y < v.height; ++y) std::fill_n(v.row(y), v.width, std::uint8_t{0});
   };
-  if (s.frames < 2 || !s.warp1.prepare(motion, size)) {
+  if (s.frames < 2 || !s.warp.prepare(motion, size)) {
+    s.take(picture);
     clear(current);
     clear(previous);
     s.before = motion;
@@ -94,25 +115,31 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   }
   // Both previous pictures where frame k sees them; the outputs hold them until the differences overwrite
   // them.
-  const GrayView present = s.ring[0].view();
-  GrayView first = s.ring[1].view(), second = s.ring[2].view();
-  std::ranges::copy(s.warp1.spans(), s.spans.begin());
-  if (!s.warp1.is_identity()) {
-    s.warp1.bilinear(first, current);
+  GrayView first = s.ring[0].view(), second = s.ring[1].view();
+  std::ranges::copy(s.warp.spans(), s.spans.begin());
+  const bool still = s.warp.is_identity();
+  if (!still) {
+    s.warp.bilinear(first, current);
     first = current;
   }
-  const bool three = s.frames == 3 && s.warp2.prepare(motion * s.before, size);
+  const bool three = s.frames == 3 && s.warp.prepare(motion * s.before, size);
   if (three) {
-    for (std::size_t y = 0; y < height; ++y) s.spans[y] = both(s.spans[y], s.warp2.spans()[y]);
-    if (!s.warp2.is_identity()) {
-      s.warp2.bilinear(second, previous);
+    for (std::size_t y = 0; y < height; ++y) s.spans[y] = both(s.spans[y], s.warp.spans()[y]);
+    if (!s.warp.is_identity()) {
+      s.warp.bilinear(second, previous);
       second = previous;
     }
   }
   std::swap(s.light, s.light_before);
+  if (three)
+    s.subtract_before(first, second, previous);
+  else
+    clear(previous);
+  s.take(picture);
+  const GrayView present = s.ring[0].view();
   if (s.options.compensate_light) {
     s.samples.take(first, present, s.spans);
-    s.light.estimate(s.samples, s.warp1.is_identity());
+    s.light.estimate(s.samples, still);
   } else {
     s.light.clear();
   }
@@ -121,31 +148,16 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   for (int y = 0; y < size.height; ++y) {
     const RowSpan span = s.spans[static_cast<std::size_t>(y)];
     const int count = span.end - span.begin;
-    std::uint8_t *d1 = current.row(y), *d2 = previous.row(y);
-    const std::uint8_t* f0 = present.row(y) + span.begin;
+    std::uint8_t* row = current.row(y);
     const std::uint8_t* f1 = first.row(y) + span.begin;
-    if (three) {
-      const std::uint8_t* f2 = second.row(y) + span.begin;
-      if (!s.light_before.none()) {
-        relight_row(f2, s.light_before.row(y), count, s.rows.view().row(0));
-        f2 = s.rows.view().row(0);
-      }
-      difference_row(f1, f2, count, d2 + span.begin);
-    }
     if (!s.light.none()) {
-      relight_row(f1, s.light.row(y), count, s.rows.view().row(1));
-      f1 = s.rows.view().row(1);
+      relight_row(f1, s.light.row(y), count, s.relit.view().data);
+      f1 = s.relit.view().data;
     }
-    difference_row(f0, f1, count, d1 + span.begin);
-    counter.add(d1 + span.begin, count);
-    std::fill(d1, d1 + span.begin, std::uint8_t{0});
-    std::fill(d1 + span.end, d1 + size.width, std::uint8_t{0});
-    if (three) {
-      std::fill(d2, d2 + span.begin, std::uint8_t{0});
-      std::fill(d2 + span.end, d2 + size.width, std::uint8_t{0});
-    } else {
-      std::fill_n(d2, size.width, std::uint8_t{0});
-    }
+    difference_row(present.row(y) + span.begin, f1, count, row + span.begin);
+    counter.add(row + span.begin, count);
+    std::fill(row, row + span.begin, std::uint8_t{0});
+    std::fill(row + span.end, row + size.width, std::uint8_t{0});
     result.valid += static_cast<std::uint32_t>(count);
   }
   counter.store(histogram);
@@ -157,8 +169,8 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
 
 std::size_t ThreeFrameDifference::bytes() const {
   const State& s = *state_;
-  return s.ring[0].bytes() * 3 + s.rows.bytes() + s.warp1.bytes() + s.warp2.bytes() + s.samples.bytes() +
-         s.light.bytes() + s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
+  return s.ring[0].bytes() * 2 + s.relit.bytes() + s.warp.bytes() + s.samples.bytes() + s.light.bytes() +
+         s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
 }
 
 }  // namespace cerberus::vision
