@@ -49,12 +49,11 @@ double bend(const Transform& t, Size size) {
 // slow to be seen from frame to frame adds up until it is seen, instead of being snapped away for ever.
 struct CameraMotion::State {
   CameraMotionOptions options;
-  Pyramid reference, current;
+  Pyramid reference, current;  // current: of the caller's picture, only as long as that is there
   Relief reference_relief, current_relief;
   PatchMatches matches;  // from the reference to the current picture
   bool sites_chosen = false;
   int reference_age = 0;      // frames since the reference
-  MotionSamples beyond;       // see fit_beyond()
   PatchMatches::Share share;  // of the fit, on the level where it is highest
   Transform last;             // frame k-2 to k-1
   double noise = 1;           // standard deviation of a pixel
@@ -93,7 +92,7 @@ std::size_t CameraMotion::bytes() const {
 
 void CameraMotion::State::next_reference(bool keep) {
   if (keep && ++reference_age < kReferenceAge) return;
-  reference.swap(current);
+  reference.take(current);
   std::swap(reference_relief, current_relief);
   sites_chosen = false;
   reference_age = 0;
@@ -135,7 +134,7 @@ void CameraMotion::State::measure_noise() {
 MotionFit CameraMotion::State::fit_beyond(const Transform& prior, MotionModel model, const Transform& guess,
                                           int hypotheses) {
   const MotionSamples& samples = matches.samples();
-  beyond = samples;
+  MotionSamples beyond = samples;
   for (int i = 0; i < beyond.count; ++i) {
     const Point p = prior.apply({samples.x[i], samples.y[i]});
     beyond.x[i] = static_cast<float>(p.x), beyond.y[i] = static_cast<float>(p.y);
@@ -246,7 +245,7 @@ CameraMotionResult CameraMotion::update(GrayView picture, const std::optional<Tr
   if (picture.empty()) return {};
   if (s.reference.size() != picture.size()) s.scene_age = 0;
   const int level = search_level(picture.size());
-  s.current.build(picture, 1);
+  s.current.borrow(picture, 1);
   if (s.scene_age > 0)
     if (const auto result = s.confirm_still()) return *result;
   s.current.extend(level + 1);

@@ -14,6 +14,7 @@ namespace {
 // Relief values are 128 +- 64, the border 255 against padding 0 or relief: any pixel without a partner counts as
 // exactly kLimit, which can be taken off again.
 constexpr int kMiddle = 128, kRange = 64, kLimit = 63;
+constexpr int kStride = 96, kBorder = 16;  // of the later picture: 16 columns left and right of 64
 constexpr double kMeanRelief = 24, kMaxGain = 12;
 
 }  // namespace
@@ -41,31 +42,31 @@ void Relief::build(GrayView picture) {
   contrast_ = size_.area() ? total / 25.0 / size_.area() : 0;
   const double gain = std::min(kMaxGain, contrast_ > 0 ? kMeanRelief / contrast_ : kMaxGain) / 25;
   const int gain16 = static_cast<int>(gain * 65536);
-  earlier_.fill(0);
-  later_.fill(255);
+  values_.fill(0);
   for (int y = 0; y < size_.height; ++y)
     for (int x = 0; x < size_.width; ++x) {
       const int value = (static_cast<std::int64_t>(stands_out[y * size_.width + x]) * gain16) >> 16;
-      const auto byte = static_cast<std::uint8_t>(kMiddle + std::clamp(value, -kRange, kRange));
-      earlier_[y * kMaxSide + x] = byte;
-      later_[y * kStride + kBorder + x] = byte;
+      values_[y * kMaxSide + x] = static_cast<std::uint8_t>(kMiddle + std::clamp(value, -kRange, kRange));
     }
 }
 
 std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later) {
   const Size size = earlier.size_;
   if (size != later.size_ || size.width < 8 || size.height < 8) return {};
-  const int rx = std::min(size.width / 4, Relief::kBorder), ry = std::min(size.height / 4, Relief::kBorder);
+  const int rx = std::min(size.width / 4, kBorder), ry = std::min(size.height / 4, kBorder);
   const int columns = 2 * rx + 1, rows = 2 * ry + 1;
+  alignas(64) std::array<std::uint8_t, kStride * Relief::kMaxSide> bordered;  // for every shift
+  bordered.fill(255);
+  for (int y = 0; y < size.height; ++y)
+    std::copy_n(&later.values_[y * Relief::kMaxSide], size.width, &bordered[y * kStride + kBorder]);
   const int padded = (size.width + 15) / 16 * 16;
-  std::array<float, (2 * Relief::kBorder + 1) * (2 * Relief::kBorder + 1)> map;
+  std::array<float, (2 * kBorder + 1) * (2 * kBorder + 1)> map;
   for (int dy = -ry; dy <= ry; ++dy)
     for (int dx = -rx; dx <= rx; ++dx) {
       const int begin = std::max(0, -dy), end = std::min(size.height, size.height - dy);
-      const std::uint32_t sum =
-          truncated_difference(&earlier.earlier_[begin * Relief::kMaxSide], Relief::kMaxSide,
-                               &later.later_[(begin + dy) * Relief::kStride + Relief::kBorder + dx],
-                               Relief::kStride, padded, end - begin, kLimit);
+      const std::uint32_t sum = truncated_difference(
+          &earlier.values_[begin * Relief::kMaxSide], Relief::kMaxSide,
+          &bordered[(begin + dy) * kStride + kBorder + dx], kStride, padded, end - begin, kLimit);
       const int partners = (size.width - std::abs(dx)) * (end - begin);
       const int without = padded * (end - begin) - partners;
       map[(dy + ry) * columns + dx + rx] =

@@ -10,7 +10,7 @@
 namespace cerberus::vision {
 
 // A small picture (at most 64 pixels a side) freed of brightness and contrast: what a pixel stands out of its 5 x 5
-// surroundings, scaled to a common mean. Kept with a border so that it can be compared at any shift.
+// surroundings, scaled to a common mean.
 class Relief {
  public:
   static constexpr int kMaxSide = 64;
@@ -21,11 +21,9 @@ class Relief {
 
  private:
   friend struct ShiftSearch;
-  static constexpr int kStride = 96, kBorder = 16;  // 16 columns left and right of 64
   Size size_;
   double contrast_ = 0;
-  alignas(64) std::array<std::uint8_t, kStride * kMaxSide> later_{};     // as the later picture: border 255
-  alignas(64) std::array<std::uint8_t, kMaxSide * kMaxSide> earlier_{};  // as the earlier: padded with 0
+  alignas(64) std::array<std::uint8_t, kMaxSide * kMaxSide> values_{};  // rows padded with 0
 };
 
 struct Shift {

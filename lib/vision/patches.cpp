@@ -22,29 +22,35 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
   const GrayView picture = pyramid.level(level);
   const int across = (picture.width - 2 * kMargin) / kBlock, down = (picture.height - 2 * kMargin) / kBlock;
   if (across < 2 || down < 2) return;
-  scratch.resize({across, 3 * down});
-  const View<std::int32_t> blocks = scratch.view();
-  for (int y = 0; y < down; ++y)  // three planes below one another
-    sum_gradient_blocks(picture, kMargin, kMargin + kBlock * y, across, blocks.row(y), blocks.row(down + y),
-                        blocks.row(2 * down + y));
   // Cells of 20 pixels; small pictures have smaller ones, so that several parts of them speak.
   const int cells_x = std::clamp(size.width / 20, std::clamp(size.width / 8, 1, 4), 16);
   const int cells_y = std::clamp(size.height / 20, std::clamp(size.height / 8, 1, 4), 12);
+  // Three planes beside one another, of the rows that one row of cells looks at: one more than it has, and the last of
+  // the row before.
+  const int depth = down / cells_y + 3;
+  scratch.resize({3 * across, depth});
+  const auto blocks = [&, view = scratch.view()](int plane, int y) {
+    return view.row(y % depth) + static_cast<std::ptrdiff_t>(plane) * across;
+  };
+  int known = 0;  // rows of blocks
   const double pixel_noise = noise / (1 << level);
   // Gradients of pure noise have variance 2 noise^2 a pixel (not halved differences).
   const double least = kPatch * kPatch * std::max(16.0, 3 * 2 * pixel_noise * pixel_noise);
-  for (int cy = 0; cy < cells_y; ++cy)
+  for (int cy = 0; cy < cells_y; ++cy) {
+    const int y0 = cy * (down - 1) / cells_y, y1 = std::max((cy + 1) * (down - 1) / cells_y, y0 + 1);
+    for (; known < std::min(y1 + 1, down); ++known)
+      sum_gradient_blocks(picture, kMargin, kMargin + kBlock * known, across, blocks(0, known),
+                          blocks(1, known), blocks(2, known));
     for (int cx = 0; cx < cells_x; ++cx) {
       const int x0 = cx * (across - 1) / cells_x, x1 = std::max((cx + 1) * (across - 1) / cells_x, x0 + 1);
-      const int y0 = cy * (down - 1) / cells_y, y1 = std::max((cy + 1) * (down - 1) / cells_y, y0 + 1);
       double best = 0;
       int best_x = 0, best_y = 0;
-      for (int y = y0; y < std::min(y1, down - 1); ++y)
+      for (int y = y0; y < std::min(y1, down - 1); ++y) {
+        const std::int32_t *upper = blocks(0, y), *lower = blocks(0, y + 1);
         for (int x = x0; x < std::min(x1, across - 1); ++x) {
           const auto window = [&](int plane) {
-            const std::int32_t* upper = blocks.row(plane * down + y) + x;
-            const std::int32_t* lower = blocks.row(plane * down + y + 1) + x;
-            return double(upper[0]) + upper[1] + lower[0] + lower[1];
+            const int i = plane * across + x;
+            return double(upper[i]) + upper[i + 1] + lower[i] + lower[i + 1];
           };
           const double a = window(0), b = window(1), c = window(2);
           const double spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
@@ -53,6 +59,7 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
           const double score = small + 0.05 * large;  // corners before edges, edges before nothing
           if (score > best) best = score, best_x = x, best_y = y;
         }
+      }
       if (best <= 0 || count == MotionSamples::kMax) continue;
       const float scale = static_cast<float>(1 << level);
       PatchSite& s = site[count++];
@@ -61,6 +68,7 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
       s.region = static_cast<std::uint8_t>(4 * std::min(3, static_cast<int>(4 * s.y / size.height)) +
                                            std::min(3, static_cast<int>(4 * s.x / size.width)));
     }
+  }
 }
 
 PatchFollower::PatchFollower(GrayView earlier, int level, const PatchSite& site) {

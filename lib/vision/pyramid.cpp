@@ -2,22 +2,41 @@
 #include "vision/pyramid.h"
 
 #include <algorithm>
+#include <cstring>
+#include <utility>
 
 #include "vision/motion_kernels.h"
 
 namespace cerberus::vision {
 
-void Pyramid::build(GrayView picture, int levels) {
+void Pyramid::copy(GrayView picture) {
   images_[0].resize(picture.size());
+  picture_ = images_[0].view();
   for (int y = 0; y < picture.height; ++y)
     std::memcpy(images_[0].view().row(y), picture.row(y), static_cast<std::size_t>(picture.width));
+}
+
+void Pyramid::build(GrayView picture, int levels) {
+  copy(picture);
   levels_ = 1;
   extend(levels);
 }
 
+void Pyramid::borrow(GrayView picture, int levels) {
+  picture_ = picture;
+  levels_ = 1;
+  extend(levels);
+}
+
+void Pyramid::take(Pyramid& other) {
+  copy(other.picture_);
+  for (std::size_t l = 1; l < images_.size(); ++l) images_[l].swap(other.images_[l]);
+  levels_ = std::exchange(other.levels_, 0);
+}
+
 void Pyramid::extend(int levels) {
   for (; levels_ < std::min(levels, kMaxLevels); ++levels_) {
-    const GrayView from = images_[levels_ - 1].view();
+    const GrayView from = level(levels_ - 1);
     const Size half{from.width / 2, from.height / 2};
     if (half.width == 0 || half.height == 0) break;
     images_[levels_].resize(half);

@@ -8,27 +8,31 @@
 
 namespace cerberus::vision {
 
-// Level 0 is a copy of the picture; every further one is half as wide and high (odd last columns and rows are left
-// out), each pixel the rounded mean of four. A point x of level 0 lies at (x + 0.5) / 2^l - 0.5 of level l.
+// Level 0 is the picture; every further one is half as wide and high (odd last columns and rows are left out), each pixel
+// the rounded mean of four. A point x of level 0 lies at (x + 0.5) / 2^l - 0.5 of level l.
 class Pyramid {
  public:
   static constexpr int kMaxLevels = 8;
 
-  // Allocates only when the size changes. `levels` at most kMaxLevels; stops earlier at an empty level.
+  // All allocate only when the size changes. `levels` at most kMaxLevels; stops earlier at an empty level.
+  // Level 0 is a copy of the picture.
   void build(GrayView picture, int levels);
+  // Level 0 is the picture itself: it has to stay what and where it is for as long as it is looked at here.
+  void borrow(GrayView picture, int levels);
   // More levels of the same picture.
   void extend(int levels);
+  // Becomes what `other` is, with a copy of its level 0. The other one is to be built or to borrow anew.
+  void take(Pyramid& other);
   int levels() const { return levels_; }
-  GrayView level(int l) const { return images_[l].view(); }
-  Size size() const { return levels_ ? images_[0].size() : Size{}; }
-  void swap(Pyramid& other) noexcept {
-    images_.swap(other.images_);
-    std::swap(levels_, other.levels_);
-  }
+  GrayView level(int l) const { return l > 0 ? images_[l].view() : picture_; }
+  Size size() const { return levels_ ? picture_.size() : Size{}; }
   std::size_t bytes() const;
 
  private:
-  std::array<Image<std::uint8_t>, kMaxLevels> images_;
+  void copy(GrayView picture);
+
+  GrayView picture_;
+  std::array<Image<std::uint8_t>, kMaxLevels> images_;  // [0]: the copy, where there is one
   int levels_ = 0;
 };
 

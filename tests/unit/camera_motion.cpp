@@ -166,15 +166,18 @@ START_TEST(odd_sizes_work_and_nothing_outside_the_picture_is_read) {
 }
 END_TEST
 
-START_TEST(the_same_frames_give_the_same_numbers) {
+START_TEST(the_same_frames_give_the_same_numbers_whatever_becomes_of_them_afterwards) {
   std::vector<CameraMotionResult> first;
+  std::vector<Image<std::uint8_t>> frames(12);  // all stay where they are
   for (int run = 0; run < 2; ++run) {
     std::mt19937 random(18);
     CameraMotion camera;
     for (int k = 0; k < 6; ++k) {
-      Image<std::uint8_t> frame = picture(Scene(18), about_centre(1 + 0.01 * k, 0.01 * k, 3 * k, k));
+      Image<std::uint8_t>& frame = frames[static_cast<std::size_t>(6 * run + k)];
+      frame = picture(Scene(18), about_centre(1 + 0.01 * k, 0.01 * k, 3 * k, k));
       add_noise(frame.view(), 2, 5, random);
       const CameraMotionResult r = camera.update(frame.view());
+      if (run == 1) frame.fill_bytes(99);
       if (run == 0)
         first.push_back(r);
       else
@@ -195,7 +198,7 @@ START_TEST(the_steady_state_allocates_nothing_and_memory_is_small) {
   for (int round = 0; round < 3; ++round)
     for (const auto& frame : frames) camera.update(frame.view());
   ck_assert_uint_eq(allocations() - before, 0);
-  ck_assert_uint_lt(camera.bytes(), 5u * static_cast<unsigned>(kSize.area()));
+  ck_assert_uint_lt(camera.bytes(), 3u * static_cast<unsigned>(kSize.area()));
 }
 END_TEST
 
@@ -210,6 +213,7 @@ int main() {
        objects_over_nearly_half_the_picture_do_not_move_the_camera,
        an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy,
        the_heads_pose_finds_what_no_search_reaches_and_a_wrong_one_is_not_believed,
-       odd_sizes_work_and_nothing_outside_the_picture_is_read, the_same_frames_give_the_same_numbers,
+       odd_sizes_work_and_nothing_outside_the_picture_is_read,
+       the_same_frames_give_the_same_numbers_whatever_becomes_of_them_afterwards,
        the_steady_state_allocates_nothing_and_memory_is_small});
 }

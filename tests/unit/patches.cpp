@@ -45,6 +45,25 @@ START_TEST(a_pyramid_halves_down_to_one_pixel_and_no_further) {
 }
 END_TEST
 
+START_TEST(a_pyramid_needs_a_borrowed_picture_until_another_takes_it_over) {
+  Image<std::uint8_t> image({9, 5});
+  image.fill_bytes(50);
+  Pyramid borrowed, kept;
+  borrowed.borrow(image.view(), 2);
+  ck_assert_ptr_eq(borrowed.level(0).data, image.view().data);
+  kept.build(Image<std::uint8_t>({4, 4}).view(), 1);
+  kept.take(borrowed);
+  image.fill_bytes(90);
+  ck_assert_int_eq(borrowed.levels(), 0);
+  ck_assert(kept.size() == (Size{9, 5}));
+  ck_assert_int_eq(kept.levels(), 2);
+  ck_assert_int_eq(kept.level(0).at(8, 4), 50);
+  kept.extend(3);  // of what was taken
+  ck_assert_int_eq(kept.level(1).at(3, 1), 50);
+  ck_assert_int_eq(kept.level(2).at(1, 0), 50);
+}
+END_TEST
+
 START_TEST(patches_lie_all_over_a_textured_picture_and_nowhere_in_a_flat_one) {
   Image<std::int32_t> scratch;
   PatchSites sites;
@@ -156,6 +175,7 @@ END_TEST
 int main() {
   return run_suite_on_every_target(
       "patches", {a_pyramid_halves_down_to_one_pixel_and_no_further,
+                  a_pyramid_needs_a_borrowed_picture_until_another_takes_it_over,
                   patches_lie_all_over_a_textured_picture_and_nowhere_in_a_flat_one,
                   noise_alone_is_not_texture, a_patch_is_chosen_where_there_is_a_corner_not_an_edge,
                   patches_are_followed_to_a_fraction_of_a_pixel_under_any_light,
