@@ -43,9 +43,7 @@ int components(GstVideoFrame* frame, vision::BlendComponent (&all)[GST_VIDEO_MAX
 }  // namespace
 
 CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComposition* before) {
-  CompositionPtr composition(
-      before ? gst_video_overlay_composition_copy(const_cast<GstVideoOverlayComposition*>(before))
-             : gst_video_overlay_composition_new(nullptr));
+  CompositionPtr composition(gst_video_overlay_composition_new(nullptr));
   for (const Patch& patch : patches) {
     // The buffer holds the surface: no copy, and labels that stay the same are shared from frame to frame.
     cairo_surface_t* surface = cairo_surface_reference(patch.pixels.get());
@@ -65,6 +63,10 @@ CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComp
     gst_video_overlay_composition_add_rectangle(composition.get(), rectangle);
     gst_video_overlay_rectangle_unref(rectangle);
   }
+  auto* others = const_cast<GstVideoOverlayComposition*>(before);
+  for (guint i = 0; others && i < gst_video_overlay_composition_n_rectangles(others); ++i)
+    gst_video_overlay_composition_add_rectangle(composition.get(),
+                                                gst_video_overlay_composition_get_rectangle(others, i));
   return composition;
 }
 

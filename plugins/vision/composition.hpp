@@ -17,7 +17,7 @@ struct CompositionDeleter {
 };
 using CompositionPtr = std::unique_ptr<GstVideoOverlayComposition, CompositionDeleter>;
 
-// The patches as rectangles over those of `before` (may be null), which is not changed. Pixels are not copied.
+// The patches as rectangles below those of `before` (may be null), which is not changed. Pixels are not copied.
 CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComposition* before);
 
 // Draws the patches into a frame of 8-bit components (CERBERUS_VIDEO_FORMATS), mapped for reading and writing.

@@ -122,14 +122,17 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
   line_ = scene.line_width > 0 ? scene.line_width : automatic_line_width(scene.frame);
   const double font = 9.5 * std::pow(std::max(std::min(frame_.width, frame_.height), 120) / 240.0, 0.6);
   if (std::exchange(font_, font) != font) labels_.clear();
-  taken_.clear();
+  taken_.assign(scene.covered.begin(), scene.covered.end());
   for (auto& entry : labels_) entry.second.used = false;
   objects_.clear();
   for (const Object& object : scene.objects)
     if (const auto inside = clipped(object, frame_)) objects_.push_back(*inside);
   for (const auto& trail : scene.trails) paint_trail(trail, patches);
   if (scene.boxes)
-    for (const Object& object : objects_) paint_box(object, patches);
+    for (const Object& object : objects_) {
+      paint_box(object, patches);
+      if (object.target) paint_target(object, patches);
+    }
   if (scene.ids)
     for (const Object& object : objects_) paint_label(object, patches);
   if (scene.crosshair) paint_crosshair(patches);
@@ -258,6 +261,35 @@ void Painter::paint_box(const Object& object, std::vector<Patch>& patches) {
   });
 }
 
+// How far the target's corners lie outside its box, in widths of a line.
+constexpr double kTargetRoom = 2.5;
+
+// A bracket at each corner, thicker than the box and round it; within the frame where that ends there.
+void Painter::paint_target(const Object& object, std::vector<Patch>& patches) {
+  const double room = kTargetRoom * line_, thick = 1.6 * line_, casing = std::max(1.0, 0.6 * line_);
+  const double arm =
+      std::clamp(0.25 * std::min(object.width, object.height) + room, 2 * thick, 8 * thick) - thick / 2;
+  const double left = std::max(object.x - room, thick), top = std::max(object.y - room, thick),
+               right = std::min(object.x + object.width + room, frame_.width - thick),
+               bottom = std::min(object.y + object.height + room, frame_.height - thick);
+  for (const auto& [x, dx] : {std::pair{left, arm}, {right, -arm}})
+    for (const auto& [y, dy] : {std::pair{top, arm}, {bottom, -arm}}) {
+      const Area area = around(std::min(x, x + dx), std::min(y, y + dy), std::max(x, x + dx),
+                               std::max(y, y + dy), thick + casing);
+      add_patch(patches, frame_, area, [&](cairo_t* cr) {
+        cairo_move_to(cr, x + dx, y);
+        cairo_line_to(cr, x, y);
+        cairo_line_to(cr, x, y + dy);
+        cairo_set_line_width(cr, thick + 2 * casing);
+        source(cr, {}, kCasing);
+        cairo_stroke_preserve(cr);
+        cairo_set_line_width(cr, thick);
+        source(cr, identity_color(object.id));
+        cairo_stroke(cr);
+      });
+    }
+}
+
 // The object's label, drawn when its words are new: identity, two bars for stopped, and where `detailed` speed and
 // distance.
 const Painter::Label& Painter::label(const Object& object, bool detailed) {
@@ -331,7 +363,8 @@ constexpr double kLongestLabel = 3;
 // Above the box, below it, or inside its top: the first place in the frame that no other label has; what is long gives
 // way to what is short.
 void Painter::paint_label(const Object& object, std::vector<Patch>& patches) {
-  const int gap = static_cast<int>(std::ceil(line_));
+  const int gap =
+      static_cast<int>(std::ceil(scene_->boxes && object.target ? (kTargetRoom + 1) * line_ : line_));
   const int top = static_cast<int>(std::lround(object.y));
   const int bottom = static_cast<int>(std::lround(object.y + object.height));
   const auto is_free = [&](const Area& a) {
@@ -382,8 +415,8 @@ void Painter::paint_crosshair(std::vector<Patch>& patches) {
   add_patch(patches, frame_, around(cx - arm, cy - arm, cx + arm, cy + arm, reach), draw);
 }
 
-// A panel in the corner: the head's angles, the sensors as the paper's LEDs (red: detects, blue: does not, grey: says nothing),
-// the rule and the action.
+// A panel in the corner: the head's angles, the sensors as the paper's LEDs (red: detects, blue: does not, grey: says nothing)
+// with their numbers, the rule and the action.
 void Painter::paint_system(std::vector<Patch>& patches) {
   const System& system = scene_->system;
   const auto degrees = [](double value) {
@@ -403,9 +436,9 @@ void Painter::paint_system(std::vector<Patch>& patches) {
   const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
   const ContextPtr measure(cairo_create(scratch.get()));
   select_font(measure.get(), font_);
-  const double pad = 0.5 * font_, led = 0.38 * font_, step = 2.6 * led, row = 1.35 * font_,
-               edge = 0.6 * font_;
-  const double leds = step * static_cast<double>(system.sensors.size());
+  const double pad = 0.5 * font_, led = 0.5 * font_, step = 2.4 * led, row = 1.35 * font_, edge = 0.6 * font_;
+  const double leds =
+      system.sensors.empty() ? 0 : step * static_cast<double>(system.sensors.size()) + 0.3 * font_;
   const double width = 2 * pad + std::max(text_width(measure.get(), lines[0].c_str()),
                                           leds + text_width(measure.get(), lines[1].c_str()));
   const double height = pad + row * (!lines[0].empty() + !lines[1].empty());
@@ -413,20 +446,27 @@ void Painter::paint_system(std::vector<Patch>& patches) {
     rounded_rectangle(cr, edge, edge, width, height, 0.35 * font_);
     source(cr, {}, 0.6);
     cairo_fill(cr);
-    select_font(cr, font_);
     double y = edge + 0.5 * pad;
     for (const std::string& line : lines) {
       if (line.empty()) continue;
       double x = edge + pad;
       if (&line == &lines[1])
-        for (const std::uint8_t sensor : system.sensors) {
+        for (std::size_t i = 0; i < system.sensors.size(); ++i) {
+          const std::uint8_t sensor = system.sensors[i];
           cairo_arc(cr, x + led, y + row / 2, led, 0, 2 * std::numbers::pi);
           source(cr, sensor == 1   ? Color{1, 0.15, 0.1}
                      : sensor == 0 ? Color{0.15, 0.35, 1}
                                    : Color{0.5, 0.5, 0.5});
           cairo_fill(cr);
+          const std::string name = std::to_string(i + 1);
+          source(cr, {1, 1, 1});
+          select_font(cr, 0.75 * font_, true);
+          cairo_move_to(cr, x + led - text_width(cr, name.c_str()) / 2, y + row / 2 + 0.27 * font_);
+          cairo_show_text(cr, name.c_str());
           x += step;
         }
+      if (&line == &lines[1]) x = edge + pad + leds;
+      select_font(cr, font_);
       source(cr, {1, 1, 1});
       cairo_move_to(cr, x, y + row / 2 + 0.36 * font_);
       cairo_show_text(cr, line.c_str());

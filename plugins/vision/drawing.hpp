@@ -58,6 +58,7 @@ struct Object {
   double speed = 0;     // pixels a second; not finite: unknown
   double distance = 0;  // metres; not finite: unknown
   Look look = Look::seen;
+  bool target = false;  // the one whom the head follows
 };
 
 // Where a head looks, and what it was told to do.
@@ -74,9 +75,10 @@ struct Scene {
   System system;
   std::span<const Object> objects;
   std::span<const vision::Trails::Trail> trails;
-  double time = 0;        // s, of this frame
-  double trail_time = 2;  // s, after which a trail has faded
-  double line_width = 0;  // pixels, 0: from the frame's size
+  std::span<const Area> covered;  // by what others drew, which lies on top: labels keep clear of it
+  double time = 0;                // s, of this frame
+  double trail_time = 2;          // s, after which a trail has faded
+  double line_width = 0;          // pixels, 0: from the frame's size
   bool boxes = true, ids = true, speeds = true, crosshair = false;
 };
 
@@ -100,6 +102,7 @@ class Painter {
   void paint_trail(const vision::Trails::Trail& trail, std::vector<Patch>& patches);
   void stroke_trail(cairo_t* cairo, Color color, std::size_t first, std::size_t last);
   void paint_box(const Object& object, std::vector<Patch>& patches);
+  void paint_target(const Object& object, std::vector<Patch>& patches);
   void paint_label(const Object& object, std::vector<Patch>& patches);
   void paint_crosshair(std::vector<Patch>& patches);
   void paint_system(std::vector<Patch>& patches);

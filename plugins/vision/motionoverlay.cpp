@@ -16,7 +16,9 @@
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
  *
  * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor (red:
- * detects, blue: does not, grey: no valid reading), the rule that fired and the action.
+ * detects, blue: does not, grey: no valid reading) with its number, counted as in `bearings` of `pirsrc`, the rule that fired and
+ * the action. Whom `pirfusion` has the head follow is marked by thick corners round the box. What others attached to the frame
+ * (`inset` of `virtualptz`, say) lies on top.
  *
  * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn in
  * white, without identity and trail. What reaches beyond the frame is cut at its edge.
@@ -113,6 +115,7 @@ struct State {  // streaming thread only
   cerberus::vision::Trails trails;
   draw::Painter painter;
   std::vector<draw::Object> objects;
+  std::vector<draw::Area> covered;
   std::vector<cerberus::vision::TrailMark> marks;
   std::vector<draw::Patch> patches;
 };
@@ -160,14 +163,25 @@ bool downstream_draws(GstBaseTransform* transform, GstCaps* caps) {
   return draws;
 }
 
-// Draws into the frame what upstream attached (if anything), then the patches.
+// Draws the patches into the frame, then what upstream attached (if anything): an inset, say, is a picture of its own, and boxes
+// that belong to what it hides would seem to be the inset's.
 bool draw_into(State& state, GstBuffer* buffer, GstVideoOverlayComposition* before) {
   // Mapping for writing copies memory that others (a tee's other branch) hold too.
   cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);
   if (!frame) return false;
-  if (before && !gst_video_overlay_composition_blend(before, frame.get())) return false;
   draw::blend(state.patches, frame.get());
-  return true;
+  return !before || gst_video_overlay_composition_blend(before, frame.get());
+}
+
+void read_covered(State& state, const GstVideoOverlayCompositionMeta* meta) {
+  state.covered.clear();
+  for (guint i = 0; meta && i < gst_video_overlay_composition_n_rectangles(meta->overlay); ++i) {
+    gint x = 0, y = 0;
+    guint width = 0, height = 0;
+    auto* rectangle = gst_video_overlay_composition_get_rectangle(meta->overlay, i);
+    if (gst_video_overlay_rectangle_get_render_rectangle(rectangle, &x, &y, &width, &height))
+      state.covered.push_back({x, y, static_cast<int>(width), static_cast<int>(height)});
+  }
 }
 
 void forget(State& state) {
@@ -264,11 +278,14 @@ gboolean cerberus_motion_overlay_sink_event(GstBaseTransform* transform, GstEven
 void read_objects(State& state, GstBuffer* buffer) {
   state.objects.clear();
   state.marks.clear();
+  const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
+  const bool follows = fusion && fusion->action == CERBERUS_FUSION_TRACK;
   GPtrArray* regions = cerberus_buffer_get_regions(buffer);
   for (guint i = 0; i < regions->len; ++i) {
     const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
     draw::Object object;
     object.id = region.tracked ? region.id : 0;
+    object.target = follows && object.id && object.id == fusion->target;
     object.x = region.x, object.y = region.y;
     object.width = region.width, object.height = region.height;
     object.speed = region.tracked ? std::hypot(region.vx, region.vy) : NAN;
@@ -334,11 +351,14 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     if (self.undecided.exchange(false)) decide(transform, state);
     read_objects(state, buffer);
     update_trails(state, buffer, settings);
+    GstVideoOverlayCompositionMeta* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
+    read_covered(state, meta);
 
     draw::Scene scene;
     scene.frame = {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
     scene.objects = state.objects;
     scene.trails = state.trails.trails();
+    scene.covered = state.covered;
     scene.time = state.time;
     scene.trail_time = double(settings.trail_time) / GST_SECOND;
     scene.line_width = settings.line_width;
@@ -350,7 +370,6 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     state.patches.clear();
     state.painter.paint(scene, state.patches);
 
-    GstVideoOverlayCompositionMeta* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
     if (state.patches.empty() && (!meta || state.attach)) return GST_FLOW_OK;
     const CompositionPtr before(meta ? gst_video_overlay_composition_ref(meta->overlay) : nullptr);
     if (meta) gst_buffer_remove_video_overlay_composition_meta(buffer, meta);

@@ -199,6 +199,30 @@ GST_START_TEST(labels_keep_clear_of_each_other) {
 }
 GST_END_TEST
 
+GST_START_TEST(whom_the_head_follows_has_corners) {
+  Harness h = attaching("motionoverlay show-ids=false show-trails=false show-system=false");
+  const GstVideoInfo info = info_of(kCaps);
+  int number = 0;
+  const auto count = [&](guint target, CerberusFusionAction action) {
+    CerberusFusion fusion;
+    cerberus_fusion_init(&fusion);
+    fusion.target = target;
+    fusion.action = action;
+    GstBuffer* in = with_region(info, region(1, 100, 80, 60, 90), number++);
+    add(in, region(2, 200, 80, 60, 90));
+    cerberus_buffer_set_fusion(in, &fusion);
+    const auto all = drawn(h.get(), in);
+    const auto beside = [&](const Rectangle& r) { return r.x < 180; };
+    return std::array{std::ranges::count_if(all, beside), std::ranges::count_if(all, std::not_fn(beside))};
+  };
+  const auto none = count(0, CERBERUS_FUSION_TRACK);
+  fail_unless(none[0] == none[1]);
+  fail_unless((count(1, CERBERUS_FUSION_TRACK) == std::array{none[0] + 4, none[1]}));
+  fail_unless((count(2, CERBERUS_FUSION_TRACK) == std::array{none[0], none[1] + 4}));
+  fail_unless(count(1, CERBERUS_FUSION_HOLD) == none);
+}
+GST_END_TEST
+
 GST_START_TEST(regions_without_identity_have_a_box_only) {
   Harness h = attaching("motionoverlay show-boxes=false");
   CerberusRegion r = region(1, 100, 80, 60, 90);
@@ -271,6 +295,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);
   tcase_add_test(tc, speeds_and_distances_that_are_not_numbers_leave_a_label_without_them);
   tcase_add_test(tc, labels_keep_clear_of_each_other);
+  tcase_add_test(tc, whom_the_head_follows_has_corners);
   tcase_add_test(tc, regions_without_identity_have_a_box_only);
   tcase_add_test(tc, properties_change_while_playing);
   tcase_add_test(tc, lines_are_as_wide_as_asked);

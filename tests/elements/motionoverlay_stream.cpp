@@ -85,8 +85,8 @@ GST_START_TEST(a_drawing_that_was_there_stays) {
   GstVideoOverlayComposition* before = draw_square(in, 3, 5);
   const auto all = drawn(h.get(), in);
   fail_unless(all.size() >= 3);
-  fail_unless_equals_int(all[0].x, 3);
-  fail_unless_equals_int(all[0].y, 5);
+  fail_unless_equals_int(all.back().x, 3);  // on top
+  fail_unless_equals_int(all.back().y, 5);
   fail_unless_equals_int(gst_video_overlay_composition_n_rectangles(before),
                          1);  // the other's is not changed
   gst_video_overlay_composition_unref(before);
@@ -110,6 +110,32 @@ GST_START_TEST(a_drawing_that_was_there_is_blended_where_downstream_does_not_dra
     gst_video_frame_unmap(&f);
     gst_buffer_unref(out);
   }
+}
+GST_END_TEST
+
+// What others attached is a picture of its own: a box over it would seem to belong to it.
+GST_START_TEST(a_drawing_that_was_there_lies_on_top_and_labels_keep_clear_of_it) {
+  const GstVideoInfo info = info_of(kCaps);
+  const auto framed = [&](int x, int y) {
+    GstBuffer* in = with_region(info, region(1, 100, 80, 60, 90));
+    gst_video_overlay_composition_unref(draw_square(in, x, y));
+    return in;
+  };
+  Harness blending = started();
+  GstBuffer* out = through(blending.get(), framed(98, 130));
+  GstVideoFrame f;
+  fail_unless(gst_video_frame_map(&f, &info, out, GST_MAP_READ));
+  for (int y = 130; y < 134; ++y)
+    for (int x = 98; x < 102; ++x) fail_unless(level(&f, x, y) > 230, "(%d, %d)", x, y);
+  fail_unless(level(&f, 100, 129) < 230);
+  gst_video_frame_unmap(&f);
+  gst_buffer_unref(out);
+
+  Harness h = attaching("motionoverlay show-boxes=false show-trails=false");
+  const auto free = drawn(h.get(), framed(300, 200)), hindered = drawn(h.get(), framed(102, 72));
+  fail_unless(free.size() == 2 && hindered.size() == 2);
+  fail_unless(free[0].y < 72 && free[0].y + static_cast<int>(free[0].height) > 76);
+  fail_unless(hindered[0].y > 76, "the label lies under it");
 }
 GST_END_TEST
 
@@ -181,6 +207,7 @@ static Suite* motionoverlay_stream_suite() {
   tcase_add_test(tc, a_downstream_with_only_the_caps_feature_gets_it);
   tcase_add_test(tc, a_drawing_that_was_there_stays);
   tcase_add_test(tc, a_drawing_that_was_there_is_blended_where_downstream_does_not_draw);
+  tcase_add_test(tc, a_drawing_that_was_there_lies_on_top_and_labels_keep_clear_of_it);
   tcase_add_test(tc, a_new_frame_size_is_drawn_in);
   tcase_add_test(tc, a_downstream_that_begins_to_draw_is_noticed);
   tcase_add_test(tc, a_downstream_that_begins_to_draw_is_noticed_though_the_caps_stay);
