@@ -69,7 +69,8 @@ struct Fuser::State {
 
     // complete: the places to look at, in the order in which they were found when the sensors last changed.
     Places places;
-    SensorBits asked = 0;  // the sensors they answer
+    SensorBits asked = 0;   // the sensors they answer
+    bool outdated = false;  // lens or limits are others than when they were found
     int place = 0;
     bool inside = false, seen_left = false, seen_right = false;
     Time arrived{};
@@ -81,6 +82,7 @@ struct Fuser::State {
   } memory;
 
   Decision decision;
+  std::string old_name;  // of its rule, when the table has gone in which that stood
 
   void read_sensors(const Input& input);
   Decision decide(const Input& input);
@@ -130,6 +132,7 @@ void Fuser::State::look_at(int place) {
 void Fuser::State::forget_places() {
   memory.places.count = 0;
   memory.asked = 0;
+  memory.outdated = false;
 }
 
 // A place that has been swept from edge to edge without success gives way to the next one: two people in two sectors,
@@ -156,11 +159,12 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     next.target = m.follower.target();
     return say(next.target != 0 ? Action::track : Action::hold, 1, "camera");
   }
-  if (m.fired != 0 && m.fired != m.asked) {
+  if ((m.fired != 0 && m.fired != m.asked) || m.outdated) {
     const bool same_place = m.places.count > 0;
     const Place old = same_place ? m.places[m.place] : Place{};
-    m.places = places(geometry, m.fired, input.pan, m.order, options.lens, options.limits);
-    m.asked = m.fired;
+    if (m.fired != 0) m.asked = m.fired;
+    m.places = places(geometry, m.asked, input.pan, m.order, options.lens, options.limits);
+    m.outdated = false;
     const Interval& wanted = m.places[0].wanted;
     if (!same_place || wanted.from != old.wanted.from || wanted.to != old.wanted.to)
       look_at(0);
@@ -273,8 +277,12 @@ Fuser::Fuser(Fuser&&) noexcept = default;
 Fuser& Fuser::operator=(Fuser&&) noexcept = default;
 
 void Fuser::set_options(const FuserOptions& options) {
-  state_->options = sane(options);
-  state_->forget_places();
+  const FuserOptions old = std::exchange(state_->options, sane(options));
+  const FuserOptions& now = state_->options;
+  if (now.rules != old.rules) state_->forget_places();
+  // A search goes on, elsewhere if need be.
+  if ((now.lens != old.lens || now.limits != old.limits) && state_->memory.places.count > 0)
+    state_->memory.outdated = true;
 }
 
 const FuserOptions& Fuser::options() const {
@@ -288,8 +296,10 @@ void Fuser::set_geometry(const Geometry& geometry) {
 }
 
 void Fuser::set_table(RuleTable table) {
+  if (table == state_->table) return;
   state_->memory.match = {};
-  state_->decision.rule_name = {};
+  state_->old_name = state_->decision.rule_name;
+  state_->decision.rule_name = state_->old_name;
   state_->table = std::move(table);
 }
 

@@ -83,7 +83,8 @@ class Fuser {
   Fuser(Fuser&&) noexcept;
   Fuser& operator=(Fuser&&) noexcept;
 
-  // May be called at any time, also between frames of a running stream; what is known of tracks and sensors stays.
+  // May be called at any time, also between frames of a running stream; what is known of tracks and sensors stays,
+  // and so does a search unless the rule set is another one.
   void set_options(const FuserOptions& options);
   const FuserOptions& options() const;
   // From the PIR caps; the default is the paper's three.

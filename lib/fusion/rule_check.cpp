@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "sensing/angles.h"
 
@@ -64,6 +65,10 @@ std::string pan_text(const Piece& piece) {
   return text + " degrees";
 }
 
+std::string span_text(const Band& band) {
+  return pan_text({band.lower, band.upper, band.lower_included, band.upper_included, 0});
+}
+
 std::string sensor_text(SensorBits fired) {
   std::string text;
   for (int i = 0; i < kMaxSensors; ++i) {
@@ -103,6 +108,7 @@ class Checker {
       for (const bool camera_found : {false, true}) check_case(camera_found, fired);
       fired = static_cast<SensorBits>((fired - named) & named);  // the next subset of `named`
     } while (fired != 0 && !full());
+    if (problems_.empty()) check_use();
     return problems_;
   }
 
@@ -154,6 +160,21 @@ class Checker {
       }
   }
 
+  // After every case was looked at.
+  void check_use() {
+    const auto decides = [this](const Band& band) { return used_.contains(&band); };
+    for (const Rule& rule : table_.rules) {
+      if (std::ranges::none_of(rule.bands, decides)) {
+        report(Kind::idle, rule.name + " never applies: the rules before it decide in every case");
+        continue;
+      }
+      for (const Band& band : rule.bands)
+        if (!decides(band))
+          report(Kind::idle, rule.name + ": the band that says " + answer(band) + " " + span_text(band) +
+                                 " never applies: what stands before it decides in every case");
+    }
+  }
+
   void check_case(bool camera_found, SensorBits fired) {
     std::vector<const Rule*> matching;
     for (const Rule& rule : table_.rules)
@@ -166,6 +187,7 @@ class Checker {
       for (int i = 0; i < count; ++i) {
         const Band* band = matching[static_cast<unsigned>(i)]->band(piece.sample);
         if (band == nullptr) continue;
+        used_.insert(band);
         if (first < 0) {
           first = i;
           if (table_.precedence == Precedence::order) return 0;
@@ -209,12 +231,30 @@ class Checker {
   int most_;
   std::vector<Piece> pieces_;
   std::vector<RuleProblem> problems_;
+  std::set<const Band*> used_;  // those that decide something
 };
 
 }  // namespace
 
 std::vector<RuleProblem> check(const RuleTable& table, int most) {
   return Checker(table, most).run();
+}
+
+std::vector<std::string> out_of_reach(const RuleTable& table, const sensing::Interval& limits) {
+  const std::string ends = angle(limits.from) + " to " + angle(limits.to) + " degrees";
+  std::vector<std::string> found;
+  for (const Rule& rule : table.rules)
+    for (const Band& band : rule.bands) {
+      const sensing::Interval& sweep = band.search;
+      if (!band.holds(limits.from) && !band.holds(limits.to) &&
+          (band.lower >= limits.to || band.upper <= limits.from))
+        found.push_back(rule.name + ", " + span_text(band) + ": the head turns from " + ends +
+                        " only, so that never applies");
+      else if (band.action == Action::search && (sweep.from > limits.to || sweep.to < limits.from))
+        found.push_back(rule.name + ": the sweep from " + angle(sweep.from) + " to " + angle(sweep.to) +
+                        " degrees lies beyond the head's limits, " + ends);
+    }
+  return found;
 }
 
 }  // namespace cerberus::fusion

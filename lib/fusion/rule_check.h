@@ -11,7 +11,7 @@
 namespace cerberus::fusion {
 
 struct RuleProblem {
-  enum class Kind { open, contradiction, malformed };
+  enum class Kind { open, contradiction, malformed, idle };
   Kind kind;
   // For a user, with the case in words: "camera not found, infer2 and infer3 fired, pan from -60 to 0 degrees: no rule
   // applies", "camera found, infer1 fired, pan up to -45 degrees: rule 1 says track, rule 2 says turn-right".
@@ -23,6 +23,11 @@ struct RuleProblem {
 //   contradiction  precedence exact: two rules, or two limited bands of one rule, give different actions
 //   malformed      sensor count not in 1..16, a rule that names other sensors, asks one to detect and not to, or has no
 //                  bands; a band that is empty or has NaN limits; a search without a proper interval
+//   idle           a rule, or a band of one, that decides in no case, because others go before it: not what its author meant
 std::vector<RuleProblem> check(const RuleTable& table, int most = 8);
+
+// What a head with these pan limits (radians) never does of it, in words: sweeps and bands of angles that lie beyond them
+// altogether.
+std::vector<std::string> out_of_reach(const RuleTable& table, const sensing::Interval& limits);
 
 }  // namespace cerberus::fusion

@@ -27,6 +27,7 @@ struct Band {
   Action action = Action::track;
   sensing::Interval search{};  // pan angles to sweep between, for Action::search
 
+  bool operator==(const Band&) const = default;
   bool unlimited() const;
   bool holds(double pan) const;
 };
@@ -42,6 +43,7 @@ struct Rule {
   SensorBits all = 0, any = 0, none = 0;
   std::vector<Band> bands{};
 
+  bool operator==(const Rule&) const = default;
   bool matches(bool camera_found, SensorBits fired) const;
   const Band* band(double pan) const;  // nullptr: none holds it
 };
@@ -57,6 +59,7 @@ struct RuleTable {
   Precedence precedence = Precedence::exact;
   std::vector<Rule> rules{};  // in order of precedence
 
+  bool operator==(const RuleTable&) const = default;
   struct Match {
     const Rule* rule = nullptr;  // nullptr: no rule applies (an unchecked table)
     const Band* band = nullptr;

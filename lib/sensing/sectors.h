@@ -22,6 +22,7 @@ struct Arc {
 struct Interval {
   double from = 0;
   double to = 0;
+  bool operator==(const Interval&) const = default;
   double width() const { return to - from; }
   double middle() const { return (from + to) / 2; }
   bool holds(double x) const { return x >= from && x <= to; }

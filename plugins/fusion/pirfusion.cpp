@@ -19,7 +19,8 @@
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
  *   it speaks. Video and PIR need a thread each (a `queue`) where one element makes both.
- * - A recording that ended (EOS) keeps its last reading.
+ * - A PIR source that is not live keeps its last reading when it ends (EOS). One that is live (also a recording with
+ *   `is-live`) beside a live video keeps it for `lost-after`.
  *
  * The pan angle comes from the pose on the buffer, else from the head's `cerberus-pose` events passing upstream,
  * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
@@ -29,7 +30,8 @@
  * frames only, accurate seeks keep a recording of sensors in step with it.
  *
  * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
- * described in the manual (rules); one that leaves a case open or contradicts itself is refused and the case named.
+ * described in the manual (rules); one that leaves a case open, contradicts itself or has a rule that never applies is refused
+ * and the case named. What of it lies beyond `pan-min` and `pan-max` is warned of.
  *
  * ## Example
  * |[
@@ -55,6 +57,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
+#include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
 #include "inputs.hpp"
 #include "pir_pad.hpp"
@@ -107,17 +110,21 @@ struct BufferDeleter {
 };
 using Buffer = std::unique_ptr<GstBuffer, BufferDeleter>;
 
-// Reads rules-file; false with the reason when its table cannot be used. The old one stays then.
-bool load_rules(CerberusPirFusion* self, std::string& error) {
-  const Settings settings = self->priv->settings.snapshot();
+// Takes over the rules of a file (empty: none of the user's own); false with the reason when they cannot be used. The old
+// ones stay then.
+bool load_rules(CerberusPirFusion* self, const std::string& path, std::string& error) {
   std::shared_ptr<const fusion::RuleTable> table;
-  if (!settings.rules_file.empty()) {
-    fusion::RuleFile file = fusion::load_rules(settings.rules_file);
+  if (!path.empty()) {
+    fusion::RuleFile file = fusion::load_rules(path);
     if (!file.table) {
       error = printable(file.error);
       return false;
     }
     table = std::make_shared<const fusion::RuleTable>(std::move(*file.table));
+    const sensing::Interval limits = fuser_options(self->priv->settings.snapshot(), true).limits;
+    for (const std::string& text : fusion::out_of_reach(*table, limits))
+      GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                          ("%s: %s.", printable(path).c_str(), printable(text).c_str()), (nullptr));
   }
   {
     const std::lock_guard guard(self->priv->lock);
@@ -338,8 +345,9 @@ void release_pad(GstElement* element, GstPad* pad) {
 }
 
 bool check_settings(CerberusPirFusion* self) {
-  std::string fault = limits_fault(self->priv->settings.snapshot());
-  if (fault.empty() && load_rules(self, fault)) return true;
+  const Settings settings = self->priv->settings.snapshot();
+  std::string fault = limits_fault(settings);
+  if (fault.empty() && load_rules(self, settings.rules_file, fault)) return true;
   GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", fault.c_str()), (nullptr));
   return false;
 }
@@ -370,11 +378,16 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange transition
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec* spec) {
   auto* self = cerberus_pir_fusion_self(object);
   guarded(self, [&] {
+    if (g_str_equal(spec->name, "rules-file") && GST_STATE(self) >= GST_STATE_READY) {
+      const gchar* path = g_value_get_string(value);
+      std::string error;
+      if (!load_rules(self, path ? path : "",
+                      error)) {  // and the property keeps its value: that is what runs
+        GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s", error.c_str()), ("the rules of before stay"));
+        return;
+      }
+    }
     self->priv->settings.set(kProperties, id, value);
-    if (!g_str_equal(spec->name, "rules-file") || GST_STATE(self) < GST_STATE_READY) return;
-    std::string error;
-    if (!load_rules(self, error))
-      GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s", error.c_str()), ("the rules of before stay"));
   });
 }
 

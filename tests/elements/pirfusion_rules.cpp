@@ -171,9 +171,79 @@ GST_START_TEST(rules_may_change_while_playing_and_bad_ones_leave_the_old) {
   const std::string warning = rig.warning();
   fail_unless(warning.find(file.path()) != std::string::npos, "%s", warning.c_str());
   fail_unless_equals_int(rig.at(80 * kMs).rule, 42);
+  const auto path_is = [&](const std::string& expected) {
+    g_autofree gchar* path = nullptr;
+    g_object_get(rig.element, "rules-file", &path, nullptr);
+    assert_says(path ? path : "", expected.c_str());
+  };
+  g_object_set(rig.element, "rules-file", "/nowhere/rules.toml", nullptr);
+  fail_unless(rig.warning().find("/nowhere/rules.toml") != std::string::npos);
+  path_is(file.path());  // whose rules still run
   g_object_set(rig.element, "rules-file", "", nullptr);
+  path_is("");
   fail_unless_equals_int(rig.at(120 * kMs).rule, 7);
   fail_unless(rig.warning().empty() && rig.error().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(rules_beyond_the_limits_are_warned_of) {
+  std::string whole = kTwoSensors;
+  whole.replace(whole.find("[-90, -45]"), 10, "[175, 185]");
+  const RuleFile file(whole);
+  {
+    Rig rig(true, file.property());
+    const std::string warning = rig.warning();
+    fail_unless(warning.find("gate: the sweep from 175 to 185 degrees") != std::string::npos, "%s",
+                warning.c_str());
+    fail_unless(warning.find(file.path()) != std::string::npos && rig.warning().empty());
+  }
+  Rig rig(true, file.property() + " pan-max=180");
+  fail_unless(rig.warning().empty());
+}
+GST_END_TEST
+
+GST_START_TEST(a_rule_that_never_applies_is_refused) {
+  const std::string whole = kTwoSensors;
+  const RuleFile file("sensors = 2\nprecedence = \"order\"\n[[rule]]\nname = \"first\"\naction = \"hold\"\n" +
+                      whole.substr(whole.find("[[rule]]")));
+  const std::string text = refusal(file.property());
+  fail_unless(text.find("gate never applies") != std::string::npos, "%s", text.c_str());
+}
+GST_END_TEST
+
+// Each of them, to what it is already: in the middle of a search nothing happens, and nothing is told.
+GST_START_TEST(a_property_that_is_set_ends_no_search) {
+  const RuleFile file(kTwoSensors);
+  for (const std::string& rules :
+       {std::string("rules=complete"), std::string("rules=paper"), file.property()}) {
+    Rig rig(true, rules);
+    rig.add_pir();
+    rig.read(0, {0, 0, 0});
+    rig.show(frame_at(0, -100));
+    rig.read(40 * kMs, {0, 1, 0});
+    rig.show(frame_at(40 * kMs, -100));
+    rig.read(80 * kMs, {0, 0, 0});
+    CerberusFusion before = rig.show(frame_at(80 * kMs, -100));
+    rig.told();
+    GstClockTime time = 80 * kMs;
+    guint count = 0;
+    g_autofree GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(rig.element), &count);
+    for (GParamSpec* spec : std::vector<GParamSpec*>(specs, specs + count)) {
+      if (spec->owner_type != G_OBJECT_TYPE(rig.element)) continue;
+      GValue value = G_VALUE_INIT;
+      g_object_get_property(G_OBJECT(rig.element), spec->name, &value);
+      g_object_set_property(G_OBJECT(rig.element), spec->name, &value);
+      g_value_unset(&value);
+      time += 40 * kMs;
+      const CerberusFusion after = rig.show(frame_at(time, -100));
+      fail_unless(after.action == before.action && after.rule == before.rule &&
+                      g_str_equal(after.rule_name, before.rule_name),
+                  "%s was set, and it is %s (%s)", spec->name, cerberus_fusion_action_get_nick(after.action),
+                  after.rule_name);
+      fail_unless(rig.told().empty(), "%s was set, and told", spec->name);
+    }
+    fail_unless(time > 400 * kMs);
+  }
 }
 GST_END_TEST
 
@@ -186,6 +256,9 @@ static Suite* pirfusion_rules_suite() {
   tcase_add_test(tc, a_users_own_rules_are_followed);
   tcase_add_test(tc, rules_that_cannot_be_used_are_refused_and_the_case_is_named);
   tcase_add_test(tc, rules_may_change_while_playing_and_bad_ones_leave_the_old);
+  tcase_add_test(tc, rules_beyond_the_limits_are_warned_of);
+  tcase_add_test(tc, a_rule_that_never_applies_is_refused);
+  tcase_add_test(tc, a_property_that_is_set_ends_no_search);
   return s;
 }
 

@@ -58,6 +58,87 @@ START_TEST(a_search_outlives_its_sensor_by_the_return_delay) {
 }
 END_TEST
 
+START_TEST(options_that_change_end_no_search) {
+  const FuserOptions before{};
+  FuserOptions patient = before;
+  patient.return_delay = 60s;
+  patient.camera_hold = 1s;
+  for (const FuserOptions& after : {before, patient}) {
+    Stream stream(before);
+    stream.pan = -100;
+    stream.sensors = {0, 1, 0};
+    const Decision& decision = stream.frame();
+    stream.sensors = {0, 0, 0};
+    stream.frame();
+    stream.fuser.set_options(after);
+    stream.fuser.set_table(paper_rules());
+    ck_assert(!stream.frame().changed);
+    assert_says(decision, Action::search, 0, "return");
+    assert_sector(decision, -150, -90);
+  }
+}
+END_TEST
+
+START_TEST(a_search_goes_on_within_other_limits_and_with_another_lens) {
+  FuserOptions options;
+  Stream stream(options);
+  stream.pan = -100;
+  stream.sensors = {0, 1, 0};
+  const Decision& decision = stream.frame();
+  stream.sensors = {0, 0, 0};
+  stream.frame();
+  options.limits = {radians(-120), radians(120)};
+  stream.fuser.set_options(options);
+  stream.frame();
+  assert_says(decision, Action::search, 0, "return");
+  assert_sector(decision, -120, -90);
+  ck_assert(decision.limited);
+  options.lens = radians(20);
+  stream.fuser.set_options(options);
+  stream.frame();
+  assert_says(decision, Action::search, 0, "return");
+  assert_sector(decision, -120, -70);
+  stream.fuser.reset();  // and nothing is left of it
+  stream.fuser.set_options(options);
+  stream.frame();
+  assert_says(decision, Action::hold, 0, "return");
+}
+END_TEST
+
+START_TEST(the_same_rules_again_are_no_news) {
+  FuserOptions options = paper_options();
+  Stream stream(options);
+  stream.sensors = {1, 0, 0};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::hold, 2, "rule 2");
+  stream.fuser.set_table(paper_rules());
+  ck_assert(!stream.frame().changed);
+  RuleTable table = paper_rules();
+  table.rules.back().name = "nobody";  // another rule than the one that applies
+  stream.fuser.set_table(table);
+  ck_assert(!stream.frame().changed);
+  for (Rule& rule : table.rules) rule.name = "mine";
+  stream.fuser.set_table(table);
+  ck_assert(stream.frame().changed);
+  assert_says(decision, Action::hold, 2, "mine");
+}
+END_TEST
+
+START_TEST(the_same_rules_again_keep_the_hysteresis) {
+  Stream stream(FuserOptions{.rules = RuleSet::table});
+  stream.pan = 45;
+  stream.sensors = {1, 0, 0};
+  const Decision& decision = stream.frame();
+  assert_says(decision, Action::turn_left, 2, "rule 2");
+  stream.pan = 44;
+  for (int i = 0; i < 2; ++i) {
+    ck_assert(!stream.frame().changed);
+    stream.fuser.set_table(paper_rules());
+  }
+  ck_assert(!stream.frame().changed);
+}
+END_TEST
+
 START_TEST(a_search_ends_when_somebody_is_found) {
   Stream stream;
   stream.sensors = {1, 0, 0};
@@ -163,9 +244,12 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "fuser_search", {a_sensor_makes_the_head_turn_and_then_sweep, another_sensor_is_a_new_question,
-                       a_search_outlives_its_sensor_by_the_return_delay, a_search_ends_when_somebody_is_found,
-                       two_sectors_without_a_common_part_are_both_searched,
-                       equally_near_sectors_go_to_the_sensor_that_fired_last, a_search_leaves_nothing_unseen,
-                       a_sector_beyond_the_limits_is_approached_and_said_to_be_limited});
+      "fuser_search",
+      {a_sensor_makes_the_head_turn_and_then_sweep, another_sensor_is_a_new_question,
+       a_search_outlives_its_sensor_by_the_return_delay, options_that_change_end_no_search,
+       a_search_goes_on_within_other_limits_and_with_another_lens, the_same_rules_again_are_no_news,
+       the_same_rules_again_keep_the_hysteresis, a_search_ends_when_somebody_is_found,
+       two_sectors_without_a_common_part_are_both_searched,
+       equally_near_sectors_go_to_the_sensor_that_fired_last, a_search_leaves_nothing_unseen,
+       a_sector_beyond_the_limits_is_approached_and_said_to_be_limited});
 }

@@ -3,6 +3,7 @@
 
 #include <check.h>
 
+#include <algorithm>
 #include <limits>
 #include <random>
 
@@ -206,7 +207,8 @@ START_TEST(the_checker_finds_what_trying_every_case_finds) {
           if (table.precedence == Precedence::exact) expected = expected && !(left && right);
         }
     // Bands that contradict each other in a rule which never applies are still refused; so is this oracle's luck.
-    const bool found = check(table).empty();
+    const bool found =
+        std::ranges::all_of(check(table), [](const RuleProblem& p) { return p.kind == Kind::idle; });
     if (found != expected) {
       if (table.precedence == Precedence::order || !expected)
         ck_abort_msg("round %d: the checker says %d", round, found);
@@ -219,6 +221,52 @@ START_TEST(the_checker_finds_what_trying_every_case_finds) {
 }
 END_TEST
 
+START_TEST(what_never_applies_is_named) {
+  RuleTable table = paper_rules();
+  table.rules.insert(table.rules.begin(), {.number = 9, .name = "all", .bands = {{}}});
+  std::string named;
+  for (const RuleProblem& problem : check(table, 0)) {
+    ck_assert(problem.kind == Kind::idle);
+    named += problem.text + '\n';
+  }
+  ck_assert(
+      named.starts_with("rule 1 never applies: the rules before it decide in every case\nrule 5 never"));
+  ck_assert_int_eq(static_cast<int>(std::ranges::count(named, '\n')), 7);
+
+  table = sound_table();  // a band behind the "else", whatever the precedence
+  table.rules[0].bands.push_back(band(10, 20, Action::hold));
+  for (const Precedence precedence : {Precedence::exact, Precedence::order}) {
+    table.precedence = precedence;
+    assert_only_problem(
+        table, Kind::idle,
+        "rule 1: the band that says hold pan from 10 up to 20 degrees never applies: what stands "
+        "before it decides in every case");
+  }
+}
+END_TEST
+
+START_TEST(what_lies_beyond_the_limits_is_named) {
+  const cerberus::sensing::Interval limits{radians(-170), radians(170)};
+  ck_assert(out_of_reach(paper_rules(), limits).empty());
+  RuleTable table = sound_table();
+  const auto says = [&](const char* text) {
+    const std::vector<std::string> found = out_of_reach(table, limits);
+    ck_assert_int_eq(static_cast<int>(found.size()), 1);
+    ck_assert_str_eq(found[0].c_str(), text);
+  };
+  table.rules[0].bands = {{.action = Action::search, .search = {radians(175), radians(185)}}};
+  says("rule 1: the sweep from 175 to 185 degrees lies beyond the head's limits, -170 to 170 degrees");
+  table.rules[0].bands[0].search.from = radians(160);  // the head goes as far as it can
+  ck_assert(out_of_reach(table, limits).empty());
+  table.rules[0].bands = {{.lower = radians(400)}, {}};
+  says("rule 1, pan from 400 degrees: the head turns from -170 to 170 degrees only, so that never applies");
+  table.rules[0].bands[0] = {.upper = radians(-170), .upper_included = false};
+  ck_assert_int_eq(static_cast<int>(out_of_reach(table, limits).size()), 1);
+  table.rules[0].bands[0].upper_included = true;  // at the stop
+  ck_assert(out_of_reach(table, limits).empty());
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "rule_check",
@@ -228,5 +276,6 @@ int main() {
        two_rules_that_say_the_same_are_no_contradiction,
        bands_of_one_rule_must_agree_where_they_meet_unless_their_order_counts,
        searches_of_different_places_contradict_each_other, a_malformed_table_is_told_so_before_anything_else,
-       the_checker_finds_what_trying_every_case_finds});
+       the_checker_finds_what_trying_every_case_finds, what_never_applies_is_named,
+       what_lies_beyond_the_limits_is_named});
 }
