@@ -2,6 +2,7 @@
 #include "vision/tracks.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -28,8 +29,8 @@ constexpr double kCrossing = 3;  // s that two who came different ways may be in
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
 
-constexpr std::size_t kUsualPairs =
-    64 * 64;  // of tracks and regions: memory for more is taken when more come
+// What there is room for at first. When more come than ever, there is room for twice as many, up to the maximum.
+constexpr std::size_t kUsualTracks = 16, kUsualRegions = 32;
 
 // Whose turn it is to be found a region.
 enum class Sort { here, away, unconfirmed };
@@ -61,18 +62,8 @@ struct Tracker::State {
   Box known;             // of the picture, what has been in view for a while
   bool turning = false;  // the camera moved since the last frame
 
-  State() {
-    bodies.reserve(kMaximumTracks);
-    regions.reserve(kMaximumRegions);
-    published.reserve(kMaximumTracks);
-    rows.reserve(kMaximumTracks);
-    owner.reserve(kMaximumRegions);
-    used.reserve(kMaximumRegions);
-    unmatched.reserve(kMaximumTracks);
-    cost.resize(kUsualPairs);
-    assignment.reserve(kMaximumTracks, kMaximumRegions);
-  }
-
+  State() { make_room(kUsualTracks, kUsualRegions); }
+  void make_room(std::size_t tracks, std::size_t seen);
   void look(const Transform& motion);
   void take(std::span<const Region> input);
   void predict(const Transform& motion);
@@ -93,6 +84,19 @@ struct Tracker::State {
   bool has_stopped(const Body& body) const;
 };
 
+// For what one frame may make of them; keeps what there is.
+void Tracker::State::make_room(std::size_t tracks, std::size_t seen) {
+  bodies.reserve(tracks);
+  published.reserve(tracks);
+  rows.reserve(tracks);
+  unmatched.reserve(tracks);
+  regions.reserve(seen);
+  owner.reserve(seen);
+  used.reserve(seen);
+  cost.resize(std::max(cost.size(), kUsualTracks * kUsualRegions));
+  assignment.reserve(static_cast<int>(tracks), static_cast<int>(seen));
+}
+
 // The part in view moves with the scene, and what is new becomes known in about kNew.
 void Tracker::State::look(const Transform& motion) {
   turning = !motion.is_identity();
@@ -111,6 +115,8 @@ void Tracker::State::look(const Transform& motion) {
 
 void Tracker::State::take(std::span<const Region> input) {
   regions.clear();
+  if (input.size() > regions.capacity())
+    make_room(bodies.capacity(), std::min(std::bit_ceil(input.size()), kMaximumRegions));
   for (const Region& r : input) {
     if (!(r.box.width > 0 && r.box.height > 0) || !std::isfinite(r.box.x + r.box.y + r.box.area())) continue;
     if (regions.size() < kMaximumRegions) {
@@ -279,6 +285,7 @@ void Tracker::State::remove_hollow() {
 void Tracker::State::give_birth() {
   for (std::size_t j = 0; j < regions.size(); ++j) {
     if (owner[j] >= 0 || used[j] || bodies.size() >= kMaximumTracks) continue;
+    if (bodies.size() == bodies.capacity()) make_room(2 * bodies.size(), regions.capacity());
     bodies.push_back(Body::first_seen(regions[j]));
     bodies.back().region = static_cast<int>(j);
     bodies.back().uncovered = overlap_area(regions[j].box, known) < 0.5 * regions[j].box.area();
