@@ -53,7 +53,6 @@ class DifferenceStage {
   // Both return false for an unusable buffer. ensure() takes what is on the buffer if it has this size.
   bool ensure(Frame& frame, vision::Size size);
   bool run(Frame& frame);
-  std::size_t bytes() const { return difference_.bytes(); }
 
  private:
   LumaStage luma_;
@@ -72,7 +71,6 @@ class MaskStage {
   }
   bool ensure(Frame& frame);
   bool run(Frame& frame);
-  std::size_t bytes() const { return area_.bytes() + before_.bytes(); }
 
  private:
   void tell_how(GstBuffer* buffer, HistogramRecord& record);
@@ -100,7 +98,6 @@ class RegionStage {
   }
   // False for an unusable buffer. Labels (2 bytes a pixel) are only made where they are wanted.
   bool run(Frame& frame, bool want_labels);
-  std::size_t bytes() const { return finder_.bytes() + zones_.bytes() + before_.bytes(); }
 
  private:
   void publish(Frame& frame, std::span<const vision::Region> regions, vision::Size analysis);
