@@ -60,6 +60,35 @@ def test_the_whole_system_is_in_its_lines():
     assert max(pans) - min(pans) > 3, f'the head turned from {min(pans)} to {max(pans)} degrees only'
 
 
+def vtest():
+    """The demo's own video, or None; the C++ tests look for it in the same places."""
+    data = os.environ.get('CERBERUS_DATA') or TOP.parent / 'shared' / 'data'
+    places = [PROGRAM.parents[1] / 'media' / 'vtest.avi', pathlib.Path(data) / 'pets09_s2l1_view1' / 'vtest.avi',
+              pathlib.Path('/usr/share/doc/opencv-doc/examples/data/vtest.avi')]
+    if named := os.environ.get('CERBERUS_VIDEO'):
+        places = [pathlib.Path(named)]
+    return next((place for place in places if place.exists()), None)
+
+
+def test_the_demos_sensors_call_the_head_to_whom_the_camera_does_not_see():
+    if not vtest():
+        return print('no vtest.avi (CERBERUS_VIDEO names it)')
+    must(gst_launch(f'filesrc location={vtest()} ! decodebin ! videoconvert ! identity eos-after=46 ! '
+                    'jpegenc quality=95 ! avimux ! filesink location=cut.avi'))
+    start = re.search(r'start="(start-pan=[^"]+)"', (TOP / 'pipelines' / 'demo').read_text('utf-8'))[1]
+    done = {}
+    for sensors in (f'PIR={TOP}/pipelines/closed-loop.csv', 'SENSORS='):
+        must(run(line('cut.avi', sensors=sensors) + [f'START={start}']))
+        lines = json_lines('out/objects.jsonl')
+        assert len(lines) > 40, len(lines)
+        done[sensors[:3]] = [each['fusion']['action'] for each in lines]
+        turned = max(each['pose']['pan'] for each in lines) - lines[0]['pose']['pan']
+        assert (turned > 20) == (sensors != 'SENSORS='), f'{sensors}: it turned {turned} degrees'
+    assert set(done['SEN']) == {'hold'}, done['SEN']
+    order = [action for k, action in enumerate(done['PIR']) if k == 0 or action != done['PIR'][k - 1]]
+    assert order[:2] == ['hold', 'turn-right'] and order[-1] == 'track', order
+
+
 def test_the_view_has_the_shape_of_the_video():
     # 5/12 of 1920 x 1080 are 800 x 450 pixels, enough to be read; of 640 x 270 they are 266.7 x 112.5, enlarged to 640 x 270.
     for name, size, view in (('wide', (1920, 1080), (800, 450)), ('flat', (640, 270), (640, 270))):
