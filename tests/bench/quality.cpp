@@ -70,6 +70,8 @@ void masks(const fs::path& data, const std::string& detector, Asked& asked) {
   }
   const double mean = sum / static_cast<double>(sequences().size());
   std::printf("  %-16s %20.3f%s\n", "mean", mean, judged ? asked.at_least("mean F", mean, 0.75).c_str() : "");
+  std::puts(
+      "  (two, AND: differences of two and three frames; tolerant: compensated, with a tolerance of 3 x 3)");
 }
 
 void boxes(const fs::path& data, const std::string& video, const std::string& detector, Asked& asked) {

@@ -15,18 +15,20 @@ constexpr Sequence kSequences[] = {
      "multifilesrc location=%s/cdnet_jitter_traffic/input/in%%06d.jpg start-index=950 stop-index=1050 "
      "caps=image/jpeg,framerate=30/1 ! jpegdec",
      "cdnet_jitter_traffic/groundtruth/gt%06d.png", 950, 1050, 0, 255, 51, 254,
-     "MOG2 .509  KNN .485  SGM .574"},
+     "MOG2 .509  KNN .485  SGM .574  two .210  AND .157  tolerant .456"},
     {"dogs-jump", "filesrc location=%s/davis_dogs-jump/dogs_jump_orig.mp4 ! decodebin",
-     "davis_dogs-jump/gt/%05d.png", 0, 65, 0, 1, 256, 0, "MOG2 .453  KNN .536  SGM .589"},
+     "davis_dogs-jump/gt/%05d.png", 0, 65, 0, 1, 256, 0,
+     "MOG2 .453  KNN .536  SGM .589  two .407  AND .180  tolerant .443"},
     {"tennis",
      "multifilesrc location=%s/davis_tennis/frames/%%05d.jpg start-index=0 stop-index=69 "
      "caps=image/jpeg,framerate=24/1 ! jpegdec",
-     "davis_tennis/gt/%05d.png", 0, 69, 0, 255, 170, 170, "MOG2 .325  KNN .265  SGM .766"},
+     "davis_tennis/gt/%05d.png", 0, 69, 0, 255, 170, 170,
+     "MOG2 .325  KNN .265  SGM .766  two .283  AND .222  tolerant .789"},
     {"highway",
      "multifilesrc location=%s/cdnet_baseline_highway/input/in%%06d.jpg start-index=300 stop-index=700 "
      "caps=image/jpeg,framerate=30/1 ! jpegdec",
      "cdnet_baseline_highway/groundtruth/gt%06d.png", 470, 700, 170, 255, 51, 254,
-     "MOG2 .781  KNN .839  SGM .721"},
+     "MOG2 .781  KNN .839  SGM .721  two .539  AND .349  tolerant .459"},
 };
 
 }  // namespace
