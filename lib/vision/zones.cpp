@@ -87,7 +87,7 @@ std::string Zones::parse(std::string_view text) {
     polygons.push_back(std::move(polygon));
   }
   polygons_ = std::move(polygons);
-  drawn_ = false;
+  drawn_ = nowhere_ = false;
   return {};
 }
 
@@ -117,6 +117,11 @@ void Zones::apply(MutableGrayView mask) {
   if (plane_.resize(mask.size()) || !drawn_) {
     draw(plane_.view());
     drawn_ = true;
+    nowhere_ = true;
+    for (int y = 0; y < mask.height && nowhere_; ++y) {
+      const std::uint8_t* row = plane_.view().row(y);
+      nowhere_ = std::find(row, row + mask.width, 255) == row + mask.width;
+    }
   }
   for (int y = 0; y < mask.height; ++y) {
     std::uint8_t* row = mask.row(y);

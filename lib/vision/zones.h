@@ -29,6 +29,9 @@ class Zones {
   // mask := 0 where motion does not count. The polygons are drawn once for each picture size.
   void apply(MutableGrayView mask);
 
+  // The polygons left no pixel of the last mask.
+  bool nowhere() const { return !everywhere() && nowhere_; }
+
   // 255 where motion counts, drawn afresh; a pixel belongs to a polygon when its centre does.
   void draw(MutableGrayView plane) const;
 
@@ -41,7 +44,7 @@ class Zones {
   };
   std::vector<Polygon> polygons_;
   Image<std::uint8_t> plane_;
-  bool drawn_ = false;
+  bool drawn_ = false, nowhere_ = false;
 };
 
 }  // namespace cerberus::vision

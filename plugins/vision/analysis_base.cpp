@@ -23,6 +23,7 @@ namespace {
 
 constexpr int kMinimumSide = 32;
 constexpr int kMaximumWidth = 3840, kMaximumHeight = 2160;
+constexpr int kLeastAnalysisWidth = 48;  // of less, people are a pixel or none
 
 struct Settings {
   int analysis_width = kDefaultAnalysisWidth;
@@ -32,7 +33,8 @@ const Property<Settings> kProperties[] = {
     property("analysis-width", &Settings::analysis_width, 0, kMaximumWidth,
              "Width in pixels of the small picture that is analysed, where none comes from upstream: larger "
              "sees smaller "
-             "objects and costs more; frames that are not wider are analysed as they are; 0 = always the "
+             "objects and costs more; frames that are not wider are analysed as they are, 1 to 47 counts as "
+             "48; 0 = always the "
              "frame's own width"),
 };
 
@@ -49,10 +51,11 @@ struct AnalysisPrivate {
   History history;
   guint64 number = 0;  // analysed frames
   CameraFollower camera;
-  int breaks = 0;           // of late, for want of frames that were dropped upstream; see complain_of_drops()
+  int breaks = 0;           // of late: scenes that end for no reason in the picture; see complain_of_breaks()
+  int steps_back = 0;       // frames older than the one before
   std::string complaint;    // about the caps, once said
   bool warned = false;      // about an unusable buffer, once a stream
-  bool complained = false;  // about dropped frames, likewise
+  bool complained = false;  // about breaks, likewise
 };
 
 namespace {
@@ -79,22 +82,44 @@ bool is_first_stage(GstBuffer* buffer) {
          !cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_LUMA);
 }
 
-// Frames that are dropped upstream may blind a stage; who does not know sees nothing at all, and no reason.
-void complain_of_drops(GstBaseTransform* trans, AnalysisPrivate& priv, bool broken) {
-  constexpr int kMany = 8;
-  priv.breaks = std::clamp(priv.breaks + (broken ? 2 : -1), 0, 2 * kMany);
-  if (priv.breaks < 2 * kMany || priv.complained) return;
+// A scene that ends every few frames blinds a stage; who does not know sees nothing at all, and no reason.
+void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, bool broken) {
+  constexpr int kMany = 48, kFew = 6;  // frames from one to the next that are no reason to complain
+  priv.breaks = std::clamp(priv.breaks + (broken ? kFew : -1), 0, kMany);
+  if (priv.breaks < kMany || priv.complained) return;
   priv.complained = true;
   GST_ELEMENT_WARNING(
       trans, STREAM, FAILED,
       ("Most frames do not continue the ones before them, and nothing can be found: drop frames in front of "
        "`cameramotion`, by `videorate drop-only=true` or a leaky queue, or behind `motiontrack`."),
-      ("the buffers are marked DISCONT, or their camera motion starts from frames that never came"));
+      ("the buffers are marked DISCONT, their times lie far apart, or their camera motion starts from frames "
+       "that never came"));
 }
 
-Frame begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
-  using Link = CameraFollower::Link;
+// Once a stream. Twice is nothing: a file that is played in a loop, a clock that is set.
+void complain_of_times(GstBaseTransform* trans, AnalysisPrivate& priv, bool backwards) {
+  constexpr int kMany = 3;
+  if (!backwards || ++priv.steps_back != kMany) return;
+  GST_ELEMENT_WARNING(
+      trans, STREAM, FAILED,
+      ("Timestamps run backwards, so that speeds and times are guessed: let the source stamp the frames "
+       "(`do-timestamp=true`), or put the parser of the format (`h264parse`) in front of its decoder."),
+      ("a buffer that is a little older than the one before it is taken to follow at the usual distance, a "
+       "much older one begins a new scene"));
+}
+
+// A frame, and what is wrong with its place in the stream.
+struct Begun {
   Frame frame;
+  bool cut = false;        // it says itself that it does not continue the stream
+  bool broken = false;     // this stage, and none before, must begin anew though no picture says so
+  bool backwards = false;  // so do the timestamps; likewise
+};
+
+Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  using Link = CameraFollower::Link;
+  Begun begun;
+  Frame& frame = begun.frame;
   frame.buffer = buffer;
   frame.info = &priv.info;
   if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
@@ -122,8 +147,21 @@ Frame begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
     frame.previous = step.previous;
     frame.motion = camera.motion;
   }
-  complain_of_drops(trans, priv, camera.link == Link::lost || (marked && is_first_stage(buffer)));
-  return frame;
+  const bool first = is_first_stage(buffer);
+  begun.cut = marked && camera.link != Link::lost;
+  begun.broken = camera.link == Link::lost || (first && (marked || step.broken));
+  begun.backwards = first && step.backwards;
+  return begun;
+}
+
+void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
+  const std::optional<Settings> changed = priv.settings.changes();
+  if (!changed || changed->analysis_width == 0 || changed->analysis_width >= kLeastAnalysisWidth) return;
+  GST_ELEMENT_WARNING(
+      trans, LIBRARY, SETTINGS,
+      ("analysis-width=%d is too small to see anything: %d counts instead. Set that, or more.",
+       changed->analysis_width, kLeastAnalysisWidth),
+      (nullptr));
 }
 
 GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
@@ -134,11 +172,25 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     // Asked with the first frame after caps or RECONFIGURE: by then everybody downstream knows the caps.
     if (priv.ask_for_planes.exchange(false))
       priv.planes_wanted = cerberus_pad_peer_wants_planes(GST_BASE_TRANSFORM_SRC_PAD(trans));
-    Frame frame = begin_frame(trans, priv, buffer);
-    if (priv.analyser->analyse(frame)) return GST_FLOW_OK;
+    check_settings(trans, priv);
+    const History history = priv.history;
+    const CameraFollower camera = priv.camera;
+    Begun begun = begin_frame(trans, priv, buffer);
+    if (priv.analyser->analyse(begun.frame)) {
+      complain_of_breaks(trans, priv, begun.broken);
+      complain_of_times(trans, priv, begun.backwards);
+      return GST_FLOW_OK;
+    }
 
-    // The picture is not there: the frame goes on as it came, and whoever follows is told by the flag.
-    priv.history.drop();
+    // The picture is not there: the frame goes on as it came, and whoever follows is told by the flag. The next frame
+    // is compared with the last one that was seen.
+    priv.history = history;
+    priv.camera = camera;
+    --priv.number;
+    if (begun.cut)
+      priv.history.drop();
+    else
+      priv.history.lose();
     const bool told = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_CORRUPTED) || priv.warned;
     GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_CORRUPTED);
     if (!told) {
@@ -226,9 +278,11 @@ gboolean start(GstBaseTransform* trans) {
     priv.history.drop();
     priv.have_info = false;
     priv.warned = false;
-    priv.breaks = 0;
+    priv.breaks = priv.steps_back = 0;
+    priv.complained = false;
     priv.camera.forget();
     priv.complaint.clear();
+    priv.settings.refresh();
     return priv.analyser->start();
   });
 }
@@ -295,7 +349,8 @@ void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser) {
 }
 
 int cerberus_analysis_width(const CerberusAnalysis* self) {
-  return self->priv->settings.snapshot().analysis_width;
+  const int width = self->priv->settings.snapshot().analysis_width;
+  return width == 0 ? 0 : std::max(width, kLeastAnalysisWidth);
 }
 
 }  // namespace cerberus::plugin

@@ -9,15 +9,19 @@ namespace cerberus::plugin {
 
 class History {
  public:
-  // The next frame starts a scene: caps, segment, flush, DISCONT, an unusable buffer.
+  // The next frame starts a scene: caps, segment, flush, DISCONT.
   void drop() { any_ = false; }
+  // A frame came without its picture. The next one follows the last that had one, unless too many are lost in a row.
+  void lose();
 
   // Running time of the last frame, or NONE.
   GstClockTime previous() const { return previous_; }
 
   struct Step {
-    bool fresh = true;   // no predecessor: everything learnt from earlier frames is dropped
-    double seconds = 0;  // since the previous frame; 0: none, or not known
+    bool fresh = true;       // no predecessor: everything learnt from earlier frames is dropped
+    bool broken = false;     // for the time alone: there was one
+    bool backwards = false;  // older than the frame before; if only a little, as if its time was not known
+    double seconds = 0;      // since the previous frame; 0: none, or not known
     GstClockTime previous = GST_CLOCK_TIME_NONE;  // running time of the previous frame, where it has one
   };
 
@@ -27,10 +31,15 @@ class History {
   bool misses_frames(GstClockTime time, double nominal) const;
 
  private:
+  void follow(Step& step, GstClockTime time, bool timed, double rhythm);
+
   bool any_ = false;  // a frame of this scene was seen
+  int lost_ = 0;      // since the last frame
   GstClockTime previous_ = GST_CLOCK_TIME_NONE;
-  GstClockTime newest_ = GST_CLOCK_TIME_NONE;  // of the frames of this scene that had a time at all
-  double usual_ = 0;                           // smoothed distance between frames, s
+  GstClockTime stamp_ = GST_CLOCK_TIME_NONE;  // of the last frame of this scene that had a time at all
+  GstClockTime clock_ = GST_CLOCK_TIME_NONE;  // what it was believed to be
+  int late_ = 0;                              // frames in a row that were older than that
+  double usual_ = 0;                          // smoothed distance between frames, s
 };
 
 }  // namespace cerberus::plugin

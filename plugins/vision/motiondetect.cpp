@@ -7,7 +7,13 @@
  * through untouched and is never copied; what was found rides on it as metadata (see those elements), and
  * `cerberus-motion` messages tell when motion started and ended.
  *
- * Every property that the application sets wins over `preset`, whichever was set first.
+ * Every property that the application sets wins over `preset`, whichever was set first. Settings with which nothing can
+ * ever be found are warned of by the stage that they are for.
+ *
+ * Timestamps may be missing: the frames are taken as evenly spaced then. So is a frame that is a little older than the
+ * one before it (one that is more than three frames older begins a new scene); a warning says so, once a stream. A buffer
+ * without its picture is passed on with the flag CORRUPTED and one warning, and ends no scene unless more than five
+ * come in a row.
  *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
  *

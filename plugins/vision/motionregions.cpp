@@ -6,6 +6,7 @@
  * people side by side, and attaches every region that passes `zones` and the limits of size as a
  * #GstVideoRegionOfInterestMeta of type `motion` (see #CerberusRegion). The frame goes through untouched. Stages that are
  * missing upstream are done here with their defaults. No region is published until three frames of a scene were seen.
+ * Limits of size that contradict each other or the frame, and zones that leave no part of the picture, are warned of.
  *
  * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
  * element downstream (motionview) asks for them; see `keep-planes`.
@@ -26,6 +27,7 @@
 #include "analysis_element.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
+#include "nothing.hpp"
 #include "room.hpp"
 #include "stages.hpp"
 
@@ -99,31 +101,48 @@ const Property<Settings> kProperties[] = {
 
 struct Private final : StatefulAnalyser<Settings, RegionStage> {
   KeepPlanes keep = KEEP_PLANES_AUTO;
+  vision::SizeGate gate;
+  bool in_metres = false;  // they count
+  NothingFound nothing;
 
   bool start() override;
   bool analyse(Frame& frame) override;
   void apply(const Settings& s);
+  std::string why_nothing(vision::Size frame);
 };
 
 void Private::apply(const Settings& s) {
   state->set_options({s.closing, s.people, s.minimum_area});
-  vision::SizeGate gate;
   gate.width = {s.minimum_width, s.maximum_width};
   gate.height = {s.minimum_height, s.maximum_height};
   gate.metres_wide = {s.minimum_width_metres, s.maximum_width_metres};
   gate.metres_high = {s.minimum_height_metres, s.maximum_height_metres};
   state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height, radians(s.tilt));
+  in_metres = s.horizontal_fov > 0;
   keep = static_cast<KeepPlanes>(s.keep_planes);
 }
 
 // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
 bool Private::start() {
   StatefulAnalyser::start();
+  nothing = {};
   const std::string wrong = state->zones().parse(settings.snapshot().zones);
   if (wrong.empty()) return true;
   GST_ELEMENT_ERROR(base, LIBRARY, SETTINGS, ("The property zones cannot be used: %s", wrong.c_str()),
                     (nullptr));
   return false;
+}
+
+std::string Private::why_nothing(vision::Size frame) {
+  if (state->zones().nowhere())
+    return "The property zones leaves no part of the picture: nothing can be found. Make what it includes "
+           "larger, or "
+           "what it excludes smaller.";
+  std::string why = contradiction("width", gate.width, frame.width);
+  if (why.empty()) why = contradiction("height", gate.height, frame.height);
+  if (why.empty() && in_metres) why = contradiction("width-metres", gate.metres_wide);
+  if (why.empty() && in_metres) why = contradiction("height-metres", gate.metres_high);
+  return why;
 }
 
 bool Private::analyse(Frame& frame) {
@@ -136,6 +155,7 @@ bool Private::analyse(Frame& frame) {
   const bool keep_planes = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);
   const bool found = state->run(frame, keep_planes);
   if (!keep_planes) cerberus_buffer_remove_plane_metas(frame.buffer);
+  if (found) nothing.tell(GST_ELEMENT(base), why_nothing(frame.size()));
   return found;
 }
 

@@ -9,7 +9,7 @@
  * known, else from the camera's own motion. Without `motionregions` upstream the regions are found
  * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
  * camera's axis, wherever the head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of
- * a head's pose on the frame.
+ * a head's pose on the frame. Limits of speed that contradict each other and a `confirm-time` above an hour are warned of.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last frame
@@ -29,10 +29,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "analysis_element.hpp"
 #include "elements.hpp"
+#include "nothing.hpp"
 #include "room.hpp"
 #include "stages.hpp"
 #include "vision/presence.h"
@@ -111,6 +113,17 @@ constexpr std::optional<Presence::Time> known(GstClockTime time) {
   return nanoseconds(time);
 }
 
+// What is seen for so long is no motion.
+constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
+
+std::string why_nothing(const Settings& s, const vision::SpeedGate& gate) {
+  if (s.confirm_time > kLongestConfirmTime)
+    return "confirm-time is longer than an hour: nothing can be found. Make it shorter.";
+  std::string why = contradiction("speed", gate.pixels);
+  if (why.empty() && s.horizontal_fov > 0) why = contradiction("speed-metres", gate.metres);
+  return why;
+}
+
 struct State {
   RegionStage regions;  // where no motionregions is upstream
   vision::Tracker tracker;
@@ -120,6 +133,7 @@ struct State {
   Presence presence;
   Settings settings;
   vision::SpeedGate gate;
+  NothingFound nothing;
 };
 
 struct Private final : StatefulAnalyser<Settings, State> {
@@ -152,6 +166,7 @@ void Private::apply(const Settings& s) {
   state->gate.pixels = {s.minimum_speed, s.maximum_speed};
   state->gate.metres = {s.minimum_speed_metres, s.maximum_speed_metres};
   state->settings = s;
+  state->nothing.tell(GST_ELEMENT(base), why_nothing(s, state->gate));
 }
 
 void Private::read_regions(GstBuffer* buffer) {

@@ -164,16 +164,75 @@ GST_START_TEST(missing_timestamps_are_no_obstacle) {
 }
 GST_END_TEST
 
-GST_START_TEST(timestamps_that_run_backwards_all_the_time_give_no_region) {
-  Line line(kDetect);
-  const World world;
-  for (int k = 0; k < 20; ++k) {
+// Frames that come as they should with timestamps that do not: who is there is found all the same, and one warning says
+// what to do. Far steps back are scenes.
+GST_START_TEST(timestamps_out_of_order_blind_nobody) {
+  struct Stamps {
+    GstClockTime (*of)(int frame);
+    bool warned;
+  };
+  const Stamps kinds[] = {
+      {[](int k) -> GstClockTime { return (100 - k) * scene::kStep; }, true},
+      {[](int k) -> GstClockTime { return (k + 2 - (k % 10 == 9 ? 2 : 0)) * scene::kStep; }, true},
+      {[](int k) -> GstClockTime { return (k + 2 - (k % 5 == 4 ? 2 : 0)) * scene::kStep; }, true},
+      {[](int k) { return static_cast<GstClockTime>(k); }, false},
+      {[](int) -> GstClockTime { return GST_SECOND; }, false},
+  };
+  const char* const lines[] = {"motiondetect ! identity",
+                               "threeframediff ! fuzzythreshold ! motionregions ! motiontrack"};
+  const Stamps& kind = kinds[__i__ % 5];
+  Line line(lines[__i__ / 5]), ordered(lines[__i__ / 5]);
+  const World world = scene::entering();
+  int found = 0, expected = 0;
+  for (int k = 0; k < 90; ++k) {
     GstBuffer* in = scene::grey_buffer(world, k);
-    GST_BUFFER_PTS(in) = (100 - k) * scene::kStep;
+    GST_BUFFER_PTS(in) = kind.of(k);
     GstBuffer* out = line.through(in);
-    fail_unless_equals_int(Regions(out).size(), 0);
+    const Regions regions(out);
+    found += regions.size() > 0;
+    for (guint i = 0; i < regions.size(); ++i)
+      fail_unless(scene::overlaps_figure(regions[i], world, k), "frame %d: %s", k, regions.text().c_str());
+    gst_buffer_unref(out);
+    out = ordered.through(scene::grey_buffer(world, k));
+    expected += Regions(out).size() > 0;
     gst_buffer_unref(out);
   }
+  fail_unless(expected > 50);
+  fail_unless(std::abs(found - expected) <= 2, "found in %d frames instead of %d", found, expected);
+  const auto warnings = line.messages(GST_MESSAGE_WARNING);
+  fail_unless_equals_int(warnings.size(), kind.warned);
+  if (kind.warned)
+    fail_unless(warnings[0].find("do-timestamp") != std::string::npos, "%s", warnings[0].c_str());
+  fail_unless(ordered.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+// One buffer in ten without a picture, at rest and while the camera turns: the others go on as if it had not been there.
+GST_START_TEST(lost_pictures_end_no_scene) {
+  const char* const lines[] = {
+      "motiondetect ! identity",
+      "cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack"};
+  World world = scene::entering();
+  world.pan = __i__ / 2 * 5;
+  world.speed = 3 + world.pan;
+  Line line(lines[__i__ % 2]);
+  guint id = 0;
+  int found = 0;
+  for (int k = 0; k < 90; ++k) {
+    const bool lost = k % 10 == 5;
+    GstBuffer* out = line.through(lost ? sized(0, k * scene::kStep) : scene::grey_buffer(world, k));
+    const Regions regions(out);
+    if (k >= 40 && !lost) {
+      ++found;
+      fail_unless_equals_int(regions.size(), 1);
+      fail_unless(id == 0 || regions[0].id == id, "frame %d: another identity", k);
+      id = regions[0].id;
+      fail_unless(std::abs(regions[0].vx - world.speed * 25) < 20, "frame %d: %f px/s", k, regions[0].vx);
+    }
+    gst_buffer_unref(out);
+  }
+  fail_unless_equals_int(found, 45);
+  fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), 1);
 }
 GST_END_TEST
 
@@ -366,6 +425,81 @@ GST_START_TEST(zones_that_cannot_be_read_are_a_clear_error) {
 }
 GST_END_TEST
 
+// Settings that contradict themselves or leave nothing: told once, by the property's name, and the frames go through.
+GST_START_TEST(settings_that_can_find_nothing_are_told) {
+  const char* const kSettings[][2] = {
+      {"minimum-width=100 maximum-width=10", "minimum-width is larger than maximum-width"},
+      {"minimum-height=100 maximum-height=10", "minimum-height is larger than maximum-height"},
+      {"minimum-width=321", "minimum-width is larger than the frame"},
+      {"minimum-height=241", "minimum-height is larger than the frame"},
+      {"horizontal-fov=60 minimum-width-metres=2",
+       "minimum-width-metres is larger than maximum-width-metres"},
+      {"horizontal-fov=60 minimum-height-metres=2 maximum-height-metres=1", "maximum-height-metres"},
+      {"minimum-speed=100 maximum-speed=10", "minimum-speed is larger than maximum-speed"},
+      {"horizontal-fov=60 minimum-speed-metres=5", "minimum-speed-metres is larger"},
+      {"confirm-time=18446744073709551615", "confirm-time"},
+      {"zones=\"include 0,0 0,0 0,0\"", "zones"},
+      {"zones=\"exclude 0,0 1,0 1,1 0,1\"", "zones"},
+      {"analysis-width=1", "analysis-width=1 is too small"},
+      // and what is none of that
+      {"minimum-width=10 maximum-width=10 minimum-height=240", nullptr},
+      {"minimum-width-metres=2", nullptr},  // does not count without horizontal-fov
+      {"minimum-speed=10", nullptr},
+      {"zones=\"include 0,0 0.01,0 0.01,0.01 0,0.01\"", nullptr},
+      {"coast-time=18446744073709551615 hold-stopped=18446744073709551615", nullptr},
+      {"analysis-width=48", nullptr},
+  };
+  const char* expected = kSettings[__i__][1];
+  Line line("motiondetect name=d " + std::string(kSettings[__i__][0]) + " ! identity");
+  const World world;
+  line.run(world, 0, 5);
+  const auto warnings = line.messages(GST_MESSAGE_WARNING);
+  fail_unless_equals_int(warnings.size(), expected != nullptr);
+  if (expected) fail_unless(warnings[0].find(expected) != std::string::npos, "%s", warnings[0].c_str());
+  line.restart();  // somebody else may listen now
+  line.run(world, 0, 5);
+  fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), expected != nullptr);
+}
+GST_END_TEST
+
+GST_START_TEST(a_setting_made_while_playing_is_told_and_another_one_is_not_told_again) {
+  GstElement* element = gst_element_factory_make("motionregions", nullptr);
+  g_object_set(element, "minimum-width", 50.0, nullptr);
+  GstHarness* harness = gst_harness_new_with_element(element, "sink", "src");
+  GstBus* bus = gst_bus_new();
+  gst_element_set_bus(element, bus);
+  gst_harness_set_src_caps_str(harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight).c_str());
+  const World world;
+  int told = 0;
+  for (int k = 0; k < 12; ++k) {
+    if (k == 2 || k == 8) g_object_set(element, "maximum-width", 10.0, nullptr);
+    if (k == 4) g_object_set(element, "closing", 3, nullptr);
+    if (k == 6) g_object_set(element, "maximum-width", 100.0, nullptr);
+    fail_unless_equals_int(gst_harness_push(harness, scene::grey_buffer(world, k)), GST_FLOW_OK);
+    gst_buffer_unref(gst_harness_pull(harness));
+    while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
+      ++told;
+      gst_message_unref(message);
+    }
+    fail_unless_equals_int(told, k < 2 ? 0 : k < 8 ? 1 : 2);
+  }
+  gst_element_set_bus(element, nullptr);
+  gst_harness_teardown(harness);
+  gst_object_unref(element);
+  gst_object_unref(bus);
+}
+GST_END_TEST
+
+// Smaller than anything can be seen in: the least that can counts.
+GST_START_TEST(an_analysis_width_of_one_still_sees) {
+  Line line("motiondetect analysis-width=1 ! identity");
+  World world = scene::entering();
+  int found = 0;
+  line.run(world, 0, 90, [&](int, GstBuffer* out) { found += Regions(out).size() > 0; });
+  fail_unless(found > 40, "found in %d frames", found);
+}
+GST_END_TEST
+
 Suite* bad_input_suite() {
   Suite* suite = suite_create("bad input");
   TCase* tests = tcase_create("all");
@@ -378,13 +512,17 @@ Suite* bad_input_suite() {
   tcase_add_test(tests, a_video_meta_larger_than_the_caps_changes_nothing);
   tcase_add_test(tests, a_video_meta_that_does_not_fit_is_an_unusable_buffer);
   tcase_add_test(tests, missing_timestamps_are_no_obstacle);
-  tcase_add_test(tests, timestamps_that_run_backwards_all_the_time_give_no_region);
+  tcase_add_loop_test(tests, timestamps_out_of_order_blind_nobody, 0, 10);
+  tcase_add_loop_test(tests, lost_pictures_end_no_scene, 0, 4);
   tcase_add_loop_test(tests, metas_from_strangers_do_no_harm, 0, kElementCount);
   tcase_add_loop_test(tests, a_camera_motion_that_none_can_be_is_not_believed, 0, 6);
   tcase_add_loop_test(tests, a_plane_larger_than_the_frame_is_not_ours, 0, 2);
   tcase_add_loop_test(tests, the_warning_of_an_unusable_buffer_comes_again_with_new_caps, 0, kElementCount);
   tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
   tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
+  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 18);
+  tcase_add_test(tests, a_setting_made_while_playing_is_told_and_another_one_is_not_told_again);
+  tcase_add_test(tests, an_analysis_width_of_one_still_sees);
   return suite;
 }
 

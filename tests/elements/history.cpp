@@ -27,13 +27,94 @@ GST_START_TEST(frames_in_order_follow_each_other) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_dropped_history_and_time_running_backwards_begin_a_scene) {
+GST_START_TEST(a_dropped_history_and_time_far_back_begin_a_scene) {
   History history;
   history.next(GST_SECOND, kNominal);
   history.drop();
-  fail_unless(history.next(GST_SECOND + scene::kStep, kNominal).fresh);
-  fail_unless(history.next(GST_SECOND - 1, kNominal).fresh);
-  fail_if(history.next(GST_SECOND - 1, kNominal).fresh);  // the same time again: a duplicate, no step back
+  History::Step step = history.next(GST_SECOND + scene::kStep, kNominal);
+  fail_unless(step.fresh);
+  fail_if(step.broken);
+  step = history.next(GST_SECOND / 2, kNominal);
+  fail_unless(step.fresh && step.broken && step.backwards);
+  fail_if(history.next(GST_SECOND / 2, kNominal).fresh);  // the same time again: a duplicate, no step back
+}
+GST_END_TEST
+
+// What goes wrong with timestamps while the frames themselves come as they should: frame k's, in frames.
+struct Stamps {
+  int (*of)(int k);
+  bool told;
+};
+const Stamps kStamps[] = {
+    {[](int k) { return k - (k % 10 == 9 ? 2 : 0); }, true},
+    {[](int k) { return k - (k % 5 == 4 ? 2 : 0); }, true},
+    // as a decoder met them: 0 3 1 2 6 4 5
+    {[](int k) { return k + (k % 3 == 1 ? 2
+                             : k > 0    ? -1
+                                        : 0); }, true},
+    {[](int k) { return 1000 - k; }, true},
+    {[](int k) { return k - k / 20 * 4; }, true},  // a clock that is set back
+    {[](int) { return 7; }, false},
+};
+
+GST_START_TEST(small_steps_back_are_a_matter_of_the_timestamps_only) {
+  History history;
+  double sum = 0;
+  bool told = false;
+  constexpr int kFrames = 200;
+  for (int k = 0; k < kFrames; ++k) {
+    const GstClockTime time = (10 + kStamps[__i__].of(k)) * scene::kStep;
+    const History::Step step = history.next(time, __i__ == 1 ? 0 : kNominal);
+    fail_unless(step.fresh == (k == 0), "frame %d", k);
+    fail_unless(k == 0 || step.seconds > 0, "frame %d", k);
+    sum += step.seconds;
+    told = told || step.backwards;
+  }
+  fail_unless_equals_int(told, kStamps[__i__].told);
+  fail_unless(std::abs(sum - 0.04 * (kFrames - 1)) < 0.1 * sum, "%f s", sum);
+}
+GST_END_TEST
+
+// A clock that is set back once: guessed for a while, and then the new times count as the old ones did.
+GST_START_TEST(times_are_believed_again_soon_after_a_step_back) {
+  History history;
+  GstClockTime time = GST_SECOND;
+  for (int k = 0; k < 20; ++k) history.next(time += scene::kStep, kNominal);
+  time -= 5 * scene::kStep;
+  for (int k = 0; k < 12; ++k) {
+    const History::Step step = history.next(time += 2 * scene::kStep / (k < 10 ? 8 : 1), kNominal);
+    fail_if(step.fresh);
+    if (k >= 10) fail_unless(std::abs(step.seconds - 2 * kNominal) < 1e-9, "frame %d: %f s", k, step.seconds);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(times_that_no_camera_can_have_are_not_known) {
+  History history;
+  history.next(0, kNominal);
+  for (int k = 1; k < 100; ++k) {
+    const History::Step step = history.next(k, kNominal);
+    fail_if(step.fresh);
+    fail_unless(step.seconds == kNominal, "frame %d: %f s", k, step.seconds);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(lost_pictures_are_passed_over_unless_they_are_many) {
+  for (const bool timed : {true, false})
+    for (const int lost : {1, 5, 6}) {
+      History history;
+      int k = 0;
+      for (; k < 10; ++k) history.next(timed ? k * scene::kStep : GST_CLOCK_TIME_NONE, kNominal);
+      for (int i = 0; i < lost; ++i) history.lose();
+      k += lost;
+      const History::Step step = history.next(timed ? k * scene::kStep : GST_CLOCK_TIME_NONE, kNominal);
+      fail_unless(step.fresh == (lost > 5));
+      if (lost <= 5) fail_unless(std::abs(step.seconds - (1 + lost) * kNominal) < 1e-9, "%f s", step.seconds);
+      fail_if(timed && lost <= 5 && step.previous != 9 * scene::kStep);
+      const History::Step next = history.next(timed ? (k + 1) * scene::kStep : GST_CLOCK_TIME_NONE, kNominal);
+      fail_unless(std::abs(next.seconds - kNominal) < 1e-9, "%f s", next.seconds);
+    }
 }
 GST_END_TEST
 
@@ -76,7 +157,7 @@ GST_START_TEST(missing_timestamps_are_taken_as_evenly_spaced) {
   fail_if(history.next(GST_SECOND, kNominal).fresh);
   fail_if(history.next(GST_CLOCK_TIME_NONE, kNominal).fresh);
   fail_unless(
-      history.next(GST_SECOND - 1, kNominal).fresh);  // backwards, seen across the frame without a time
+      history.next(GST_SECOND / 2, kNominal).fresh);  // backwards, seen across the frame without a time
 }
 GST_END_TEST
 
@@ -97,9 +178,9 @@ GST_END_TEST
 
 // ---- what the stages make of it
 
-enum Break { DISCONT, FLUSH, SEGMENT, BACKWARDS, GAP, CAPS, CUT, EMPTY_BUFFER, RESTART, BREAKS };
-const char* const kBreakNames[] = {"discont", "flush", "segment",      "backwards", "gap",
-                                   "caps",    "cut",   "empty buffer", "restart"};
+enum Break { DISCONT, FLUSH, SEGMENT, BACKWARDS, GAP, CAPS, CUT, EMPTY_BUFFERS, RESTART, BREAKS };
+const char* const kBreakNames[] = {"discont", "flush", "segment",       "backwards", "gap",
+                                   "caps",    "cut",   "empty buffers", "restart"};
 
 const char* const kLines[] = {
     "motiondetect confirm-time=0 keep-planes=always",
@@ -146,15 +227,16 @@ GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen)
     case CAPS:  // alone: the harness would add a segment
       line.push_caps(scene::caps("GRAY8", scene::kWidth, scene::kHeight, ",framerate=50/1"));
       break;
-    case EMPTY_BUFFER: {
-      GstBuffer* empty = gst_buffer_new();
-      GST_BUFFER_PTS(empty) = start;
-      GstBuffer* out = line.through(empty);
-      fail_unless_equals_int(Regions(out).size(), 0);
-      gst_buffer_unref(out);
+    case EMPTY_BUFFERS:  // at once: not their times, but their number counts
+      for (int k = 0; k < 6; ++k) {
+        GstBuffer* empty = gst_buffer_new();
+        GST_BUFFER_PTS(empty) = start;
+        GstBuffer* out = line.through(empty);
+        fail_unless_equals_int(Regions(out).size(), 0);
+        gst_buffer_unref(out);
+      }
       start += scene::kStep;
       break;
-    }
     case RESTART:
       line.restart();
       break;
@@ -210,7 +292,11 @@ Suite* history_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_test(tests, frames_in_order_follow_each_other);
-  tcase_add_test(tests, a_dropped_history_and_time_running_backwards_begin_a_scene);
+  tcase_add_test(tests, a_dropped_history_and_time_far_back_begin_a_scene);
+  tcase_add_loop_test(tests, small_steps_back_are_a_matter_of_the_timestamps_only, 0, G_N_ELEMENTS(kStamps));
+  tcase_add_test(tests, times_are_believed_again_soon_after_a_step_back);
+  tcase_add_test(tests, times_that_no_camera_can_have_are_not_known);
+  tcase_add_test(tests, lost_pictures_are_passed_over_unless_they_are_many);
   tcase_add_test(tests, a_gap_is_judged_by_the_rhythm_of_the_stream);
   tcase_add_test(tests, a_stream_slower_than_its_caps_is_not_blind);
   tcase_add_test(tests, missing_timestamps_are_taken_as_evenly_spaced);

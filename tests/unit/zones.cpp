@@ -134,6 +134,25 @@ START_TEST(the_mask_loses_what_does_not_count_at_every_size_and_after_every_chan
 }
 END_TEST
 
+// A sliver may hold no pixel's centre in a small picture, and some in a large one.
+START_TEST(polygons_that_leave_nothing_are_known_once_a_mask_was_seen) {
+  Zones zones;
+  const auto nowhere = [&](const char* text, int width) {
+    accepted(zones, text);
+    ck_assert(!zones.nowhere());
+    Image<std::uint8_t> mask({width, 4});
+    zones.apply(mask.view());
+    return zones.nowhere();
+  };
+  ck_assert(nowhere("include 0.5,0.5 0.5,0.5 0.5,0.5", 4));
+  ck_assert(nowhere("exclude 0,0 1,0 1,1 0,1", 4));
+  ck_assert(nowhere("include 0,0 0.1,0 0.1,1 0,1", 4));
+  ck_assert(!nowhere("include 0,0 0.1,0 0.1,1 0,1", 40));
+  ck_assert(!nowhere("exclude 0,0 1,0 1,0.7 0,0.7", 4));
+  ck_assert(!nowhere("", 4));
+}
+END_TEST
+
 START_TEST(decimal_points_are_read_in_a_german_locale) {
   if (!std::setlocale(LC_ALL, "de_DE.UTF-8")) return;  // not installed here
   same_picture(drawn("exclude 0,0 0.5,0 0.5,1 0,1", {4, 1}), {"..##"});
@@ -151,5 +170,6 @@ int main() {
        a_polygon_that_crosses_itself_is_filled_even_odd, wrong_words_are_named_with_what_to_write_instead,
        a_wrong_text_leaves_the_old_polygons_in_place,
        the_mask_loses_what_does_not_count_at_every_size_and_after_every_change,
+       polygons_that_leave_nothing_are_known_once_a_mask_was_seen,
        decimal_points_are_read_in_a_german_locale});
 }
