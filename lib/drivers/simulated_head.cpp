@@ -58,9 +58,11 @@ double arrival(const AxisState& state, double position) {
 
 std::string SimulatedHead::open(const HeadSetup& setup) {
   if (std::string wrong = control::check(setup.limits); !wrong.empty()) return wrong;
-  if (!(setup.step >= 0) || !(setup.backlash >= 0) || !(setup.noise >= 0) || setup.latency < Time::zero() ||
-      setup.latency > std::chrono::seconds(5))
-    return "step size, backlash and noise of a simulated head are not below 0, its latency is at most 5 s";
+  for (const auto& [value, name] :
+       {std::pair{setup.step, "step size"}, {setup.backlash, "backlash"}, {setup.noise, "noise"}})
+    if (!(value >= 0)) return std::string("the ") + name + " of a simulated head is not below 0";
+  if (setup.latency < Time::zero() || setup.latency > std::chrono::seconds(5))
+    return "the latency of a simulated head is at most 5 s";
   if (!setup.limits.pan.holds(setup.pan) || !setup.limits.tilt.holds(setup.tilt))
     return "the simulated head would start beyond its limits";
   setup_ = setup;

@@ -49,6 +49,10 @@
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
  * tests: what `script` says). One head has one name (`head`) and in a process one sink.
  *
+ * No change of state waits for its first frame (`async=false`). A pipeline with `decodebin` in which all sinks are such may not
+ * end with its file: GStreamer can lose the end of the stream there (with `fakesink async=false`, too). Another sink beside it
+ * cures that: `tee name=t ! queue ! pantiltsink t. ! queue ! fakesink`.
+ *
  * ## Example launch lines
  * |[
  * gst-launch-1.0 -m videotestsrc num-buffers=60 pattern=ball ! motiondetect ! pantiltsink driver=simulated

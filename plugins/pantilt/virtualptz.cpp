@@ -14,7 +14,8 @@
  * The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window sees
  * `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
  * what downstream takes. It ends at the picture's edges: `pan-min`, `pan-max`, `tilt-min`, `tilt-max` tell how far it
- * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know.
+ * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know. A head that looks
+ * beyond is told in a warning, once.
  *
  * In a pipeline that is not live, each frame but the first waits until the head's way is known up to its running time
  * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event tells those
@@ -34,7 +35,8 @@
  * ## Example launch lines
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! video/x-raw,width=640,height=480 ! \
- *     virtualptz width=320 height=240 ! motiondetect ! pantiltsink driver=simulated horizontal-fov=32.2
+ *     virtualptz width=320 height=240 ! motiondetect ! pantiltsink driver=simulated horizontal-fov=32.2 \
+ *     pan-min=-16 pan-max=16 tilt-min=-12 tilt-max=12
  * gst-launch-1.0 videotestsrc ! video/x-raw,width=640,height=480 ! virtualptz lockstep=off inset=true ! \
  *     motiondetect ! motionoverlay ! videoconvert ! autovideosink
  * gst-launch-1.0 videotestsrc num-buffers=60 ! virtualptz lockstep=off start-pan=-10 width=160 height=120 ! fakesink
@@ -50,9 +52,11 @@
 #include <gst/video/video.h>
 
 #include <atomic>
+#include <cmath>
 #include <optional>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
 #include "frame_times.hpp"
 #include "pose_feed.hpp"
@@ -85,6 +89,7 @@ struct State {  // streaming thread, and state changes while it does not run
   std::optional<bool> live;  // nothing: not asked yet
   std::string complaint;     // about the caps, once said
   bool warned = false;       // about an unusable buffer, once a stream
+  bool beyond = false;       // about a head that looks where no window is, once a start
 };
 
 struct Private {
@@ -285,6 +290,25 @@ GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* i
   return GST_FLOW_ERROR;
 }
 
+// A step, play and noise are no reason to speak.
+constexpr double kBeyond = 1;  // degrees
+
+void warn_of_limits(GstBaseTransform* trans, Private& self, const control::Pose& pose) {
+  const double pan = degrees(pose.pan.position), tilt = degrees(pose.tilt.position);
+  if (self.state.beyond ||
+      !(std::abs(pan) > self.pan_reach + kBeyond || std::abs(tilt) > self.tilt_reach + kBeyond))
+    return;
+  self.state.beyond = true;
+  const std::string far = number(self.pan_reach), high = number(self.tilt_reach);
+  GST_ELEMENT_WARNING(
+      trans, RESOURCE, SETTINGS,
+      ("The head looks at pan %s, tilt %s, and the window ends at pan -%s and %s, tilt -%s and %s: set the "
+       "limits of "
+       "pantiltsink (pan-min, pan-max, tilt-min, tilt-max) and of pirfusion (pan-min, pan-max) so.",
+       number(pan).c_str(), number(tilt).c_str(), far.c_str(), far.c_str(), high.c_str(), high.c_str()),
+      ("head \"%s\"", self.state.settings.head.c_str()));
+}
+
 GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out) {
   Private& self = *cerberus_virtual_ptz_self(trans)->priv;
   State& state = self.state;
@@ -298,6 +322,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   GST_LOG_OBJECT(trans, "%" GST_TIME_FORMAT ": pan %.3f tilt %.3f, window at %.2f %.2f%s",
                  GST_TIME_ARGS(clock_time(time)), degrees(place.pan), degrees(place.tilt), place.left,
                  place.top, place.limited ? ", at the edge" : "");
+  warn_of_limits(trans, self, pose);
   attach_pose(state, pose, place, out);
   attach_base(in, out);
   if (state.view.draw(in, place, state.settings.inset, out)) return GST_FLOW_OK;
@@ -352,6 +377,7 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
       self.state.live.reset();
       self.state.times.forget();
       self.state.complaint.clear();
+      self.state.beyond = false;
       self.state.settings = s;
       control::Pose start;
       start.pan.position = radians(s.start_pan);

@@ -3,6 +3,7 @@
 
 #include <cerberus/cerberus.h>
 
+#include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
 #include "sensing/angles.h"
 
@@ -57,9 +58,9 @@ std::string WindowView::set_angles(const WindowSettings& s) {
   }
   const bool natural = s.horizontal_fov == 0;
   return "A window of " + size_text(window_) + " pixels" +
-         (natural ? std::string() : " that sees " + std::to_string(s.horizontal_fov) + " degrees") +
+         (natural ? std::string() : " that sees " + number(s.horizontal_fov) + " degrees") +
          " does not fit into the picture of " + size_text(picture_) + " pixels" +
-         (natural ? "" : " that sees " + std::to_string(s.wide_fov) + " degrees") + ".";
+         (natural ? "" : " that sees " + number(s.wide_fov) + " degrees") + ".";
 }
 
 bool WindowView::draw(GstBuffer* picture, const Place& place, bool with_inset, GstBuffer* window) {

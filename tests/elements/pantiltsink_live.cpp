@@ -274,7 +274,7 @@ GST_START_TEST(what_cannot_be_is_refused_with_its_name) {
       {"max-speed=1e9", "speed of 1e+09"},
       {"max-acceleration=1e9", "acceleration of 1e+09"},
       {"start-pan=171", "beyond its limits"},
-      {"latency=6000000000", "at most 5 s"},
+      {"latency=6000000000", ": the latency of a simulated head is at most 5 s"},
       {"driver=scripted head=cellar script=\"open fail no such device\"",
        "head \"cellar\" cannot be opened: no such device"},
       {"driver=scripted script=nonsense", "script: 'nonsense'"},

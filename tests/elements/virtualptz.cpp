@@ -47,6 +47,26 @@ GST_START_TEST(the_window_begins_where_it_is_told_to) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_head_that_looks_beyond_its_reach_is_told_once) {
+  Ptz ptz;
+  Bus bus(ptz.h.get());
+  ptz.frame_shows(0, 80, 60);
+  const double pan = property(ptz, "pan-max"), tilt = property(ptz, "tilt-max");
+  int number = 0;
+  std::string text;
+  const auto warnings = [&](double to_pan, double to_tilt) {
+    tell(ptz.h.get(), pose(to_pan, to_tilt));
+    gst_buffer_unref(ptz.through(++number));
+    return bus.count(GST_MESSAGE_WARNING, &text);
+  };
+  fail_unless_equals_int(warnings(pan, 0) + warnings(-pan, tilt) + warnings(0, -tilt - 0.9), 0);
+  fail_unless_equals_int(warnings(-31.25, 0), 1);
+  fail_unless(text.find("pan -31.25, tilt 0,") != text.npos && text.find("pan-min") != text.npos, "%s",
+              text.c_str());
+  fail_unless_equals_int(warnings(0, 40), 0);  // it was told already
+}
+GST_END_TEST
+
 GST_START_TEST(between_pixels_it_interpolates) {
   // Columns 10 and 20 by turns; by a quarter of a pixel to the right (pan = atan(0.25 / F)) everything is 12.5 or 17.5.
   Ptz ptz(kLine, true, "GRAY8");
@@ -188,7 +208,10 @@ GST_START_TEST(the_picture_may_change_its_size_on_the_way) {
 GST_END_TEST
 
 GST_START_TEST(what_does_not_fit_is_an_error_that_says_so) {
-  for (const char* more : {"width=321 height=100", "width=160 height=120 wide-fov=60 horizontal-fov=61"}) {
+  for (const auto& [more, told] :
+       {std::pair{"width=321 height=100", "A window of 321 x 100 pixels does not fit"},
+        {"width=160 height=120 wide-fov=60 horizontal-fov=61.5",
+         " pixels that sees 61.5 degrees does not fit"}}) {
     Harness h = harness((std::string("virtualptz ") + more).c_str());
     Bus bus(h.get());
     gst_harness_set_src_caps_str(h.get(), caps_string("GRAY8", kWidth, kHeight).c_str());
@@ -196,7 +219,7 @@ GST_START_TEST(what_does_not_fit_is_an_error_that_says_so) {
                            GST_FLOW_NOT_NEGOTIATED);
     std::string text;
     fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
-    fail_unless(text.find("does not fit into the picture of 320 x 240") != std::string::npos, "%s",
+    fail_unless(text.find(std::string(told) + " into the picture of 320 x 240") != text.npos, "%s",
                 text.c_str());
   }
 }
@@ -241,6 +264,7 @@ static Suite* virtualptz_suite() {
   tcase_add_test(tc, the_window_is_the_middle_of_the_picture_in_every_format);
   tcase_add_test(tc, a_pose_moves_the_window_in_every_format);
   tcase_add_test(tc, the_window_begins_where_it_is_told_to);
+  tcase_add_test(tc, a_head_that_looks_beyond_its_reach_is_told_once);
   tcase_add_test(tc, between_pixels_it_interpolates);
   tcase_add_test(tc, a_moving_pose_is_evaluated_at_the_frames_time);
   tcase_add_test(tc, poses_are_passed_on_and_only_those_of_the_own_head_count);
