@@ -38,6 +38,56 @@ const GstMetaInfo* meta_info() {
   return info;
 }
 
+// What messages and events say of a decision.
+GstStructure* structure_of(const gchar* name, GstClockTime running_time, const CerberusFusion& fusion) {
+  GstStructure* structure = gst_structure_new(
+      name, "running-time", G_TYPE_UINT64, static_cast<guint64>(running_time), "rule", G_TYPE_INT,
+      fusion.rule, "rule-name", G_TYPE_STRING, fusion.rule_name, "action", CERBERUS_TYPE_FUSION_ACTION,
+      fusion.action, "target", G_TYPE_UINT, fusion.target, "pan", G_TYPE_DOUBLE, fusion.pan, "sector-from",
+      G_TYPE_DOUBLE, fusion.sector_from, "sector-to", G_TYPE_DOUBLE, fusion.sector_to, "limited",
+      G_TYPE_BOOLEAN, fusion.limited, "camera-found", G_TYPE_BOOLEAN, fusion.camera_found, "doubtful",
+      G_TYPE_UINT, fusion.doubtful, nullptr);
+  GValue array = G_VALUE_INIT;
+  gst_value_array_init(&array, fusion.n_sensors);
+  for (guint i = 0; i < MIN(fusion.n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i) {
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, G_TYPE_INT);
+    g_value_set_int(&value, fusion.sensors[i]);
+    gst_value_array_append_and_take_value(&array, &value);
+  }
+  gst_structure_take_value(structure, "sensors", &array);
+  return structure;
+}
+
+bool read_structure(const GstStructure* s, GstClockTime& time, CerberusFusion& fusion) {
+  cerberus_fusion_init(&fusion);
+  gint action = 0;
+  const gchar* rule_name = gst_structure_get_string(s, "rule-name");
+  const GValue* sensors = gst_structure_get_value(s, "sensors");
+  if (!rule_name || !sensors || !GST_VALUE_HOLDS_ARRAY(sensors) ||
+      !gst_structure_get_uint64(s, "running-time", &time) ||
+      !gst_structure_get_int(s, "rule", &fusion.rule) ||
+      !gst_structure_get_enum(s, "action", CERBERUS_TYPE_FUSION_ACTION, &action) ||
+      !gst_structure_get_uint(s, "target", &fusion.target) ||
+      !gst_structure_get_double(s, "pan", &fusion.pan) ||
+      !gst_structure_get_double(s, "sector-from", &fusion.sector_from) ||
+      !gst_structure_get_double(s, "sector-to", &fusion.sector_to) ||
+      !gst_structure_get_boolean(s, "limited", &fusion.limited) ||
+      !gst_structure_get_boolean(s, "camera-found", &fusion.camera_found) ||
+      !gst_structure_get_uint(s, "doubtful", &fusion.doubtful))
+    return false;
+  fusion.n_sensors = gst_value_array_get_size(sensors);
+  if (fusion.n_sensors > CERBERUS_PIR_MAX_SENSORS) return false;
+  for (guint i = 0; i < fusion.n_sensors; ++i) {
+    const GValue* value = gst_value_array_get_value(sensors, i);
+    if (!G_VALUE_HOLDS_INT(value)) return false;
+    fusion.sensors[i] = static_cast<guint8>(g_value_get_int(value));
+  }
+  fusion.rule_name = g_intern_string(rule_name);
+  fusion.action = static_cast<CerberusFusionAction>(action);
+  return true;
+}
+
 }  // namespace
 
 G_DEFINE_BOXED_TYPE(CerberusFusion, cerberus_fusion, cerberus_fusion_copy, cerberus_fusion_free)
@@ -67,6 +117,7 @@ void cerberus_fusion_init(CerberusFusion* fusion) {
   fusion->rule_name = g_intern_static_string("none");
   fusion->action = CERBERUS_FUSION_HOLD;
   fusion->pan = fusion->sector_from = fusion->sector_to = NAN;
+  fusion->decided = GST_CLOCK_TIME_NONE;
 }
 
 CerberusFusion* cerberus_fusion_new(void) {
@@ -115,23 +166,7 @@ GstMessage* cerberus_message_new_fusion(GstObject* src, GstClockTime running_tim
                                         const CerberusFusion* fusion) {
   g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
   g_return_val_if_fail(fusion, nullptr);
-  GstStructure* structure = gst_structure_new(
-      CERBERUS_MESSAGE_FUSION, "running-time", G_TYPE_UINT64, static_cast<guint64>(running_time), "rule",
-      G_TYPE_INT, fusion->rule, "rule-name", G_TYPE_STRING, fusion->rule_name, "action",
-      CERBERUS_TYPE_FUSION_ACTION, fusion->action, "target", G_TYPE_UINT, fusion->target, "pan",
-      G_TYPE_DOUBLE, fusion->pan, "sector-from", G_TYPE_DOUBLE, fusion->sector_from, "sector-to",
-      G_TYPE_DOUBLE, fusion->sector_to, "limited", G_TYPE_BOOLEAN, fusion->limited, "camera-found",
-      G_TYPE_BOOLEAN, fusion->camera_found, "doubtful", G_TYPE_UINT, fusion->doubtful, nullptr);
-  GValue array = G_VALUE_INIT;
-  gst_value_array_init(&array, fusion->n_sensors);
-  for (guint i = 0; i < MIN(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i) {
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, G_TYPE_INT);
-    g_value_set_int(&value, fusion->sensors[i]);
-    gst_value_array_append_and_take_value(&array, &value);
-  }
-  gst_structure_take_value(structure, "sensors", &array);
-  return gst_message_new_element(src, structure);
+  return gst_message_new_element(src, structure_of(CERBERUS_MESSAGE_FUSION, running_time, *fusion));
 }
 
 CerberusFusion* cerberus_message_parse_fusion(GstMessage* message, GstClockTime* running_time) {
@@ -139,35 +174,32 @@ CerberusFusion* cerberus_message_parse_fusion(GstMessage* message, GstClockTime*
   if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ELEMENT ||
       !gst_message_has_name(message, CERBERUS_MESSAGE_FUSION))
     return nullptr;
-  const GstStructure* s = gst_message_get_structure(message);
   CerberusFusion fusion;
-  cerberus_fusion_init(&fusion);
-  guint64 time = 0;
-  gint action = 0;
-  const gchar* rule_name = gst_structure_get_string(s, "rule-name");
-  const GValue* sensors = gst_structure_get_value(s, "sensors");
-  if (!rule_name || !sensors || !GST_VALUE_HOLDS_ARRAY(sensors) ||
-      !gst_structure_get_uint64(s, "running-time", &time) ||
-      !gst_structure_get_int(s, "rule", &fusion.rule) ||
-      !gst_structure_get_enum(s, "action", CERBERUS_TYPE_FUSION_ACTION, &action) ||
-      !gst_structure_get_uint(s, "target", &fusion.target) ||
-      !gst_structure_get_double(s, "pan", &fusion.pan) ||
-      !gst_structure_get_double(s, "sector-from", &fusion.sector_from) ||
-      !gst_structure_get_double(s, "sector-to", &fusion.sector_to) ||
-      !gst_structure_get_boolean(s, "limited", &fusion.limited) ||
-      !gst_structure_get_boolean(s, "camera-found", &fusion.camera_found) ||
-      !gst_structure_get_uint(s, "doubtful", &fusion.doubtful))
-    return nullptr;
-  fusion.n_sensors = gst_value_array_get_size(sensors);
-  if (fusion.n_sensors > CERBERUS_PIR_MAX_SENSORS) return nullptr;
-  for (guint i = 0; i < fusion.n_sensors; ++i) {
-    const GValue* value = gst_value_array_get_value(sensors, i);
-    if (!G_VALUE_HOLDS_INT(value)) return nullptr;
-    fusion.sensors[i] = static_cast<guint8>(g_value_get_int(value));
-  }
-  fusion.rule_name = g_intern_string(rule_name);
-  fusion.action = static_cast<CerberusFusionAction>(action);
+  GstClockTime time = 0;
+  if (!read_structure(gst_message_get_structure(message), time, fusion)) return nullptr;
   if (running_time) *running_time = time;
+  return cerberus_fusion_copy(&fusion);
+}
+
+GstEvent* cerberus_event_new_fusion(const gchar* head, const CerberusFusion* fusion) {
+  g_return_val_if_fail(fusion && GST_CLOCK_TIME_IS_VALID(fusion->decided), nullptr);
+  GstStructure* structure = structure_of(CERBERUS_EVENT_FUSION, fusion->decided, *fusion);
+  gst_structure_set(structure, "head", G_TYPE_STRING, head ? head : "", nullptr);
+  return gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM_OOB, structure);
+}
+
+CerberusFusion* cerberus_event_parse_fusion(GstEvent* event, const gchar** head) {
+  g_return_val_if_fail(GST_IS_EVENT(event), nullptr);
+  if (GST_EVENT_TYPE(event) != GST_EVENT_CUSTOM_DOWNSTREAM_OOB ||
+      !gst_event_has_name(event, CERBERUS_EVENT_FUSION))
+    return nullptr;
+  const GstStructure* s = gst_event_get_structure(event);
+  CerberusFusion fusion;
+  const gchar* named = gst_structure_get_string(s, "head");
+  GstClockTime time = 0;
+  if (!named || !read_structure(s, time, fusion) || !GST_CLOCK_TIME_IS_VALID(time)) return nullptr;
+  fusion.decided = time;
+  if (head) *head = named;
   return cerberus_fusion_copy(&fusion);
 }
 

@@ -12,13 +12,25 @@ G_BEGIN_DECLS
  * CERBERUS_MESSAGE_FUSION:
  *
  * Name of the structure of the element message that tells of every change of the fusion's decision. Fields:
- * `running-time` (uint64, nanoseconds), `rule` (int), `rule-name` (string), `action` (#CerberusFusionAction), `target`
+ * `running-time` (uint64, nanoseconds: of the frame, or, of what was decided between two frames, when that was), `rule` (int), `rule-name` (string), `action` (#CerberusFusionAction), `target`
  * (uint), `pan`, `sector-from`, `sector-to` (double, degrees), `limited`, `camera-found` (boolean), `sensors` (array of
  * int: 0, 1, 2 = invalid), `doubtful` (uint, one bit a sensor).
  *
  * Since: 0.1
  */
 #define CERBERUS_MESSAGE_FUSION "cerberus-fusion"
+
+/**
+ * CERBERUS_EVENT_FUSION:
+ *
+ * Name of the structure of the custom downstream out-of-band event by which a live fusion tells a head what it decided
+ * between two frames, because a sensor changed its mind: nobody waits for the next frame, and no queue holds it up. It
+ * counts as if the last frame had carried it, until a frame that was decided later (#CerberusFusion.decided). Fields: `head`
+ * (string: whom it is for; empty: any), and those of %CERBERUS_MESSAGE_FUSION.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_EVENT_FUSION "cerberus-fusion"
 
 /**
  * CERBERUS_MESSAGE_PANTILT:
@@ -67,6 +79,8 @@ typedef enum {
  * @n_sensors: number of PIR sensors
  * @sensors: their readings: 0 nothing, 1 somebody, 2 invalid
  * @doubtful: one bit a sensor: its reading was not counted because the robot itself turned
+ * @decided: running time until which the sensors were heard for it: of two decisions the later one counts;
+ *     %GST_CLOCK_TIME_NONE if it is not known
  *
  * What camera and PIR sensors together decided for a frame.
  *
@@ -84,6 +98,7 @@ struct _CerberusFusion {
   guint n_sensors;
   guint8 sensors[CERBERUS_PIR_MAX_SENSORS];
   guint doubtful;
+  GstClockTime decided;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
@@ -208,7 +223,7 @@ const CerberusFusion *cerberus_buffer_peek_fusion (GstBuffer *buffer);
 /**
  * cerberus_message_new_fusion:
  * @src: (transfer none) (nullable): the object that posts it
- * @running_time: running time of the frame
+ * @running_time: running time of the frame, or when it was decided between two
  * @fusion: what was decided
  *
  * Makes the element message %CERBERUS_MESSAGE_FUSION.
@@ -233,6 +248,34 @@ GstMessage *cerberus_message_new_fusion (GstObject *src, GstClockTime running_ti
  */
 CERBERUS_API
 CerberusFusion *cerberus_message_parse_fusion (GstMessage *message, GstClockTime *running_time);
+
+/**
+ * cerberus_event_new_fusion:
+ * @head: (nullable): name of the head that it is for; %NULL or empty: any
+ * @fusion: what was decided between two frames, with the time of that
+ *
+ * Makes the custom downstream out-of-band event %CERBERUS_EVENT_FUSION.
+ *
+ * Returns: (transfer full): a new event.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+GstEvent *cerberus_event_new_fusion (const gchar *head, const CerberusFusion *fusion);
+
+/**
+ * cerberus_event_parse_fusion:
+ * @event: an event
+ * @head: (out) (optional) (transfer none): name of the head that it is for; empty: any. It lives as long as @event
+ *
+ * Reads a %CERBERUS_EVENT_FUSION.
+ *
+ * Returns: (transfer full) (nullable): what was decided; %NULL (and nothing is written) if @event is no well-formed one.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+CerberusFusion *cerberus_event_parse_fusion (GstEvent *event, const gchar **head);
 
 /**
  * cerberus_message_new_pantilt:

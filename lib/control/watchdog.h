@@ -17,6 +17,8 @@ class Watchdog {
   }
   // Nobody is expected to speak (the head stands still).
   void rest() { alive_ = false; }
+  // It was fed, and has not bitten since.
+  bool alive() const { return alive_; }
   // When it will bite; kNever while it rests.
   Time deadline() const {
     return alive_ && timeout_ > Time::zero() && fed_ < kNever - timeout_ ? fed_ + timeout_ : kNever;

@@ -99,11 +99,9 @@ void Inputs::give_up_silent(Time heard, Time patience, std::vector<SilentPad>& s
   }
 }
 
-Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* frame) {
-  Moment moment;
-  const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
-  const CerberusBase* seen = cerberus_buffer_peek_base(frame);
-  const std::lock_guard guard(lock_);
+// The lock is held.
+void Inputs::hear_sensors(Time heard, Moment& moment) {
+  moment.count = 0;
   guint number = 0;
   for (GstPad* pad : pads_) {
     PirPad& pir = pir_pad(pad);
@@ -115,6 +113,20 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
     if (!pir.linked || pir.given_up) reading.values.fill(kInvalid);
     moment.add(reading);
   }
+}
+
+void Inputs::listen(Time heard, Moment& moment) {
+  const std::lock_guard guard(lock_);
+  hear_sensors(heard, moment);
+  if (const auto rate = base_.at(heard)) moment.base_degrees = *rate;
+}
+
+Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* frame) {
+  Moment moment;
+  const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
+  const CerberusBase* seen = cerberus_buffer_peek_base(frame);
+  const std::lock_guard guard(lock_);
+  hear_sensors(heard, moment);
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
   if (!pose) {

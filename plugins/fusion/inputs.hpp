@@ -7,6 +7,7 @@
 
 #include <array>
 #include <condition_variable>
+#include <functional>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -53,6 +54,8 @@ class Inputs {
   // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before a
   // pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
   Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
+  // The sensors at `heard` in place of those that the moment has, and the base's turning where an event told it.
+  void listen(Time heard, Moment& moment);
   void begin_video();  // a new stream, or after a flush
   void end_video() { set(video_ended_, true); }
   void set_flushing(bool flushing) { set(flushing_, flushing); }  // also while the sink pad is not active
@@ -70,6 +73,7 @@ class Inputs {
   void forget();                // everything but the pads
 
   // ---- for the PIR pads, whose state the lock guards too
+  std::function<void()> on_reading;  // of a live source, after it was told; set before there are pads
   std::mutex& lock() { return lock_; }
   void tell(PirPad& pad, Time until);           // it was heard of, up to this time; the lock is held
   void end(PirPad& pad);                        // it will say no more; the lock is held
@@ -79,6 +83,8 @@ class Inputs {
   bool wait_for_video(std::unique_lock<std::mutex>& guard, const PirPad& pad, Time time);
 
  private:
+  void hear_sensors(Time heard, Moment& moment);
+
   std::mutex lock_;
   std::condition_variable news_;  // of anything below, and of the pads
   std::vector<GstPad*> pads_;     // by number; the element owns them

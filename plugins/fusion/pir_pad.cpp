@@ -242,6 +242,7 @@ GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) 
       pir.history.append(time, std::span(sample.presence).first(pir.info.sensors));
     pir.inputs->tell(pir, std::max(time, now));
   }
+  if (pir.live.value_or(true) && pir.inputs->on_reading) pir.inputs->on_reading();
   report_faults(element, pad);
   return GST_FLOW_OK;
 }

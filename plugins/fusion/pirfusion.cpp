@@ -14,7 +14,9 @@
  * default; let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
  *
  * - Live: a frame never waits; the newest reading counts that there is when it comes, even one that is younger than the
- *   frame: a camera's frames are old when they arrive, and who is heard shall not wait for that. Without a reading the
+ *   frame: a camera's frames are old when they arrive, and who is heard shall not wait for that. Nor for the next frame: when
+ *   a sensor of a live source changes its mind, that is decided at once, as if the last frame came again (if that was in the last
+ *   second), and goes downstream as the event `cerberus-fusion`, which `pantiltsink` obeys. Without a reading the
  *   sensors are invalid. So are those of a pad that was silent for `lost-after`, or ended so long ago: a warning names it.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
@@ -57,14 +59,13 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
+#include "decisions.hpp"
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
 #include "inputs.hpp"
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
-#include "tracks.hpp"
-#include "translation.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 #define GST_CAT_DEFAULT pirfusion_debug
@@ -80,14 +81,11 @@ GstStaticPadTemplate pir_template =
     GST_STATIC_PAD_TEMPLATE("pir_%u", GST_PAD_SINK, GST_PAD_REQUEST, GST_STATIC_CAPS(CERBERUS_PIR_CAPS));
 
 struct State {  // video thread only
-  fusion::Fuser fuser;
   GstSegment segment;
   std::optional<bool> live;  // nothing: not known
   Time time{};               // of the last frame
-  std::vector<fusion::Track> tracks;
-  double base_told = 0;  // to the PIR pads, degrees a second
+  double base_told = 0;      // to the PIR pads, degrees a second
   Time base_told_at{};
-  RuleName rule_name;
 
   State() { gst_segment_init(&segment, GST_FORMAT_UNDEFINED); }
 };
@@ -98,6 +96,7 @@ struct Private {
   Adjustable<Settings> settings;
   std::unique_ptr<State> state = std::make_unique<State>();
   Inputs inputs;
+  Decisions decisions{inputs};
 
   std::mutex lock;
   std::shared_ptr<const fusion::RuleTable> table;  // of rules-file
@@ -143,14 +142,13 @@ void apply_settings(CerberusPirFusion* self) {
     const std::lock_guard guard(self->priv->lock);
     table = self->priv->table;
   }
-  fusion::Fuser& fuser = self->priv->state->fuser;
+  Decisions& decisions = self->priv->decisions;
   fusion::FuserOptions options = fuser_options(s, table != nullptr);
   if (const std::string fault = limits_fault(s); !fault.empty()) {
-    options.limits = fuser.options().limits;
+    options.limits = decisions.limits();
     GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s The old limits stay.", fault.c_str()), (nullptr));
   }
-  fuser.set_table(table ? *table : fusion::paper_rules());
-  fuser.set_options(options);
+  decisions.configure(options, table ? *table : fusion::paper_rules());
 }
 
 // Until when readings count for a frame of `time`. Live, until now: a frame comes an exposure, a transfer and the whole
@@ -173,29 +171,24 @@ void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guin
   }
 }
 
-// Tells what was decided: on the buffer, and by message when it is something else.
-GstFlowReturn decide_and_push(CerberusPirFusion* self, Buffer buffer, Time time, const Moment& moment) {
-  State& state = *self->priv->state;
-  if (moment.count > 0) {
-    sensing::Geometry geometry;
-    geometry.set(std::span(moment.bearings).first(moment.count),
-                 std::span(moment.fields_of_view).first(moment.count));
-    state.fuser.set_geometry(geometry);
-  }
-  read_tracks(buffer.get(), state.tracks);
-  const fusion::Decision& decision =
-      state.fuser.update({.time = time,
-                          .tracks = state.tracks,
-                          .sensors = std::span(moment.sensors).first(moment.count),
-                          .pan = sensing::radians(moment.pan_degrees),
-                          .base_yaw_rate = sensing::radians(moment.base_degrees)});
-  const CerberusFusion fusion = as_fusion(decision, moment, state.rule_name);
-  buffer.reset(gst_buffer_make_writable(buffer.release()));
-  cerberus_buffer_set_fusion(buffer.get(), &fusion);
-  if (decision.changed)
+void tell_changes(CerberusPirFusion* self) {
+  self->priv->decisions.tell([self](Time time, const CerberusFusion& fusion) {
     gst_element_post_message(GST_ELEMENT(self),
                              cerberus_message_new_fusion(GST_OBJECT(self), clock_time(time), &fusion));
-  return gst_pad_push(self->priv->src, buffer.release());
+  });
+}
+
+// A sensor has spoken, in its source's thread. What follows from that goes to the head past all queues: a camera of 10 frames a
+// second leaves it no time to wait for the next one.
+void decide_between_frames(CerberusPirFusion* self) {
+  const GstClockTime now = gst_element_get_current_running_time(GST_ELEMENT(self));
+  if (!GST_CLOCK_TIME_IS_VALID(now)) return;
+  Private& priv = *self->priv;
+  const auto told = priv.decisions.between(time_of(now));
+  if (!told) return;
+  const std::string head = priv.settings.snapshot().head;
+  gst_pad_push_event(priv.src, cerberus_event_new_fusion(head.c_str(), &told->fusion));
+  tell_changes(self);
 }
 
 void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
@@ -246,9 +239,13 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     if (state.live != false && settings.lost_after > 0)
       priv.inputs.give_up_silent(heard, time_of(settings.lost_after), silent);
     warn_of(self, silent, max_wait ? *max_wait : settings.lost_after);
-    const Moment moment = priv.inputs.at(state.time, heard, settings.head, buffer.get());
-    pass_base_on(self, state.time, moment);
-    return decide_and_push(self, std::move(buffer), state.time, moment);
+    const Decisions::Told told =
+        priv.decisions.frame(buffer.get(), state.time, heard, settings.head, state.live == true);
+    pass_base_on(self, state.time, told.moment);
+    buffer.reset(gst_buffer_make_writable(buffer.release()));
+    cerberus_buffer_set_fusion(buffer.get(), &told.fusion);
+    tell_changes(self);
+    return gst_pad_push(priv.src, buffer.release());
   });
 }
 
@@ -265,7 +262,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
       const GstSegment* segment;
       gst_event_parse_segment(event, &segment);
       if (state.segment.format != GST_FORMAT_UNDEFINED && !gst_segment_is_equal(segment, &state.segment))
-        state.fuser.reset();
+        priv.decisions.begin_anew();
       gst_segment_copy_into(segment, &state.segment);
       state.live.reset();
       break;
@@ -274,7 +271,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
       priv.inputs.set_flushing(true);
       break;
     case GST_EVENT_FLUSH_STOP:
-      state.fuser.reset();
+      priv.decisions.begin_anew();
       state.time = Time::zero();
       gst_segment_init(&state.segment, GST_FORMAT_UNDEFINED);
       priv.inputs.begin_video();
@@ -355,6 +352,7 @@ bool check_settings(CerberusPirFusion* self) {
 void forget_everything(Private& priv) {
   priv.state = std::make_unique<State>();
   priv.settings.refresh();
+  priv.decisions.forget();
   priv.inputs.forget();
 }
 
@@ -399,6 +397,7 @@ void cerberus_pir_fusion_init(CerberusPirFusion* self) {
   Private& priv = *self->priv;
   priv.sink = gst_pad_new_from_static_template(&sink_template, "sink");
   priv.src = gst_pad_new_from_static_template(&src_template, "src");
+  priv.inputs.on_reading = [self] { decide_between_frames(self); };
   gst_pad_set_chain_function(priv.sink, video_chain);
   gst_pad_set_event_function(priv.sink, video_event);
   gst_pad_set_activatemode_function(priv.sink, activate);

@@ -86,6 +86,17 @@ void Conductor::set_live(bool live) {
   run();
 }
 
+void Conductor::heed(GstEvent* event) {
+  const gchar* whose = nullptr;
+  g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event, &whose);
+  if (!fusion || !playing || (*whose && !g_str_equal(whose, head))) return;
+  const auto at = now();
+  if (!at) return;
+  Outbox out;
+  station.heed(*fusion, *at, out);
+  tell(out);
+}
+
 GstClockTime Conductor::tick(GstClockTime time) {
   Outbox out;
   GstClockTime next = time + 20 * GST_MSECOND;

@@ -36,6 +36,9 @@ struct Conductor {
   void run();
   void pause();
 
+  // A downstream event; a decision between two frames is obeyed.
+  void heed(GstEvent* event);
+
   std::optional<control::Time> now() const { return clock_now(sink); }
   void tell(const Outbox& out) const { send(out, sink, head); }
   // act(station, now, outbox) -> done

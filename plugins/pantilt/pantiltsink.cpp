@@ -18,6 +18,10 @@
  * that change while it plays go to the head at once: who is beyond a new limit returns to it, in PAUSED when that ends. Limits
  * that cannot be are a warning, and the old ones stay.
  *
+ * Live, what `pirfusion` decides between two frames because a sensor changed its mind (the event `cerberus-fusion`, in the
+ * name of this head or of any) is obeyed at once as if the last frame had said so: in the same states and within the same limits,
+ * and only while frames come that carry its decisions. A target is followed with frames alone.
+ *
  * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits for
  * the clock and asks nobody upstream to hurry.
  *
@@ -209,6 +213,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   GstClockTime from = GST_CLOCK_TIME_NONE, length = GST_CLOCK_TIME_NONE;
   if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
   if (type == GST_EVENT_EOS) guarded(sink, [&] { conductor.end(); });
+  if (type == GST_EVENT_CUSTOM_DOWNSTREAM_OOB) guarded(sink, [&] { conductor.heed(event); });
   if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { conductor.halt("flushed"); });
   const gboolean done = cerberus_pan_tilt_sink_parent_class()->event(sink, event);
   guarded(sink, [&] {

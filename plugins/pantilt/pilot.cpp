@@ -51,12 +51,14 @@ Pilot::Verdict Pilot::decide(control::Time time, double pan) {
 // sensors may know where somebody went whom the camera has lost.
 void Pilot::prefer(control::Time time, Verdict& verdict) {
   const guint id = chosen_.id();
+  follows_ = false;
   if (id == 0) return;
   using enum fusion::Chosen::Answer;
   const std::optional<vision::Point> middle = middle_of(id);
   const fusion::Chosen::Answer answer = chosen_.watch(middle.has_value(), time);
   if (answer == lost) verdict.lost = id;
-  if (answer == here) {
+  follows_ = answer == here;
+  if (follows_) {
     verdict.wish = {.action = fusion::Action::track, .target = middle};
     verdict.reason = "told to follow " + std::to_string(id);
   } else if (answer == awaited && verdict.wish.action == fusion::Action::track) {
@@ -68,14 +70,29 @@ void Pilot::prefer(control::Time time, Verdict& verdict) {
 void Pilot::reset() {
   fuser_.reset();
   chosen_.restart();
+  between_.reset();
+  decided_.reset();
 }
 
 Pilot::Verdict Pilot::look(GstBuffer* frame, control::Time time, double pan) {
   read_tracks(frame, tracks_);
   const CerberusFusion* fusion = cerberus_buffer_peek_fusion(frame);
+  const bool dated = fusion && GST_CLOCK_TIME_IS_VALID(fusion->decided);
+  if (!dated || (between_ && between_->decided <= fusion->decided)) between_.reset();
+  if (between_) fusion = &*between_;
+  decided_.reset();
+  if (dated) decided_ = fusion->decided;
   Verdict verdict = fusion ? obey(*fusion) : decide(time, pan);
   prefer(time, verdict);
   return verdict;
+}
+
+std::optional<Pilot::Verdict> Pilot::heed(const CerberusFusion& fusion) {
+  if (!decided_ || fusion.decided <= *decided_) return std::nullopt;
+  between_ = fusion;
+  decided_ = fusion.decided;
+  if (follows_ || fusion.action == CERBERUS_FUSION_TRACK) return std::nullopt;
+  return obey(fusion);
 }
 
 }  // namespace cerberus::plugin

@@ -30,6 +30,9 @@ class Pilot {
   void follow(guint id) { chosen_.choose(id); }
   // pan: radians, when the frame was taken.
   Verdict look(GstBuffer* frame, control::Time time, double pan);
+  // What was decided since the last frame: as if that had carried it, and it goes before frames that were decided earlier
+  // (they come late, through queues). Nothing: it is not to be obeyed, or it is about a point of a picture and waits for one.
+  std::optional<Verdict> heed(const CerberusFusion& fusion);
 
  private:
   std::optional<vision::Point> middle_of(guint id) const;
@@ -39,7 +42,11 @@ class Pilot {
 
   fusion::Fuser fuser_;
   fusion::Chosen chosen_;
-  std::vector<fusion::Track> tracks_;  // on the frame
+  std::vector<fusion::Track> tracks_;      // on the frame
+  std::optional<CerberusFusion> between_;  // since the last frame
+  std::optional<GstClockTime>
+      decided_;           // what was obeyed last, and by fusion; nothing: the last frame had none
+  bool follows_ = false;  // whom the application chose, who is here
 };
 
 }  // namespace cerberus::plugin

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "vision/clock_times.hpp"
+
 namespace cerberus::plugin {
 
 namespace {
@@ -20,6 +22,8 @@ constexpr control::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(
 // A driver that answers is asked every 20 ms; one that does not, in this time, is at fault.
 constexpr control::Time kSilence = std::chrono::seconds(1);
 constexpr char kSilent[] = "the head does not answer";
+// When something can have been decided that is said now.
+constexpr control::Time kHaste = milliseconds(100), kStale = std::chrono::seconds(1);
 constexpr auto kTickPatience = milliseconds(10);
 // A loaded machine is no reason to decide otherwise than an idle one; who cannot wait interrupts.
 constexpr auto kFramePatience = std::chrono::seconds(10);
@@ -292,6 +296,21 @@ Station::Answer Station::frame(const Frame& frame, Outbox& out) {
   return answer;
 }
 
+void Station::heed(const CerberusFusion& fusion, Time at, Outbox& out) {
+  const std::lock_guard guard(lock_);
+  // Frames alone keep a head going: one that waits for them moves for nobody.
+  if (!runner_ || !clock_driven_ || halted_ || manual_ || !watchdog_.alive()) return;
+  const Time decided = time_of(fusion.decided);
+  if (decided > at + kHaste || decided < at - kStale) return;
+  const std::optional<Pilot::Verdict> verdict = pilot_.heed(fusion);
+  if (!verdict) return;
+  const Time now = head_time(at);
+  const Pose ahead = history_.at(now + setup_.latency);
+  const control::Order order = law_.update(verdict->wish, {}, ahead, ahead);
+  if (!faulty_) say(word(order), verdict->reason, now, out);
+  runner_->command({now, order.pan, order.tilt});
+}
+
 Station::Time Station::tick(Time at, Outbox& out) {
   std::unique_lock guard(lock_);
   const auto runner = runner_;
@@ -372,67 +391,6 @@ void Station::resume(std::optional<Time> at, Outbox& out) {
   if (runner_ && manual_ && clock_driven_ && at)
     runner_->command({head_time(*at), wanted_.pan, wanted_.tilt});
   say_by_hand(told_, out);
-}
-
-bool Station::override(const char* reason, const HeadCommand& command, std::optional<Time> at, Outbox& out) {
-  manual_ = true;
-  wanted_ = command;
-  hand_ = reason;
-  law_.reset();
-  const Time now = at && clock_driven_ ? head_time(*at) : told_;
-  if (clock_driven_ && !halted_) runner_->command({now, command.pan, command.tilt});
-  say("manual", reason, now, out);
-  return true;
-}
-
-bool Station::move(double pan, double tilt, bool relative, std::optional<Time> at, Outbox& out) {
-  const std::lock_guard guard(lock_);
-  if (!runner_ || ended_ || !std::isfinite(pan) || !std::isfinite(tilt)) return false;
-  if (relative) {
-    const Time now = at && clock_driven_ ? head_time(*at) : std::max(told_, published_);
-    const Pose here = history_.at(now);
-    const auto base = [&](const AxisCommand& wanted, const control::AxisState& state) {
-      return manual_ && wanted.kind == AxisCommand::Kind::position ? wanted.value : state.position;
-    };
-    pan += base(wanted_.pan, here.pan);
-    tilt += base(wanted_.tilt, here.tilt);
-  }
-  const control::Limits& limits = setup_.limits;
-  const bool inside = limits.pan.holds(pan) && limits.tilt.holds(tilt);
-  HeadCommand command;
-  command.pan = {AxisCommand::Kind::position, limits.pan.clamp(pan), limits.pan.speed};
-  command.tilt = {AxisCommand::Kind::position, limits.tilt.clamp(tilt), limits.tilt.speed};
-  return override(inside ? "told to move" : "told to move beyond a limit: as far as it", command, at, out);
-}
-
-bool Station::stay(std::optional<Time> at, Outbox& out) {
-  const std::lock_guard guard(lock_);
-  return runner_ && override("told to stop", {}, at, out);
-}
-
-// From the application's hand to what the frames say.
-void Station::give_back(const char* reason, std::optional<Time> at, Outbox& out) {
-  if (!std::exchange(manual_, false)) return;
-  const Time now = at && clock_driven_ ? head_time(*at) : told_;
-  if (clock_driven_ && !halted_) runner_->command({now, {}, {}});
-  say("holding", reason, now, out);
-}
-
-bool Station::automatic(std::optional<Time> at, Outbox& out) {
-  const std::lock_guard guard(lock_);
-  if (!runner_) return false;
-  pilot_.follow(0);
-  give_back("told to go on by itself", at, out);
-  return true;
-}
-
-bool Station::follow(guint id, std::optional<Time> at, Outbox& out) {
-  const std::lock_guard guard(lock_);
-  if (!runner_ || ended_ || id == 0) return false;
-  pilot_.follow(id);
-  law_.reset();  // somebody new
-  give_back("told to follow somebody", at, out);
-  return true;
 }
 
 void Station::interrupt(bool on) {

@@ -55,6 +55,9 @@ class Station {
   // interrupted: call again. Other answers: done with it.
   Answer frame(const Frame& frame, Outbox& out);
 
+  // What was decided between two frames, if the clock drives the head and frames are obeyed.
+  void heed(const CerberusFusion& fusion, Time now, Outbox& out);
+
   // Lets the clock's time pass. Returns when it wants to be called again.
   Time tick(Time now, Outbox& out);
   // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.

@@ -205,6 +205,36 @@ START_TEST(a_fusion_message_tells_the_whole_decision) {
 }
 END_TEST
 
+START_TEST(an_event_between_frames_tells_the_whole_decision_and_when) {
+  CerberusFusion fusion = searching();
+  fusion.decided = 7 * GST_SECOND;
+  for (const char* head : {"eye", "", static_cast<const char*>(nullptr)}) {
+    g_autoptr(GstEvent) event = cerberus_event_new_fusion(head, &fusion);
+    fail_unless_equals_int(GST_EVENT_TYPE(event), GST_EVENT_CUSTOM_DOWNSTREAM_OOB);  // no queue holds it up
+    const gchar* named = nullptr;
+    g_autoptr(CerberusFusion) back = cerberus_event_parse_fusion(event, &named);
+    fail_unless(back);
+    assert_same(*back, fusion);
+    fail_unless_equals_uint64(back->decided, 7 * GST_SECOND);
+    fail_unless_equals_string(named, head ? head : "");
+  }
+  for (const char* field : {"head", "running-time", "rule-name", "action", "sensors"}) {
+    g_autoptr(GstEvent) event = cerberus_event_new_fusion("eye", &fusion);
+    gst_structure_remove_field(gst_event_writable_structure(event), field);
+    fail_if(cerberus_event_parse_fusion(event, nullptr), "without %s", field);
+  }
+  g_autoptr(GstEvent) right = cerberus_event_new_fusion("eye", &fusion);
+  g_autoptr(GstEvent) upwards =
+      gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_copy(gst_event_get_structure(right)));
+  g_autoptr(GstEvent) eos = gst_event_new_eos();
+  fail_if(cerberus_event_parse_fusion(upwards, nullptr) || cerberus_event_parse_fusion(eos, nullptr));
+  fusion.decided = GST_CLOCK_TIME_NONE;  // nobody could tell what it goes before
+  EXPECT_CRITICAL(cerberus_event_new_fusion("eye", &fusion));
+  EXPECT_CRITICAL(cerberus_event_new_fusion("eye", nullptr));
+  EXPECT_CRITICAL(cerberus_event_parse_fusion(nullptr, nullptr));
+}
+END_TEST
+
 START_TEST(actions_have_names) {
   const struct {
     CerberusFusionAction action;
@@ -253,6 +283,7 @@ static Suite* pir_fusion_suite() {
   tcase_add_test(tc, pir_caps_that_are_incomplete_or_absurd_are_refused_in_words);
   tcase_add_test(tc, a_pir_message_tells_every_reading);
   tcase_add_test(tc, a_fusion_message_tells_the_whole_decision);
+  tcase_add_test(tc, an_event_between_frames_tells_the_whole_decision_and_when);
   tcase_add_test(tc, actions_have_names);
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The fuser, and those who ask it: the video's thread with each frame and, live, the sensors' threads between two frames.
+// Thread-safe; of two decisions the later one never knows less of the sensors.
+#pragma once
+
+#include <cerberus/cerberus.h>
+
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fusion/fuser.h"
+#include "inputs.hpp"
+#include "translation.hpp"
+
+namespace cerberus::plugin {
+
+class Decisions {
+ public:
+  struct Told {
+    CerberusFusion fusion;
+    Moment moment;
+  };
+
+  explicit Decisions(Inputs& inputs) : inputs_(inputs) {}
+
+  void configure(const fusion::FuserOptions& options, const fusion::RuleTable& table);
+  fusion::Interval limits() const;  // those that are in force
+  void begin_anew();                // another scene, or another stream
+  void forget();                    // everything
+
+  // For the frame of `time`, by what was heard until `heard`. live: others may ask before the next one.
+  Told frame(GstBuffer* frame, Time time, Time heard, const std::string& head, bool live);
+  // Until the next frame: the last one once more, with what the sensors have said until `heard`. Nothing: they have said
+  // nothing new, or there is no live frame to speak of.
+  std::optional<Told> between(Time heard);
+
+  // Tells every change that was decided and not told yet, in their order. One thread at a time does, without a lock, so a
+  // change may be told by another one than decided it.
+  void tell(const std::function<void(Time, const CerberusFusion&)>& tell);
+
+ private:
+  struct Frame {
+    Time time, heard;
+    Moment moment;
+  };
+  struct Change {
+    Time time;
+    CerberusFusion fusion;
+  };
+  // `at`: what a change is told with.
+  CerberusFusion decide(const Frame& frame, Time at);
+
+  Inputs& inputs_;
+  mutable std::mutex lock_;  // held while the inputs are asked, and never the other way round
+  fusion::Fuser fuser_;
+  std::vector<fusion::Track> tracks_;  // of the last frame
+  RuleName rule_name_;
+  Time heard_{};               // by the last decision
+  std::optional<Frame> last_;  // of a live stream
+  std::deque<Change> news_;
+  bool telling_ = false;
+};
+
+}  // namespace cerberus::plugin
