@@ -19,6 +19,9 @@ constexpr double kBodyAspect = 0.36;  // width of a walking body / its height
 constexpr int kRowsOfABody = 24;      // cells a body is cut into at least, if it has as many pixels
 constexpr int kUnit = 64;             // of the logarithms in people_kernels.h
 constexpr double kSolid = 0.88;       // share of the boxes that moves: people leave more gaps
+constexpr int kWideBlock = 4;         // bodies; in so wide a row of people there are gaps
+constexpr double kGaps = 0.11;        // share of such a row that is gaps, at least; of cars .06 to .10
+constexpr double kGapsLeft = 0.16;    // the same of what is left of a wide block
 constexpr std::size_t kMostPeople = 12;
 constexpr int kMostCells = 16384;  // in a grid; both packed sums stay below 65536
 
@@ -224,8 +227,33 @@ double PeopleFinder::filled() {
   return all > 0 ? static_cast<double>(moving) / all : 0;
 }
 
-std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window, const HeightPrior& prior) {
+// Share of what lies between the first and the last moving cell of each row that does not move: between heads, legs and
+// neighbours. Unlike the share of people's boxes it does not ask for a rectangle: cars are round and run aslant.
+double PeopleFinder::gaps() {
+  int between = 0, still = 0;
+  for (int r = window_.top; r < window_.bottom; ++r) {
+    const auto moves = [](std::uint8_t cell) { return (cell & kCellMoving) != 0; };
+    const std::uint8_t* first = std::find_if(cells(r) + window_.left, cells(r) + window_.right, moves);
+    const std::uint8_t* last = cells(r) + window_.right;
+    while (last > first && !moves(last[-1])) --last;
+    between += static_cast<int>(last - first);
+    still += static_cast<int>(last - first - std::count_if(first, last, moves));
+  }
+  return between > 0 ? static_cast<double>(still) / between : 0;
+}
+
+// A block is no people: a car, a door.
+bool PeopleFinder::is_block(bool was_wide) {
+  const std::size_t n = chosen_.size();
+  const bool wide = n > 2 && window_.width() >= kWideBlock * shapes_[window_.bottom].width;
+  wide_block_ = (wide && gaps() < kGaps) || (was_wide && n > 1 && gaps() < kGapsLeft);
+  return wide_block_ || (n > 2 && filled() > kSolid);
+}
+
+std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window, const HeightPrior& prior,
+                                           bool was_wide_block) {
   people_.clear();
+  wide_block_ = false;
   prior_ = &prior;
   if (!lay_grid(pixels, window)) return people_;
   // The leftmost first is right for people side by side, where the best first may stand in their middle; the best first
@@ -236,8 +264,7 @@ std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window,
     if (explain(true) <= best_first) std::swap(chosen_, other_);
     settle();
   }
-  // Three or more without a gap between heads, arms and legs are not people but a block: a car, a door.
-  if (chosen_.size() > 2 && filled() > kSolid) return people_;
+  if (is_block(was_wide_block)) return people_;
   for (const Candidate& c : chosen_)
     people_.push_back(
         {{static_cast<double>(x0_ + c.left * step_), static_cast<double>(y0_ + c.top * step_),

@@ -32,8 +32,12 @@ class PeopleFinder {
   void make_room(Size picture);
 
   // pixels: one bit a pixel of the picture that make_room() was told. Looks at the window only. Returns nobody when the
-  // prior does not know the heights there. Deterministic; the span lives until the next call.
-  std::span<const Person> find(BitView pixels, const Window& window, const HeightPrior& prior);
+  // prior does not know the heights there, and for a block: what has no gaps where people side by side would leave some.
+  // was_wide_block: found_wide_block() said so a frame ago. Deterministic; the span lives until the next call.
+  std::span<const Person> find(BitView pixels, const Window& window, const HeightPrior& prior,
+                               bool was_wide_block = false);
+  // By the last find(): a block of which too much is seen to be people, or what is left of one.
+  bool found_wide_block() const { return wide_block_; }
 
   std::size_t bytes() const;
 
@@ -58,9 +62,12 @@ class PeopleFinder {
   int explain(bool from_the_left);
   void settle();
   double filled();
+  double gaps();
+  bool is_block(bool was_wide);
 
   Size picture_;
   const HeightPrior* prior_ = nullptr;
+  bool wide_block_ = false;
   // The grid: cells of step_ x step_ pixels, the first one's corner at (x0_, y0_); the picture and the window in it.
   int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
   Window inside_, window_;

@@ -19,10 +19,12 @@ namespace {
 
 constexpr double kLeastShare = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
 constexpr double kTallest = 2.2;      // heights of a person: what is taller is something else
+constexpr double kSameBlock = 0.5;    // of what two blocks cover: they are one, a frame apart
 constexpr double kSkirt = 0.3;        // columns lower than this share of the highest are a shadow
 constexpr int kYoung = 60;  // frames of a scene in which nobody knows yet what stood there when it began
 constexpr double kRim = 2;  // pixels at 320 columns by which a box goes beyond what moves in them
 constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
+constexpr std::size_t kMostBlocks = 16;  // cars and the like at a time
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
 
 // One person seen alone is upright and reasonably filled.
@@ -64,9 +66,10 @@ struct RegionFinder::State {
     int looks;
   };
   std::vector<Walker> walkers, walkers_before;
-  std::vector<int> group;      // of each component
-  std::vector<Window> bodies;  // of each component: its box without the shadow it casts
-  std::vector<int> columns;    // scratch: moving pixels of a component in each of its columns
+  std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
+  std::vector<int> group;                  // of each component
+  std::vector<Window> bodies;              // of each component: its box without the shadow it casts
+  std::vector<int> columns;                // scratch: moving pixels of a component in each of its columns
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
@@ -91,6 +94,8 @@ void RegionFinder::State::make_room(Size picture) {
   const std::size_t parts = labeller.limits().components;
   vision::make_room(walkers, kMostParts);
   vision::make_room(walkers_before, kMostParts);
+  vision::make_room(blocks, kMostBlocks);
+  vision::make_room(blocks_before, kMostBlocks);
   vision::make_room(group, kMostParts);
   vision::make_room(bodies, parts);
   vision::make_room(columns, static_cast<std::size_t>(size.width) + 1);
@@ -247,7 +252,12 @@ void RegionFinder::State::explain(int g) {
       if (group[i] == g) add_plain(i, usual);
     return;
   }
-  const auto found = people.find(moving.view(), window, prior);
+  const Box whole = box_of(window);
+  const bool was_block = std::any_of(blocks_before.begin(), blocks_before.end(), [&](const Box& b) {
+    return intersection_over_union(b, whole) > kSameBlock;
+  });
+  const auto found = people.find(moving.view(), window, prior, was_block);
+  if (people.found_wide_block() && blocks.size() < kMostBlocks) blocks.push_back(whole);
   for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
     regions.push_back({fit(found[k].box, window, k, found), 0,
                        std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1});
@@ -280,14 +290,17 @@ void RegionFinder::reset() {
 std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
-         s.people.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) + bytes_of(s.group) +
-         bytes_of(s.bodies) + bytes_of(s.columns) + bytes_of(s.regions);
+         s.people.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) + bytes_of(s.blocks) +
+         bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.bodies) + bytes_of(s.columns) +
+         bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
                                              const Transform& motion) {
   State& s = *state_;
   s.regions.clear();
+  std::swap(s.blocks, s.blocks_before);
+  s.blocks.clear();
   if (mask.size() != s.size) {
     s.make_room(mask.size());
     reset();
