@@ -429,9 +429,7 @@ void Painter::paint_system(std::vector<Patch>& patches) {
   };
   std::string lines[2];
   if (system.pose) lines[0] = "pan " + degrees(system.pan) + "  tilt " + degrees(system.tilt);
-  if (system.decision)
-    lines[1] =
-        (system.rule > 0 ? "rule " + std::to_string(system.rule) + ": " : std::string()) + system.action;
+  if (system.decision) lines[1] = system.rule.empty() ? system.action : system.rule + ": " + system.action;
 
   const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
   const ContextPtr measure(cairo_create(scratch.get()));

@@ -65,8 +65,7 @@ struct Object {
 struct System {
   bool pose = false, decision = false;  // what of the following is known
   double pan = 0, tilt = 0;             // degrees
-  int rule = 0;                         // 0: one without a number
-  const char* action = "";
+  std::string rule, action;
   std::span<const std::uint8_t> sensors;  // 0 nothing, 1 somebody, else invalid
 };
 

@@ -75,6 +75,25 @@ class JsonLine {
     comma_ = true;
     return *this;
   }
+  // Any UTF-8.
+  JsonLine& text(std::string_view words) {
+    separate();
+    text_ += '"';
+    for (const char letter : words) {
+      if (letter == '"' || letter == '\\') text_ += '\\';
+      if (letter >= 0 && letter < ' ') {
+        constexpr char kDigits[] = "0123456789abcdef";
+        text_ += "\\u00";
+        text_ += kDigits[letter >> 4];
+        text_ += kDigits[letter & 15];
+      } else {
+        text_ += letter;
+      }
+    }
+    text_ += '"';
+    comma_ = true;
+    return *this;
+  }
 
  private:
   void separate() {

@@ -36,7 +36,7 @@
  * - `base`: `yaw-rate`, how fast the body turned that carries the camera (a robot), degrees a second, positive to the
  *   right (`cameramotion` with `horizontal-fov`, or the application).
  * - `pir`: the sensors' readings, 0 nothing, 1 somebody, 2 invalid; and `fusion`: what `pirfusion` decided: `rule` (number,
- *   0 for one without), `action` (`track`, `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's
+ *   0 for one without), `name` (the rule's: of the default rules `camera`, `sector`, `overlap`, `return`, `zero`, `stopped`), `action` (`track`, `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's
  *   identity or null).
  *
  * Numbers have a point whatever the locale. Pixels, speeds, degrees and metres are rounded to 2 decimals,
@@ -66,6 +66,7 @@
 #include <memory>
 
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/text.hpp"
 #include "json_line.hpp"
 
 namespace {
@@ -135,6 +136,7 @@ void write_system(cerberus::JsonLine& line, GstBuffer* buffer) {
   for (guint i = 0; i < std::min<guint>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i)
     line.integer(fusion->sensors[i]);
   line.close(']').key("fusion").open('{').key("rule").integer(fusion->rule);
+  line.key("name").text(cerberus::printable(fusion->rule_name ? fusion->rule_name : ""));
   line.key("action").string(cerberus_fusion_action_get_nick(fusion->action)).key("target");
   if (fusion->target)
     line.integer(fusion->target);

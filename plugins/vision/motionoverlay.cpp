@@ -16,8 +16,8 @@
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
  *
  * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor (red:
- * detects, blue: does not, grey: no valid reading) with its number, counted as in `bearings` of `pirsrc`, the rule that fired and
- * the action. Whom `pirfusion` has the head follow is marked by thick corners round the box. What others attached to the frame
+ * detects, blue: does not, grey: no valid reading) with its number, counted as in `bearings` of `pirsrc`, the rule that fired (its
+ * number if it has one, and its name) and the action. Whom `pirfusion` has the head follow is marked by thick corners round the box. What others attached to the frame
  * (`inset` of `virtualptz`, say) lies on top.
  *
  * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn in
@@ -50,6 +50,7 @@
 
 #include "camera_path.hpp"
 #include "cerberus/private/element.hpp"
+#include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
 #include "composition.hpp"
 #include "drawing.hpp"
@@ -326,6 +327,19 @@ void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
     state.trails.reset();
 }
 
+// "rule 2", "sector", "rule 7 zero"; of a long name what there is room for.
+std::string rule_text(const CerberusFusion& fusion) {
+  constexpr glong kMost = 24;
+  const std::string number = fusion.rule > 0 ? "rule " + std::to_string(fusion.rule) : std::string();
+  std::string name = cerberus::printable(fusion.rule_name ? fusion.rule_name : "");
+  if (name == number || name == "none") return number;
+  if (g_utf8_strlen(name.c_str(), -1) > kMost) {
+    name.resize(static_cast<std::size_t>(g_utf8_offset_to_pointer(name.c_str(), kMost) - name.c_str()));
+    name += "...";
+  }
+  return number.empty() || name.empty() ? number + name : number + " " + name;
+}
+
 // Borrows from the buffer's metas.
 draw::System read_system(GstBuffer* buffer) {
   draw::System system;
@@ -336,7 +350,7 @@ draw::System read_system(GstBuffer* buffer) {
   }
   if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer)) {
     system.decision = true;
-    system.rule = fusion->rule;
+    system.rule = rule_text(*fusion);
     system.action = cerberus_fusion_action_get_nick(fusion->action);
     system.sensors = {fusion->sensors, std::min<std::size_t>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS)};
   }

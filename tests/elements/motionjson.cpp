@@ -118,6 +118,7 @@ GST_START_TEST(pose_sensors_and_decision_are_there_where_somebody_told) {
   CerberusFusion fusion;
   cerberus_fusion_init(&fusion);
   fusion.rule = 3;
+  fusion.rule_name = "the \"gate\"";
   fusion.action = CERBERUS_FUSION_TURN_LEFT;
   fusion.n_sensors = 3;
   fusion.sensors[1] = 1, fusion.sensors[2] = 2;
@@ -131,7 +132,7 @@ GST_START_TEST(pose_sensors_and_decision_are_there_where_somebody_told) {
   expect(
       line_of(h.get(), buffer),
       line +
-          R"(,"base":{"yaw-rate":-12.5},"pir":[0,1,2],"fusion":{"rule":3,"action":"turn-left","target":null}})" +
+          R"(,"base":{"yaw-rate":-12.5},"pir":[0,1,2],"fusion":{"rule":3,"name":"the \"gate\"","action":"turn-left","target":null}})" +
           "\n");
 }
 GST_END_TEST

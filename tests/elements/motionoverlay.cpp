@@ -108,6 +108,7 @@ GST_START_TEST(head_sensors_and_decision_are_shown_in_the_corner) {
   fusion.rule = 2;
   fusion.n_sensors = 3;
   // Lights of each kind that some sensors give, in the panel's corner: pixels clearly red, clearly blue.
+  std::size_t widest = 200;
   const auto lights = [&](const char* line, std::array<guint8, 3> sensors, bool head) {
     std::copy(sensors.begin(), sensors.end(), fusion.sensors);
     Harness h = started(line, caps);
@@ -123,7 +124,7 @@ GST_START_TEST(head_sensors_and_decision_are_shown_in_the_corner) {
       blue += all[i + 2] > 200 && all[i] < 80;
       dark += all[i] < 80 && all[i + 1] < 80 && all[i + 2] < 80;
       const std::size_t x = i / 4 % kWidth, y = i / 4 / kWidth;
-      if (x > 200 || y > 60) fail_unless(all[i] == 100 && all[i + 2] == 100);
+      if (x > widest || y > 60) fail_unless(all[i] == 100 && all[i + 2] == 100);
     }
     return std::array{red, blue, dark};
   };
@@ -134,6 +135,17 @@ GST_START_TEST(head_sensors_and_decision_are_shown_in_the_corner) {
   fail_unless(std::abs(all[0] - one[0]) <= one[0] / 3 && std::abs(all[1] - 2 * all[0]) <= all[0] / 3,
               "red %d and %d, blue %d", one[0], all[0], all[1]);
   fail_unless(one[2] > all[2], "two lines need more room than one");
+  // Of a rule without a number there is the name.
+  fusion.rule = 0;
+  fusion.rule_name = "none";
+  const int short_name = lights("motionoverlay", {1, 0, 0}, false)[2];
+  fusion.rule_name = "overlapping";
+  fail_unless(lights("motionoverlay", {1, 0, 0}, false)[2] > short_name, "the rule's name is not shown");
+  widest = 300;
+  fusion.rule_name = "a rule whose name is longer than any panel, and longer than this picture is wide";
+  lights("motionoverlay", {1, 0, 0}, false);
+  fusion.rule_name = "\xff\n";
+  lights("motionoverlay", {1, 0, 0}, false);
   fail_unless((lights("motionoverlay show-system=false", {1, 0, 0}, true) == std::array{0, 0, 0}));
 }
 GST_END_TEST

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pirfusion's rules: the paper's, and those that a user wrote.
+#include <span>
+
 #include "fusion_rig.h"
 
 namespace {
@@ -214,8 +216,8 @@ GST_END_TEST
 // Each of them, to what it is already: in the middle of a search nothing happens, and nothing is told.
 GST_START_TEST(a_property_that_is_set_ends_no_search) {
   const RuleFile file(kTwoSensors);
-  for (const std::string& rules :
-       {std::string("rules=complete"), std::string("rules=paper"), file.property()}) {
+  const std::string all[] = {"rules=complete", "rules=paper", file.property()};
+  for (const std::string& rules : all) {
     Rig rig(true, rules);
     rig.add_pir();
     rig.read(0, {0, 0, 0});
@@ -228,7 +230,7 @@ GST_START_TEST(a_property_that_is_set_ends_no_search) {
     GstClockTime time = 80 * kMs;
     guint count = 0;
     g_autofree GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(rig.element), &count);
-    for (GParamSpec* spec : std::vector<GParamSpec*>(specs, specs + count)) {
+    for (GParamSpec* spec : std::span(specs, count)) {
       if (spec->owner_type != G_OBJECT_TYPE(rig.element)) continue;
       GValue value = G_VALUE_INIT;
       g_object_get_property(G_OBJECT(rig.element), spec->name, &value);
