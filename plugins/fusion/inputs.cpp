@@ -102,14 +102,21 @@ void Inputs::give_up_silent(Time heard, Time patience, std::vector<SilentPad>& s
 // The lock is held.
 void Inputs::hear_sensors(Time heard, Moment& moment) {
   moment.count = 0;
+  moment.told = true;
   guint number = 0;
   for (GstPad* pad : pads_) {
     PirPad& pir = pir_pad(pad);
-    for (; number < pir.index; ++number) moment.add(unknown_sensor());
+    for (; number < pir.index; ++number) {
+      moment.add(unknown_sensor());
+      moment.told = false;
+    }
     ++number;
     Reading reading = pir.history.at(heard);
     pir.history.forget_before(heard);
-    if (!reading.array) reading = unknown_sensor();
+    if (!reading.array) {
+      reading = unknown_sensor();
+      moment.told = false;
+    }
     if (!pir.linked || pir.given_up) reading.values.fill(kInvalid);
     moment.add(reading);
   }
@@ -127,6 +134,7 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
   const CerberusBase* seen = cerberus_buffer_peek_base(frame);
   const std::lock_guard guard(lock_);
   hear_sensors(heard, moment);
+  moment.stranger = stranger_;
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
   if (!pose) {
@@ -149,6 +157,11 @@ void Inputs::hear(const CerberusPose& pose) {
   const std::lock_guard guard(lock_);
   if (poses_.last() && poses_.last()->value.head != pose.head) poses_.clear();
   poses_.insert(time_of(pose.valid_from), pose);
+}
+
+void Inputs::hear_stranger(const CerberusPose& pose) {
+  const std::lock_guard guard(lock_);
+  stranger_ = pose.head;
 }
 
 void Inputs::hear_base(double degrees_a_second, Time from) {
@@ -194,6 +207,7 @@ void Inputs::forget() {
   for (GstPad* pad : pads_) pir_pad(pad).reset();
   poses_.clear();
   base_.clear();
+  stranger_ = nullptr;
   video_ = Time::zero();
   video_ended_ = false;
 }

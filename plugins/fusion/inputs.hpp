@@ -30,7 +30,9 @@ struct Moment {
   std::size_t count = 0;
   double pan_degrees = std::numeric_limits<double>::quiet_NaN();
   double base_degrees = std::numeric_limits<double>::quiet_NaN();  // a second
-  bool base_heard = false;  // by an event, which the PIR pads have got too
+  bool base_heard = false;         // by an event, which the PIR pads have got too
+  bool told = true;                // all sensors, by caps: none is assumed
+  const char* stranger = nullptr;  // interned: another head, which told its pose
 
   void add(const Reading& reading);  // what does not fit is dropped
 };
@@ -62,6 +64,7 @@ class Inputs {
 
   // ---- upstream events
   void hear(const CerberusPose& pose);
+  void hear_stranger(const CerberusPose& pose);  // of another head than the one that counts
   void hear_base(double degrees_a_second, Time from);
 
   // ---- PIR pads (those of pir_pad.hpp), counted in the order of their numbers. Rules know sensors by their places, so a pad
@@ -90,6 +93,7 @@ class Inputs {
   std::vector<GstPad*> pads_;     // by number; the element owns them
   Timeline<CerberusPose> poses_;
   ToldBase base_;
+  const char* stranger_ = nullptr;
   Time video_{};  // newest frame that came
   bool flushing_ = true;
   bool video_ended_ = false;

@@ -33,7 +33,8 @@
  *
  * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
  * described in the manual (rules); one that leaves a case open, contradicts itself or has a rule that never applies is refused
- * and the case named. What of it lies beyond `pan-min` and `pan-max` is warned of.
+ * and the case named. A warning tells what of it lies beyond `pan-min` and `pan-max`, and when rules speak of another number of
+ * sensors than the PIR pads have; another one, when a head tells its pose that is not `head`, and that one does not.
  *
  * ## Example
  * |[
@@ -63,6 +64,7 @@
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
 #include "inputs.hpp"
+#include "misfits.hpp"
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
@@ -86,6 +88,8 @@ struct State {  // video thread only
   Time time{};               // of the last frame
   double base_told = 0;      // to the PIR pads, degrees a second
   Time base_told_at{};
+  int rules_sensors = 0;  // of which the rules speak; 0: any number
+  Misfits misfits;
 
   State() { gst_segment_init(&segment, GST_FORMAT_UNDEFINED); }
 };
@@ -148,6 +152,8 @@ void apply_settings(CerberusPirFusion* self) {
     options.limits = decisions.limits();
     GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s The old limits stay.", fault.c_str()), (nullptr));
   }
+  const bool by_table = options.rules == fusion::RuleSet::table;
+  self->priv->state->rules_sensors = !by_table ? 0 : table ? table->sensors : fusion::paper_rules().sensors;
   decisions.configure(options, table ? *table : fusion::paper_rules());
 }
 
@@ -189,6 +195,14 @@ void decide_between_frames(CerberusPirFusion* self) {
   const std::string head = priv.settings.snapshot().head;
   gst_pad_push_event(priv.src, cerberus_event_new_fusion(head.c_str(), &told->fusion));
   tell_changes(self);
+}
+
+void warn_of_misfits(CerberusPirFusion* self, const Settings& s, const Moment& moment) {
+  State& state = *self->priv->state;
+  const std::string rules = s.rules_file.empty() ? "rules=paper" : printable(s.rules_file);
+  for (const std::string& text : {state.misfits.sensors(rules, state.rules_sensors, moment),
+                                  state.misfits.head(printable(s.head), state.time, moment)})
+    if (!text.empty()) GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s", text.c_str()), (nullptr));
 }
 
 void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
@@ -242,6 +256,7 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     const Decisions::Told told =
         priv.decisions.frame(buffer.get(), state.time, heard, settings.head, state.live == true);
     pass_base_on(self, state.time, told.moment);
+    warn_of_misfits(self, settings, told.moment);
     buffer.reset(gst_buffer_make_writable(buffer.release()));
     cerberus_buffer_set_fusion(buffer.get(), &told.fusion);
     tell_changes(self);
@@ -304,6 +319,8 @@ void listen(Private& priv, GstEvent* event) {
   GstClockTime from = 0;
   if (pose && (head.empty() || head == pose->head))
     priv.inputs.hear(*pose);
+  else if (pose)
+    priv.inputs.hear_stranger(*pose);
   else if (cerberus_event_parse_base(event, &rate, &from))
     priv.inputs.hear_base(rate, time_of(from));
 }

@@ -204,6 +204,55 @@ GST_START_TEST(rules_beyond_the_limits_are_warned_of) {
 }
 GST_END_TEST
 
+GST_START_TEST(rules_for_another_number_of_sensors_are_warned_of_once) {
+  const RuleFile two(kTwoSensors);
+  const auto said = [](const std::string& rules, int sensors, int frames = 3) {
+    Rig rig(true, rules);
+    rig.add_pir(nullptr);
+    rig.at(0);  // nobody has said how many there are
+    fail_unless(rig.warning().empty());
+    gst_harness_set_src_caps_str(rig.pir[0], with_sensors(sensors, 0, 30).c_str());
+    for (int i = 1; i <= frames; ++i) {
+      rig.read(static_cast<GstClockTime>(i) * 40 * kMs, Bytes(static_cast<std::size_t>(sensors), 0));
+      rig.at(static_cast<GstClockTime>(i) * 40 * kMs);
+    }
+    const std::string text = rig.warning();
+    fail_unless(rig.warning().empty());
+    return text;
+  };
+  for (const int sensors : {1, 2, 5}) {
+    const std::string text = said("rules=paper", sensors);
+    fail_unless(
+        text.starts_with("rules=paper speaks of 3 PIR sensors, and there are " + std::to_string(sensors)),
+        "%s", text.c_str());
+  }
+  fail_unless(said("rules=paper", 3).empty());
+  fail_unless(said("rules=complete", 5).empty());
+  fail_unless(said(two.property(), 2).empty());
+  fail_unless(said(two.property(), 3).starts_with(two.path() + " speaks of 2 PIR sensors, and there are 3"));
+}
+GST_END_TEST
+
+GST_START_TEST(a_head_of_another_name_is_warned_of_once) {
+  for (const bool own : {false, true}) {
+    Rig rig(true, "head=eye");
+    for (GstClockTime time = 0; time <= 5 * GST_SECOND; time += 500 * kMs) {
+      say(rig, pose(0, time, 0, "tail"));
+      if (own) say(rig, pose(0, time, 0, "eye"));
+      rig.at(time);
+      const std::string text = rig.warning();
+      fail_unless(text.empty() == (own || time != 2 * GST_SECOND), "%s", text.c_str());
+      if (!text.empty())
+        fail_unless(text.find("\"tail\"") != std::string::npos && text.find("\"eye\"") != std::string::npos,
+                    "%s", text.c_str());
+    }
+  }
+  Rig silent(true, "head=eye");  // without any head there is nothing to be told
+  for (GstClockTime time = 0; time <= 5 * GST_SECOND; time += 500 * kMs) silent.at(time);
+  fail_unless(silent.warning().empty());
+}
+GST_END_TEST
+
 GST_START_TEST(a_rule_that_never_applies_is_refused) {
   const std::string whole = kTwoSensors;
   const RuleFile file("sensors = 2\nprecedence = \"order\"\n[[rule]]\nname = \"first\"\naction = \"hold\"\n" +
@@ -259,6 +308,8 @@ static Suite* pirfusion_rules_suite() {
   tcase_add_test(tc, rules_that_cannot_be_used_are_refused_and_the_case_is_named);
   tcase_add_test(tc, rules_may_change_while_playing_and_bad_ones_leave_the_old);
   tcase_add_test(tc, rules_beyond_the_limits_are_warned_of);
+  tcase_add_test(tc, rules_for_another_number_of_sensors_are_warned_of_once);
+  tcase_add_test(tc, a_head_of_another_name_is_warned_of_once);
   tcase_add_test(tc, a_rule_that_never_applies_is_refused);
   tcase_add_test(tc, a_property_that_is_set_ends_no_search);
   return s;
