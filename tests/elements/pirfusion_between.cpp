@@ -121,10 +121,11 @@ GST_START_TEST(two_decisions_never_have_one_time_and_no_frame_knows_less) {
 GST_END_TEST
 
 GST_START_TEST(where_it_is_not_live_frames_alone_decide) {
-  for (const bool live_video : {false, true}) {
+  for (const auto& [live_video, live_sensors] : {std::pair{false, false}, {true, false}, {false, true}}) {
     Rig rig(live_video);
-    rig.add_pir(kPaper, "pir_%u", false);  // a recording may be ahead of the video
+    rig.add_pir(kPaper, "pir_%u", live_sensors);  // a recording may be ahead of the video
     begin(rig);
+    set_time(rig, 50 * kMs);
     rig.read(45 * kMs, {0, 0, 1});
     rig.read(3 * GST_SECOND, {0, 0, 1});
     fail_unless(rig.told().empty() && events(rig).empty());

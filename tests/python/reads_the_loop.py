@@ -203,7 +203,8 @@ class WithTheWholeLoop(unittest.TestCase):
             self.assertAlmostEqual(line["pose"]["tilt"], pose.tilt, places=2)
             self.assertIs(line["pose"]["moving"], pose.moving)
             self.assertEqual(line["pir"], readings(fusion.get_sensors()))
-            self.assertEqual(line["fusion"], {"rule": fusion.rule, "name": fusion.rule_name, "action": fusion.action.value_nick,
+            self.assertEqual(line["fusion"], {"rule": fusion.rule, "name": fusion.rule_name,
+                                              "action": fusion.action.value_nick,
                                               "target": fusion.target or None})
         self.assertIn(True, [line["pose"]["moving"] for line in self.lines])
 
