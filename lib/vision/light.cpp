@@ -18,7 +18,8 @@ constexpr int kBand = LightSamples::kBandRows *
 constexpr int kMaximumBands = 512;             // more are not looked for
 constexpr int kBandReach = 64;                 // a band may be this much brighter or darker, 1/256
 constexpr int kFullWeight = 64;                // grey levels from which a sample says all it can of a gain
-constexpr int kLeastSamples = 48;              // of a band that tells of its light
+constexpr int kLeastOfThird = 8;               // of a third of a band that tells of an object
+constexpr int kLeastSamples = 12;              // of a band that tells of its light
 constexpr double kLeastBand = 1.0;             // grey levels: weaker bands are left alone
 constexpr double kLeastGlobal = 0.7;           // the same for the picture as a whole
 
@@ -34,7 +35,7 @@ constexpr auto kInverse = [] {
 bool has_one_direction(const LightSums& sums) {
   int thirds = 0, up = 0, down = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (sums.number[i] < 8) continue;  // white
+    if (sums.number[i] < kLeastOfThird) continue;  // white
     ++thirds;
     up += 2 * sums.brighter[i] > sums.number[i];
     down += 2 * sums.darker[i] > sums.number[i];
@@ -54,11 +55,19 @@ void LightChange::clear() {
   offset_ = 0;
   agreement_ = 1;
   std::fill(rows_.begin(), rows_.end(), RowLight{});
+  std::fill(doubt_.begin(), doubt_.end(), std::uint8_t{0});
 }
 
 void LightChange::relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
                           std::uint8_t* out) const {
   relight_row_with_white(reference, present, row(y), count, out);
+  const int doubt = y < static_cast<int>(doubt_.size()) ? doubt_[y] : 0;
+  if (!doubt) return;
+  for (int x = 0; x < count; ++x) {
+    const int reach = (out[x] * doubt + 255) >> 8;
+    out[x] = static_cast<std::uint8_t>(
+        std::clamp<int>(present[x], std::max(out[x] - reach, 0), std::min(out[x] + reach, 255)));
+  }
 }
 
 RowLight LightChange::light_of(int row) const {
@@ -67,6 +76,7 @@ RowLight LightChange::light_of(int row) const {
 
 void LightChange::estimate(const LightSamples& samples, bool still) {
   rows_.resize(static_cast<std::size_t>(samples.height()));
+  doubt_.resize(rows_.size());
   clear();
   if (rows_.empty()) return;
   const bool line = estimate_global(samples);
@@ -128,16 +138,17 @@ bool LightChange::estimate_global(const LightSamples& samples) {
     if (number[k] * 100 < total) continue;
     const double a = static_cast<double>(sum[k]) / number[k],
                  e = median_of_levels(counts[k], number[k], -kReach);
-    if (a + e > 250 || a + e < 4 || a > 250) continue;  // clipped: says nothing about gain
+    if (a + e > kNearWhite || a + e < 4 || a > kNearWhite) continue;  // clipped: says nothing about gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
-  if (!used) return false;
   // e = offset + slope (a - mean), by least squares whose weights fall with the distance from the line
-  // (Cauchy, scale one grey level). With a narrow range of brightness only the offset can be told.
+  // (Cauchy, scale one grey level). With a narrow range of brightness only a gain can be told, which
+  // is what exposures and lamps make.
+  // Where all is clipped, nothing can be told, and none is what either agrees with or not.
   double slope = 0, offset = 0, mean = 0;
   std::array<double, kClasses> w;
   for (int i = 0; i < used; ++i) w[i] = points[i].weight;
-  for (int round = 0; round < 6; ++round) {
+  for (int round = 0; round < 6 && used; ++round) {
     double sw = 0, sa = 0, se = 0, saa = 0, sae = 0;
     for (int i = 0; i < used; ++i) sw += w[i], sa += w[i] * points[i].a, se += w[i] * points[i].e;
     mean = sa / sw;
@@ -147,8 +158,8 @@ bool LightChange::estimate_global(const LightSamples& samples) {
       saa += w[i] * da * da;
       sae += w[i] * da * (points[i].e - offset);
     }
-    slope = sae /
-            (saa + 100 * sw);  // as if the gain were known to be 1 to within the noise: a ridge of 10 levels
+    // As if black were known to stay black to within the noise: a ridge of 10 levels.
+    slope = (sae + 100 * sw * offset / std::max(mean, 16.0)) / (saa + 100 * sw);
     for (int i = 0; i < used; ++i) {
       const double r = points[i].e - offset - slope * (points[i].a - mean);
       w[i] = points[i].weight / (1 + r * r);
@@ -217,13 +228,16 @@ bool LightChange::estimate_bands(const LightSamples& samples) {
   for (int band = 0; band < bands; ++band) {
     const LightSums sums = samples.sums_of_band(band, rows_);
     const int number = number_of(sums);
-    known[band] = number >= kLeastSamples && sums.level > 0;
+    known[band] = number >= kLeastSamples && sums.level > 0 && std::ranges::max(sums.number) >= kLeastOfThird;
     if (!known[band]) continue;
     excess[band] = has_one_direction(sums) ? excess_of_band(samples, band) : 0;
     strongest = std::max(strongest, std::abs(excess[band]) * sums.level / number);
   }
   if (strongest < kLeastBand) return false;
-  // Where all is white or hidden, the bands next to it tell.
+  // Where all is white or hidden, the bands next to it tell, but no more than that it is light like theirs.
+  double least = 1, most = -1;
+  for (int band = 0; band < bands; ++band)
+    if (known[band]) least = std::min(least, excess[band]), most = std::max(most, excess[band]);
   for (int band = 0; band < bands; ++band) {
     if (known[band]) continue;
     int low = band, high = band;
@@ -241,6 +255,9 @@ bool LightChange::estimate_bands(const LightSamples& samples) {
     const double k = 1 + excess[low] + (position - low) * (excess[low + 1] - excess[low]);
     rows_[y].gain = round_to_int(rows_[y].gain * k);
     rows_[y].offset = round_to_int(rows_[y].offset * k);
+    const double doubt = known[y / kBand] ? 0 : std::max(most - (k - 1), k - 1 - least);
+    doubt_[y] =
+        std::max(doubt_[y], static_cast<std::uint8_t>(std::clamp(std::lround(256 * doubt), 0L, 255L)));
   }
   return true;
 }

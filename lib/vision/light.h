@@ -36,7 +36,9 @@ class LightChange {
   void relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
                std::uint8_t* out) const;
   RowLight row(int y) const { return y < static_cast<int>(rows_.size()) ? rows_[y] : RowLight{}; }
-  std::size_t bytes() const { return rows_.capacity() * sizeof(RowLight); }  // beside the object itself
+  std::size_t bytes() const {
+    return rows_.capacity() * sizeof(RowLight) + doubt_.capacity();
+  }  // beside the object itself
 
  private:
   static constexpr int kClasses = 16, kReach = 127, kLevels = 2 * kReach + 1;
@@ -53,6 +55,7 @@ class LightChange {
   bool none_ = true;
   double gain_ = 1, offset_ = 0, agreement_ = 1;
   std::vector<RowLight> rows_;
+  std::vector<std::uint8_t> doubt_;  // 1/256 that the row's gain may be off by
 };
 
 }  // namespace cerberus::vision

@@ -41,13 +41,16 @@ LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present
 
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out) {
-  if (((255 * light.gain + light.offset) >> 8) >= 255) return relight(reference, light, count, out);
+  if (light == RowLight{}) return relight(reference, light, count, out);
   const std::int32_t gain = light.gain, offset = light.offset + 128;
   for (int x = 0; x < count; ++x) {
-    const std::int32_t value = (reference[x] * gain + offset) >> 8;
-    const std::int32_t kept = value < 0 ? 0 : value > 255 ? 255 : value;
-    const std::int32_t least = reference[x] >= kWhite ? present[x] : 0;
-    out[x] = static_cast<std::uint8_t>(kept > least ? kept : least);
+    const std::int32_t then = reference[x], seen = present[x];
+    const std::int32_t value = (then * gain + offset) >> 8;
+    const std::int32_t now = value < 0 ? 0 : value > 255 ? 255 : value;
+    const std::int32_t low = then < now ? then : now, high = then < now ? now : then;
+    const std::int32_t most = then >= kWhite ? 255 : high;
+    const std::int32_t told = seen < low ? low : seen > most ? most : seen;
+    out[x] = static_cast<std::uint8_t>(high >= kNearWhite ? told : now);
   }
 }
 
@@ -124,11 +127,13 @@ LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present
 
 void relight_row_with_white_reference(const std::uint8_t* reference, const std::uint8_t* present,
                                       RowLight light, int count, std::uint8_t* out) {
-  const int white = (255 * light.gain + light.offset) >> 8;
   for (int x = 0; x < count; ++x) {
-    const int lit = std::clamp((reference[x] * light.gain + light.offset + 128) >> 8, 0, 255);
-    out[x] = static_cast<std::uint8_t>(white < 255 && reference[x] >= kWhite ? std::max<int>(lit, present[x])
-                                                                             : lit);
+    const int then = reference[x];
+    const int now = std::clamp((then * light.gain + light.offset + 128) >> 8, 0, 255);
+    const auto [low, high] = std::minmax(then, now);
+    const bool near_white = light != RowLight{} && high >= kNearWhite;
+    out[x] = static_cast<std::uint8_t>(
+        near_white ? std::clamp<int>(present[x], low, then >= kWhite ? 255 : high) : now);
   }
 }
 

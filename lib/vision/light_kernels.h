@@ -20,7 +20,9 @@ struct RowLight {
 
 // out := the row of the reference under the present light, clamped to 0..255. `out` may be `reference`.
 void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out);
-// The same, where white in less light may be anything from there on: what `present` has, if that is brighter.
+// The same, where what is near white in either light lies anywhere between what it is in the two, or beyond white: pictures
+// are blurred after the sensor has cut off what is too bright for it, and nobody knows how much of it there was. As
+// `present` has it, as far as that lies there.
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out);
 void relight_row_with_white_reference(const std::uint8_t* reference, const std::uint8_t* present,

@@ -72,16 +72,26 @@ bool SceneLight::is_other() const {
   return std::abs(brighter_) > kOtherLight;
 }
 
-void SceneLight::adopt(const ScenePixels& pixels, SceneSurroundings& surroundings) {
+void SceneLight::adopt(const ScenePixels& pixels, SceneSurroundings& surroundings,
+                       std::span<const RowSpan> shown) {
   const int gain = static_cast<int>(std::lround(change_.gain() * 256));
   const int offset = static_cast<int>(std::lround(change_.offset() * 256));
+  const MutableGrayView k = known();
   for (int y = 0; y < pixels.mean.height; ++y) {
+    const RowSpan span = shown.empty() ? RowSpan{} : shown[static_cast<std::size_t>(y)];
     std::uint16_t* row = pixels.mean.row(y);
+    std::uint8_t* age = pixels.age.row(y);
     for (int x = 0; x < pixels.mean.width; ++x) {
-      const int now = std::clamp((row[x] * gain >> 8) + offset, 0, 255 << 8);
-      // White in less light may be anything from there on: nobody knows.
-      if (row[x] >= kWhite << 8 && now < row[x]) pixels.age.at(x, y) = 0;
+      const int then = row[x], now = std::clamp((then * gain >> 8) + offset, 0, 255 << 8);
       row[x] = static_cast<std::uint16_t>(now);
+      if (!age[x]) continue;
+      if (x >= span.begin && x < span.end) {
+        if (std::max(then, now) < kNearWhite << 8) continue;
+        row[x] = static_cast<std::uint16_t>(k.at(x, y) << 8);
+        age[x] = std::min(age[x], kRelearn);
+      } else if (then >= kWhite << 8 && now < then) {
+        age[x] = 0;
+      }
     }
   }
   surroundings.relight(gain, offset);
@@ -94,26 +104,18 @@ bool SceneLight::compensate(const ScenePixels& pixels, SceneSurroundings& surrou
   estimate(present, shown, still);
   brighter_ = change_.gain() * 128 + change_.offset() - 128;
   const bool step = std::abs(brighter_ - before) > kStep;
-  if (change_.none()) return step;
   if (change_.agreement() < kAgreement && still) {  // not a change of light: another scene
     for (int y = 0; y < present.height; ++y) std::fill_n(pixels.age.row(y), present.width, std::uint8_t{0});
     surroundings.begin(present.size());
     begin();
     return false;
   }
+  if (change_.none()) return step;
   // Flicker comes back, and what it makes white in the memory is lost: the memory keeps the light it was learnt in. A
   // stronger change is there to stay.
   if (std::abs(brighter_) > (still ? kFlicker : kOtherLight)) {
-    adopt(pixels, surroundings);
-    for (int y = 0; y < present.height; ++y)
-      for (int x = shown[static_cast<std::size_t>(y)].begin; x < shown[static_cast<std::size_t>(y)].end;
-           ++x) {
-        if (pixels.age.at(x, y)) continue;
-        // Not darker than it was said to be: then somebody is before it.
-        const int value = std::max<int>(pixels.mean.at(x, y), present.at(x, y) << 8);
-        pixels.mean.at(x, y) = static_cast<std::uint16_t>(value);
-        pixels.age.at(x, y) = kRelearn;
-      }
+    relight(present);
+    adopt(pixels, surroundings, shown);
     draw(pixels.mean);
     estimate(present, shown, still);
   }

@@ -39,8 +39,9 @@ class SceneLight {
   bool is_other() const;
   // A row of the present under the memory's light, as it would be remembered: itself, or valid until the next call.
   const std::uint8_t* remembered(int y, const std::uint8_t* present);
-  // The memory under the light that was measured last. What that leaves unknown has age 0.
-  void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings);
+  // The memory under the light that was measured last. What nobody knows then (white in less light) has age 0; where
+  // known() has been relit for the frame that shows it, it is as that says, and learnt anew.
+  void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings, std::span<const RowSpan> shown = {});
 
   // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one: ages become
   // 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.

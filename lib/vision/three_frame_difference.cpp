@@ -56,7 +56,7 @@ void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView secon
     std::uint8_t* row = previous.row(y);
     const std::uint8_t* f2 = second.row(y) + span.begin;
     if (!light_before.none()) {
-      relight_row(f2, light_before.row(y), count, relit.view().data);
+      light_before.relight(f2, first.row(y) + span.begin, y, count, relit.view().data);
       f2 = relit.view().data;
     }
     difference_row(first.row(y) + span.begin, f2, count, row + span.begin);
@@ -151,7 +151,7 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     std::uint8_t* row = current.row(y);
     const std::uint8_t* f1 = first.row(y) + span.begin;
     if (!s.light.none()) {
-      relight_row(f1, s.light.row(y), count, s.relit.view().data);
+      s.light.relight(f1, present.row(y) + span.begin, y, count, s.relit.view().data);
       f1 = s.relit.view().data;
     }
     difference_row(present.row(y) + span.begin, f1, count, row + span.begin);

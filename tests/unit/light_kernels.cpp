@@ -84,14 +84,19 @@ START_TEST(rows_are_relit_as_the_reference_does_in_place_too) {
 }
 END_TEST
 
-START_TEST(white_in_less_light_is_what_the_present_has_if_that_is_brighter) {
-  const std::uint8_t reference[]{244, 245, 245, 255}, present[]{200, 100, 200, 255};
-  std::uint8_t out[4];
-  relight_row_with_white_reference(reference, present, {128, 0}, 4, out);
-  const std::uint8_t half[]{122, 123, 200, 255};  // 245 / 2, rounded up
-  ck_assert(std::equal(out, out + 4, half));
-  relight_row_with_white_reference(reference, present, {256, 0}, 4, out);
-  ck_assert(std::equal(out, out + 4, reference));
+START_TEST(near_white_is_what_the_present_has_between_what_it_is_in_the_two_lights) {
+  const std::uint8_t reference[]{234, 235, 235, 245, 245, 255}, present[]{200, 100, 240, 100, 250, 255};
+  std::uint8_t out[6];
+  relight_row_with_white_reference(reference, present, {128, 0}, 6, out);
+  const std::uint8_t half[]{117, 118, 235,
+                            123, 250, 255};  // 245 / 2, rounded up; white may be more than that
+  ck_assert(std::equal(out, out + 6, half));
+  relight_row_with_white_reference(reference, present, {256, 0}, 6, out);
+  ck_assert(std::equal(out, out + 6, reference));
+  const std::uint8_t dark[]{117, 118, 118, 150, 150, 117}, seen[]{130, 110, 130, 140, 200, 255};
+  relight_row_with_white_reference(dark, seen, {512, 0}, 6, out);
+  const std::uint8_t twice[]{234, 118, 130, 150, 200, 234};
+  ck_assert(std::equal(out, out + 6, twice));
 }
 END_TEST
 
@@ -99,5 +104,5 @@ int main() {
   return run_suite_on_every_target(
       "light_kernels", {sums_agree_with_the_reference, sums_leave_white_out_and_limit_what_remains,
                         rows_are_relit_as_the_reference_does_in_place_too,
-                        white_in_less_light_is_what_the_present_has_if_that_is_brighter});
+                        near_white_is_what_the_present_has_between_what_it_is_in_the_two_lights});
 }
