@@ -22,7 +22,17 @@ constexpr double kCoastBrake = 1.0;          // s in which what is not seen is b
 constexpr double kAwayBrake = 3.0;           // s, for who walked on when the camera turned away
 constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
 constexpr double kFade = 20.0;               // how much less a shrinking extent counts while standing
-constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
+constexpr double kLookTime = 2.0;            // s in which somebody may turn round and look different
+constexpr double kFoundNoise = 0.1;          // S: how well a look tells where in a group somebody is
+constexpr double kFoundBrake = 0.5;          // s: it does not tell how high
+constexpr int kRecent = 3;
+constexpr double kRecentTime = 0.5;  // s of which that counts
+constexpr double kDoubt = 2.0;       // s after which who is who would have been told
+constexpr double kFreeze = 0.5;      // s after somebody else was close in which nothing is learnt of a look
+constexpr double kChanged = 0.3;     // looks as different now may be two people's,
+constexpr double kRelearn = 4.0;     // for so long: then they are one's who has changed
+constexpr int kLooks = 3;            // from which on a look is known
+constexpr double kHalfPixel = 0.5;   // boxes count from pixels' corners, transforms from their centres
 
 double square(double v) {
   return v * v;
@@ -97,6 +107,8 @@ bool Body::predict(double seconds) {
   age += seconds;
   ++frames;
   region = -1;
+  hidden = parted = false;
+  clear += seconds;
   return std::isfinite(x.position) && std::isfinite(y.position);
 }
 
@@ -216,14 +228,15 @@ bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
     stood = slow > 0 || stopped;
   }
   misfit += seconds;
-  if (cut) return true;
+  if (cut || parted) return true;
   if (whole) return misfit >= 0.2;
   if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6);
   const Point from = centre(misfit_from), to = centre(seen);
   return misfit >= 0.5 && (!stood || fitted < 0.5 || std::hypot(to.x - from.x, to.y - from.y) > 0.5 * size());
 }
 
-void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
+void Body::correct(const Region& r, bool alone, double seconds, Size frame,
+                   const std::optional<Point>& found) {
   const Box b = box(), &seen = r.box;
   const double s = size(), noise = square(kPositionNoise * s) + square(kGrain * frame.width);
   const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
@@ -234,9 +247,13 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
   leaving = (cut_x && seen.width < 0.7 * widest) || (cut_y && seen.height < 0.7 * tallest);
   if (!fits && alone && outgrown(seen, r.confidence >= kWhole, cut_x || cut_y, seconds)) {
     adopt(seen);
+  } else if (found) {
+    x.correct(found->x, square(kFoundNoise * s));
+    y.correct(found->y, square(kFoundNoise * s));
+    y.velocity *= std::exp(-seconds / kFoundBrake);
   } else {
-    x.correct(rx.distance, fits ? noise : 6 * noise);
-    y.correct(ry.distance, fits ? noise : 6 * noise);
+    x.correct(rx.distance, fits && !hidden ? noise : 6 * noise);
+    y.correct(ry.distance, fits && !hidden ? noise : 6 * noise);
     if (fits && alone) {
       resize(w, seen.width, cut_x, seconds);
       resize(h, seen.height, cut_y, seconds);
@@ -249,6 +266,11 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
       if (!ry.same_extent) y.velocity *= brake;
     }
   }
+  // Nobody is larger than a region that he shares.
+  if (!alone && !hidden) {
+    if (seen.width < width()) w.value = std::log(seen.width);
+    if (seen.height < height()) h.value = std::log(seen.height);
+  }
   if (!cut_x && !cut_y) walk = {x.velocity, y.velocity};
   widest = std::max(widest, width());
   tallest = std::max(tallest, height());
@@ -260,6 +282,40 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame) {
   travelled = std::max(travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s);
   slow = speed() < kStandSpeed * s ? slow + seconds : 0;
   if (id != 0) top_speed = std::max(top_speed, speed());
+}
+
+bool Body::well_known() const {
+  return looked >= kLooks;
+}
+
+bool Body::knows_recent() const {
+  return recently >= kRecent;
+}
+
+bool Body::doubted() const {
+  return clear < kDoubt || unlike(look, recent) > kChanged;
+}
+
+void Body::mix() {
+  clear = 0;
+  recently = 0;
+}
+
+void Body::remember(const Look& seen, double seconds, bool alone) {
+  if (looked > 0) unlikeness = std::max(0.0, unlike(look, seen));
+  if (!alone) {
+    mix();
+    return;
+  }
+  const auto learn = [&](Look& what, int& count, double time) {
+    if (++count == 1)
+      what = seen;
+    else
+      what.learn(seen, std::max(1.0 / count, 1 - std::exp(-seconds / time)));
+  };
+  learn(recent, recently, kRecentTime);
+  const bool frozen = clear < kFreeze || (clear < kRelearn && unlike(look, recent) > kChanged);
+  if (!well_known() || !frozen) learn(look, looked, kLookTime);
 }
 
 void Body::miss(double seconds) {

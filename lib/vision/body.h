@@ -8,9 +8,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 
 #include "vision/heading.h"
 #include "vision/kalman.h"
+#include "vision/look.h"
 #include "vision/regions.h"
 #include "vision/transform.h"
 
@@ -46,6 +48,15 @@ struct Body {
   Point walk;              // velocity, pixels a second, when last seen away from the picture's edges
   bool uncovered = false;  // first seen where the camera had just begun to look
   bool stood = false;      // it stood, or nearly, when the misfit began
+  bool parted = false;     // its box was that of two who have come apart
+  bool hidden = false;     // behind somebody else whose region this is
+  double lost = 0;         // s in regions of several without being found there
+  Look look;
+  double unlikeness = 0;  // of what was last seen of it and its look
+  int looked = 0;         // frames in which that was learnt
+  Look recent;            // since it was last close to anybody else
+  int recently = 0;       // frames in which that was learnt
+  double clear = 1e9;     // s since then
   int hits = 0, frames = 0;
   int region = -1;  // of this frame, -1 none
   bool stopped = false, dead = false;
@@ -84,8 +95,21 @@ struct Body {
   // How badly a region fits: 0 perfectly; negative: it cannot be this object.
   double distance(const Box& seen, Size frame) const;
 
-  // Seen in this region; `alone`: by no other track.
-  void correct(const Region& region, bool alone, double seconds, Size frame);
+  // Seen in this region; `alone`: by no other track. `found`: so far from its expected place what looks like it is, in a
+  // region of several.
+  void correct(const Region& region, bool alone, double seconds, Size frame,
+               const std::optional<Point>& found = {});
+  // Seen alone, in a region of its own extent, and so it looks. `clear`: nobody else stands in a part of the region, this is
+  // what it looks like.
+  void remember(const Look& seen, double seconds, bool clear);
+  // Its look is known well enough to tell it from others.
+  bool well_known() const;
+  // What it looks like now is known as well, and who it is in doubt: somebody else was close a moment ago, or it looks
+  // so different.
+  bool knows_recent() const;
+  bool doubted() const;
+  // Somebody else shares the region, or stands in a part of it.
+  void mix();
   // Not seen.
   void miss(double seconds);
 

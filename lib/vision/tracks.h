@@ -9,6 +9,7 @@
 #include <span>
 
 #include "vision/heading.h"
+#include "vision/look.h"
 #include "vision/regions.h"
 #include "vision/transform.h"
 
@@ -17,8 +18,9 @@ namespace cerberus::vision {
 enum class TrackState { seen, coasted, stopped };
 
 struct TrackOptions {
-  double confirm_time = 0.2;   // s of evidence before a track is published; 0: none, every region is one at once
-  double coast_time = 1.0;     // s a moving track is carried without evidence
+  double confirm_time =
+      0.2;                  // s of evidence before a track is published; 0: none, every region is one at once
+  double coast_time = 1.0;  // s a moving track is carried without evidence
   double hold_stopped = 30.0;  // s a confirmed track that stopped is held
   double away_time = 5.0;      // s a moving track is kept in mind while the camera looks elsewhere
   double minimum_speed = 0;    // frame pixels a second; what never was as fast is not published (0: no limit)
@@ -50,10 +52,13 @@ class Tracker {
   // (<= 0: unknown, taken as the last known distance). gaze: lens and where the head looks, if both are known. Returns
   // confirmed tracks, by id; lives until the next call.
   //
+  // sight: the analysed picture and what moves in it, if they are there. Then everybody's look is learnt where he is seen alone,
+  // and tells who is who where places do not: in a group and when it parts, behind somebody else, and after being away.
+  //
   // Who leaves the picture because the camera turns is kept by bearing and elevation, unpublished, and is the same when the
   // camera comes back; without it angles are summed up from the camera's motion.
   std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
-                                Size frame, const std::optional<Gaze>& gaze = {});
+                                Size frame, const std::optional<Gaze>& gaze = {}, const Sight& sight = {});
   std::size_t bytes() const;
 
  private:

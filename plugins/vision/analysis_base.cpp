@@ -46,7 +46,7 @@ struct AnalysisPrivate {
   Analyser* analyser = nullptr;
   GstVideoInfo info{};
   bool have_info = false;
-  bool planes_wanted = false;
+  bool planes_wanted = false, sight_wanted = false;
   std::atomic<bool> ask_for_planes = true;  // whether somebody downstream wants them; set by any thread
   History history;
   guint64 number = 0;  // analysed frames
@@ -65,6 +65,19 @@ AnalysisPrivate& priv_of(gpointer instance) {
 }
 
 GstBaseTransformClass* parent_class();
+
+// Among ourselves only: is there a motiontrack downstream? It answers, all others let the query pass.
+constexpr char kSightQuery[] = "cerberus-sight";
+
+bool is_sight_query(GstQuery* query) {
+  return GST_QUERY_TYPE(query) == GST_QUERY_CUSTOM &&
+         gst_structure_has_name(gst_query_get_structure(query), kSightQuery);
+}
+
+bool peer_reads_sight(GstPad* pad) {
+  g_autoptr(GstQuery) query = gst_query_new_custom(GST_QUERY_CUSTOM, gst_structure_new_empty(kSightQuery));
+  return gst_pad_peer_query(pad, query);
+}
 
 // What the pose on the buffer says of the camera's tilt, radians.
 std::optional<double> read_tilt(const Frame& frame) {
@@ -141,6 +154,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
   frame.planes_wanted = priv.planes_wanted;
+  frame.sight_wanted = priv.sight_wanted;
   frame.tilt = read_tilt(frame);
   if (!frame.fresh) {
     frame.seconds = step.seconds;
@@ -170,8 +184,10 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     // A buffer that says itself that it is a placeholder: nothing to see, and no scene ends with it.
     if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
     // Asked with the first frame after caps or RECONFIGURE: by then everybody downstream knows the caps.
-    if (priv.ask_for_planes.exchange(false))
+    if (priv.ask_for_planes.exchange(false)) {
       priv.planes_wanted = cerberus_pad_peer_wants_planes(GST_BASE_TRANSFORM_SRC_PAD(trans));
+      priv.sight_wanted = peer_reads_sight(GST_BASE_TRANSFORM_SRC_PAD(trans));
+    }
     check_settings(trans, priv);
     const History history = priv.history;
     const CameraFollower camera = priv.camera;
@@ -248,6 +264,12 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
   });
 }
 
+gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* query) {
+  if (direction == GST_PAD_SINK && is_sight_query(query) && priv_of(trans).analyser->reads_sight())
+    return TRUE;
+  return parent_class()->query(trans, direction, query);
+}
+
 gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
   // Sent, among others, when somebody is linked downstream.
   if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask_for_planes = true;
@@ -308,6 +330,7 @@ void class_init(CerberusAnalysisClass* klass) {
   trans->start = start;
   trans->stop = stop;
   trans->set_caps = set_caps;
+  trans->query = query;
   trans->sink_event = sink_event;
   trans->src_event = src_event;
   trans->transform_ip = transform_ip;

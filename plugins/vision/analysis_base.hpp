@@ -33,6 +33,8 @@ class Analyser {
   virtual void end_of_stream() {}
   // An event on its way upstream, which goes on whatever is done here. From any thread.
   virtual void upstream_event(GstEvent*) {}
+  // True for the one element that looks at the people: see Frame::sight_wanted.
+  virtual bool reads_sight() const { return false; }
   // True for the one element that measures the camera itself.
   virtual bool measures_camera() const { return false; }
 };

@@ -9,7 +9,8 @@
  * Limits of size that contradict each other or the frame, and zones that leave no part of the picture, are warned of.
  *
  * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
- * element downstream (motionview) asks for them; see `keep-planes`.
+ * element downstream (motionview) asks for them; see `keep-planes`. Where `motiontrack` follows, the small picture and the mask stay on
+ * as far as there, whatever `keep-planes` says.
  *
  * ## Example
  * |[
@@ -154,7 +155,7 @@ bool Private::analyse(Frame& frame) {
   state->luma().set_analysis_width(cerberus_analysis_width(base));
   const bool keep_planes = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);
   const bool found = state->run(frame, keep_planes);
-  if (!keep_planes) cerberus_buffer_remove_plane_metas(frame.buffer);
+  if (!keep_planes) leave_sight(frame);
   if (found) nothing.tell(GST_ELEMENT(base), why_nothing(frame.size()));
   return found;
 }

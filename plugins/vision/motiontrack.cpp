@@ -6,7 +6,8 @@
  * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
  * replaced by the tracked ones; the frame goes through untouched. Who leaves the picture because the camera turns keeps the
  * identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames where `horizontal-fov` is
- * known, else from the camera's own motion. Without `motionregions` upstream the regions are found
+ * known, else from the camera's own motion. People who meet are told apart by how bright coat and legs are, where the planes
+ * of the stages reach this element (nothing converts or scales the picture between `motionregions` and it). Without `motionregions` upstream the regions are found
  * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
  * camera's axis, wherever the head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of
  * a head's pose on the frame. Limits of speed that contradict each other and a `confirm-time` above an hour are warned of.
@@ -147,8 +148,10 @@ struct Private final : StatefulAnalyser<Settings, State> {
     announce(state->presence.end(), last ? static_cast<GstClockTime>(last->count()) : GST_CLOCK_TIME_NONE);
   }
   bool analyse(Frame& frame) override;
+  bool reads_sight() const override { return true; }
 
  private:
+  void track(const Frame& frame);
   void apply(const Settings& s);
   void read_regions(GstBuffer* buffer);
   void publish(const Frame& frame, const vision::Lens& lens, std::span<const vision::Track> tracks);
@@ -196,21 +199,31 @@ bool Private::analyse(Frame& frame) {
   if (!regions_known(frame.buffer)) {
     state->regions.luma().set_analysis_width(cerberus_analysis_width(base));
     const bool found = state->regions.run(frame, frame.planes_wanted);
-    if (!frame.planes_wanted) cerberus_buffer_remove_plane_metas(frame.buffer);
-    if (!found) return false;
+    if (!found) {
+      drop_sight(frame.buffer);
+      return false;
+    }
   }
   read_regions(frame.buffer);
   if (frame.fresh) state->tracker.reset();
-  const vision::Lens lens(radians(state->settings.horizontal_fov), frame.size());
-  publish(frame, lens,
-          state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size(),
-                                gaze(frame, lens)));
+  track(frame);
+  drop_sight(frame.buffer);
   const bool present = !state->published.empty();
   if (present) state->last = state->published;
   announce(state->presence.update(present, known(frame.running_time), nanoseconds(clock_time(frame.seconds)),
                                   nanoseconds(state->settings.hold_time)),
            frame.running_time);
   return true;
+}
+
+void Private::track(const Frame& frame) {
+  const MappedPlane luma = MappedPlane::read(frame.buffer, CERBERUS_PLANE_LUMA);
+  const MappedPlane mask = MappedPlane::read(frame.buffer, CERBERUS_PLANE_MASK);
+  const vision::Sight sight{luma.view<std::uint8_t>(), mask.view<std::uint8_t>()};
+  const vision::Lens lens(radians(state->settings.horizontal_fov), frame.size());
+  publish(frame, lens,
+          state->tracker.update(state->found, frame.motion.transform, frame.seconds, frame.size(),
+                                gaze(frame, lens), sight));
 }
 
 static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&

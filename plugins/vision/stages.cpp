@@ -176,6 +176,22 @@ bool RegionStage::run(Frame& frame, bool want_labels) {
   return true;
 }
 
+void leave_sight(const Frame& frame) {
+  const auto left = [&](CerberusPlaneKind kind) {
+    return frame.sight_wanted && (kind == CERBERUS_PLANE_LUMA || kind == CERBERUS_PLANE_MASK);
+  };
+  for (int kind = CERBERUS_PLANE_LUMA; kind <= CERBERUS_PLANE_LABELS; ++kind) {
+    const auto k = static_cast<CerberusPlaneKind>(kind);
+    CerberusPlaneMeta* meta = left(k) ? nullptr : cerberus_buffer_get_plane_meta(frame.buffer, k);
+    if (meta) gst_buffer_remove_meta(frame.buffer, reinterpret_cast<GstMeta*>(meta));
+  }
+}
+
+void drop_sight(GstBuffer* buffer) {
+  if (!cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_LABELS))
+    cerberus_buffer_remove_plane_metas(buffer);
+}
+
 namespace {
 
 constexpr char kRegionsKnown[] = "CerberusRegionsKnown";

@@ -111,6 +111,12 @@ class RegionStage {
   PlanePool mask_pool_, label_pool_;
 };
 
+// What motiontrack wants to see of a frame, the planes LUMA and MASK, may stay on it though nobody else asks for planes:
+// leave_sight() takes off all the others (all of them where there is no motiontrack), drop_sight() what it left. Planes that
+// stay for everybody are told by the LABELS among them.
+void leave_sight(const Frame& frame);
+void drop_sight(GstBuffer* buffer);
+
 // "Nothing was found" and "nobody has looked" are told apart by a mark on the buffer.
 bool regions_known(GstBuffer* buffer);
 void mark_regions_known(GstBuffer* buffer);

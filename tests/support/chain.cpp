@@ -18,7 +18,8 @@ void Chain::begin(const LumaSource& frame, double seconds) {
   luma_.resize(size);
   current_.resize(size);
   previous_.resize(size);
-  if (mask_.resize(size)) scaled_.reserve(static_cast<std::size_t>(size.area() / 256) + 256);  // more than there are
+  if (mask_.resize(size))
+    scaled_.reserve(static_cast<std::size_t>(size.area() / 256) + 256);  // more than there are
 }
 
 void Chain::run_stage(std::size_t stage) {
@@ -60,8 +61,8 @@ void Chain::run_stage(std::size_t stage) {
       break;
     }
     case 5:
-      tracks_ =
-          tracker_.update(scaled_, motion_result_.transform.rescaled(luma_.size(), frame), seconds_, frame);
+      tracks_ = tracker_.update(scaled_, motion_result_.transform.rescaled(luma_.size(), frame), seconds_,
+                                frame, {}, {luma_.view(), mask_.view()});
       break;
   }
 }

@@ -608,6 +608,27 @@ START_TEST(the_same_regions_give_the_same_tracks) {
 }
 END_TEST
 
+// They were one blob at first, so their common box holds both later regions. Nobody knows how tall people are.
+START_TEST(two_who_come_out_of_one_blob_side_by_side_are_two) {
+  for (const double gap : {15.0, 25.0, 45.0}) {
+    Tracker tracker;
+    for (int k = 0; k < 30; ++k) {
+      const double x = 100 + 5 * k;
+      std::vector<Region> seen{person(x, 240, 0.4), person(x + 40 + gap, 242, 0.4)};
+      if (k < 6) seen = {person(x + 20 + gap / 2, 241, 0.4, 80 + gap)};
+      const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
+      if (k >= 7) ck_assert_double_eq_tol(tracks[0].box.width, 40, 10);  // the box shrinks at once
+      if (k < 12) continue;
+      ck_assert_uint_eq(tracks.size(), 2);
+      const bool first = centre(tracks[0]).x < centre(tracks[1]).x;
+      ck_assert_double_eq_tol(centre(tracks[first ? 0 : 1]).x, x, 8);
+      ck_assert_double_eq_tol(centre(tracks[first ? 1 : 0]).x, x + 40 + gap, 8);
+      for (const Track& t : tracks) ck_assert_double_eq_tol(t.box.width, 40, 10);
+    }
+  }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite("tracks",
                                     {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
@@ -640,5 +661,6 @@ int main() {
                                      who_is_away_too_long_is_forgotten,
                                      who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
                                      what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far,
-                                     the_same_regions_give_the_same_tracks});
+                                     the_same_regions_give_the_same_tracks,
+                                     two_who_come_out_of_one_blob_side_by_side_are_two});
 }

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/sightings.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::vision {
+namespace {
+
+// Pixels that are looked at: of a region, and of each of the places in a group.
+constexpr int kSamples = 500, kRoughSamples = 120;
+constexpr double kFamiliar =
+    0.35;                       // what looks as much unlike somebody, and is as far from his place, is not he
+constexpr double kReach = 0.5;  // S: as far to the side somebody is looked for;
+constexpr double kReachUp = 0.05;  // up and down a look tells little: coats and legs are of one colour each
+constexpr double kFar = 0.05;      // what the farthest place costs
+
+}  // namespace
+
+Look Sightings::look_at(const Box& box, int samples) const {
+  const double sx = static_cast<double>(sight_.luma.width) / frame_.width;
+  const double sy = static_cast<double>(sight_.luma.height) / frame_.height;
+  return vision::look_at(sight_, level_, {box.x * sx, box.y * sy, box.width * sx, box.height * sy}, samples);
+}
+
+void Sightings::update(const Sight& sight, std::span<const Region> regions, const Transform& motion,
+                       Size frame) {
+  sight_ = sight;
+  frame_ = frame;
+  looks_.assign(regions.size(), {});
+  if (!sight_.known() || frame.area() <= 0) return;
+  level_.update(sight_.luma, motion.rescaled(frame, sight_.luma.size()));
+  for (std::size_t j = 0; j < regions.size(); ++j) looks_[j] = look_at(regions[j].box, kSamples);
+}
+
+std::optional<Point> Sightings::find(const Body& body, const Box& region) const {
+  if (!sight_.known() || !body.well_known()) return std::nullopt;
+  const Box box = body.box();
+  const double s = body.size(), reach_up = kReachUp * s;
+  const double reach = std::min(kReach * s, 2 * std::sqrt(body.x.pp) + 0.1 * s);
+  const double step = std::max(box.width / 6, 1.0), step_up = std::max(reach_up, 1.0);
+  const int columns = static_cast<int>(reach / step), rows = static_cast<int>(reach_up / step_up);
+  std::optional<Point> found;
+  double least = kFamiliar;
+  for (int j = -rows; j <= rows; ++j)
+    for (int i = -columns; i <= columns; ++i) {
+      const Box there{box.x + i * step, box.y + j * step_up, box.width, box.height};
+      if (overlap_area(there, region) < 0.8 * there.area()) continue;
+      const double difference = unlike(body.look, look_at(there, kRoughSamples));
+      if (difference < 0) continue;
+      const double x = i * step / reach, y = j * step_up / reach_up;
+      const double cost = difference + kFar * (x * x + 2 * y * y);
+      if (cost >= least) continue;
+      least = cost;
+      found = Point{i * step, j * step_up};
+    }
+  return found;
+}
+
+}  // namespace cerberus::vision

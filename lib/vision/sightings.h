@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the regions of a frame look like, and where in a region of several somebody who is known by his look stands.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "vision/body.h"
+#include "vision/look.h"
+
+namespace cerberus::vision {
+
+class Sightings {
+ public:
+  void reserve(std::size_t regions) { looks_.reserve(regions); }
+  void reset() { level_.reset(); }
+  // A frame. regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. sight lives until the next call. Without
+  // it nobody looks like anything.
+  void update(const Sight& sight, std::span<const Region> regions, const Transform& motion, Size frame);
+  const Look& of(std::size_t region) const { return looks_[region]; }
+  // How far, in frame pixels, from where the body is expected what looks like it is in the region. Nothing: nothing does.
+  std::optional<Point> find(const Body& body, const Box& region) const;
+  std::size_t bytes() const { return looks_.capacity() * sizeof(Look); }
+
+ private:
+  Look look_at(const Box& box, int samples) const;
+
+  Sight sight_;
+  BrightnessLevel level_;
+  std::vector<Look> looks_;  // of each region
+  Size frame_;
+};
+
+}  // namespace cerberus::vision
