@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <string>
 #include <tuple>
@@ -157,12 +158,17 @@ struct Lamp {
   double flicker, bands;  // share of the light
   bool steps;             // of exposure, 0.7 to 1.4, each of which may cost three frames
   bool promised;
+  bool returns = false;  // with every third frame, as 100 Hz before 30 frames a second
+  double settles = 1;    // frames in which most of a step is made
 };
 constexpr Lamp kLamps[] = {{"noise alone", 0, 0, false, true},
                            {"5 % flicker", 0.05, 0, false, true},
                            {"5 % bands", 0, 0.05, false, true},
-                           {"steps of exposure", 0, 0, true, false},
-                           {"3 % flicker, 3 % bands, steps", 0.03, 0.03, true, false},
+                           {"steps of exposure", 0, 0, true, true},
+                           {"3 % flicker, 3 % bands, steps", 0.03, 0.03, true, true},
+                           {"5 % bands that return, steps", 0, 0.05, true, true, true},
+                           {"3 % bands that return, steps", 0, 0.03, true, true, true},
+                           {"steps that settle", 0, 0, true, true, false, 5},
                            {"8 % flicker, 8 % bands", 0.08, 0.08, false, false}};
 
 // The first frame of each, 320 x 240 from its middle; none where one is missing.
@@ -197,11 +203,13 @@ void watch(const Place& place, const Lamp& lamp, Dark& dark) {
   tests::Noise noise;
   tests::Chain chain;
   vision::Image<std::uint8_t> frame(picture.size());
-  tests::Light light{.global = lamp.flicker, .bands = lamp.bands, .period = 140};
+  tests::Light light{.global = lamp.flicker, .bands = lamp.bands, .period = lamp.returns ? 100.0 : 140.0};
+  double exposure = 1;
   for (int k = 0, since = 100; k < 1000; ++k, ++since) {
     static constexpr double kSteps[] = {1, 0.7, 1.25, 0.8, 1.4, 1, 1.25};
-    if (lamp.steps && k % 100 == 50) light.exposure = kSteps[(k / 100 + 1) % 7], since = 0;
-    light.phase = 0.17 * k;
+    if (lamp.steps && k % 100 == 50) exposure = kSteps[(k / 100 + 1) % 7], since = 0;
+    light.exposure += (exposure - light.exposure) / lamp.settles;
+    light.phase = (lamp.returns ? 2 * std::numbers::pi / 3 / 1.7 : 0.17) * k;
     tests::expose(scene.data(), picture.width, light, noise, frame.view());
     const GrayView seen = frame.view();
     chain.step({seen.data, seen.width, seen.height, seen.stride}, kFrame);
