@@ -11,6 +11,7 @@
 #include "vision/labelling.h"
 #include "vision/mask.h"
 #include "vision/morphology.h"
+#include "vision/newcomers.h"
 #include "vision/people.h"
 #include "vision/room.h"
 
@@ -60,6 +61,7 @@ struct RegionFinder::State {
   Labeller labeller;
   HeightPrior prior;
   PeopleFinder people;
+  Newcomers newcomers;
   struct Walker {      // a blob that looks like one person
     Point foot, from;  // now, and where it was first seen, in today's pixels
     double height;
@@ -91,6 +93,7 @@ void RegionFinder::State::make_room(Size picture) {
   for (BitMask* bits : {&moving, &closed}) bits->resize(bit_mask_size(size));
   labeller.make_room(size);
   people.make_room(size);
+  newcomers.make_room();
   const std::size_t parts = labeller.limits().components;
   vision::make_room(walkers, kMostParts);
   vision::make_room(walkers_before, kMostParts);
@@ -284,15 +287,16 @@ void RegionFinder::reset() {
   state_->prior.reset();
   state_->walkers.clear();
   state_->regions.clear();
+  state_->newcomers.reset();
   state_->seen = 0;
 }
 
 std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
-         s.people.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) + bytes_of(s.blocks) +
-         bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.bodies) + bytes_of(s.columns) +
-         bytes_of(s.regions);
+         s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
+         bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.bodies) +
+         bytes_of(s.columns) + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -317,12 +321,13 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   s.trim();
   if (!s.options.people || parts.size() > kMostParts) {
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
-    return s.regions;
+  } else {
+    s.learn(motion);
+    s.group_components();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
   }
-  s.learn(motion);
-  s.group_components();
-  for (std::size_t i = 0; i < parts.size(); ++i)
-    if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
+  if (s.options.people) s.newcomers.hold_back(s.regions, s.seen, s.options.minimum_area, motion, s.size);
   return s.regions;
 }
 

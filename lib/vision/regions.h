@@ -22,8 +22,9 @@ double overlap_area(const Box& a, const Box& b);
 double intersection_over_union(const Box& a, const Box& b);
 
 struct RegionOptions {
-  int closing = 9;          // side of the closing, analysis pixels at 320 wide; scaled with the picture
-  bool people = true;       // merge and split by the learnt height of a person; off: plain components, to the pixel
+  int closing = 9;  // side of the closing, analysis pixels at 320 wide; scaled with the picture
+  bool people =
+      true;  // merge and split by the learnt height of a person; off: plain components, to the pixel
   double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
 };
 
@@ -49,7 +50,8 @@ class RegionFinder {
   // Forget what was learnt of the scene (heights); a cut does that.
   void reset();
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
-  // may be empty where nobody wants them. motion: frame k-1 to k, so that what was learnt moves with the camera. The
+  // may be empty where nobody wants them. What is small in a young scene is no region before it was seen twice, see
+  // Newcomers. motion: frame k-1 to k, so that what was learnt moves with the camera. The
   // span lives until the next call. Memory is bounded, and taken at the first picture of a size; what is beyond it is
   // clutter, see Labeller.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double kMovingShare = 0.1;  // of a part that must have moved lately
 constexpr double kFreshShare = 0.05;  // of a doubtful part that must move now
+constexpr double kEmptyShare = 0.2;   // and of one whose owner may be out of the picture
 constexpr int kLeastMoved = 4;        // pixels
 // Shares of the taller part's height.
 constexpr double kGap = 0.2;       // between neighbours that are one
@@ -74,15 +75,20 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
     // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
     const bool moving =
         part.lately >= std::max<double>(kLeastMoved, std::min<double>(kMovingShare * area, part.outline));
-    const bool fresh = part.now >= std::max<double>(kLeastMoved, kFreshShare * area);
+    // At the picture's edge the motion of a place that somebody has just left is his last.
+    const Component& c = components[r.component];
+    const bool was_here = part.memory > 2 * part.frame + 4 * part.outline && part.young > area / 2;
+    const bool at_edge = c.left == 0 || c.top == 0 || c.right == w || c.bottom == f.height;
+    const double least =
+        was_here && at_edge ? std::min<double>(kEmptyShare * area, part.outline) : kFreshShare * area;
+    const bool fresh = part.now >= std::max<double>(kLeastMoved, least);
     // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
     // textured: like a ghost it needs its owner's motion, or it goes at once. Who walked in a second after the start and
     // stopped has the outline of an object.
     const bool young = planes.still && (part.newest > area / 2 || (part.young > area / 2 && !object));
     const bool doubtful = ghost || young;
     // Where the camera turns, a place that was left is soon far from its owner, and no join() will bring them together.
-    const bool left =
-        planes.followed && part.memory > 2 * part.frame + 4 * part.outline && part.young > area / 2;
+    const bool left = planes.followed && was_here;
     if (moving && (fresh || !doubtful) && !left) {
       young_objects = young_objects || part.young > area / 2;
       continue;
@@ -119,7 +125,8 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
       const bool level = -down > kLevel * std::min(a.height(), b.height());
       const bool narrow_a = a.width() < kNarrow * a.height(), narrow_b = b.width() < kNarrow * b.height();
       const double reach = narrow_a && narrow_b ? kFrontGap : narrow_a || narrow_b ? kPieceGap : kGap;
-      if (level && across > 0 && across < reach * tall) {
+      const bool two = a.area >= kPiece * b.area || narrow_a || narrow_b;
+      if (level && across > 0 && across < reach * tall && two && !parts_[i].piece) {
         for (int y = std::max(a.top, b.top); y < std::min(a.bottom, b.bottom); ++y)
           set_bits(mask.row(y), std::min(a.right, b.right), std::max(a.left, b.left));
         parts_[i].whole = parts_[j].whole = true;

@@ -25,8 +25,9 @@ constexpr double kLargestBack = 2;  // how much larger than when it left may be 
 // What a track without region costs, and the most that a pair does. Who has a region that fits keeps it when somebody
 // else has none: without it, two would rather share two regions that fit neither.
 constexpr double kWorst = 1.99, kUnmatched = 2;
-constexpr double kShared = 1;    // what it costs to live on in a blob of several
-constexpr double kCrossing = 3;  // s that two who came different ways may be in one place
+constexpr double kShared = 1;       // what it costs to live on in a blob of several
+constexpr double kProvenTimes = 3;  // times confirm_time that a track was seen before it is published unseen
+constexpr double kCrossing = 3;     // s that two who came different ways may be in one place
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
 
@@ -451,6 +452,11 @@ void Tracker::State::publish() {
     const Box box = b.box();
     if (b.region < 0 && !b.stopped && std::sqrt(b.x.pp) > 0.4 * box.width)
       continue;  // where it is, nobody knows
+    // Who is not seen at the picture's edge has left, as far as anybody knows; and what has hardly been seen may have been
+    // nobody.
+    if (b.region < 0 && !b.stopped &&
+        (b.at_border(frame) || b.age - b.unseen < kProvenTimes * options.confirm_time))
+      continue;
     const double x0 = std::clamp(box.x, 0.0, static_cast<double>(frame.width));
     const double y0 = std::clamp(box.y, 0.0, static_cast<double>(frame.height));
     const double x1 = std::clamp(box.right(), 0.0, static_cast<double>(frame.width));

@@ -231,6 +231,34 @@ START_TEST(a_piece_near_a_big_part_is_dropped_where_the_memory_is_young) {
 }
 END_TEST
 
+// Joined to somebody beside it, it would be a strip of the scene between the corners of two boxes.
+START_TEST(a_piece_beside_a_big_part_is_dropped_not_joined) {
+  constexpr Rect kPiece{140, 140, 12, 20}, kTiny{140, 100, 7, 7};  // 10 away: less than a fifth of the height
+  for (const Rect& piece : {kPiece, kTiny}) {
+    Scene s(10);
+    s.differs(kPerson, 1);
+    s.differs(piece, 1);
+    s.join();
+    ck_assert_int_eq(count(s.mask, {0, 0, 320, 240}), all(kPerson));
+  }
+}
+END_TEST
+
+START_TEST(a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion) {
+  // A fifteenth of it moves: his last, where he may be out of the picture.
+  constexpr Rect kAtEdge{0, 80, 10, 30}, kMoves{0, 80, 10, 2}, kInside{9, 80, 10, 30},
+      kMovesInside{9, 80, 10, 2};
+  for (const auto& [place, moves] : {std::pair{kAtEdge, kMoves}, {kInside, kMovesInside}}) {
+    Scene s(10);
+    Scene::paint(s.memory, place, 200);
+    s.differs(place, 20);
+    Scene::paint(s.quiet, moves, 0);
+    s.judge();
+    ck_assert_int_eq(count(s.mask, place), place.x == 0 ? 0 : all(place));
+  }
+}
+END_TEST
+
 START_TEST(two_people_stay_two) {
   // 20 away: more than a fifth of their height. The child has 0.42 of the other's area: more than a piece.
   constexpr Rect kOther{150, 80, 30, 80}, kChild{150, 110, 20, 50};
@@ -264,6 +292,8 @@ int main() {
        before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
        two_fronts_are_one_where_the_memory_is_young, a_front_belongs_to_what_is_near,
        fronts_far_apart_or_of_other_heights_are_two,
-       a_piece_near_a_big_part_is_dropped_where_the_memory_is_young, two_people_stay_two,
+       a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
+       a_piece_beside_a_big_part_is_dropped_not_joined,
+       a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion, two_people_stay_two,
        a_tiny_part_says_nothing_while_the_memory_is_young});
 }

@@ -214,6 +214,38 @@ START_TEST(who_leaves_the_picture_is_gone_within_half_a_second) {
 }
 END_TEST
 
+// He may be behind the edge, and nobody else is where he was; in the middle of the picture he is hidden.
+START_TEST(who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_seen_again) {
+  for (const bool edge : {true, false}) {
+    Tracker tracker;
+    std::uint32_t id = 0;
+    for (int k = 0; k < 24; ++k) {
+      const double x = (edge ? 520 : 240) + 5 * k;
+      Region seen = person(x, 240);
+      seen.box.width = std::min(seen.box.right(), 640.0) - seen.box.x;
+      const bool visible = k < 20 || k > 21;
+      const auto tracks = tracker.update({&seen, visible ? 1u : 0u}, {}, 0.1, kFrame);
+      if (k == 19) id = tracks.front().id;
+      if (k >= 10) ck_assert_uint_eq(tracks.size(), edge && !visible ? 0 : 1);
+      if (k >= 22) ck_assert_uint_eq(tracks.front().id, id);
+    }
+  }
+}
+END_TEST
+
+START_TEST(who_was_seen_for_a_moment_only_is_not_carried_on) {
+  for (const int looks : {4, 10}) {
+    Tracker tracker;
+    for (int k = 0; k <= looks; ++k) {
+      const Region seen = person(100 + 5 * k, 240);
+      const auto tracks = tracker.update({&seen, k < looks ? 1u : 0u}, {}, 0.1, kFrame);
+      if (k == looks - 1) ck_assert_uint_eq(tracks.size(), 1);
+      if (k == looks) ck_assert_uint_eq(tracks.size(), looks < 7 ? 0 : 1);
+    }
+  }
+}
+END_TEST
+
 START_TEST(two_who_meet_in_one_blob_come_out_with_the_identities_they_had) {
   Tracker tracker;
   std::uint32_t left_id = 0, right_id = 0;
@@ -630,37 +662,39 @@ START_TEST(two_who_come_out_of_one_blob_side_by_side_are_two) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("tracks",
-                                    {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
-                                     the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
-                                     blobs_that_flash_up_here_and_there_are_never_published,
-                                     what_never_moves_is_never_published,
-                                     a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change,
-                                     a_zoom_scales_box_and_speed_of_a_track_without_evidence,
-                                     a_flickering_object_is_coasted_over_its_gaps,
-                                     who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go,
-                                     who_stood_and_walks_on_is_the_same_person,
-                                     a_standing_person_s_moving_arm_does_not_make_the_person_small,
-                                     who_leaves_the_picture_is_gone_within_half_a_second,
-                                     two_who_meet_in_one_blob_come_out_with_the_identities_they_had,
-                                     three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three,
-                                     a_sliver_beside_somebody_unseen_is_not_the_person,
-                                     legs_tell_less_of_where_somebody_is_than_the_whole_person,
-                                     a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people,
-                                     who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it,
-                                     a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost,
-                                     pieces_of_one_object_are_not_counted_apart_for_long,
-                                     an_unknown_time_is_taken_as_the_last_known_one,
-                                     impossible_regions_and_transforms_do_no_harm,
-                                     boxes_are_clamped_to_the_frame_and_identities_never_come_again,
-                                     limits_of_speed_keep_the_slow_unpublished_and_the_too_fast_apart,
-                                     the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
-                                     who_is_left_by_the_camera_is_the_same_when_it_comes_back,
-                                     a_head_that_turned_its_back_finds_the_same_person_again,
-                                     somebody_else_in_another_place_is_somebody_else,
-                                     who_is_away_too_long_is_forgotten,
-                                     who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
-                                     what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far,
-                                     the_same_regions_give_the_same_tracks,
-                                     two_who_come_out_of_one_blob_side_by_side_are_two});
+  return cerberus::tests::run_suite(
+      "tracks", {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
+                 the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
+                 blobs_that_flash_up_here_and_there_are_never_published,
+                 what_never_moves_is_never_published,
+                 a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change,
+                 a_zoom_scales_box_and_speed_of_a_track_without_evidence,
+                 a_flickering_object_is_coasted_over_its_gaps,
+                 who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go,
+                 who_stood_and_walks_on_is_the_same_person,
+                 a_standing_person_s_moving_arm_does_not_make_the_person_small,
+                 who_leaves_the_picture_is_gone_within_half_a_second,
+                 who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_seen_again,
+                 who_was_seen_for_a_moment_only_is_not_carried_on,
+                 two_who_meet_in_one_blob_come_out_with_the_identities_they_had,
+                 three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three,
+                 a_sliver_beside_somebody_unseen_is_not_the_person,
+                 legs_tell_less_of_where_somebody_is_than_the_whole_person,
+                 a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people,
+                 who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it,
+                 a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost,
+                 pieces_of_one_object_are_not_counted_apart_for_long,
+                 an_unknown_time_is_taken_as_the_last_known_one,
+                 impossible_regions_and_transforms_do_no_harm,
+                 boxes_are_clamped_to_the_frame_and_identities_never_come_again,
+                 limits_of_speed_keep_the_slow_unpublished_and_the_too_fast_apart,
+                 the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
+                 who_is_left_by_the_camera_is_the_same_when_it_comes_back,
+                 a_head_that_turned_its_back_finds_the_same_person_again,
+                 somebody_else_in_another_place_is_somebody_else,
+                 who_is_away_too_long_is_forgotten,
+                 who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
+                 what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far,
+                 the_same_regions_give_the_same_tracks,
+                 two_who_come_out_of_one_blob_side_by_side_are_two});
 }
