@@ -11,7 +11,7 @@ namespace {
 constexpr double kApart = 0.3;      // S: how far two must have come apart to be two
 constexpr double kStranger = 0.25;  // as different as that, two well-known looks are two people's: see Look
 constexpr double kGain = 0.2;       // by so much less unlike two must be with each other's identities
-constexpr double kClose = 2.0;      // S: as near two may have been mixed up a moment ago,
+constexpr double kClose = 0.6;      // S: as near two are who may have been mixed up just now: they touch,
 constexpr double kParted = 1.5;     // S/s: and so much farther apart they may be with every second since
 constexpr double kLongest = 3;      // s of that
 

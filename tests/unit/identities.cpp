@@ -93,9 +93,9 @@ START_TEST(two_frames_tell_nothing_yet) {
 }
 END_TEST
 
-// After 0.3 s apart: 2 S and 0.45 S.
+// After 0.3 s apart: 0.6 S and 0.45 S.
 START_TEST(who_is_too_far_away_was_not_mixed_up_with_anybody) {
-  auto near = swapped(240), far = swapped(250);
+  auto near = swapped(100), far = swapped(110);
   settle_identities(near);
   settle_identities(far);
   ck_assert(exchanged(near));
