@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cerberus/fusion.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "private/meta.hpp"
@@ -75,6 +76,9 @@ bool read_structure(const GstStructure* s, GstClockTime& time, CerberusFusion& f
       !gst_structure_get_boolean(s, "limited", &fusion.limited) ||
       !gst_structure_get_boolean(s, "camera-found", &fusion.camera_found) ||
       !gst_structure_get_uint(s, "doubtful", &fusion.doubtful))
+    return false;
+  // A number that is no action moves nobody.
+  if (std::ranges::none_of(kActions, [&](const GEnumValue& a) { return a.value_name && a.value == action; }))
     return false;
   fusion.n_sensors = gst_value_array_get_size(sensors);
   if (fusion.n_sensors > CERBERUS_PIR_MAX_SENSORS) return false;

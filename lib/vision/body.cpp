@@ -301,9 +301,9 @@ void Body::mix() {
   recently = 0;
 }
 
-void Body::remember(const Look& seen, double seconds, bool alone) {
+void Body::remember(const Look& seen, double seconds, bool nobody_near) {
   if (looked > 0) unlikeness = std::max(0.0, unlike(look, seen));
-  if (!alone) {
+  if (!nobody_near) {
     mix();
     return;
   }

@@ -99,9 +99,9 @@ struct Body {
   // region of several.
   void correct(const Region& region, bool alone, double seconds, Size frame,
                const std::optional<Point>& found = {});
-  // Seen alone, in a region of its own extent, and so it looks. `clear`: nobody else stands in a part of the region, this is
+  // Seen alone, in a region of its own extent, and so it looks. `nobody_near`: nobody else stands in a part of the region, this is
   // what it looks like.
-  void remember(const Look& seen, double seconds, bool clear);
+  void remember(const Look& seen, double seconds, bool nobody_near);
   // Its look is known well enough to tell it from others.
   bool well_known() const;
   // What it looks like now is known as well, and who it is in doubt: somebody else was close a moment ago, or it looks

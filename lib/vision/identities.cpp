@@ -13,12 +13,12 @@ constexpr double kStranger = 0.25;  // as different as that, two well-known look
 constexpr double kGain = 0.2;       // by so much less unlike two must be with each other's identities
 constexpr double kClose = 0.6;      // S: as near two are who may have been mixed up just now: they touch,
 constexpr double kParted = 1.5;     // S/s: and so much farther apart they may be with every second since
-constexpr double kLongest = 3;      // s of that
+constexpr double kLongest = 4;      // s since somebody was close, after which nobody was mixed up
 
 bool may_be_each_other(const Body& a, const Body& b) {
-  const double since = std::min(std::min(a.clear, b.clear) + std::max(a.unseen, b.unseen), kLongest);
-  return std::hypot(a.x.position - b.x.position, a.y.position - b.y.position) <
-         std::max(a.size(), b.size()) * (kClose + kParted * since);
+  const double since = std::min(a.clear, b.clear) + std::max(a.unseen, b.unseen);
+  return since < kLongest && std::hypot(a.x.position - b.x.position, a.y.position - b.y.position) <
+                                 std::max(a.size(), b.size()) * (kClose + kParted * since);
 }
 
 // Where each is and how large stays with the body; who it is, and what is known of him, changes place.
@@ -30,6 +30,10 @@ void exchange(Body& a, Body& b) {
   std::swap(a.top_speed, b.top_speed);
   std::swap(a.origin, b.origin);
   std::swap(a.travelled, b.travelled);
+  for (Body* p : {&a, &b}) {
+    p->unlikeness = p->knows_recent() ? std::max(0.0, unlike(p->look, p->recent)) : 0;
+    p->age = std::max(p->age, p->unseen);
+  }
 }
 
 // How much less unlike themselves both are with each other's identities. Of somebody who is not seen alone nothing is said.

@@ -12,6 +12,8 @@ constexpr double kLowest = 3, kHighest = 8.05;  // log2 of 0 and of 255 with it
 constexpr int kShares = 16;
 constexpr int kBlack = 12, kWhite = 243;  // beyond them a picture does not tell how bright it is
 constexpr int kLeastPairs = 24;
+// Of the level, by each frame: small errors of a minute ago do not add up for ever, and looks live for seconds.
+constexpr double kKeep = 1 - 1.0 / 2000;
 constexpr double kLeastFilled = 0.08;  // of a band's samples: fewer are a rim
 
 }  // namespace
@@ -58,7 +60,7 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
   if (count >= kLeastPairs) {
     const auto middle = ratio.begin() + count / 2;
     std::nth_element(ratio.begin(), middle, ratio.begin() + count);
-    level_ += *middle;
+    level_ = kKeep * level_ + *middle;
   }
   size_ = luma.size();
   for (int i = 0; i < kColumns * kRows; ++i) {

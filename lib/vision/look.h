@@ -30,6 +30,8 @@ class BrightnessLevel {
   void reset();
   // motion: frame k-1 to k, pixels of `luma`.
   void update(GrayView luma, const Transform& motion);
+  // A frame that nobody has looked at: the next one has nothing to be compared with.
+  void skip() { size_ = {}; }
   double level() const { return level_; }  // log2 of the factor
 
   struct Bin {

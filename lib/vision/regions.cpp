@@ -286,6 +286,8 @@ void RegionFinder::set_options(const RegionOptions& options) {
 void RegionFinder::reset() {
   state_->prior.reset();
   state_->walkers.clear();
+  state_->blocks.clear();
+  state_->blocks_before.clear();
   state_->regions.clear();
   state_->newcomers.reset();
   state_->seen = 0;

@@ -13,6 +13,7 @@ constexpr double kFamiliar =
     0.35;                       // what looks as much unlike somebody, and is as far from his place, is not he
 constexpr double kReach = 0.5;  // S: as far to the side somebody is looked for;
 constexpr double kReachUp = 0.05;  // up and down a look tells little: coats and legs are of one colour each
+constexpr int kMostColumns = 24;   // to either side
 constexpr double kFar = 0.05;      // what the farthest place costs
 
 }  // namespace
@@ -28,9 +29,16 @@ void Sightings::update(const Sight& sight, std::span<const Region> regions, cons
   sight_ = sight;
   frame_ = frame;
   looks_.assign(regions.size(), {});
-  if (!sight_.known() || frame.area() <= 0) return;
+  if (!sight_.known() || frame.area() <= 0) {
+    level_.skip();
+    return;
+  }
   level_.update(sight_.luma, motion.rescaled(frame, sight_.luma.size()));
   for (std::size_t j = 0; j < regions.size(); ++j) looks_[j] = look_at(regions[j].box, kSamples);
+}
+
+void Sightings::look_again(std::size_t region, const Box& box) {
+  if (sight_.known()) looks_[region] = look_at(box, kSamples);
 }
 
 std::optional<Point> Sightings::find(const Body& body, const Box& region) const {
@@ -38,8 +46,10 @@ std::optional<Point> Sightings::find(const Body& body, const Box& region) const 
   const Box box = body.box();
   const double s = body.size(), reach_up = kReachUp * s;
   const double reach = std::min(kReach * s, 2 * std::sqrt(body.x.pp) + 0.1 * s);
-  const double step = std::max(box.width / 6, 1.0), step_up = std::max(reach_up, 1.0);
-  const int columns = static_cast<int>(reach / step), rows = static_cast<int>(reach_up / step_up);
+  const double pixel = static_cast<double>(frame_.width) / sight_.luma.width;
+  const double step = std::max(box.width / 6, pixel), step_up = std::max(reach_up, pixel);
+  const int columns = std::min(static_cast<int>(reach / step), kMostColumns),
+            rows = static_cast<int>(reach_up / step_up);
   std::optional<Point> found;
   double least = kFamiliar;
   for (int j = -rows; j <= rows; ++j)

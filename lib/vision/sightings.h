@@ -16,10 +16,14 @@ class Sightings {
  public:
   void reserve(std::size_t regions) { looks_.reserve(regions); }
   void reset() { level_.reset(); }
-  // A frame. regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. sight lives until the next call. Without
+  // A frame. regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. sight lives until done(). Without
   // it nobody looks like anything.
   void update(const Sight& sight, std::span<const Region> regions, const Transform& motion, Size frame);
   const Look& of(std::size_t region) const { return looks_[region]; }
+  // The region's box is another one now.
+  void look_again(std::size_t region, const Box& box);
+  // The frame is done: what was handed to update() may go.
+  void done() { sight_ = {}; }
   // How far, in frame pixels, from where the body is expected what looks like it is in the region. Nothing: nothing does.
   std::optional<Point> find(const Body& body, const Box& region) const;
   std::size_t bytes() const { return looks_.capacity() * sizeof(Look); }

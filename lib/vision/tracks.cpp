@@ -4,105 +4,33 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <vector>
 
-#include "vision/assignment.h"
-#include "vision/body.h"
 #include "vision/identities.h"
-#include "vision/sightings.h"
+#include "vision/tracker_state.h"
 
 namespace cerberus::vision {
 namespace {
 
-constexpr double kDefaultSeconds = 1.0 / 25;  // until a frame distance is known
 // S: an object is published once it has moved by this; the hole somebody left in what was taken for the scene, and a
 // lamp that was switched on, never do.
 constexpr double kLeastTravel = 0.12;
 // s until what the camera has turned to is no longer new. What stands out there does so because it moves: nothing was
 // learnt of the place that could have left a hole.
 constexpr double kNew = 0.5;
-constexpr double kLargestBack = 2;  // how much larger than when it left may be what comes back
-// What a track without region costs, and the most that a pair does. Who has a region that fits keeps it when somebody
-// else has none: without it, two would rather share two regions that fit neither.
-constexpr double kWorst = 1.99, kUnmatched = 2;
-constexpr double kShared = 1;       // what it costs to live on in a blob of several
 constexpr double kProvenTimes = 3;  // times confirm_time that a track was seen before it is published unseen
-constexpr double kCrossing = 3;     // s that two who came different ways may be in one place
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
 
-// What two look like: see unlike(). The same person seen again is .16 off in the median and .28 in one look of ten; two
-// people are .36 apart in the median.
-constexpr double kUsual = 0.15;     // nothing to pay for
-constexpr double kLookPrice = 3.0;  // for the whole difference beyond that
-// A region that looks so much less like the body than what was seen of it last is not taken. Who walks into the shade gets
-// darker step by step.
-constexpr double kSudden = 0.45;
-constexpr double kAwayUnlike = 0.35;  // who comes back must look as before
 constexpr double kBehind = 0.3;  // s for which somebody is believed to be where he went behind somebody else
-// Of two who walk side by side: how much taller than wide, and the gap between them in widths, at least.
-constexpr double kUpright = 1.3, kGap = 0.3;
-constexpr double kTogether = 0.3;  // s in one region before pieces are taken for one
 
 // What there is room for at first. When more come than ever, there is room for twice as many, up to the maximum.
 constexpr std::size_t kUsualTracks = 16, kUsualRegions = 32;
 
-// Whose turn it is to be found a region.
-enum class Sort { here, away, unconfirmed };
-Sort sort_of(const Body& b) {
-  return b.id == 0 ? Sort::unconfirmed : b.away ? Sort::away : Sort::here;
-}
-
-Box bounding(const Box& a, const Box& b) {
-  const double x = std::min(a.x, b.x), y = std::min(a.y, b.y);
-  return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
-}
-
 }  // namespace
 
-struct Tracker::State {
-  TrackOptions options;
-  std::vector<Body> bodies;
-  std::vector<Region> regions;
-  std::vector<int> owner;  // body of each region, -1 none
-  std::vector<char> used;  // region explained
-  std::vector<double> cost, unmatched;
-  std::vector<int> rows;  // bodies taking part in an assignment
-  std::vector<Track> published;
-  Assignment assignment;
-  std::uint32_t last_id = 0;
-  double seconds = kDefaultSeconds;
-  Size frame;
-  Heading heading;
-  Sightings sightings;
-  Box known;             // of the picture, what has been in view for a while
-  bool turning = false;  // the camera moved since the last frame
-
-  State() { make_room(kUsualTracks, kUsualRegions); }
-  void make_room(std::size_t tracks, std::size_t seen);
-  void look(const Transform& motion);
-  void take(std::span<const Region> input);
-  void predict(const Transform& motion);
-  double pair_cost(const Body& body, std::size_t region) const;
-  double look_price(const Body& body, std::size_t region) const;
-  bool may_hold(const Region& region, const Body& body) const;
-  void associate(Sort sort);
-  void gather_fragments();
-  bool hides(const Body& first, const Body& body, const Box& region) const;
-  void share_regions();
-  bool others_expected(const Body& body, const Region& region) const;
-  bool crowded(const Body& body, const Region& region) const;
-  void absorb_pieces();
-  void remove_hollow();
-  void drop_dead() {
-    std::erase_if(bodies, [](const Body& b) { return b.dead; });
-  }
-  void give_birth();
-  void age();
-  void remove_duplicates();
-  void publish();
-  bool has_stopped(const Body& body) const;
-};
+Tracker::State::State() {
+  make_room(kUsualTracks, kUsualRegions);
+}
 
 // For what one frame may make of them; keeps what there is.
 void Tracker::State::make_room(std::size_t tracks, std::size_t seen) {
@@ -158,192 +86,6 @@ void Tracker::State::predict(const Transform& motion) {
       b.predict_away(seconds, heading.gaze());
     else
       b.dead = !b.predict(seconds) || !b.carry(motion, frame);
-  }
-  drop_dead();
-}
-
-double Tracker::State::pair_cost(const Body& b, std::size_t j) const {
-  const Region& region = regions[j];
-  const double distance = b.ahead ? b.distance(region.box, frame) : -1;
-  if (distance < 0) return Assignment::kForbidden;
-  if (b.away && region.box.area() > kLargestBack * b.box().area()) return Assignment::kForbidden;
-  if (options.maximum_speed > 0) {
-    const double moved = std::hypot(region.box.x + region.box.width / 2 - b.x.position,
-                                    region.box.y + region.box.height / 2 - b.y.position);
-    if (moved > options.maximum_speed * (seconds + b.unseen) + 0.5 * b.size()) return Assignment::kForbidden;
-  }
-  const double price = look_price(b, j);
-  if (price < 0) return Assignment::kForbidden;
-  return std::min(distance + price, kWorst);
-}
-
-// What it costs that the region does not look like the body; negative: it cannot be it. Only a region of the body's own
-// extent shows all of it and nobody else; with the others nothing is said.
-double Tracker::State::look_price(const Body& b, std::size_t j) const {
-  const Box expected = b.away ? b.visible(frame) : b.box(), &seen = regions[j].box;
-  if (!b.well_known() || !compare_extents(expected.x, expected.right(), seen.x, seen.right()).same_extent ||
-      !compare_extents(expected.y, expected.bottom(), seen.y, seen.bottom()).same_extent)
-    return 0;
-  const double difference = unlike(b.look, sightings.of(j));
-  if (difference > (b.away ? kAwayUnlike : b.unlikeness + kSudden)) return -1;
-  return kLookPrice * std::max(0.0, difference - kUsual);
-}
-
-// Is it a blob of several that the body is expected in?
-bool Tracker::State::may_hold(const Region& region, const Body& b) const {
-  if (region.confidence >= kWhole || sort_of(b) != Sort::here) return false;
-  const Box box = b.visible(frame);
-  return region.box.area() > 1.3 * box.area() && overlap_area(box, region.box) > 0.5 * box.area();
-}
-
-void Tracker::State::associate(Sort sort) {
-  rows.clear();
-  for (std::size_t i = 0; i < bodies.size(); ++i)
-    if (sort_of(bodies[i]) == sort) rows.push_back(static_cast<int>(i));
-  const auto columns = static_cast<int>(regions.size());
-  if (cost.size() < rows.size() * regions.size()) cost.resize(rows.size() * regions.size());
-  unmatched.assign(rows.size(), kUnmatched);
-  for (std::size_t c = 0; c < regions.size(); ++c) {
-    double least = Assignment::kForbidden;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      double& pair = cost[r * regions.size() + c];
-      pair = owner[c] >= 0 || used[c] ? Assignment::kForbidden : pair_cost(bodies[rows[r]], c);
-      least = std::min(least, pair);
-    }
-    for (std::size_t r = 0; r < rows.size(); ++r)
-      if (cost[r * regions.size() + c] > least && may_hold(regions[c], bodies[rows[r]]))
-        unmatched[r] = kShared;
-  }
-  const auto partner = assignment.solve(cost, static_cast<int>(rows.size()), columns, unmatched);
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (partner[r] < 0) continue;
-    bodies[rows[r]].region = partner[r];
-    owner[partner[r]] = rows[r];
-  }
-}
-
-// Two upright boxes of one size with a clear gap between them are two people who walk side by side, not pieces of one.
-bool side_by_side(const Box& a, const Box& b) {
-  const auto upright = [](const Box& box) { return box.height > kUpright * box.width; };
-  const auto alike = [](double p, double q) { return std::min(p, q) > 0.6 * std::max(p, q); };
-  const double clear = std::max(a.x, b.x) - std::min(a.right(), b.right());
-  const double low = std::max(a.y, b.y), high = std::min(a.bottom(), b.bottom());
-  return upright(a) && upright(b) && alike(a.width, b.width) && alike(a.height, b.height) &&
-         high - low > 0.6 * std::min(a.height, b.height) && clear > kGap * std::min(a.width, b.width);
-}
-
-// Leftover regions that lie where an object is expected are pieces of it: they complete its region or, where it has
-// none (somebody standing who moves an arm), they are all there is of it.
-void Tracker::State::gather_fragments() {
-  for (std::size_t j = 0; j < regions.size(); ++j) {
-    if (owner[j] >= 0 || regions[j].confidence >= kWhole) continue;
-    const Box& piece = regions[j].box;
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
-      Body& b = bodies[i];
-      if (sort_of(b) != Sort::here || (b.region >= 0 && regions[b.region].confidence >= kWhole)) continue;
-      const Box expected = b.box();
-      if (overlap_area(expected, piece) < 0.6 * piece.area() || piece.area() > 0.7 * expected.area())
-        continue;
-      if (b.region < 0) {
-        b.region = static_cast<int>(j);
-        owner[j] = static_cast<int>(i);
-        break;
-      }
-      Region& main = regions[b.region];
-      if (side_by_side(main.box, piece)) {
-        b.parted = true;
-        break;
-      }
-      used[j] = 1;
-      const Box both = bounding(main.box, piece);
-      if (both.width < 1.25 * expected.width && both.height < 1.25 * expected.height) main.box = both;
-      break;
-    }
-  }
-}
-
-// Is the body behind the one whose region this is? Two they are, as they look different or came different ways.
-bool Tracker::State::hides(const Body& first, const Body& b, const Box& region) const {
-  return sort_of(first) == Sort::here && b.well_known() && b.lost < kCrossing &&
-         (strangers(b, first) || apart(b, first)) && intersection_over_union(b.visible(frame), region) > 0.3;
-}
-
-// Two objects, one region: a confirmed track without region of its own lives on in a blob larger than its owner that it is
-// expected in, and unseen behind somebody else.
-void Tracker::State::share_regions() {
-  for (Body& b : bodies) {
-    if (b.region >= 0 || sort_of(b) != Sort::here) continue;
-    const Box box = b.visible(frame);
-    for (std::size_t j = 0; j < regions.size() && b.region < 0; ++j) {
-      if (owner[j] < 0) continue;
-      const Body& first = bodies[owner[j]];
-      const Box& blob = regions[j].box;
-      if (first.id == 0 || overlap_area(box, blob) < 0.5 * box.area()) continue;
-      if (hides(first, b, blob)) {
-        b.region = static_cast<int>(j);
-        b.hidden = true;
-        continue;
-      }
-      if (regions[j].confidence >= kWhole) continue;
-      if (blob.area() > 1.3 * first.box().area() || blob.area() > 1.3 * box.area())
-        b.region = static_cast<int>(j);
-    }
-  }
-}
-
-// Is somebody else expected in a region that is larger than the body, whichever region he was given?
-bool Tracker::State::others_expected(const Body& b, const Region& region) const {
-  return region.box.area() > 1.3 * b.box().area() && std::ranges::any_of(bodies, [&](const Body& o) {
-           if (&o == &b || o.dead || sort_of(o) != Sort::here) return false;
-           const Box box = o.visible(frame);
-           return overlap_area(box, region.box) > 0.5 * box.area();
-         });
-}
-
-// Does somebody else cover a part of the region?
-bool Tracker::State::crowded(const Body& b, const Region& region) const {
-  return std::ranges::any_of(bodies, [&](const Body& o) {
-    return &o != &b && !o.dead && sort_of(o) == Sort::here &&
-           overlap_area(o.box(), region.box) > 0.2 * region.box.area();
-  });
-}
-
-// Tracks that together fill only a small part of the blob they share and have moved as one were pieces of one object: the
-// oldest becomes it and the others go.
-void Tracker::State::absorb_pieces() {
-  for (std::size_t j = 0; j < regions.size(); ++j) {
-    const Region& r = regions[j];
-    double filled = 0;
-    int count = 0;
-    Body* oldest = nullptr;
-    for (Body& b : bodies) {
-      if (b.region != static_cast<int>(j)) continue;
-      if (b.hidden) continue;
-      filled += overlap_area(b.box(), r.box);
-      ++count;
-      if (!oldest || b.age > oldest->age) oldest = &b;
-    }
-    if (count > 1 && filled < 0.4 * r.box.area())
-      for (Body& b : bodies) {
-        if (b.region != static_cast<int>(j) || &b == oldest || b.hidden || apart(b, *oldest)) continue;
-        if (b.shared < kTogether || strangers(b, *oldest)) continue;
-        b.dead = true;
-        --count;
-      }
-    for (Body& b : bodies) {
-      if (b.region != static_cast<int>(j) || b.dead) continue;
-      const bool alone = count == 1 && !b.hidden && !others_expected(b, r);
-      if (b.away) b.come_back(r.box);
-      const bool larger = !alone && r.box.area() > 1.3 * b.box().area();
-      const auto found = larger ? sightings.find(b, r.box) : std::nullopt;
-      b.correct(r, alone, seconds, frame, found);
-      b.lost = alone || found ? 0 : b.lost + seconds;
-      b.shared = alone ? 0 : b.shared + seconds;
-      if (alone && b.misfit == 0 && sightings.of(j).known())
-        b.remember(sightings.of(j), seconds, !crowded(b, r));
-      else if (!alone)
-        b.mix();
-    }
   }
   drop_dead();
 }
@@ -448,7 +190,8 @@ void Tracker::State::remove_duplicates() {
 void Tracker::State::publish() {
   published.clear();
   for (const Body& b : bodies) {
-    if (sort_of(b) != Sort::here || (b.hidden && b.lost > kBehind)) continue;
+    if (sort_of(b) != Sort::here || (b.hidden && b.lost > kBehind) || (b.region < 0 && b.lost >= kCrossing))
+      continue;
     const Box box = b.box();
     if (b.region < 0 && !b.stopped && std::sqrt(b.x.pp) > 0.4 * box.width)
       continue;  // where it is, nobody knows
@@ -489,7 +232,7 @@ void Tracker::set_options(const TrackOptions& options) {
 void Tracker::reset() {
   state_->bodies.clear();
   state_->published.clear();
-  state_->seconds = kDefaultSeconds;
+  state_->seconds = State::kDefaultSeconds;
   state_->heading.reset();
   state_->sightings.reset();
   state_->frame = {};
@@ -527,6 +270,7 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   s.age();
   s.remove_duplicates();
   s.publish();
+  s.sightings.done();
   return s.published;
 }
 

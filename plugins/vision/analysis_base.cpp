@@ -70,8 +70,8 @@ GstBaseTransformClass* parent_class();
 constexpr char kSightQuery[] = "cerberus-sight";
 
 bool is_sight_query(GstQuery* query) {
-  return GST_QUERY_TYPE(query) == GST_QUERY_CUSTOM &&
-         gst_structure_has_name(gst_query_get_structure(query), kSightQuery);
+  const GstStructure* told = gst_query_get_structure(query);
+  return GST_QUERY_TYPE(query) == GST_QUERY_CUSTOM && told && gst_structure_has_name(told, kSightQuery);
 }
 
 bool peer_reads_sight(GstPad* pad) {

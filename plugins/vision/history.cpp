@@ -68,7 +68,7 @@ void History::follow(Step& step, GstClockTime time, bool timed, double rhythm) {
     return;
   }
   step.seconds = seconds;
-  step.fresh = rhythm > 0 && seconds > std::max(kGapSeconds, kGapFactor * rhythm);
+  step.fresh = rhythm > 0 && seconds / (1 + lost_) > std::max(kGapSeconds, kGapFactor * rhythm);
   if (step.fresh) {
     usual_ = seconds;  // caps that promise more frames than come must not make every frame a gap
     step.seconds = 0;

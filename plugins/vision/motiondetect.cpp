@@ -11,7 +11,7 @@
  * ever be found are warned of by the stage that they are for.
  *
  * Timestamps may be missing: the frames are taken as evenly spaced then. So is a frame that is a little older than the
- * one before it (one that is more than three frames older begins a new scene); a warning says so, once a stream. A buffer
+ * one before it (one that is older by more than three frames, and a quarter of a second, begins a new scene); a warning says so, once a stream. A buffer
  * without its picture is passed on with the flag CORRUPTED and one warning, and ends no scene unless more than five
  * come in a row.
  *

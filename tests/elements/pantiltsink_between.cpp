@@ -85,6 +85,13 @@ GST_START_TEST(strangers_are_not_obeyed) {
   begin(rig);
   const CerberusFusion right = decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs);
   fail_unless(told(rig, right, "tail").empty());
+  for (const int action : {-1, 6, 257}) {  // none that there is; 257 is 1 in a byte
+    GstEvent* event = cerberus_event_new_fusion("head", &right);
+    gst_structure_set(gst_event_writable_structure(event), "action", CERBERUS_TYPE_FUSION_ACTION, action,
+                      nullptr);
+    gst_harness_push_event(rig.harness, event);
+    fail_unless(rig.states().empty());
+  }
   fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 300 * kMs)).empty());  // not yet
   set_time(rig, 1200 * kMs);
   fail_unless(told(rig, right).empty());  // long ago

@@ -228,6 +228,22 @@ START_TEST(who_was_hidden_behind_somebody_is_the_same_when_he_comes_out) {
 }
 END_TEST
 
+// But not for ever: who does not come out for three seconds is nobody's ghost before the one who stands there.
+START_TEST(who_does_not_come_out_again_leaves_no_ghost) {
+  Place place;
+  for (int k = 0; k < 90; ++k) {
+    Person front = kLight, back = kDark;
+    front.x = 90 + 2.0 * std::min(k, 25);
+    back.x = k < 25 ? 290 - 6 * k : 140;
+    std::vector<Region> regions{{front.box(), 1000, 0.9, 1}};
+    if (std::abs(front.x - back.x) > 18) regions.push_back({back.box(), 1000, 0.9, 1});
+    place.step({front, back}, 0, regions);
+    if (k == 15) ck_assert_uint_eq(place.tracks.size(), 2);
+    if (k >= 30) ck_assert_uint_eq(place.tracks.size(), 1);
+  }
+}
+END_TEST
+
 // The pavement beside a pole where somebody vanishes is not the person, however person-like its region.
 START_TEST(a_region_that_looks_like_nobody_does_not_take_the_identity) {
   for (const bool ghost : {true, false}) {
@@ -343,6 +359,7 @@ int main() {
        two_who_pass_each_other_keep_their_identities_whatever_they_wear,
        equal_coats_are_told_apart_by_their_places_alone, the_look_decides_where_places_would_swap_two_people,
        who_was_hidden_behind_somebody_is_the_same_when_he_comes_out,
+       who_does_not_come_out_again_leaves_no_ghost,
        a_region_that_looks_like_nobody_does_not_take_the_identity,
        who_gets_darker_step_by_step_stays_the_same, who_comes_back_in_another_coat_is_somebody_else,
        three_who_are_one_blob_for_a_moment_are_three_afterwards, looking_allocates_nothing});

@@ -123,11 +123,12 @@ START_TEST(who_is_unconfirmed_or_away_takes_part_in_nothing) {
 }
 END_TEST
 
-// Somebody who was alone all the time and is in the shade now is nobody's likeness.
+// Two who have never been close, and each looks as the other did: one came into the sun, the other into the shade.
 START_TEST(who_was_never_close_to_anybody_keeps_the_identity) {
-  std::vector<Body> two{person(1, 200, 1), person(2, 260, 1)};
-  for (Body& b : two) seen_alone(b, 1, 10);
-  seen_alone(two[0], 3, 1);
+  std::vector<Body> two{person(1, 200, 1), person(2, 260, 6)};
+  seen_alone(two[0], 6, 4);
+  seen_alone(two[1], 1, 4);
+  ck_assert(two[0].doubted() && two[1].doubted());
   settle_identities(two);
   ck_assert_uint_eq(two[0].id, 1);
 }
