@@ -85,7 +85,7 @@ GST_START_TEST(strangers_are_not_obeyed) {
   begin(rig);
   const CerberusFusion right = decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs);
   fail_unless(told(rig, right, "tail").empty());
-  for (const int action : {-1, 6, 257}) {  // none that there is; 257 is 1 in a byte
+  for (const int action : {257, -1, 6}) {  // none that there is; the first is 1 in a byte
     GstEvent* event = cerberus_event_new_fusion("head", &right);
     gst_structure_set(gst_event_writable_structure(event), "action", CERBERUS_TYPE_FUSION_ACTION, action,
                       nullptr);
