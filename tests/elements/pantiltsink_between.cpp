@@ -59,8 +59,7 @@ GST_START_TEST(it_is_obeyed_at_once) {
     Rig rig("watchdog-timeout=0", Source::live);
     begin(rig);
     rig.poses();
-    fail_unless_equals_string(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs), head).c_str(),
-                              "turning");
+    fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs), head) == "turning");
     while (rig.next_pose().valid_until == GST_CLOCK_TIME_NONE) continue;  // a plan with an end: it will move
   }
 }
@@ -75,7 +74,7 @@ GST_START_TEST(a_frame_that_was_decided_before_does_not_take_it_back) {
   fail_unless(rig.states().empty());
   fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_LEFT, 93 * kMs)).empty());  // nor does an older event
   show(rig, 62 * kMs, decision(CERBERUS_FUSION_HOLD, 95 * kMs));
-  fail_unless_equals_string(rig.states().c_str(), "holding");
+  fail_unless(rig.states() == "holding");
   fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_LEFT, 95 * kMs)).empty());  // the frame knew as much
 }
 GST_END_TEST
@@ -136,7 +135,7 @@ GST_START_TEST(frames_alone_keep_the_watchdog_quiet) {
   Rig rig("watchdog-timeout=200000000", Source::live);
   begin(rig);
   set_time(rig, 250 * kMs);
-  fail_unless_equals_string(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 250 * kMs)).c_str(), "turning");
+  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 250 * kMs)) == "turning");
   GstClockTime now = 0;
   for (bool stopped = false; !stopped;) {
     now = crank(rig);
