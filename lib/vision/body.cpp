@@ -25,14 +25,14 @@ constexpr double kFade = 20.0;               // how much less a shrinking extent
 constexpr double kLookTime = 2.0;            // s in which somebody may turn round and look different
 constexpr double kFoundNoise = 0.1;          // S: how well a look tells where in a group somebody is
 constexpr double kFoundBrake = 0.5;          // s: it does not tell how high
-constexpr int kRecent = 3;
-constexpr double kRecentTime = 0.5;  // s of which that counts
-constexpr double kDoubt = 2.0;       // s after which who is who would have been told
-constexpr double kFreeze = 0.5;      // s after somebody else was close in which nothing is learnt of a look
-constexpr double kChanged = 0.3;     // looks as different now may be two people's,
-constexpr double kRelearn = 4.0;     // for so long: then they are one's who has changed
-constexpr int kLooks = 3;            // from which on a look is known
-constexpr double kHalfPixel = 0.5;   // boxes count from pixels' corners, transforms from their centres
+constexpr int kRecent = 3;                   // frames from which on it is known what somebody looks like now,
+constexpr double kRecentTime = 0.5;          // s of which that counts
+constexpr double kDoubt = 2.0;               // s after which who is who would have been told
+constexpr double kFreeze = 0.5;     // s after somebody else was close in which nothing is learnt of a look
+constexpr double kChanged = 0.3;    // looks as different now may be two people's,
+constexpr double kRelearn = 4.0;    // for so long: then they are one's who has changed
+constexpr int kLooks = 3;           // from which on a look is known
+constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
 
 double square(double v) {
   return v * v;

@@ -99,8 +99,8 @@ struct Body {
   // region of several.
   void correct(const Region& region, bool alone, double seconds, Size frame,
                const std::optional<Point>& found = {});
-  // Seen alone, in a region of its own extent, and so it looks. `nobody_near`: nobody else stands in a part of the region, this is
-  // what it looks like.
+  // Seen alone, in a region of its own extent, and so it looks. `nobody_near`: nobody else stands in a part of the
+  // region, this is what it looks like.
   void remember(const Look& seen, double seconds, bool nobody_near);
   // Its look is known well enough to tell it from others.
   bool well_known() const;

@@ -22,9 +22,8 @@ double overlap_area(const Box& a, const Box& b);
 double intersection_over_union(const Box& a, const Box& b);
 
 struct RegionOptions {
-  int closing = 9;  // side of the closing, analysis pixels at 320 wide; scaled with the picture
-  bool people =
-      true;  // merge and split by the learnt height of a person; off: plain components, to the pixel
+  int closing = 9;     // side of the closing, analysis pixels at 320 wide; scaled with the picture
+  bool people = true;  // merge and split by a person's learnt height; off: plain components, to the pixel
   double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
 };
 

@@ -18,9 +18,8 @@ namespace cerberus::vision {
 enum class TrackState { seen, coasted, stopped };
 
 struct TrackOptions {
-  double confirm_time =
-      0.2;                  // s of evidence before a track is published; 0: none, every region is one at once
-  double coast_time = 1.0;  // s a moving track is carried without evidence
+  double confirm_time = 0.2;   // s of evidence before a track is published; 0: every region is one at once
+  double coast_time = 1.0;     // s a moving track is carried without evidence
   double hold_stopped = 30.0;  // s a confirmed track that stopped is held
   double away_time = 5.0;      // s a moving track is kept in mind while the camera looks elsewhere
   double minimum_speed = 0;    // frame pixels a second; what never was as fast is not published (0: no limit)

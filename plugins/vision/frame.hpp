@@ -33,8 +33,7 @@ struct Frame {
   Motion motion;
   std::optional<double> tilt;  // radians, of the head when the frame was taken, where a pose tells
   bool planes_wanted = false;  // somebody downstream reads the stages' planes
-  bool sight_wanted =
-      false;  // motiontrack does: the picture and what moves in it, and takes them off the frame
+  bool sight_wanted = false;   // motiontrack does: picture and mask, and takes them off the frame
 
   vision::Size size() const { return {GST_VIDEO_INFO_WIDTH(info), GST_VIDEO_INFO_HEIGHT(info)}; }
 };

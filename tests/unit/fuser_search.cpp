@@ -47,9 +47,7 @@ END_TEST
 START_TEST(a_search_outlives_its_sensor_by_the_return_delay) {
   Stream stream;
   stream.pan = -100;
-  stream.sensors = {0, 1, 0};
-  const Decision& decision = stream.frame();
-  stream.sensors = {0, 0, 0};
+  const Decision& decision = stream.glimpse({0, 1, 0});
   stream.frames(5s - 1ms);
   assert_says(decision, Action::search, 0, "return");
   assert_sector(decision, -150, -90);
@@ -66,9 +64,7 @@ START_TEST(options_that_change_end_no_search) {
   for (const FuserOptions& after : {before, patient}) {
     Stream stream(before);
     stream.pan = -100;
-    stream.sensors = {0, 1, 0};
-    const Decision& decision = stream.frame();
-    stream.sensors = {0, 0, 0};
+    const Decision& decision = stream.glimpse({0, 1, 0});
     stream.frame();
     stream.fuser.set_options(after);
     stream.fuser.set_table(paper_rules());
@@ -83,9 +79,7 @@ START_TEST(a_search_goes_on_within_other_limits_and_with_another_lens) {
   FuserOptions options;
   Stream stream(options);
   stream.pan = -100;
-  stream.sensors = {0, 1, 0};
-  const Decision& decision = stream.frame();
-  stream.sensors = {0, 0, 0};
+  const Decision& decision = stream.glimpse({0, 1, 0});
   stream.frame();
   options.limits = {radians(-120), radians(120)};
   stream.fuser.set_options(options);

@@ -47,6 +47,13 @@ struct Stream {
     while (now + kFrame < end) frame();
     return frame(end - now);
   }
+  // What the sensors say for one frame and no longer.
+  const Decision& glimpse(const std::vector<std::uint8_t>& seen) {
+    sensors = seen;
+    const Decision& decision = frame();
+    sensors.assign(seen.size(), 0);
+    return decision;
+  }
   // A head that does what it is told at 40 degrees a second.
   void obey(const Decision& decision) {
     const double step = 40 * 0.04;
