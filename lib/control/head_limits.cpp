@@ -2,10 +2,10 @@
 #include "control/head_limits.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
+
+#include "text/numbers.h"
 
 namespace cerberus::control {
 
@@ -13,28 +13,32 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Degrees as a person writes them, whatever the locale: 6 digits hide what radians did to them.
-std::string text(double radians) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), sensing::degrees(radians),
-                                 std::chars_format::general, 6);
-  return {digits.data(), end.ptr};
+// Degrees as a person writes them: 6 digits hide what radians did to them.
+std::string degrees(double radians) {
+  return text::significant(sensing::degrees(radians), 6).string();
 }
 
 std::string check(const std::string& axis, const AxisLimits& limits) {
-  const std::string span = axis + "-min " + text(limits.from) + " and " + axis + "-max " + text(limits.to);
+  const std::string span =
+      axis + "-min " + degrees(limits.from) + " and " + axis + "-max " + degrees(limits.to);
   if (!(std::abs(limits.from) <= kMostPosition && std::abs(limits.to) <= kMostPosition))
-    return span + " are beyond any head (" + text(kMostPosition) + " degrees)";
+    return span + " are beyond any head (" + degrees(kMostPosition) + " degrees)";
   if (limits.from > limits.to) return span + " are in the wrong order";
   if (!limits.holds(0))
     return span + " exclude 0: the head could not return to where it looks straight ahead";
   if (!(limits.speed > 0 && limits.speed <= kMostSpeed))
-    return "a " + axis + " speed of " + text(limits.speed) +
-           " degrees a second is none: more than 0, at most " + text(kMostSpeed);
+    return "a " + axis + " speed of " + degrees(limits.speed) +
+           " degrees a second is none: more than 0, at most " + degrees(kMostSpeed);
   if (!(limits.acceleration > 0 && limits.acceleration <= kMostAcceleration))
-    return "a " + axis + " acceleration of " + text(limits.acceleration) +
-           " degrees a second squared is none: more than 0, at most " + text(kMostAcceleration);
+    return "a " + axis + " acceleration of " + degrees(limits.acceleration) +
+           " degrees a second squared is none: more than 0, at most " + degrees(kMostAcceleration);
   return {};
+}
+
+std::string check_start(const std::string& axis, const AxisLimits& limits, double position) {
+  if (limits.holds(position)) return {};
+  return "start-" + axis + " " + degrees(position) + " is not between " + axis + "-min " +
+         degrees(limits.from) + " and " + axis + "-max " + degrees(limits.to);
 }
 
 }  // namespace
@@ -46,6 +50,11 @@ double AxisLimits::clamp(double position) const {
 std::string check(const Limits& limits) {
   std::string wrong = check("pan", limits.pan);
   return wrong.empty() ? check("tilt", limits.tilt) : wrong;
+}
+
+std::string check_start(const Limits& limits, double pan, double tilt) {
+  std::string wrong = check_start("pan", limits.pan, pan);
+  return wrong.empty() ? check_start("tilt", limits.tilt, tilt) : wrong;
 }
 
 Reach reach(double bearing, double position, const AxisLimits& limits) {

@@ -42,6 +42,8 @@ constexpr double kMostAcceleration = sensing::radians(1e6);
 // Empty, or what is wrong in words for a user, with the numbers in degrees: limits that exclude zero or are in the wrong
 // order, a speed or an acceleration that is not above 0, anything that is not a number or absurd.
 std::string check(const Limits& limits);
+// Empty, or which of these positions lies beyond the stops, as above.
+std::string check_start(const Limits& limits, double pan, double tilt);
 
 struct Reach {
   double position = 0;   // between the stops

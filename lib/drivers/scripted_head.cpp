@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "drivers/gate.h"
+#include "text/numbers.h"
 
 namespace cerberus::drivers {
 
@@ -37,9 +38,7 @@ std::optional<int> number(std::string_view text) {
 }
 
 void append(std::string& line, double value) {
-  std::array<char, 32> digits;
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  line.append(1, ' ').append(digits.data(), end.ptr);
+  line.append(1, ' ').append(text::exact(value));
 }
 
 void append(std::string& line, const AxisCommand& command) {
@@ -125,8 +124,8 @@ std::string ScriptedHead::play(Call call, Time time, const std::string& details)
 
 std::string ScriptedHead::open(const HeadSetup& setup) {
   if (std::string wrong = control::check(setup.limits); !wrong.empty()) return wrong;
-  if (!setup.limits.pan.holds(setup.pan) || !setup.limits.tilt.holds(setup.tilt))
-    return "the scripted head would start beyond its limits";
+  if (std::string wrong = control::check_start(setup.limits, setup.pan, setup.tilt); !wrong.empty())
+    return wrong;
   if (std::string wrong = parse(setup.script); !wrong.empty()) return wrong;
   calls_ = {};
   if (std::string failure = play(kOpen, {}); !failure.empty()) return failure;

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <utility>
 
+#include "text/numbers.h"
+
 namespace cerberus::drivers {
 
 namespace {
@@ -16,6 +18,8 @@ using control::AxisLimits;
 using control::AxisState;
 using control::kNever;
 using control::Plan;
+
+constexpr control::Time kMostLatency = std::chrono::seconds(5);  // see kKept
 
 // splitmix64 (Steele, Lea, Flood, OOPSLA 2014): a good number for every number.
 std::uint64_t scramble(std::uint64_t x) {
@@ -59,12 +63,15 @@ double arrival(const AxisState& state, double position) {
 std::string SimulatedHead::open(const HeadSetup& setup) {
   if (std::string wrong = control::check(setup.limits); !wrong.empty()) return wrong;
   for (const auto& [value, name] :
-       {std::pair{setup.step, "step size"}, {setup.backlash, "backlash"}, {setup.noise, "noise"}})
-    if (!(value >= 0)) return std::string("the ") + name + " of a simulated head is not below 0";
-  if (setup.latency < Time::zero() || setup.latency > std::chrono::seconds(5))
-    return "the latency of a simulated head is at most 5 s";
-  if (!setup.limits.pan.holds(setup.pan) || !setup.limits.tilt.holds(setup.tilt))
-    return "the simulated head would start beyond its limits";
+       {std::pair{setup.step, "step-size"}, {setup.backlash, "backlash"}, {setup.noise, "noise"}})
+    if (!(value >= 0 && value < HUGE_VAL))
+      return std::string(name) + " must be 0 or more, and is " +
+             text::significant(sensing::degrees(value), 6).string() + " degrees";
+  if (setup.latency < Time::zero() || setup.latency > kMostLatency)
+    return "latency must be 0 to 5 s, and is " +
+           text::significant(control::seconds(setup.latency), 6).string() + " s";
+  if (std::string wrong = control::check_start(setup.limits, setup.pan, setup.tilt); !wrong.empty())
+    return wrong;
   setup_ = setup;
   told_ = Time::zero();
   next_ = count_ = 1;

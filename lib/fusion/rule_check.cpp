@@ -2,13 +2,12 @@
 #include "fusion/rule_check.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <set>
 
 #include "sensing/angles.h"
+#include "text/numbers.h"
 
 namespace cerberus::fusion {
 
@@ -45,14 +44,8 @@ std::vector<Piece> pieces(const RuleTable& table) {
   return result;
 }
 
-std::string number(double value) {
-  std::array<char, 32> text{};
-  const auto end = std::to_chars(text.data(), text.data() + text.size(), std::round(value * 1e6) / 1e6 + 0.0);
-  return {text.data(), end.ptr};
-}
-
 std::string angle(double radians) {
-  return number(sensing::degrees(radians));
+  return text::rounded(sensing::degrees(radians), 6).string();
 }
 
 std::string pan_text(const Piece& piece) {

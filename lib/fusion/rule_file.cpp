@@ -224,7 +224,8 @@ std::optional<toml::table> parse(std::string_view text, std::string_view source,
   } catch (const toml::parse_error& error) {
     reader.complain(error.source().begin, error.description());
   } catch (const ParserLost&) {
-    reader.complain(toml::source_position{}, "this is not TOML: a value, a key or a bracket is missing or misplaced");
+    reader.complain(toml::source_position{},
+                    "this is not TOML: a value, a key or a bracket is missing or misplaced");
   } catch (const std::exception& error) {
     reader.complain(toml::source_position{}, error.what());
   }

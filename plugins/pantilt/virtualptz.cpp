@@ -56,11 +56,12 @@
 #include <optional>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
 #include "frame_times.hpp"
 #include "pose_feed.hpp"
+#include "text/numbers.h"
 #include "times.hpp"
+#include "window_caps.hpp"
 #include "window_settings.hpp"
 #include "window_view.hpp"
 
@@ -105,19 +106,7 @@ CERBERUS_DEFINE_TYPE(CerberusVirtualPtz, cerberus_virtual_ptz, GstBaseTransform,
 // ---- caps
 
 GstCaps* transform_caps(GstBaseTransform* trans, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
-  const WindowSettings s = cerberus_virtual_ptz_self(trans)->priv->settings.snapshot();
-  GstCaps* others = gst_caps_copy(caps);
-  for (guint i = 0; i < gst_caps_get_size(others); ++i) {
-    GstStructure* structure = gst_caps_get_structure(others, i);
-    const auto size = [&](const char* field, int fixed) {
-      if (fixed > 0 && direction == GST_PAD_SINK)
-        gst_structure_set(structure, field, G_TYPE_INT, fixed, nullptr);
-      else
-        gst_structure_set(structure, field, GST_TYPE_INT_RANGE, 1, G_MAXINT, nullptr);
-    };
-    size("width", s.width);
-    size("height", s.height);
-  }
+  GstCaps* others = window_caps(caps, direction, cerberus_virtual_ptz_self(trans)->priv->settings.snapshot());
   if (filter) {
     GstCaps* common = gst_caps_intersect_full(filter, others, GST_CAPS_INTERSECT_FIRST);
     gst_caps_unref(others);
@@ -127,15 +116,7 @@ GstCaps* transform_caps(GstBaseTransform* trans, GstPadDirection direction, GstC
 }
 
 GstCaps* fixate_caps(GstBaseTransform* trans, GstPadDirection direction, GstCaps* caps, GstCaps* others) {
-  int width = 0, height = 0;
-  const GstStructure* structure = gst_caps_get_structure(caps, 0);
-  if (direction == GST_PAD_SINK && gst_structure_get_int(structure, "width", &width) &&
-      gst_structure_get_int(structure, "height", &height)) {
-    others = gst_caps_make_writable(gst_caps_truncate(others));
-    GstStructure* other = gst_caps_get_structure(others, 0);
-    gst_structure_fixate_field_nearest_int(other, "width", std::max(1, width / 2));
-    gst_structure_fixate_field_nearest_int(other, "height", std::max(1, height / 2));
-  }
+  if (direction == GST_PAD_SINK) others = near_half(caps, others);
   return cerberus_virtual_ptz_parent_class()->fixate_caps(trans, direction, caps, others);
 }
 
@@ -281,12 +262,14 @@ GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* i
     case PoseFeed::Answer::silent:
       break;
   }
-  GST_ELEMENT_ERROR(
-      trans, RESOURCE, READ,
-      ("The head \"%s\" does not tell where it looks at %.3f s: for %.1f s no pose came. Is there a "
-       "pantiltsink of that name downstream? Without one, set lockstep=off.",
-       s.head.c_str(), control::seconds(time), static_cast<double>(s.lockstep_timeout) / GST_SECOND),
-      ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(time))));
+  const std::string at = text::rounded(control::seconds(time), 3).string();
+  const std::string waited = text::significant(control::seconds(patience), 3).string();
+  GST_ELEMENT_ERROR(trans, RESOURCE, READ,
+                    ("The head \"%s\" does not tell where it looks at %s s: for %s s no pose came. Is there "
+                     "a pantiltsink of "
+                     "that name downstream? Without one, set lockstep=off.",
+                     s.head.c_str(), at.c_str(), waited.c_str()),
+                    ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(time))));
   return GST_FLOW_ERROR;
 }
 
@@ -299,13 +282,13 @@ void warn_of_limits(GstBaseTransform* trans, Private& self, const control::Pose&
       !(std::abs(pan) > self.pan_reach + kBeyond || std::abs(tilt) > self.tilt_reach + kBeyond))
     return;
   self.state.beyond = true;
-  const std::string far = number(self.pan_reach), high = number(self.tilt_reach);
+  const auto angle = [](double degrees) { return text::significant(degrees, 4).string(); };
+  const std::string far = angle(self.pan_reach), high = angle(self.tilt_reach);
   GST_ELEMENT_WARNING(
       trans, RESOURCE, SETTINGS,
       ("The head looks at pan %s, tilt %s, and the window ends at pan -%s and %s, tilt -%s and %s: set the "
-       "limits of "
-       "pantiltsink (pan-min, pan-max, tilt-min, tilt-max) and of pirfusion (pan-min, pan-max) so.",
-       number(pan).c_str(), number(tilt).c_str(), far.c_str(), far.c_str(), high.c_str(), high.c_str()),
+       "limits of pantiltsink (pan-min, pan-max, tilt-min, tilt-max) and of pirfusion (pan-min, pan-max) so.",
+       angle(pan).c_str(), angle(tilt).c_str(), far.c_str(), far.c_str(), high.c_str(), high.c_str()),
       ("head \"%s\"", self.state.settings.head.c_str()));
 }
 
@@ -444,10 +427,10 @@ void cerberus_virtual_ptz_class_init(CerberusVirtualPtzClass* klass) {
            "How far down the window reaches, degrees; 0 before the first frame");
   readable(PROP_TILT_MAX, "tilt-max", 0, 90,
            "How far up the window reaches, degrees; 0 before the first frame");
-  readable(PROP_WINDOW_FOV, "window-fov", 0, 180,
-           "Angle that the window shows over its width, degrees: the horizontal-fov of those behind; 0 "
-           "before the first "
-           "frame");
+  readable(
+      PROP_WINDOW_FOV, "window-fov", 0, 180,
+      "Angle that the window shows over its width, degrees: the horizontal-fov of those behind; 0 before "
+      "the first frame");
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   element->change_state = change_state;

@@ -3,9 +3,9 @@
 
 #include <cerberus/cerberus.h>
 
-#include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
 #include "sensing/angles.h"
+#include "text/numbers.h"
 
 namespace cerberus::plugin {
 
@@ -13,6 +13,10 @@ using sensing::radians;
 using vision::Samples;
 
 namespace {
+
+std::string angle_text(double degrees) {
+  return text::significant(degrees, 4).string() + " degrees";
+}
 
 std::string size_text(const GstVideoInfo& info) {
   return std::to_string(GST_VIDEO_INFO_WIDTH(&info)) + " x " + std::to_string(GST_VIDEO_INFO_HEIGHT(&info));
@@ -58,9 +62,9 @@ std::string WindowView::set_angles(const WindowSettings& s) {
   }
   const bool natural = s.horizontal_fov == 0;
   return "A window of " + size_text(window_) + " pixels" +
-         (natural ? std::string() : " that sees " + number(s.horizontal_fov) + " degrees") +
+         (natural ? std::string() : " that sees " + angle_text(s.horizontal_fov)) +
          " does not fit into the picture of " + size_text(picture_) + " pixels" +
-         (natural ? "" : " that sees " + number(s.wide_fov) + " degrees") + ".";
+         (natural ? "" : " that sees " + angle_text(s.wide_fov)) + ".";
 }
 
 bool WindowView::draw(GstBuffer* picture, const Place& place, bool with_inset, GstBuffer* window) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "text/numbers.h"
+
 namespace cerberus::plugin {
 
 namespace {
@@ -138,7 +140,7 @@ void apply_preset(PirSettings& settings, const PirChosen& chosen) {
     settings.warm_up = preset ? clock_time(preset->options.warm_up) : defaults.warm_up;
   if (!chosen[id_of("field-of-view")])  // as somebody would write it: no 119.99999999999999
     settings.field_of_view =
-        preset ? std::round(sensing::degrees(preset->field_of_view) * 1e6) / 1e6 : defaults.field_of_view;
+        preset ? text::round_to(sensing::degrees(preset->field_of_view), 6) : defaults.field_of_view;
 }
 
 std::string pir_info(const PirSettings& settings, CerberusPirInfo& info) {

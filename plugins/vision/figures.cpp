@@ -7,6 +7,7 @@
 #include <string>
 
 #include "drawing.hpp"
+#include "text/numbers.h"
 
 namespace cerberus::draw {
 
@@ -136,9 +137,7 @@ void draw_fuzziness(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
     set(cr, kGrid);
     cairo_set_line_width(cr, 1);
     line(cr, panel.left, y, panel.left + panel.width, y);
-    if (labels)
-      text(cr, panel.left - 0.4 * font, y, 1, 0.5,
-           std::to_string(tenths / 10) + '.' + std::to_string(tenths % 10), kText);
+    if (labels) text(cr, panel.left - 0.4 * font, y, 1, 0.5, text::fixed(tenths / 10.0, 1).string(), kText);
   }
   for (const bool object : {false, true}) {
     cairo_new_path(cr);
@@ -224,10 +223,7 @@ void draw_threshold_figure(cairo_t* cr, int width, int height, const ThresholdFi
   if (figure.threshold >= 0 && figure.threshold != figure.fuzzy_threshold)
     chosen += " (fuzzy " + std::to_string(figure.fuzzy_threshold) + ")";
   std::string noise;
-  if (figure.noise > 0) {
-    const int tenths = static_cast<int>(std::lround(std::min(figure.noise, 255.0) * 10));
-    noise = "noise " + std::to_string(tenths / 10) + "." + std::to_string(tenths % 10);
-  }
+  if (figure.noise > 0) noise = "noise " + text::fixed(std::min(figure.noise, 255.0), 1).string();
   const double right = upper.left + upper.width;
   text(cr, upper.left, 0.25 * font, 0, 0, "|difference|", kText);
   draw_legend(cr, upper.left + text_width(cr, "|difference|") + font, right, 0.25 * font, font,

@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "text/numbers.h"
+
 namespace cerberus {
 
 class JsonLine {
@@ -53,18 +55,11 @@ class JsonLine {
   }
   // Rounded to `decimals` places, then the shortest form that reads back as that number. NaN, infinity: null.
   JsonLine& fixed(double value, int decimals) {
-    if (!std::isfinite(value)) return null();
-    const double unit = std::pow(10.0, decimals);
-    if (std::abs(value) < 1e15) value = std::round(value * unit) / unit;
-    return shortest(value);
+    return std::isfinite(value) ? raw(text::rounded(value, decimals)) : null();
   }
   // Up to `digits` significant digits. NaN, infinity: null.
   JsonLine& significant(double value, int digits) {
-    if (!std::isfinite(value)) return null();
-    char text[40];
-    value += 0.0;  // no "-0"
-    return raw(
-        {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr});
+    return std::isfinite(value) ? raw(text::significant(value, digits)) : null();
   }
   // So are these strings.
   JsonLine& string(std::string_view literal) {
@@ -104,11 +99,6 @@ class JsonLine {
     text_ += token;
     comma_ = true;
     return *this;
-  }
-  JsonLine& shortest(double value) {
-    char text[40];
-    value += 0.0;
-    return raw({text, std::to_chars(text, text + sizeof text, value).ptr});
   }
 
   std::string text_;

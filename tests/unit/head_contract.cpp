@@ -193,8 +193,11 @@ START_TEST(limits_that_exclude_zero_are_refused) {
   wrong.limits.pan.from = radians(10);
   ck_assert(head->open(wrong).find("exclude 0") != std::string::npos);
   wrong = setup();
+  wrong.tilt = wrong.limits.tilt.to + 0.1;
+  ck_assert(head->open(wrong).find("start-tilt") == 0);
+  wrong = setup();
   wrong.pan = radians(175);
-  ck_assert(head->open(wrong).find("beyond its limits") != std::string::npos);
+  assert_text(head->open(wrong), "start-pan 175 is not between pan-min -170 and pan-max 170");
   Pose pose;
   ck_assert(!head->state(0s, pose).empty());
 }

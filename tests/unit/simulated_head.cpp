@@ -46,6 +46,26 @@ struct Opened {
 
 }  // namespace
 
+START_TEST(what_no_head_can_have_is_told_with_its_name_and_value) {
+  const auto refusal = [](auto change) {
+    HeadSetup with = setup();
+    change(with);
+    return SimulatedHead().open(with);
+  };
+  const struct {
+    std::string found;
+    const char* expected;
+  } cases[] = {{refusal([](HeadSetup& s) { s.step = cerberus::sensing::radians(-0.5); }),
+                "step-size must be 0 or more, and is -0.5 degrees"},
+               {refusal([](HeadSetup& s) { s.backlash = HUGE_VAL; }),
+                "backlash must be 0 or more, and is inf degrees"},
+               {refusal([](HeadSetup& s) { s.noise = NAN; }), "noise must be 0 or more, and is nan degrees"},
+               {refusal([](HeadSetup& s) { s.latency = 5500ms; }), "latency must be 0 to 5 s, and is 5.5 s"},
+               {refusal([](HeadSetup& s) { s.latency = -1s; }), "latency must be 0 to 5 s, and is -1 s"}};
+  for (const auto& c : cases) ck_assert_str_eq(c.found.c_str(), c.expected);
+}
+END_TEST
+
 START_TEST(a_command_counts_after_the_latency) {
   HeadSetup with = setup();
   with.latency = 100ms;
@@ -268,10 +288,10 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "simulated_head",
-      {a_command_counts_after_the_latency, commands_on_their_way_are_not_lost,
-       a_flood_of_commands_is_refused_not_forgotten, it_rests_on_a_step, new_limits_count_after_the_latency,
-       a_stop_that_is_too_near_to_brake_for_is_not_passed, moved_stops_lead_nobody_further_out,
-       the_camera_follows_the_motor_with_play, pieces_meet_and_make_the_whole_way,
-       equal_seeds_give_equal_noise_and_others_other, numbers_that_are_none_do_not_make_a_head,
-       steady_state_allocates_nothing});
+      {what_no_head_can_have_is_told_with_its_name_and_value, a_command_counts_after_the_latency,
+       commands_on_their_way_are_not_lost, a_flood_of_commands_is_refused_not_forgotten, it_rests_on_a_step,
+       new_limits_count_after_the_latency, a_stop_that_is_too_near_to_brake_for_is_not_passed,
+       moved_stops_lead_nobody_further_out, the_camera_follows_the_motor_with_play,
+       pieces_meet_and_make_the_whole_way, equal_seeds_give_equal_noise_and_others_other,
+       numbers_that_are_none_do_not_make_a_head, steady_state_allocates_nothing});
 }

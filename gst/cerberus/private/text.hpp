@@ -30,10 +30,4 @@ inline std::string printable(std::string_view text) {
   return result;
 }
 
-// As a person writes it, whatever the locale: 80, 27.05.
-inline std::string number(double value) {
-  gchar digits[G_ASCII_DTOSTR_BUF_SIZE];
-  return g_ascii_formatd(digits, sizeof digits, "%.4g", value + 0.0);
-}
-
 }  // namespace cerberus

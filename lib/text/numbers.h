@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Numbers as text: the same in every locale (gst-launch sets the user's, and printf() then writes 1,5), never "-0", without
+// an allocation.
+#pragma once
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace cerberus::text {
+
+// Up to so many decimals are kept, where a double has them.
+inline double round_to(double value, int decimals) {
+  const double unit = std::pow(10.0, decimals);
+  return std::abs(value) < 1e15 ? std::round(value * unit) / unit : value;  // also what is no number
+}
+
+// One number.
+class Digits {
+ public:
+  // How, as of std::to_chars.
+  template <typename... How>
+  explicit Digits(double value, How... how) {
+    value += 0.0;  // no "-0"
+    char* const end = digits_.data() + digits_.size();
+    auto written = std::to_chars(digits_.data(), end, value, how...);
+    if (written.ec != std::errc())
+      written = std::to_chars(digits_.data(), end, value);  // 1e300 with decimals
+    length_ = static_cast<std::size_t>(written.ptr - digits_.data());
+  }
+  operator std::string_view() const { return {digits_.data(), length_}; }
+  std::string string() const { return {digits_.data(), length_}; }
+
+ private:
+  std::array<char, 40> digits_;
+  std::size_t length_;
+};
+
+// The shortest that reads back as this number.
+inline Digits exact(double value) {
+  return Digits(value);
+}
+// Up to so many digits: 27.05, 80, 1e+06.
+inline Digits significant(double value, int digits) {
+  return Digits(value, std::chars_format::general, digits);
+}
+// Up to so many decimals: 12.5, 12.
+inline Digits rounded(double value, int decimals) {
+  return Digits(round_to(value, decimals));
+}
+// So many decimals: 12.5, 12.0.
+inline Digits fixed(double value, int decimals) {
+  return Digits(value, std::chars_format::fixed, decimals);
+}
+
+}  // namespace cerberus::text
