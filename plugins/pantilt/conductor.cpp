@@ -24,9 +24,9 @@ void Conductor::hear_soon() {
 }
 
 void Conductor::hear() {
-  Outbox out;
+  Outbox out = outbox();
   station.hear(out);
-  if (!out.refusal.empty()) tell(out);
+  tell(out);
 }
 
 bool Conductor::open() {
@@ -63,19 +63,19 @@ void Conductor::configure() {
 }
 
 void Conductor::halt(const char* reason) {
-  Outbox out;
+  Outbox out = outbox();
   station.halt(reason, now(), kHaltPatience, out);
   tell(out);
 }
 
 void Conductor::end() {
-  Outbox out;
+  Outbox out = outbox();
   station.end(now(), kHaltPatience, out);
   tell(out);
 }
 
 void Conductor::resume() {
-  Outbox out;
+  Outbox out = outbox();
   station.resume(now(), out);
   tell(out);
 }
@@ -92,13 +92,13 @@ void Conductor::heed(GstEvent* event) {
   if (!fusion || !playing || (*whose && !g_str_equal(whose, head))) return;
   const auto at = now();
   if (!at) return;
-  Outbox out;
+  Outbox out = outbox();
   station.heed(*fusion, *at, out);
   tell(out);
 }
 
 GstClockTime Conductor::tick(GstClockTime time) {
-  Outbox out;
+  Outbox out = outbox();
   GstClockTime next = time + 20 * GST_MSECOND;
   if (const auto running = now())
     guarded(sink, [&] { next = time + clock_time(station.tick(*running, out) - *running); });

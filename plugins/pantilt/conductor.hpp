@@ -40,12 +40,13 @@ struct Conductor {
   void heed(GstEvent* event);
 
   std::optional<control::Time> now() const { return clock_now(sink); }
-  void tell(const Outbox& out) const { send(out, sink, head); }
+  Outbox outbox() { return Outbox(outgoing_); }
+  void tell(const Outbox& out) const { out.send(sink, head); }
   // act(station, now, outbox) -> done
   template <typename Act>
   gboolean by_hand(Act act) {
     return guarded(sink, FALSE, [&]() -> gboolean {
-      Outbox out;
+      Outbox out = outbox();
       const bool done = act(station, now(), out);
       tell(out);
       return done;
@@ -57,6 +58,7 @@ struct Conductor {
   void hear();
   GstClockTime tick(GstClockTime time);
 
+  Outgoing outgoing_;
   bool real_ = false;       // the head has a clock of its own
   std::mutex configuring_;  // the newest settings come last
   std::mutex ticker_lock_;  // start and stop; never held by the ticker's own thread

@@ -17,6 +17,31 @@ CerberusPose told(const control::Pose& pose, const char* head) {
   return out;
 }
 
+// Posts each kind of notice.
+struct Posting {
+  GstBaseSink* sink;
+  const char* head;
+
+  void operator()(const Status& status) const {
+    const CerberusPose pose = told(status.pose, head);
+    gst_element_post_message(GST_ELEMENT(sink),
+                             cerberus_message_new_pantilt(GST_OBJECT(sink), clock_time(status.time),
+                                                          status.state, status.reason.c_str(), &pose));
+  }
+  void operator()(const Refusal& refusal) const { refuse(GST_ELEMENT(sink), head, refusal.why); }
+  void operator()(const Fault& fault) const {
+    GST_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, fault.what.c_str()),
+                        (nullptr));
+  }
+  void operator()(const Lost& lost) const {
+    GST_ELEMENT_WARNING(
+        sink, RESOURCE, NOT_FOUND,
+        ("Track %u, which was to be followed, is on no frame for %d s: the usual choice goes on.", lost.id,
+         static_cast<int>(fusion::Chosen::kPatience / std::chrono::seconds(1))),
+        ("head %s", head));
+  }
+};
+
 }  // namespace
 
 void refuse(GstElement* element, const char* head, const std::string& why) {
@@ -24,27 +49,13 @@ void refuse(GstElement* element, const char* head, const std::string& why) {
                     ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
 }
 
-void send(const Outbox& out, GstBaseSink* sink, const char* head) {
-  for (const control::Pose& pose : out.poses) {
-    const CerberusPose event = told(pose, head);
-    gst_pad_push_event(GST_BASE_SINK_PAD(sink), cerberus_event_new_pose(&event));
-  }
-  for (const Status& status : out.statuses) {
-    const CerberusPose pose = told(status.pose, head);
-    gst_element_post_message(GST_ELEMENT(sink),
-                             cerberus_message_new_pantilt(GST_OBJECT(sink), clock_time(status.time),
-                                                          status.state, status.reason.c_str(), &pose));
-  }
-  if (!out.refusal.empty()) refuse(GST_ELEMENT(sink), head, out.refusal);
-  if (!out.fault.empty())
-    GST_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, out.fault.c_str()),
-                        (nullptr));
-  if (out.lost != 0)
-    GST_ELEMENT_WARNING(
-        sink, RESOURCE, NOT_FOUND,
-        ("Track %u, which was to be followed, is on no frame for %d s: the usual choice goes on.", out.lost,
-         static_cast<int>(fusion::Chosen::kPatience / std::chrono::seconds(1))),
-        ("head %s", head));
+void Outbox::send(GstBaseSink* sink, const char* head) const {
+  if (poses_)
+    outgoing_.poses.tell([&](const control::Pose& pose) {
+      const CerberusPose event = told(pose, head);
+      gst_pad_push_event(GST_BASE_SINK_PAD(sink), cerberus_event_new_pose(&event));
+    });
+  if (notices_) outgoing_.notices.tell([&](const auto& notice) { std::visit(Posting{sink, head}, notice); });
 }
 
 }  // namespace cerberus::plugin

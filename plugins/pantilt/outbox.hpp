@@ -5,8 +5,10 @@
 #include <gst/base/gstbasesink.h>
 
 #include <string>
-#include <vector>
+#include <utility>
+#include <variant>
 
+#include "cerberus/private/in_order.hpp"
 #include "control/pose.h"
 
 namespace cerberus::plugin {
@@ -17,18 +19,44 @@ struct Status {
   control::Pose pose;
   control::Time time{};
 };
+struct Refusal {  // why the head cannot be opened: for an error
+  std::string why;
+};
+struct Fault {  // new: for a warning
+  std::string what;
+};
+struct Lost {  // the identity that was to be followed and is not there: for a warning
+  guint id;
+};
 
-struct Outbox {
-  std::vector<control::Pose> poses;
-  std::vector<Status> statuses;
-  std::string refusal;  // why the head cannot be opened: for an error
-  std::string fault;    // new: for a warning
-  guint lost = 0;       // the identity that was to be followed and is not there: for a warning
+// What all threads have put in and nobody has sent off yet.
+struct Outgoing {
+  InOrder<control::Pose> poses;
+  InOrder<std::variant<Status, Refusal, Fault, Lost>> notices;
+};
+
+// What one call puts in, with the station's lock held: so it goes out in the order in which it came to be.
+class Outbox {
+ public:
+  explicit Outbox(Outgoing& outgoing) : outgoing_(outgoing) {}
+  void tell(const control::Pose& pose) {
+    outgoing_.poses.put(pose);
+    poses_ = true;
+  }
+  template <typename Notice>
+  void say(Notice notice) {
+    outgoing_.notices.put(std::move(notice));
+    notices_ = true;
+  }
+  // Sends it off for `sink`, whose head is `head` (may be nullptr). No lock held.
+  void send(GstBaseSink* sink, const char* head) const;
+
+ private:
+  Outgoing& outgoing_;
+  bool poses_ = false, notices_ = false;
 };
 
 // The error of a head that cannot be opened.
 void refuse(GstElement* element, const char* head, const std::string& why);
-// Sends it off for `sink`, whose head is `head` (may be nullptr). No lock held.
-void send(const Outbox& out, GstBaseSink* sink, const char* head);
 
 }  // namespace cerberus::plugin

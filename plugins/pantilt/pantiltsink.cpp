@@ -144,9 +144,9 @@ void ask_whether_live(Private& self) {
 // A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts, then
 // has the lock while whoever was interrupted waits here, and goes on where it was when told to.
 template <typename Ask>
-GstFlowReturn persist(const Conductor& conductor, Ask ask) {
+GstFlowReturn persist(Conductor& conductor, Ask ask) {
   for (;;) {
-    Outbox out;
+    Outbox out = conductor.outbox();
     const Station::Answer answer = ask(out);
     conductor.tell(out);
     if (answer != Station::Answer::interrupted) return GST_FLOW_OK;

@@ -73,10 +73,7 @@ void Station::open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::H
 void Station::hear(Outbox& out) {
   const std::lock_guard guard(lock_);
   if (!runner_) return;
-  out.refusal = runner_->refusal();
-  if (out.refusal.empty()) return;
-  faulty_ = true;  // an error and no warning
-  say("fault", out.refusal, told_, out);
+  report_refusal(told_, out);
 }
 
 void Station::close(drivers::HeadRunner::Patience patience) {
@@ -158,12 +155,12 @@ void Station::remember(const std::vector<Pose>& poses) {
 void Station::publish(const std::vector<Pose>& poses, Time until, Outbox& out) {
   if (poses.empty()) return;
   if (until == control::kNever) {
-    out.poses.push_back(running(poses.front()));
+    out.tell(running(poses.front()));
     return;
   }
   for (Pose pose : poses) {
     pose.until = std::max(pose.from, std::min(pose.until, until));
-    out.poses.push_back(running(pose));
+    out.tell(running(pose));
     published_ = pose.until;
     if (pose.until >= until) break;
   }
@@ -172,7 +169,7 @@ void Station::publish(const std::vector<Pose>& poses, Time until, Outbox& out) {
 void Station::say(const char* state, std::string reason, Time head, Outbox& out) {
   if (g_str_equal(state, status_.state) && reason == status_.reason) return;
   status_ = {state, std::move(reason), running(history_.at(head)), std::max(Time::zero(), head - epoch_)};
-  out.statuses.push_back(status_);
+  out.say(status_);
 }
 
 void Station::say_by_hand(Time head, Outbox& out) {
@@ -181,15 +178,24 @@ void Station::say_by_hand(Time head, Outbox& out) {
 
 void Station::complain(const std::string& failure, Time head, Outbox& out) {
   if (failure.empty()) return;
-  if (!std::exchange(faulty_, true)) out.fault = failure;
+  const bool known = std::exchange(faulty_, true);
   say("fault", failure, head, out);
+  if (!known) out.say(Fault{failure});
+}
+
+// It cannot be opened: an error and no warning.
+void Station::report_refusal(Time head, Outbox& out) {
+  std::string why = runner_->refusal();
+  if (why.empty()) return;
+  faulty_ = true;
+  say("fault", why, head, out);
+  out.say(Refusal{std::move(why)});
 }
 
 // After an answer: is the head at fault, still or no longer?
 void Station::check(const std::string& failure, Time head, Outbox& out) {
   if (!runner_ || !runner_->healthy()) {
-    if (runner_) out.refusal = runner_->refusal();
-    if (!out.refusal.empty()) faulty_ = true;  // an error and no warning
+    if (runner_) report_refusal(head, out);
     complain(failure, head, out);
     return;
   }
@@ -232,7 +238,7 @@ HeadCommand Station::decide(const Frame& frame, Time now, Outbox& out) {
   const Pose capture = frame.capture ? *frame.capture : history_.at(taken);
   const Pose ahead = history_.at(now + setup_.latency);
   const Pilot::Verdict verdict = pilot_.look(frame.buffer, frame.running, capture.pan.position);
-  if (verdict.lost != 0) out.lost = verdict.lost;
+  if (verdict.lost != 0) out.say(Lost{verdict.lost});
   const control::Order order = law_.update(verdict.wish, frame.lens, capture, ahead);
   command.pan = order.pan;
   command.tilt = order.tilt;
@@ -354,8 +360,7 @@ void Station::halt(const char* reason, std::optional<Time> at, drivers::HeadRunn
   if (answer == Answer::done && clock_driven_) runner->ask({}, now, control::kNever, poses, kTickPatience);
   guard.lock();
   remember(poses);
-  for (const Pose& pose : poses)
-    out.poses.push_back(running(pose));  // until it rests: in PAUSED nobody asks again
+  for (const Pose& pose : poses) out.tell(running(pose));  // until it rests: in PAUSED nobody asks again
   if (answer == Answer::late) complain("the head does not answer: it may not have stopped", now, out);
   if (!faulty_) say("stopped", reason, now, out);
 }

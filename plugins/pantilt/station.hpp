@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Between frames, the application's wishes and a head: decides, commands, remembers where the head looked, and says what
-// is to be told to others. Thread-safe; what it tells is put into an outbox, to be sent off without any lock held.
+// is to be told to others. Thread-safe; what it tells is put into the caller's outbox, to be sent off without any lock held.
 //
 // Times in and out are running times. The head's own time never goes back: where running time does (a flush), it goes on.
 #pragma once
@@ -85,6 +85,7 @@ class Station {
   void publish(const std::vector<control::Pose>& poses, Time until, Outbox& out);
   void say(const char* state, std::string reason, Time head, Outbox& out);
   void complain(const std::string& failure, Time head, Outbox& out);
+  void report_refusal(Time head, Outbox& out);
   void check(const std::string& failure, Time head, Outbox& out);
   drivers::HeadCommand decide(const Frame& frame, Time now, Outbox& out);
   bool override(const char* reason, const drivers::HeadCommand& command, std::optional<Time> now,

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a head does is told in the order in which it did it, whichever thread says so and whoever keeps the one that does.
+#include <future>
+#include <thread>
+
+#include "head_rig.h"
+
+namespace {
+
+using namespace head_rig;
+
+GstBuffer* turning_right(GstClockTime pts) {
+  GstBuffer* buffer = frame_at(pts);
+  add(buffer, CERBERUS_FUSION_TURN_RIGHT);
+  return buffer;
+}
+
+// Keeps whoever posts the first state of this name until it is let go.
+class Keeper {
+ public:
+  Keeper(Rig& rig, std::string state) : rig_(rig), state_(std::move(state)) {
+    gst_bus_set_sync_handler(rig.bus, on_message, this, nullptr);
+  }
+  ~Keeper() { gst_bus_set_sync_handler(rig_.bus, nullptr, nullptr, nullptr); }
+  void wait() { there_.get_future().wait(); }
+  void let_go() { go_.set_value(); }
+
+ private:
+  static GstBusSyncReply on_message(GstBus*, GstMessage* message, gpointer keeper) {
+    auto* self = static_cast<Keeper*>(keeper);
+    g_autofree gchar* state = nullptr;
+    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
+    if (!pose || self->state_ != state || self->kept_) return GST_BUS_PASS;
+    self->kept_ = true;
+    self->there_.set_value();
+    self->go_.get_future().wait();
+    return GST_BUS_PASS;
+  }
+
+  Rig& rig_;
+  std::string state_;
+  std::promise<void> there_, go_;
+  bool kept_ = false;
+};
+
+}  // namespace
+
+GST_START_TEST(who_is_kept_while_posting_is_not_overtaken) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  Keeper keeper(rig, "turning");
+  std::thread frames([&] { gst_harness_push(rig.harness, turning_right(0)); });
+  keeper.wait();
+  // Nor does it keep the application.
+  fail_unless(rig.call("stop"));
+  fail_unless(rig.call("auto"));
+  keeper.let_go();
+  frames.join();
+  const std::string states = rig.states();
+  fail_unless(states == "turning manual holding", "\"%s\"", states.c_str());
+}
+GST_END_TEST
+
+// A frame has said what the head is to do, then waits for the driver.
+GST_START_TEST(who_waits_for_the_driver_is_not_overtaken) {
+  Pipe gate, record;
+  Rig rig("driver=scripted script=\"record " + record.writer() + "; command wait " + gate.reader() + "\"");
+  rig.messages();
+  std::thread frames([&] { gst_harness_push(rig.harness, turning_right(0)); });
+  while (!record.line().starts_with("command")) {  // it is in the call
+  }
+  fail_unless(rig.call("stop"));
+  gate.close_writer();
+  frames.join();
+  const std::string states = rig.states();
+  fail_unless(states == "turning manual", "\"%s\"", states.c_str());
+}
+GST_END_TEST
+
+// Whoever hears of a state may answer from where he hears it.
+GST_START_TEST(an_answer_is_told_behind_what_it_answers) {
+  Rig rig("watchdog-timeout=0", Source::live);
+  gst_bus_set_sync_handler(
+      rig.bus,
+      [](GstBus*, GstMessage* message, gpointer answering) {
+        g_autofree gchar* state = nullptr;
+        g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
+        if (pose && g_str_equal(state, "turning")) fail_unless(static_cast<Rig*>(answering)->call("stop"));
+        return GST_BUS_PASS;
+      },
+      &rig, nullptr);
+  rig.push(turning_right(0));
+  const std::string states = rig.states();
+  fail_unless(states == "turning manual", "\"%s\"", states.c_str());
+  gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
+}
+GST_END_TEST
+
+static Suite* pantiltsink_order_suite() {
+  watch_library_log();
+  Suite* suite = suite_create("pantiltsink's messages in their order");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_add_test(tests, who_is_kept_while_posting_is_not_overtaken);
+  tcase_add_test(tests, who_waits_for_the_driver_is_not_overtaken);
+  tcase_add_test(tests, an_answer_is_told_behind_what_it_answers);
+  return suite;
+}
+
+GST_CHECK_MAIN(pantiltsink_order)
