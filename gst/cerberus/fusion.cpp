@@ -18,6 +18,8 @@ constexpr GEnumValue kActions[] = {
     {0, nullptr, nullptr},
 };
 
+constexpr guint8 kInvalid = 2;
+
 struct FusionMeta {
   GstMeta meta;
   CerberusFusion fusion;
@@ -39,8 +41,40 @@ const GstMetaInfo* meta_info() {
   return info;
 }
 
+bool is_action(int number) {
+  return std::ranges::any_of(kActions,
+                             [=](const GEnumValue& a) { return a.value_name && a.value == number; });
+}
+
+// An application may have left anything in it: a number that is no action moves nobody, no reading that is none says somebody.
+CerberusFusion sane(CerberusFusion fusion) {
+  if (!is_action(fusion.action)) fusion.action = CERBERUS_FUSION_HOLD;
+  if (!fusion.rule_name) fusion.rule_name = g_intern_static_string("none");
+  fusion.n_sensors = std::min<guint>(fusion.n_sensors, CERBERUS_PIR_MAX_SENSORS);
+  for (guint i = 0; i < fusion.n_sensors; ++i) {
+    fusion.sensors[i] = std::min(fusion.sensors[i], kInvalid);
+    if (!std::isfinite(fusion.bearings[i])) fusion.bearings[i] = 0;
+  }
+  return fusion;
+}
+
+template <typename T>
+void add_array(GstStructure* structure, const char* field, GType type, void (*set)(GValue*, T), guint count,
+               const auto* values) {
+  GValue array = G_VALUE_INIT;
+  gst_value_array_init(&array, count);
+  for (guint i = 0; i < count; ++i) {
+    GValue value = G_VALUE_INIT;
+    g_value_init(&value, type);
+    set(&value, values[i]);
+    gst_value_array_append_and_take_value(&array, &value);
+  }
+  gst_structure_take_value(structure, field, &array);
+}
+
 // What messages and events say of a decision.
-GstStructure* structure_of(const gchar* name, GstClockTime running_time, const CerberusFusion& fusion) {
+GstStructure* structure_of(const gchar* name, GstClockTime running_time, const CerberusFusion& given) {
+  const CerberusFusion fusion = sane(given);
   GstStructure* structure = gst_structure_new(
       name, "running-time", G_TYPE_UINT64, static_cast<guint64>(running_time), "rule", G_TYPE_INT,
       fusion.rule, "rule-name", G_TYPE_STRING, fusion.rule_name, "action", CERBERUS_TYPE_FUSION_ACTION,
@@ -48,15 +82,8 @@ GstStructure* structure_of(const gchar* name, GstClockTime running_time, const C
       G_TYPE_DOUBLE, fusion.sector_from, "sector-to", G_TYPE_DOUBLE, fusion.sector_to, "limited",
       G_TYPE_BOOLEAN, fusion.limited, "camera-found", G_TYPE_BOOLEAN, fusion.camera_found, "doubtful",
       G_TYPE_UINT, fusion.doubtful, nullptr);
-  GValue array = G_VALUE_INIT;
-  gst_value_array_init(&array, fusion.n_sensors);
-  for (guint i = 0; i < MIN(fusion.n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i) {
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, G_TYPE_INT);
-    g_value_set_int(&value, fusion.sensors[i]);
-    gst_value_array_append_and_take_value(&array, &value);
-  }
-  gst_structure_take_value(structure, "sensors", &array);
+  add_array(structure, "sensors", G_TYPE_INT, g_value_set_int, fusion.n_sensors, fusion.sensors);
+  add_array(structure, "bearings", G_TYPE_DOUBLE, g_value_set_double, fusion.n_sensors, fusion.bearings);
   return structure;
 }
 
@@ -65,8 +92,9 @@ bool read_structure(const GstStructure* s, GstClockTime& time, CerberusFusion& f
   gint action = 0;
   const gchar* rule_name = gst_structure_get_string(s, "rule-name");
   const GValue* sensors = gst_structure_get_value(s, "sensors");
-  if (!rule_name || !sensors || !GST_VALUE_HOLDS_ARRAY(sensors) ||
-      !gst_structure_get_uint64(s, "running-time", &time) ||
+  const GValue* bearings = gst_structure_get_value(s, "bearings");
+  if (!rule_name || !sensors || !GST_VALUE_HOLDS_ARRAY(sensors) || !bearings ||
+      !GST_VALUE_HOLDS_ARRAY(bearings) || !gst_structure_get_uint64(s, "running-time", &time) ||
       !gst_structure_get_int(s, "rule", &fusion.rule) ||
       !gst_structure_get_enum(s, "action", CERBERUS_TYPE_FUSION_ACTION, &action) ||
       !gst_structure_get_uint(s, "target", &fusion.target) ||
@@ -77,15 +105,18 @@ bool read_structure(const GstStructure* s, GstClockTime& time, CerberusFusion& f
       !gst_structure_get_boolean(s, "camera-found", &fusion.camera_found) ||
       !gst_structure_get_uint(s, "doubtful", &fusion.doubtful))
     return false;
-  // A number that is no action moves nobody.
-  if (std::ranges::none_of(kActions, [&](const GEnumValue& a) { return a.value_name && a.value == action; }))
-    return false;
+  if (!is_action(action)) return false;
   fusion.n_sensors = gst_value_array_get_size(sensors);
-  if (fusion.n_sensors > CERBERUS_PIR_MAX_SENSORS) return false;
+  if (fusion.n_sensors > CERBERUS_PIR_MAX_SENSORS || gst_value_array_get_size(bearings) != fusion.n_sensors)
+    return false;
   for (guint i = 0; i < fusion.n_sensors; ++i) {
-    const GValue* value = gst_value_array_get_value(sensors, i);
-    if (!G_VALUE_HOLDS_INT(value)) return false;
-    fusion.sensors[i] = static_cast<guint8>(g_value_get_int(value));
+    const GValue* reading = gst_value_array_get_value(sensors, i);
+    const GValue* bearing = gst_value_array_get_value(bearings, i);
+    if (!G_VALUE_HOLDS_INT(reading) || !G_VALUE_HOLDS_DOUBLE(bearing)) return false;
+    const int said = g_value_get_int(reading);
+    fusion.sensors[i] = said == 0 || said == 1 ? static_cast<guint8>(said) : kInvalid;
+    fusion.bearings[i] = g_value_get_double(bearing);
+    if (!std::isfinite(fusion.bearings[i])) return false;
   }
   fusion.rule_name = g_intern_string(rule_name);
   fusion.action = static_cast<CerberusFusionAction>(action);
@@ -140,7 +171,7 @@ void cerberus_fusion_free(CerberusFusion* fusion) {
 
 GBytes* cerberus_fusion_get_sensors(const CerberusFusion* fusion) {
   g_return_val_if_fail(fusion, nullptr);
-  return g_bytes_new(fusion->sensors, MIN(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS));
+  return g_bytes_new(fusion->sensors, std::min<guint>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS));
 }
 
 gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fusion) {
@@ -151,7 +182,7 @@ gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fus
     return TRUE;
   }
   auto* meta = cerberus::ensure_meta<FusionMeta>(buffer, meta_info());
-  if (meta) meta->fusion = *fusion;
+  if (meta) meta->fusion = sane(*fusion);
   return meta != nullptr;
 }
 

@@ -14,7 +14,7 @@ G_BEGIN_DECLS
  * Name of the structure of the element message that tells of every change of the fusion's decision. Fields:
  * `running-time` (uint64, nanoseconds: of the frame, or, of what was decided between two frames, when that was), `rule` (int), `rule-name` (string), `action` (#CerberusFusionAction), `target`
  * (uint), `pan`, `sector-from`, `sector-to` (double, degrees), `limited`, `camera-found` (boolean), `sensors` (array of
- * int: 0, 1, 2 = invalid), `doubtful` (uint, one bit a sensor).
+ * int: 0, 1, 2 = invalid), `bearings` (array of double, degrees, one a sensor), `doubtful` (uint, one bit a sensor).
  *
  * Since: 0.1
  */
@@ -78,6 +78,7 @@ typedef enum {
  * @camera_found: the camera sees a confirmed object
  * @n_sensors: number of PIR sensors
  * @sensors: their readings: 0 nothing, 1 somebody, 2 invalid
+ * @bearings: where each of them looks, degrees, positive to the right of straight ahead; 0 for one that has not told yet
  * @doubtful: one bit a sensor: its reading was not counted because the robot itself turned
  * @decided: running time until which the sensors were heard for it: of two decisions the later one counts;
  *     %GST_CLOCK_TIME_NONE if it is not known
@@ -97,6 +98,7 @@ struct _CerberusFusion {
   gboolean limited, camera_found;
   guint n_sensors;
   guint8 sensors[CERBERUS_PIR_MAX_SENSORS];
+  gdouble bearings[CERBERUS_PIR_MAX_SENSORS];
   guint doubtful;
   GstClockTime decided;
 
@@ -189,7 +191,8 @@ GBytes *cerberus_fusion_get_sensors (const CerberusFusion *fusion);
  * @buffer: a writable buffer
  * @fusion: (nullable): what was decided for the frame, copied; %NULL removes
  *
- * Attaches @fusion, replacing one that is there already. A fact about the moment: it survives scaling and cropping.
+ * Attaches @fusion, replacing one that is there already. A fact about the moment: it survives scaling and cropping. An
+ * action that is none counts as %CERBERUS_FUSION_HOLD.
  *
  * Returns: %TRUE if @buffer now carries @fusion (or none, for %NULL); %FALSE if @buffer is not writable.
  *

@@ -2,11 +2,11 @@
 #include "translation.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "choices.hpp"
 #include "sensing/angles.h"
 #include "settings.hpp"
+#include "text/numbers.h"
 
 namespace cerberus::plugin {
 
@@ -14,7 +14,7 @@ namespace {
 
 // As somebody would write it: -30, not -29.999999999999986.
 double degrees_told(double radians) {
-  return std::round(sensing::degrees(radians) * 1e6) / 1e6;
+  return text::round_to(sensing::degrees(radians), 6);
 }
 
 }  // namespace
@@ -41,6 +41,8 @@ CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment,
   fusion.camera_found = decision.camera_found;
   fusion.n_sensors = static_cast<guint>(moment.count);
   std::copy_n(moment.sensors.begin(), moment.count, std::begin(fusion.sensors));
+  std::transform(moment.bearings.begin(), moment.bearings.begin() + static_cast<std::ptrdiff_t>(moment.count),
+                 std::begin(fusion.bearings), degrees_told);
   fusion.doubtful = decision.doubtful;
   return fusion;
 }

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
 #include <utility>
+
+#include "text/numbers.h"
 
 namespace cerberus::draw {
 
@@ -80,12 +81,9 @@ std::optional<Object> clipped(Object object, Area frame) {
   return sane ? std::optional(object) : std::nullopt;
 }
 
-// Locale-independent, two significant digits at least.
+// Two significant digits at least.
 std::string number(double value) {
-  char text[32];
-  value = std::min(value, 99999.0);
-  const int decimals = value < 10 ? 1 : 0;
-  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::fixed, decimals).ptr};
+  return text::fixed(std::min(value, 99999.0), value < 10 ? 1 : 0).string();
 }
 
 }  // namespace
@@ -416,16 +414,13 @@ void Painter::paint_crosshair(std::vector<Patch>& patches) {
 }
 
 // A panel in the corner: the head's angles, the sensors as the paper's LEDs (red: detects, blue: does not, grey: says nothing)
-// with their numbers, the rule and the action.
+// with their numbers, as they look from left to right, the rule and the action.
 void Painter::paint_system(std::vector<Patch>& patches) {
   const System& system = scene_->system;
   const auto degrees = [](double value) {
-    // Not by the locale; what is no angle of a head does not fit either.
-    if (!std::isfinite(value) || std::abs(value) > 1e4) return std::string("?");
-    char digits[24];
-    value += 0.0;
-    const auto end = std::to_chars(digits, digits + sizeof digits, value, std::chars_format::fixed, 1).ptr;
-    return std::string(digits, end);
+    // What is no angle of a head does not fit in either.
+    const bool fits = std::abs(value) <= 1e4;
+    return fits ? text::fixed(value, 1).string() : std::string("?");
   };
   std::string lines[2];
   if (system.pose) lines[0] = "pan " + degrees(system.pan) + "  tilt " + degrees(system.tilt);
@@ -436,7 +431,7 @@ void Painter::paint_system(std::vector<Patch>& patches) {
   select_font(measure.get(), font_);
   const double pad = 0.5 * font_, led = 0.5 * font_, step = 2.4 * led, row = 1.35 * font_, edge = 0.6 * font_;
   const double leds =
-      system.sensors.empty() ? 0 : step * static_cast<double>(system.sensors.size()) + 0.3 * font_;
+      system.lights.empty() ? 0 : step * static_cast<double>(system.lights.size()) + 0.3 * font_;
   const double width = 2 * pad + std::max(text_width(measure.get(), lines[0].c_str()),
                                           leds + text_width(measure.get(), lines[1].c_str()));
   const double height = pad + row * (!lines[0].empty() + !lines[1].empty());
@@ -449,14 +444,13 @@ void Painter::paint_system(std::vector<Patch>& patches) {
       if (line.empty()) continue;
       double x = edge + pad;
       if (&line == &lines[1])
-        for (std::size_t i = 0; i < system.sensors.size(); ++i) {
-          const std::uint8_t sensor = system.sensors[i];
+        for (const Light& light : system.lights) {
           cairo_arc(cr, x + led, y + row / 2, led, 0, 2 * std::numbers::pi);
-          source(cr, sensor == 1   ? Color{1, 0.15, 0.1}
-                     : sensor == 0 ? Color{0.15, 0.35, 1}
-                                   : Color{0.5, 0.5, 0.5});
+          source(cr, light.reading == 1   ? Color{1, 0.15, 0.1}
+                     : light.reading == 0 ? Color{0.15, 0.35, 1}
+                                          : Color{0.5, 0.5, 0.5});
           cairo_fill(cr);
-          const std::string name = std::to_string(i + 1);
+          const std::string name = std::to_string(light.sensor);
           source(cr, {1, 1, 1});
           select_font(cr, 0.75 * font_, true);
           cairo_move_to(cr, x + led - text_width(cr, name.c_str()) / 2, y + row / 2 + 0.27 * font_);

@@ -61,12 +61,17 @@ struct Object {
   bool target = false;  // the one whom the head follows
 };
 
+struct Light {
+  int sensor = 0;            // its number, from 1
+  std::uint8_t reading = 2;  // 0 nothing, 1 somebody, else invalid
+};
+
 // Where a head looks, and what it was told to do.
 struct System {
   bool pose = false, decision = false;  // what of the following is known
   double pan = 0, tilt = 0;             // degrees
   std::string rule, action;
-  std::span<const std::uint8_t> sensors;  // 0 nothing, 1 somebody, else invalid
+  std::vector<Light> lights;  // from left to right
 };
 
 struct Scene {

@@ -16,9 +16,9 @@
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
  *
  * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor (red:
- * detects, blue: does not, grey: no valid reading) with its number, counted as in `bearings` of `pirsrc`, the rule that fired (its
- * number if it has one, and its name) and the action. Whom `pirfusion` has the head follow is marked by thick corners round the box. What others attached to the frame
- * (`inset` of `virtualptz`, say) lies on top.
+ * detects, blue: does not, grey: no valid reading) in the order in which they look from left to right, with its number, counted as
+ * in `bearings` of `pirsrc`, the rule that fired (its number if it has one, and its name) and the action. Whom `pirfusion` has the
+ * head follow is marked by thick corners round the box. What others attached to the frame (`inset` of `virtualptz`, say) lies on top.
  *
  * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn in
  * white, without identity and trail. What reaches beyond the frame is cut at its edge.
@@ -55,6 +55,7 @@
 #include "composition.hpp"
 #include "drawing.hpp"
 #include "properties.hpp"
+#include "sensing/angles.h"
 #include "vision/trails.h"
 
 namespace {
@@ -340,7 +341,16 @@ std::string rule_text(const CerberusFusion& fusion) {
   return number.empty() || name.empty() ? number + name : number + " " + name;
 }
 
-// Borrows from the buffer's metas.
+// From the left behind to the right behind, as somebody in the robot's place would point at them.
+std::vector<draw::Light> lights_of(const CerberusFusion& fusion) {
+  std::vector<draw::Light> lights;
+  for (guint i = 0; i < fusion.n_sensors; ++i) lights.push_back({static_cast<int>(i) + 1, fusion.sensors[i]});
+  std::ranges::stable_sort(lights, {}, [&](const draw::Light& light) {
+    return cerberus::sensing::wrap(cerberus::sensing::radians(fusion.bearings[light.sensor - 1]));
+  });
+  return lights;
+}
+
 draw::System read_system(GstBuffer* buffer) {
   draw::System system;
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
@@ -352,7 +362,7 @@ draw::System read_system(GstBuffer* buffer) {
     system.decision = true;
     system.rule = rule_text(*fusion);
     system.action = cerberus_fusion_action_get_nick(fusion->action);
-    system.sensors = {fusion->sensors, std::min<std::size_t>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS)};
+    system.lights = lights_of(*fusion);
   }
   return system;
 }

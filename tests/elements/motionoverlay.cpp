@@ -98,6 +98,41 @@ GST_START_TEST(tiny_and_odd_frames_are_drawn_on) {
 }
 GST_END_TEST
 
+// Left is where the leftmost looks, whatever its number is.
+GST_START_TEST(lights_lie_as_their_sensors_look) {
+  const std::string caps = caps_string("RGBx", kWidth, kHeight);
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const struct {
+    std::array<double, 3> bearings;
+    bool first_is_left;  // of the second
+  } cases[] = {{{0, -120, 120}, false}, {{-10, 10, 30}, true},
+               {{190, -160, 0}, true},                                  // the first looks to -170
+               {{350, 340, 0}, false},  {{kNan, -1, HUGE_VAL}, false},  // as straight ahead
+               {{0, 0, 0}, true}};
+  for (const auto& c : cases) {
+    CerberusFusion fusion;
+    cerberus_fusion_init(&fusion);
+    fusion.n_sensors = 3;
+    std::ranges::copy(c.bearings, fusion.bearings);
+    fusion.sensors[0] = 1;
+    fusion.sensors[2] = 2;
+    Harness h = started("motionoverlay", caps);
+    GstBuffer* in = frame(info_of(caps));
+    cerberus_buffer_set_fusion(in, &fusion);
+    GstBuffer* out = through(h.get(), in);
+    const auto all = bytes(out);
+    gst_buffer_unref(out);
+    std::array<std::size_t, 2> sum{}, count{};  // of red and blue: x
+    for (std::size_t i = 0; i + 3 < all.size(); i += 4)
+      for (const bool blue : {false, true})
+        if (all[i + 2 * blue] > 200 && all[i + 2 * !blue] < 80) sum[blue] += i / 4 % kWidth, ++count[blue];
+    fail_unless(count[0] > 10 && count[1] > 10);
+    fail_unless((sum[0] / count[0] < sum[1] / count[1]) == c.first_is_left, "%g, %g", c.bearings[0],
+                c.bearings[1]);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(head_sensors_and_decision_are_shown_in_the_corner) {
   const std::string caps = caps_string("RGBx", kWidth, kHeight);
   CerberusPose pose;
@@ -302,6 +337,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, a_box_is_drawn_into_every_format);
   tcase_add_test(tc, colours_are_right_in_every_format);
   tcase_add_test(tc, tiny_and_odd_frames_are_drawn_on);
+  tcase_add_test(tc, lights_lie_as_their_sensors_look);
   tcase_add_test(tc, head_sensors_and_decision_are_shown_in_the_corner);
   tcase_add_test(tc, nothing_is_drawn_beyond_the_frame);
   tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);

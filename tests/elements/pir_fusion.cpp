@@ -197,7 +197,7 @@ START_TEST(a_fusion_message_tells_the_whole_decision) {
     fail_unless_equals_uint64(time, 7 * GST_SECOND);
   }
   for (const char* field : {"running-time", "rule", "rule-name", "action", "target", "pan", "sector-from",
-                            "sector-to", "limited", "camera-found", "sensors", "doubtful"}) {
+                            "sector-to", "limited", "camera-found", "sensors", "bearings", "doubtful"}) {
     g_autoptr(GstMessage) message = cerberus_message_new_fusion(nullptr, 0, &fusion);
     gst_structure_remove_field(gst_message_writable_structure(message), field);
     fail_if(cerberus_message_parse_fusion(message, nullptr), "without %s", field);
@@ -232,6 +232,55 @@ START_TEST(an_event_between_frames_tells_the_whole_decision_and_when) {
   EXPECT_CRITICAL(cerberus_event_new_fusion("eye", &fusion));
   EXPECT_CRITICAL(cerberus_event_new_fusion("eye", nullptr));
   EXPECT_CRITICAL(cerberus_event_parse_fusion(nullptr, nullptr));
+}
+END_TEST
+
+// A C structure, a message and an event hold what an application has put in.
+START_TEST(nonsense_in_a_decision_moves_nobody) {
+  for (const int action : {257, -1, 6}) {  // the first is 1 in a byte
+    CerberusFusion fusion = searching();
+    fusion.action = static_cast<CerberusFusionAction>(action);
+    fusion.rule_name = nullptr;
+    fusion.n_sensors = 400;
+    fusion.sensors[2] = 100;
+    fusion.bearings[2] = kNan;
+    fusion.bearings[3] = -HUGE_VAL;
+    fusion.decided = 0;
+    g_autoptr(GstBuffer) frame = gst_buffer_new();
+    fail_unless(cerberus_buffer_set_fusion(frame, &fusion));
+    g_autoptr(GstMessage) message = cerberus_message_new_fusion(nullptr, 0, &fusion);
+    g_autoptr(GstEvent) event = cerberus_event_new_fusion("eye", &fusion);
+    g_autoptr(CerberusFusion) heard = cerberus_message_parse_fusion(message, nullptr);
+    g_autoptr(CerberusFusion) told = cerberus_event_parse_fusion(event, nullptr);
+    const CerberusFusion* const all[] = {cerberus_buffer_peek_fusion(frame), heard, told};
+    for (const CerberusFusion* f : all) {
+      fail_unless_equals_int(f->action, CERBERUS_FUSION_HOLD);
+      fail_unless_equals_string(f->rule_name, "none");
+      fail_unless_equals_int(f->n_sensors, CERBERUS_PIR_MAX_SENSORS);
+      fail_unless_equals_int(f->sensors[2], 2);
+      fail_unless(f->bearings[1] == -120 && f->bearings[2] == 0 && f->bearings[3] == 0);
+    }
+  }
+  const CerberusFusion fusion = searching();
+  const auto heard = [&](const char* field, GType type, auto set, auto value) {
+    GstMessage* message = cerberus_message_new_fusion(nullptr, 0, &fusion);
+    GValue array = G_VALUE_INIT, item = G_VALUE_INIT;
+    gst_value_array_init(&array, 3);
+    g_value_init(&item, type);
+    set(&item, value);
+    for (int i = 0; i < 3; ++i) gst_value_array_append_value(&array, &item);
+    gst_structure_take_value(gst_message_writable_structure(message), field, &array);
+    CerberusFusion* result = cerberus_message_parse_fusion(message, nullptr);
+    gst_message_unref(message);
+    return result;
+  };
+  for (const int reading : {257, -1, 3}) {
+    g_autoptr(CerberusFusion) f = heard("sensors", G_TYPE_INT, g_value_set_int, reading);
+    fail_unless_equals_int(f->sensors[0], 2);
+  }
+  fail_if(heard("sensors", G_TYPE_DOUBLE, g_value_set_double, 1.0));
+  fail_if(heard("bearings", G_TYPE_INT, g_value_set_int, 1));
+  fail_if(heard("bearings", G_TYPE_DOUBLE, g_value_set_double, kNan));
 }
 END_TEST
 
@@ -284,6 +333,7 @@ static Suite* pir_fusion_suite() {
   tcase_add_test(tc, a_pir_message_tells_every_reading);
   tcase_add_test(tc, a_fusion_message_tells_the_whole_decision);
   tcase_add_test(tc, an_event_between_frames_tells_the_whole_decision_and_when);
+  tcase_add_test(tc, nonsense_in_a_decision_moves_nobody);
   tcase_add_test(tc, actions_have_names);
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;

@@ -106,6 +106,8 @@ GST_START_TEST(several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_num
   // The first sensor of pir_5 looks at 90 +- 30.
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
   fail_unless(fusion.sector_from == 60 && fusion.sector_to == 120);
+  const double bearings[] = {-100, 0, -30, 0, 0, 90, 150};  // nobody has told of those between
+  for (int i = 0; i < 7; ++i) fail_unless(fusion.bearings[i] == bearings[i], "%d: %g", i, fusion.bearings[i]);
 }
 GST_END_TEST
 

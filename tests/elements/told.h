@@ -55,6 +55,8 @@ inline CerberusFusion searching() {
   fusion.sensors[0] = 1;
   fusion.sensors[1] = 0;
   fusion.sensors[2] = 2;
+  fusion.bearings[1] = -120;
+  fusion.bearings[2] = 120.5;
   fusion.doubtful = 0b100;
   return fusion;
 }
@@ -73,7 +75,10 @@ inline void assert_same(const CerberusFusion& a, const CerberusFusion& b) {
   fail_unless_equals_int(a.limited, b.limited);
   fail_unless_equals_int(a.camera_found, b.camera_found);
   fail_unless_equals_int(a.n_sensors, b.n_sensors);
-  for (guint i = 0; i < a.n_sensors; ++i) fail_unless_equals_int(a.sensors[i], b.sensors[i]);
+  for (guint i = 0; i < a.n_sensors; ++i) {
+    fail_unless_equals_int(a.sensors[i], b.sensors[i]);
+    fail_unless(a.bearings[i] == b.bearings[i]);
+  }
   fail_unless_equals_int(a.doubtful, b.doubtful);
 }
 
