@@ -54,7 +54,7 @@ struct Fuser::State {
   // Everything that reset() forgets.
   struct Memory {
     bool begun = false;
-    Time time{};
+    Time time{}, heard = kLongAgo;
 
     Follower follower;  // the camera's part
 
@@ -109,9 +109,9 @@ void Fuser::State::read_sensors(const Input& input) {
   // A turning body trips its own sensors, and a module holds that for a while after the turn.
   const bool turning = std::abs(input.base_yaw_rate) > sensing::kDoubtfulTurn;  // false for NaN
   if (turning || m.turning) m.tainted |= ones;  // also what came between two frames
-  if (m.turning && !turning) m.turned = input.time;
+  if (m.turning && !turning) m.turned = input.heard;
   m.turning = turning;
-  if (!turning && !within(sensing::kDoubtLinger, m.turned, input.time)) m.tainted = 0;
+  if (!turning && !within(sensing::kDoubtLinger, m.turned, input.heard)) m.tainted = 0;
   m.tainted &= ones;
   m.doubtful = m.tainted;
 
@@ -142,7 +142,7 @@ void Fuser::State::watch_sweep(const Input& input) {
   const Interval& sweep = m.places[m.place].sweep;
   m.seen_left = m.seen_left || input.pan <= sweep.from + kEdge;
   m.seen_right = m.seen_right || input.pan >= sweep.to - kEdge;
-  if (m.places.count < 2 || !m.seen_left || !m.seen_right || input.time - m.arrived < options.dwell) return;
+  if (m.places.count < 2 || !m.seen_left || !m.seen_right || input.heard - m.arrived < options.dwell) return;
   look_at((m.place + 1) % m.places.count);
 }
 
@@ -171,7 +171,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     else
       m.place = 0;
   }
-  if (m.fired == 0 && !within(options.return_delay, m.detected, input.time)) {
+  if (m.fired == 0 && !within(options.return_delay, m.detected, input.heard)) {
     forget_places();
     next.limited = !options.limits.holds(0);
     return say(Action::zero, 7, "zero");
@@ -183,7 +183,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
   const double pan = std::clamp(input.pan, options.limits.from, options.limits.to);  // NaN stays NaN
   const Action action = approach(place, pan, m.inside, options.hysteresis);
   const bool inside = action == Action::search;
-  if (inside && !m.inside) m.arrived = input.time;
+  if (inside && !m.inside) m.arrived = input.heard;
   m.inside = inside;
   next.sector = inside ? place.sweep : place.wanted;
   next.limited = place.limited;
@@ -234,7 +234,7 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
     }
     case Action::zero:
       next.limited = !limits.holds(0);
-      if (within(options.return_delay, m.detected, input.time)) {
+      if (within(options.return_delay, m.detected, input.heard)) {
         next.action = Action::hold;
         next.rule = 0;
         next.rule_name = "return";
@@ -258,7 +258,7 @@ Decision Fuser::State::decide(const Input& input) {
   next.doubtful = m.doubtful;
   next.invalid = m.invalid;
   next.camera_found = m.follower.found(options.camera_hold, input.time);
-  if (next.camera_found || m.fired != 0) m.detected = input.time;
+  if (next.camera_found || m.fired != 0) m.detected = input.heard;
   next = options.rules == RuleSet::table ? by_table(input, next) : complete(input, next);
 
   // Somebody who stopped is blind to camera and PIR alike, yet there: rule 7 waits.
@@ -312,11 +312,14 @@ const Decision& Fuser::update(const Input& input) {
   State& state = *state_;
   if (state.memory.begun && input.time < state.memory.time) reset();
   const bool first = !state.memory.begun;
-  if (first) state.memory.detected = input.time;  // nobody knows who was there a moment ago
+  Input now = input;
+  now.heard = std::max({input.heard, input.time, state.memory.heard});
+  if (first) state.memory.detected = now.heard;  // nobody knows who was there a moment ago
   state.memory.begun = true;
-  state.memory.time = input.time;
+  state.memory.time = now.time;
+  state.memory.heard = now.heard;
 
-  const Decision next = state.decide(input);
+  const Decision next = state.decide(now);
   const Decision& old = state.decision;
   const bool changed = first || next.action != old.action || next.rule != old.rule ||
                        next.rule_name != old.rule_name || next.target != old.target ||

@@ -48,10 +48,11 @@ struct Track {
 };
 
 struct Input {
-  Time time{};                            // running time of the frame
+  Time time{};                            // running time of the frame, which the tracks are of
+  Time heard = Time::min();               // of what follows, where that is later
   std::span<const Track> tracks;          // any order
   std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
-  double pan = kUnknown;                  // radians, the head at the frame's capture time
+  double pan = kUnknown;                  // radians
   double base_yaw_rate = kUnknown;        // radians a second
 };
 
@@ -75,7 +76,7 @@ struct Decision {
       false;  // rule, action, target, sector, limited, camera_found, or a sensor differs from last frame
 };
 
-// Not thread-safe: one streaming thread. Steady state allocates nothing. The same inputs give the same decisions.
+// Not thread-safe: one caller at a time. Steady state allocates nothing. The same inputs give the same decisions.
 class Fuser {
  public:
   Fuser();
@@ -94,7 +95,8 @@ class Fuser {
 
   // Forget tracks, detections and timers (flush, DISCONT, new segment). Options, geometry and table stay.
   void reset();
-  // Time that goes back resets first. Long gaps let timers expire as if frames had come.
+  // Time that goes back resets first; `heard` alone does not go back. Long gaps let timers expire as if frames had come. The
+  // same frame may come again, with what was heard since.
   const Decision& update(const Input& input);
 
  private:

@@ -26,16 +26,25 @@ fusion::Interval Decisions::limits() const {
   return fuser_.options().limits;
 }
 
-void Decisions::begin_anew() {
-  const std::lock_guard guard(lock_);
+void Decisions::restart() {
   fuser_.reset();
   last_.reset();
   heard_ = Time::zero();
 }
 
-void Decisions::forget() {
-  begin_anew();
+void Decisions::begin_anew() {
   const std::lock_guard guard(lock_);
+  restart();
+}
+
+void Decisions::end() {
+  const std::lock_guard guard(lock_);
+  last_.reset();
+}
+
+void Decisions::forget() {
+  const std::lock_guard guard(lock_);
+  restart();
   fuser_ = {};
   news_.clear();
 }
@@ -49,13 +58,14 @@ CerberusFusion Decisions::decide(const Frame& frame, Time at) {
     fuser_.set_geometry(geometry);
   }
   const fusion::Decision& decision = fuser_.update({.time = frame.time,
+                                                    .heard = heard_,
                                                     .tracks = tracks_,
                                                     .sensors = std::span(moment.sensors).first(moment.count),
                                                     .pan = sensing::radians(moment.pan_degrees),
                                                     .base_yaw_rate = sensing::radians(moment.base_degrees)});
   CerberusFusion fusion = as_fusion(decision, moment, rule_name_);
   fusion.decided = clock_time(heard_);
-  if (decision.changed) news_.push_back({at, fusion});
+  if (decision.changed) news_.put({at, fusion});
   return fusion;
 }
 
@@ -69,16 +79,16 @@ Decisions::Told Decisions::frame(GstBuffer* buffer, Time time, Time heard, const
   read_tracks(buffer, tracks_);
   const CerberusFusion fusion = decide(frame, time);
   last_.reset();
-  if (live) last_ = frame;
+  if (live && !inputs_.flushing()) last_ = frame;
   return {fusion, frame.moment};
 }
 
-std::optional<Decisions::Told> Decisions::between(Time heard) {
+std::optional<Decisions::Told> Decisions::between(Time heard, const std::string& head) {
   const std::lock_guard guard(lock_);
   if (!last_ || heard - last_->heard > kBetween) return std::nullopt;
   heard = std::max(heard, heard_);
   Frame frame = *last_;
-  inputs_.listen(heard, frame.moment);
+  inputs_.listen(heard, frame.time, head, frame.moment);
   const auto same = [&](auto part) {
     return std::ranges::equal(std::span(frame.moment.*part).first(frame.moment.count),
                               std::span(last_->moment.*part).first(last_->moment.count));
@@ -92,16 +102,7 @@ std::optional<Decisions::Told> Decisions::between(Time heard) {
 }
 
 void Decisions::tell(const std::function<void(Time, const CerberusFusion&)>& tell) {
-  std::unique_lock guard(lock_);
-  if (std::exchange(telling_, true)) return;
-  while (!news_.empty()) {
-    const Change change = news_.front();
-    news_.pop_front();
-    guard.unlock();
-    tell(change.time, change.fusion);
-    guard.lock();
-  }
-  telling_ = false;
+  news_.tell([&](const Change& change) { tell(change.time, change.fusion); });
 }
 
 }  // namespace cerberus::plugin

@@ -5,13 +5,13 @@
 
 #include <cerberus/cerberus.h>
 
-#include <deque>
 #include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cerberus/private/in_order.hpp"
 #include "fusion/fuser.h"
 #include "inputs.hpp"
 #include "translation.hpp"
@@ -30,16 +30,16 @@ class Decisions {
   void configure(const fusion::FuserOptions& options, const fusion::RuleTable& table);
   fusion::Interval limits() const;  // those that are in force
   void begin_anew();                // another scene, or another stream
+  void end();                       // of the stream, or a flush: there is no last frame any more
   void forget();                    // everything
 
   // For the frame of `time`, by what was heard until `heard`. live: others may ask before the next one.
   Told frame(GstBuffer* frame, Time time, Time heard, const std::string& head, bool live);
   // Until the next frame: the last one once more, with what the sensors have said until `heard`. Nothing: they have said
   // nothing new, or there is no live frame to speak of.
-  std::optional<Told> between(Time heard);
+  std::optional<Told> between(Time heard, const std::string& head);
 
-  // Tells every change that was decided and not told yet, in their order. One thread at a time does, without a lock, so a
-  // change may be told by another one than decided it.
+  // Tells every change that was decided and not told yet, in their order.
   void tell(const std::function<void(Time, const CerberusFusion&)>& tell);
 
  private:
@@ -51,8 +51,9 @@ class Decisions {
     Time time;
     CerberusFusion fusion;
   };
-  // `at`: what a change is told with.
+  // `at`: what a change is told with. Both with the lock held.
   CerberusFusion decide(const Frame& frame, Time at);
+  void restart();
 
   Inputs& inputs_;
   mutable std::mutex lock_;  // held while the inputs are asked, and never the other way round
@@ -61,8 +62,7 @@ class Decisions {
   RuleName rule_name_;
   Time heard_{};               // by the last decision
   std::optional<Frame> last_;  // of a live stream
-  std::deque<Change> news_;
-  bool telling_ = false;
+  InOrder<Change> news_;
 };
 
 }  // namespace cerberus::plugin

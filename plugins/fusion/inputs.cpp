@@ -122,9 +122,17 @@ void Inputs::hear_sensors(Time heard, Moment& moment) {
   }
 }
 
-void Inputs::listen(Time heard, Moment& moment) {
+bool Inputs::flushing() {
+  const std::lock_guard guard(lock_);
+  return flushing_;
+}
+
+void Inputs::listen(Time heard, Time frame, const std::string& head, Moment& moment) {
   const std::lock_guard guard(lock_);
   hear_sensors(heard, moment);
+  const auto* pose = poses_.entry_at(heard);
+  if (pose && is_named(pose->value, head) && (pose->time > frame || !moment.pan_on_frame))
+    cerberus_pose_evaluate(&pose->value, clock_time(heard), &moment.pan_degrees, nullptr);
   if (const auto rate = base_.at(heard)) moment.base_degrees = *rate;
 }
 
@@ -137,6 +145,7 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
   moment.stranger = stranger_;
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
+  moment.pan_on_frame = pose != nullptr;
   if (!pose) {
     pose = poses_.at(time) ? poses_.at(time) : poses_.first();  // before the first one: where it begins
     if (pose && !is_named(*pose, head)) pose = nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What pirfusion's pads share: what was heard of sensors, head and base, by running time, and who waits for whom. PIR
-// threads and upstream events write, the video thread reads.
+// threads and upstream events write; the video's thread reads, and, between two frames of a live one, the PIR threads do.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -30,6 +30,7 @@ struct Moment {
   std::size_t count = 0;
   double pan_degrees = std::numeric_limits<double>::quiet_NaN();
   double base_degrees = std::numeric_limits<double>::quiet_NaN();  // a second
+  bool pan_on_frame = false;
   bool base_heard = false;         // by an event, which the PIR pads have got too
   bool told = true;                // all sensors, by caps: none is assumed
   const char* stranger = nullptr;  // interned: another head, which told its pose
@@ -53,11 +54,16 @@ class Inputs {
   // Where nobody waits: gives up the linked PIR pads that have said nothing in the last `patience` before `heard`, but for
   // recordings, whose last word stays true.
   void give_up_silent(Time heard, Time patience, std::vector<SilentPad>& silent);
+
+  // ---- whoever decides: the video thread, or a PIR thread between two frames (see decisions.hpp)
   // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before a
   // pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
   Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
-  // The sensors at `heard` in place of those that the moment has, and the base's turning where an event told it.
-  void listen(Time heard, Moment& moment);
+  // The moment of a frame of `frame`, for the time `heard`: other sensors, and pan and base as events have told them since.
+  void listen(Time heard, Time frame, const std::string& head, Moment& moment);
+  bool flushing();
+
+  // ---- the video's events
   void begin_video();  // a new stream, or after a flush
   void end_video() { set(video_ended_, true); }
   void set_flushing(bool flushing) { set(flushing_, flushing); }  // also while the sink pad is not active

@@ -16,7 +16,8 @@
  * - Live: a frame never waits; the newest reading counts that there is when it comes, even one that is younger than the
  *   frame: a camera's frames are old when they arrive, and who is heard shall not wait for that. Nor for the next frame: when
  *   a sensor of a live source changes its mind, that is decided at once, as if the last frame came again (if that was in the last
- *   second), and goes downstream as the event `cerberus-fusion`, which `pantiltsink` obeys. Without a reading the
+ *   second) with the newest pose that the head has told, and goes downstream as the event `cerberus-fusion`, which
+ *   `pantiltsink` obeys while frames come. Those of another `pirfusion` upstream end here. Without a reading the
  *   sensors are invalid. So are those of a pad that was silent for `lost-after`, or ended so long ago: a warning names it.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
@@ -68,6 +69,7 @@
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
+#include "text/numbers.h"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 #define GST_CAT_DEFAULT pirfusion_debug
@@ -167,12 +169,13 @@ Time heard_until(CerberusPirFusion* self, Time time, bool live) {
 }
 
 void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guint64 patience) {
+  const std::string seconds = text::significant(static_cast<double>(patience) / GST_SECOND, 3).string();
   for (const SilentPad& pad : silent) {
     const char* what = pad.ended ? "The PIR readings have ended at" : "No PIR reading comes to";
     GST_ELEMENT_WARNING(
         self, RESOURCE, READ,
-        ("%s pad %s, for %.3g s now: its sensors are invalid and nobody waits for them.", what,
-         pad.name.c_str(), static_cast<double>(patience) / GST_SECOND),
+        ("%s pad %s, for %s s now: its sensors are invalid and nobody waits for them.", what,
+         pad.name.c_str(), seconds.c_str()),
         ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(self->priv->state->time))));
   }
 }
@@ -190,9 +193,9 @@ void decide_between_frames(CerberusPirFusion* self) {
   const GstClockTime now = gst_element_get_current_running_time(GST_ELEMENT(self));
   if (!GST_CLOCK_TIME_IS_VALID(now)) return;
   Private& priv = *self->priv;
-  const auto told = priv.decisions.between(time_of(now));
-  if (!told) return;
   const std::string head = priv.settings.snapshot().head;
+  const auto told = priv.decisions.between(time_of(now), head);
+  if (!told) return;
   gst_pad_push_event(priv.src, cerberus_event_new_fusion(head.c_str(), &told->fusion));
   tell_changes(self);
 }
@@ -284,6 +287,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
     }
     case GST_EVENT_FLUSH_START:
       priv.inputs.set_flushing(true);
+      priv.decisions.end();  // whoever decides on a frame just now leaves none behind
       break;
     case GST_EVENT_FLUSH_STOP:
       priv.decisions.begin_anew();
@@ -294,7 +298,13 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
       break;
     case GST_EVENT_EOS:
       priv.inputs.end_video();
+      priv.decisions.end();
       break;
+    case GST_EVENT_CUSTOM_DOWNSTREAM_OOB:
+      // Of another one upstream, whose decisions on frames are replaced here.
+      if (!gst_event_has_name(event, CERBERUS_EVENT_FUSION)) break;
+      gst_event_unref(event);
+      return TRUE;
     default:
       break;
   }

@@ -26,8 +26,9 @@ const Property<Settings> kTable[] = {
     property("rules", &Settings::rules, rules_type, "The rule set; rules-file goes before it"),
     property(
         "rules-file", &Settings::rules_file,
-        "Path of a rule table of your own (TOML); empty = none. A table with a gap or a contradiction is "
-        "refused; given while the element runs, the old rules and their path stay"),
+        "Path of a rule table of your own (TOML); empty = none. A table with a gap, a contradiction or a "
+        "rule "
+        "that never applies is refused; given while the element runs, the old rules and their path stay"),
     property("target", &Settings::target, target_type,
              "Whom to follow when nobody is followed yet; whoever is followed stays the target"),
     property(

@@ -121,6 +121,34 @@ START_TEST(a_doubtful_sensor_that_rests_is_believed_again) {
 }
 END_TEST
 
+// What was heard after the frame counts from when it was heard, though the frame comes again with its own time.
+START_TEST(sensors_and_base_have_a_time_of_their_own) {
+  Fuser fuser;
+  std::vector<std::uint8_t> sensors{1, 0, 0};
+  const auto hear = [&](Time frame, Time heard, double yaw_rate) -> const Decision& {
+    return fuser.update({.time = frame,
+                         .heard = heard,
+                         .tracks = {},
+                         .sensors = sensors,
+                         .pan = 0,
+                         .base_yaw_rate = radians(yaw_rate)});
+  };
+  ck_assert_int_eq(hear(0s, 0s, 30).doubtful, 1);
+  ck_assert_int_eq(hear(0s, 900ms, 30).doubtful, 1);
+  ck_assert_int_eq(hear(0s, 0s, 0).doubtful, 1);      // it stands: at 900 ms, for nothing goes back
+  ck_assert_int_eq(hear(3500ms, 0s, 0).doubtful, 1);  // a frame that was heard of no later than it was taken
+  ck_assert_int_eq(hear(3600ms, 3850ms, 0).doubtful, 1);
+  ck_assert_int_eq(hear(3600ms, 3900ms, 0).doubtful, 0);
+
+  ck_assert_int_eq(hear(3600ms, 4500ms, 0).fired, 1);  // the last detection
+  sensors = {0, 0, 0};
+  assert_says(hear(9s, 9490ms, 0), Action::search, 0, "return");
+  assert_says(hear(9s, 9500ms, 0), Action::zero, 7, "zero");
+  ck_assert_int_eq(hear(1s, 1s, 30).doubtful, 0);  // anew: no sensor says anything
+  assert_says(hear(2s, 2s, 0), Action::hold, 0, "return");
+}
+END_TEST
+
 START_TEST(the_paper_stands_still_where_it_tracks_nobody) {
   Stream stream(paper_options());
   stream.sensors = {1, 0, 0};
@@ -323,10 +351,10 @@ int main() {
       {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
        the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_told,
        invalid_readings_do_not_count_but_are_told, what_a_turning_base_trips_is_doubtful_and_does_not_count,
-       a_doubtful_sensor_that_rests_is_believed_again, the_paper_stands_still_where_it_tracks_nobody,
-       the_paper_ignores_a_fourth_sensor, a_table_turns_no_further_than_the_stop,
-       a_users_table_has_hysteresis_return_delay_and_searches, an_unknown_pan_angle_commands_no_turn,
-       time_that_goes_back_starts_anew, a_long_gap_lets_every_timer_expire,
-       options_that_make_no_sense_are_put_right,
+       a_doubtful_sensor_that_rests_is_believed_again, sensors_and_base_have_a_time_of_their_own,
+       the_paper_stands_still_where_it_tracks_nobody, the_paper_ignores_a_fourth_sensor,
+       a_table_turns_no_further_than_the_stop, a_users_table_has_hysteresis_return_delay_and_searches,
+       an_unknown_pan_angle_commands_no_turn, time_that_goes_back_starts_anew,
+       a_long_gap_lets_every_timer_expire, options_that_make_no_sense_are_put_right,
        whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocations});
 }
