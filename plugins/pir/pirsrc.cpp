@@ -53,6 +53,7 @@
 #include <condition_variable>
 
 #include "clocks.hpp"
+#include "device_wait.hpp"
 #include "drivers/sensor_array.h"
 #include "pir_settings.hpp"
 #include "reports.hpp"
@@ -76,7 +77,7 @@ GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
 
 struct Private {
   Adjustable<PirSettings> settings;
-  GstPoll* poll = nullptr;
+  DeviceWait device;
 
   std::mutex lock;
   PirChosen chosen;
@@ -89,11 +90,7 @@ struct Private {
   bool flushing = false;
   std::condition_variable news;  // of these two
   SensorArray sensors;
-  GstPollFD device = GST_POLL_FD_INIT;
   GstClockTime last = 0;  // time stamp of the last buffer: running time, or of a recording its own
-
-  Private() : poll(gst_poll_new(TRUE)) {}
-  ~Private() { gst_poll_free(poll); }
 };
 
 CERBERUS_DEFINE_TYPE(CerberusPirSrc, cerberus_pir_src, GstPushSrc, GST_TYPE_PUSH_SRC, Private)
@@ -114,18 +111,6 @@ GstClockTime running_time(CerberusPirSrc* self, Time time) {
 }
 
 // ---- the stream
-
-// The device may have got another descriptor; lock held, and nobody waits.
-void watch(Private& priv) {
-  const int fd = priv.sensors.fd();
-  if (fd == priv.device.fd) return;
-  if (priv.device.fd >= 0) gst_poll_remove_fd(priv.poll, &priv.device);
-  gst_poll_fd_init(&priv.device);
-  priv.device.fd = fd;
-  if (fd < 0) return;
-  gst_poll_add_fd(priv.poll, &priv.device);
-  gst_poll_fd_ctl_read(priv.poll, &priv.device, TRUE);
-}
 
 // What the sensors failed of, once.
 void report_failure(CerberusPirSrc* self) {
@@ -195,7 +180,7 @@ bool open_sensors(CerberusPirSrc* self) {
   priv.last = 0;
   priv.late = !priv.sensors.opened();
   priv.reported = false;
-  watch(priv);
+  priv.device.watch(priv.sensors.fd());
   priv.running = true;
   guard.unlock();
   if (settings.driver == "scripted" && settings.script.empty())
@@ -257,8 +242,7 @@ bool fits_downstream(CerberusPirSrc* self) {
 gboolean stop(GstBaseSrc* base) {
   Private& priv = *cerberus_pir_src_self(base)->priv;
   const std::lock_guard guard(priv.lock);
-  if (priv.device.fd >= 0) gst_poll_remove_fd(priv.poll, &priv.device);
-  gst_poll_fd_init(&priv.device);
+  priv.device.watch(-1);
   priv.sensors.close();
   priv.running = priv.late = false;
   return TRUE;
@@ -288,11 +272,6 @@ GstFlowReturn agree_again(CerberusPirSrc* self) {
   return GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(self)) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
 }
 
-// Until something may have happened, or so long. False: flushing.
-bool sleep(CerberusPirSrc* self, GstClockTime most) {
-  return gst_poll_wait(self->priv->poll, most) >= 0 || errno != EBUSY;
-}
-
 // What ends in EOS behind an error message would end so in any case; behind GST_FLOW_ERROR the base class would tell it again.
 GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
   Private& priv = *self->priv;
@@ -300,10 +279,10 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     News news;
     std::unique_lock guard(priv.lock);
     const bool open = priv.sensors.opened();
-    watch(priv);
+    priv.device.watch(priv.sensors.fd());
     if (!open && !priv.live) {  // its first word is not known yet
       guard.unlock();
-      if (!sleep(self, GST_CLOCK_TIME_NONE)) return GST_FLOW_FLUSHING;
+      if (!priv.device.sleep(GST_CLOCK_TIME_NONE)) return GST_FLOW_FLUSHING;
       continue;
     }
     if (open && std::exchange(priv.late, false) && !priv.sensors.error()) {
@@ -335,7 +314,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     if (!priv.live) continue;
     const GstClockTime wait =
         due == sensing::kNever ? GST_CLOCK_TIME_NONE : static_cast<GstClockTime>((due - now).count());
-    if (!sleep(self, wait)) return GST_FLOW_FLUSHING;
+    if (!priv.device.sleep(wait)) return GST_FLOW_FLUSHING;
   }
 }
 
@@ -382,7 +361,7 @@ gboolean send_event(GstElement* element, GstEvent* event) {
 
 void flush(GstBaseSrc* base, bool flushing) {
   Private& priv = *cerberus_pir_src_self(base)->priv;
-  gst_poll_set_flushing(priv.poll, flushing);
+  priv.device.set_flushing(flushing);
   const std::lock_guard guard(priv.lock);
   priv.flushing = flushing;
   priv.news.notify_all();
@@ -407,7 +386,7 @@ gboolean event(GstBaseSrc* base, GstEvent* event) {
     const std::lock_guard guard(priv.lock);
     if (priv.running)
       priv.sensors.base(priv.live ? sensors_now(self) : time_of(priv.last), sensing::radians(yaw_rate));
-    gst_poll_restart(priv.poll);
+    priv.device.wake();
     return TRUE;
   }
   return GST_BASE_SRC_CLASS(cerberus_pir_src_parent_class())->event(base, event);
