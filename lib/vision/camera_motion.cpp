@@ -13,11 +13,13 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kLeastSide = 16;        // smaller pictures are not estimated
-constexpr int kReferenceAge = 16;     // frames after which a standing camera's reference is renewed
-constexpr double kMajority = 0.6;     // share of the patches that no other motion can outvote
-constexpr double kBent = 0.2;         // pixels: less is nothing
-constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a camera that stood still does
+constexpr int kLeastSide = 16;                // smaller pictures are not estimated
+constexpr int kReferenceAge = 16;             // frames after which a standing camera's reference is renewed
+constexpr double kMajority = 0.6;             // share of the patches that no other motion can outvote
+constexpr double kBent = 0.2;                 // pixels: less is nothing
+constexpr int kFewParts = 5, kManyParts = 8;  // of MotionSamples::kRegions
+constexpr float kWide = 0.25f;                // of the picture: who is as wide is seen in many parts
+constexpr double kStillMotion = 0.2;          // pixels, RMS over the picture: a camera that stood still does
 
 int search_level(Size size) {
   int level = 0;
@@ -68,7 +70,8 @@ struct CameraMotion::State {
   void count_followers(const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
   bool is_still(const MotionFit& fit) const;
-  bool is_known(const MotionFit& fit) const;
+  bool is_known(const MotionFit& fit);
+  bool leaves_behind(const MotionFit& fit);
   void measure_noise();
   void next_reference(bool keep);
 };
@@ -167,12 +170,38 @@ bool CameraMotion::State::is_still(const MotionFit& fit) const {
 }
 
 // A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
-// camera that stood needs more to be set in motion.
-bool CameraMotion::State::is_known(const MotionFit& fit) const {
+// camera that stood needs more to be set in motion, or what is wider than somebody who would not show in as many parts:
+// the few things on a bare wall. Nothing of those must stay behind then.
+bool CameraMotion::State::is_known(const MotionFit& fit) {
+  const MotionSamples& samples = matches.samples();
   std::array<bool, MotionSamples::kRegions> seen{};
-  for (int i = 0; i < matches.samples().count; ++i)
-    if (follows(matches.samples(), i, fit.transform)) seen[matches.samples().region[i]] = true;
-  return std::count(seen.begin(), seen.end(), true) >= (still ? 8 : 5);
+  std::array<float, MotionSamples::kMax> across;
+  int following = 0;
+  for (int i = 0; i < samples.count; ++i)
+    if (follows(samples, i, fit.transform))
+      seen[samples.region[i]] = true, across[following++] = samples.x[i];
+  const auto parts = std::count(seen.begin(), seen.end(), true);
+  if (!still || parts < kFewParts) return parts >= kFewParts;
+  if (parts >= kManyParts) return true;
+  // The middle four fifths of them, as one may err.
+  const int tenth = following / 10;
+  const auto place = [&](int rank) {
+    std::nth_element(across.begin(), across.begin() + rank, across.begin() + following);
+    return across[rank];
+  };
+  const float width = place(following - 1 - tenth) - place(tenth);
+  return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(fit);
+}
+
+// Whether patches are found where they were, and not where `fit` says they went. One may err.
+bool CameraMotion::State::leaves_behind(const MotionFit& fit) {
+  matches.follow(reference, current, 0, Transform{});
+  const MotionSamples& samples = matches.samples();
+  int count = 0;
+  for (int i = 0; i < samples.count; ++i)
+    count += follows(samples, i, {}) && !follows(samples, i, fit.transform);
+  matches.follow(reference, current, 0, fit.transform);
+  return count > 1;
 }
 
 // A camera that stood mostly stands: where most patches are found again in their places, on the finest level alone, nothing

@@ -61,6 +61,44 @@ START_TEST(a_person_before_a_blank_wall_is_not_the_camera) {
 }
 END_TEST
 
+START_TEST(a_camera_that_stood_before_a_bare_wall_is_set_in_motion_by_all_that_is_on_it) {
+  // A doorway and no more. What is wider than a person is no person.
+  const Image<std::uint8_t> door = picture(Scene(81, 60));
+  std::mt19937 random(22);
+  CameraMotion camera;
+  Point before{180, 70};
+  for (int k = 0; k < 20; ++k) {
+    const Point at = k < 4 ? before : Point{180.0 + 4 * (k * 7 % 5 - 2), 70.0 + 3 * (k * 3 % 4 - 1.0)};
+    Image<std::uint8_t> frame = flat(120, random);
+    paste(door, frame.view(), static_cast<int>(at.x), static_cast<int>(at.y), 120, 130);
+    const CameraMotionResult r = camera.update(frame.view());
+    if (k > 3) {
+      const Point moved = r.transform.apply({240, 135});
+      ck_assert_double_eq_tol(moved.x - 240, at.x - before.x, 0.2);
+      ck_assert_double_eq_tol(moved.y - 135, at.y - before.y, 0.2);
+      ck_assert_double_gt(r.confidence, 0.5);
+    } else if (k > 0) {
+      ck_assert(r.still);
+    }
+    before = at;
+  }
+}
+END_TEST
+
+START_TEST(what_stays_behind_on_a_bare_wall_says_that_the_camera_stands) {
+  const Image<std::uint8_t> car = picture(Scene(82, 60)), picture_on_the_wall = picture(Scene(83, 60));
+  std::mt19937 random(23);
+  CameraMotion camera;
+  for (int k = 0; k < 20; ++k) {
+    Image<std::uint8_t> frame = flat(120, random);
+    paste(picture_on_the_wall, frame.view(), 40, 20, 40, 30);
+    paste(car, frame.view(), 60 + 6 * std::max(k - 2, 0), 130, 115, 90);
+    const CameraMotionResult r = camera.update(frame.view());
+    ck_assert_msg(r.transform.is_identity(), "frame %d", k);
+  }
+}
+END_TEST
+
 START_TEST(a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure) {
   std::mt19937 random(9);
   const Image<std::uint8_t> scene = picture(Scene(9));
@@ -167,6 +205,8 @@ int main() {
       "camera_stands",
       {the_first_frame_starts_a_scene, a_person_walking_past_a_standing_camera_leaves_it_still,
        a_person_before_a_blank_wall_is_not_the_camera,
+       a_camera_that_stood_before_a_bare_wall_is_set_in_motion_by_all_that_is_on_it,
+       what_stays_behind_on_a_bare_wall_says_that_the_camera_stands,
        a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure,
        vibration_of_three_tenths_of_a_pixel_is_not_snapped_away,
        a_drift_too_slow_to_see_between_two_frames_adds_up,
