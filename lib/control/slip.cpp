@@ -151,7 +151,7 @@ std::optional<SlipFinding> SlipWatch::close_episode() {
   ++run_.episodes;
   run_.gains += episode.gain(lag);
   run_.travel += episode.travel;
-  if (run_.episodes < kLeastEpisodes || run_.travel < kLeastTravel || run_.fault == fault_)
+  if (run_.episodes < least_episodes(run_.fault) || run_.travel < kLeastTravel || run_.fault == fault_)
     return std::nullopt;
   fault_ = run_.fault;
   if (fault_ == SlipFault::none) return std::nullopt;
