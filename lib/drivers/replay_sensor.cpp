@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/replay_sensor.h"
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+
+#include "text/file.h"
 
 namespace cerberus::drivers {
 
 namespace {
 
-constexpr off_t kLargest = 256 << 20;  // bytes: some weeks of readings
+constexpr std::size_t kLargest = 256 << 20;  // bytes: some weeks of readings
 
 SensorError failed(const std::string& location, int error) {
   const SensorFault fault = error == ENOENT   ? SensorFault::not_found
@@ -25,33 +24,20 @@ SensorError failed(const std::string& location, int error) {
           errno_text(error)};
 }
 
-// All of a regular file: a pipe or a device could block. Returns errno, 0: good.
-SensorError read_file(const std::string& location, std::string& text) {
-  const int fd = ::open(location.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (fd < 0) return failed(location, errno);
-  SensorError error;
-  struct stat about{};
-  if (::fstat(fd, &about) != 0) {
-    error = failed(location, errno);
-  } else if (!S_ISREG(about.st_mode)) {
-    error = {SensorFault::settings, "The PIR recording " + location + " is no regular file.", ""};
-  } else if (about.st_size > kLargest) {
-    error = {SensorFault::data,
-             "The PIR recording " + location + " is larger than 256 MiB: cut it into pieces.", ""};
-  } else {
-    text.resize(static_cast<std::size_t>(about.st_size));
-    std::size_t have = 0;
-    while (have < text.size()) {
-      const ssize_t got = ::read(fd, text.data() + have, text.size() - have);
-      if (got < 0 && errno == EINTR) continue;
-      if (got < 0) error = failed(location, errno);
-      if (got <= 0) break;
-      have += static_cast<std::size_t>(got);
-    }
-    text.resize(have);
+SensorError fault_of(const text::File& file, const std::string& location) {
+  using Fault = text::File::Fault;
+  switch (file.fault) {
+    case Fault::failed:
+      return failed(location, file.error);
+    case Fault::irregular:
+      return {SensorFault::settings, "The PIR recording " + location + " is no regular file.", ""};
+    case Fault::too_large:
+      return {SensorFault::data,
+              "The PIR recording " + location + " is larger than 256 MiB: cut it into pieces.", ""};
+    case Fault::none:
+      break;
   }
-  ::close(fd);
-  return error;
+  return {};
 }
 
 }  // namespace
@@ -60,10 +46,10 @@ SensorError ReplaySensor::open(const SensorSetup& setup) {
   close();
   if (setup.location.empty())
     return {SensorFault::settings, "No PIR recording to replay: name the file (location).", ""};
-  std::string text;
-  if (SensorError error = read_file(setup.location, text)) return error;
+  const text::File file = text::read_file(setup.location, kLargest);
+  if (SensorError error = fault_of(file, setup.location)) return error;
   Recording recording;
-  if (SensorError error = parse_recording(text, setup.location, setup.sensors, recording)) return error;
+  if (SensorError error = parse_recording(file.text, setup.location, setup.sensors, recording)) return error;
   if (recording.edges.empty())
     return {SensorFault::data, "The PIR recording " + setup.location + " holds no readings.", ""};
   play(std::move(recording), setup.location, setup.level);

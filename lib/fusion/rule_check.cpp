@@ -2,9 +2,11 @@
 #include "fusion/rule_check.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <span>
+#include <utility>
 
 #include "sensing/angles.h"
 #include "text/numbers.h"
@@ -85,21 +87,28 @@ bool same_answer(const Band& a, const Band& b) {
   return a.action != Action::search || (a.search.from == b.search.from && a.search.to == b.search.to);
 }
 
+// A band, the number of its answer (alike for all bands that say the same), and whether it decides anything.
+struct Entry {
+  const Band* band;
+  int answer;
+  bool used = false;
+};
+
 class Checker {
  public:
   Checker(const RuleTable& table, int most) : table_(table), most_(most), pieces_(pieces(table)) {}
 
   std::vector<RuleProblem> run() {
     check_form();
+    if (problems_.empty()) check_size();
     if (!problems_.empty()) return problems_;
+    look_up();
     if (table_.precedence == Precedence::exact)
       for (const Rule& rule : table_.rules) check_bands(rule);
-    SensorBits named = 0;  // the others make no difference
-    for (const Rule& rule : table_.rules) named |= rule.all | rule.any | rule.none;
     SensorBits fired = 0;
     do {
       for (const bool camera_found : {false, true}) check_case(camera_found, fired);
-      fired = static_cast<SensorBits>((fired - named) & named);  // the next subset of `named`
+      fired = static_cast<SensorBits>((fired - named_) & named_);  // the next subset
     } while (fired != 0 && !full());
     if (problems_.empty()) check_use();
     return problems_;
@@ -138,6 +147,48 @@ class Checker {
       bad("a search needs two pan angles to sweep between, the lower one first");
   }
 
+  // Every case is looked at, and somebody waits for that.
+  void check_size() {
+    constexpr double kMostSteps = 2e9, kMostPlaces = 4e6;  // some seconds, some megabytes
+    for (const Rule& rule : table_.rules) named_ |= rule.all | rule.any | rule.none;
+    const auto pieces = static_cast<double>(pieces_.size());
+    const double places = pieces * static_cast<double>(table_.rules.size());
+    double steps = places * 2 * std::exp2(std::popcount(named_));
+    for (const Rule& rule : table_.rules) {
+      const auto bands = static_cast<double>(rule.bands.size());
+      steps += pieces * bands * (table_.precedence == Precedence::exact ? bands : 1);
+    }
+    if (places <= kMostPlaces && steps <= kMostSteps) return;
+    report(Kind::malformed, "the table is too large to be checked: " + std::to_string(table_.rules.size()) +
+                                " rules that name " + std::to_string(std::popcount(named_)) +
+                                " sensors, with " + std::to_string(pieces_.size() / 2) + " edges of bands");
+  }
+
+  // Which band of each rule holds in each piece, and which answers are the same.
+  void look_up() {
+    for (const Rule& rule : table_.rules)
+      for (const Band& band : rule.bands) {
+        const auto same = [&](const Entry& entry) { return same_answer(*entry.band, band); };
+        const auto known = std::ranges::find_if(entries_, same);
+        const int answer = known != entries_.end() ? known->answer : static_cast<int>(entries_.size());
+        entries_.push_back({&band, answer});
+      }
+    for (std::size_t first = 0; const Rule& rule : table_.rules) {
+      for (const Piece& piece : pieces_) {
+        const Band* band = rule.band(piece.sample);
+        places_.push_back(band ? static_cast<int>(first + static_cast<std::size_t>(band - rule.bands.data()))
+                               : -1);
+      }
+      first += rule.bands.size();
+    }
+  }
+
+  // Of a rule, by its number in the table; nullptr: no band of it holds in that piece.
+  Entry* entry(int rule, std::size_t piece) {
+    const int place = places_[static_cast<std::size_t>(rule) * pieces_.size() + piece];
+    return place < 0 ? nullptr : &entries_[static_cast<std::size_t>(place)];
+  }
+
   // Limited bands of one rule must agree where they overlap; a band without limits is the rest.
   void check_bands(const Rule& rule) {
     for (std::size_t i = 0; i < rule.bands.size(); ++i)
@@ -145,7 +196,9 @@ class Checker {
         const Band &a = rule.bands[i], &b = rule.bands[j];
         if ((a.unlimited() != b.unlimited()) || same_answer(a, b)) continue;
         for_each_run(
-            [&](const Piece& piece) { return a.holds(piece.sample) && b.holds(piece.sample) ? 1 : 0; },
+            [&](std::size_t piece) {
+              return a.holds(pieces_[piece].sample) && b.holds(pieces_[piece].sample) ? 1 : 0;
+            },
             [&](const Piece& run, int) {
               report(Kind::contradiction, rule.name + ", " + pan_text(run) + ": one band says " + answer(a) +
                                               ", another says " + answer(b));
@@ -155,38 +208,39 @@ class Checker {
 
   // After every case was looked at.
   void check_use() {
-    const auto decides = [this](const Band& band) { return used_.contains(&band); };
-    for (const Rule& rule : table_.rules) {
-      if (std::ranges::none_of(rule.bands, decides)) {
+    for (auto of_rule = entries_.begin(); const Rule& rule : table_.rules) {
+      const std::span bands(std::exchange(of_rule, of_rule + static_cast<std::ptrdiff_t>(rule.bands.size())),
+                            rule.bands.size());
+      if (std::ranges::none_of(bands, &Entry::used)) {
         report(Kind::idle, rule.name + " never applies: the rules before it decide in every case");
         continue;
       }
-      for (const Band& band : rule.bands)
-        if (!decides(band))
-          report(Kind::idle, rule.name + ": the band that says " + answer(band) + " " + span_text(band) +
+      for (const Entry& each : bands)
+        if (!each.used)
+          report(Kind::idle, rule.name + ": the band that says " + answer(*each.band) + " " +
+                                 span_text(*each.band) +
                                  " never applies: what stands before it decides in every case");
     }
   }
 
   void check_case(bool camera_found, SensorBits fired) {
-    std::vector<const Rule*> matching;
-    for (const Rule& rule : table_.rules)
-      if (rule.matches(camera_found, fired)) matching.push_back(&rule);
+    matching_.clear();
+    const auto count = static_cast<int>(table_.rules.size());
+    for (int i = 0; i < count; ++i)
+      if (table_.rules[static_cast<unsigned>(i)].matches(camera_found, fired)) matching_.push_back(i);
 
     // What is wrong with a piece: 0 nothing, 1 no rule, else 2 + (a * rules + b): these two rules disagree.
-    const auto count = static_cast<int>(matching.size());
-    const auto verdict = [&](const Piece& piece) {
-      int first = -1;
-      for (int i = 0; i < count; ++i) {
-        const Band* band = matching[static_cast<unsigned>(i)]->band(piece.sample);
+    const auto verdict = [&](std::size_t piece) {
+      int first = -1, said = -1;
+      for (const int i : matching_) {
+        Entry* band = entry(i, piece);
         if (band == nullptr) continue;
-        used_.insert(band);
-        if (first < 0) {
-          first = i;
-          if (table_.precedence == Precedence::order) return 0;
-        } else if (!same_answer(*matching[static_cast<unsigned>(first)]->band(piece.sample), *band)) {
-          return 2 + first * count + i;
-        }
+        band->used = true;
+        if (first >= 0 && band->answer != said) return 2 + first * count + i;
+        if (first >= 0) continue;
+        if (table_.precedence == Precedence::order) return 0;
+        first = i;
+        said = band->answer;
       }
       return first < 0 ? 1 : 0;
     };
@@ -194,20 +248,20 @@ class Checker {
       std::string text = camera_found ? "camera found, " : "camera not found, ";
       text += sensor_text(fired) + ", " + pan_text(run) + ": ";
       if (what == 1) return report(Kind::open, text + "no rule applies");
-      const Rule& a = *matching[static_cast<unsigned>((what - 2) / count)];
-      const Rule& b = *matching[static_cast<unsigned>((what - 2) % count)];
+      const Rule& a = table_.rules[static_cast<unsigned>((what - 2) / count)];
+      const Rule& b = table_.rules[static_cast<unsigned>((what - 2) % count)];
       report(Kind::contradiction, text + a.name + " says " + answer(*a.band(run.sample)) + ", " + b.name +
                                       " says " + answer(*b.band(run.sample)));
     });
   }
 
-  // Joins neighbouring pieces of the same verdict and tells those that are not 0.
+  // Joins neighbouring pieces of the same verdict (by the piece's number) and tells those that are not 0.
   template <typename Verdict, typename Tell>
   void for_each_run(const Verdict& verdict, const Tell& tell) {
     Piece run = pieces_.front();
-    int what = verdict(run);
+    int what = verdict(0);
     for (std::size_t i = 1; i < pieces_.size(); ++i) {
-      const int next = verdict(pieces_[i]);
+      const int next = verdict(i);
       if (next == what) {
         run.to = pieces_[i].to;
         run.to_included = pieces_[i].to_included;
@@ -224,7 +278,10 @@ class Checker {
   int most_;
   std::vector<Piece> pieces_;
   std::vector<RuleProblem> problems_;
-  std::set<const Band*> used_;  // those that decide something
+  SensorBits named_ = 0;        // the others make no difference
+  std::vector<Entry> entries_;  // of all rules, in order
+  std::vector<int> places_;     // in entries_, by rule and piece; -1: none
+  std::vector<int> matching_;
 };
 
 }  // namespace

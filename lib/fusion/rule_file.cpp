@@ -2,15 +2,13 @@
 #include "fusion/rule_file.h"
 
 #include <array>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <span>
 
 #include "fusion/rule_check.h"
 #include "sensing/angles.h"
+#include "text/file.h"
 
 // toml++ states what it takes for granted about its input by assertions (an abort) or, with NDEBUG, by assumptions
 // (undefined behaviour), and some malformed files break them: "[&", or "]" where a value belongs
@@ -249,14 +247,19 @@ RuleFile parse_rules(std::string_view text, std::string_view source) {
 }
 
 RuleFile load_rules(const std::string& path) {
-  const auto close = [](std::FILE* file) { std::fclose(file); };
-  const std::unique_ptr<std::FILE, decltype(close)> file(std::fopen(path.c_str(), "rbe"), close);
-  if (!file) return failure(path + ": " + std::strerror(errno));
-  std::string text(kMostBytes + 1, '\0');
-  text.resize(std::fread(text.data(), 1, text.size(), file.get()));
-  if (std::ferror(file.get()) != 0) return failure(path + ": " + std::strerror(errno));
-  if (text.size() > kMostBytes) return failure(path + ": too long for a rule file");
-  return parse_rules(text, path);
+  using Fault = text::File::Fault;
+  const text::File file = text::read_file(path, kMostBytes);
+  switch (file.fault) {
+    case Fault::failed:
+      return failure(path + ": " + std::strerror(file.error));
+    case Fault::irregular:
+      return failure(path + ": a rule file is a regular file");
+    case Fault::too_large:
+      return failure(path + ": too long for a rule file");
+    case Fault::none:
+      break;
+  }
+  return parse_rules(file.text, path);
 }
 
 }  // namespace cerberus::fusion
