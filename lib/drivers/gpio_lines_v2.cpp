@@ -67,8 +67,8 @@ struct GpioLines::Handles {
   ChipInfo info;
   Request inputs, outputs;
   EdgeBuffer buffer;
-  std::vector<unsigned> offsets;  // of the inputs
-  std::vector<gpiod_line_value> values;
+  std::vector<unsigned> offsets;              // of the inputs
+  std::vector<gpiod_line_value> values, lit;  // of the inputs; of the outputs
 };
 
 GpioLines::GpioLines() : handles_(std::make_unique<Handles>()) {}
@@ -133,6 +133,7 @@ int GpioLines::request_outputs(std::span<const unsigned> offsets) {
   if (!settings) return ENOMEM;
   gpiod_line_settings_set_direction(settings.get(), GPIOD_LINE_DIRECTION_OUTPUT);
   gpiod_line_settings_set_output_value(settings.get(), GPIOD_LINE_VALUE_INACTIVE);
+  handles_->lit.assign(offsets.size(), GPIOD_LINE_VALUE_INACTIVE);
   return request_lines(handles_->chip.get(), offsets, settings.get(), handles_->outputs);
 }
 
@@ -169,11 +170,12 @@ int GpioLines::levels(std::vector<bool>& levels) {
 
 int GpioLines::set(const std::vector<bool>& levels) {
   if (!handles_->outputs) return 0;
-  std::vector<gpiod_line_value> values;
-  for (const bool level : levels)
-    values.push_back(level ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE);
+  auto& lit = handles_->lit;
+  if (levels.size() != lit.size()) return EINVAL;
+  for (std::size_t i = 0; i < lit.size(); ++i)
+    lit[i] = levels[i] ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
   errno = 0;
-  return gpiod_line_request_set_values(handles_->outputs.get(), values.data()) == 0 ? 0 : last_error();
+  return gpiod_line_request_set_values(handles_->outputs.get(), lit.data()) == 0 ? 0 : last_error();
 }
 
 }  // namespace cerberus::drivers

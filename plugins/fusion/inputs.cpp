@@ -23,8 +23,6 @@ bool is_missing(GstPad* pad, Time time) {
   return pir.linked && !pir.given_up && !pir.history.covers(time);
 }
 
-constexpr std::uint8_t kInvalid = 2;
-
 // What a pad counts as whose caps nobody has told, or a number that no pad has. It says nothing, so where it looks and how
 // wide does not matter.
 Reading unknown_sensor() {

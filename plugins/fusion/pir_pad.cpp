@@ -91,8 +91,7 @@ bool segment_event(GstElement* element, GstPad* pad, GstEvent* event) {
 
 // Whoever speaks is there now, however old what he says is.
 Time now_or(GstElement* element, Time time) {
-  const GstClockTime now = gst_element_get_current_running_time(element);
-  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, time_of(now)) : time;
+  return std::max(time, clock_now(element).value_or(time));
 }
 
 void gap_event(GstElement* element, PirPad& pir, GstEvent* event) {
@@ -166,7 +165,7 @@ struct Sample {
 Sample sample_of(GstElement* element, GstPad* pad, GstBuffer* buffer) {
   PirPad& pir = pir_pad(pad);
   Sample sample;
-  sample.presence.fill(2);
+  sample.presence.fill(kInvalid);
   sample.volts.fill(std::numeric_limits<float>::quiet_NaN());
   const gsize size = gst_buffer_get_size(buffer);
   const bool volts = pir.info.format == CERBERUS_PIR_LEVEL;
@@ -309,18 +308,6 @@ std::optional<Time> running_time(const GstSegment& segment, GstClockTime positio
   const gint sign = gst_segment_to_running_time_full(&segment, GST_FORMAT_TIME, position, &time);
   if (sign == 0) return std::nullopt;
   return sign < 0 ? Time::zero() : time_of(time);
-}
-
-std::optional<bool> is_live(GstPad* sinkpad) {
-  GstQuery* query = gst_query_new_latency();
-  std::optional<bool> live;
-  if (gst_pad_peer_query(sinkpad, query)) {
-    gboolean answer = FALSE;
-    gst_query_parse_latency(query, &answer, nullptr, nullptr);
-    live = answer;
-  }
-  gst_query_unref(query);
-  return live;
 }
 
 }  // namespace cerberus::plugin

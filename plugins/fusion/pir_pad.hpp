@@ -49,8 +49,5 @@ inline PirPad& pir_pad(GstPad* pad) {
 
 // Running time of a position; nothing without one. What lies before the segment is as old as can be.
 std::optional<Time> running_time(const GstSegment& segment, GstClockTime position);
-// Whether the source upstream of a sink pad is live; nothing where nobody answers (v4l2src without a frame rate): then
-// nobody may wait, and may ask again.
-std::optional<bool> is_live(GstPad* sinkpad);
 
 }  // namespace cerberus::plugin

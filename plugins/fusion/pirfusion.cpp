@@ -163,9 +163,7 @@ void apply_settings(CerberusPirFusion* self) {
 // analysis after its time, and 60 ms are all that may pass from a sensor's edge to the motors. But a recording of
 // sensors may be ahead of the video, and is not believed before its time.
 Time heard_until(CerberusPirFusion* self, Time time, bool live) {
-  const GstClockTime now =
-      live ? gst_element_get_current_running_time(GST_ELEMENT(self)) : GST_CLOCK_TIME_NONE;
-  return GST_CLOCK_TIME_IS_VALID(now) ? std::max(time, time_of(now)) : time;
+  return live ? std::max(time, clock_now(self).value_or(time)) : time;
 }
 
 void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guint64 patience) {
@@ -190,11 +188,11 @@ void tell_changes(CerberusPirFusion* self) {
 // A sensor has spoken, in its source's thread. What follows from that goes to the head past all queues: a camera of 10 frames a
 // second leaves it no time to wait for the next one.
 void decide_between_frames(CerberusPirFusion* self) {
-  const GstClockTime now = gst_element_get_current_running_time(GST_ELEMENT(self));
-  if (!GST_CLOCK_TIME_IS_VALID(now)) return;
+  const auto now = clock_now(self);
+  if (!now) return;
   Private& priv = *self->priv;
   const std::string head = priv.settings.snapshot().head;
-  const auto told = priv.decisions.between(time_of(now), head);
+  const auto told = priv.decisions.between(*now, head);
   if (!told) return;
   gst_pad_push_event(priv.src, cerberus_event_new_fusion(head.c_str(), &told->fusion));
   tell_changes(self);

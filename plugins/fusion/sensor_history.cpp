@@ -5,10 +5,6 @@
 
 namespace cerberus::plugin {
 
-namespace {
-constexpr std::uint8_t kInvalid = 2;
-}
-
 void SensorHistory::append(Time time, std::span<const std::uint8_t> values) {
   Reading reading;
   reading.array = array_;

@@ -20,10 +20,12 @@ struct SensorArray {
   double field_of_view = 0;                             // radians
 };
 
+constexpr std::uint8_t kInvalid = 2;  // as in the PIR caps
+
 // The sensors of one pad at one time.
 struct Reading {
   std::shared_ptr<const SensorArray> array;               // nullptr: not known yet, nothing to tell
-  std::array<std::uint8_t, sensing::kMaxSensors> values;  // as in the PIR caps: 0, 1, 2 = invalid
+  std::array<std::uint8_t, sensing::kMaxSensors> values;  // 0, 1, kInvalid
   bool operator==(const Reading&) const = default;
 };
 

@@ -59,7 +59,7 @@ void Conductor::configure() {
   }
   if (!wrong.empty())
     GST_ELEMENT_WARNING(sink, LIBRARY, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
-                        ("head %s", head));
+                        ("head %s", head.load()));
 }
 
 void Conductor::halt(const char* reason) {
@@ -89,7 +89,7 @@ void Conductor::set_live(bool live) {
 void Conductor::heed(GstEvent* event) {
   const gchar* whose = nullptr;
   g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event, &whose);
-  if (!fusion || !playing || (*whose && !g_str_equal(whose, head))) return;
+  if (!fusion || !playing || (*whose && !g_str_equal(whose, head.load()))) return;
   const auto at = now();
   if (!at) return;
   Outbox out = outbox();

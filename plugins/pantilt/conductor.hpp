@@ -18,7 +18,7 @@ struct Conductor {
   GstBaseSink* sink = nullptr;
   Adjustable<HeadSettings> settings;
   Station station;
-  const char* head = nullptr;  // its name, interned, while it is open
+  std::atomic<const char*> head = nullptr;  // its name, interned; that of the last one, if none is open
   std::atomic<double> field_of_view = 0;
   std::atomic<bool> clock_driven = false, playing = false;
 

@@ -133,12 +133,7 @@ gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query
 void ask_whether_live(Private& self) {
   if (std::exchange(self.state.live_known, true)) return;
   Conductor& conductor = self.conductor;
-  gboolean live = FALSE;
-  GstQuery* query = gst_query_new_latency();
-  if (gst_pad_peer_query(GST_BASE_SINK_PAD(conductor.sink), query))
-    gst_query_parse_latency(query, &live, nullptr, nullptr);
-  gst_query_unref(query);
-  conductor.set_live(live);
+  conductor.set_live(is_live(GST_BASE_SINK_PAD(conductor.sink)).value_or(false));
 }
 
 // A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts, then
@@ -243,7 +238,7 @@ GstStateChangeReturn play(Conductor& conductor) {
   conductor.playing = done != GST_STATE_CHANGE_FAILURE;
   GST_BASE_SINK_PREROLL_SIGNAL(element);
   GST_BASE_SINK_PREROLL_UNLOCK(element);
-  guarded(element, [&] { conductor.run(); });
+  guarded(element, [&] { conductor.playing ? conductor.run() : conductor.halt("paused"); });
   return done;
 }
 

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Running times of frames and of the clock.
+// How long frames last in running time.
 #pragma once
 
 #include <gst/video/video.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "control/head_limits.h"
 #include "vision/clock_times.hpp"
@@ -21,13 +20,6 @@ inline control::Time running_length(GstClockTime duration, const GstVideoInfo& i
     duration = info.fps_n > 0 ? gst_util_uint64_scale_int(GST_SECOND, info.fps_d, info.fps_n) : 0;
   const double length = std::ceil(static_cast<double>(duration) / std::abs(segment.rate));
   return time_of(static_cast<GstClockTime>(std::min(length, 0x1p61)));
-}
-
-// Running time by the clock, while there is one.
-inline std::optional<control::Time> clock_now(gpointer element) {
-  const GstClockTime time = gst_element_get_current_running_time(GST_ELEMENT(element));
-  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
-  return time_of(time);
 }
 
 }  // namespace cerberus::plugin

@@ -205,14 +205,7 @@ gboolean transform_meta(GstBaseTransform*, GstBuffer*, GstMeta* meta, GstBuffer*
 
 bool wants_lockstep(GstBaseTransform* trans, State& state) {
   if (state.settings.lockstep != LOCKSTEP_AUTO) return state.settings.lockstep == LOCKSTEP_ON;
-  if (!state.live) {
-    gboolean live = FALSE;
-    GstQuery* query = gst_query_new_latency();
-    if (gst_pad_peer_query(GST_BASE_TRANSFORM_SINK_PAD(trans), query))
-      gst_query_parse_latency(query, &live, nullptr, nullptr);
-    gst_query_unref(query);
-    state.live = live != FALSE;
-  }
+  if (!state.live) state.live = is_live(GST_BASE_TRANSFORM_SINK_PAD(trans)).value_or(false);
   return !*state.live;
 }
 

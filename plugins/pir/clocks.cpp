@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "vision/clock_times.hpp"
+
 namespace cerberus::plugin {
 
 namespace {
@@ -30,8 +32,7 @@ Time monotonic_now() {
 }
 
 GstClockTime running_now(GstElement* element) {
-  const GstClockTime now = gst_element_get_current_running_time(element);
-  return GST_CLOCK_TIME_IS_VALID(now) ? now : 0;
+  return clock_time(clock_now(element).value_or(Time::zero()));
 }
 
 GstClockTime running_time_of(GstElement* element, Time monotonic) {

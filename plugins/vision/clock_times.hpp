@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GStreamer's times and lib's.
+// GStreamer's times and lib's, and who goes by a clock.
 #pragma once
 
 #include <gst/gst.h>
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 
 namespace cerberus::plugin {
 
@@ -15,6 +16,27 @@ constexpr GstClockTime clock_time(std::chrono::nanoseconds time) {
 // At most a quarter of what fits, 73 years: sums of some times stay times.
 constexpr std::chrono::nanoseconds time_of(GstClockTime time) {
   return std::chrono::nanoseconds(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
+}
+
+// Running time by the clock, while there is one.
+inline std::optional<std::chrono::nanoseconds> clock_now(gpointer element) {
+  const GstClockTime time = gst_element_get_current_running_time(GST_ELEMENT(element));
+  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
+  return time_of(time);
+}
+
+// Whether the source upstream of a sink pad is live; nothing where nobody answers (v4l2src without a frame rate): then
+// nobody may wait, and may ask again.
+inline std::optional<bool> is_live(GstPad* sinkpad) {
+  GstQuery* query = gst_query_new_latency();
+  std::optional<bool> live;
+  if (gst_pad_peer_query(sinkpad, query)) {
+    gboolean answer = FALSE;
+    gst_query_parse_latency(query, &answer, nullptr, nullptr);
+    live = answer != FALSE;
+  }
+  gst_query_unref(query);
+  return live;
 }
 
 }  // namespace cerberus::plugin

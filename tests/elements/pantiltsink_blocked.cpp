@@ -164,6 +164,22 @@ class EarlyFrame {
   std::promise<void> there_;
 };
 
+// A base class that does not come to PLAYING.
+class Refusing {
+ public:
+  explicit Refusing(Rig& rig)
+      : base_(GST_ELEMENT_CLASS(g_type_class_peek_parent(GST_BASE_SINK_GET_CLASS(rig.element)))) {
+    change_state_ = std::exchange(base_->change_state,
+                                  [](GstElement*, GstStateChange) { return GST_STATE_CHANGE_FAILURE; });
+  }
+  ~Refusing() { base_->change_state = change_state_; }
+  Refusing(const Refusing&) = delete;
+
+ private:
+  GstElementClass* base_;
+  decltype(GstElementClass::change_state) change_state_;
+};
+
 }  // namespace
 
 GST_START_TEST(what_comes_in_the_middle_of_a_change_of_state_does_not_hold_it_up) {
@@ -190,6 +206,24 @@ GST_START_TEST(a_frame_that_is_early_for_playing_goes_on_by_itself) {
   change(rig, GST_STATE_PLAYING);
   fail_unless(record.line().starts_with("command"));
   pusher.join();
+}
+GST_END_TEST
+
+// The base class may refuse PLAYING: the head obeys nobody then, as before.
+GST_START_TEST(who_does_not_come_to_playing_stands) {
+  Pipe record;
+  Rig rig(scripted("record " + record.writer()), Source::live);
+  change(rig, GST_STATE_PAUSED);
+  {
+    Refusing refusing(rig);
+    fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
+  }
+  fail_unless(rig.call("move-to", 10, 0));
+  change(rig, GST_STATE_READY);
+  std::string calls;
+  for (std::string line; !line.starts_with("close"); calls += line.substr(0, line.find(' ')) + " ")
+    line = record.line();
+  fail_unless(calls.find("command") == std::string::npos, "%s", calls.c_str());
 }
 GST_END_TEST
 
@@ -274,6 +308,7 @@ static Suite* pantiltsink_blocked_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, what_comes_in_the_middle_of_a_change_of_state_does_not_hold_it_up);
   tcase_add_test(tests, a_frame_that_is_early_for_playing_goes_on_by_itself);
+  tcase_add_test(tests, who_does_not_come_to_playing_stands);
   tcase_add_test(tests, a_blocked_driver_delays_no_change_of_state);
   tcase_add_test(tests, a_frame_that_waits_for_the_driver_lets_go_of_a_flush_and_of_a_stop);
   tcase_add_test(tests, a_head_whose_driver_blocks_is_not_free_until_it_is_through);
