@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cerberus/query.h>
 
+#include "private/query.hpp"
+
 namespace {
 constexpr char kWanted[] = "wanted";
 }
@@ -12,9 +14,7 @@ GstQuery* cerberus_query_new_planes(void) {
 
 gboolean cerberus_query_is_planes(GstQuery* query) {
   g_return_val_if_fail(GST_IS_QUERY(query), FALSE);
-  const GstStructure* structure = gst_query_get_structure(query);
-  return GST_QUERY_TYPE(query) == GST_QUERY_CUSTOM && structure &&
-         gst_structure_has_name(structure, CERBERUS_QUERY_PLANES);
+  return cerberus::is_custom_query(query, CERBERUS_QUERY_PLANES);
 }
 
 gboolean cerberus_query_set_planes_wanted(GstQuery* query, gboolean wanted) {

@@ -53,8 +53,8 @@ struct CameraMotion::State {
   CameraMotionOptions options;
   Pyramid reference, current;  // current: of the caller's picture, only as long as that is there
   Relief reference_relief, current_relief;
-  PatchMatches matches;  // from the reference to the current picture
-  bool sites_chosen = false;
+  PatchSites sites;  // of the reference
+  Image<std::int32_t> scratch;
   int reference_age = 0;      // frames since the reference
   PatchMatches::Share share;  // of the fit, on the level where it is highest
   Transform last;             // frame k-2 to k-1
@@ -65,14 +65,17 @@ struct CameraMotion::State {
   std::optional<CameraMotionResult> confirm_still();
   CameraMotionResult estimate(const std::optional<Transform>& prior);
   CameraMotionResult start_scene();
-  Transform first_guess(int level, const std::array<Shift, 2>& shifts, const std::optional<Transform>& prior);
-  MotionFit fit_beyond(const Transform& prior, MotionModel model, const Transform& guess, int hypotheses);
-  void count_followers(const MotionFit& fit);
+  // matches, samples: from the reference to the current picture.
+  Transform first_guess(PatchMatches& matches, int level, const std::array<Shift, 2>& shifts,
+                        const std::optional<Transform>& prior) const;
+  MotionFit fit_beyond(const MotionSamples& samples, const Transform& prior, MotionModel model,
+                       const Transform& guess, int hypotheses) const;
+  void count_followers(const PatchMatches& matches, const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
-  bool is_still(const MotionFit& fit) const;
-  bool is_known(const MotionFit& fit);
-  bool leaves_behind(const MotionFit& fit);
-  void measure_noise();
+  bool is_still(const MotionSamples& samples, const MotionFit& fit) const;
+  bool is_known(PatchMatches& matches, const MotionFit& fit) const;
+  bool leaves_behind(PatchMatches& matches, const MotionFit& fit) const;
+  void measure_noise(const PatchMatches& matches);
   void next_reference(bool keep);
 };
 
@@ -90,14 +93,15 @@ void CameraMotion::reset() {
 }
 
 std::size_t CameraMotion::bytes() const {
-  return sizeof(State) + state_->reference.bytes() + state_->current.bytes() + state_->matches.bytes();
+  return sizeof(State) + state_->reference.bytes() + state_->current.bytes() + state_->scratch.bytes() +
+         state_->sites.bytes() + state_->reference_relief.bytes() + state_->current_relief.bytes();
 }
 
 void CameraMotion::State::next_reference(bool keep) {
   if (keep && ++reference_age < kReferenceAge) return;
+  sites.choose(current, noise, scratch);
   reference.take(current);
   std::swap(reference_relief, current_relief);
-  sites_chosen = false;
   reference_age = 0;
 }
 
@@ -112,8 +116,9 @@ CameraMotionResult CameraMotion::State::start_scene() {
 }
 
 // Follows every patch on the coarsest level. Guesses: standing still, the last motion, the coarse search, the head's pose.
-Transform CameraMotion::State::first_guess(int level, const std::array<Shift, 2>& shifts,
-                                           const std::optional<Transform>& prior) {
+Transform CameraMotion::State::first_guess(PatchMatches& matches, int level,
+                                           const std::array<Shift, 2>& shifts,
+                                           const std::optional<Transform>& prior) const {
   const double coarse = 1 << search_level(reference.size());
   std::array<Transform, PatchMatches::kMostGuesses> guesses{};
   std::size_t count = 1;
@@ -123,20 +128,19 @@ Transform CameraMotion::State::first_guess(int level, const std::array<Shift, 2>
   return matches.follow(reference, current, level, std::span(guesses).first(count));
 }
 
-void CameraMotion::State::count_followers(const MotionFit& fit) {
+void CameraMotion::State::count_followers(const PatchMatches& matches, const MotionFit& fit) {
   const PatchMatches::Share of = matches.share_of(fit);
   share = {std::max(share.all, of.all), std::max(share.well, of.well)};
 }
 
-void CameraMotion::State::measure_noise() {
+void CameraMotion::State::measure_noise(const PatchMatches& matches) {
   if (const auto measured = matches.noise()) noise += 0.1 * (*measured - noise);
 }
 
 // What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a simple
 // model then only has to follow by how much the head's word is wrong.
-MotionFit CameraMotion::State::fit_beyond(const Transform& prior, MotionModel model, const Transform& guess,
-                                          int hypotheses) {
-  const MotionSamples& samples = matches.samples();
+MotionFit CameraMotion::State::fit_beyond(const MotionSamples& samples, const Transform& prior,
+                                          MotionModel model, const Transform& guess, int hypotheses) const {
   MotionSamples beyond = samples;
   for (int i = 0; i < beyond.count; ++i) {
     const Point p = prior.apply({samples.x[i], samples.y[i]});
@@ -153,15 +157,15 @@ MotionFit CameraMotion::State::fit_beyond(const Transform& prior, MotionModel mo
 // the picture replaced: share.well at least .26 in 95 of 100.
 bool CameraMotion::State::is_cut(const Shift& shift) const {
   const double before = reference_relief.contrast(), now = current_relief.contrast();
-  if (matches.count() < PatchMatches::kLeast) return now > 3 * before + 1;
+  if (sites.count < PatchMatches::kLeast) return now > 3 * before + 1;
   return share.well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
 }
 
-bool CameraMotion::State::is_still(const MotionFit& fit) const {
+bool CameraMotion::State::is_still(const MotionSamples& samples, const MotionFit& fit) const {
   const double motion = mean_motion(fit.transform, reference.size());
   if (motion < (still ? kStillMotion : 0.1)) return true;
   if (share.all > 0.9 && motion > 0.5) return false;
-  const MotionFit none = rate_motion(matches.samples(), {});
+  const MotionFit none = rate_motion(samples, {});
   // A large and lively object: the rest of the picture, in many places, says that nothing moves.
   if (motion > 1) return none.support > (still ? 0.6 : 0.85) * fit.support;
   // Too little to tell: the fit explains the samples hardly better than standing still does.
@@ -172,7 +176,7 @@ bool CameraMotion::State::is_still(const MotionFit& fit) const {
 // A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
 // camera that stood needs more to be set in motion, or what is wider than somebody who would not show in as many parts:
 // the few things on a bare wall. Nothing of those must stay behind then.
-bool CameraMotion::State::is_known(const MotionFit& fit) {
+bool CameraMotion::State::is_known(PatchMatches& matches, const MotionFit& fit) const {
   const MotionSamples& samples = matches.samples();
   std::array<bool, MotionSamples::kRegions> seen{};
   std::array<float, MotionSamples::kMax> across;
@@ -190,11 +194,11 @@ bool CameraMotion::State::is_known(const MotionFit& fit) {
     return across[rank];
   };
   const float width = place(following - 1 - tenth) - place(tenth);
-  return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(fit);
+  return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(matches, fit);
 }
 
 // Whether patches are found where they were, and not where `fit` says they went. One may err.
-bool CameraMotion::State::leaves_behind(const MotionFit& fit) {
+bool CameraMotion::State::leaves_behind(PatchMatches& matches, const MotionFit& fit) const {
   matches.follow(reference, current, 0, Transform{});
   const MotionSamples& samples = matches.samples();
   int count = 0;
@@ -207,18 +211,20 @@ bool CameraMotion::State::leaves_behind(const MotionFit& fit) {
 // A camera that stood mostly stands: where most patches are found again in their places, on the finest level alone, nothing
 // else can come out of the search, which costs five times as much. None where that is not so, or the reference is due.
 std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
-  if (!still || !sites_chosen || matches.count() < PatchMatches::kLeast || reference_age + 1 >= kReferenceAge)
+  if (!still || reference_age == 0 || sites.count < PatchMatches::kLeast ||
+      reference_age + 1 >= kReferenceAge)
     return std::nullopt;
   const Size size = reference.size();
+  PatchMatches matches(sites);
   matches.follow(reference, current, 0, Transform{});
   Transform motion;
   refine_motion(matches.samples(), std::min(options.model, MotionModel::similarity), size, motion);
   const MotionFit fit = rate_motion(matches.samples(), motion);
   share = {};
-  count_followers(fit);
-  if (share.all < kMajority || mean_motion(motion, size) >= kStillMotion || !is_known(fit))
+  count_followers(matches, fit);
+  if (share.all < kMajority || mean_motion(motion, size) >= kStillMotion || !is_known(matches, fit))
     return std::nullopt;
-  measure_noise();
+  measure_noise(matches);
   next_reference(true);
   CameraMotionResult result;
   result.scene_age = ++scene_age;
@@ -230,11 +236,10 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
 
 CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>& prior) {
   const Size size = reference.size();
-  if (!sites_chosen) matches.choose(reference, noise);
-  sites_chosen = true;
+  PatchMatches matches(sites);
   const int top = std::max(0, search_level(size) - 1);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
-  Transform motion = first_guess(top, shifts, prior);
+  Transform motion = first_guess(matches, top, shifts, prior);
   const bool bent = prior && prior->is_sane(size) && bend(*prior, size) > kBent;
   MotionFit fit;
   share = {};
@@ -247,17 +252,17 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
     const int hypotheses = level == top ? 96 : 24;
     fit = fit_motion(matches.samples(), model, size, guesses, hypotheses);
     if (bent && model != MotionModel::none)
-      if (const MotionFit turned = fit_beyond(*prior, model, motion, hypotheses);
+      if (const MotionFit turned = fit_beyond(matches.samples(), *prior, model, motion, hypotheses);
           turned.support > fit.support)
         fit = turned;
     motion = fit.transform;
-    count_followers(fit);
+    count_followers(matches, fit);
   }
   if (is_cut(shifts[0])) return start_scene();
-  measure_noise();
-  const bool known = is_known(fit);
+  measure_noise(matches);
+  const bool known = is_known(matches, fit);
   if (!known) fit = rate_motion(matches.samples(), prior && prior->is_sane(size) ? *prior : Transform{});
-  still = options.model == MotionModel::none || is_still(fit);
+  still = options.model == MotionModel::none || is_still(matches.samples(), fit);
   if (still) fit = rate_motion(matches.samples(), {});
   CameraMotionResult result;
   result.scene_age = ++scene_age;

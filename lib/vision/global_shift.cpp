@@ -22,51 +22,52 @@ constexpr double kMeanRelief = 24, kMaxGain = 12;
 void Relief::build(GrayView picture) {
   // A very long and narrow picture cannot be made that small: it has no relief, and no shift is found.
   const bool fits = picture.width <= kMaxSide && picture.height <= kMaxSide;
-  size_ = fits ? picture.size() : Size{};
+  const Size size = fits ? picture.size() : Size{};
+  values_.resize(size);
   std::array<int, kMaxSide * kMaxSide> stands_out;
   std::array<int, kMaxSide> columns;
   long total = 0;
-  for (int y = 0; y < size_.height; ++y) {
-    for (int x = 0; x < size_.width; ++x) {
+  for (int y = 0; y < size.height; ++y) {
+    for (int x = 0; x < size.width; ++x) {
       columns[x] = 0;
-      for (int j = -2; j <= 2; ++j) columns[x] += picture.at(x, std::clamp(y + j, 0, size_.height - 1));
+      for (int j = -2; j <= 2; ++j) columns[x] += picture.at(x, std::clamp(y + j, 0, size.height - 1));
     }
-    for (int x = 0; x < size_.width; ++x) {
+    for (int x = 0; x < size.width; ++x) {
       int sum = 0;
-      for (int i = -2; i <= 2; ++i) sum += columns[std::clamp(x + i, 0, size_.width - 1)];
+      for (int i = -2; i <= 2; ++i) sum += columns[std::clamp(x + i, 0, size.width - 1)];
       const int value = 25 * picture.at(x, y) - sum;
-      stands_out[y * size_.width + x] = value;
+      stands_out[y * size.width + x] = value;
       total += std::abs(value);
     }
   }
-  contrast_ = size_.area() ? total / 25.0 / size_.area() : 0;
+  contrast_ = size.area() ? total / 25.0 / size.area() : 0;
   const double gain = std::min(kMaxGain, contrast_ > 0 ? kMeanRelief / contrast_ : kMaxGain) / 25;
   const int gain16 = static_cast<int>(gain * 65536);
-  values_.fill(0);
-  for (int y = 0; y < size_.height; ++y)
-    for (int x = 0; x < size_.width; ++x) {
-      const int value = (static_cast<std::int64_t>(stands_out[y * size_.width + x]) * gain16) >> 16;
-      values_[y * kMaxSide + x] = static_cast<std::uint8_t>(kMiddle + std::clamp(value, -kRange, kRange));
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) {
+      const int value = (static_cast<std::int64_t>(stands_out[y * size.width + x]) * gain16) >> 16;
+      values_.view().at(x, y) = static_cast<std::uint8_t>(kMiddle + std::clamp(value, -kRange, kRange));
     }
 }
 
 std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later) {
-  const Size size = earlier.size_;
-  if (size != later.size_ || size.width < 8 || size.height < 8) return {};
+  const Size size = earlier.size();
+  if (size != later.size() || size.width < 8 || size.height < 8) return {};
   const int rx = std::min(size.width / 4, kBorder), ry = std::min(size.height / 4, kBorder);
   const int columns = 2 * rx + 1, rows = 2 * ry + 1;
   alignas(64) std::array<std::uint8_t, kStride * Relief::kMaxSide> bordered;  // for every shift
   bordered.fill(255);
   for (int y = 0; y < size.height; ++y)
-    std::copy_n(&later.values_[y * Relief::kMaxSide], size.width, &bordered[y * kStride + kBorder]);
-  const int padded = (size.width + 15) / 16 * 16;
+    std::copy_n(later.values_.view().row(y), size.width, &bordered[y * kStride + kBorder]);
+  const GrayView first = earlier.values_.view();
+  const int padded = static_cast<int>(first.stride);
   std::array<float, (2 * kBorder + 1) * (2 * kBorder + 1)> map;
   for (int dy = -ry; dy <= ry; ++dy)
     for (int dx = -rx; dx <= rx; ++dx) {
       const int begin = std::max(0, -dy), end = std::min(size.height, size.height - dy);
-      const std::uint32_t sum = truncated_difference(
-          &earlier.values_[begin * Relief::kMaxSide], Relief::kMaxSide,
-          &bordered[(begin + dy) * kStride + kBorder + dx], kStride, padded, end - begin, kLimit);
+      const std::uint32_t sum =
+          truncated_difference(first.row(begin), padded, &bordered[(begin + dy) * kStride + kBorder + dx],
+                               kStride, padded, end - begin, kLimit);
       const int partners = (size.width - std::abs(dx)) * (end - begin);
       const int without = padded * (end - begin) - partners;
       map[(dy + ry) * columns + dx + rx] =

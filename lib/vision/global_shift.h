@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "vision/image.h"
@@ -16,14 +17,14 @@ class Relief {
   static constexpr int kMaxSide = 64;
 
   void build(GrayView picture);
-  Size size() const { return size_; }
+  Size size() const { return values_.size(); }
   double contrast() const { return contrast_; }  // mean distance from the surroundings, grey levels
+  std::size_t bytes() const { return values_.bytes(); }
 
  private:
   friend struct ShiftSearch;
-  Size size_;
   double contrast_ = 0;
-  alignas(64) std::array<std::uint8_t, kMaxSide * kMaxSide> values_{};  // rows padded with 0
+  Image<std::uint8_t> values_;  // rows padded with 0
 };
 
 struct Shift {

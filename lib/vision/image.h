@@ -42,22 +42,25 @@ struct View {
 using GrayView = View<const std::uint8_t>;
 using MutableGrayView = View<std::uint8_t>;
 
-// An owned picture. Rows start on 64-byte boundaries and every row is padded to a multiple of 64 bytes (or of kRowAlign),
-// so a kernel may read whole vectors inside a row. `resize` to the present size does nothing: the steady state
+// Rows are padded to a multiple of so many samples: kernels that look at whole vectors take no more at a row's end.
+inline constexpr int kRowSamples = 16;
+
+constexpr int padded_row(int width, int step = kRowSamples) {
+  return (width + step - 1) / step * step;
+}
+
+// An owned picture, its rows padded to kStep samples. `resize` to the present size does nothing: the steady state
 // allocates nothing.
-template <typename T, std::size_t kRowAlign = 64>
+template <typename T, int kStep = kRowSamples>
 class Image {
  public:
-  static constexpr std::size_t kAlign = kRowAlign;
-
   Image() = default;
   explicit Image(Size size) { resize(size); }
 
   // Returns true when the memory is new (and zeroed).
   bool resize(Size size) {
     if (size == size_) return false;
-    constexpr std::size_t per = kAlign / sizeof(T);
-    stride_ = static_cast<std::ptrdiff_t>((static_cast<std::size_t>(size.width) + per - 1) / per * per);
+    stride_ = padded_row(size.width, kStep);
     size_ = size;
     const std::size_t bytes = static_cast<std::size_t>(stride_) * size.height * sizeof(T);
     data_.reset(bytes ? static_cast<T*>(::operator new(bytes, std::align_val_t{kAlign})) : nullptr);
@@ -82,6 +85,7 @@ class Image {
 
  private:
   static_assert(std::is_trivially_copyable_v<T>);
+  static constexpr std::size_t kAlign = 64;  // of the first row: a line of the cache
   struct Free {
     void operator()(T* p) const { ::operator delete(p, std::align_val_t{kAlign}); }
   };

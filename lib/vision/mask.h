@@ -12,8 +12,8 @@ namespace cerberus::vision {
 
 // Pixel x of a row is bit x % 64 of word x / 64. Bits beyond the width are 0 after every function of this
 // header and of morphology.h (they read as "outside the picture").
-using BitMask = Image<std::uint64_t, sizeof(std::uint64_t)>;  // rows of whole words, not of whole vectors
-using BitView = View<const std::uint64_t>;                    // width counts words
+using BitMask = Image<std::uint64_t, 1>;    // rows of whole words, not of whole vectors
+using BitView = View<const std::uint64_t>;  // width counts words
 using MutableBitView = View<std::uint64_t>;
 
 // The size, in words, of the mask of a picture.

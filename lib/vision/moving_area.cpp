@@ -49,7 +49,7 @@ MovingAreaResult MovingArea::update(const MovingAreaInput& input, MutableGrayVie
   result.fuzzy_threshold = fuzzy_threshold(*input.histogram, s.options.threshold);
   result.threshold =
       s.options.noise_floor ? clamp_to_noise(result.fuzzy_threshold, result.sigma) : result.fuzzy_threshold;
-  result.ready = input.frames >= 3;
+  result.ready = input.frames >= 3 && (s.options.area == Area::all || !input.previous.empty());
   if (uses_memory(s.options)) {
     if (input.frames <= 1) s.memory.reset();
     s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still,

@@ -21,10 +21,11 @@ struct MovingAreaOptions {
 };
 
 struct MovingAreaInput {
-  GrayView picture;            // F(k), analysis pixels
-  Transform motion;            // frame k-1 to k
-  bool still = false;          // the camera stands
-  GrayView current, previous;  // D(k), D(k-1)
+  GrayView picture;    // F(k), analysis pixels
+  Transform motion;    // frame k-1 to k
+  bool still = false;  // the camera stands
+  GrayView current,
+      previous;  // D(k), D(k-1); the latter empty where it is not known: only area=all goes without
   const Histogram* histogram = nullptr;
   int frames = 0;      // DifferenceResult::frames
   double seconds = 0;  // since frame k-1; 0: unknown
@@ -34,7 +35,7 @@ struct MovingAreaResult {
   int threshold = 0;        // Th used
   int fuzzy_threshold = 0;  // Th as fuzziness alone chose it
   double sigma = 0;         // noise of the plain difference
-  bool ready = false;       // false until three frames of the scene were seen: the mask is empty
+  bool ready = false;       // false until all is known that three frames of the scene say: the mask is empty
 };
 
 class MovingArea {

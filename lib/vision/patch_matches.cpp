@@ -22,8 +22,8 @@ PatchMatch look(const PatchFollower& patch, const Pyramid& current, int level, c
 
 }  // namespace
 
-void PatchMatches::choose(const Pyramid& reference, double noise) {
-  sites_.choose(reference, noise, scratch_);
+PatchFollower PatchMatches::follower(const Pyramid& reference, int level, int i) const {
+  return level > 0 ? PatchFollower(reference.level(level), level, sites_.site[i]) : sites_.follower(i);
 }
 
 void PatchMatches::follow(const Pyramid& reference, const Pyramid& current, int level,
@@ -31,7 +31,7 @@ void PatchMatches::follow(const Pyramid& reference, const Pyramid& current, int 
   looked_for_ = 0;
   for (int i = 0; i < sites_.count; ++i) {
     const PatchSite& site = sites_.site[i];
-    matches_[i] = look(PatchFollower(reference.level(level), level, site), current, level, site, guess, 3);
+    matches_[i] = look(follower(reference, level, i), current, level, site, guess, 3);
     looked_for_ += matches_[i].inside;
   }
   collect(reference.size(), level);
@@ -44,7 +44,7 @@ Transform PatchMatches::follow(const Pyramid& reference, const Pyramid& current,
   std::array<std::array<float, kMostGuesses>, MotionSamples::kMax> fits;
   std::array<float, kMostGuesses> ratings{};
   for (int i = 0; i < sites_.count; ++i) {
-    const PatchFollower patch(reference.level(level), level, sites_.site[i]);
+    const PatchFollower patch = follower(reference, level, i);
     for (std::size_t g = 0; g < count; ++g) {
       fits[i][g] = look(patch, current, level, sites_.site[i], guesses[g], 0).correlation;
       ratings[g] += std::max(0.0f, fits[i][g] - 0.3f);
@@ -56,7 +56,7 @@ Transform PatchMatches::follow(const Pyramid& reference, const Pyramid& current,
   for (int i = 0; i < sites_.count; ++i) {
     const auto own = std::max_element(fits[i].begin(), fits[i].begin() + count) - fits[i].begin();
     const auto from = fits[i][own] > fits[i][best] + kClearly ? own : best;
-    const PatchFollower patch(reference.level(level), level, sites_.site[i]);
+    const PatchFollower patch = follower(reference, level, i);
     matches_[i] = look(patch, current, level, sites_.site[i], guesses[from], 6);
     looked_for_ += matches_[i].inside;
   }

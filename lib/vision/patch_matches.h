@@ -11,16 +11,16 @@
 
 namespace cerberus::vision {
 
-// Transforms and samples are in pixels of level 0. Allocates in choose() only, and only at the first picture of a size.
+// Of one frame, and large: made for it on the stack. Transforms and samples are in pixels of level 0. Allocates nothing.
 class PatchMatches {
  public:
   static constexpr std::size_t kMostGuesses = 5;
 
-  // Chooses the patches to look for. noise: see PatchSites.
-  void choose(const Pyramid& reference, double noise);
-  int count() const { return sites_.count; }  // of those chosen
+  // Of these patches, which live as long.
+  explicit PatchMatches(const PatchSites& sites) : sites_(sites) {}
+  int count() const { return sites_.count; }  // of those to be looked for
 
-  // Looks for every patch on one level, first where `guess` says.
+  // Looks for every patch on one level, first where `guess` says. Of the reference, level 0 is not looked at.
   void follow(const Pyramid& reference, const Pyramid& current, int level, const Transform& guess);
   // The same, first where the best of up to kMostGuesses guesses for the whole picture says, or where another one fits this
   // patch clearly better: the background must be found even if a large object rates higher, and the consensus decides
@@ -39,13 +39,12 @@ class PatchMatches {
   std::optional<double> noise() const;
 
   static constexpr int kLeast = 8;  // patches: fewer say nothing about the whole picture
-  std::size_t bytes() const { return scratch_.bytes(); }
 
  private:
+  PatchFollower follower(const Pyramid& reference, int level, int i) const;
   void collect(Size picture, int level);
 
-  PatchSites sites_;
-  Image<std::int32_t> scratch_;
+  const PatchSites& sites_;
   std::array<PatchMatch, MotionSamples::kMax> matches_;
   int looked_for_ = 0;  // patches whose place lies in the current picture
   MotionSamples samples_;

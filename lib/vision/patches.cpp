@@ -10,6 +10,8 @@ namespace {
 
 constexpr int kBlock = 4;  // gradient sums are kept per block of 4 x 4 pixels; a patch is 2 x 2 blocks
 
+constexpr float kMiddle = 0.5f * (kPatch - 1);  // of a patch, from its corner
+
 constexpr int kMargin = 1;  // blocks start one pixel inside, so that every pixel has all its neighbours
 
 }  // namespace
@@ -32,6 +34,9 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
   const auto blocks = [&, view = scratch.view()](int plane, int y) {
     return view.row(y % depth) + static_cast<std::ptrdiff_t>(plane) * across;
   };
+  size_ = size;
+  constexpr int kSide = PatchFollower::kSide;
+  kept_.resize({kSide * kSide, cells_x * cells_y});
   int known = 0;  // rows of blocks
   const double pixel_noise = noise / (1 << level);
   // Gradients of pure noise have variance 2 noise^2 a pixel (not halved differences).
@@ -69,18 +74,38 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
                                            std::min(3, static_cast<int>(4 * s.x / size.width)));
     }
   }
+  for (int i = 0; i < count; ++i)
+    if (const auto corner = PatchFollower::corner_on(size, 0, site[i]))
+      for (int y = 0; y < kSide; ++y)
+        std::copy_n(pyramid.level(0).row(corner->y - 1 + y) + corner->x - 1, kSide,
+                    kept_.view().row(i) + kSide * y);
+}
+
+PatchFollower PatchSites::follower(int i) const {
+  constexpr int kSide = PatchFollower::kSide;
+  const auto corner = PatchFollower::corner_on(size_, 0, site[i]);
+  return corner ? PatchFollower({kept_.view().row(i), kSide, kSide, kSide}, *corner)
+                : PatchFollower({}, 0, site[i]);
+}
+
+std::optional<PatchFollower::Corner> PatchFollower::corner_on(Size size, int level, const PatchSite& site) {
+  if (size.width < kSide || size.height < kSide) return std::nullopt;
+  const float scale = 1.0f / static_cast<float>(1 << level);
+  const auto corner = [&](float centre, int length) {
+    return std::clamp(static_cast<int>((centre + 0.5f) * scale - kMiddle), 1, length - kPatch - 1);
+  };
+  return Corner{corner(site.x, size.width), corner(site.y, size.height)};
 }
 
 PatchFollower::PatchFollower(GrayView earlier, int level, const PatchSite& site) {
-  constexpr int kLast = kPatch + 1;
-  if (earlier.width < kLast + 1 || earlier.height < kLast + 1) return;
-  const float scale = 1.0f / static_cast<float>(1 << level), middle = 0.5f * (kPatch - 1);
-  const auto corner = [&](float centre, int length) {
-    return std::clamp(static_cast<int>((centre + 0.5f) * scale - middle), 1, length - kLast);
-  };
-  corner_x_ = corner(site.x, earlier.width), corner_y_ = corner(site.y, earlier.height);
-  match_.x = static_cast<float>(corner_x_) + middle, match_.y = static_cast<float>(corner_y_) + middle;
-  make_template(earlier, corner_x_, corner_y_, patch_);
+  if (const auto corner = corner_on(earlier.size(), level, site))
+    begin({earlier.row(corner->y - 1) + corner->x - 1, kSide, kSide, earlier.stride}, *corner);
+}
+
+void PatchFollower::begin(GrayView part, const Corner& corner) {
+  corner_x_ = corner.x, corner_y_ = corner.y;
+  match_.x = static_cast<float>(corner_x_) + kMiddle, match_.y = static_cast<float>(corner_y_) + kMiddle;
+  make_template(part, 1, 1, patch_);
   textured_ = patch_.vv > kPatch * kPatch * 0.25f;
   if (!textured_) return;
   per_value_ = 1 / patch_.vv;

@@ -7,6 +7,7 @@
 #include "vision/people.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "vision/people_kernels.h"
@@ -34,7 +35,6 @@ void PeopleFinder::make_room(Size picture) {
   const int tallest = 2 * kRowsOfABody;
   const auto columns = static_cast<std::size_t>(picture.width + 2 * (kBodyAspect * tallest + 2));
   const auto rows = static_cast<std::size_t>(picture.height + 1.3 * tallest + 2);
-  vision::make_room(cells_, std::min<std::size_t>(columns * rows, kMostCells));
   vision::make_room(shapes_, rows + 1);
   for (auto* sums : {&moving_, &band_, &sums_}) vision::make_room(*sums, columns + 1);
   vision::make_room(scores_, columns + 1);
@@ -44,13 +44,13 @@ void PeopleFinder::make_room(Size picture) {
 }
 
 std::size_t PeopleFinder::bytes() const {
-  return bytes_of(cells_) + bytes_of(shapes_) + bytes_of(moving_) + bytes_of(band_) + bytes_of(sums_) +
-         bytes_of(scores_) + bytes_of(chosen_) + bytes_of(other_) + bytes_of(people_);
+  return bytes_of(shapes_) + bytes_of(moving_) + bytes_of(band_) + bytes_of(sums_) + bytes_of(scores_) +
+         bytes_of(chosen_) + bytes_of(other_) + bytes_of(people_);
 }
 
 // Cells around the window, wide enough that every place a person may be judged at lies on the grid. Outside the picture
 // nothing is counted; inside the picture but outside the window nothing moves.
-bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
+bool PeopleFinder::lay_grid(BitView pixels, const Window& window, std::span<std::uint8_t> room) {
   const double tallest = prior_->height(window.bottom);
   if (tallest <= 0) return false;
   // A crowd all across the picture is looked at more coarsely.
@@ -62,7 +62,7 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
     y0_ = window.top - above;
     columns_ = (window.width() + 2 * around + step_ - 1) / step_;
     rows_ = (window.height() + above + below + step_ - 1) / step_;
-    if (static_cast<long>(columns_) * rows_ <= kMostCells) break;
+    if (static_cast<std::size_t>(columns_) * rows_ <= room.size()) break;
   }
   const auto cell = [&](int pixel, int origin) { return (pixel - origin + step_ - 1) / step_; };
   inside_ = {std::clamp(cell(0, x0_), 0, columns_), std::clamp(cell(0, y0_), 0, rows_),
@@ -70,7 +70,8 @@ bool PeopleFinder::lay_grid(BitView pixels, const Window& window) {
              std::clamp(cell(picture_.height, y0_), 0, rows_)};
   window_ = {cell(window.left, x0_), cell(window.top, y0_), std::min(cell(window.right, x0_), columns_),
              std::min(cell(window.bottom, y0_), rows_)};
-  cells_.assign(static_cast<std::size_t>(columns_) * rows_, 0);
+  cells_ = room.first(static_cast<std::size_t>(columns_) * rows_);
+  std::ranges::fill(cells_, std::uint8_t{0});
   for (int r = inside_.top; r < inside_.bottom; ++r)
     std::fill_n(cells(r) + inside_.left, inside_.width(), kCellCounted);
   // A cell moves when at least half of its pixels do (of one pixel: when it does).
@@ -250,12 +251,7 @@ bool PeopleFinder::is_block(bool was_wide) {
   return wide_block_ || (n > 2 && filled() > kSolid);
 }
 
-std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window, const HeightPrior& prior,
-                                           bool was_wide_block) {
-  people_.clear();
-  wide_block_ = false;
-  prior_ = &prior;
-  if (!lay_grid(pixels, window)) return people_;
+void PeopleFinder::choose(bool was_wide_block) {
   // The leftmost first is right for people side by side, where the best first may stand in their middle; the best first
   // is right for people behind one another.
   const int best_first = explain(false);
@@ -264,12 +260,22 @@ std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window,
     if (explain(true) <= best_first) std::swap(chosen_, other_);
     settle();
   }
-  if (is_block(was_wide_block)) return people_;
+  if (is_block(was_wide_block)) return;
   for (const Candidate& c : chosen_)
     people_.push_back(
         {{static_cast<double>(x0_ + c.left * step_), static_cast<double>(y0_ + c.top * step_),
           static_cast<double>((c.right - c.left) * step_), static_cast<double>((c.bottom - c.top) * step_)},
          static_cast<double>(c.gain) / kUnit});
+}
+
+std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window, const HeightPrior& prior,
+                                           bool was_wide_block) {
+  people_.clear();
+  wide_block_ = false;
+  prior_ = &prior;
+  std::array<std::uint8_t, kMostCells> room;
+  if (lay_grid(pixels, window, room)) choose(was_wide_block);
+  cells_ = {};
   return people_;
 }
 

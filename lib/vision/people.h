@@ -52,7 +52,8 @@ class PeopleFinder {
     int height = 0, width = 0;
   };
 
-  bool lay_grid(BitView pixels, const Window& window);
+  bool lay_grid(BitView pixels, const Window& window, std::span<std::uint8_t> room);
+  void choose(bool was_wide_block);
   std::uint8_t* cells(int row) { return &cells_[static_cast<std::size_t>(row) * columns_]; }
   void forget_explained();
   void mark_explained(const Candidate& candidate);
@@ -72,7 +73,7 @@ class PeopleFinder {
   int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
   Window inside_, window_;
   std::vector<Shape> shapes_;          // of each foot row 0..rows_
-  std::vector<std::uint8_t> cells_;    // kCell... of people_kernels.h
+  std::span<std::uint8_t> cells_;      // kCell... of people_kernels.h; find() has them on its stack
   std::vector<std::uint32_t> moving_;  // moving cells not yet explained in the columns before each
   // Sums of the cells in the rows [band_top_, band_bottom_): of each column, and of the columns before each from where they
   // were asked for.

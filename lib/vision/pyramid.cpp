@@ -29,7 +29,8 @@ void Pyramid::borrow(GrayView picture, int levels) {
 }
 
 void Pyramid::take(Pyramid& other) {
-  copy(other.picture_);
+  images_[0] = {};
+  picture_ = {nullptr, other.picture_.width, other.picture_.height, 0};
   for (std::size_t l = 1; l < images_.size(); ++l) images_[l].swap(other.images_[l]);
   levels_ = std::exchange(other.levels_, 0);
 }

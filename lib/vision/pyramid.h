@@ -21,7 +21,8 @@ class Pyramid {
   void borrow(GrayView picture, int levels);
   // More levels of the same picture.
   void extend(int levels);
-  // Becomes what `other` is, with a copy of its level 0. The other one is to be built or to borrow anew.
+  // Becomes what `other` is from level 1 on, with the size but not the pixels of its level 0. The other one is to be built or
+  // to borrow anew.
   void take(Pyramid& other);
   int levels() const { return levels_; }
   GrayView level(int l) const { return l > 0 ? images_[l].view() : picture_; }

@@ -24,8 +24,9 @@ constexpr double kSameBlock = 0.5;    // of what two blocks cover: they are one,
 constexpr double kSkirt = 0.3;        // columns lower than this share of the highest are a shadow
 constexpr int kYoung = 60;  // frames of a scene in which nobody knows yet what stood there when it began
 constexpr double kRim = 2;  // pixels at 320 columns by which a box goes beyond what moves in them
-constexpr std::size_t kMostParts = 128;  // components beyond which a picture is clutter, not people
-constexpr std::size_t kMostBlocks = 16;  // cars and the like at a time
+constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
+constexpr std::size_t kMostWalkers = 32;  // who walk alone, at a time
+constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
 
 // One person seen alone is upright and reasonably filled.
@@ -95,14 +96,14 @@ void RegionFinder::State::make_room(Size picture) {
   people.make_room(size);
   newcomers.make_room();
   const std::size_t parts = labeller.limits().components;
-  vision::make_room(walkers, kMostParts);
-  vision::make_room(walkers_before, kMostParts);
+  vision::make_room(walkers, kMostWalkers);
+  vision::make_room(walkers_before, kMostWalkers);
   vision::make_room(blocks, kMostBlocks);
   vision::make_room(blocks_before, kMostBlocks);
-  vision::make_room(group, kMostParts);
+  vision::make_room(group, std::min(parts, kMostParts));
   vision::make_room(bodies, parts);
   vision::make_room(columns, static_cast<std::size_t>(size.width) + 1);
-  vision::make_room(regions, std::max(parts, kMostRegions));
+  vision::make_room(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
 }
 
 // A shadow on the floor is wide and low: a component's box ends where its columns become low.
@@ -144,7 +145,7 @@ void RegionFinder::State::learn(const Transform& motion) {
       return &o != &c && gap(c.left, c.right, o.left, o.right) < reach &&
              gap(c.top, c.bottom, o.top, o.bottom) < reach;
     });
-    if (!alone || walkers.size() == kMostParts) continue;
+    if (!alone || walkers.size() == kMostWalkers) continue;
     const double h = c.height();
     Walker walker{{(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};
     walker.from = walker.foot;

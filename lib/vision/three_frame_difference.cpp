@@ -26,17 +26,20 @@ struct ThreeFrameDifference::State {
   Size size;
   int frames = 0;  // of this scene, at most 3
   // Blurred pictures, [0] of the newest frame; never an old difference. Between two frames there are two of them: when
-  // frame k comes, D(k-1) is made first, and F(k) takes the place of F(k-2).
+  // frame k comes, D(k-1) is made first, and F(k) takes the place of F(k-2). Without D(k-1) the second one is empty.
   std::array<Image<std::uint8_t>, 2> ring;
-  Transform before;  // frame k-2 to k-1
+  bool has_older = false;  // of them is ring[1]
+  Transform before;        // frame k-2 to k-1
   Warp warp;
   LightSamples samples;
   LightChange light, light_before;
   Image<std::uint8_t> relit;  // a row
   std::vector<RowSpan> spans;
 
+  void make_room(Size to, bool both);
   void take(GrayView picture) {
-    std::swap(ring[0], ring[1]);
+    has_older = !ring[1].empty();
+    if (has_older) std::swap(ring[0], ring[1]);
     blur3(picture, options.blur, ring[0].view());
   }
   void subtract_before(GrayView first, GrayView second, MutableGrayView previous);
@@ -47,6 +50,20 @@ struct ThreeFrameDifference::State {
     light_before.clear();
   }
 };
+
+void ThreeFrameDifference::State::make_room(Size to, bool both) {
+  if (to != size) {
+    size = to;
+    ring[0].resize(to);
+    ring[1] = {};
+    relit.resize({to.width, 1});
+    spans.assign(static_cast<std::size_t>(to.height), {});
+    forget();
+  }
+  if (both == !ring[1].empty()) return;
+  ring[1] = both ? Image<std::uint8_t>(to) : Image<std::uint8_t>();
+  has_older = false;
+}
 
 // previous := D(k-1), of both pictures where frame k sees them. It knows its light since frame k-1.
 void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView second, MutableGrayView previous) {
@@ -85,13 +102,8 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   State& s = *state_;
   const Size size = picture.size();
   const std::size_t height = static_cast<std::size_t>(size.height);
-  if (size != s.size) {
-    s.size = size;
-    for (auto& image : s.ring) image.resize(size);
-    s.relit.resize({size.width, 1});
-    s.spans.assign(height, {});
-    s.forget();
-  }
+  const bool both_wanted = !previous.empty();
+  s.make_room(size, both_wanted);
   histogram.fill(0);
   DifferenceResult result;
   if (picture.empty()) return result;
@@ -125,18 +137,24 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
   const bool three = s.frames == 3 && s.warp.prepare(motion * s.before, size);
   if (three) {
     for (std::size_t y = 0; y < height; ++y) s.spans[y] = both(s.spans[y], s.warp.spans()[y]);
-    if (!s.warp.is_identity()) {
+    result.previous = s.has_older;
+    if (result.previous && !s.warp.is_identity()) {
       s.warp.bilinear(second, previous);
       second = previous;
     }
   }
-  std::swap(s.light, s.light_before);
-  if (three)
+  if (both_wanted) std::swap(s.light, s.light_before);
+  if (result.previous)
     s.subtract_before(first, second, previous);
   else
     clear(previous);
-  s.take(picture);
-  const GrayView present = s.ring[0].view();
+  // F(k-1) lies in `current` if it was warped, else it may have no other place than that of F(k), which then has to wait.
+  const bool waits = still && !both_wanted;
+  if (waits)
+    blur3(picture, s.options.blur, current);
+  else
+    s.take(picture);
+  const GrayView present = waits ? GrayView(current) : s.ring[0].view();
   if (s.options.compensate_light) {
     s.samples.take(first, present, s.spans);
     s.light.estimate(s.samples, still);
@@ -149,12 +167,14 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     const RowSpan span = s.spans[static_cast<std::size_t>(y)];
     const int count = span.end - span.begin;
     std::uint8_t* row = current.row(y);
-    const std::uint8_t* f1 = first.row(y) + span.begin;
-    if (!s.light.none()) {
-      s.light.relight(f1, present.row(y) + span.begin, y, count, s.relit.view().data);
-      f1 = s.relit.view().data;
-    }
-    difference_row(present.row(y) + span.begin, f1, count, row + span.begin);
+    const std::uint8_t *f = s.ring[0].view().row(y) + span.begin, *f1 = first.row(y) + span.begin;
+    std::uint8_t* relit = s.relit.view().data;
+    if (!s.light.none())
+      s.light.relight(f1, present.row(y) + span.begin, y, count, relit), f1 = relit;
+    else if (waits)
+      f1 = std::copy_n(f1, count, relit) - count;
+    if (waits) std::copy_n(row, size.width, s.ring[0].view().row(y));
+    difference_row(f, f1, count, row + span.begin);
     counter.add(row + span.begin, count);
     std::fill(row, row + span.begin, std::uint8_t{0});
     std::fill(row + span.end, row + size.width, std::uint8_t{0});
@@ -169,8 +189,8 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
 
 std::size_t ThreeFrameDifference::bytes() const {
   const State& s = *state_;
-  return s.ring[0].bytes() * 2 + s.relit.bytes() + s.warp.bytes() + s.samples.bytes() + s.light.bytes() +
-         s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
+  return s.ring[0].bytes() + s.ring[1].bytes() + s.relit.bytes() + s.warp.bytes() + s.samples.bytes() +
+         s.light.bytes() + s.light_before.bytes() + s.spans.capacity() * sizeof(RowSpan) + sizeof(State);
 }
 
 }  // namespace cerberus::vision

@@ -24,7 +24,7 @@ constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scen
 constexpr double kBehind = 0.3;  // s for which somebody is believed to be where he went behind somebody else
 
 // What there is room for at first. When more come than ever, there is room for twice as many, up to the maximum.
-constexpr std::size_t kUsualTracks = 16, kUsualRegions = 32;
+constexpr std::size_t kUsualTracks = 8, kUsualRegions = 16;
 
 }  // namespace
 

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "camera_path.hpp"
+#include "cerberus/private/query.hpp"
 #include "history.hpp"
 #include "properties.hpp"
 #include "room.hpp"
@@ -46,8 +47,8 @@ struct AnalysisPrivate {
   Analyser* analyser = nullptr;
   GstVideoInfo info{};
   bool have_info = false;
-  bool planes_wanted = false, sight_wanted = false;
-  std::atomic<bool> ask_for_planes = true;  // whether somebody downstream wants them; set by any thread
+  bool planes_wanted = false, previous_wanted = true, sight_wanted = false;
+  std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
   History history;
   guint64 number = 0;  // analysed frames
   CameraFollower camera;
@@ -66,17 +67,29 @@ AnalysisPrivate& priv_of(gpointer instance) {
 
 GstBaseTransformClass* parent_class();
 
-// Among ourselves only: is there a motiontrack downstream? It answers, all others let the query pass.
-constexpr char kSightQuery[] = "cerberus-sight";
+// Among ourselves only, queries to which an element answers yes by answering at all; others let them pass. Is there a
+// motiontrack downstream? And is who takes the differences content without D(k-1)?
+constexpr char kSightQuery[] = "cerberus-sight", kNoPreviousQuery[] = "cerberus-no-previous";
 
-bool is_sight_query(GstQuery* query) {
-  const GstStructure* told = gst_query_get_structure(query);
-  return GST_QUERY_TYPE(query) == GST_QUERY_CUSTOM && told && gst_structure_has_name(told, kSightQuery);
+bool peer_says_yes(GstPad* pad, const char* question) {
+  g_autoptr(GstQuery) query = gst_query_new_custom(GST_QUERY_CUSTOM, gst_structure_new_empty(question));
+  return gst_pad_peer_query(pad, query);
 }
 
-bool peer_reads_sight(GstPad* pad) {
-  g_autoptr(GstQuery) query = gst_query_new_custom(GST_QUERY_CUSTOM, gst_structure_new_empty(kSightQuery));
-  return gst_pad_peer_query(pad, query);
+// By the first frame after caps or RECONFIGURE everybody downstream knows the caps.
+void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
+  if (!priv.ask.exchange(false)) return;
+  GstPad* pad = GST_BASE_TRANSFORM_SRC_PAD(trans);
+  priv.planes_wanted = cerberus_pad_peer_wants_planes(pad);
+  priv.previous_wanted = priv.planes_wanted || !peer_says_yes(pad, kNoPreviousQuery);
+  priv.sight_wanted = peer_says_yes(pad, kSightQuery);
+}
+
+bool answers(Analyser& analyser, GstQuery* query) {
+  if (cerberus_query_is_planes(query))
+    return analyser.wants_planes() && cerberus_query_set_planes_wanted(query, TRUE);
+  return (is_custom_query(query, kSightQuery) && analyser.reads_sight()) ||
+         (is_custom_query(query, kNoPreviousQuery) && analyser.spares_previous());
 }
 
 // What the pose on the buffer says of the camera's tilt, radians.
@@ -154,6 +167,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
   frame.planes_wanted = priv.planes_wanted;
+  frame.previous_wanted = priv.previous_wanted;
   frame.sight_wanted = priv.sight_wanted;
   frame.tilt = read_tilt(frame);
   if (!frame.fresh) {
@@ -183,11 +197,7 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
   return guarded(trans, GST_FLOW_ERROR, [&] {
     // A buffer that says itself that it is a placeholder: nothing to see, and no scene ends with it.
     if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
-    // Asked with the first frame after caps or RECONFIGURE: by then everybody downstream knows the caps.
-    if (priv.ask_for_planes.exchange(false)) {
-      priv.planes_wanted = cerberus_pad_peer_wants_planes(GST_BASE_TRANSFORM_SRC_PAD(trans));
-      priv.sight_wanted = peer_reads_sight(GST_BASE_TRANSFORM_SRC_PAD(trans));
-    }
+    ask_downstream(trans, priv);
     check_settings(trans, priv);
     const History history = priv.history;
     const CameraFollower camera = priv.camera;
@@ -229,7 +239,7 @@ void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
   priv.have_info = true;
   priv.warned = false;
   priv.complained = false;
-  priv.ask_for_planes = true;
+  priv.ask = true;
 }
 
 // What is wrong with these caps, for the user; empty for nothing.
@@ -265,14 +275,13 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
 }
 
 gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* query) {
-  if (direction == GST_PAD_SINK && is_sight_query(query) && priv_of(trans).analyser->reads_sight())
-    return TRUE;
+  if (direction == GST_PAD_SINK && answers(*priv_of(trans).analyser, query)) return TRUE;
   return parent_class()->query(trans, direction, query);
 }
 
 gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
   // Sent, among others, when somebody is linked downstream.
-  if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask_for_planes = true;
+  if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask = true;
   guarded(trans, [&] { priv_of(trans).analyser->upstream_event(event); });
   return parent_class()->src_event(trans, event);
 }
@@ -369,6 +378,10 @@ GType cerberus_analysis_get_type() {
 
 void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser) {
   self->priv->analyser = analyser;
+}
+
+void cerberus_analysis_answer_anew(CerberusAnalysis* self) {
+  gst_base_transform_reconfigure_sink(GST_BASE_TRANSFORM(self));
 }
 
 int cerberus_analysis_width(const CerberusAnalysis* self) {

@@ -14,10 +14,26 @@
 
 #include <gst/base/gstbasetransform.h>
 
+#include <atomic>
+#include <optional>
+
 #include "cerberus/private/element.hpp"
 #include "frame.hpp"
 
 namespace cerberus::plugin {
+
+// What was answered to those upstream, and whether it is so no more: then cerberus_analysis_answer_anew().
+class Answer {
+ public:
+  bool give(bool yes) {
+    given_ = yes;
+    return yes;
+  }
+  bool outdated_by(bool yes) const { return given_.load().value_or(yes) != yes; }
+
+ private:
+  std::atomic<std::optional<bool>> given_{std::nullopt};
+};
 
 // An element's private struct implements this; all calls come from the streaming thread or a state change, never two
 // at once, and no lock is held.
@@ -35,6 +51,11 @@ class Analyser {
   virtual void upstream_event(GstEvent*) {}
   // True for the one element that looks at the people: see Frame::sight_wanted.
   virtual bool reads_sight() const { return false; }
+  // Answers to those upstream, from any thread.
+  // True: the stages' planes are of use here, or stay on the frame for others.
+  virtual bool wants_planes() { return false; }
+  // True: the differences end here, and D(k-1) is of no use.
+  virtual bool spares_previous() { return false; }
   // True for the one element that measures the camera itself.
   virtual bool measures_camera() const { return false; }
 };
@@ -49,6 +70,8 @@ struct CerberusAnalysisClass {
 GType cerberus_analysis_get_type();
 // In type_init: `analyser` lives as long as the element.
 void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser);
+// Those upstream are to ask again.
+void cerberus_analysis_answer_anew(CerberusAnalysis* self);
 // The property analysis-width.
 int cerberus_analysis_width(const CerberusAnalysis* self);
 

@@ -5,7 +5,8 @@
  * Chooses the threshold of the registered differences by the indices of fuzziness, binarises both with it and attaches
  * the moving area as the plane `mask` (0 or 255) and a #CerberusThreshold. The frame goes through untouched. Stages that
  * are missing upstream are done here with their defaults. The mask is empty, and the threshold not `ready`, until three
- * frames of the scene were seen.
+ * frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the other areas
+ * need of the third frame is not kept for `all`.
  *
  * ## Example
  * |[
@@ -81,9 +82,20 @@ vision::MovingAreaOptions options(const Settings& s) {
   return options;
 }
 
+bool spares_previous(const Settings& s) {
+  return options(s).area == vision::Area::all;
+}
+
 struct Private final : StatefulAnalyser<Settings, MaskStage> {
+  Answer answer;
+
+  bool spares_previous() override { return answer.give(plugin::spares_previous(settings.snapshot())); }
+  bool wants_planes() override { return !spares_previous(); }
   bool analyse(Frame& frame) override {
-    if (const auto changed = settings.changes()) state->set_options(options(*changed));
+    if (const auto changed = settings.changes()) {
+      state->set_options(options(*changed));
+      if (answer.outdated_by(plugin::spares_previous(*changed))) cerberus_analysis_answer_anew(base);
+    }
     state->luma().set_analysis_width(cerberus_analysis_width(base));
     return state->run(frame);
   }

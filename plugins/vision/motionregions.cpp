@@ -105,10 +105,16 @@ struct Private final : StatefulAnalyser<Settings, RegionStage> {
   vision::SizeGate gate;
   bool in_metres = false;  // they count
   NothingFound nothing;
+  // For what it was asked last why nothing can be found.
+  vision::Size judged_size;
+  bool judged_nowhere = false, judge = true;
+  Answer answer;
 
   bool start() override;
+  bool wants_planes() override { return answer.give(settings.snapshot().keep_planes == KEEP_PLANES_ALWAYS); }
   bool analyse(Frame& frame) override;
   void apply(const Settings& s);
+  void judge_settings(vision::Size frame);
   std::string why_nothing(vision::Size frame);
 };
 
@@ -121,6 +127,8 @@ void Private::apply(const Settings& s) {
   state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height, radians(s.tilt));
   in_metres = s.horizontal_fov > 0;
   keep = static_cast<KeepPlanes>(s.keep_planes);
+  if (answer.outdated_by(keep == KEEP_PLANES_ALWAYS)) cerberus_analysis_answer_anew(base);
+  judge = true;
 }
 
 // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
@@ -146,6 +154,15 @@ std::string Private::why_nothing(vision::Size frame) {
   return why;
 }
 
+void Private::judge_settings(vision::Size frame) {
+  const bool nowhere = state->zones().nowhere();
+  if (!judge && frame == judged_size && nowhere == judged_nowhere) return;
+  judge = false;
+  judged_size = frame;
+  judged_nowhere = nowhere;
+  nothing.tell(GST_ELEMENT(base), why_nothing(frame));
+}
+
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
     apply(*changed);
@@ -153,10 +170,10 @@ bool Private::analyse(Frame& frame) {
       GST_ELEMENT_WARNING(base, LIBRARY, SETTINGS, ("%s", wrong.c_str()), ("the zones that were there stay"));
   }
   state->luma().set_analysis_width(cerberus_analysis_width(base));
-  const bool keep_planes = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);
-  const bool found = state->run(frame, keep_planes);
-  if (!keep_planes) leave_sight(frame);
-  if (found) nothing.tell(GST_ELEMENT(base), why_nothing(frame.size()));
+  frame.planes_wanted = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);
+  const bool found = state->run(frame);
+  if (!frame.planes_wanted) leave_sight(frame);
+  if (found) judge_settings(frame.size());
   return found;
 }
 

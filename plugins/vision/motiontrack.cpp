@@ -126,7 +126,7 @@ std::string why_nothing(const Settings& s, const vision::SpeedGate& gate) {
 }
 
 struct State {
-  RegionStage regions;  // where no motionregions is upstream
+  std::optional<RegionStage> regions;  // where no motionregions is upstream
   vision::Tracker tracker;
   std::vector<vision::Region> found;  // what the tracker is fed with
   std::vector<CerberusRegion> published;
@@ -197,9 +197,9 @@ std::optional<vision::Gaze> gaze(const Frame& frame, const vision::Lens& lens) {
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) apply(*changed);
   if (!regions_known(frame.buffer)) {
-    state->regions.luma().set_analysis_width(cerberus_analysis_width(base));
-    const bool found = state->regions.run(frame, frame.planes_wanted);
-    if (!found) {
+    if (!state->regions) state->regions.emplace();
+    state->regions->luma().set_analysis_width(cerberus_analysis_width(base));
+    if (!state->regions->run(frame)) {
       drop_sight(frame.buffer);
       return false;
     }

@@ -19,18 +19,18 @@ MappedPlane acquire(PlanePool& pool, vision::Size size, int sample_size = 1) {
   return plane;
 }
 
-// The kernels work on whole vectors, so rows must be padded as a PlanePool pads them. A plane that is not comes from a
-// stranger and counts as missing.
-bool is_ours(const MappedPlane& plane) {
-  constexpr int kAlign = static_cast<int>(vision::Image<std::uint8_t>::kAlign);
-  const auto address = reinterpret_cast<std::uintptr_t>(plane.view<std::uint8_t>().data);
-  return plane && plane.stride() % kAlign == 0 && address % kAlign == 0;
-}
-
+// Kernels may work on whole vectors. A plane whose rows are not padded as a PlanePool pads them comes from a stranger and
+// counts as missing.
 MappedPlane read(GstBuffer* buffer, CerberusPlaneKind kind) {
   MappedPlane plane = MappedPlane::read(buffer, kind);
-  if (!is_ours(plane)) plane = MappedPlane();
+  if (plane && plane.stride() != vision::padded_row(plane.width()) * cerberus_plane_kind_sample_size(kind))
+    plane = MappedPlane();
   return plane;
+}
+
+void drop(GstBuffer* buffer, CerberusPlaneKind kind) {
+  if (CerberusPlaneMeta* meta = cerberus_buffer_get_plane_meta(buffer, kind))
+    gst_buffer_remove_meta(buffer, reinterpret_cast<GstMeta*>(meta));
 }
 
 void copy(vision::GrayView from, vision::MutableGrayView to) {
@@ -57,35 +57,39 @@ MappedPlane LumaStage::make(Frame& frame) {
   return read(frame.buffer, CERBERUS_PLANE_LUMA);
 }
 
-bool DifferenceStage::ensure(Frame& frame, vision::Size size) {
+bool DifferenceStage::ensure(Frame& frame, vision::Size size, bool previous) {
   const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
-  const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
-  if (histogram.width() * sizeof(std::uint32_t) >= sizeof(HistogramRecord) && current.size() == size &&
-      previous.size() == size)
+  if (histogram.width() * sizeof(std::uint32_t) >= sizeof(HistogramRecord) && current.size() == size)
     return true;
-  return run(frame);
+  return run(frame, previous);
 }
 
-bool DifferenceStage::run(Frame& frame) {
+bool DifferenceStage::run(Frame& frame, bool previous_wanted) {
   const MappedPlane picture = luma_.obtain(frame);
   if (!picture) return false;
-  if (sequence_.broken_by(frame)) difference_.reset();
+  if (!difference_) difference_.emplace().set_options(options_);
+  if (sequence_.broken_by(frame)) difference_->reset();
   const vision::Size size = picture.size();
-  MappedPlane current = acquire(current_pool_, size);
-  MappedPlane previous = acquire(previous_pool_, size);
+  MappedPlane current = acquire(current_pool_, size), previous;
+  if (previous_wanted)
+    previous = acquire(previous_pool_, size);
+  else
+    previous_pool_.clear();
   MappedPlane histogram = acquire(histogram_pool_, {sizeof(HistogramRecord) / 4, 1}, 4);
 
   vision::Histogram counts;
   const vision::DifferenceResult result =
-      difference_.update(picture.view<std::uint8_t>(), frame.motion.in(size, frame.size()),
-                         current.writable<std::uint8_t>(), previous.writable<std::uint8_t>(), counts);
+      difference_->update(picture.view<std::uint8_t>(), frame.motion.in(size, frame.size()),
+                          current.writable<std::uint8_t>(), previous.writable<std::uint8_t>(), counts);
   HistogramRecord record{};
   std::memcpy(record.count, counts.data(), sizeof record.count);
   record.frames = result.frames;
+  record.previous = result.previous;
   std::memcpy(histogram.writable<std::uint32_t>().data, &record, sizeof record);
 
   current.publish(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
+  drop(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);  // a stranger's
   previous.publish(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
   histogram.publish(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   return true;
@@ -97,12 +101,14 @@ bool MaskStage::ensure(Frame& frame) {
 
 bool MaskStage::run(Frame& frame) {
   const MappedPlane picture = before_.luma().obtain(frame);
-  if (!picture || !before_.ensure(frame, picture.size())) return false;
+  const bool previous_needed = options_.area != vision::Area::all;
+  if (!picture || !before_.ensure(frame, picture.size(), previous_needed || frame.planes_wanted))
+    return false;
   const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
-  const MappedPlane previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
   MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const vision::Size size = picture.size();
-  if (sequence_.broken_by(frame) || size != size_) area_.reset();
+  if (!area_) area_.emplace().set_options(options_);
+  if (sequence_.broken_by(frame) || size != size_) area_->reset();
   size_ = size;
 
   HistogramRecord record;
@@ -115,13 +121,15 @@ bool MaskStage::run(Frame& frame) {
   input.motion = frame.motion.in(size, frame.size());
   input.still = frame.motion.still;
   input.current = current.view<std::uint8_t>();
-  input.previous = previous.view<std::uint8_t>();
+  MappedPlane previous;
+  if (previous_needed && record.previous) previous = read(frame.buffer, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+  if (previous.size() == size) input.previous = previous.view<std::uint8_t>();
   input.histogram = &counts;
   input.seconds = frame.seconds;
   input.frames = std::clamp(record.frames, 0, 3);
 
   MappedPlane mask = acquire(pool_, size);
-  const vision::MovingAreaResult result = area_.update(input, mask.writable<std::uint8_t>());
+  const vision::MovingAreaResult result = area_->update(input, mask.writable<std::uint8_t>());
   mask.publish(frame.buffer, CERBERUS_PLANE_MASK);
 
   CerberusThreshold threshold{};
@@ -137,17 +145,17 @@ bool MaskStage::run(Frame& frame) {
 // In place, unless somebody else holds the histogram (a tee between the stages).
 void MaskStage::tell_how(GstBuffer* buffer, HistogramRecord& record) {
   record.chosen = 1;
-  record.weighting = static_cast<std::int32_t>(threshold_.weighting);
-  record.extremes = static_cast<std::int32_t>(threshold_.extremes);
-  record.order = threshold_.order;
-  record.clip = threshold_.clip;
+  record.weighting = static_cast<std::int32_t>(options_.threshold.weighting);
+  record.extremes = static_cast<std::int32_t>(options_.threshold.extremes);
+  record.order = options_.threshold.order;
+  record.clip = options_.threshold.clip;
   MappedPlane plane = MappedPlane::take(buffer, CERBERUS_PLANE_HISTOGRAM);
   if (!plane) plane = acquire(histogram_pool_, {sizeof record / 4, 1}, 4);
   std::memcpy(plane.writable<std::uint32_t>().data, &record, sizeof record);
   plane.publish(buffer, CERBERUS_PLANE_HISTOGRAM);
 }
 
-bool RegionStage::run(Frame& frame, bool want_labels) {
+bool RegionStage::run(Frame& frame) {
   if (!before_.ensure(frame)) return false;
   // Cleaned in place, unless somebody else looks at the uncleaned one (a tee between the stages).
   MappedPlane mask = MappedPlane::take(frame.buffer, CERBERUS_PLANE_MASK);
@@ -162,7 +170,7 @@ bool RegionStage::run(Frame& frame, bool want_labels) {
   zones_.apply(mask.writable<std::uint8_t>());
 
   MappedPlane labels;
-  if (want_labels) labels = acquire(label_pool_, size, sizeof(std::uint16_t));
+  if (frame.planes_wanted) labels = acquire(label_pool_, size, sizeof(std::uint16_t));
   const std::span<const vision::Region> regions = finder_.update(
       mask.writable<std::uint8_t>(), labels.writable<std::uint16_t>(), frame.motion.in(size, frame.size()));
   mask.publish(frame.buffer, CERBERUS_PLANE_MASK);
@@ -182,8 +190,7 @@ void leave_sight(const Frame& frame) {
   };
   for (int kind = CERBERUS_PLANE_LUMA; kind <= CERBERUS_PLANE_LABELS; ++kind) {
     const auto k = static_cast<CerberusPlaneKind>(kind);
-    CerberusPlaneMeta* meta = left(k) ? nullptr : cerberus_buffer_get_plane_meta(frame.buffer, k);
-    if (meta) gst_buffer_remove_meta(frame.buffer, reinterpret_cast<GstMeta*>(meta));
+    if (!left(k)) drop(frame.buffer, k);
   }
 }
 

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The steps from a frame to its regions, each with its predecessor inside: a stage whose input is not on the buffer
 // makes that input itself, with the defaults, and leaves it there for those who follow. Every element of the corridor
-// is one of these stages with properties; so the bin and the chain cannot differ.
+// is one of these stages with properties; so the bin and the chain cannot differ. What a predecessor needs it takes when it
+// is needed first: mostly it is upstream.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "cerberus/private/plane_pool.hpp"
@@ -40,7 +42,7 @@ class LumaStage {
 // chosen from the counts, once it was.
 struct HistogramRecord {
   std::uint32_t count[256];
-  std::int32_t frames;                            // vision::DifferenceResult
+  std::int32_t frames, previous;                  // vision::DifferenceResult
   std::int32_t chosen;                            // 0: the rest is not known yet
   std::int32_t weighting, extremes, order, clip;  // vision::FuzzyThresholdOptions
 };
@@ -49,14 +51,19 @@ struct HistogramRecord {
 class DifferenceStage {
  public:
   LumaStage& luma() { return luma_; }
-  void set_options(const vision::DifferenceOptions& options) { difference_.set_options(options); }
-  // Both return false for an unusable buffer. ensure() takes what is on the buffer if it has this size.
-  bool ensure(Frame& frame, vision::Size size);
-  bool run(Frame& frame);
+  void set_options(const vision::DifferenceOptions& options) {
+    options_ = options;
+    if (difference_) difference_->set_options(options);
+  }
+  // Both return false for an unusable buffer; `previous`: D(k-1) is wanted. ensure() takes what is on the buffer if it has
+  // this size, and D(k-1) as it comes: upstream was asked for it.
+  bool ensure(Frame& frame, vision::Size size, bool previous);
+  bool run(Frame& frame, bool previous);
 
  private:
   LumaStage luma_;
-  vision::ThreeFrameDifference difference_;
+  vision::DifferenceOptions options_;
+  std::optional<vision::ThreeFrameDifference> difference_;
   Sequence sequence_;
   PlanePool current_pool_, previous_pool_, histogram_pool_;
 };
@@ -66,8 +73,8 @@ class MaskStage {
  public:
   LumaStage& luma() { return before_.luma(); }
   void set_options(const vision::MovingAreaOptions& options) {
-    area_.set_options(options);
-    threshold_ = options.threshold;
+    options_ = options;
+    if (area_) area_->set_options(options);
   }
   bool ensure(Frame& frame);
   bool run(Frame& frame);
@@ -75,8 +82,8 @@ class MaskStage {
  private:
   void tell_how(GstBuffer* buffer, HistogramRecord& record);
   DifferenceStage before_;
-  vision::MovingArea area_;
-  vision::FuzzyThresholdOptions threshold_;
+  vision::MovingAreaOptions options_;
+  std::optional<vision::MovingArea> area_;
   vision::Size size_;
   Sequence sequence_;
   PlanePool pool_, histogram_pool_;
@@ -96,8 +103,8 @@ class RegionStage {
     mounting_height_ = mounting_height;
     tilt_ = tilt;
   }
-  // False for an unusable buffer. Labels (2 bytes a pixel) are only made where they are wanted.
-  bool run(Frame& frame, bool want_labels);
+  // False for an unusable buffer. Labels (2 bytes a pixel) are only made where planes are wanted.
+  bool run(Frame& frame);
 
  private:
   void publish(Frame& frame, std::span<const vision::Region> regions, vision::Size analysis);

@@ -3,7 +3,9 @@
  * SECTION:element-threeframediff
  *
  * Attaches what changed between three consecutive frames once the camera's own motion is taken out: the planes
- * `difference` and `previous-difference` and the histogram of the first. The frame goes through untouched.
+ * `difference` and `previous-difference` and the histogram of the first. The frame goes through untouched. The plane
+ * `previous-difference` is left out where a `fuzzythreshold` with `area=all` follows and nobody asks for planes: it is not
+ * read then.
  * Without `cameramotion` upstream the camera stands still and the luma plane is made here. Both differences are zero
  * until three frames of the scene were seen.
  *
@@ -47,7 +49,7 @@ struct Private final : StatefulAnalyser<Settings, DifferenceStage> {
   bool analyse(Frame& frame) override {
     if (const auto s = settings.changes()) state->set_options({s->blur ? 3 : 1, s->compensate_light});
     state->luma().set_analysis_width(cerberus_analysis_width(base));
-    return state->run(frame);
+    return state->run(frame, frame.previous_wanted);
   }
 };
 

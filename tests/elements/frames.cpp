@@ -216,7 +216,7 @@ START_TEST(a_published_plane_is_read_back) {
   MappedPlane plane = pool.acquire({33, 7}, 2);
   fail_unless(static_cast<bool>(plane));
   auto view = plane.writable<std::uint16_t>();
-  fail_unless_equals_int(plane.stride() % 64, 0);
+  fail_unless_equals_int(plane.stride(), 48 * 2);
   fail_unless_equals_int(reinterpret_cast<std::uintptr_t>(view.data) % 64, 0);
   for (int y = 0; y < 7; ++y)
     for (int x = 0; x < 33; ++x) view.at(x, y) = static_cast<std::uint16_t>(1000 * y + x);
@@ -268,7 +268,7 @@ START_TEST(planes_outlive_their_pool) {
     plane.publish(frame, CERBERUS_PLANE_LUMA);
     MappedPlane other = pool.acquire({160, 16});
     fail_unless_equals_int(other.width(), 160);
-    fail_unless_equals_int(other.stride(), 192);
+    fail_unless_equals_int(other.stride(), 160);
   }
   const MappedPlane back = MappedPlane::read(frame, CERBERUS_PLANE_LUMA);
   fail_unless_equals_int(back.view<std::uint8_t>().at(15, 15), 77);

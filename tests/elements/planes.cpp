@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Planes: who wants them gets them, and nobody sees another one's changes.
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include "scene.h"
 #include "support.h"
 
@@ -89,6 +93,123 @@ GST_START_TEST(another_branch_keeps_its_uncleaned_mask) {
 }
 GST_END_TEST
 
+// One in black and one in white who meet before the wall, stand together and go back where they came from.
+class Meeting {
+ public:
+  static constexpr int kFrames = 115;
+  static double left_of(int who, int frame) { return 146 + (who == 0 ? -2 : 2) * std::abs(frame - 60.0); }
+  static GstBuffer* frame(int k) {
+    World world;
+    world.figure = false;
+    std::vector<std::uint8_t> picture = world.picture(k);
+    for (int who = 1; who >= 0; --who)
+      for (int y = 80; y < 80 + scene::kFigureHeight; ++y)
+        for (int x = 0; x < scene::kFigureWidth; ++x) {
+          const int at = static_cast<int>(left_of(who, k)) + x;
+          if (at >= 0 && at < scene::kWidth)
+            picture[static_cast<std::size_t>(y) * scene::kWidth + at] =
+                static_cast<std::uint8_t>((who == 0 ? 8 : 225) + 0.08 * scene::texture(x, y, 5, 7 + who));
+        }
+    return scene::buffer("GRAY8", scene::kWidth, scene::kHeight, picture, k * scene::kStep);
+  }
+};
+
+// The planes of the stages are what the tracker knows people's looks from; by their places these two seem to pass.
+GST_START_TEST(who_is_who_is_told_by_the_planes) {
+  const bool taken_away = __i__ > 0;
+  Line line("motionregions ! identity name=between ! motiontrack");
+  g_autoptr(GstElement) between = gst_bin_get_by_name(GST_BIN(line.harness->element), "between");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(between, "src");
+  if (taken_away)
+    gst_pad_add_probe(
+        pad, GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad*, GstPadProbeInfo* info, gpointer) {
+          GstBuffer* buffer = gst_buffer_make_writable(GST_PAD_PROBE_INFO_BUFFER(info));
+          fail_unless_equals_int(planes_of(buffer), 2);  // picture and mask
+          cerberus_buffer_remove_plane_metas(buffer);
+          GST_PAD_PROBE_INFO_DATA(info) = buffer;
+          return GST_PAD_PROBE_OK;
+        },
+        nullptr, nullptr);
+  guint before[2] = {};
+  for (int k = 0; k < Meeting::kFrames; ++k) {
+    GstBuffer* out = line.through(Meeting::frame(k));
+    fail_unless_equals_int(planes_of(out), 0);
+    const scene::Regions found(out);
+    for (int who = 0; who < 2 && (k == 40 || k == Meeting::kFrames - 1); ++who) {
+      guint id = 0;
+      for (guint i = 0; i < found.size(); ++i)
+        if (std::abs(found[i].x - Meeting::left_of(who, k)) < 10) id = found[i].id;
+      fail_unless(id > 0, "frame %d: nobody is where %d is", k, who);
+      if (k == 40)
+        before[who] = id;
+      else
+        fail_unless((id == before[who]) != taken_away, "%d was %u and is %u", who, before[who], id);
+    }
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+// D(k-1) is of use to area=leading and area=common, and to whoever looks at planes.
+GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
+  struct Case {
+    const char* launch;
+    bool asked, made;
+  };
+  const Case cases[] = {
+      {"threeframediff name=d ! identity", false, true},  // nobody says that it may be left out
+      {"threeframediff name=d ! fuzzythreshold ! identity", false, false},
+      {"threeframediff name=d ! queue ! fuzzythreshold memory=false ! identity", false, false},
+      {"threeframediff name=d ! fuzzythreshold ! identity", true, true},
+      {"threeframediff name=d ! fuzzythreshold area=leading ! identity", false, true},
+      {"threeframediff name=d ! fuzzythreshold area=common ! motiontrack", false, true},
+      {"threeframediff name=d ! fuzzythreshold ! motionregions ! motiontrack", false, false},
+      {"threeframediff name=d ! fuzzythreshold ! motionregions keep-planes=always ! identity", false, true},
+      {"threeframediff name=d ! tee ! fuzzythreshold area=leading ! identity", false, true},
+  };
+  const Case& c = cases[__i__];
+  Line line(c.launch);
+  if (c.asked)
+    gst_pad_add_probe(line.harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr,
+                      nullptr);
+  g_autoptr(GstElement) differences = gst_bin_get_by_name(GST_BIN(line.harness->element), "d");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(differences, "src");
+  int made = 0;
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer count) {
+        *static_cast<int*>(count) +=
+            cerberus_buffer_get_plane_meta(GST_PAD_PROBE_INFO_BUFFER(info),
+                                           CERBERUS_PLANE_PREVIOUS_DIFFERENCE) != nullptr;
+        return GST_PAD_PROBE_OK;
+      },
+      &made, nullptr);
+  for (int k = 0; k < 10; ++k) gst_harness_push(line.harness, scene::grey_buffer(World{}, k));
+  for (int k = 0; k < 10; ++k) gst_buffer_unref(gst_harness_pull(line.harness));
+  fail_unless_equals_int(made, c.made ? 10 : 0);
+}
+GST_END_TEST
+
+GST_START_TEST(planes_come_and_go_with_the_property_while_frames_flow) {
+  Line line("threeframediff ! fuzzythreshold ! motionregions name=r ! identity");
+  g_autoptr(GstElement) regions = gst_bin_get_by_name(GST_BIN(line.harness->element), "r");
+  int k = 0;
+  for (const char* keep : {"auto", "always", "never", "always"}) {
+    gst_util_set_object_arg(G_OBJECT(regions), "keep-planes", keep);
+    const bool kept = std::string(keep) == "always";
+    line.run(World{}, k, k + 6, [&](int frame, GstBuffer* out) {
+      fail_unless_equals_int(planes_of(out) > 0, kept);
+      // Upstream is asked with the next frame.
+      const bool previous = cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+      if (frame > k) fail_unless_equals_int(previous, kept);
+      fail_unless_equals_int(cerberus_buffer_get_threshold_meta(out)->threshold.ready, frame >= 2);
+    });
+    k += 6;
+  }
+}
+GST_END_TEST
+
 Suite* planes_suite() {
   Suite* suite = suite_create("planes");
   TCase* tests = tcase_create("all");
@@ -97,6 +218,9 @@ Suite* planes_suite() {
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_loop_test(tests, planes_stay_only_where_somebody_asks_for_them, 0, 6);
   tcase_add_test(tests, planes_stay_after_a_reconfigure_event_when_they_are_wanted_then);
+  tcase_add_loop_test(tests, who_is_who_is_told_by_the_planes, 0, 2);
+  tcase_add_loop_test(tests, the_difference_before_is_made_where_somebody_reads_it, 0, 9);
+  tcase_add_test(tests, planes_come_and_go_with_the_property_while_frames_flow);
   tcase_add_test(tests, another_branch_keeps_its_uncleaned_mask);
   return suite;
 }

@@ -104,10 +104,24 @@ START_TEST(the_paper_s_sets_are_formed_from_one_threshold) {
     }
   }
   in.frames = 2;  // two frames make no motion
+  const auto says_nothing = [&] {
+    MovingArea stage;
+    stage.set_options(o);
+    ck_assert(!stage.update(in, mask.view()).ready);
+    for (int x = 0; x < 137; ++x) ck_assert_int_eq(mask.view().at(x, 0), 0);
+  };
+  says_nothing();
+  in.frames = 3;
+  in.previous = {};  // nor do sets of differences of which one is not known
+  for (const Area area : {Area::common, Area::leading}) {
+    o.area = area;
+    says_nothing();
+  }
+  o.area = Area::all;
   MovingArea stage;
   stage.set_options(o);
-  ck_assert(!stage.update(in, mask.view()).ready);
-  for (int x = 0; x < 137; ++x) ck_assert_int_eq(mask.view().at(x, 0), 0);
+  ck_assert(stage.update(in, mask.view()).ready);
+  for (int x = 0; x < 137; ++x) ck_assert_int_eq(mask.view().at(x, 0), now.view().at(x, 0) > 4 ? 255 : 0);
 }
 END_TEST
 

@@ -20,13 +20,20 @@ Pyramid pyramid_of(const Image<std::uint8_t>& image) {
   return pyramid;
 }
 
+PatchSites sites_of(const Pyramid& pyramid, double noise = 1) {
+  PatchSites sites;
+  Image<std::int32_t> scratch;
+  sites.choose(pyramid, noise, scratch);
+  return sites;
+}
+
 }  // namespace
 
 START_TEST(patches_are_found_where_they_went_on_every_level) {
   const Transform truth = Transform::translation(5.5, -3.25);
   const Pyramid before = pyramid_of(picture(Scene(1))), after = pyramid_of(picture(Scene(1), truth));
-  PatchMatches matches;
-  matches.choose(before, 1);
+  const PatchSites sites = sites_of(before);
+  PatchMatches matches(sites);
   ck_assert_int_ge(matches.count(), 180);
   for (const int level : {2, 1, 0}) {
     matches.follow(before, after, level, Transform::translation(5, -3));
@@ -43,8 +50,8 @@ END_TEST
 START_TEST(of_several_guesses_the_right_one_is_found_and_the_first_in_doubt) {
   const Transform truth = Transform::translation(40, 9);
   const Pyramid before = pyramid_of(picture(Scene(2))), after = pyramid_of(picture(Scene(2), truth));
-  PatchMatches matches;
-  matches.choose(before, 1);
+  const PatchSites sites = sites_of(before);
+  PatchMatches matches(sites);
   const std::array guesses{Transform{}, Transform::translation(-20, 0), Transform::translation(39, 10)};
   ck_assert(matches.follow(before, after, 2, guesses).m == guesses[2].m);
   ck_assert_double_gt(matches.share_of(rate_motion(matches.samples(), truth)).all, 0.7);
@@ -57,9 +64,9 @@ START_TEST(the_share_is_of_the_patches_that_follow) {
   Image<std::uint8_t> later = picture(Scene(3), Transform::translation(4, 0));
   paste(picture(Scene(99)), later.view(), 160, 0, 160, 240);  // the right half is another place
   const Pyramid before = pyramid_of(picture(Scene(3))), after = pyramid_of(later);
-  PatchMatches matches;
+  const PatchSites sites = sites_of(before);
+  PatchMatches matches(sites);
   ck_assert_double_eq(matches.share_of({}).all, 0);  // nothing looked for yet
-  matches.choose(before, 1);
   matches.follow(before, after, 0, Transform::translation(4, 0));
   const PatchMatches::Share share =
       matches.share_of(rate_motion(matches.samples(), Transform::translation(4, 0)));
@@ -76,10 +83,10 @@ START_TEST(noise_is_what_the_matches_leave) {
     Image<std::uint8_t> a = picture(Scene(4)), b = picture(Scene(4));
     add_noise(a.view(), sigma, sigma, random);
     add_noise(b.view(), sigma, sigma, random);
-    PatchMatches matches;
-    ck_assert(!matches.noise());
     const Pyramid before = pyramid_of(a), after = pyramid_of(b);
-    matches.choose(before, sigma);
+    const PatchSites sites = sites_of(before, sigma);
+    PatchMatches matches(sites);
+    ck_assert(!matches.noise());
     matches.follow(before, after, 0, Transform{});
     ck_assert(matches.noise().has_value());
     ck_assert_double_eq_tol(*matches.noise(), sigma, 0.35 * sigma);  // of the calmer ones: a little low

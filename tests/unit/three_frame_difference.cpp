@@ -261,6 +261,67 @@ START_TEST(steady_state_allocates_nothing) {
 }
 END_TEST
 
+// Whether D(k-1) is made or not, D(k) and all that is said of it are the same.
+START_TEST(without_the_difference_before_a_picture_less_is_held_and_all_else_is_the_same) {
+  const Size size{96, 72};
+  const Scene scene(4);
+  for (const bool compensate : {true, false})
+    for (const double pan : {0.0, 1.3, 2.0}) {
+      DifferenceOptions options;
+      options.compensate_light = compensate;
+      Run both(size, options), one(size, options);
+      std::mt19937 random(8);
+      for (int k = 0; k < 12; ++k) {
+        Image<std::uint8_t> frame = seen(scene, size, pan * k, 0);
+        for (int y = 0; y < size.height; ++y)
+          for (int x = 0; x < size.width; ++x)
+            frame.view().at(x, y) = static_cast<std::uint8_t>(frame.view().at(x, y) * (k < 6 ? 4 : 3) / 4);
+        add_noise(frame.view(), 2, 2, random);
+        const Transform motion = k ? Transform::translation(pan, 0) : Transform{};
+        const auto expected = both.feed(frame, motion);
+        const auto result = one.stage.update(frame.view(), motion, one.current.view(), {}, one.histogram);
+        ck_assert_int_eq(result.frames, expected.frames);
+        ck_assert_uint_eq(result.valid, expected.valid);
+        ck_assert_double_eq(result.gain, expected.gain);
+        ck_assert_double_eq(result.offset, expected.offset);
+        ck_assert(one.histogram == both.histogram);
+        ck_assert(expected.previous == (k >= 2));
+        ck_assert(!result.previous);
+        for (int y = 0; y < size.height; ++y)
+          for (int x = 0; x < size.width; ++x)
+            ck_assert_int_eq(one.current.view().at(x, y), both.current.view().at(x, y));
+      }
+      ck_assert_uint_le(one.stage.bytes() + static_cast<std::size_t>(size.area()), both.stage.bytes());
+    }
+}
+END_TEST
+
+START_TEST(the_difference_before_is_known_from_the_second_frame_on_in_which_it_is_wanted) {
+  const Size size{96, 72};
+  const Scene scene(4);
+  for (const double pan : {0.0, 1.3}) {
+    Run always(size), late(size);
+    std::mt19937 random(8);
+    for (int k = 0; k < 16; ++k) {
+      Image<std::uint8_t> frame = seen(scene, size, pan * k, 0);
+      add_noise(frame.view(), 2, 2, random);
+      const Transform motion = k ? Transform::translation(pan, 0) : Transform{};
+      const bool wanted = (k >= 5 && k < 9) || k >= 12;
+      always.feed(frame, motion);
+      const auto result =
+          late.stage.update(frame.view(), motion, late.current.view(),
+                            wanted ? late.previous.view() : MutableGrayView{}, late.histogram);
+      ck_assert_int_eq(result.frames, std::min(k + 1, 3));
+      ck_assert(result.previous == (wanted && k != 5 && k != 12));
+      for (int y = 0; y < size.height && wanted; ++y)
+        for (int x = 0; x < size.width; ++x)
+          ck_assert_int_eq(late.previous.view().at(x, y),
+                           result.previous ? always.previous.view().at(x, y) : 0);
+    }
+  }
+}
+END_TEST
+
 int main() {
   return run_suite(
       "three_frame_difference",
@@ -269,5 +330,8 @@ int main() {
        a_moving_camera_over_a_still_scene_shows_little, exposure_is_taken_out_and_reported,
        bands_of_a_rolling_shutter_are_taken_out_and_an_object_is_not, reset_and_a_new_size_begin_again,
        a_motion_that_cannot_be_begins_again, the_blur_is_the_rounded_mean_of_nine,
-       levels_are_counted_as_one_by_one, steady_state_allocates_nothing});
+       levels_are_counted_as_one_by_one,
+       without_the_difference_before_a_picture_less_is_held_and_all_else_is_the_same,
+       the_difference_before_is_known_from_the_second_frame_on_in_which_it_is_wanted,
+       steady_state_allocates_nothing});
 }

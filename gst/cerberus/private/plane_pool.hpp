@@ -109,8 +109,7 @@ class PlanePool {
   PlanePool(const PlanePool&) = delete;
   PlanePool& operator=(const PlanePool&) = delete;
 
-  // A plane to write: rows start on 64-byte boundaries and are padded to a multiple of 64 bytes. What it
-  // holds is undefined. False where memory ran out.
+  // A plane to write, its rows padded as those of a vision::Image. What it holds is undefined. False where memory ran out.
   MappedPlane acquire(vision::Size size, int sample_size = 1);
   // Lets go of the memory; planes that still ride on frames stay valid.
   void clear();
@@ -121,10 +120,10 @@ class PlanePool {
 };
 
 inline MappedPlane PlanePool::acquire(vision::Size size, int sample_size) {
-  constexpr int kAlign = static_cast<int>(vision::Image<unsigned char>::kAlign);
+  constexpr int kAlign = 64;  // a line of the cache
   MappedPlane plane;
   if (size.width <= 0 || size.height <= 0) return plane;
-  const int stride = (size.width * sample_size + kAlign - 1) / kAlign * kAlign;
+  const int stride = vision::padded_row(size.width) * sample_size;
   const std::size_t bytes = static_cast<std::size_t>(stride) * size.height;
   if (bytes != bytes_) {
     clear();
