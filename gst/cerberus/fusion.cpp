@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "private/meta.hpp"
 
@@ -46,9 +47,17 @@ bool is_action(int number) {
                              [=](const GEnumValue& a) { return a.value_name && a.value == number; });
 }
 
+// What stands there, and be it no action: as that it must not be read.
+int number_of(const CerberusFusionAction& action) {
+  static_assert(sizeof action == sizeof(int));
+  int number = 0;
+  std::memcpy(&number, &action, sizeof number);
+  return number;
+}
+
 // An application may have left anything in it: a number that is no action moves nobody, no reading that is none says somebody.
 CerberusFusion sane(CerberusFusion fusion) {
-  if (!is_action(fusion.action)) fusion.action = CERBERUS_FUSION_HOLD;
+  if (!is_action(number_of(fusion.action))) fusion.action = CERBERUS_FUSION_HOLD;
   if (!fusion.rule_name) fusion.rule_name = g_intern_static_string("none");
   fusion.n_sensors = std::min<guint>(fusion.n_sensors, CERBERUS_PIR_MAX_SENSORS);
   for (guint i = 0; i < fusion.n_sensors; ++i) {

@@ -109,7 +109,7 @@ gsize cerberus_pir_info_buffer_size(const CerberusPirInfo* info) {
 GstMessage* cerberus_message_new_pir(GstObject* src, GstClockTime running_time, const CerberusPirInfo* info,
                                      const guint8* sensors) {
   g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
-  g_return_val_if_fail(info && sensors, nullptr);
+  g_return_val_if_fail(info && info->sensors <= CERBERUS_PIR_MAX_SENSORS && sensors, nullptr);
   GstStructure* structure = gst_structure_new(CERBERUS_MESSAGE_PIR, kRunningTime, G_TYPE_UINT64,
                                               static_cast<guint64>(running_time), nullptr);
   GValue array = G_VALUE_INIT;

@@ -30,6 +30,8 @@ const GstMetaInfo* meta_info() {
   return info;
 }
 
+constexpr char kHead[] = "head";  // of a pose that names none
+
 constexpr std::pair<const char*, double CerberusPose::*> kNumbers[] = {
     {"pan", &CerberusPose::pan},
     {"tilt", &CerberusPose::tilt},
@@ -66,7 +68,7 @@ GType cerberus_pose_meta_api_get_type(void) {
 void cerberus_pose_init(CerberusPose* pose) {
   g_return_if_fail(pose);
   *pose = {};
-  pose->head = g_intern_static_string("head");
+  pose->head = g_intern_static_string(kHead);
   pose->valid_until = GST_CLOCK_TIME_NONE;
   pose->settled = TRUE;
 }
@@ -151,8 +153,11 @@ gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose) {
     return TRUE;
   }
   auto* meta = cerberus::ensure_meta<PoseMeta>(buffer, meta_info());
-  if (meta) meta->pose = *pose;
-  return meta != nullptr;
+  if (!meta) return FALSE;
+  meta->pose = *pose;
+  // An application may have left it out: it is the head that is there.
+  if (!pose->head) meta->pose.head = g_intern_static_string(kHead);
+  return TRUE;
 }
 
 const CerberusPose* cerberus_buffer_peek_pose(GstBuffer* buffer) {

@@ -239,7 +239,7 @@ END_TEST
 START_TEST(nonsense_in_a_decision_moves_nobody) {
   for (const int action : {257, -1, 6}) {  // the first is 1 in a byte
     CerberusFusion fusion = searching();
-    fusion.action = static_cast<CerberusFusionAction>(action);
+    std::memcpy(&fusion.action, &action, sizeof action);  // as C would
     fusion.rule_name = nullptr;
     fusion.n_sensors = 400;
     fusion.sensors[2] = 100;
@@ -311,6 +311,11 @@ START_TEST(nothing_crashes_on_null) {
   EXPECT_CRITICAL(cerberus_pir_info_from_caps(nullptr, nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_pir_info_buffer_size(nullptr));
   EXPECT_CRITICAL(cerberus_message_new_pir(nullptr, 0, nullptr, nullptr));
+  CerberusPirInfo many;
+  cerberus_pir_info_init(&many);
+  many.sensors = 17;
+  const guint8 readings[17] = {};
+  EXPECT_CRITICAL(cerberus_message_new_pir(nullptr, 0, &many, readings));
   EXPECT_CRITICAL(cerberus_message_parse_pir(nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_fusion_init(nullptr));
   EXPECT_CRITICAL(cerberus_fusion_get_sensors(nullptr));

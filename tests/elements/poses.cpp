@@ -177,6 +177,10 @@ START_TEST(nothing_crashes_on_null) {
   EXPECT_CRITICAL(cerberus_event_parse_pose(nullptr));
   EXPECT_CRITICAL(cerberus_event_parse_base(nullptr, nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_buffer_set_pose(nullptr, pose));
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  pose->head = nullptr;  // whoever reads it compares it with a name
+  fail_unless(cerberus_buffer_set_pose(frame, pose));
+  fail_unless_equals_string(cerberus_buffer_peek_pose(frame)->head, "head");
   EXPECT_CRITICAL(cerberus_buffer_get_pose(nullptr));
   EXPECT_CRITICAL(cerberus_message_new_pantilt(nullptr, 0, nullptr, nullptr, pose));
   EXPECT_CRITICAL(cerberus_message_parse_pantilt(nullptr, nullptr, nullptr, nullptr));
