@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 
 #include "vision/global_shift.h"
@@ -18,7 +19,10 @@ constexpr int kReferenceAge = 16;             // frames after which a standing c
 constexpr double kMajority = 0.6;             // share of the patches that no other motion can outvote
 constexpr double kBent = 0.2;                 // pixels: less is nothing
 constexpr int kFewParts = 5, kManyParts = 8;  // of MotionSamples::kRegions
+constexpr int kWideColumns = 3;               // of the four: what shows in as many parts beside one another
 constexpr float kWide = 0.25f;                // of the picture: who is as wide is seen in many parts
+constexpr int kGoesOn = 50;                   // frames that a turn past a wall with nothing on it takes
+constexpr double kBentAtOnce = 4;             // pixels of the level: a turn whose bend is more than one
 constexpr double kStillMotion = 0.2;          // pixels, RMS over the picture: a camera that stood still does
 
 int search_level(Size size) {
@@ -58,8 +62,11 @@ struct CameraMotion::State {
   int reference_age = 0;      // frames since the reference
   PatchMatches::Share share;  // of the fit, on the level where it is highest
   Transform last;             // frame k-2 to k-1
-  double noise = 1;           // standard deviation of a pixel
+  LensBend lens;
+  double noise = 1;  // standard deviation of a pixel
   bool still = false;
+  int on_its_way =
+      0;  // frames for which a camera that moves is taken to do so where the picture says too little
   int scene_age = 0;
 
   std::optional<CameraMotionResult> confirm_still();
@@ -69,7 +76,8 @@ struct CameraMotion::State {
   Transform first_guess(PatchMatches& matches, int level, const std::array<Shift, 2>& shifts,
                         const std::optional<Transform>& prior) const;
   MotionFit fit_beyond(const MotionSamples& samples, const Transform& prior, MotionModel model,
-                       const Transform& guess, int hypotheses) const;
+                       const Transform& guess, int hypotheses, bool turns) const;
+  MotionFit best_without(const MotionSamples& samples, const std::optional<Transform>& prior) const;
   void count_followers(const PatchMatches& matches, const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
   bool is_still(const MotionSamples& samples, const MotionFit& fit) const;
@@ -108,6 +116,8 @@ void CameraMotion::State::next_reference(bool keep) {
 CameraMotionResult CameraMotion::State::start_scene() {
   next_reference(false);
   still = false;
+  on_its_way = 0;
+  lens = {};
   last = {};
   scene_age = 1;
   CameraMotionResult result;
@@ -140,14 +150,16 @@ void CameraMotion::State::measure_noise(const PatchMatches& matches) {
 // What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a simple
 // model then only has to follow by how much the head's word is wrong.
 MotionFit CameraMotion::State::fit_beyond(const MotionSamples& samples, const Transform& prior,
-                                          MotionModel model, const Transform& guess, int hypotheses) const {
+                                          MotionModel model, const Transform& guess, int hypotheses,
+                                          bool turns) const {
   MotionSamples beyond = samples;
   for (int i = 0; i < beyond.count; ++i) {
     const Point p = prior.apply({samples.x[i], samples.y[i]});
     beyond.x[i] = static_cast<float>(p.x), beyond.y[i] = static_cast<float>(p.y);
   }
   const std::array guesses{Transform{}, guess * prior.inverse()};
-  const MotionFit fit = fit_motion(beyond, model, reference.size(), guesses, hypotheses);
+  MotionFit fit = fit_motion(beyond, model, reference.size(), guesses, hypotheses);
+  if (turns) fit = fit_turn(beyond, reference.size(), fit, {});
   return rate_motion(samples, fit.transform * prior);
 }
 
@@ -175,18 +187,22 @@ bool CameraMotion::State::is_still(const MotionSamples& samples, const MotionFit
 
 // A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
 // camera that stood needs more to be set in motion, or what is wider than somebody who would not show in as many parts:
-// the few things on a bare wall. Nothing of those must stay behind then.
+// the few things on a bare wall. Nothing of those must stay behind then. One that moves shows it also in few parts beside
+// one another.
 bool CameraMotion::State::is_known(PatchMatches& matches, const MotionFit& fit) const {
   const MotionSamples& samples = matches.samples();
-  std::array<bool, MotionSamples::kRegions> seen{};
+  std::bitset<MotionSamples::kRegions> seen;
   std::array<float, MotionSamples::kMax> across;
   int following = 0;
   for (int i = 0; i < samples.count; ++i)
-    if (follows(samples, i, fit.transform))
-      seen[samples.region[i]] = true, across[following++] = samples.x[i];
-  const auto parts = std::count(seen.begin(), seen.end(), true);
-  if (!still || parts < kFewParts) return parts >= kFewParts;
-  if (parts >= kManyParts) return true;
+    if (follows(samples, i, fit.transform)) seen.set(samples.region[i]), across[following++] = samples.x[i];
+  const std::size_t parts = seen.count();
+  if (!still) {
+    const auto columns =
+        (seen | seen >> 4 | seen >> 8 | seen >> 12) & std::bitset<MotionSamples::kRegions>(0xf);
+    return parts >= kFewParts || columns.count() >= kWideColumns;
+  }
+  if (parts < kFewParts || parts >= kManyParts) return parts >= kManyParts;
   // The middle four fifths of them, as one may err.
   const int tenth = following / 10;
   const auto place = [&](int rank) {
@@ -234,6 +250,15 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   return result;
 }
 
+// Where the picture says too little: what the head says, or that it stands or goes on, whichever the little there is speaks
+// for.
+MotionFit CameraMotion::State::best_without(const MotionSamples& samples,
+                                            const std::optional<Transform>& prior) const {
+  if (prior && prior->is_sane(reference.size())) return rate_motion(samples, *prior);
+  const MotionFit stands = rate_motion(samples, {}), goes_on = rate_motion(samples, last);
+  return on_its_way > 0 && goes_on.support > stands.support ? goes_on : stands;
+}
+
 CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>& prior) {
   const Size size = reference.size();
   PatchMatches matches(sites);
@@ -251,8 +276,12 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
     const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
     const int hypotheses = level == top ? 96 : 24;
     fit = fit_motion(matches.samples(), model, size, guesses, hypotheses);
+    // On a coarse level only what would put the finer ones off: a patch is found a few of its pixels away.
+    const bool turns = model == MotionModel::similarity &&
+                       (level == 0 || mean_motion(fit.transform, size) > kBentAtOnce * (1 << level));
+    if (turns) fit = fit_turn(matches.samples(), size, fit, lens);
     if (bent && model != MotionModel::none)
-      if (const MotionFit turned = fit_beyond(matches.samples(), *prior, model, motion, hypotheses);
+      if (const MotionFit turned = fit_beyond(matches.samples(), *prior, model, motion, hypotheses, turns);
           turned.support > fit.support)
         fit = turned;
     motion = fit.transform;
@@ -261,9 +290,12 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   if (is_cut(shifts[0])) return start_scene();
   measure_noise(matches);
   const bool known = is_known(matches, fit);
-  if (!known) fit = rate_motion(matches.samples(), prior && prior->is_sane(size) ? *prior : Transform{});
-  still = options.model == MotionModel::none || is_still(matches.samples(), fit);
+  if (!known) fit = best_without(matches.samples(), prior);
+  const bool lost = !known && !prior && on_its_way > 0;
+  still = options.model == MotionModel::none || (!lost && is_still(matches.samples(), fit));
   if (still) fit = rate_motion(matches.samples(), {});
+  on_its_way = still ? 0 : !fit.transform.is_identity() ? kGoesOn : std::max(0, on_its_way - 1);
+  lens.learn(fit.lens);
   CameraMotionResult result;
   result.scene_age = ++scene_age;
   result.transform = last = fit.transform;

@@ -129,19 +129,32 @@ void reweight(const MotionSamples& s, std::span<const float> gates, Size picture
 }
 
 // A turning camera's picture is bent, by what its lens alone decides; `motion` is the similarity to begin with.
-MotionFit turned(const MotionSamples& s, Size picture, Transform motion) {
+MotionFit turned(const MotionSamples& s, Size picture, Shutter shutter, const LensBend& known,
+                 Transform motion) {
   const MotionLeastSquares squares(picture);
-  reweight(s, std::span(kGates).subspan(1), picture, motion,
-           [&](const Distances& weights, Transform& next) { return squares.step_turned(s, weights, next); });
-  return rate_motion(s, motion);
+  LensBend seen;
+  reweight(s, std::span(kGates).subspan(1), picture, motion, [&](const Distances& weights, Transform& next) {
+    seen = known;
+    return squares.step_turned(s, weights, shutter, seen, next);
+  });
+  MotionFit fit = rate_motion(s, motion);
+  fit.lens = seen;
+  return fit;
 }
 
 // Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at about
 // one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
-constexpr double kBendEarns = 10.8, kAffineEarns = 2 * 4.6, kHomographyEarns = 4 * 4.6;  // F(1), F(4), many
-bool is_worth(const MotionFit& finer, const MotionFit& fit, double earns) {
-  const double unexplained = finer.agreeing > 1 ? finer.cost / (2 * finer.agreeing) : 1;
-  return finer.support > 0.95 * fit.support && fit.cost - finer.cost > earns * std::max(unexplained, 0.2);
+constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 4.6,
+                 kHomographyEarns = 4 * 4.6;  // F(1), F(2), F(4), many
+// What honest samples leave of the cost, each direction.
+double unexplained(const MotionFit& fit) {
+  return std::max(fit.agreeing > 1 ? fit.cost / (2 * fit.agreeing) : 1, 0.2);
+}
+double earned(const MotionFit& finer, const MotionFit& fit) {
+  return (fit.cost - finer.cost) / unexplained(finer);
+}
+bool is_as_supported(const MotionFit& finer, const MotionFit& fit) {
+  return finer.support > 0.95 * fit.support;
 }
 
 }  // namespace
@@ -209,14 +222,36 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     if (after > most) most = after, best = refined;
   }
   const MotionFit fit = rate_motion(s, best);
-  if (model < MotionModel::similarity) return fit;
-  if (model == MotionModel::similarity) {
-    const MotionFit bent = turned(s, picture, best);
-    return is_worth(bent, fit, kBendEarns) ? bent : fit;
-  }
+  if (model <= MotionModel::similarity) return fit;
   refine_motion(s, model, picture, best);
   const MotionFit finer = rate_motion(s, best);
-  return is_worth(finer, fit, model == MotionModel::affine ? kAffineEarns : kHomographyEarns) ? finer : fit;
+  const double earns = model == MotionModel::affine ? kAffineEarns : kHomographyEarns;
+  return is_as_supported(finer, fit) && earned(finer, fit) > earns ? finer : fit;
+}
+
+MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& similarity, const LensBend& known) {
+  MotionFit fit = turned(s, picture, Shutter::global, known, similarity.transform);
+  const MotionFit rolled = turned(s, picture, Shutter::rolling, known, fit.transform);
+  const bool rolls = is_as_supported(rolled, fit) && earned(rolled, fit) > kRollingEarns;
+  if (rolls) fit = rolled;
+  fit.lens.information /= unexplained(fit);
+  fit.lens.earned = earned(fit, similarity) - (rolls ? kRollingEarns : 0);
+  if (is_as_supported(fit, similarity) && known.earned + fit.lens.earned > kBendEarns) return fit;
+  MotionFit flat = similarity;
+  flat.lens = fit.lens;
+  return flat;
+}
+
+void LensBend::learn(const LensBend& seen) {
+  constexpr double kRemembered = 0.97, kMostEarned = 10 * kBendEarns, kContradicts = kGate;
+  information *= kRemembered;
+  earned = std::clamp(kRemembered * earned + seen.earned, 0.0, kMostEarned);
+  if (!(seen.information > 0)) return;
+  const double apart = seen.bend - bend;
+  if (information > 0 && apart * apart > kContradicts * (1 / information + 1 / seen.information))
+    information = 0;
+  bend += (seen.bend - bend) * seen.information / (information + seen.information);
+  information += seen.information;
 }
 
 }  // namespace cerberus::vision

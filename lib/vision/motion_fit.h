@@ -10,8 +10,7 @@
 
 namespace cerberus::vision {
 
-// A similarity is shift, roll and zoom, and of a camera that turns also the bend of its picture (one unknown more, where the
-// picture shows it): a lens of 60 degrees shifts its edges by a third more.
+// What may be found of the camera's motion: a similarity is shift, roll and zoom.
 enum class MotionModel { none, translation, similarity, affine, homography };
 
 // Where patches of frame k-1 were found in frame k, with what each is worth.
@@ -27,12 +26,25 @@ struct MotionSamples {
   std::array<std::uint8_t, kMax> region;  // which of kRegions parts of the picture it lies in
 };
 
+// What is known of the lens of a camera that turns.
+struct LensBend {
+  double bend = 0;         // (half diagonal of the picture / focal length)^2
+  double information = 0;  // 1 / variance of that
+  double earned =
+      0;  // how much better the samples are explained with it than without (F statistic, one unknown)
+
+  // What one more picture says of it. A lens may zoom and a robot drive: what is old counts less, and what is contradicted
+  // is forgotten.
+  void learn(const LensBend& seen);
+};
+
 struct MotionFit {
   Transform transform;
   double support = 0;   // sum over regions of the square root of their evidence that agrees
   double cost = 0;      // sum of evidence times the squared Mahalanobis distance, cut off at kGate
   double agreeing = 0;  // evidence of the samples within the gate
   double residual = 0;  // RMS distance of those, pixels
+  LensBend lens;        // what these samples say by themselves; of fit_turn() only
 };
 
 // Squared Mahalanobis distance (two degrees of freedom: 1 % of honest samples are beyond) at which a sample disagrees.
@@ -50,6 +62,12 @@ MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
 // the guess with most support where there are no samples at all (identity without guesses).
 MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses);
+
+// What a camera that turns adds to a similarity, where the samples show it: the bend of its picture (a lens of 60 degrees shifts
+// its edges by a third more), and the shear of a rolling shutter. `known`: what earlier pictures said of the lens; it needs
+// to earn its place only once.
+MotionFit fit_turn(const MotionSamples& samples, Size picture, const MotionFit& similarity,
+                   const LensBend& known);
 
 // Only the least squares part: improves `motion`, returns its support.
 double refine_motion(const MotionSamples& samples, MotionModel model, Size picture, Transform& motion);

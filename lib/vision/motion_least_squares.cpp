@@ -10,31 +10,38 @@ namespace {
 
 // (half diagonal / focal length)^2 of a lens of 110 degrees: wider ones are no longer plane.
 constexpr double kMostBend = 3.2;
+// Priors, standard deviations over the half diagonal: shift free, linear part 10 %, perspective 3 %, what a rolling shutter
+// makes of a jerk 2 %.
+constexpr double kFree = 10, kLinear = 0.1, kPerspective = 0.03, kRolling = 0.02;
 
 using Distances = std::array<float, MotionSamples::kMax>;
 
+}  // namespace
+
 // Normal equations of N unknowns.
-template <int N>
-struct Normal {
+template <std::size_t N>
+struct MotionLeastSquares::Normal {
   using Row = std::array<double, N>;
   std::array<Row, N> a{};  // upper triangle
   Row b{};
 
+  void expect(std::size_t unknown, double sigma) { a[unknown][unknown] += 1 / (sigma * sigma); }
+
   // Adds the measurement J p = d (two rows) with the 2x2 weight W.
   void add(const Row& jx, const Row& jy, double dx, double dy, double wxx, double wxy, double wyy) {
-    for (int i = 0; i < N; ++i) {
+    for (std::size_t i = 0; i < N; ++i) {
       const double ex = jx[i] * wxx + jy[i] * wxy, ey = jx[i] * wxy + jy[i] * wyy;
-      for (int j = i; j < N; ++j) a[i][j] += ex * jx[j] + ey * jy[j];
+      for (std::size_t j = i; j < N; ++j) a[i][j] += ex * jx[j] + ey * jy[j];
       b[i] += ex * dx + ey * dy;
     }
   }
 
-  // Cholesky. False when not positive definite.
+  // Cholesky; a becomes the factor. False when not positive definite.
   bool solve(Row& p) {
-    for (int i = 0; i < N; ++i)
-      for (int j = i; j < N; ++j) {
+    for (std::size_t i = 0; i < N; ++i)
+      for (std::size_t j = i; j < N; ++j) {
         double sum = a[i][j];
-        for (int k = 0; k < i; ++k) sum -= a[k][i] * a[k][j];
+        for (std::size_t k = 0; k < i; ++k) sum -= a[k][i] * a[k][j];
         if (i == j) {
           if (!(sum > 1e-12)) return false;
           a[i][i] = std::sqrt(sum);
@@ -42,37 +49,37 @@ struct Normal {
           a[i][j] = sum / a[i][i];
         }
       }
-    for (int i = 0; i < N; ++i) {
+    for (std::size_t i = 0; i < N; ++i) {
       double sum = b[i];
-      for (int k = 0; k < i; ++k) sum -= a[k][i] * p[k];
+      for (std::size_t k = 0; k < i; ++k) sum -= a[k][i] * p[k];
       p[i] = sum / a[i][i];
     }
-    for (int i = N - 1; i >= 0; --i) {
+    for (std::size_t i = N; i-- > 0;) {
       double sum = p[i];
-      for (int k = i + 1; k < N; ++k) sum -= a[i][k] * p[k];
+      for (std::size_t k = i + 1; k < N; ++k) sum -= a[i][k] * p[k];
       p[i] = sum / a[i][i];
     }
     return true;
   }
 };
 
-}  // namespace
-
 MotionLeastSquares::MotionLeastSquares(Size picture)
     : cx_(0.5 * (picture.width - 1)),
       cy_(0.5 * (picture.height - 1)),
       scale_(0.5 * std::hypot(picture.width, picture.height)) {}
 
-template <int N, typename Design, typename Compose>
-bool MotionLeastSquares::solve(const MotionSamples& s, const Distances& weights, Transform& t,
-                               Design&& design, Compose&& compose) const {
-  Normal<N> normal;
-  for (int i = 0; i < N;
-       ++i) {  // priors: shift free, linear part 10 % of the scale, perspective 3 %, bend any lens
-    const double sigma = (i < 2 ? 10.0 : N == 5 && i == 4 ? kMostBend : i < 6 ? 0.1 : 0.03) * scale_;
-    normal.a[i][i] = 1 / (sigma * sigma);
-  }
-  std::array<double, N> jx, jy, p{};
+Transform MotionLeastSquares::in_pixels(const Transform& scaled) const {
+  const double per_scale = 1 / scale_;
+  const Transform to{{per_scale, 0, -cx_ * per_scale, 0, per_scale, -cy_ * per_scale, 0, 0, 1}};
+  const Transform from{{scale_, 0, cx_, 0, scale_, cy_, 0, 0, 1}};
+  return from * scaled * to;
+}
+
+// The unknowns come out over the half diagonal.
+template <std::size_t N, typename Design>
+bool MotionLeastSquares::solve(const MotionSamples& s, const Distances& weights, Normal<N>& normal,
+                               std::array<double, N>& p, Design&& design) const {
+  std::array<double, N> jx, jy;
   const double per_scale = 1 / scale_;
   for (int i = 0; i < s.count; ++i) {
     const double w = weights[i];
@@ -83,14 +90,19 @@ bool MotionLeastSquares::solve(const MotionSamples& s, const Distances& weights,
   }
   if (!normal.solve(p)) return false;
   for (double& v : p) v *= per_scale;
-  const Transform to{{per_scale, 0, -cx_ * per_scale, 0, per_scale, -cy_ * per_scale, 0, 0, 1}};
-  const Transform from{{scale_, 0, cx_, 0, scale_, cy_, 0, 0, 1}};
-  t = from * compose(p) * to;
   return true;
 }
 
 bool MotionLeastSquares::step(MotionModel model, const MotionSamples& s, const Distances& weights,
                               Transform& t) const {
+  const auto with = [&]<std::size_t N>(std::array<double, N> p, auto&& design, auto&& compose) {
+    Normal<N> normal;
+    for (std::size_t i = 0; i < N; ++i)
+      normal.expect(i, (i < 2 ? kFree : i < 6 ? kLinear : kPerspective) * scale_);
+    if (!solve(s, weights, normal, p, design)) return false;
+    t = in_pixels(compose(p));
+    return true;
+  };
   using Row2 = std::array<double, 2>;
   using Row4 = std::array<double, 4>;
   using Row6 = std::array<double, 6>;
@@ -99,26 +111,26 @@ bool MotionLeastSquares::step(MotionModel model, const MotionSamples& s, const D
     case MotionModel::none:
       return false;
     case MotionModel::translation:
-      return solve<2>(
-          s, weights, t, [](double, double, double, double, Row2& jx, Row2& jy) { jx = {1, 0}, jy = {0, 1}; },
+      return with(
+          Row2{}, [](double, double, double, double, Row2& jx, Row2& jy) { jx = {1, 0}, jy = {0, 1}; },
           [](const Row2& p) { return Transform{{1, 0, p[0], 0, 1, p[1], 0, 0, 1}}; });
     case MotionModel::similarity:
-      return solve<4>(
-          s, weights, t,
+      return with(
+          Row4{},
           [](double X, double Y, double, double, Row4& jx, Row4& jy) {
             jx = {1, 0, X, -Y}, jy = {0, 1, Y, X};
           },
           [](const Row4& p) { return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}; });
     case MotionModel::affine:
-      return solve<6>(
-          s, weights, t,
+      return with(
+          Row6{},
           [](double X, double Y, double, double, Row6& jx, Row6& jy) {
             jx = {1, 0, X, Y, 0, 0}, jy = {0, 1, 0, 0, X, Y};
           },
           [](const Row6& p) { return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], 0, 0, 1}}; });
     case MotionModel::homography:
-      return solve<8>(
-          s, weights, t,
+      return with(
+          Row8{},
           [](double X, double Y, double U, double V, Row8& jx, Row8& jy) {
             jx = {1, 0, X, Y, 0, 0, -X * U, -Y * U}, jy = {0, 1, 0, 0, X, Y, -X * V, -Y * V};
           },
@@ -129,19 +141,46 @@ bool MotionLeastSquares::step(MotionModel model, const MotionSamples& s, const D
   return false;
 }
 
-bool MotionLeastSquares::step_turned(const MotionSamples& s, const Distances& weights, Transform& t) const {
-  using Row5 = std::array<double, 5>;
+bool MotionLeastSquares::step_turned(const MotionSamples& s, const Distances& weights, Shutter shutter,
+                                     LensBend& lens, Transform& t) const {
+  // The bend is the last unknown: what remains in its row of Cholesky's factor is what is known of it when the others are
+  // not.
   const Point moved = t.apply({cx_, cy_});
   const double tx = (moved.x - cx_) / scale_, ty = (moved.y - cy_) / scale_;
-  return solve<5>(
-      s, weights, t,
-      [&](double X, double Y, double U, double V, Row5& jx, Row5& jy) {
-        const double along = tx * X + ty * Y;
-        jx = {1, 0, X, -Y, along * U}, jy = {0, 1, Y, X, along * V};
-      },
-      [&](const Row5& p) {
-        const double bend = std::clamp(p[4], 0.0, kMostBend);
-        return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], -bend * tx, -bend * ty, 1}};
+  const auto with = [&]<std::size_t N>(std::array<double, N> p, auto&& design, auto&& linear) {
+    Normal<N> normal;
+    for (std::size_t i = 0; i < N - 1; ++i)
+      normal.expect(i, (i < 2 ? kFree : i < 4 ? kLinear : kRolling) * scale_);
+    normal.expect(N - 1, kMostBend * scale_);
+    const LensBend known = lens;
+    normal.a[N - 1][N - 1] += known.information / (scale_ * scale_);
+    normal.b[N - 1] = known.bend * known.information / scale_;
+    const auto bending = [&](double X, double Y, double U, double V, auto& jx, auto& jy) {
+      design(X, Y, jx, jy);
+      jx[N - 1] = (tx * X + ty * Y) * U, jy[N - 1] = (tx * X + ty * Y) * V;
+    };
+    if (!solve(s, weights, normal, p, bending)) return false;
+    const double information = normal.a[N - 1][N - 1] * normal.a[N - 1][N - 1] * scale_ * scale_;
+    lens.information = std::max(information - known.information, 0.0);
+    if (lens.information > 0)
+      lens.bend = (information * p[N - 1] - known.information * known.bend) / lens.information;
+    const double bend = std::clamp(p[N - 1], 0.0, kMostBend);
+    Transform scaled = linear(p);
+    scaled.m[6] = -bend * tx, scaled.m[7] = -bend * ty;
+    t = in_pixels(scaled);
+    return true;
+  };
+  using Row5 = std::array<double, 5>;
+  using Row7 = std::array<double, 7>;
+  if (shutter == Shutter::global)
+    return with(
+        Row5{}, [](double X, double Y, Row5& jx, Row5& jy) { jx = {1, 0, X, -Y}, jy = {0, 1, Y, X}; },
+        [](const Row5& p) { return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}; });
+  return with(
+      Row7{},
+      [](double X, double Y, Row7& jx, Row7& jy) { jx = {1, 0, X, -Y, Y, 0}, jy = {0, 1, Y, X, 0, Y}; },
+      [](const Row7& p) {
+        return Transform{{1 + p[2], p[4] - p[3], p[0], p[3], 1 + p[2] + p[5], p[1], 0, 0, 1}};
       });
 }
 

@@ -3,10 +3,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include "vision/motion_fit.h"
 
 namespace cerberus::vision {
+
+// Whether all rows of a picture are taken at one time or one after another.
+enum class Shutter { global, rolling };
 
 // Unknowns are displacements in pixels at the picture's edge, so that one weak prior fits all of them: X, Y are pixels
 // from the centre over the half diagonal.
@@ -21,14 +25,20 @@ class MotionLeastSquares {
 
   // The same for a similarity and the bend of a camera that turns about its own centre, H = K R K^-1 (Hartley, Zisserman,
   // Multiple View Geometry, 2nd ed., 8.4): to first order in the angle it adds (t . x) x / f^2 to every point, with the
-  // shift t of the middle and the focal length f, one unknown more. t is that of `motion`, in and out.
+  // shift t of the middle and the focal length f, one unknown more. t is that of `motion`, in and out. With a rolling
+  // shutter the lower rows see more of a turn that becomes faster: to first order a shear and a stretch along the columns
+  // (Forssen, Ringaby, Rectifying rolling shutter video from hand-held devices, CVPR 2010), two unknowns more.
+  // `lens`: in, what is known of it; out, what the samples by themselves say.
   bool step_turned(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,
-                   Transform& motion) const;
+                   Shutter shutter, LensBend& lens, Transform& motion) const;
 
  private:
-  template <int N, typename Design, typename Compose>
+  template <std::size_t N>
+  struct Normal;
+  template <std::size_t N, typename Design>
   bool solve(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,
-             Transform& motion, Design&& design, Compose&& compose) const;
+             Normal<N>& normal, std::array<double, N>& unknowns, Design&& design) const;
+  Transform in_pixels(const Transform& scaled) const;
 
   double cx_, cy_, scale_;
 };

@@ -26,7 +26,7 @@ GType motion_model_type() {
       {number(MotionModel::none), "The camera stands still", "none"},
       {number(MotionModel::translation), "Shift only", "translation"},
       {number(MotionModel::similarity),
-       "Shift, rotation and zoom, and the bend of a turning camera's picture", "similarity"},
+       "Shift, rotation and zoom, and the bend and shear of a turning camera's picture", "similarity"},
       {number(MotionModel::affine), "Similarity with shear", "affine"},
       {number(MotionModel::homography), "Full perspective of a plane or a turning camera", "homography"},
       {0, nullptr, nullptr}};

@@ -4,6 +4,9 @@
 
 #include <check.h>
 
+#include <algorithm>
+#include <initializer_list>
+#include <numeric>
 #include <vector>
 
 #include "support/allocations.h"
@@ -118,6 +121,45 @@ START_TEST(objects_over_nearly_half_the_picture_do_not_move_the_camera) {
 }
 END_TEST
 
+// By how many pixels a camera is astray in each frame that pans by 4 of them past shelves, and then along a wall with these
+// things on it.
+std::vector<double> pan_along_a_wall(std::initializer_list<std::array<int, 4>> things, int frames) {
+  constexpr int kPan = 4;
+  std::mt19937 random(21);
+  const Image<std::uint8_t> texture = picture(Scene(84, 60));
+  Image<std::uint8_t> wall = flat(130, random, {kSize.width + kPan * frames, kSize.height});
+  paste(texture, wall.view(), 0, 0, 250, 240);
+  for (const auto [x, y, width, height] : things) paste(texture, wall.view(), x, y, width, height);
+  CameraMotion camera;
+  std::vector<double> astray;
+  for (int k = 0; k < frames; ++k) {
+    Image<std::uint8_t> frame(kSize);
+    for (int y = 0; y < kSize.height; ++y)
+      std::copy_n(wall.view().row(y) + kPan * k, kSize.width, frame.view().row(y));
+    add_noise(frame.view(), 2, 4, random);
+    const CameraMotionResult r = camera.update(frame.view());
+    ck_assert_int_eq(r.scene_age, k + 1);
+    if (k > 0) astray.push_back(disagreement(r.transform, Transform::translation(-kPan, 0)));
+  }
+  return astray;
+}
+
+START_TEST(a_camera_that_pans_along_a_bare_wall_goes_on) {
+  const auto astray = pan_along_a_wall({{330, 70, 50, 60}, {600, 20, 60, 50}, {830, 150, 50, 60}}, 140);
+  ck_assert_double_lt(*std::ranges::max_element(astray), 2);
+  ck_assert_double_lt(std::accumulate(astray.begin(), astray.end(), 0.0), 0.3 * 139);
+}
+END_TEST
+
+START_TEST(a_camera_that_saw_nothing_for_a_while_knows_where_it_goes_from_the_first_wide_thing) {
+  const auto astray = pan_along_a_wall({{330, 70, 50, 60}, {720, 180, 240, 40}}, 180);
+  ck_assert_double_lt(*std::max_element(astray.begin(), astray.begin() + 90),
+                      2);               // one thing in view at least
+  ck_assert_double_gt(astray[105], 3);  // nothing, and nothing made up
+  ck_assert_double_lt(*std::max_element(astray.end() - 20, astray.end()), 2);
+}
+END_TEST
+
 START_TEST(an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy) {
   const Transform truth = Transform::translation(9.5, -4);
   for (const double gain : {0.5, 0.7, 1.4}) {
@@ -211,6 +253,8 @@ int main() {
        an_affine_motion_is_found_by_the_affine_model,
        translation_alone_gives_translation_alone_and_none_gives_identity,
        objects_over_nearly_half_the_picture_do_not_move_the_camera,
+       a_camera_that_pans_along_a_bare_wall_goes_on,
+       a_camera_that_saw_nothing_for_a_while_knows_where_it_goes_from_the_first_wide_thing,
        an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy,
        the_heads_pose_finds_what_no_search_reaches_and_a_wrong_one_is_not_believed,
        odd_sizes_work_and_nothing_outside_the_picture_is_read,
