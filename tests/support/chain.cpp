@@ -17,7 +17,6 @@ void Chain::begin(const LumaSource& frame, double seconds) {
   const Size size = vision::analysis_size({frame.width, frame.height}, analysis_width_);
   luma_.resize(size);
   current_.resize(size);
-  previous_.resize(size);
   if (mask_.resize(size))
     scaled_.reserve(static_cast<std::size_t>(size.area() / 256) + 256);  // more than there are
 }
@@ -35,15 +34,14 @@ void Chain::run_stage(std::size_t stage) {
       }
       break;
     case 2:
-      difference_result_ = difference_.update(luma_.view(), motion_result_.transform, current_.view(),
-                                              previous_.view(), histogram_);
+      difference_result_ =
+          difference_.update(luma_.view(), motion_result_.transform, current_.view(), {}, histogram_);
       break;
     case 3:
       area_result_ = area_.update({.picture = luma_.view(),
                                    .motion = motion_result_.transform,
                                    .still = motion_result_.still,
                                    .current = current_.view(),
-                                   .previous = previous_.view(),
                                    .histogram = &histogram_,
                                    .frames = difference_result_.frames,
                                    .seconds = seconds_},
@@ -86,7 +84,7 @@ void Chain::forget() {
 
 std::size_t Chain::bytes() const {
   return motion_.bytes() + difference_.bytes() + area_.bytes() + regions_.bytes() + luma_.bytes() +
-         current_.bytes() + previous_.bytes() + mask_.bytes();
+         current_.bytes() + mask_.bytes();
 }
 
 }  // namespace cerberus::tests

@@ -40,6 +40,8 @@ class Chain {
   std::span<const vision::Track> tracks() const { return tracks_; }
   // Bytes that all stages hold, planes included.
   std::size_t bytes() const;
+  // What it needs itself, to hand regions on in frame pixels.
+  std::size_t own_bytes() const { return scaled_.capacity() * sizeof(vision::Region); }
 
  private:
   void forget();
@@ -53,7 +55,7 @@ class Chain {
   vision::MovingArea area_;
   vision::RegionFinder regions_;
   vision::Tracker tracker_;
-  vision::Image<std::uint8_t> luma_, current_, previous_, mask_;
+  vision::Image<std::uint8_t> luma_, current_, mask_;
   vision::Histogram histogram_{};
   vision::CameraMotionResult motion_result_;
   vision::DifferenceResult difference_result_;
