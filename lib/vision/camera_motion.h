@@ -37,9 +37,9 @@ class CameraMotion {
   void set_options(const CameraMotionOptions& options);
   // Forget the previous frame: the next one starts a scene.
   void reset();
-  // `prior`: where the head's pose says the picture went (frame k-1 to k, analysis pixels). A first guess; and where the
-  // turned picture is bent, a simple model is laid over it if that explains the picture better than the model alone.
-  // A change of picture size resets by itself. A cut is recognised here and starts a scene (scene_age 1).
+  // `prior`: where the head's pose says the picture went (frame k-1 to k, analysis pixels). A first guess; and where
+  // the turned picture is bent, a simple model is laid over it if that explains the picture better than the model
+  // alone. A change of picture size resets by itself. A cut is recognised here and starts a scene (scene_age 1).
   CameraMotionResult update(GrayView picture, const std::optional<Transform>& prior = std::nullopt);
   // Bytes held, for the memory budget.
   std::size_t bytes() const;

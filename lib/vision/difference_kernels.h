@@ -14,8 +14,8 @@ void difference_row(const std::uint8_t* a, const std::uint8_t* b, int count, std
 void blur3_row(const std::uint8_t* above, const std::uint8_t* here, const std::uint8_t* below, int width,
                std::uint8_t* out);
 
-// Counts grey levels. Nearly all of a difference is noise: the lowest levels are counted by comparing whole vectors, the
-// others one by one.
+// Counts grey levels. Nearly all of a difference is noise: the lowest levels are counted by comparing whole vectors,
+// the others one by one.
 class LevelCounter {
  public:
   void add(const std::uint8_t* row, int count);

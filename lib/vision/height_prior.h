@@ -3,8 +3,8 @@
 //
 // People of one height standing on one floor before a camera that does not roll are as tall in the picture as their
 // feet are below the horizon, times (body height / mounting height): h = a (y_foot - y_horizon), a straight line in
-// the foot row. Single, upright, isolated blobs give (foot row, height) pairs; many are wrong (fragments, groups, dogs),
-// so a line is sought that most of them agree on.
+// the foot row. Single, upright, isolated blobs give (foot row, height) pairs; many are wrong (fragments, groups,
+// dogs), so a line is sought that most of them agree on.
 #pragma once
 
 #include <array>
@@ -23,8 +23,8 @@ class HeightPrior {
   // scales them).
   void advance(const Transform& motion, Size picture);
 
-  // Evidence of this frame: a blob that looks like one person. Pixels; `foot` is the lower edge of its box. Its height is a
-  // fair weight: where wholes and pieces contradict each other, wholes are larger.
+  // Evidence of this frame: a blob that looks like one person. Pixels; `foot` is the lower edge of its box. Its height
+  // is a fair weight: where wholes and pieces contradict each other, wholes are larger.
   void learn(double foot, double height, double weight = 1);
 
   // Expected height of a person whose feet are at this row, 0 while unknown: before enough blobs agree, and at rows

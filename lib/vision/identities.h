@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who is who once people have parted: where they were close together places alone may have swapped their identities, and
-// what each looks like afterwards tells.
+// Who is who once people have parted: where they were close together places alone may have swapped their identities,
+// and what each looks like afterwards tells.
 #pragma once
 
 #include <span>
@@ -14,8 +14,8 @@ bool apart(const Body& a, const Body& b);
 // Do they look so different that they are two?
 bool strangers(const Body& a, const Body& b);
 
-// Gives identities back: of two bodies near each other that look, since they were last mixed up with anybody, so much more
-// like each other did before than like themselves, the identities are exchanged.
+// Gives identities back: of two bodies near each other that look, since they were last mixed up with anybody, so much
+// more like each other did before than like themselves, the identities are exchanged.
 void settle_identities(std::span<Body> bodies);
 
 }  // namespace cerberus::vision

@@ -13,13 +13,15 @@ struct InsetPlace {
   double left = 0, top = 0, right = 0, bottom = 0;
 };
 
-// How large the picture of a scene is that stands in the corner of a frame: the scene's shape, within 0.3 of the frame's width
-// and 0.4 of its height. {0, 0} where nobody could make anything of it (less than 24 pixels wide or 16 high).
+// How large the picture of a scene is that stands in the corner of a frame: the scene's shape, within 0.3 of the
+// frame's width and 0.4 of its height. {0, 0} where nobody could make anything of it (less than 24 pixels wide or 16
+// high).
 Size inset_size(Size scene, Size frame);
 
-// Outside `place` the picture is dimmed, inside it is as it was, and round it runs a white line, `line` pixels wide. Samples are
-// words of alpha, red, green, blue from the highest byte down; alpha becomes 255. With a = the share of a pixel that lies in the
-// place, and b = the share that lies in the place grown by the line to all sides, a colour becomes
+// Outside `place` the picture is dimmed, inside it is as it was, and round it runs a white line, `line` pixels wide.
+// Samples are words of alpha, red, green, blue from the highest byte down; alpha becomes 255. With a = the share of a
+// pixel that lies in the place, and b = the share that lies in the place grown by the line to all sides, a colour
+// becomes
 //   c (a + (1 - b) kInsetDimming) + 255 (b - a)
 // so that the rectangle moves by less than a pixel, too.
 inline constexpr double kInsetDimming = 0.65;

@@ -54,9 +54,10 @@ class Labeller {
 
   // Finds the components of the set bits (8-connected) that have at least `least` pixels; the others' bits are cleared.
   // Component i carries label i + 1. width: the picture's, pixels.
-  // Memory is bounded and taken at the first picture of a size. What does not fit is clutter (rain, a failing sensor), and
-  // loses its small parts until it fits: by openings with growing squares while there are too many runs, by doubling
-  // `least` while there are too many components. The bits always show what was found. The spans live until the next call.
+  // Memory is bounded and taken at the first picture of a size. What does not fit is clutter (rain, a failing sensor),
+  // and loses its small parts until it fits: by openings with growing squares while there are too many runs, by
+  // doubling `least` while there are too many components. The bits always show what was found. The spans live until the
+  // next call.
   std::span<const Component> find(MutableBitView bits, int width, std::uint32_t least = 1);
 
   const Limits& limits() const { return limits_; }

@@ -49,12 +49,12 @@ class Lens {
   // Where a point of the picture lies when the camera looks to (pan, tilt).
   Direction direction(Point p, double pan, double tilt) const;
 
-  // The point of the picture, which may lie far outside of it, where a direction is seen: direction()'s inverse. Nothing
-  // for what is not ahead of the camera, or an unknown lens.
+  // The point of the picture, which may lie far outside of it, where a direction is seen: direction()'s inverse.
+  // Nothing for what is not ahead of the camera, or an unknown lens.
   std::optional<Point> project(const Direction& d, double pan, double tilt) const;
 
-  // Where the picture of what is far goes when the camera turns from one pose to another (radians): a point of the picture
-  // before to its place after, in pixels as a Transform counts them. Identity for an unknown lens.
+  // Where the picture of what is far goes when the camera turns from one pose to another (radians): a point of the
+  // picture before to its place after, in pixels as a Transform counts them. Identity for an unknown lens.
   //   K R(pan after, tilt after)^T R(pan before, tilt before) K^-1,  R = turn to the right by pan x turn up by tilt
   Transform turn(double pan_before, double tilt_before, double pan_after, double tilt_after) const;
 

@@ -16,11 +16,11 @@ namespace cerberus::vision {
 
 class LightChange {
  public:
-  // present ~ gain * reference + offset over the samples, and a further gain for each band of 8 rows. The line goes robustly
-  // through the median differences of 16 brightness classes; a band's gain is the median of what its samples say. Either
-  // can be taken for the other where bright and dark lie apart: if the camera is still both orders are tried, and what
-  // leaves less is kept; else registration's errors would be what is told apart. Changes too small to tell from noise are
-  // not made.
+  // present ~ gain * reference + offset over the samples, and a further gain for each band of 8 rows. The line goes
+  // robustly through the median differences of 16 brightness classes; a band's gain is the median of what its samples
+  // say. Either can be taken for the other where bright and dark lie apart: if the camera is still both orders are
+  // tried, and what leaves less is kept; else registration's errors would be what is told apart. Changes too small to
+  // tell from noise are not made.
   void estimate(const LightSamples& samples, bool still);
   void clear();
 
@@ -31,8 +31,9 @@ class LightChange {
   // Share of the sampled pixels that agree with the model to within a few levels: low when the picture as a
   // whole cannot be explained by a change of light.
   double agreement() const { return agreement_; }
-  // out := row y of the reference under the present light. What was too bright for the sensor there may have been brighter
-  // than the reference says: in less light it may be anything from there on, and what `present` shows is as good.
+  // out := row y of the reference under the present light. What was too bright for the sensor there may have been
+  // brighter than the reference says: in less light it may be anything from there on, and what `present` shows is as
+  // good.
   void relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
                std::uint8_t* out) const;
   RowLight row(int y) const { return y < static_cast<int>(rows_.size()) ? rows_[y] : RowLight{}; }

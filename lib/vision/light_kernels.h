@@ -20,9 +20,9 @@ struct RowLight {
 
 // out := the row of the reference under the present light, clamped to 0..255. `out` may be `reference`.
 void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out);
-// The same, where what is near white in either light lies anywhere between what it is in the two, or beyond white: pictures
-// are blurred after the sensor has cut off what is too bright for it, and nobody knows how much of it there was. As
-// `present` has it, as far as that lies there.
+// The same, where what is near white in either light lies anywhere between what it is in the two, or beyond white:
+// pictures are blurred after the sensor has cut off what is too bright for it, and nobody knows how much of it there
+// was. As `present` has it, as far as that lies there.
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out);
 void relight_row_with_white_reference(const std::uint8_t* reference, const std::uint8_t* present,
@@ -38,8 +38,8 @@ struct LightSums {
   bool operator==(const LightSums&) const = default;
 };
 constexpr int kSampleLanes = 16;
-// Samples are in rows of three thirds, each `third` long: a multiple of kSampleLanes, at most 255 of them; what is no sample
-// is white in the reference. One light for each row.
+// Samples are in rows of three thirds, each `third` long: a multiple of kSampleLanes, at most 255 of them; what is no
+// sample is white in the reference. One light for each row.
 LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present, const RowLight* lights,
                       int rows, int third);
 LightSums sum_samples_reference(const std::uint8_t* reference, const std::uint8_t* present,

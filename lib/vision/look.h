@@ -2,10 +2,10 @@
 // What somebody looks like, in 32 bytes: how bright the coat and how bright the legs are. Enough to tell two people who
 // pass each other closely, where their places alone cannot; not enough to find somebody again in a crowd.
 //
-// The upper and the lower half of an object each have a histogram of the logarithm of their brightness, under the mask of
-// what moves: what stands around does not count. Change of exposure is a factor, a shift of the logarithm, and is taken
-// out by BrightnessLevel. Two looks are compared by the share of their pixels that are not as bright (one minus the
-// intersection of the histograms; M. J. Swain, D. H. Ballard 1991).
+// The upper and the lower half of an object each have a histogram of the logarithm of their brightness, under the mask
+// of what moves: what stands around does not count. Change of exposure is a factor, a shift of the logarithm, and is
+// taken out by BrightnessLevel. Two looks are compared by the share of their pixels that are not as bright (one minus
+// the intersection of the histograms; M. J. Swain, D. H. Ballard 1991).
 #pragma once
 
 #include <array>
@@ -23,7 +23,8 @@ struct Sight {
   bool known() const { return !luma.empty() && luma.size() == mask.size(); }
 };
 
-// How bright the picture is, as a factor of how bright it was at first: exposure and gain, summed up from frame to frame.
+// How bright the picture is, as a factor of how bright it was at first: exposure and gain, summed up from frame to
+// frame.
 class BrightnessLevel {
  public:
   BrightnessLevel();

@@ -8,9 +8,9 @@
 
 namespace cerberus::vision {
 
-// The median of `total` > 0 values of which counts[i] were rounded to the level first + i: a level stands for all values
-// within half a level of it, spread evenly. `folded`: they are absolute values, so that level 0 is only half as wide.
-// 0 where counts are fewer than said. Of 64-bit elements the lower 32 bits count.
+// The median of `total` > 0 values of which counts[i] were rounded to the level first + i: a level stands for all
+// values within half a level of it, spread evenly. `folded`: they are absolute values, so that level 0 is only half as
+// wide. 0 where counts are fewer than said. Of 64-bit elements the lower 32 bits count.
 template <typename Counts>
 double median_of_levels(const Counts& counts, std::int64_t total, int first = 0, bool folded = false) {
   std::int64_t below = 0;

@@ -21,14 +21,14 @@ class MotionBlur {
   void make_room(Size picture);
 
   // How sharp the frame is beside the memory: sums of squared gradients, frame / memory, the median of the blocks with
-  // texture, so that what moves has no say; to 2 %, from 1/16 to 16. Below 1: the frame is blurred. 1 where there is too little texture. age: 0
-  // where the memory knows nothing; spans: of the rows, what the frame shows of the memory.
+  // texture, so that what moves has no say; to 2 %, from 1/16 to 16. Below 1: the frame is blurred. 1 where there is
+  // too little texture. age: 0 where the memory knows nothing; spans: of the rows, what the frame shows of the memory.
   double sharpness(GrayView frame, GrayView memory, GrayView age, std::span<const RowSpan> spans);
 
   // Takes out of both masks what blur alone explains. Whatever its path, blur is a mean with weights that are not
-  // negative: a blurred pixel is nowhere darker than the darkest, nor brighter than the brightest of the sharp ones that
-  // were drawn together. `tolerance`: grey levels for noise, by brightness of the sharp pixel. `inner` is a subset of
-  // `bits`.
+  // negative: a blurred pixel is nowhere darker than the darkest, nor brighter than the brightest of the sharp ones
+  // that were drawn together. `tolerance`: grey levels for noise, by brightness of the sharp pixel. `inner` is a subset
+  // of `bits`.
   void forgive(GrayView blurred, GrayView sharp, const std::array<std::uint8_t, kBrightness>& tolerance,
                MutableBitView bits, MutableBitView inner);
 

@@ -11,7 +11,8 @@
 
 namespace cerberus::vision {
 
-// Of one frame, and large: made for it on the stack. Transforms and samples are in pixels of level 0. Allocates nothing.
+// Of one frame, and large: made for it on the stack. Transforms and samples are in pixels of level 0. Allocates
+// nothing.
 class PatchMatches {
  public:
   static constexpr std::size_t kMostGuesses = 5;
@@ -22,9 +23,9 @@ class PatchMatches {
 
   // Looks for every patch on one level, first where `guess` says. Of the reference, level 0 is not looked at.
   void follow(const Pyramid& reference, const Pyramid& current, int level, const Transform& guess);
-  // The same, first where the best of up to kMostGuesses guesses for the whole picture says, or where another one fits this
-  // patch clearly better: the background must be found even if a large object rates higher, and the consensus decides
-  // later. Returns that best guess; when in doubt it is the first one.
+  // The same, first where the best of up to kMostGuesses guesses for the whole picture says, or where another one fits
+  // this patch clearly better: the background must be found even if a large object rates higher, and the consensus
+  // decides later. Returns that best guess; when in doubt it is the first one.
   Transform follow(const Pyramid& reference, const Pyramid& current, int level,
                    std::span<const Transform> guesses);
   // Those that were found, with what each is worth.

@@ -29,9 +29,9 @@ struct PatchMatch {
   float hxx = 0, hxy = 0, hyy = 0;  // gradient information, gain taken out, grey levels^2 / pixel^2
 };
 
-// Follows one patch on one level: inverse compositional Gauss-Newton (Baker and Matthews, IJCV 56(3), 2004) with gain and
-// offset as further unknowns, so that light may change. Template and gradients come from the earlier picture and are made
-// once, however often it is looked for.
+// Follows one patch on one level: inverse compositional Gauss-Newton (Baker and Matthews, IJCV 56(3), 2004) with gain
+// and offset as further unknowns, so that light may change. Template and gradients come from the earlier picture and
+// are made once, however often it is looked for.
 class PatchFollower {
  public:
   static constexpr int kSide = kPatch + 2;  // of what is looked at: the patch, and a pixel around it
@@ -66,7 +66,8 @@ struct PatchSites {
   int count = 0;
   std::array<PatchSite, MotionSamples::kMax> site;
 
-  // noise: standard deviation of a pixel of level 0; texture must stand out of it. Allocates only when the size changes.
+  // noise: standard deviation of a pixel of level 0; texture must stand out of it. Allocates only when the size
+  // changes.
   void choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch);
   // On level 0, which need not be there any more: what a follower looks at of it was kept.
   PatchFollower follower(int i) const;

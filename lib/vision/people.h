@@ -32,8 +32,8 @@ class PeopleFinder {
   void make_room(Size picture);
 
   // pixels: one bit a pixel of the picture that make_room() was told. Looks at the window only. Returns nobody when the
-  // prior does not know the heights there, and for a block: what has no gaps where people side by side would leave some.
-  // was_wide_block: found_wide_block() said so a frame ago. Deterministic; the span lives until the next call.
+  // prior does not know the heights there, and for a block: what has no gaps where people side by side would leave
+  // some. was_wide_block: found_wide_block() said so a frame ago. Deterministic; the span lives until the next call.
   std::span<const Person> find(BitView pixels, const Window& window, const HeightPrior& prior,
                                bool was_wide_block = false);
   // By the last find(): a block of which too much is seen to be people, or what is left of one.
@@ -75,8 +75,8 @@ class PeopleFinder {
   std::vector<Shape> shapes_;          // of each foot row 0..rows_
   std::span<std::uint8_t> cells_;      // kCell... of people_kernels.h; find() has them on its stack
   std::vector<std::uint32_t> moving_;  // moving cells not yet explained in the columns before each
-  // Sums of the cells in the rows [band_top_, band_bottom_): of each column, and of the columns before each from where they
-  // were asked for.
+  // Sums of the cells in the rows [band_top_, band_bottom_): of each column, and of the columns before each from where
+  // they were asked for.
   int band_top_ = 0, band_bottom_ = 0;
   std::vector<std::uint32_t> band_, sums_;
   std::vector<int> scores_;

@@ -6,14 +6,14 @@
 
 namespace cerberus::vision {
 
-// What a cell says for a person: 64 ln(p / kOutside) where it moves and 64 ln((1 - p) / (1 - kOutside)) where it does not,
-// with p = .65 in the core, .35 at the sides and kOutside = .04; and what a cell of the box costs.
+// What a cell says for a person: 64 ln(p / kOutside) where it moves and 64 ln((1 - p) / (1 - kOutside)) where it does
+// not, with p = .65 in the core, .35 at the sides and kOutside = .04; and what a cell of the box costs.
 constexpr int kCoreMoving = 178, kCoreStill = -65;
 constexpr int kSideMoving = 139, kSideStill = -25;
 constexpr int kPrice = 26;  // 0.4 for each cell of the box; a whole person brings 1 to 1.7
 
-// One cell carries two numbers: moving in the lower 16 bits, counted at all in the upper. Sums of up to 65535 cells, and
-// differences of sums, are exact in both halves.
+// One cell carries two numbers: moving in the lower 16 bits, counted at all in the upper. Sums of up to 65535 cells,
+// and differences of sums, are exact in both halves.
 constexpr std::uint32_t kCounted = 0x10000, kMoving = 1;
 
 // Boxes of one size and height in the picture, by the column of their left edge.

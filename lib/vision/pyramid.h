@@ -8,8 +8,8 @@
 
 namespace cerberus::vision {
 
-// Level 0 is the picture; every further one is half as wide and high (odd last columns and rows are left out), each pixel
-// the rounded mean of four. A point x of level 0 lies at (x + 0.5) / 2^l - 0.5 of level l.
+// Level 0 is the picture; every further one is half as wide and high (odd last columns and rows are left out), each
+// pixel the rounded mean of four. A point x of level 0 lies at (x + 0.5) / 2^l - 0.5 of level l.
 class Pyramid {
  public:
   static constexpr int kMaxLevels = 8;
@@ -21,8 +21,8 @@ class Pyramid {
   void borrow(GrayView picture, int levels);
   // More levels of the same picture.
   void extend(int levels);
-  // Becomes what `other` is from level 1 on, with the size but not the pixels of its level 0. The other one is to be built or
-  // to borrow anew.
+  // Becomes what `other` is from level 1 on, with the size but not the pixels of its level 0. The other one is to be
+  // built or to borrow anew.
   void take(Pyramid& other);
   int levels() const { return levels_; }
   GrayView level(int l) const { return l > 0 ? images_[l].view() : picture_; }

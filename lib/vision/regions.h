@@ -28,12 +28,12 @@ struct RegionOptions {
 };
 
 struct Region {
-  // Analysis pixels. In the first 60 frames of a scene what nobody knows as a person is given two more (of 320) on every
-  // side: the edge that moves is between the object and the place it leaves.
+  // Analysis pixels. In the first 60 frames of a scene what nobody knows as a person is given two more (of 320) on
+  // every side: the edge that moves is between the object and the place it leaves.
   Box box;
   double area = 0;  // moving pixels inside
-  // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below: moving
-  // pixels that hang together and may be a piece of an object or several objects.
+  // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below:
+  // moving pixels that hang together and may be a piece of an object or several objects.
   double confidence = 0;
   int label = 0;  // value in the label picture (several regions may share one after a split)
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The inner loops of the scene's memory, one row at a time (Highway, run-time dispatch), each with its scalar
-// reference. Planes belong to Image: rows may be read and written up to the next multiple of 16 samples, rows of bits by
-// whole words (bits beyond the width become anything).
+// reference. Planes belong to Image: rows may be read and written up to the next multiple of 16 samples, rows of bits
+// by whole words (bits beyond the width become anything).
 #pragma once
 
 #include <array>
@@ -70,7 +70,8 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
 void compare_row_reference(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,
                            std::uint64_t* strong);
 
-// Learning rate by age in 1/256, 1 / (age + 1): exact up to 15, then by sixteens (at their middle), never below 3 / 256.
+// Learning rate by age in 1/256, 1 / (age + 1): exact up to 15, then by sixteens (at their middle), never below 3 /
+// 256.
 inline constexpr std::array<std::uint8_t, 16> kYoungRate{255, 128, 85, 64, 51, 43, 37, 32,
                                                          28,  26,  23, 21, 20, 18, 17, 16};
 inline constexpr std::array<std::uint8_t, 16> kOldRate{28, 10, 6, 5, 4, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3, 3};

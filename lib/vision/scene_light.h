@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The scene's memory under the light of the frame it is compared with, and what becomes of it when the light has changed.
+// The scene's memory under the light of the frame it is compared with, and what becomes of it when the light has
+// changed.
 #pragma once
 
 #include <array>
@@ -34,8 +35,8 @@ class SceneLight {
   // known := the mean, under the light it was learnt in.
   void draw(View<const std::uint16_t> mean);
 
-  // Whether the last frame's light was so different that it cannot be aligned with the memory (alignment knows nothing of
-  // light).
+  // Whether the last frame's light was so different that it cannot be aligned with the memory (alignment knows nothing
+  // of light).
   bool is_other() const;
   // A row of the present under the memory's light, as it would be remembered: itself, or valid until the next call.
   const std::uint8_t* remembered(int y, const std::uint8_t* present);
@@ -43,13 +44,13 @@ class SceneLight {
   // known() has been relit for the frame that shows it, it is as that says, and learnt anew.
   void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings, std::span<const RowSpan> shown = {});
 
-  // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one: ages become
-  // 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.
+  // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one:
+  // ages become 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.
   bool compensate(const ScenePixels& pixels, SceneSurroundings& surroundings, GrayView present,
                   std::span<const RowSpan> shown, bool still);
-  // A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what a
-  // line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the foreground
-  // one frame ago, neither is motion (moved), and where the memory is wrong now it starts anew (kRelearn).
+  // A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what
+  // a line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the
+  // foreground one frame ago, neither is motion (moved), and where the memory is wrong now it starts anew (kRelearn).
   // sigma: noise by brightness.
   void forgive_step(const ScenePixels& pixels, GrayView present, BitView foreground,
                     const std::array<double, kBrightness>& sigma, MutableBitView moved);

@@ -27,14 +27,13 @@ struct SceneMemoryInput {
 //
 // A pixel is foreground by confidence:
 // - it differs from the memory by more than noise (known by brightness: sensor noise grows with it), its own spread,
-//   and what an error of registration would make of the edge under it (|gradient| x error; the error is measured around it,
-//   one pixel at least);
+//   and what an error of registration would make of the edge under it (|gradient| x error; the error is measured around
+//   it, one pixel at least);
 // - where the memory is too young to say anything, it is foreground if D(k) says so;
 // - a connected part stays only if enough of it has really moved lately, or if, the camera standing, its outline is an
 //   edge of the frame (something that stopped) and not one of the memory (a ghost: something that left).
-// Foreground is never learnt; parts that do not move are taken over as one: ghosts at once, things of unclear origin when
-// they have been there longer than what they replaced, things that stopped after
-// ten seconds (scene_parts.h).
+// Foreground is never learnt; parts that do not move are taken over as one: ghosts at once, things of unclear origin
+// when they have been there longer than what they replaced, things that stopped after ten seconds (scene_parts.h).
 class SceneMemory {
  public:
   SceneMemory();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lies beyond the picture, coarsely: a camera that turns back finds the scene that it knows, where it would have to
-// begin anew at the picture's edge, with every frame.
+// What lies beyond the picture, coarsely: a camera that turns back finds the scene that it knows, where it would have
+// to begin anew at the picture's edge, with every frame.
 #pragma once
 
 #include <cstddef>
@@ -37,12 +37,12 @@ class SceneSurroundings {
 
   // The memory's content is about to move by `next` (pixel now to pixel then). Keeps what will leave the picture.
   void keep(const ScenePixels& pixels, const Transform& next);
-  // It has moved. What nobody knows (age 0) in the part that came into the picture is taken from what was kept; it counts
-  // as moving for the moment (quiet 0), because nobody can know.
+  // It has moved. What nobody knows (age 0) in the part that came into the picture is taken from what was kept; it
+  // counts as moving for the moment (quiet 0), because nobody can know.
   void recall(const ScenePixels& pixels, const Transform& next);
-  // What recall() brought last is forgotten again where it is not true any more: when the frame has most of it darker or
-  // brighter, its light has changed while it was out of view. memory: `pixels.mean` as it is compared; shown: what the
-  // frame shows of each row.
+  // What recall() brought last is forgotten again where it is not true any more: when the frame has most of it darker
+  // or brighter, its light has changed while it was out of view. memory: `pixels.mean` as it is compared; shown: what
+  // the frame shows of each row.
   void doubt(const ScenePixels& pixels, GrayView present, GrayView memory, std::span<const RowSpan> shown);
   // mean := gain * mean + offset, as the memory's; gain in 1/256, offset in 1/256 grey level.
   void relight(int gain, int offset);

@@ -41,8 +41,8 @@ class ThreeFrameDifference {
   // picture: F(k). motion: frame k-1 to k, analysis pixels. current := D(k) = |F(k) - F(k-1)|, previous :=
   // D(k-1) = |F(k-1) - F(k-2)| (Eq. 2, whose printed elements are one index late), both in frame k's
   // coordinates; pixels not valid in all three frames are 0 in both. histogram: of `current` over the valid
-  // pixels. Sizes of the three views must agree; a new size resets. `previous` may be empty: D(k-1) is not made then, and is
-  // not known in the first frame in which it is wanted again.
+  // pixels. Sizes of the three views must agree; a new size resets. `previous` may be empty: D(k-1) is not made then,
+  // and is not known in the first frame in which it is wanted again.
   DifferenceResult update(GrayView picture, const Transform& motion, MutableGrayView current,
                           MutableGrayView previous, Histogram& histogram);
   std::size_t bytes() const;

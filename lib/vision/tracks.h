@@ -51,11 +51,12 @@ class Tracker {
   // (<= 0: unknown, taken as the last known distance). gaze: lens and where the head looks, if both are known. Returns
   // confirmed tracks, by id; lives until the next call.
   //
-  // sight: the analysed picture and what moves in it, if they are there. Then everybody's look is learnt where he is seen alone,
-  // and tells who is who where places do not: in a group and when it parts, behind somebody else, and after being away.
+  // sight: the analysed picture and what moves in it, if they are there. Then everybody's look is learnt where he is
+  // seen alone, and tells who is who where places do not: in a group and when it parts, behind somebody else, and after
+  // being away.
   //
-  // Who leaves the picture because the camera turns is kept by bearing and elevation, unpublished, and is the same when the
-  // camera comes back; without it angles are summed up from the camera's motion.
+  // Who leaves the picture because the camera turns is kept by bearing and elevation, unpublished, and is the same when
+  // the camera comes back; without it angles are summed up from the camera's motion.
   std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
                                 Size frame, const std::optional<Gaze>& gaze = {}, const Sight& sight = {});
   std::size_t bytes() const;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A window that moves over a wide picture as a camera on a pan-tilt head would over the scene: where it lies for a pose,
-// and its pixels.
+// A window that moves over a wide picture as a camera on a pan-tilt head would over the scene: where it lies for a
+// pose, and its pixels.
 //
-// The wide picture is a pinhole camera's that looks straight ahead (vision/lens.h without pan and tilt). A head that looks
-// along (pan, tilt) has in its middle what the wide picture shows at
+// The wide picture is a pinhole camera's that looks straight ahead (vision/lens.h without pan and tilt). A head that
+// looks along (pan, tilt) has in its middle what the wide picture shows at
 //   x = W / 2 + F tan(pan),   y = H / 2 - F tan(tilt) / cos(pan),   F = (W / 2) / tan(wide field of view / 2)
 // (corner coordinates, as those of boxes). The window is an upright rectangle round that point: near the edges a real
 // camera would see the scene a little sheared, this one does not.
@@ -58,8 +58,9 @@ struct Samples {
 
 // Bilinear resampling on a grid of equal steps:
 //   target(i, j) = source(left + (i + 1/2) scale_x - 1/2, top + (j + 1/2) scale_y - 1/2)
-// Positions are rounded to 1/128 sample and held at the picture's edges; values are rounded to nearest. On whole positions
-// it is a copy. Scales far above 1 skip samples. Both have as many channels. Allocates only for a wider target.
+// Positions are rounded to 1/128 sample and held at the picture's edges; values are rounded to nearest. On whole
+// positions it is a copy. Scales far above 1 skip samples. Both have as many channels. Allocates only for a wider
+// target.
 class WindowResampler {
  public:
   struct Grid {
