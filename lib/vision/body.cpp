@@ -28,10 +28,13 @@ constexpr double kFoundBrake = 0.5;          // s: it does not tell how high
 constexpr int kRecent = 3;                   // frames from which on it is known what somebody looks like now,
 constexpr double kRecentTime = 0.5;          // s of which that counts
 constexpr double kDoubt = 2.0;               // s after which who is who would have been told
-constexpr double kFreeze = 0.5;     // s after somebody else was close in which nothing is learnt of a look
-constexpr double kChanged = 0.3;    // looks as different now may be two people's,
-constexpr double kRelearn = 4.0;    // for so long: then they are one's who has changed
-constexpr int kLooks = 3;           // from which on a look is known
+constexpr double kFreeze = 0.5;   // s after somebody else was close in which nothing is learnt of a look
+constexpr double kChanged = 0.3;  // looks as different now may be two people's,
+constexpr double kRelearn = 4.0;  // for so long: then they are one's who has changed
+constexpr double kSettled = 1.0;  // s: who has stood for less is not taken for a part of the scene
+constexpr double kSamePlace =
+    0.15;                  // of a place's pixels: as many look different because of noise, folds and arms
+constexpr int kLooks = 3;  // from which on a look is known
 constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
 
 double square(double v) {
@@ -239,14 +242,26 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
                    const std::optional<Point>& found) {
   const Box b = box(), &seen = r.box;
   const double s = size(), noise = square(kPositionNoise * s) + square(kGrain * frame.width);
-  const Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
-  const Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
+  Residual rx = compare_extents(b.x, b.right(), seen.x, seen.right());
+  Residual ry = compare_extents(b.y, b.bottom(), seen.y, seen.bottom());
   const bool fits = rx.same_extent && ry.same_extent;
-  const bool cut_x = cut(seen.x, seen.right(), widest, frame.width);
-  const bool cut_y = cut(seen.y, seen.bottom(), tallest, frame.height);
+  // Where the edge cuts a region off it changes because somebody comes or goes, unless he is seen to stand there and
+  // only what moves of him got less.
+  const bool stands = stays();
+  const bool cut_x = !stands && cut(seen.x, seen.right(), widest, frame.width);
+  const bool cut_y = !stands && cut(seen.y, seen.bottom(), tallest, frame.height);
+  const bool within_x = seen.x >= b.x && seen.right() <= b.right();
+  const bool within_y = seen.y >= b.y && seen.bottom() <= b.bottom();
+  const bool piece = !fits && seen.area() < b.area();
+  if (stands && (within_x || piece)) rx.distance = 0;
+  if (stands && (within_y || piece)) ry.distance = 0;
+  const Point was{x.position, y.position};
   leaving = (cut_x && seen.width < 0.7 * widest) || (cut_y && seen.height < 0.7 * tallest);
   if (!fits && alone && outgrown(seen, r.confidence >= kWhole, cut_x || cut_y, seconds)) {
     adopt(seen);
+    // Another extent is no way that it went, if it did not come in meanwhile: what it has travelled, in S, stays.
+    if (id == 0 && !cut_x && !cut_y)
+      origin = {x.position - (was.x - origin.x) * size() / s, y.position - (was.y - origin.y) * size() / s};
   } else if (found) {
     x.correct(found->x, square(kFoundNoise * s));
     y.correct(found->y, square(kFoundNoise * s));
@@ -254,9 +269,12 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
   } else {
     x.correct(rx.distance, fits && !hidden ? noise : 6 * noise);
     y.correct(ry.distance, fits && !hidden ? noise : 6 * noise);
+    // Nor is it one that less is seen within where it was expected.
+    if (id == 0 && within_x) origin.x += x.position - was.x;
+    if (id == 0 && within_y) origin.y += y.position - was.y;
     if (fits && alone) {
-      resize(w, seen.width, cut_x, seconds);
-      resize(h, seen.height, cut_y, seconds);
+      if (!(stands && within_x)) resize(w, seen.width, cut_x, seconds);
+      if (!(stands && within_y)) resize(h, seen.height, cut_y, seconds);
       misfit = 0;
       fitted += seconds;
       proven = std::max(proven, fitted);
@@ -266,8 +284,8 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
       if (!ry.same_extent) y.velocity *= brake;
     }
   }
-  // Nobody is larger than a region that he shares.
-  if (!alone && !hidden) {
+  // Nobody is larger than a region that he shares, if it is all that there is of him.
+  if (!alone && !hidden && !stands) {
     if (seen.width < width()) w.value = std::log(seen.width);
     if (seen.height < height()) h.value = std::log(seen.height);
   }
@@ -282,6 +300,17 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
   travelled = std::max(travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s);
   slow = speed() < kStandSpeed * s ? slow + seconds : 0;
   if (id != 0) top_speed = std::max(top_speed, speed());
+}
+
+bool Body::stays() const {
+  return (stopped || slow >= kSettled) && changed >= 0 && changed < kSamePlace;
+}
+
+void Body::settle(const Look& all, double seconds) {
+  if (slow == 0)
+    place = {};
+  else
+    place.learn(all, 1 - std::exp(-seconds / kLookTime));
 }
 
 bool Body::well_known() const {

@@ -57,6 +57,8 @@ struct Body {
   Look recent;            // since it was last close to anybody else
   int recently = 0;       // frames in which that was learnt
   double clear = 1e9;     // s since then
+  Look place;             // all of its box, since it stands, whether that moves or not
+  double changed = -1;    // how unlike that its box is now; negative: nobody can tell
   int hits = 0, frames = 0;
   int region = -1;  // of this frame, -1 none
   bool stopped = false, dead = false;
@@ -65,7 +67,7 @@ struct Body {
   bool away = false, ahead = true;
   Direction where;
   double magnification = 1;  // Gaze::magnification() there
-  double absent = 0;         // s that an away one was expected in the picture and not seen there
+  double absent = 0;         // s that it was expected, away or stopped, and not there
 
   static Body first_seen(const Region& region);
 
@@ -95,6 +97,8 @@ struct Body {
   // How badly a region fits: 0 perfectly; negative: it cannot be this object.
   double distance(const Box& seen, Size frame) const;
 
+  // It stood, and its place looks as it did: whoever was there is there, whatever moves.
+  bool stays() const;
   // Seen in this region; `alone`: by no other track. `found`: so far from its expected place what looks like it is, in a
   // region of several.
   void correct(const Region& region, bool alone, double seconds, Size frame,
@@ -108,6 +112,8 @@ struct Body {
   // so different.
   bool knows_recent() const;
   bool doubted() const;
+  // After correct(): what all of its box looks like, if it is alone there.
+  void settle(const Look& all, double seconds);
   // Somebody else shares the region, or stands in a part of it.
   void mix();
   // Not seen.

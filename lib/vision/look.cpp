@@ -94,6 +94,7 @@ Look look_at(const Sight& sight, const BrightnessLevel& level, const Box& box, i
   const int x0 = std::max(0, static_cast<int>(std::lround(box.x)));
   const int x1 = std::min(sight.luma.width, static_cast<int>(std::lround(box.right())));
   const double whole = box.area();
+  const bool all_of_it = sight.mask.empty();
   if (!(whole > 0) || x1 <= x0) return look;
   const int step = std::max(1, static_cast<int>(std::lround(std::sqrt(whole / samples))));
   for (int b = 0; b < Look::kBands; ++b) {
@@ -103,9 +104,10 @@ Look look_at(const Sight& sight, const BrightnessLevel& level, const Box& box, i
     std::array<std::uint32_t, Look::kBins> counts{};
     std::uint32_t count = 0;
     for (int y = y0 + step / 2; y < y1; y += step) {
-      const std::uint8_t *luma = sight.luma.row(y), *mask = sight.mask.row(y);
+      const std::uint8_t* luma = sight.luma.row(y);
+      const std::uint8_t* mask = all_of_it ? nullptr : sight.mask.row(y);
       for (int x = x0 + step / 2; x < x1; x += step) {
-        if (!mask[x]) continue;
+        if (mask && !mask[x]) continue;
         const BrightnessLevel::Bin bin = level.bin(luma[x]);
         counts[bin.first] += kShares - bin.share;
         counts[bin.first + 1] += bin.share;

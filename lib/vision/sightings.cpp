@@ -18,10 +18,14 @@ constexpr double kFar = 0.05;      // what the farthest place costs
 
 }  // namespace
 
-Look Sightings::look_at(const Box& box, int samples) const {
-  const double sx = static_cast<double>(sight_.luma.width) / frame_.width;
-  const double sy = static_cast<double>(sight_.luma.height) / frame_.height;
-  return vision::look_at(sight_, level_, {box.x * sx, box.y * sy, box.width * sx, box.height * sy}, samples);
+Look Sightings::look_at(const Sight& sight, const Box& box, int samples) const {
+  const double sx = static_cast<double>(sight.luma.width) / frame_.width;
+  const double sy = static_cast<double>(sight.luma.height) / frame_.height;
+  return vision::look_at(sight, level_, {box.x * sx, box.y * sy, box.width * sx, box.height * sy}, samples);
+}
+
+Look Sightings::place(const Box& box) const {
+  return sight_.known() ? look_at({sight_.luma, {}}, box, kRoughSamples) : Look{};
 }
 
 void Sightings::update(const Sight& sight, std::span<const Region> regions, const Transform& motion,
@@ -34,11 +38,11 @@ void Sightings::update(const Sight& sight, std::span<const Region> regions, cons
     return;
   }
   level_.update(sight_.luma, motion.rescaled(frame, sight_.luma.size()));
-  for (std::size_t j = 0; j < regions.size(); ++j) looks_[j] = look_at(regions[j].box, kSamples);
+  for (std::size_t j = 0; j < regions.size(); ++j) looks_[j] = look_at(sight_, regions[j].box, kSamples);
 }
 
 void Sightings::look_again(std::size_t region, const Box& box) {
-  if (sight_.known()) looks_[region] = look_at(box, kSamples);
+  if (sight_.known()) looks_[region] = look_at(sight_, box, kSamples);
 }
 
 std::optional<Point> Sightings::find(const Body& body, const Box& region) const {
@@ -56,7 +60,7 @@ std::optional<Point> Sightings::find(const Body& body, const Box& region) const 
     for (int i = -columns; i <= columns; ++i) {
       const Box there{box.x + i * step, box.y + j * step_up, box.width, box.height};
       if (overlap_area(there, region) < 0.8 * there.area()) continue;
-      const double difference = unlike(body.look, look_at(there, kRoughSamples));
+      const double difference = unlike(body.look, look_at(sight_, there, kRoughSamples));
       if (difference < 0) continue;
       const double x = i * step / reach, y = j * step_up / reach_up;
       const double cost = difference + kFar * (x * x + 2 * y * y);

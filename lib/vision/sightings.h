@@ -22,6 +22,8 @@ class Sightings {
   const Look& of(std::size_t region) const { return looks_[region]; }
   // The region's box is another one now.
   void look_again(std::size_t region, const Box& box);
+  // What all of the box looks like, whether it moves or not.
+  Look place(const Box& box) const;
   // The frame is done: what was handed to update() may go.
   void done() { sight_ = {}; }
   // How far, in frame pixels, from where the body is expected what looks like it is in the region. Nothing: nothing does.
@@ -29,7 +31,7 @@ class Sightings {
   std::size_t bytes() const { return looks_.capacity() * sizeof(Look); }
 
  private:
-  Look look_at(const Box& box, int samples) const;
+  Look look_at(const Sight& sight, const Box& box, int samples) const;
 
   Sight sight_;
   BrightnessLevel level_;

@@ -68,6 +68,7 @@ struct Tracker::State {
   void age();
   void remove_duplicates();
   void publish();
+  bool covered(const Body& body) const;
   bool has_stopped(const Body& body) const;
 };
 

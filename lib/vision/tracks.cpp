@@ -18,6 +18,7 @@ constexpr double kLeastTravel = 0.12;
 // learnt of the place that could have left a hole.
 constexpr double kNew = 0.5;
 constexpr double kProvenTimes = 3;  // times confirm_time that a track was seen before it is published unseen
+constexpr double kEdgeCoast = 0.3;  // of the time to coast, at the picture's edge
 constexpr std::size_t kMaximumTracks = 128;
 constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scene with objects in it
 
@@ -88,6 +89,10 @@ void Tracker::State::predict(const Transform& motion) {
       b.dead = !b.predict(seconds) || !b.carry(motion, frame);
   }
   drop_dead();
+  for (Body& b : bodies) {
+    if (turning) b.place = {};  // what stands around it is another thing now
+    b.changed = sort_of(b) == Sort::here && b.place.known() ? unlike(b.place, sightings.place(b.box())) : -1;
+  }
 }
 
 // A track without evidence whose box holds several regions was the blob they have come out of.
@@ -113,15 +118,21 @@ void Tracker::State::give_birth() {
   }
 }
 
+// Is somebody else, who is seen, in the way?
+bool Tracker::State::covered(const Body& b) const {
+  const Box box = b.box();
+  return std::any_of(bodies.begin(), bodies.end(), [&](const Body& o) {
+    return &o != &b && o.id != 0 && o.region >= 0 && overlap_area(o.box(), box) > 0.2 * box.area();
+  });
+}
+
 // Somebody who ceased to move, rather than left or went behind something: well seen before, slower and slower until
-// nothing moved any more, in the open and with nobody else in the way.
+// nothing moved any more, in the open and with nobody else in the way; at the picture's edge, where the place tells.
 bool Tracker::State::has_stopped(const Body& b) const {
   if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.45 || b.age - b.unseen < 1.5 || b.leaving)
     return false;
-  const Box box = b.box();
-  return std::none_of(bodies.begin(), bodies.end(), [&](const Body& o) {
-    return &o != &b && o.id != 0 && o.region >= 0 && overlap_area(o.box(), box) > 0.2 * box.area();
-  });
+  if (b.changed >= 0 && !b.stays() && b.at_border(frame)) return false;
+  return !covered(b);
 }
 
 void Tracker::State::age() {
@@ -156,10 +167,13 @@ void Tracker::State::age() {
     }
     // Carried on for half as long as it was known, at most.
     const double coast = std::min(options.coast_time, 0.5 * (b.age - b.unseen));
-    const double limit = b.stopped ? options.hold_stopped : b.at_border(frame) ? 0.3 * coast : coast;
+    const double limit = b.stopped ? options.hold_stopped : b.at_border(frame) ? kEdgeCoast * coast : coast;
     b.confidence *=
         std::exp(-seconds / std::max(b.stopped ? options.hold_stopped : options.coast_time, 1e-3));
-    b.dead = outside || b.unseen > limit;
+    // Somebody at the edge whose place looks like another, and nobody is in the way, has left.
+    const bool left = b.stopped && b.at_border(frame) && b.changed >= 0 && !b.stays() && !covered(b);
+    b.absent = left ? b.absent + seconds : 0;
+    b.dead = outside || b.unseen > limit || b.absent > kEdgeCoast * coast;
     if (b.dead && turning && (outside || b.at_border(frame)) && b.unseen < options.away_time &&
         b.proven >= 0.5 && b.travelled >= 0.45) {
       b.dead = false;
@@ -180,6 +194,8 @@ void Tracker::State::remove_duplicates() {
       if (twins && strangers(a, b) && std::max(a.lost, b.lost) < kCrossing) continue;
       if (twins && std::max(a.shared, b.shared) < (apart(a, b) ? kCrossing : 1.0)) continue;
       if (!twins && a.region >= 0 && b.region >= 0) continue;
+      // Somebody passes in front of who stands there.
+      if (!twins && (a.stopped || b.stopped) && (strangers(a, b) || apart(a, b))) continue;
       if (!twins && std::max(a.unseen, b.unseen) < 0.5) continue;
       Body& weaker = a.unseen != b.unseen ? (a.unseen > b.unseen ? a : b) : (a.age < b.age ? a : b);
       weaker.dead = true;

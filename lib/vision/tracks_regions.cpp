@@ -24,6 +24,7 @@ constexpr double kSudden = 0.45;
 constexpr double kAwayUnlike = 0.35;  // who comes back must look as before
 // Of two who walk side by side: how much taller than wide, and the gap between them in widths, at least.
 constexpr double kUpright = 1.3, kGap = 0.3;
+constexpr double kSmall = 0.2;     // of somebody's area: nobody else
 constexpr double kTogether = 0.3;  // s in one region before pieces are taken for one
 
 Box bounding(const Box& a, const Box& b) {
@@ -31,14 +32,20 @@ Box bounding(const Box& a, const Box& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
-// Two upright boxes of one size with a clear gap between them are two people who walk side by side, not pieces of one.
-bool side_by_side(const Box& a, const Box& b) {
+// Two upright boxes of one size with a clear gap between them, as tall as what they come from, are two people who walk
+// side by side, not pieces of one.
+bool side_by_side(const Box& a, const Box& b, const Box& expected) {
   const auto upright = [](const Box& box) { return box.height > kUpright * box.width; };
   const auto alike = [](double p, double q) { return std::min(p, q) > 0.6 * std::max(p, q); };
   const double clear = std::max(a.x, b.x) - std::min(a.right(), b.right());
   const double low = std::max(a.y, b.y), high = std::min(a.bottom(), b.bottom());
   return upright(a) && upright(b) && alike(a.width, b.width) && alike(a.height, b.height) &&
-         high - low > 0.6 * std::min(a.height, b.height) && clear > kGap * std::min(a.width, b.width);
+         high - low > 0.6 * expected.height && clear > kGap * std::min(a.width, b.width);
+}
+
+// Is it a small thing that lies within the other, all but for its rim?
+bool small_part(const Box& part, const Box& whole) {
+  return part.area() < kSmall * whole.area() && overlap_area(part, whole) > 0.6 * part.area();
 }
 
 }  // namespace
@@ -121,7 +128,7 @@ void Tracker::State::gather_fragments() {
         break;
       }
       Region& main = regions[b.region];
-      if (side_by_side(main.box, piece)) {
+      if (side_by_side(main.box, piece, expected)) {
         b.parted = true;
         break;
       }
@@ -143,10 +150,11 @@ bool Tracker::State::hides(const Body& first, const Body& b, const Box& region) 
 }
 
 // Two objects, one region: a confirmed track without region of its own lives on in a blob larger than its owner that it is
-// expected in, and unseen behind somebody else.
+// expected in, and unseen behind somebody else. Who stopped stays where he is: a region that passes would take him
+// along.
 void Tracker::State::share_regions() {
   for (Body& b : bodies) {
-    if (b.region >= 0 || sort_of(b) != Sort::here) continue;
+    if (b.region >= 0 || sort_of(b) != Sort::here || b.stopped) continue;
     const Box box = b.visible(frame);
     for (std::size_t j = 0; j < regions.size() && b.region < 0; ++j) {
       if (owner[j] < 0) continue;
@@ -197,10 +205,13 @@ void Tracker::State::absorb_pieces() {
       ++count;
       if (!oldest || b.age > oldest->age) oldest = &b;
     }
-    if (count > 1 && filled < 0.4 * r.box.area())
+    if (count > 1)
       for (Body& b : bodies) {
         if (b.region != static_cast<int>(j) || &b == oldest || b.hidden || apart(b, *oldest)) continue;
-        if (b.shared < kTogether || strangers(b, *oldest)) continue;
+        if (b.shared < kTogether) continue;
+        // A part does not look like the whole.
+        if (!small_part(b.box(), oldest->box()) && (filled >= 0.4 * r.box.area() || strangers(b, *oldest)))
+          continue;
         b.dead = true;
         --count;
       }
@@ -211,6 +222,7 @@ void Tracker::State::absorb_pieces() {
       const bool larger = !alone && r.box.area() > 1.3 * b.box().area();
       const auto found = larger ? sightings.find(b, r.box) : std::nullopt;
       b.correct(r, alone, seconds, frame, found);
+      b.settle(alone && b.misfit == 0 && b.slow > 0 ? sightings.place(b.box()) : Look{}, seconds);
       b.lost = alone || found ? 0 : b.lost + seconds;
       b.shared = alone ? 0 : b.shared + seconds;
       if (alone && b.misfit == 0 && sightings.of(j).known())

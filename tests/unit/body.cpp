@@ -78,8 +78,29 @@ START_TEST(towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it)
 }
 END_TEST
 
+START_TEST(it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same) {
+  Look all, other;
+  all.share[0][1] = other.share[0][6] = Look::kAll;
+  Body body = walker(200, 240);
+  body.slow = 0.9;
+  body.settle(all, 0.1);
+  body.changed = unlike(body.place, all);
+  ck_assert(!body.stays());
+  body.slow = 1;
+  ck_assert(body.stays());
+  body.changed = unlike(body.place, other);
+  ck_assert(!body.stays());
+  body.changed = -1;  // nobody can tell
+  ck_assert(!body.stays());
+  body.slow = 0;
+  body.settle(other, 0.1);  // it walks, there is no place of its own
+  ck_assert(!body.place.known());
+}
+END_TEST
+
 int main() {
-  return cerberus::tests::run_suite("body",
-                                    {a_zoom_scales_all_of_its_lengths,
-                                     towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it});
+  return cerberus::tests::run_suite(
+      "body",
+      {a_zoom_scales_all_of_its_lengths, towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it,
+       it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same});
 }

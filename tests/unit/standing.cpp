@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Who stands until the scene's memory has taken him for a part of it: what is seen of him gets less, the picture of his
+// place does not change. And the hole that he leaves there when he goes.
+#include "unit/place.h"
+
+#include <check.h>
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+constexpr double kTop = kHeight / 2 - 1;  // the head at the picture's edge
+constexpr Person kMan{0, kTop, kBlack, kJeans};
+
+Region piece(double x, double y, double width, double height) {
+  return {{x, y, width, height}, 0.6 * width * height, 0.35, 1};
+}
+
+// Of somebody at the top edge, the upper share.
+std::vector<Region> upper(const Person& p, double share) {
+  return {piece(p.x - kWidth / 2, 0, kWidth, share * (p.y + kHeight / 2))};
+}
+
+// Walks in along the top edge, stands two seconds, and is seen from frame 44 on less and less, from the feet up, until
+// nothing is seen of him, in `fading` frames.
+constexpr int kStands = 24, kFades = 44;
+std::uint32_t stand_and_fade(Place& place, Person& man, int fading = 8) {
+  std::uint32_t id = 0;
+  for (int k = 0; k < kFades + fading; ++k) {
+    man.x = 40 + 5.0 * std::min(k, kStands);
+    if (k < kFades)
+      place.step({man});
+    else
+      place.step({man}, 0, upper(man, 0.95 - 0.8 * (k - kFades) / fading));
+    if (k == 20) id = place.at(man.x);
+  }
+  ck_assert_uint_ne(id, 0);
+  return id;
+}
+
+void is_all_there(const Place& place, const Person& man, std::uint32_t id) {
+  ck_assert_uint_eq(place.tracks.size(), 1);
+  const Track& t = place.tracks[0];
+  ck_assert_uint_eq(t.id, id);
+  ck_assert_double_eq_tol(t.box.x + t.box.width / 2, man.x, 4);
+  ck_assert_double_gt(t.box.height, 0.85 * (man.y + kHeight / 2));
+  ck_assert_double_lt(t.box.y + t.box.height, man.y + 0.6 * kHeight);
+}
+
+}  // namespace
+
+START_TEST(who_stands_at_the_picture_s_edge_and_fades_from_the_feet_is_held_whole) {
+  for (const int fading : {2, 8, 80}) {
+    Place place;
+    Person man = kMan;
+    const std::uint32_t id = stand_and_fade(place, man, fading);
+    for (int k = 0; k < 60; ++k) {
+      place.step({man}, 0, std::vector<Region>{});
+      is_all_there(place, man, id);
+      ck_assert(place.tracks[0].state == TrackState::stopped);
+    }
+    for (int k = 0; k < 15; ++k) {
+      man.x += 5;
+      place.step({man});
+      if (k > 0) ck_assert_uint_eq(place.at(man.x), id);
+    }
+  }
+}
+END_TEST
+
+START_TEST(somebody_who_passes_in_front_of_him_does_not_end_him) {
+  Place place;
+  Person man = kMan;
+  const std::uint32_t id = stand_and_fade(place, man);
+  for (int k = 0; k < 80; ++k) {
+    const Person other{300 - 4.0 * k, kTop + 6, kWhite, kGrey};
+    const bool here = other.x > 20;
+    place.step(here ? std::vector{other, man} : std::vector{man}, 0,
+               here ? std::vector{piece(other.x - kWidth / 2, other.y - kHeight / 2, kWidth, kHeight)}
+                    : std::vector<Region>{});
+  }
+  is_all_there(place, man, id);
+}
+END_TEST
+
+START_TEST(a_change_of_exposure_does_not_drive_him_away) {
+  Place place;
+  Person man = kMan;
+  const std::uint32_t id = stand_and_fade(place, man);
+  for (int k = 0; k < 60; ++k) {
+    place.gain = 1 + 0.005 * std::min(k, 30);
+    place.step({man}, 0, std::vector<Region>{});
+    is_all_there(place, man, id);
+  }
+}
+END_TEST
+
+START_TEST(who_was_held_at_the_edge_is_given_up_within_half_a_second_of_his_place_being_empty) {
+  Place place;
+  Person man = kMan;
+  stand_and_fade(place, man);
+  for (int k = 0; k < 20; ++k) place.step({man}, 0, std::vector<Region>{});
+  ck_assert_uint_eq(place.tracks.size(), 1);
+  for (int k = 0; k < 6; ++k) place.step({}, 0, std::vector<Region>{});
+  ck_assert_uint_eq(place.tracks.size(), 0);
+}
+END_TEST
+
+// He goes out through the edge that he stood at: his feet come up as they do when he fades, and the floor appears.
+START_TEST(who_stood_at_the_edge_and_leaves_through_it_is_not_held) {
+  for (const double speed : {2.0, 4.0, 8.0}) {  // pixels a frame
+    Place place;
+    Person man = kMan;
+    int unseen = 0;
+    for (int k = 0; k < 120; ++k) {
+      man.x = 40 + 5.0 * std::min(k, kStands);
+      man.y = kTop - speed * std::max(0, k - kFades);
+      const bool visible = man.y + kHeight / 2 > 4;
+      place.step({man}, 0, visible ? upper(man, 1) : std::vector<Region>{});
+      unseen = visible ? 0 : unseen + 1;
+      if (unseen > 5) ck_assert_uint_eq(place.tracks.size(), 0);
+    }
+    ck_assert_int_gt(unseen, 5);
+  }
+}
+END_TEST
+
+// The edge cuts more and more off who walks out, so that what is left of him hardly moves.
+START_TEST(who_walks_out_and_leaves_a_shadow_at_the_edge_has_not_stopped_there) {
+  for (const double shadow : {292.0, 312.0}) {  // where it ends; as wide as he, or a strip
+    Place place;
+    Person man{0, 120, kBlack, kJeans};
+    const int gone = shadow < 300 ? 34 : 40;
+    for (int k = 0; k < 80; ++k) {
+      man.x = 190 + 5.0 * k;
+      const double from = std::min(man.x - kWidth / 2, shadow);
+      std::vector<Region> seen{piece(from, 82, std::min(320 - from, kWidth), kHeight)};
+      if (k >= gone) seen.clear();
+      place.step({man}, 0, seen);
+      if (k >= gone) ck_assert_uint_eq(place.tracks.size(), 0);
+    }
+  }
+}
+END_TEST
+
+// What moves of a standing head: its two rims. Side by side, upright, of one size, and touching the edge.
+START_TEST(slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person) {
+  Place place;
+  Person man = kMan;
+  const std::uint32_t id = stand_and_fade(place, man);
+  for (int k = 0; k < 40; ++k) {
+    std::vector<Region> seen{piece(man.x + 6, 0, 5, 20), piece(man.x - 12, 2, 5, 18)};
+    if (k % 4 == 3) seen.clear();
+    place.step({man}, 0, seen);
+    is_all_there(place, man, id);
+  }
+}
+END_TEST
+
+// An arm moves beside a standing person and gets a track of its own; then the region of both is less than the person.
+START_TEST(who_stands_is_not_as_small_as_a_piece_that_is_shared_with_an_arm) {
+  Place place;
+  Person man = kMan;
+  const std::uint32_t id = stand_and_fade(place, man);
+  for (int k = 0; k < 30; ++k) {
+    const double reach = 3.0 * std::min(k, 6);
+    std::vector<Region> seen{piece(man.x - 30 - reach, 16, 12, 24)};
+    if (k > 12 && k < 20) seen = {piece(man.x - 48, 14, 60, 28)};
+    place.step({man}, 0, seen);
+    if (k == 12) ck_assert_uint_eq(place.tracks.size(), 2);
+    const auto him = std::ranges::find(place.tracks, id, &Track::id);
+    ck_assert(him != place.tracks.end());
+    ck_assert_double_gt(him->box.height, 60);
+  }
+  // It comes back before him and walks away with him: his.
+  for (int k = 0; k < 12; ++k)
+    place.step({man}, 0, std::vector{piece(man.x - 48 + 3.0 * std::min(k, 11), 18, 12, 24)});
+  ck_assert_uint_eq(place.tracks.size(), 2);
+  for (int k = 0; k < 12; ++k) {
+    man.x += 4;
+    place.step({man});
+  }
+  ck_assert_uint_eq(place.tracks.size(), 1);
+  ck_assert_uint_eq(place.tracks[0].id, id);
+}
+END_TEST
+
+// Measured where a man had stood for ten seconds: the table behind him gets a region, which the memory takes in from
+// one side, then all but a strip.
+START_TEST(a_hole_that_gets_less_has_not_moved) {
+  for (const bool lies : {false, true}) {
+    Tracker tracker;
+    for (int k = 0; k < 60; ++k) {
+      Region hole = piece(394, 67, 120, 168);
+      if (k >= 1) hole = piece(394, 67, 103, 168);
+      if (k >= 3) hole = piece(446, 156, 41, 79);
+      if (k >= 20) hole = piece(446, 190, 41, 45);
+      if (lies) hole = piece(hole.box.y, hole.box.x, hole.box.height, hole.box.width);
+      ck_assert_uint_eq(tracker.update({&hole, 1}, {}, 0.1, {768, 768}).size(), 0);
+    }
+  }
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "standing",
+      {who_stands_at_the_picture_s_edge_and_fades_from_the_feet_is_held_whole,
+       a_change_of_exposure_does_not_drive_him_away, somebody_who_passes_in_front_of_him_does_not_end_him,
+       who_was_held_at_the_edge_is_given_up_within_half_a_second_of_his_place_being_empty,
+       who_stood_at_the_edge_and_leaves_through_it_is_not_held,
+       who_walks_out_and_leaves_a_shadow_at_the_edge_has_not_stopped_there,
+       slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person,
+       who_stands_is_not_as_small_as_a_piece_that_is_shared_with_an_arm,
+       a_hole_that_gets_less_has_not_moved});
+}
