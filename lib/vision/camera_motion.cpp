@@ -22,8 +22,8 @@ constexpr int kFewParts = 5, kManyParts = 8;  // of MotionSamples::kRegions
 constexpr int kWideColumns = 3;               // of the four: what shows in as many parts beside one another
 constexpr float kWide = 0.25f;                // of the picture: who is as wide is seen in many parts
 constexpr int kGoesOn = 50;                   // frames that a turn past a wall with nothing on it takes
-constexpr double kBentAtOnce = 4;             // pixels of the level: a turn whose bend is more than one
-constexpr double kStillMotion = 0.2;          // pixels, RMS over the picture: a camera that stood still does
+constexpr double kBentAtOnce = 1;     // pixels of the level: the bend of a smaller turn is nothing there
+constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a camera that stood still does
 
 int search_level(Size size) {
   int level = 0;
