@@ -171,6 +171,7 @@ void SceneMemory::State::prepare(Size to) {
     mean.fill_bytes(0);
     for (auto* plane : {&spread, &age, &quiet}) plane->fill_bytes(0);
     surroundings.begin(to);
+    parts.begin();
     to_frame = {};
     light.begin();
   }

@@ -2,6 +2,7 @@
 #include "vision/scene_parts.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 
@@ -11,7 +12,13 @@ namespace {
 constexpr double kMovingShare = 0.1;  // of a part that must have moved lately
 constexpr double kFreshShare = 0.05;  // of a doubtful part that must move now
 constexpr double kEmptyShare = 0.2;   // and of one whose owner may be out of the picture
+constexpr int kShake = 3;             // frames a camera moves and stands again
 constexpr int kLeastMoved = 4;        // pixels
+constexpr int kEdge = 6;              // grey levels of contrast: what is noise to the comparison is so here
+// Times as many places of an outline are an edge of the frame only as of the memory only: an object beyond doubt.
+constexpr double kSure = 5;
+constexpr double kOutline = 0.1;    // share of the outline that says so at least
+constexpr double kOwner = 1 / 8.0;  // share of its owner's area that a place has, or an owner of its place's
 // Shares of the taller part's height.
 constexpr double kGap = 0.2;       // between neighbours that are one
 constexpr double kFrontGap = 1;    // between two fronts of one
@@ -20,6 +27,10 @@ constexpr double kNarrow = 0.3;    // a front is narrower than this share of its
 constexpr double kLevel = 0.5;     // share of the lower one's height at which they stand beside each other
 constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
 constexpr double kPiece = 1 / 3.0;     // share of the bigger part's area below which a part is a piece
+
+bool are_within(int pixels, const Component& a, const Component& b) {
+  return gap(a.left, a.right, b.left, b.right) < pixels && gap(a.top, a.bottom, b.top, b.bottom) < pixels;
+}
 
 }  // namespace
 
@@ -33,15 +44,17 @@ SceneWindows SceneWindows::of(double seconds) {
 void SceneParts::make_room(Size picture) {
   labeller_.make_room(picture);
   parts_.reserve(labeller_.limits().components);
+  origins_.make_room(picture);
 }
 
-bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView mask,
-                       MutableBitView absorb) {
+void SceneParts::begin() {
+  origins_.begin();
+  moved_ = kShake;
+}
+
+void SceneParts::measure(const ScenePlanes& planes, const SceneWindows& windows, BitView mask) {
   const GrayView &f = planes.present, &m = planes.memory;
   const int w = f.width;
-  labeller_.find(mask, w);
-  const auto components = labeller_.components();
-  parts_.assign(components.size(), {});
   // A memory that has to be registered is believed less: what does not move now is not believed.
   const int lately = planes.still ? windows.lately : windows.now;
   // Somebody whom the camera follows is away from the place he was in within a frame or two.
@@ -64,43 +77,146 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
     };
     if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
     if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
+    if (!planes.still) continue;
+    measure_edges(planes, r, mask, part);
+    origins_.add(r, part.before);
+  }
+}
+
+void SceneParts::measure_edges(const ScenePlanes& planes, const Run& r, BitView mask, Part& part) const {
+  const GrayView &f = planes.present, &m = planes.memory;
+  const auto across = [&](int x_out, int y_out, int x_in, int y_in) {
+    const int frame = std::abs(f.at(x_out, y_out) - f.at(x_in, y_in));
+    const int memory = std::abs(m.at(x_out, y_out) - m.at(x_in, y_in));
+    part.frame_only += frame > kEdge && frame > 2 * memory;
+    part.memory_only += memory > kEdge && memory > 2 * frame;
+    ++part.places;
+  };
+  const int w = f.width, h = f.height, y = r.row;
+  if (r.first >= 2) across(r.first - 2, y, std::min(r.first + 1, w - 1), y);
+  if (r.end + 1 < w) across(r.end + 1, y, std::max(r.end - 2, 0), y);
+  const auto along = [&](int beyond, int y_out, int y_in) {
+    if (y_out < 0 || y_in < 0 || y_out >= h || y_in >= h) return;
+    const std::uint64_t *row = mask.row(y), *next = mask.row(beyond);
+    for_words(r.first, r.end, [&](int word, std::uint64_t ones) {
+      for (std::uint64_t left = row[word] & ~next[word] & ones; left; left &= left - 1) {
+        const int x = 64 * word + std::countr_zero(left);
+        across(x, y_out, x, y_in);
+      }
+    });
+  };
+  along(y - 1, y - 2, y + 1);
+  along(y + 1, y + 2, y - 1);
+}
+
+// By itself.
+void SceneParts::weigh(const ScenePlanes& planes, const Component& c, Part& part) const {
+  const Size size = planes.present.size();
+  const double area = c.area;
+  const bool young = part.young > area / 2, newest = part.newest > area / 2;
+  const bool at_edge = c.left == 0 || c.top == 0 || c.right == size.width || c.bottom == size.height;
+  const SceneOrigins::Before& b = part.before;
+  const bool here = planes.still && (b.any ? 2 * b.here > b.any : young || (moved_ == 0 && !at_edge));
+  part.origin = here ? SceneOrigins::Origin::here : SceneOrigins::Origin::elsewhere;
+  part.object = part.outline > 0 && part.frame > 1.3 * part.memory + 2 * part.outline;
+  part.ghost = part.outline > 0 && part.memory > 1.3 * part.frame + 2 * part.outline;
+  // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
+  part.moving =
+      part.lately >= std::max<double>(kLeastMoved, std::min<double>(kMovingShare * area, part.outline));
+  // At the picture's edge the motion of a place that somebody has just left is his last.
+  const bool was_here = part.memory > 2 * part.frame + 4 * part.outline && young;
+  const double least =
+      was_here && at_edge ? std::min<double>(kEmptyShare * area, part.outline) : kFreshShare * area;
+  part.fresh = part.now >= std::max<double>(kLeastMoved, least);
+  // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
+  // textured: like a ghost it needs its owner's motion, or it goes at once. Who walked in a second after the start and
+  // stopped has the outline of an object.
+  part.doubtful = part.ghost || (planes.still && (newest || (young && !part.object)));
+  // Where the camera turns, a place that was left is soon far from its owner, and no join() will bring them together.
+  part.kept = part.moving && (part.fresh || !part.doubtful) && !(planes.followed && was_here);
+}
+
+// Where somebody stood since the scene began the memory has his picture. He goes, the place stays: what rests while
+// something moves on that began there, too, is a place, unless its outline leaves no doubt. By itself the outline of a
+// piece of a place tells little: it ends where what stood there and what is there now happen to be alike.
+void SceneParts::find_places() {
+  const auto components = labeller_.components();
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    Part& part = parts_[i];
+    if (part.moving && part.fresh) continue;
+    const Component& a = components[i];
+    bool owned = false;
+    const bool newest = 2 * part.newest > static_cast<int>(a.area);
+    for (std::size_t j = 0; j < components.size(); ++j) {
+      const Part& other = parts_[j];
+      if (!other.moving || !other.fresh) continue;
+      const Component& b = components[j];
+      owned = owned || (!other.ghost && other.origin == SceneOrigins::Origin::here &&
+                        b.area > kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b));
+    }
+    const bool sure =
+        part.object && !newest && part.frame_only > kSure * part.memory_only + kOutline * part.places;
+    if (owned && !sure && !part.fresh && part.origin == SceneOrigins::Origin::here)
+      part.doubtful = true, part.kept = false;
+  }
+}
+
+// Whose place has been found came from there, and is an object wherever it stops.
+void SceneParts::find_owners() {
+  const auto components = labeller_.components();
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    Part& part = parts_[i];
+    if (part.origin != SceneOrigins::Origin::here || !part.moving || !part.fresh || part.ghost) continue;
+    if (!part.object) continue;
+    const Component& a = components[i];
+    for (std::size_t j = 0; j < components.size(); ++j) {
+      const Component& b = components[j];
+      if (parts_[j].kept || !parts_[j].ghost) continue;
+      if (b.area >= kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
+        part.origin = SceneOrigins::Origin::found;
+        break;
+      }
+    }
+  }
+}
+
+bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView mask,
+                       MutableBitView absorb) {
+  labeller_.find(mask, planes.present.width);
+  const auto components = labeller_.components();
+  parts_.assign(components.size(), {});
+  // A shake is over before anything has gone far.
+  if (!planes.still && ++moved_ == kShake) origins_.begin();
+  measure(planes, windows, mask);
+  bool young_objects = false;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    weigh(planes, components[i], parts_[i]);
+    young_objects =
+        young_objects || (parts_[i].kept && 2 * parts_[i].young > static_cast<int>(components[i].area));
+  }
+  if (planes.still) {
+    find_places();
+    find_owners();
+    for (const Run& r : labeller_.runs()) origins_.note(r, parts_[r.component].origin);
   }
   for (int y = 0; y < absorb.height; ++y) std::fill_n(absorb.row(y), absorb.width, std::uint64_t{0});
-  bool young_objects = false;
   for (const Run& r : labeller_.runs()) {
     const Part& part = parts_[r.component];
-    const double area = components[r.component].area;
-    const bool object = part.outline > 0 && part.frame > 1.3 * part.memory + 2 * part.outline;
-    const bool ghost = part.outline > 0 && part.memory > 1.3 * part.frame + 2 * part.outline;
-    // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
-    const bool moving =
-        part.lately >= std::max<double>(kLeastMoved, std::min<double>(kMovingShare * area, part.outline));
-    // At the picture's edge the motion of a place that somebody has just left is his last.
-    const Component& c = components[r.component];
-    const bool was_here = part.memory > 2 * part.frame + 4 * part.outline && part.young > area / 2;
-    const bool at_edge = c.left == 0 || c.top == 0 || c.right == w || c.bottom == f.height;
-    const double least =
-        was_here && at_edge ? std::min<double>(kEmptyShare * area, part.outline) : kFreshShare * area;
-    const bool fresh = part.now >= std::max<double>(kLeastMoved, least);
-    // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
-    // textured: like a ghost it needs its owner's motion, or it goes at once. Who walked in a second after the start and
-    // stopped has the outline of an object.
-    const bool young = planes.still && (part.newest > area / 2 || (part.young > area / 2 && !object));
-    const bool doubtful = ghost || young;
-    // Where the camera turns, a place that was left is soon far from its owner, and no join() will bring them together.
-    const bool left = planes.followed && was_here;
-    if (moving && (fresh || !doubtful) && !left) {
-      young_objects = young_objects || part.young > area / 2;
-      continue;
-    }
-    if (!(planes.still && object) || doubtful) clear_bits(mask.row(r.row), r.first, r.end);
+    if (part.kept) continue;
     for (int x = r.first; x < r.end; ++x) {
-      const int patience = planes.still && object
+      const int patience = planes.still && part.object
                                ? windows.hold
                                : std::clamp<int>(planes.age.at(x, r.row), kLeastMoved, windows.hold);
-      if (doubtful || planes.quiet.at(x, r.row) > patience) set_bits(absorb.row(r.row), x, x + 1);
+      if (part.doubtful || planes.quiet.at(x, r.row) > patience) set_bits(absorb.row(r.row), x, x + 1);
     }
   }
+  if (planes.still) origins_.step(mask, absorb);
+  for (const Run& r : labeller_.runs()) {
+    const Part& part = parts_[r.component];
+    if (!part.kept && (!(planes.still && part.object) || part.doubtful))
+      clear_bits(mask.row(r.row), r.first, r.end);
+  }
+  if (planes.still) moved_ = 0;
   return young_objects;
 }
 
@@ -140,7 +256,7 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
 }
 
 std::size_t SceneParts::bytes() const {
-  return labeller_.bytes() + parts_.capacity() * sizeof(Part);
+  return labeller_.bytes() + parts_.capacity() * sizeof(Part) + origins_.bytes();
 }
 
 }  // namespace cerberus::vision

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which connected parts of what differs from the scene's memory are objects: by how much of them has moved, and by whether
-// their outline is an edge of the frame or one of the memory.
+// Which connected parts of what differs from the scene's memory are objects: by how much of them has moved, by whether
+// their outline is an edge of the frame or one of the memory, and by where they came from.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include "vision/image.h"
 #include "vision/labelling.h"
 #include "vision/mask.h"
+#include "vision/scene_origins.h"
 
 namespace cerberus::vision {
 
@@ -34,6 +35,8 @@ struct ScenePlanes {
 class SceneParts {
  public:
   void make_room(Size picture);
+  // The memory begins.
+  void begin();
   // mask: what differs in; out, the objects. absorb := what the memory shall take over. True if the memory is young under
   // one of the objects: then join() is due.
   bool judge(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView mask,
@@ -53,11 +56,28 @@ class SceneParts {
     int young = 0, newest = 0;  // pixels that the memory has learnt for no longer than those windows
     int frame = 0, memory = 0;  // contrast across its outline in frame and memory ...
     int outline = 0;            // ... and over how many places
-    bool whole = false;         // has been joined with another one
-    bool piece = false;         // of another one
+    // Places of it, above and below too, that are an edge of one of them only.
+    int frame_only = 0, memory_only = 0;
+    int places = 0;
+    SceneOrigins::Before before;
+    SceneOrigins::Origin origin = SceneOrigins::Origin::elsewhere;
+    bool moving = false, fresh = false;  // has moved lately, and moves
+    bool ghost = false, object = false;  // by its outline
+    bool doubtful = false;               // needs its owner's motion
+    bool kept = false;                   // is an object
+    bool whole = false;                  // has been joined with another one
+    bool piece = false;                  // of another one
   };
+  void measure(const ScenePlanes& planes, const SceneWindows& windows, BitView mask);
+  void measure_edges(const ScenePlanes& planes, const Run& run, BitView mask, Part& part) const;
+  void weigh(const ScenePlanes& planes, const Component& component, Part& part) const;
+  void find_places();
+  void find_owners();
+
   Labeller labeller_;
   std::vector<Part> parts_;
+  SceneOrigins origins_;
+  int moved_ = 1;  // frames since the camera stood
 };
 
 }  // namespace cerberus::vision

@@ -283,6 +283,69 @@ START_TEST(a_tiny_part_says_nothing_while_the_memory_is_young) {
 }
 END_TEST
 
+// What stood there was 160 on the right of it, what is there now is 200 on the left: half of its outline is an edge of the
+// frame, half one of the memory.
+void half_and_half(Scene& s, const Rect& r) {
+  Scene::paint(s.present, {r.x, r.y, r.width / 2, r.height}, 200);
+  Scene::paint(s.memory, {r.x + r.width / 2, r.y, r.width - r.width / 2, r.height}, 160);
+}
+
+constexpr Rect kWalker{170, 80, 30, 80};  // forty pixels from kPerson
+
+START_TEST(a_piece_of_the_place_that_somebody_leaves_is_taken_over) {
+  // What came in at the left edge keeps its second at rest, and so does who rests while nobody leaves.
+  struct Case {
+    bool from_outside, somebody_leaves, kept;
+  };
+  for (const Case& c : {Case{false, true, false}, {true, true, true}, {false, false, true}}) {
+    Scene s(255);
+    s.judge();  // the camera stands, nothing differs
+    half_and_half(s, kPerson);
+    Scene::paint(s.present, kWalker, 200);
+    if (c.from_outside) s.differs({0, 80, 100, 80}, 0);
+    s.differs(kPerson, 0);
+    if (c.somebody_leaves) s.differs(kWalker, 0);
+    s.judge();
+    s.mask.fill_bytes(0);
+    s.differs(kPerson, 10);
+    if (c.somebody_leaves) s.differs(kWalker, 0);
+    s.judge();
+    ck_assert_int_eq(count(s.mask, kPerson), c.kept ? all(kPerson) : 0);
+    ck_assert_int_eq(count(s.absorb, kPerson), c.kept ? 0 : all(kPerson));
+    ck_assert_int_eq(count(s.mask, kWalker), c.somebody_leaves ? all(kWalker) : 0);
+  }
+}
+END_TEST
+
+START_TEST(who_left_a_place_is_an_object_where_he_stops) {
+  // His outline tells little there, and somebody else who was there from the beginning walks near.
+  constexpr Rect kOther{220, 80, 30, 80};
+  for (const bool place_found : {true, false}) {
+    Scene s(255);
+    s.judge();
+    Scene::paint(s.present, kWalker, 200);
+    s.differs(kWalker, 0);
+    if (place_found) {
+      Scene::paint(s.memory, kPerson, 200);
+      s.differs(kPerson, 10);
+    }
+    s.judge();
+    ck_assert_int_eq(count(s.absorb, kPerson), place_found ? all(kPerson) : 0);
+    s.mask.fill_bytes(0);
+    s.differs(kWalker, 0);
+    s.differs(kOther, 0);
+    s.judge();
+    s.mask.fill_bytes(0);
+    Scene::paint(s.present, kWalker, 100);
+    half_and_half(s, kWalker);
+    s.differs(kWalker, 10);
+    s.differs(kOther, 0);
+    s.judge();
+    ck_assert_int_eq(count(s.mask, kWalker), place_found ? all(kWalker) : 0);
+  }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "scene_parts",
@@ -295,5 +358,7 @@ int main() {
        a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
        a_piece_beside_a_big_part_is_dropped_not_joined,
        a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion, two_people_stay_two,
-       a_tiny_part_says_nothing_while_the_memory_is_young});
+       a_tiny_part_says_nothing_while_the_memory_is_young,
+       a_piece_of_the_place_that_somebody_leaves_is_taken_over,
+       who_left_a_place_is_an_object_where_he_stops});
 }

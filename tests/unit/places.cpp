@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The complete chain, where somebody is there when a scene begins: the memory has his picture, and the place that he
+// leaves is no region.
+#include <cmath>
+#include <functional>
+#include <random>
+#include <vector>
+
+#include "support/chain.h"
+#include "support/sensor.h"
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+constexpr Size kSize{320, 240};
+constexpr double kFrame = 1.0 / 25;
+
+// A room: a wall, a floor with boards, a table on one dark leg where he stands.
+float room(int x, int y) {
+  if (y >= 96 && y < 102 && x >= 130 && x < 190) return 215;
+  if (y >= 102 && y < 172 && x >= 158 && x < 162) return 40;
+  if (y >= 150 && y < 154) return 60;
+  return y < 150 ? 190.0f - 0.06f * static_cast<float>(x) : 110.0f + 12.0f * static_cast<float>(x / 9 % 2);
+}
+
+// His head, a coat that is nearly as bright as the wall, trousers.
+float person(int x, int y) {
+  if (y < 14) return x >= 9 && x < 21 ? 50 : -1;
+  return y < 52 ? 172 : 55;
+}
+constexpr int kWidth = 30, kHeight = 90;
+
+struct Seen {
+  int right = 0, wrong = 0,
+      empty = 0;  // frames with a region on him; regions that are not; frames with one in the empty room
+};
+
+// left_of: where he is in each frame. Counted from frame `from` on.
+Seen watch(int frames, int from, const std::function<double(int)>& left_of) {
+  constexpr int kTop = 85;
+  Chain chain;
+  Noise noise;
+  Image<std::uint8_t> frame(kSize);
+  std::vector<float> picture(static_cast<std::size_t>(kSize.area()));
+  Seen seen;
+  for (int k = 0; k < frames; ++k) {
+    const int left = static_cast<int>(std::lround(left_of(k)));
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x) {
+        const bool inside = x >= left && x < left + kWidth && y >= kTop && y < kTop + kHeight;
+        const float he = inside ? person(x - left, y - kTop) : -1;
+        picture[static_cast<std::size_t>(y) * kSize.width + x] = he < 0 ? room(x, y) : he;
+      }
+    expose(picture.data(), kSize.width, {}, noise, frame.view());
+    chain.step({frame.view().data, kSize.width, kSize.height, frame.view().stride}, kFrame);
+    if (k < from) continue;
+    const Box him{static_cast<double>(left), kTop, kWidth, kHeight};
+    bool right = false;
+    for (const Region& r : chain.regions()) {
+      const bool on_him = overlap_area(r.box, him) > 0;
+      right = right || on_him;
+      seen.wrong += !on_him;
+    }
+    seen.right += right;
+    seen.empty += left >= kSize.width && !chain.regions().empty();
+  }
+  return seen;
+}
+
+}  // namespace
+
+START_TEST(the_place_of_somebody_who_stood_there_since_the_start_is_no_region) {
+  struct Case {
+    int stood;     // frames
+    double speed;  // pixels a frame at which he leaves ...
+    double aside;  // ... by as many pixels, or out of the picture
+  };
+  for (const Case& c : {Case{60, 1, 50}, {240, 1, 400}, {120, 2, 90}, {120, 2, 400}, {240, 2, 400}}) {
+    const Seen seen = watch(c.stood + 180, 0, [&](int k) {
+      return 145 + std::min(c.aside, c.speed * std::max(0, k - c.stood)) + std::sin(k / 5.0);
+    });
+    ck_assert_msg(seen.wrong == 0 && seen.empty == 0,
+                  "stood %d frames, left at %.0f: %d regions wrong, %d frames in the empty room", c.stood,
+                  c.speed, seen.wrong, seen.empty);
+    ck_assert_msg(seen.right >= 80, "seen in only %d frames", seen.right);
+  }
+}
+END_TEST
+
+int main() {
+  return run_suite("places", {the_place_of_somebody_who_stood_there_since_the_start_is_no_region}, 60);
+}
