@@ -80,7 +80,7 @@ struct CameraMotion::State {
   MotionFit best_without(const MotionSamples& samples, const std::optional<Transform>& prior) const;
   void count_followers(const PatchMatches& matches, const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
-  bool is_still(const MotionSamples& samples, const MotionFit& fit) const;
+  bool is_still(PatchMatches& matches, const MotionFit& fit) const;
   bool is_known(PatchMatches& matches, const MotionFit& fit) const;
   bool leaves_behind(PatchMatches& matches, const MotionFit& fit) const;
   void measure_noise(const PatchMatches& matches);
@@ -173,11 +173,14 @@ bool CameraMotion::State::is_cut(const Shift& shift) const {
   return share.well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
 }
 
-bool CameraMotion::State::is_still(const MotionSamples& samples, const MotionFit& fit) const {
+// What was looked for at the end of a motion is not found where it was: a camera that stood is asked anew. Boards of a floor look
+// alike wherever they are looked for, and go along with whoever walks over them.
+bool CameraMotion::State::is_still(PatchMatches& matches, const MotionFit& fit) const {
   const double motion = mean_motion(fit.transform, reference.size());
   if (motion < (still ? kStillMotion : 0.1)) return true;
   if (share.all > 0.9 && motion > 0.5) return false;
-  const MotionFit none = rate_motion(samples, {});
+  if (still && motion > 1) matches.follow(reference, current, 0, Transform{});
+  const MotionFit none = rate_motion(matches.samples(), {});
   // A large and lively object: the rest of the picture, in many places, says that nothing moves.
   if (motion > 1) return none.support > (still ? 0.6 : 0.85) * fit.support;
   // Too little to tell: the fit explains the samples hardly better than standing still does.
@@ -292,7 +295,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const bool known = is_known(matches, fit);
   if (!known) fit = best_without(matches.samples(), prior);
   const bool lost = !known && !prior && on_its_way > 0;
-  still = options.model == MotionModel::none || (!lost && is_still(matches.samples(), fit));
+  still = options.model == MotionModel::none || (!lost && is_still(matches, fit));
   if (still) fit = rate_motion(matches.samples(), {});
   on_its_way = still ? 0 : !fit.transform.is_identity() ? kGoesOn : std::max(0, on_its_way - 1);
   lens.learn(fit.lens);

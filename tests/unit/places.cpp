@@ -72,20 +72,27 @@ Seen watch(int frames, int from, const std::function<double(int)>& left_of) {
 
 }  // namespace
 
+// At 4 pixels a frame he has gone as far as two pairs of the floor's boards when nine frames are over: they look as if they went along.
 START_TEST(the_place_of_somebody_who_stood_there_since_the_start_is_no_region) {
   struct Case {
     int stood;     // frames
     double speed;  // pixels a frame at which he leaves ...
     double aside;  // ... by as many pixels, or out of the picture
   };
-  for (const Case& c : {Case{60, 1, 50}, {240, 1, 400}, {120, 2, 90}, {120, 2, 400}, {240, 2, 400}}) {
+  for (const Case& c : {Case{60, 1, 50},
+                        {240, 1, 400},
+                        {120, 2, 90},
+                        {120, 2, 400},
+                        {240, 2, 400},
+                        {30, 4, 400},
+                        {60, 4, 90}}) {
     const Seen seen = watch(c.stood + 180, 0, [&](int k) {
       return 145 + std::min(c.aside, c.speed * std::max(0, k - c.stood)) + std::sin(k / 5.0);
     });
     ck_assert_msg(seen.wrong == 0 && seen.empty == 0,
                   "stood %d frames, left at %.0f: %d regions wrong, %d frames in the empty room", c.stood,
                   c.speed, seen.wrong, seen.empty);
-    ck_assert_msg(seen.right >= 80, "seen in only %d frames", seen.right);
+    ck_assert_msg(seen.right >= 40, "seen in only %d frames", seen.right);
   }
 }
 END_TEST
