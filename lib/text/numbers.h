@@ -53,7 +53,8 @@ inline Digits rounded(double value, int decimals) {
 }
 // So many decimals: 12.5, 12.0.
 inline Digits fixed(double value, int decimals) {
-  return Digits(value, std::chars_format::fixed, decimals);
+  const bool rounds_to_zero = std::abs(value) < 0.5 * std::pow(10.0, -decimals);
+  return Digits(rounds_to_zero ? 0.0 : value, std::chars_format::fixed, decimals);
 }
 
 }  // namespace cerberus::text

@@ -173,8 +173,8 @@ bool CameraMotion::State::is_cut(const Shift& shift) const {
   return share.well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
 }
 
-// What was looked for at the end of a motion is not found where it was: a camera that stood is asked anew. Boards of a floor look
-// alike wherever they are looked for, and go along with whoever walks over them.
+// What was looked for at the end of a motion is not found where it was: a camera that stood is asked anew. Boards of a
+// floor look alike wherever they are looked for, and go along with whoever walks over them.
 bool CameraMotion::State::is_still(PatchMatches& matches, const MotionFit& fit) const {
   const double motion = mean_motion(fit.transform, reference.size());
   if (motion < (still ? kStillMotion : 0.1)) return true;
@@ -268,7 +268,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const int top = std::max(0, search_level(size) - 1);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
   Transform motion = first_guess(matches, top, shifts, prior);
-  const bool bent = prior && prior->is_sane(size) && bend(*prior, size) > kBent;
+  const bool told = prior && prior->is_sane(size), bent = told && bend(*prior, size) > kBent;
   MotionFit fit;
   share = {};
   for (int level = top; level >= 0; --level) {
@@ -294,7 +294,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   measure_noise(matches);
   const bool known = is_known(matches, fit);
   if (!known) fit = best_without(matches.samples(), prior);
-  const bool lost = !known && !prior && on_its_way > 0;
+  const bool lost = !known && !told && on_its_way > 0;
   still = options.model == MotionModel::none || (!lost && is_still(matches, fit));
   if (still) fit = rate_motion(matches.samples(), {});
   on_its_way = still ? 0 : !fit.transform.is_identity() ? kGoesOn : std::max(0, on_its_way - 1);

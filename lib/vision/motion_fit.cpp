@@ -134,8 +134,10 @@ MotionFit turned(const MotionSamples& s, Size picture, Shutter shutter, const Le
   const MotionLeastSquares squares(picture);
   LensBend seen;
   reweight(s, std::span(kGates).subspan(1), picture, motion, [&](const Distances& weights, Transform& next) {
-    seen = known;
-    return squares.step_turned(s, weights, shutter, seen, next);
+    LensBend lens = known;
+    if (!squares.step_turned(s, weights, shutter, lens, next) || !next.is_sane(picture)) return false;
+    seen = lens;
+    return true;
   });
   MotionFit fit = rate_motion(s, motion);
   fit.lens = seen;
@@ -230,16 +232,16 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
 }
 
 MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& similarity, const LensBend& known) {
-  MotionFit fit = turned(s, picture, Shutter::global, known, similarity.transform);
-  const MotionFit rolled = turned(s, picture, Shutter::rolling, known, fit.transform);
-  const bool rolls = is_as_supported(rolled, fit) && earned(rolled, fit) > kRollingEarns;
-  if (rolls) fit = rolled;
-  fit.lens.information /= unexplained(fit);
-  fit.lens.earned = earned(fit, similarity) - (rolls ? kRollingEarns : 0);
-  if (is_as_supported(fit, similarity) && known.earned + fit.lens.earned > kBendEarns) return fit;
-  MotionFit flat = similarity;
-  flat.lens = fit.lens;
-  return flat;
+  MotionFit bent = turned(s, picture, Shutter::global, known, similarity.transform);
+  bent.lens.earned = earned(bent, similarity);
+  const bool bends = is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kBendEarns;
+  MotionFit fit = bends ? bent : similarity;
+  // Sheared, it is bent, too: both have to be earned.
+  const MotionFit rolled = turned(s, picture, Shutter::rolling, known, bent.transform);
+  const double earns = kRollingEarns + (bends ? 0 : kBendEarns);
+  if (is_as_supported(rolled, fit) && earned(rolled, fit) > earns) fit = rolled;
+  fit.lens = bent.lens;
+  return fit;
 }
 
 void LensBend::learn(const LensBend& seen) {
@@ -249,7 +251,7 @@ void LensBend::learn(const LensBend& seen) {
   if (!(seen.information > 0)) return;
   const double apart = seen.bend - bend;
   if (information > 0 && apart * apart > kContradicts * (1 / information + 1 / seen.information))
-    information = 0;
+    information = 0, earned = std::max(seen.earned, 0.0);
   bend += (seen.bend - bend) * seen.information / (information + seen.information);
   information += seen.information;
 }

@@ -143,8 +143,8 @@ bool MotionLeastSquares::step(MotionModel model, const MotionSamples& s, const D
 
 bool MotionLeastSquares::step_turned(const MotionSamples& s, const Distances& weights, Shutter shutter,
                                      LensBend& lens, Transform& t) const {
-  // The bend is the last unknown: what remains in its row of Cholesky's factor is what is known of it when the others are
-  // not.
+  // The bend is the last unknown: what remains in its row of Cholesky's factor is what is known of it when the others
+  // are not.
   const Point moved = t.apply({cx_, cy_});
   const double tx = (moved.x - cx_) / scale_, ty = (moved.y - cy_) / scale_;
   const auto with = [&]<std::size_t N>(std::array<double, N> p, auto&& design, auto&& linear) {
@@ -161,7 +161,7 @@ bool MotionLeastSquares::step_turned(const MotionSamples& s, const Distances& we
     };
     if (!solve(s, weights, normal, p, bending)) return false;
     const double information = normal.a[N - 1][N - 1] * normal.a[N - 1][N - 1] * scale_ * scale_;
-    lens.information = std::max(information - known.information, 0.0);
+    lens.information = std::max(information - known.information - 1 / (kMostBend * kMostBend), 0.0);
     if (lens.information > 0)
       lens.bend = (information * p[N - 1] - known.information * known.bend) / lens.information;
     const double bend = std::clamp(p[N - 1], 0.0, kMostBend);

@@ -143,21 +143,21 @@ void SceneParts::find_places() {
   const auto components = labeller_.components();
   for (std::size_t i = 0; i < components.size(); ++i) {
     Part& part = parts_[i];
-    if (part.moving && part.fresh) continue;
     const Component& a = components[i];
-    bool owned = false;
     const bool newest = 2 * part.newest > static_cast<int>(a.area);
-    for (std::size_t j = 0; j < components.size(); ++j) {
-      const Part& other = parts_[j];
-      if (!other.moving || !other.fresh) continue;
-      const Component& b = components[j];
-      owned = owned || (!other.ghost && other.origin == SceneOrigins::Origin::here &&
-                        b.area > kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b));
-    }
     const bool sure =
         part.object && !newest && part.frame_only > kSure * part.memory_only + kOutline * part.places;
-    if (owned && !sure && !part.fresh && part.origin == SceneOrigins::Origin::here)
-      part.doubtful = true, part.kept = false;
+    if (part.fresh || sure || part.origin != SceneOrigins::Origin::here) continue;
+    for (std::size_t j = 0; j < components.size(); ++j) {
+      const Part& other = parts_[j];
+      if (!other.moving || !other.fresh || other.ghost || other.origin != SceneOrigins::Origin::here)
+        continue;
+      const Component& b = components[j];
+      if (b.area > kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
+        part.doubtful = true, part.kept = false;
+        break;
+      }
+    }
   }
 }
 
@@ -188,17 +188,16 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
   // A shake is over before anything has gone far.
   if (!planes.still && ++moved_ == kShake) origins_.begin();
   measure(planes, windows, mask);
-  bool young_objects = false;
-  for (std::size_t i = 0; i < components.size(); ++i) {
-    weigh(planes, components[i], parts_[i]);
-    young_objects =
-        young_objects || (parts_[i].kept && 2 * parts_[i].young > static_cast<int>(components[i].area));
-  }
+  for (std::size_t i = 0; i < components.size(); ++i) weigh(planes, components[i], parts_[i]);
   if (planes.still) {
     find_places();
     find_owners();
     for (const Run& r : labeller_.runs()) origins_.note(r, parts_[r.component].origin);
   }
+  bool young_objects = false;
+  for (std::size_t i = 0; i < components.size(); ++i)
+    young_objects =
+        young_objects || (parts_[i].kept && 2 * parts_[i].young > static_cast<int>(components[i].area));
   for (int y = 0; y < absorb.height; ++y) std::fill_n(absorb.row(y), absorb.width, std::uint64_t{0});
   for (const Run& r : labeller_.runs()) {
     const Part& part = parts_[r.component];

@@ -77,7 +77,7 @@ class SceneParts {
   Labeller labeller_;
   std::vector<Part> parts_;
   SceneOrigins origins_;
-  int moved_ = 1;  // frames since the camera stood
+  int moved_ = 3;  // frames since the camera stood; as many as end what is known: it never did
 };
 
 }  // namespace cerberus::vision

@@ -138,6 +138,7 @@ bool Tracker::State::has_stopped(const Body& b) const {
 void Tracker::State::age() {
   for (Body& b : bodies) {
     if (b.region >= 0) {
+      b.absent = 0;
       const bool enough = b.hits >= 3 || (b.hits >= 2 && b.age >= 3 * options.confirm_time);
       const bool confirmed = enough && (b.uncovered || b.travelled >= kLeastTravel) &&
                              b.age >= 0.99 * options.confirm_time && b.hits >= 0.6 * b.frames;

@@ -42,6 +42,8 @@ START_TEST(no_zero_is_below_zero) {
   assert_is(text::exact(-0.0), "0");
   assert_is(text::rounded(-0.001, 2), "0");
   assert_is(text::fixed(-0.0, 1), "0.0");
+  assert_is(text::fixed(-0.03, 1), "0.0");
+  assert_is(text::fixed(-0.06, 1), "-0.1");
   assert_is(text::significant(-0.0, 3), "0");
 }
 END_TEST
@@ -71,7 +73,7 @@ START_TEST(it_is_what_printf_writes_in_c_and_the_same_in_germany) {
     assert_is(text::significant(value, 4), digits);
     std::snprintf(digits, sizeof digits, "%.1f", value);
     const bool negative_zero = std::string_view(digits) == "-0.0";
-    if (!negative_zero) assert_is(text::fixed(value, 1), digits);
+    assert_is(text::fixed(value, 1), negative_zero ? "0.0" : digits);
   }
   if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) return;  // not installed here
   assert_is(text::fixed(1.5, 1), "1.5");
