@@ -42,7 +42,7 @@ def region(**fields):
 
 def frames(description, probe=None, messages=None):
     """Runs a pipeline that ends in `appsink name=sink`; yields each buffer. `probe` sees what leaves `mark`;
-    the element messages go to `messages` after the last one."""
+    the element messages go to `messages` after the last one. Ends when every sink has: a file is written whole then."""
     pipeline = Gst.parse_launch(description)
     if probe:
         def on_buffer(_pad, info):
@@ -54,12 +54,13 @@ def frames(description, probe=None, messages=None):
     try:
         while sample := sink.try_pull_sample(TIMEOUT):
             yield sample.get_buffer()
-        while messages is not None and (message := bus.pop_filtered(Gst.MessageType.ELEMENT)):
-            messages.append(message)
-        error = bus.pop_filtered(Gst.MessageType.ERROR)
-        if error:
-            raise RuntimeError(error.parse_error())
-        if not sink.is_eos():
+        awaited = Gst.MessageType.ELEMENT | Gst.MessageType.ERROR | Gst.MessageType.EOS
+        while (message := bus.timed_pop_filtered(TIMEOUT, awaited)) and message.type != Gst.MessageType.EOS:
+            if message.type == Gst.MessageType.ERROR:
+                raise RuntimeError(message.parse_error())
+            if messages is not None:
+                messages.append(message)
+        if not message:
             raise RuntimeError("the pipeline does not go on")
     finally:
         pipeline.set_state(Gst.State.NULL)
