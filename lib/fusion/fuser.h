@@ -49,7 +49,7 @@ struct Track {
 
 struct Input {
   Time time{};                            // running time of the frame, which the tracks are of
-  Time heard = Time::min();               // of what follows, where that is later
+  Time heard = Time::min();               // of sensors, pan and base, if that is later
   std::span<const Track> tracks;          // any order
   std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
   double pan = kUnknown;                  // radians

@@ -33,8 +33,8 @@ namespace cerberus::fusion {
 
 namespace {
 
-constexpr std::size_t kMostBytes =
-    1 << 20;  // a rule file is a page; a device or a video named by mistake is not
+// A rule file is a page; a video named by mistake is not.
+constexpr std::size_t kMostBytes = 1 << 20;
 
 constexpr std::array kActions{Action::track,  Action::turn_left, Action::turn_right,
                               Action::search, Action::zero,      Action::hold};

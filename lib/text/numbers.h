@@ -3,6 +3,7 @@
 // an allocation.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -24,17 +25,23 @@ class Digits {
   // How, as of std::to_chars.
   template <typename... How>
   explicit Digits(double value, How... how) {
-    value += 0.0;  // no "-0"
     char* const end = digits_.data() + digits_.size();
     auto written = std::to_chars(digits_.data(), end, value, how...);
     if (written.ec != std::errc())
       written = std::to_chars(digits_.data(), end, value);  // 1e300 with decimals
     length_ = static_cast<std::size_t>(written.ptr - digits_.data());
+    if (is_negative_zero()) std::copy(digits_.data() + 1, digits_.data() + length_--, digits_.data());
   }
-  operator std::string_view() const { return {digits_.data(), length_}; }
-  std::string string() const { return {digits_.data(), length_}; }
+  operator std::string_view() const { return string_view(); }
+  std::string string() const { return std::string(string_view()); }
+  std::string_view string_view() const { return {digits_.data(), length_}; }
 
  private:
+  // As it was written: what is rounded to 0 is one, too.
+  bool is_negative_zero() const {
+    return digits_[0] == '-' && string_view().find_first_not_of("-0.") == std::string_view::npos;
+  }
+
   std::array<char, 40> digits_;
   std::size_t length_;
 };
@@ -53,8 +60,7 @@ inline Digits rounded(double value, int decimals) {
 }
 // So many decimals: 12.5, 12.0.
 inline Digits fixed(double value, int decimals) {
-  const bool rounds_to_zero = std::abs(value) < 0.5 * std::pow(10.0, -decimals);
-  return Digits(rounds_to_zero ? 0.0 : value, std::chars_format::fixed, decimals);
+  return Digits(value, std::chars_format::fixed, decimals);
 }
 
 }  // namespace cerberus::text

@@ -32,9 +32,9 @@ constexpr double kFreeze = 0.5;   // s after somebody else was close in which no
 constexpr double kChanged = 0.3;  // looks as different now may be two people's,
 constexpr double kRelearn = 4.0;  // for so long: then they are one's who has changed
 constexpr double kSettled = 1.0;  // s: who has stood for less is not taken for a part of the scene
-constexpr double kSamePlace =
-    0.15;                  // of a place's pixels: as many look different because of noise, folds and arms
-constexpr int kLooks = 3;  // from which on a look is known
+constexpr int kLooks = 3;         // from which on a look is known
+// Of a place's pixels: as many look different because of noise, folds and arms.
+constexpr double kSamePlace = 0.15;
 constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
 
 double square(double v) {

@@ -65,8 +65,8 @@ struct CameraMotion::State {
   LensBend lens;
   double noise = 1;  // standard deviation of a pixel
   bool still = false;
-  int on_its_way =
-      0;  // frames for which a camera that moves is taken to do so where the picture says too little
+  // Frames for which a camera that moves is taken to do so where the picture says too little.
+  int on_its_way = 0;
   int scene_age = 0;
 
   std::optional<CameraMotionResult> confirm_still();
@@ -80,9 +80,10 @@ struct CameraMotion::State {
   MotionFit best_without(const MotionSamples& samples, const std::optional<Transform>& prior) const;
   void count_followers(const PatchMatches& matches, const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
-  bool is_still(PatchMatches& matches, const MotionFit& fit) const;
-  bool is_known(PatchMatches& matches, const MotionFit& fit) const;
-  bool leaves_behind(PatchMatches& matches, const MotionFit& fit) const;
+  PatchMatches found_in_place() const;
+  std::optional<MotionFit> standing(const MotionSamples& samples, const MotionFit& fit) const;
+  bool is_known(const MotionSamples& samples, const MotionFit& fit) const;
+  bool leaves_behind(const MotionFit& fit) const;
   void measure_noise(const PatchMatches& matches);
   void next_reference(bool keep);
 };
@@ -134,7 +135,7 @@ Transform CameraMotion::State::first_guess(PatchMatches& matches, int level,
   std::size_t count = 1;
   if (!last.is_identity()) guesses[count++] = last;
   for (const Shift& s : shifts) guesses[count++] = Transform::translation(s.dx * coarse, s.dy * coarse);
-  if (prior && prior->is_sane(reference.size())) guesses[count++] = *prior;
+  if (prior) guesses[count++] = *prior;
   return matches.follow(reference, current, level, std::span(guesses).first(count));
 }
 
@@ -173,27 +174,38 @@ bool CameraMotion::State::is_cut(const Shift& shift) const {
   return share.well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
 }
 
-// What was looked for at the end of a motion is not found where it was: a camera that stood is asked anew. Boards of a
+// What was looked for at the end of a motion is not found where it was.
+PatchMatches CameraMotion::State::found_in_place() const {
+  PatchMatches matches(sites);
+  matches.follow(reference, current, 0, Transform{});
+  return matches;
+}
+
+// How well standing explains the picture, if the camera stands. One that stood is asked anew before it moves: boards of a
 // floor look alike wherever they are looked for, and go along with whoever walks over them.
-bool CameraMotion::State::is_still(PatchMatches& matches, const MotionFit& fit) const {
+std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samples,
+                                                       const MotionFit& fit) const {
+  if (options.model == MotionModel::none) return rate_motion(samples, {});
   const double motion = mean_motion(fit.transform, reference.size());
-  if (motion < (still ? kStillMotion : 0.1)) return true;
-  if (share.all > 0.9 && motion > 0.5) return false;
-  if (still && motion > 1) matches.follow(reference, current, 0, Transform{});
-  const MotionFit none = rate_motion(matches.samples(), {});
-  // A large and lively object: the rest of the picture, in many places, says that nothing moves.
-  if (motion > 1) return none.support > (still ? 0.6 : 0.85) * fit.support;
-  // Too little to tell: the fit explains the samples hardly better than standing still does.
-  const double unexplained = fit.agreeing > 1 ? fit.cost / fit.agreeing : 1;
-  return none.support > 0.9 * fit.support && none.cost - fit.cost < 12 * std::max(1.0, unexplained);
+  if (share.all > 0.9 && motion > 0.5) return std::nullopt;
+  const bool anew = still && motion > 1;
+  const MotionFit none = anew ? rate_motion(found_in_place().samples(), {}) : rate_motion(samples, {});
+  const auto stands = [&] {
+    if (motion < (still ? kStillMotion : 0.1)) return true;
+    // A large and lively object: the rest of the picture, in many places, says that nothing moves.
+    if (motion > 1) return none.support > (still ? 0.6 : 0.85) * fit.support;
+    // Too little to tell: the fit explains the samples hardly better than standing still does.
+    const double unexplained = fit.agreeing > 1 ? fit.cost / fit.agreeing : 1;
+    return none.support > 0.9 * fit.support && none.cost - fit.cost < 12 * std::max(1.0, unexplained);
+  };
+  return stands() ? std::optional(none) : std::nullopt;
 }
 
 // A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
 // camera that stood needs more to be set in motion, or what is wider than somebody who would not show in as many parts:
 // the few things on a bare wall. Nothing of those must stay behind then. One that moves shows it also in few parts beside
 // one another.
-bool CameraMotion::State::is_known(PatchMatches& matches, const MotionFit& fit) const {
-  const MotionSamples& samples = matches.samples();
+bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit& fit) const {
   std::bitset<MotionSamples::kRegions> seen;
   std::array<float, MotionSamples::kMax> across;
   int following = 0;
@@ -213,17 +225,16 @@ bool CameraMotion::State::is_known(PatchMatches& matches, const MotionFit& fit) 
     return across[rank];
   };
   const float width = place(following - 1 - tenth) - place(tenth);
-  return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(matches, fit);
+  return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(fit);
 }
 
 // Whether patches are found where they were, and not where `fit` says they went. One may err.
-bool CameraMotion::State::leaves_behind(PatchMatches& matches, const MotionFit& fit) const {
-  matches.follow(reference, current, 0, Transform{});
+bool CameraMotion::State::leaves_behind(const MotionFit& fit) const {
+  const PatchMatches matches = found_in_place();
   const MotionSamples& samples = matches.samples();
   int count = 0;
   for (int i = 0; i < samples.count; ++i)
     count += follows(samples, i, {}) && !follows(samples, i, fit.transform);
-  matches.follow(reference, current, 0, fit.transform);
   return count > 1;
 }
 
@@ -234,14 +245,13 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
       reference_age + 1 >= kReferenceAge)
     return std::nullopt;
   const Size size = reference.size();
-  PatchMatches matches(sites);
-  matches.follow(reference, current, 0, Transform{});
+  const PatchMatches matches = found_in_place();
   Transform motion;
   refine_motion(matches.samples(), std::min(options.model, MotionModel::similarity), size, motion);
   const MotionFit fit = rate_motion(matches.samples(), motion);
   share = {};
   count_followers(matches, fit);
-  if (share.all < kMajority || mean_motion(motion, size) >= kStillMotion || !is_known(matches, fit))
+  if (share.all < kMajority || mean_motion(motion, size) >= kStillMotion || !is_known(matches.samples(), fit))
     return std::nullopt;
   measure_noise(matches);
   next_reference(true);
@@ -257,7 +267,7 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
 // for.
 MotionFit CameraMotion::State::best_without(const MotionSamples& samples,
                                             const std::optional<Transform>& prior) const {
-  if (prior && prior->is_sane(reference.size())) return rate_motion(samples, *prior);
+  if (prior) return rate_motion(samples, *prior);
   const MotionFit stands = rate_motion(samples, {}), goes_on = rate_motion(samples, last);
   return on_its_way > 0 && goes_on.support > stands.support ? goes_on : stands;
 }
@@ -268,7 +278,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const int top = std::max(0, search_level(size) - 1);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
   Transform motion = first_guess(matches, top, shifts, prior);
-  const bool told = prior && prior->is_sane(size), bent = told && bend(*prior, size) > kBent;
+  const bool bent = prior && bend(*prior, size) > kBent;
   MotionFit fit;
   share = {};
   for (int level = top; level >= 0; --level) {
@@ -292,11 +302,12 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   }
   if (is_cut(shifts[0])) return start_scene();
   measure_noise(matches);
-  const bool known = is_known(matches, fit);
+  const bool known = is_known(matches.samples(), fit);
   if (!known) fit = best_without(matches.samples(), prior);
-  const bool lost = !known && !told && on_its_way > 0;
-  still = options.model == MotionModel::none || (!lost && is_still(matches, fit));
-  if (still) fit = rate_motion(matches.samples(), {});
+  const bool lost = !known && !prior && on_its_way > 0;
+  const auto stands = lost ? std::nullopt : standing(matches.samples(), fit);
+  still = stands.has_value();
+  if (still) fit = *stands;
   on_its_way = still ? 0 : !fit.transform.is_identity() ? kGoesOn : std::max(0, on_its_way - 1);
   lens.learn(fit.lens);
   CameraMotionResult result;
@@ -327,7 +338,7 @@ CameraMotionResult CameraMotion::update(GrayView picture, const std::optional<Tr
     result.still = true;
     return result;
   }
-  return s.estimate(prior);
+  return s.estimate(prior && prior->is_sane(picture.size()) ? prior : std::nullopt);
 }
 
 }  // namespace cerberus::vision

@@ -32,6 +32,11 @@ constexpr int gap(int a_from, int a_to, int b_from, int b_to) {
   return (a_from > b_from ? a_from : b_from) - (a_to < b_to ? a_to : b_to);
 }
 
+// Whether two components lie less than so many pixels apart, across and down.
+constexpr bool are_within(double pixels, const Component& a, const Component& b) {
+  return gap(a.left, a.right, b.left, b.right) < pixels && gap(a.top, a.bottom, b.top, b.bottom) < pixels;
+}
+
 // One horizontal stretch of moving pixels. 16 bits: no picture here is wider or higher than 65535.
 struct Run {
   std::uint16_t row = 0;

@@ -30,8 +30,7 @@ struct MotionSamples {
 struct LensBend {
   double bend = 0;         // (half diagonal of the picture / focal length)^2
   double information = 0;  // 1 / variance of that
-  double earned =
-      0;  // how much better the samples are explained with it than without (F statistic, one unknown)
+  double earned = 0;       // F statistic: how much better the samples are explained with it than without
 
   // What one more picture says of it. A lens may zoom and a robot drive: what is old counts less, and what is contradicted
   // is forgotten.

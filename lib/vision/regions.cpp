@@ -141,10 +141,8 @@ void RegionFinder::State::learn(const Transform& motion) {
     const Window& body = bodies[i];
     if (!looks_like_one_person(c, body, size)) continue;
     const double reach = 0.4 * c.height();
-    const bool alone = std::none_of(parts.begin(), parts.end(), [&](const Component& o) {
-      return &o != &c && gap(c.left, c.right, o.left, o.right) < reach &&
-             gap(c.top, c.bottom, o.top, o.bottom) < reach;
-    });
+    const bool alone = std::none_of(parts.begin(), parts.end(),
+                                    [&](const Component& o) { return &o != &c && are_within(reach, c, o); });
     if (!alone || walkers.size() == kMostWalkers) continue;
     const double h = c.height();
     Walker walker{{(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};

@@ -28,10 +28,6 @@ constexpr double kLevel = 0.5;     // share of the lower one's height at which t
 constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
 constexpr double kPiece = 1 / 3.0;     // share of the bigger part's area below which a part is a piece
 
-bool are_within(int pixels, const Component& a, const Component& b) {
-  return gap(a.left, a.right, b.left, b.right) < pixels && gap(a.top, a.bottom, b.top, b.bottom) < pixels;
-}
-
 }  // namespace
 
 SceneWindows SceneWindows::of(double seconds) {

@@ -69,6 +69,7 @@ struct Tracker::State {
   void remove_duplicates();
   void publish();
   bool covered(const Body& body) const;
+  bool left_place(const Body& body) const;
   bool has_stopped(const Body& body) const;
 };
 

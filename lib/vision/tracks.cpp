@@ -126,13 +126,17 @@ bool Tracker::State::covered(const Body& b) const {
   });
 }
 
+// Is he at the picture's edge, and his place looks otherwise?
+bool Tracker::State::left_place(const Body& b) const {
+  return b.changed >= 0 && !b.stays() && b.at_border(frame);
+}
+
 // Somebody who ceased to move, rather than left or went behind something: well seen before, slower and slower until
 // nothing moved any more, in the open and with nobody else in the way; at the picture's edge, where the place tells.
 bool Tracker::State::has_stopped(const Body& b) const {
   if (b.slow < 0.3 || b.fitted < 0.5 || b.travelled < 0.45 || b.age - b.unseen < 1.5 || b.leaving)
     return false;
-  if (b.changed >= 0 && !b.stays() && b.at_border(frame)) return false;
-  return !covered(b);
+  return !left_place(b) && !covered(b);
 }
 
 void Tracker::State::age() {
@@ -172,7 +176,7 @@ void Tracker::State::age() {
     b.confidence *=
         std::exp(-seconds / std::max(b.stopped ? options.hold_stopped : options.coast_time, 1e-3));
     // Somebody at the edge whose place looks like another, and nobody is in the way, has left.
-    const bool left = b.stopped && b.at_border(frame) && b.changed >= 0 && !b.stays() && !covered(b);
+    const bool left = b.stopped && left_place(b) && !covered(b);
     b.absent = left ? b.absent + seconds : 0;
     b.dead = outside || b.unseen > limit || b.absent > kEdgeCoast * coast;
     if (b.dead && turning && (outside || b.at_border(frame)) && b.unseen < options.away_time &&

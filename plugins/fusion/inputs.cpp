@@ -125,11 +125,11 @@ bool Inputs::flushing() {
   return flushing_;
 }
 
-void Inputs::listen(Time heard, Time frame, const std::string& head, Moment& moment) {
+void Inputs::listen(Time heard, Time frame_time, const std::string& head, Moment& moment) {
   const std::lock_guard guard(lock_);
   hear_sensors(heard, moment);
   const auto* pose = poses_.entry_at(heard);
-  if (pose && is_named(pose->value, head) && (pose->time > frame || !moment.pan_on_frame))
+  if (pose && is_named(pose->value, head) && (pose->time > frame_time || !moment.pan_on_frame))
     cerberus_pose_evaluate(&pose->value, clock_time(heard), &moment.pan_degrees, nullptr);
   if (const auto rate = base_.at(heard)) moment.base_degrees = *rate;
 }

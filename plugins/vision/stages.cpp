@@ -57,12 +57,12 @@ MappedPlane LumaStage::make(Frame& frame) {
   return read(frame.buffer, CERBERUS_PLANE_LUMA);
 }
 
-bool DifferenceStage::ensure(Frame& frame, vision::Size size, bool previous) {
+bool DifferenceStage::ensure(Frame& frame, vision::Size size, bool previous_wanted) {
   const MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const MappedPlane current = read(frame.buffer, CERBERUS_PLANE_DIFFERENCE);
   if (histogram.width() * sizeof(std::uint32_t) >= sizeof(HistogramRecord) && current.size() == size)
     return true;
-  return run(frame, previous);
+  return run(frame, previous_wanted);
 }
 
 bool DifferenceStage::run(Frame& frame, bool previous_wanted) {

@@ -55,10 +55,10 @@ class DifferenceStage {
     options_ = options;
     if (difference_) difference_->set_options(options);
   }
-  // Both return false for an unusable buffer; `previous`: D(k-1) is wanted. ensure() takes what is on the buffer if it has
+  // Both return false for an unusable buffer. ensure() takes what is on the buffer if it has
   // this size, and D(k-1) as it comes: upstream was asked for it.
-  bool ensure(Frame& frame, vision::Size size, bool previous);
-  bool run(Frame& frame, bool previous);
+  bool ensure(Frame& frame, vision::Size size, bool previous_wanted);
+  bool run(Frame& frame, bool previous_wanted);
 
  private:
   LumaStage luma_;

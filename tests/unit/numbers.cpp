@@ -44,6 +44,8 @@ START_TEST(no_zero_is_below_zero) {
   assert_is(text::fixed(-0.0, 1), "0.0");
   assert_is(text::fixed(-0.03, 1), "0.0");
   assert_is(text::fixed(-0.06, 1), "-0.1");
+  assert_is(text::fixed(-0.5, 0), "0");  // half way goes to the even one
+  assert_is(text::fixed(-1e-300, 3), "0.000");
   assert_is(text::significant(-0.0, 3), "0");
 }
 END_TEST

@@ -34,8 +34,9 @@ float person(int x, int y) {
 constexpr int kWidth = 30, kHeight = 90;
 
 struct Seen {
-  int right = 0, wrong = 0,
-      empty = 0;  // frames with a region on him; regions that are not; frames with one in the empty room
+  int right = 0;  // frames with a region on him
+  int wrong = 0;  // regions that are not on him
+  int empty = 0;  // frames with a region in the empty room
 };
 
 // left_of: where he is in each frame. Counted from frame `from` on.

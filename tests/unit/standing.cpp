@@ -27,85 +27,82 @@ std::vector<Region> upper(const Person& p, double share) {
 // Walks in along the top edge, stands two seconds, and is seen from frame 44 on less and less, from the feet up, until
 // nothing is seen of him, in `fading` frames.
 constexpr int kStands = 24, kFades = 44;
-std::uint32_t stand_and_fade(Place& place, Person& man, int fading = 8) {
+struct Standing {
+  Place place;
+  Person man = kMan;
   std::uint32_t id = 0;
-  for (int k = 0; k < kFades + fading; ++k) {
-    man.x = 40 + 5.0 * std::min(k, kStands);
-    if (k < kFades)
-      place.step({man});
-    else
-      place.step({man}, 0, upper(man, 0.95 - 0.8 * (k - kFades) / fading));
-    if (k == 20) id = place.at(man.x);
-  }
-  ck_assert_uint_ne(id, 0);
-  return id;
-}
 
-void is_all_there(const Place& place, const Person& man, std::uint32_t id) {
-  ck_assert_uint_eq(place.tracks.size(), 1);
-  const Track& t = place.tracks[0];
-  ck_assert_uint_eq(t.id, id);
-  ck_assert_double_eq_tol(t.box.x + t.box.width / 2, man.x, 4);
-  ck_assert_double_gt(t.box.height, 0.85 * (man.y + kHeight / 2));
-  ck_assert_double_lt(t.box.y + t.box.height, man.y + 0.6 * kHeight);
-}
+  explicit Standing(int fading = 8) {
+    for (int k = 0; k < kFades + fading; ++k) {
+      man.x = 40 + 5.0 * std::min(k, kStands);
+      if (k < kFades)
+        place.step({man});
+      else
+        see(upper(man, 0.95 - 0.8 * (k - kFades) / fading));
+      if (k == 20) id = place.at(man.x);
+    }
+    ck_assert_uint_ne(id, 0);
+  }
+  // He is there, and this is what is seen of him.
+  void see(const std::vector<Region>& regions) { place.step({man}, 0, regions); }
+  void is_all_there() const {
+    ck_assert_uint_eq(place.tracks.size(), 1);
+    const Track& t = place.tracks[0];
+    ck_assert_uint_eq(t.id, id);
+    ck_assert_double_eq_tol(t.box.x + t.box.width / 2, man.x, 4);
+    ck_assert_double_gt(t.box.height, 0.85 * (man.y + kHeight / 2));
+    ck_assert_double_lt(t.box.y + t.box.height, man.y + 0.6 * kHeight);
+  }
+};
 
 }  // namespace
 
 START_TEST(who_stands_at_the_picture_s_edge_and_fades_from_the_feet_is_held_whole) {
   for (const int fading : {2, 8, 80}) {
-    Place place;
-    Person man = kMan;
-    const std::uint32_t id = stand_and_fade(place, man, fading);
+    Standing s(fading);
     for (int k = 0; k < 60; ++k) {
-      place.step({man}, 0, std::vector<Region>{});
-      is_all_there(place, man, id);
-      ck_assert(place.tracks[0].state == TrackState::stopped);
+      s.see({});
+      s.is_all_there();
+      ck_assert(s.place.tracks[0].state == TrackState::stopped);
     }
     for (int k = 0; k < 15; ++k) {
-      man.x += 5;
-      place.step({man});
-      if (k > 0) ck_assert_uint_eq(place.at(man.x), id);
+      s.man.x += 5;
+      s.place.step({s.man});
+      if (k > 0) ck_assert_uint_eq(s.place.at(s.man.x), s.id);
     }
   }
 }
 END_TEST
 
 START_TEST(somebody_who_passes_in_front_of_him_does_not_end_him) {
-  Place place;
-  Person man = kMan;
-  const std::uint32_t id = stand_and_fade(place, man);
+  Standing s;
   for (int k = 0; k < 80; ++k) {
     const Person other{300 - 4.0 * k, kTop + 6, kWhite, kGrey};
     const bool here = other.x > 20;
-    place.step(here ? std::vector{other, man} : std::vector{man}, 0,
-               here ? std::vector{piece(other.x - kWidth / 2, other.y - kHeight / 2, kWidth, kHeight)}
-                    : std::vector<Region>{});
+    s.place.step(here ? std::vector{other, s.man} : std::vector{s.man}, 0,
+                 here ? std::vector{piece(other.x - kWidth / 2, other.y - kHeight / 2, kWidth, kHeight)}
+                      : std::vector<Region>{});
   }
-  is_all_there(place, man, id);
+  s.is_all_there();
 }
 END_TEST
 
 START_TEST(a_change_of_exposure_does_not_drive_him_away) {
-  Place place;
-  Person man = kMan;
-  const std::uint32_t id = stand_and_fade(place, man);
+  Standing s;
   for (int k = 0; k < 60; ++k) {
-    place.gain = 1 + 0.005 * std::min(k, 30);
-    place.step({man}, 0, std::vector<Region>{});
-    is_all_there(place, man, id);
+    s.place.gain = 1 + 0.005 * std::min(k, 30);
+    s.see({});
+    s.is_all_there();
   }
 }
 END_TEST
 
 START_TEST(who_was_held_at_the_edge_is_given_up_within_half_a_second_of_his_place_being_empty) {
-  Place place;
-  Person man = kMan;
-  stand_and_fade(place, man);
-  for (int k = 0; k < 20; ++k) place.step({man}, 0, std::vector<Region>{});
-  ck_assert_uint_eq(place.tracks.size(), 1);
-  for (int k = 0; k < 6; ++k) place.step({}, 0, std::vector<Region>{});
-  ck_assert_uint_eq(place.tracks.size(), 0);
+  Standing s;
+  for (int k = 0; k < 20; ++k) s.see({});
+  ck_assert_uint_eq(s.place.tracks.size(), 1);
+  for (int k = 0; k < 6; ++k) s.place.step({}, 0, std::vector<Region>{});
+  ck_assert_uint_eq(s.place.tracks.size(), 0);
 }
 END_TEST
 
@@ -148,43 +145,39 @@ END_TEST
 
 // What moves of a standing head: its two rims. Side by side, upright, of one size, and touching the edge.
 START_TEST(slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person) {
-  Place place;
-  Person man = kMan;
-  const std::uint32_t id = stand_and_fade(place, man);
+  Standing s;
   for (int k = 0; k < 40; ++k) {
-    std::vector<Region> seen{piece(man.x + 6, 0, 5, 20), piece(man.x - 12, 2, 5, 18)};
+    std::vector<Region> seen{piece(s.man.x + 6, 0, 5, 20), piece(s.man.x - 12, 2, 5, 18)};
     if (k % 4 == 3) seen.clear();
-    place.step({man}, 0, seen);
-    is_all_there(place, man, id);
+    s.see(seen);
+    s.is_all_there();
   }
 }
 END_TEST
 
 // An arm moves beside a standing person and gets a track of its own; then the region of both is less than the person.
 START_TEST(who_stands_is_not_as_small_as_a_piece_that_is_shared_with_an_arm) {
-  Place place;
-  Person man = kMan;
-  const std::uint32_t id = stand_and_fade(place, man);
+  Standing s;
   for (int k = 0; k < 30; ++k) {
     const double reach = 3.0 * std::min(k, 6);
-    std::vector<Region> seen{piece(man.x - 30 - reach, 16, 12, 24)};
-    if (k > 12 && k < 20) seen = {piece(man.x - 48, 14, 60, 28)};
-    place.step({man}, 0, seen);
-    if (k == 12) ck_assert_uint_eq(place.tracks.size(), 2);
-    const auto him = std::ranges::find(place.tracks, id, &Track::id);
-    ck_assert(him != place.tracks.end());
+    std::vector<Region> seen{piece(s.man.x - 30 - reach, 16, 12, 24)};
+    if (k > 12 && k < 20) seen = {piece(s.man.x - 48, 14, 60, 28)};
+    s.see(seen);
+    if (k == 12) ck_assert_uint_eq(s.place.tracks.size(), 2);
+    const auto him = std::ranges::find(s.place.tracks, s.id, &Track::id);
+    ck_assert(him != s.place.tracks.end());
     ck_assert_double_gt(him->box.height, 60);
   }
   // It comes back before him and walks away with him: his.
   for (int k = 0; k < 12; ++k)
-    place.step({man}, 0, std::vector{piece(man.x - 48 + 3.0 * std::min(k, 11), 18, 12, 24)});
-  ck_assert_uint_eq(place.tracks.size(), 2);
+    s.place.step({s.man}, 0, std::vector{piece(s.man.x - 48 + 3.0 * std::min(k, 11), 18, 12, 24)});
+  ck_assert_uint_eq(s.place.tracks.size(), 2);
   for (int k = 0; k < 12; ++k) {
-    man.x += 4;
-    place.step({man});
+    s.man.x += 4;
+    s.place.step({s.man});
   }
-  ck_assert_uint_eq(place.tracks.size(), 1);
-  ck_assert_uint_eq(place.tracks[0].id, id);
+  ck_assert_uint_eq(s.place.tracks.size(), 1);
+  ck_assert_uint_eq(s.place.tracks[0].id, s.id);
 }
 END_TEST
 
