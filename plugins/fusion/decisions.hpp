@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
-#include "cerberus/private/in_order.hpp"
 #include "fusion/fuser.h"
 #include "inputs.hpp"
+#include "threads/in_order.h"
 #include "translation.hpp"
 
 namespace cerberus::plugin {
@@ -62,7 +62,7 @@ class Decisions {
   RuleName rule_name_;
   Time heard_{};               // by the last decision
   std::optional<Frame> last_;  // of a live stream
-  InOrder<Change> news_;
+  threads::InOrder<Change> news_;
 };
 
 }  // namespace cerberus::plugin

@@ -8,8 +8,8 @@
 #include <utility>
 #include <variant>
 
-#include "cerberus/private/in_order.hpp"
 #include "control/pose.h"
+#include "threads/in_order.h"
 
 namespace cerberus::plugin {
 
@@ -31,8 +31,8 @@ struct Lost {  // the identity that was to be followed and is not there: for a w
 
 // What all threads have put in and nobody has sent off yet.
 struct Outgoing {
-  InOrder<control::Pose> poses;
-  InOrder<std::variant<Status, Refusal, Fault, Lost>> notices;
+  threads::InOrder<control::Pose> poses;
+  threads::InOrder<std::variant<Status, Refusal, Fault, Lost>> notices;
 };
 
 // What one call puts in, with the station's lock held: so it goes out in the order in which it came to be.

@@ -37,6 +37,7 @@ class TypeBuilder {
   using Self = typename Traits::Self;
   using Private = typename Traits::Object;
   static_assert(alignof(Private) <= 2 * sizeof(gsize), "GObject aligns private data to two words only");
+  static_assert(sizeof(Private) <= G_MAXUINT16, "GObject has no more room for private data");
 
  public:
   static inline gpointer parent_class = nullptr;

@@ -1,26 +1,30 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Several threads have something to tell, and it is told in the order in which it was put in. One at a time tells, without a
 // lock, for whoever is told may take his time or come back: so what one put in may be told by another, a moment after the
-// first one has gone on.
+// first one has gone on. Thread-safe; allocates when it is made and never again.
 #pragma once
 
-#include <deque>
+#include <cstddef>
 #include <mutex>
 #include <utility>
+#include <vector>
 
-namespace cerberus {
+namespace cerberus::threads {
 
-template <typename T>
+// T has a default value. kMost: as many wait at most, while one who is told keeps the one who tells; of more the oldest go,
+// for what was said last is what counts. The usual number is that of the poses of a moving head in five seconds.
+template <typename T, std::size_t kMost = 256>
 class InOrder {
  public:
   void put(T thing) {
     const std::lock_guard guard(lock_);
-    things_.push_back(std::move(thing));
+    if (waiting_ == kMost) take();
+    things_[(first_ + waiting_++) % kMost] = std::move(thing);
   }
   // What was not told yet is told by nobody.
   void clear() {
     const std::lock_guard guard(lock_);
-    things_.clear();
+    while (waiting_ > 0) take();
   }
   // Whoever has put something in calls this behind it, with no lock held that others need. tell(const T&).
   template <typename Tell>
@@ -28,9 +32,8 @@ class InOrder {
     std::unique_lock guard(lock_);
     if (telling_) return;
     const Turn turn(*this, guard);
-    while (!things_.empty()) {
-      const T thing = std::move(things_.front());
-      things_.pop_front();
+    while (waiting_ > 0) {
+      const T thing = take();
       guard.unlock();
       tell(thing);
       guard.lock();
@@ -55,9 +58,18 @@ class InOrder {
     std::unique_lock<std::mutex>& guard_;
   };
 
+  // The oldest that waits, of which nothing stays. With the lock held.
+  T take() {
+    T thing = std::exchange(things_[first_], T{});
+    first_ = (first_ + 1) % kMost;
+    --waiting_;
+    return thing;
+  }
+
   std::mutex lock_;
-  std::deque<T> things_;
+  std::vector<T> things_ = std::vector<T>(kMost);  // its owner may have no room for them
+  std::size_t first_ = 0, waiting_ = 0;
   bool telling_ = false;
 };
 
-}  // namespace cerberus
+}  // namespace cerberus::threads

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Who tells what others have put in, in which order, and what stays of it.
+#include "threads/in_order.h"
+
+#include <atomic>
+#include <functional>
+#include <future>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+#include <vector>
+
+#include "support/allocations.h"
+#include "support/suite.h"
+
+namespace {
+
+using cerberus::threads::InOrder;
+using Numbers = std::vector<int>;
+
+void put_all(InOrder<int, 4>& order, const Numbers& numbers) {
+  for (const int number : numbers) order.put(number);
+}
+
+// All that is told now.
+template <typename Order>
+Numbers told(Order& order) {
+  Numbers all;
+  order.tell([&](int number) { all.push_back(number); });
+  return all;
+}
+
+START_TEST(what_was_put_in_first_is_told_first_and_once) {
+  InOrder<int, 4> order;
+  for (int k = 0; k < 10; ++k) {  // and so it is when the places begin anew
+    put_all(order, {3 * k, 3 * k + 1, 3 * k + 2});
+    ck_assert((told(order) == Numbers{3 * k, 3 * k + 1, 3 * k + 2}));
+  }
+  ck_assert(told(order).empty());
+}
+END_TEST
+
+START_TEST(who_is_told_and_answers_is_told_the_answer_next) {
+  InOrder<int, 4> order;
+  Numbers all;
+  const std::function<void(int)> listener = [&](int number) {
+    all.push_back(number);
+    if (number > 3) return;
+    order.put(number + 10);
+    order.tell(listener);  // somebody tells already: nothing is told in the middle of being told
+    ck_assert_int_eq(all.back(), number);
+  };
+  put_all(order, {1, 2});
+  order.tell(listener);
+  ck_assert((all == Numbers{1, 2, 11, 12}));
+}
+END_TEST
+
+START_TEST(who_is_kept_by_a_listener_tells_for_the_others_too) {
+  InOrder<int, 4> order;
+  std::promise<void> kept, go;
+  Numbers all;
+  order.put(1);
+  std::thread teller([&] {
+    order.tell([&](int number) {
+      all.push_back(number);
+      if (number > 1) return;
+      kept.set_value();
+      go.get_future().wait();
+    });
+  });
+  kept.get_future().wait();
+  order.put(2);
+  ck_assert(told(order).empty());  // and nobody waits
+  go.set_value();
+  teller.join();
+  ck_assert((all == Numbers{1, 2}));
+}
+END_TEST
+
+START_TEST(of_more_than_can_wait_the_oldest_are_never_told) {
+  InOrder<int, 4> order;
+  put_all(order, {1, 2, 3, 4, 5, 6});
+  ck_assert((told(order) == Numbers{3, 4, 5, 6}));
+  put_all(order, {7});
+  ck_assert((told(order) == Numbers{7}));
+}
+END_TEST
+
+START_TEST(what_was_cleared_is_told_by_nobody) {
+  InOrder<int, 4> order;
+  put_all(order, {1, 2, 3});
+  order.clear();
+  ck_assert(told(order).empty());
+  put_all(order, {4, 5, 6, 7});
+  Numbers all;
+  order.tell([&](int number) {  // nor by the one who tells just then
+    all.push_back(number);
+    if (number == 5) order.clear();
+  });
+  ck_assert((all == Numbers{4, 5}));
+  put_all(order, {8});
+  ck_assert((told(order) == Numbers{8}));
+}
+END_TEST
+
+START_TEST(after_a_listener_that_throws_the_next_one_hears_the_rest) {
+  InOrder<int, 4> order;
+  put_all(order, {1, 2});
+  bool thrown = false;
+  try {
+    order.tell([](int) { throw std::runtime_error("no"); });
+  } catch (const std::runtime_error&) {
+    thrown = true;
+  }
+  ck_assert(thrown);
+  ck_assert((told(order) == Numbers{2}));
+}
+END_TEST
+
+START_TEST(nothing_is_kept_of_what_was_told_or_has_gone) {
+  InOrder<std::shared_ptr<int>, 2> order;
+  const auto mine = std::make_shared<int>(1);
+  order.put(mine);
+  order.tell([](const auto&) {});
+  ck_assert_int_eq(mine.use_count(), 1);
+  for (int k = 0; k < 5; ++k) order.put(mine);
+  ck_assert_int_eq(mine.use_count(), 3);
+  order.clear();
+  ck_assert_int_eq(mine.use_count(), 1);
+}
+END_TEST
+
+// Four threads put in a thousand numbers each and call behind each of them; one at a time is telling.
+START_TEST(of_each_thread_the_numbers_come_in_its_order) {
+  constexpr int kThreads = 4, kEach = 1000;
+  InOrder<int, kThreads * kEach> order;
+  std::atomic<int> telling = 0;
+  Numbers all;
+  std::vector<std::thread> threads;
+  for (int who = 0; who < kThreads; ++who)
+    threads.emplace_back([&, who] {
+      for (int k = 0; k < kEach; ++k) {
+        order.put(who * kEach + k);
+        order.tell([&](int number) {
+          ck_assert_int_eq(telling.fetch_add(1), 0);
+          all.push_back(number);
+          telling.fetch_sub(1);
+        });
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  ck_assert_int_eq(all.size(), kThreads * kEach);
+  Numbers next(kThreads);
+  for (const int number : all) ck_assert_int_eq(number % kEach, next[number / kEach]++);
+}
+END_TEST
+
+START_TEST(nothing_is_allocated) {
+  InOrder<int, 4> order;
+  int sum = 0;
+  const auto before = cerberus::tests::allocations();
+  for (int k = 0; k < 1000; ++k) {
+    order.put(k);
+    if (k % 7 == 0) order.tell([&](int number) { sum += number; });
+  }
+  ck_assert_uint_eq(cerberus::tests::allocations() - before, 0);
+  ck_assert_int_gt(sum, 0);
+}
+END_TEST
+
+}  // namespace
+
+int main() {
+  return cerberus::tests::run_suite(
+      "what several threads tell, in order",
+      {what_was_put_in_first_is_told_first_and_once, who_is_told_and_answers_is_told_the_answer_next,
+       who_is_kept_by_a_listener_tells_for_the_others_too, of_more_than_can_wait_the_oldest_are_never_told,
+       what_was_cleared_is_told_by_nobody, after_a_listener_that_throws_the_next_one_hears_the_rest,
+       nothing_is_kept_of_what_was_told_or_has_gone, of_each_thread_the_numbers_come_in_its_order,
+       nothing_is_allocated});
+}
