@@ -85,11 +85,18 @@ void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
   priv.sight_wanted = peer_says_yes(pad, kSightQuery);
 }
 
-bool answers(Analyser& analyser, GstQuery* query) {
-  if (cerberus_query_is_planes(query))
-    return analyser.wants_planes() && cerberus_query_set_planes_wanted(query, TRUE);
-  return (is_custom_query(query, kSightQuery) && analyser.reads_sight()) ||
-         (is_custom_query(query, kNoPreviousQuery) && analyser.spares_previous());
+// Whether the query is answered; nothing: by those downstream, if at all. A no is no answer to it: a tee upstream goes on
+// to its other branches, and an answer would speak for them.
+std::optional<bool> answer(Analyser& analyser, GstQuery* query) {
+  if (cerberus_query_is_planes(query)) {
+    const Planes planes = analyser.planes();
+    if (planes == Planes::as_asked) return std::nullopt;
+    return planes == Planes::wanted && cerberus_query_set_planes_wanted(query, TRUE);
+  }
+  if ((is_custom_query(query, kSightQuery) && analyser.reads_sight()) ||
+      (is_custom_query(query, kNoPreviousQuery) && analyser.spares_previous()))
+    return true;
+  return std::nullopt;
 }
 
 // What the pose on the buffer says of the camera's tilt, radians.
@@ -275,7 +282,8 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
 }
 
 gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* query) {
-  if (direction == GST_PAD_SINK && answers(*priv_of(trans).analyser, query)) return TRUE;
+  if (direction == GST_PAD_SINK)
+    if (const auto answered = answer(*priv_of(trans).analyser, query)) return *answered;
   return parent_class()->query(trans, direction, query);
 }
 

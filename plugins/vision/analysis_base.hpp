@@ -15,6 +15,7 @@
 #include <gst/base/gstbasetransform.h>
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
 
 #include "cerberus/private/element.hpp"
@@ -23,16 +24,24 @@
 namespace cerberus::plugin {
 
 // What was answered to those upstream, and whether it is so no more: then cerberus_analysis_answer_anew().
+template <typename T>
 class Answer {
  public:
-  bool give(bool yes) {
-    given_ = yes;
-    return yes;
+  T give(T answer) {
+    given_ = answer;
+    return answer;
   }
-  bool outdated_by(bool yes) const { return given_.load().value_or(yes) != yes; }
+  bool outdated_by(T answer) const { return given_.load().value_or(answer) != answer; }
 
  private:
-  std::atomic<std::optional<bool>> given_{std::nullopt};
+  std::atomic<std::optional<T>> given_{std::nullopt};
+};
+
+// The stages' planes, which somebody upstream makes.
+enum class Planes : std::uint8_t {
+  as_asked,  // downstream
+  wanted,    // here, or they stay on the frame for others
+  unwanted,  // whoever asks for them downstream: they end here
 };
 
 // An element's private struct implements this; all calls come from the streaming thread or a state change, never two
@@ -52,8 +61,7 @@ class Analyser {
   // True for the one element that looks at the people: see Frame::sight_wanted.
   virtual bool reads_sight() const { return false; }
   // Answers to those upstream, from any thread.
-  // True: the stages' planes are of use here, or stay on the frame for others.
-  virtual bool wants_planes() { return false; }
+  virtual Planes planes() { return Planes::as_asked; }
   // True: the differences end here, and D(k-1) is of no use.
   virtual bool spares_previous() { return false; }
   // True for the one element that measures the camera itself.

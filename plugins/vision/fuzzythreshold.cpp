@@ -87,10 +87,10 @@ bool spares_previous(const Settings& s) {
 }
 
 struct Private final : StatefulAnalyser<Settings, MaskStage> {
-  Answer answer;
+  Answer<bool> answer;
 
   bool spares_previous() override { return answer.give(plugin::spares_previous(settings.snapshot())); }
-  bool wants_planes() override { return !spares_previous(); }
+  Planes planes() override { return spares_previous() ? Planes::as_asked : Planes::wanted; }
   bool analyse(Frame& frame) override {
     if (const auto changed = settings.changes()) {
       state->set_options(options(*changed));

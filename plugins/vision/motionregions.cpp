@@ -108,10 +108,10 @@ struct Private final : StatefulAnalyser<Settings, RegionStage> {
   // For what it was asked last why nothing can be found.
   vision::Size judged_size;
   bool judged_nowhere = false, judge = true;
-  Answer answer;
+  Answer<KeepPlanes> answer;
 
   bool start() override;
-  bool wants_planes() override { return answer.give(settings.snapshot().keep_planes == KEEP_PLANES_ALWAYS); }
+  Planes planes() override;
   bool analyse(Frame& frame) override;
   void apply(const Settings& s);
   void judge_settings(vision::Size frame);
@@ -127,8 +127,14 @@ void Private::apply(const Settings& s) {
   state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height, radians(s.tilt));
   in_metres = s.horizontal_fov > 0;
   keep = static_cast<KeepPlanes>(s.keep_planes);
-  if (answer.outdated_by(keep == KEEP_PLANES_ALWAYS)) cerberus_analysis_answer_anew(base);
+  if (answer.outdated_by(keep)) cerberus_analysis_answer_anew(base);
   judge = true;
+}
+
+Planes Private::planes() {
+  const KeepPlanes told = answer.give(static_cast<KeepPlanes>(settings.snapshot().keep_planes));
+  if (told == KEEP_PLANES_AUTO) return Planes::as_asked;
+  return told == KEEP_PLANES_ALWAYS ? Planes::wanted : Planes::unwanted;
 }
 
 // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.

@@ -151,6 +151,21 @@ GST_START_TEST(who_is_who_is_told_by_the_planes) {
 }
 GST_END_TEST
 
+// In `made`: on how many frames the element `d` puts D(k-1).
+void count_previous(Line& line, int& made) {
+  g_autoptr(GstElement) differences = gst_bin_get_by_name(GST_BIN(line.harness->element), "d");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(differences, "src");
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo* info, gpointer count) {
+        *static_cast<int*>(count) +=
+            cerberus_buffer_get_plane_meta(GST_PAD_PROBE_INFO_BUFFER(info),
+                                           CERBERUS_PLANE_PREVIOUS_DIFFERENCE) != nullptr;
+        return GST_PAD_PROBE_OK;
+      },
+      &made, nullptr);
+}
+
 // D(k-1) is of use to area=leading and area=common, and to whoever looks at planes.
 GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
   struct Case {
@@ -167,27 +182,40 @@ GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
       {"threeframediff name=d ! fuzzythreshold ! motionregions ! motiontrack", false, false},
       {"threeframediff name=d ! fuzzythreshold ! motionregions keep-planes=always ! identity", false, true},
       {"threeframediff name=d ! tee ! fuzzythreshold area=leading ! identity", false, true},
+      // Who never keeps planes makes asking for them behind him vain, but not in another branch.
+      {"threeframediff name=d ! fuzzythreshold ! motionregions keep-planes=never ! identity", true, false},
+      {"threeframediff name=d ! fuzzythreshold ! tee name=t ! motionregions keep-planes=never ! "
+       "fakesink async=false t. ! identity",
+       true, true},
   };
   const Case& c = cases[__i__];
   Line line(c.launch);
   if (c.asked)
     gst_pad_add_probe(line.harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr,
                       nullptr);
-  g_autoptr(GstElement) differences = gst_bin_get_by_name(GST_BIN(line.harness->element), "d");
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(differences, "src");
   int made = 0;
-  gst_pad_add_probe(
-      pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo* info, gpointer count) {
-        *static_cast<int*>(count) +=
-            cerberus_buffer_get_plane_meta(GST_PAD_PROBE_INFO_BUFFER(info),
-                                           CERBERUS_PLANE_PREVIOUS_DIFFERENCE) != nullptr;
-        return GST_PAD_PROBE_OK;
-      },
-      &made, nullptr);
+  count_previous(line, made);
   for (int k = 0; k < 10; ++k) gst_harness_push(line.harness, scene::grey_buffer(World{}, k));
   for (int k = 0; k < 10; ++k) gst_buffer_unref(gst_harness_pull(line.harness));
   fail_unless_equals_int(made, c.made ? 10 : 0);
+}
+GST_END_TEST
+
+GST_START_TEST(who_asks_behind_keep_planes_never_is_heard_again_when_that_changes) {
+  Line line("threeframediff name=d ! fuzzythreshold ! motionregions name=r ! identity");
+  gst_pad_add_probe(line.harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr,
+                    nullptr);
+  g_autoptr(GstElement) regions = gst_bin_get_by_name(GST_BIN(line.harness->element), "r");
+  int made = 0, k = 0;
+  count_previous(line, made);
+  for (const char* keep : {"auto", "never", "auto"}) {
+    gst_util_set_object_arg(G_OBJECT(regions), "keep-planes", keep);
+    line.run(World{}, k, k + 1);  // upstream is asked with the next frame
+    made = 0;
+    line.run(World{}, k + 1, k + 6);
+    fail_unless_equals_int(made, std::string(keep) == "never" ? 0 : 5);
+    k += 6;
+  }
 }
 GST_END_TEST
 
@@ -219,7 +247,8 @@ Suite* planes_suite() {
   tcase_add_loop_test(tests, planes_stay_only_where_somebody_asks_for_them, 0, 6);
   tcase_add_test(tests, planes_stay_after_a_reconfigure_event_when_they_are_wanted_then);
   tcase_add_loop_test(tests, who_is_who_is_told_by_the_planes, 0, 2);
-  tcase_add_loop_test(tests, the_difference_before_is_made_where_somebody_reads_it, 0, 9);
+  tcase_add_loop_test(tests, the_difference_before_is_made_where_somebody_reads_it, 0, 11);
+  tcase_add_test(tests, who_asks_behind_keep_planes_never_is_heard_again_when_that_changes);
   tcase_add_test(tests, planes_come_and_go_with_the_property_while_frames_flow);
   tcase_add_test(tests, another_branch_keeps_its_uncleaned_mask);
   return suite;
