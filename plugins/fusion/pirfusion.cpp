@@ -381,10 +381,13 @@ void forget_everything(Private& priv) {
   priv.inputs.forget();
 }
 
-// A sink pad that is switched off lets go of the frame that waits in its chain function.
+// A sink pad that is switched off lets go of the frame that waits in its chain function, and no frame is the last one any
+// more: the sensors' threads may still run.
 gboolean activate(GstPad*, GstObject* parent, GstPadMode mode, gboolean active) {
   if (mode != GST_PAD_MODE_PUSH) return FALSE;
-  cerberus_pir_fusion_self(parent)->priv->inputs.set_flushing(!active);
+  Private& priv = *cerberus_pir_fusion_self(parent)->priv;
+  priv.inputs.set_flushing(!active);
+  if (!active) priv.decisions.end();
   return TRUE;
 }
 
