@@ -40,8 +40,8 @@ struct Conductor {
   void heed(GstEvent* event);
 
   std::optional<control::Time> now() const { return clock_now(sink); }
-  Outbox outbox() { return Outbox(outgoing_); }
-  void tell(const Outbox& out) const { out.send(sink, head); }
+  Outbox outbox() { return Outbox(outgoing_, head); }
+  void tell(const Outbox& out) const { out.send(sink); }
   // act(station, now, outbox) -> done
   template <typename Act>
   gboolean by_hand(Act act) {

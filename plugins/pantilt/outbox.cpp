@@ -49,13 +49,14 @@ void refuse(GstElement* element, const char* head, const std::string& why) {
                     ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
 }
 
-void Outbox::send(GstBaseSink* sink, const char* head) const {
+void Outbox::send(GstBaseSink* sink) const {
   if (poses_)
-    outgoing_.poses.tell([&](const control::Pose& pose) {
-      const CerberusPose event = told(pose, head);
+    outgoing_.poses.tell([&](const auto& pose) {
+      const CerberusPose event = told(pose.thing, pose.head);
       gst_pad_push_event(GST_BASE_SINK_PAD(sink), cerberus_event_new_pose(&event));
     });
-  if (notices_) outgoing_.notices.tell([&](const auto& notice) { std::visit(Posting{sink, head}, notice); });
+  if (notices_)
+    outgoing_.notices.tell([&](const auto& notice) { std::visit(Posting{sink, notice.head}, notice.thing); });
 }
 
 }  // namespace cerberus::plugin

@@ -29,30 +29,38 @@ struct Lost {  // the identity that was to be followed and is not there: for a w
   guint id;
 };
 
-// What all threads have put in and nobody has sent off yet.
+using Notice = std::variant<Status, Refusal, Fault, Lost>;
+
+// What all threads have put in and nobody has sent off yet; of which head (interned; may be nullptr), for whoever sends it may
+// have begun when the sink drove another one.
 struct Outgoing {
-  threads::InOrder<control::Pose> poses;
-  threads::InOrder<std::variant<Status, Refusal, Fault, Lost>> notices;
+  template <typename T>
+  struct Of {
+    const char* head = nullptr;
+    T thing;
+  };
+  threads::InOrder<Of<control::Pose>> poses;
+  threads::InOrder<Of<Notice>> notices;
 };
 
 // What one call puts in, with the station's lock held: so it goes out in the order in which it came to be.
 class Outbox {
  public:
-  explicit Outbox(Outgoing& outgoing) : outgoing_(outgoing) {}
+  Outbox(Outgoing& outgoing, const char* head) : outgoing_(outgoing), head_(head) {}
   void tell(const control::Pose& pose) {
-    outgoing_.poses.put(pose);
+    outgoing_.poses.put({head_, pose});
     poses_ = true;
   }
-  template <typename Notice>
   void say(Notice notice) {
-    outgoing_.notices.put(std::move(notice));
+    outgoing_.notices.put({head_, std::move(notice)});
     notices_ = true;
   }
-  // Sends it off for `sink`, whose head is `head` (may be nullptr). No lock held.
-  void send(GstBaseSink* sink, const char* head) const;
+  // Sends it off for `sink`. No lock held.
+  void send(GstBaseSink* sink) const;
 
  private:
   Outgoing& outgoing_;
+  const char* head_;
   bool poses_ = false, notices_ = false;
 };
 

@@ -95,6 +95,36 @@ GST_START_TEST(an_answer_is_told_behind_what_it_answers) {
 }
 GST_END_TEST
 
+// Whoever tells of one head is kept until the sink drives another: each is told by its own name.
+GST_START_TEST(of_each_head_is_told_by_its_name) {
+  Rig rig("head=first", Source::live);
+  gst_bus_set_sync_handler(
+      rig.bus,
+      [](GstBus*, GstMessage* message, gpointer told) {
+        auto* rig = static_cast<Rig*>(told);
+        g_autofree gchar* state = nullptr;
+        g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
+        if (!pose || !g_str_equal(state, "manual") || !g_str_equal(pose->head, "first")) return GST_BUS_PASS;
+        gst_element_set_state(rig->element, GST_STATE_READY);
+        g_object_set(rig->element, "head", "second", nullptr);
+        gst_element_set_state(rig->element, GST_STATE_PAUSED);
+        fail_unless(rig->call("stop"));
+        return GST_BUS_PASS;
+      },
+      &rig, nullptr);
+  fail_unless(rig.call("stop"));
+  gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
+  std::string all;
+  while (GstMessage* message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ELEMENT)) {
+    g_autofree gchar* state = nullptr;
+    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
+    if (pose) all += std::string(pose->head) + " " + state + ". ";
+    gst_message_unref(message);
+  }
+  fail_unless_equals_string(all.c_str(), "first manual. first stopped. second manual. ");
+}
+GST_END_TEST
+
 static Suite* pantiltsink_order_suite() {
   watch_library_log();
   Suite* suite = suite_create("pantiltsink's messages in their order");
@@ -103,6 +133,7 @@ static Suite* pantiltsink_order_suite() {
   tcase_add_test(tests, who_is_kept_while_posting_is_not_overtaken);
   tcase_add_test(tests, who_waits_for_the_driver_is_not_overtaken);
   tcase_add_test(tests, an_answer_is_told_behind_what_it_answers);
+  tcase_add_test(tests, of_each_head_is_told_by_its_name);
   return suite;
 }
 
