@@ -83,7 +83,7 @@ void Conductor::resume() {
 void Conductor::set_live(bool live) {
   clock_driven = live || real_;
   station.set_clock_driven(clock_driven);
-  run();
+  start_ticker();
 }
 
 void Conductor::heed(GstEvent* event) {
@@ -98,6 +98,9 @@ void Conductor::heed(GstEvent* event) {
 }
 
 GstClockTime Conductor::tick(GstClockTime time) {
+  {
+    const std::lock_guard wait(changing);
+  }
   Outbox out = outbox();
   GstClockTime next = time + 20 * GST_MSECOND;
   if (const auto running = now())
@@ -106,21 +109,35 @@ GstClockTime Conductor::tick(GstClockTime time) {
   return next;
 }
 
-void Conductor::run() {
-  if (!clock_driven || !playing) return;
-  GstClock* clock = gst_element_get_clock(GST_ELEMENT(sink));
-  if (!clock) return;
+void Conductor::start_ticker() {
   {
     const std::lock_guard guard(ticker_lock_);
-    if (playing) ticker_.start(clock, [this](GstClockTime time) { return tick(time); });
+    if (!running_ || !clock_driven) return;
+    g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(sink));
+    if (!clock) return;
+    watched = ticker_.start(clock, [this](GstClockTime time) { return tick(time); });
   }
-  gst_object_unref(clock);
+  if (watched) return;
+  GST_ELEMENT_ERROR(sink, RESOURCE, FAILED,
+                    ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
+                    ("the system gives none: too many of this user or process, or too little memory"));
+  halt("nobody watches over it");
+}
+
+bool Conductor::run() {
+  {
+    const std::lock_guard guard(ticker_lock_);
+    running_ = true;
+  }
+  start_ticker();
+  return watched;
 }
 
 void Conductor::pause() {
   const std::lock_guard guard(ticker_lock_);
-  playing = false;
+  playing = running_ = false;
   ticker_.stop();
+  watched = true;
 }
 
 }  // namespace cerberus::plugin

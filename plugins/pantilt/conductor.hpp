@@ -21,6 +21,8 @@ struct Conductor {
   std::atomic<const char*> head = nullptr;  // its name, interned; that of the last one, if none is open
   std::atomic<double> field_of_view = 0;
   std::atomic<bool> clock_driven = false, playing = false;
+  std::atomic<bool> watched = true;  // false: there is no thread to watch over a head that needs one
+  std::mutex changing;               // who holds it keeps the clock's time from passing
 
   // false: the sink has said why. From READY to PAUSED and back.
   bool open();
@@ -32,8 +34,9 @@ struct Conductor {
   void resume();
   // Once the stream has told.
   void set_live(bool live);
-  // Lets the clock's time pass from now on, if it moves the head and the sink plays; until pause().
-  void run();
+  // Lets the clock's time pass from now on, if it moves the head; until pause(). False: it is not `watched`, and the sink has
+  // said so.
+  bool run();
   void pause();
 
   // A downstream event; a decision between two frames is obeyed.
@@ -56,12 +59,14 @@ struct Conductor {
  private:
   void hear_soon();
   void hear();
+  void start_ticker();
   GstClockTime tick(GstClockTime time);
 
   Outgoing outgoing_;
   bool real_ = false;       // the head has a clock of its own
   std::mutex configuring_;  // the newest settings come last
   std::mutex ticker_lock_;  // start and stop; never held by the ticker's own thread
+  bool running_ = false;    // from run() to pause(); with that lock
   Ticker ticker_;
 };
 

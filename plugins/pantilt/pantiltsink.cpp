@@ -170,6 +170,7 @@ GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockT
     if (const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink); flow != GST_FLOW_OK)
       return flow;
   ask_whether_live(self);
+  if (!conductor.watched) return GST_FLOW_ERROR;  // which was said
   const GstVideoInfo& info = self.state.info;
   const Time length = running_length(duration, info, conductor.sink->segment);
   const auto newest = conductor.station.newest();
@@ -214,7 +215,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
       conductor.station.forget();
-      if (conductor.playing) conductor.resume();
+      if (conductor.playing && conductor.watched) conductor.resume();
     }
     if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
@@ -226,19 +227,31 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
 }
 
 // The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes under
-// the lock too: a frame that comes in the middle waits until the change is through.
+// the lock too: a frame that comes in the middle waits until the change is through. The head obeys nobody before the base
+// class plays and there is a thread that watches over it, which begins when all is said.
 GstStateChangeReturn play(Conductor& conductor) {
   GstElement* element = GST_ELEMENT(conductor.sink);
-  guarded(element, [&] { conductor.resume(); });
+  GstElementClass* base = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class());
   conductor.station.interrupt(true);
-  const GstStateChangeReturn done = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())
-                                        ->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
+  GstStateChangeReturn done = base->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
+  std::unique_lock changing(conductor.changing);
+  if (done != GST_STATE_CHANGE_FAILURE && !guarded(element, false, [&] { return conductor.run(); })) {
+    changing.unlock();
+    conductor.pause();
+    base->change_state(element, GST_STATE_CHANGE_PLAYING_TO_PAUSED);
+    done = GST_STATE_CHANGE_FAILURE;
+  }
+  Outbox out = conductor.outbox();
   GST_BASE_SINK_PREROLL_LOCK(element);
   conductor.station.interrupt(false);
-  conductor.playing = done != GST_STATE_CHANGE_FAILURE;
+  if (done != GST_STATE_CHANGE_FAILURE) {
+    guarded(element, [&] { conductor.station.resume(conductor.now(), out); });
+    conductor.playing = true;
+  }
   GST_BASE_SINK_PREROLL_SIGNAL(element);
   GST_BASE_SINK_PREROLL_UNLOCK(element);
-  guarded(element, [&] { conductor.playing ? conductor.run() : conductor.halt("paused"); });
+  if (changing) changing.unlock();
+  guarded(element, [&] { conductor.tell(out); });
   return done;
 }
 

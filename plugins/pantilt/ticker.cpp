@@ -5,10 +5,10 @@
 
 namespace cerberus::plugin {
 
-void Ticker::run(GstClock* clock, const Tick& tick) {
+void Ticker::run() {
   while (!quit_) {
     woken_ = false;
-    GstClockID id = gst_clock_new_single_shot_id(clock, tick(gst_clock_get_time(clock)));
+    GstClockID id = gst_clock_new_single_shot_id(clock_, tick_(gst_clock_get_time(clock_)));
     {
       const std::lock_guard guard(lock_);
       id_ = id;
@@ -20,13 +20,18 @@ void Ticker::run(GstClock* clock, const Tick& tick) {
   }
 }
 
-void Ticker::start(GstClock* clock, Tick tick) {
-  if (thread_.joinable()) return;
+bool Ticker::start(GstClock* clock, Tick tick) {
+  if (thread_) return true;
   quit_ = false;
-  thread_ = std::thread([this, clock = GST_CLOCK(gst_object_ref(clock)), tick = std::move(tick)] {
-    run(clock, tick);
-    gst_object_unref(clock);
-  });
+  clock_ = GST_CLOCK(gst_object_ref(clock));
+  tick_ = std::move(tick);
+  const auto body = [](gpointer self) -> gpointer {
+    static_cast<Ticker*>(self)->run();
+    return nullptr;
+  };
+  thread_ = g_thread_try_new("cerberus-tick", body, this, nullptr);
+  if (!thread_) gst_clear_object(&clock_);
+  return thread_ != nullptr;
 }
 
 void Ticker::wake() {
@@ -36,10 +41,11 @@ void Ticker::wake() {
 }
 
 void Ticker::stop() {
-  if (!thread_.joinable()) return;
+  if (!thread_) return;
   quit_ = true;
   wake();
-  thread_.join();
+  g_thread_join(std::exchange(thread_, nullptr));
+  gst_clear_object(&clock_);
 }
 
 }  // namespace cerberus::plugin

@@ -7,7 +7,6 @@
 #include <atomic>
 #include <functional>
 #include <mutex>
-#include <thread>
 
 namespace cerberus::plugin {
 
@@ -17,16 +16,19 @@ class Ticker {
   using Tick = std::function<GstClockTime(GstClockTime)>;
 
   ~Ticker() { stop(); }
-  // Nothing when it runs already. One thread at a time, and not its own, starts and stops it.
-  void start(GstClock* clock, Tick tick);
+  // Nothing when it runs already. False: the system has no thread for it. One thread at a time, and not its own, starts and
+  // stops it.
+  bool start(GstClock* clock, Tick tick);
   void stop();
   // The next call comes at once. From any thread; a wake-up before the wait is not lost.
   void wake();
 
  private:
-  void run(GstClock* clock, const Tick& tick);
+  void run();
 
-  std::thread thread_;
+  GThread* thread_ = nullptr;
+  GstClock* clock_ = nullptr;  // while there is a thread, as what follows
+  Tick tick_;
   std::mutex lock_;  // id_
   GstClockID id_ = nullptr;
   std::atomic<bool> quit_ = false, woken_ = false;

@@ -209,16 +209,17 @@ GST_START_TEST(a_frame_that_is_early_for_playing_goes_on_by_itself) {
 }
 GST_END_TEST
 
-// The base class may refuse PLAYING: the head obeys nobody then, as before.
+// The base class may refuse PLAYING: the head obeys nobody then, as before, and does nothing that it was told in PAUSED.
 GST_START_TEST(who_does_not_come_to_playing_stands) {
   Pipe record;
   Rig rig(scripted("record " + record.writer()), Source::live);
   change(rig, GST_STATE_PAUSED);
+  fail_unless(rig.call("move-to", 10, 0));
   {
     Refusing refusing(rig);
     fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PLAYING), GST_STATE_CHANGE_FAILURE);
   }
-  fail_unless(rig.call("move-to", 10, 0));
+  fail_unless(rig.call("move-to", -10, 0));
   change(rig, GST_STATE_READY);
   std::string calls;
   for (std::string line; !line.starts_with("close"); calls += line.substr(0, line.find(' ')) + " ")

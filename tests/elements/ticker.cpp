@@ -2,10 +2,10 @@
 // The thread that lets a clock's time pass, with a clock that stands still unless the test turns it.
 #include "../../plugins/pantilt/ticker.hpp"
 
+#include <future>  // before gstcheck.h, whose macro `fail` it cannot take
+
 #include <gst/check/gstcheck.h>
 #include <gst/check/gsttestclock.h>
-
-#include <future>
 
 #include "support.h"
 
