@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "private/head.hpp"
 #include "private/meta.hpp"
 
 namespace {
@@ -253,9 +254,9 @@ GstMessage* cerberus_message_new_pantilt(GstObject* src, GstClockTime running_ti
   g_return_val_if_fail(state && pose, nullptr);
   return gst_message_new_element(
       src, gst_structure_new(CERBERUS_MESSAGE_PANTILT, "state", G_TYPE_STRING, state, "reason", G_TYPE_STRING,
-                             reason ? reason : "", "head", G_TYPE_STRING, pose->head, "pan", G_TYPE_DOUBLE,
-                             pose->pan, "tilt", G_TYPE_DOUBLE, pose->tilt, "running-time", G_TYPE_UINT64,
-                             static_cast<guint64>(running_time), nullptr));
+                             reason ? reason : "", "head", G_TYPE_STRING, cerberus::head_of(*pose), "pan",
+                             G_TYPE_DOUBLE, pose->pan, "tilt", G_TYPE_DOUBLE, pose->tilt, "running-time",
+                             G_TYPE_UINT64, static_cast<guint64>(running_time), nullptr));
 }
 
 CerberusPose* cerberus_message_parse_pantilt(GstMessage* message, GstClockTime* running_time, gchar** state,

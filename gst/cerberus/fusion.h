@@ -191,8 +191,11 @@ GBytes *cerberus_fusion_get_sensors (const CerberusFusion *fusion);
  * @buffer: a writable buffer
  * @fusion: (nullable): what was decided for the frame, copied; %NULL removes
  *
- * Attaches @fusion, replacing one that is there already. A fact about the moment: it survives scaling and cropping. An
- * action that is none counts as %CERBERUS_FUSION_HOLD.
+ * Attaches @fusion, replacing one that is there already. A fact about the moment: it survives scaling and cropping.
+ *
+ * Whoever reads it finds sane values, here and in messages and events: an action that is none counts as
+ * %CERBERUS_FUSION_HOLD, a rule without a name is called "none", sensors beyond %CERBERUS_PIR_MAX_SENSORS are left out,
+ * a reading above 2 is invalid (2), and a bearing that is no finite number is 0.
  *
  * Returns: %TRUE if @buffer now carries @fusion (or none, for %NULL); %FALSE if @buffer is not writable.
  *

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "private/event.hpp"
+#include "private/head.hpp"
 #include "private/meta.hpp"
 
 namespace {
@@ -29,8 +30,6 @@ const GstMetaInfo* meta_info() {
       CERBERUS_POSE_META_API_TYPE, "CerberusPoseMeta", meta_init, nullptr, meta_transform);
   return info;
 }
-
-constexpr char kHead[] = "head";  // of a pose that names none
 
 constexpr std::pair<const char*, double CerberusPose::*> kNumbers[] = {
     {"pan", &CerberusPose::pan},
@@ -68,7 +67,7 @@ GType cerberus_pose_meta_api_get_type(void) {
 void cerberus_pose_init(CerberusPose* pose) {
   g_return_if_fail(pose);
   *pose = {};
-  pose->head = g_intern_static_string(kHead);
+  pose->head = g_intern_static_string(cerberus::kHead);
   pose->valid_until = GST_CLOCK_TIME_NONE;
   pose->settled = TRUE;
 }
@@ -108,7 +107,7 @@ gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_t
 GstEvent* cerberus_event_new_pose(const CerberusPose* pose) {
   g_return_val_if_fail(pose, nullptr);
   GstStructure* structure = gst_structure_new(
-      CERBERUS_EVENT_POSE, "head", G_TYPE_STRING, pose->head, "valid-from", G_TYPE_UINT64,
+      CERBERUS_EVENT_POSE, "head", G_TYPE_STRING, cerberus::head_of(*pose), "valid-from", G_TYPE_UINT64,
       static_cast<guint64>(pose->valid_from), "valid-until", G_TYPE_UINT64,
       static_cast<guint64>(pose->valid_until), "source", CERBERUS_TYPE_POSE_SOURCE, pose->source, "moving",
       G_TYPE_BOOLEAN, pose->moving, "settled", G_TYPE_BOOLEAN, pose->settled, nullptr);
@@ -155,8 +154,7 @@ gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose) {
   auto* meta = cerberus::ensure_meta<PoseMeta>(buffer, meta_info());
   if (!meta) return FALSE;
   meta->pose = *pose;
-  // An application may have left it out: it is the head that is there.
-  if (!pose->head) meta->pose.head = g_intern_static_string(kHead);
+  meta->pose.head = cerberus::head_of(*pose);
   return TRUE;
 }
 

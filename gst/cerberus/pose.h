@@ -32,7 +32,7 @@ typedef enum {
 
 /**
  * CerberusPose:
- * @head: the head's name; interned, owned by nobody
+ * @head: the head's name; interned, owned by nobody. %NULL counts as "head" wherever a pose is attached or told
  * @pan: pan angle at @valid_from, degrees, positive to the right; does not wrap
  * @tilt: tilt angle at @valid_from, degrees, positive up
  * @pan_speed: degrees a second at @valid_from

@@ -181,6 +181,12 @@ START_TEST(nothing_crashes_on_null) {
   pose->head = nullptr;  // whoever reads it compares it with a name
   fail_unless(cerberus_buffer_set_pose(frame, pose));
   fail_unless_equals_string(cerberus_buffer_peek_pose(frame)->head, "head");
+  g_autoptr(GstEvent) event = cerberus_event_new_pose(pose);
+  g_autoptr(CerberusPose) told = cerberus_event_parse_pose(event);
+  fail_unless_equals_string(told->head, "head");
+  g_autoptr(GstMessage) message = cerberus_message_new_pantilt(nullptr, 0, "stopped", nullptr, pose);
+  g_autoptr(CerberusPose) posted = cerberus_message_parse_pantilt(message, nullptr, nullptr, nullptr);
+  fail_unless_equals_string(posted->head, "head");
   EXPECT_CRITICAL(cerberus_buffer_get_pose(nullptr));
   EXPECT_CRITICAL(cerberus_message_new_pantilt(nullptr, 0, nullptr, nullptr, pose));
   EXPECT_CRITICAL(cerberus_message_parse_pantilt(nullptr, nullptr, nullptr, nullptr));
