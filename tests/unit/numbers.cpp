@@ -4,13 +4,13 @@
 
 #include <check.h>
 
-#include <clocale>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <random>
 
 #include "support/allocations.h"
+#include "support/german.h"
 #include "support/suite.h"
 
 using namespace cerberus;
@@ -77,9 +77,7 @@ START_TEST(it_is_what_printf_writes_in_c_and_the_same_in_germany) {
     const bool negative_zero = std::string_view(digits) == "-0.0";
     assert_is(text::fixed(value, 1), negative_zero ? "0.0" : digits);
   }
-  if (std::setlocale(LC_ALL, "de_DE.UTF-8") == nullptr) return;  // not installed here
-  assert_is(text::fixed(1.5, 1), "1.5");
-  std::setlocale(LC_ALL, "C");
+  if (const tests::German german; german) assert_is(text::fixed(1.5, 1), "1.5");
 }
 END_TEST
 

@@ -13,7 +13,15 @@
 
 namespace cerberus::tests {
 
-using namespace vision;
+using vision::Box;
+using vision::Image;
+using vision::Region;
+using vision::Sight;
+using vision::Size;
+using vision::Track;
+using vision::Tracker;
+using vision::TrackState;
+using vision::Transform;
 
 constexpr Size kFrame{320, 240};
 constexpr double kWidth = 30, kHeight = 75;
