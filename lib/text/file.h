@@ -33,7 +33,9 @@ inline File read_file(const std::string& path, std::size_t most) {
     file.fault = File::Fault::failed;
     file.error = errno;
   };
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  // O_NONBLOCK: a pipe is opened though nobody writes to it. O_NOCTTY: nor does a terminal become that of a daemon, whom its
+  // Ctrl-C would end.
+  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) {
     failed();
     return file;
