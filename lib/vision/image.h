@@ -57,13 +57,14 @@ class Image {
   Image() = default;
   explicit Image(Size size) { resize(size); }
 
-  // Returns true when the memory is new (and zeroed).
+  // Returns true when the memory is new (and zeroed). Where there is none, std::bad_alloc, and all is as before.
   bool resize(Size size) {
     if (size == size_) return false;
-    stride_ = padded_row(size.width, kStep);
-    size_ = size;
-    const std::size_t bytes = static_cast<std::size_t>(stride_) * size.height * sizeof(T);
+    const int stride = padded_row(size.width, kStep);
+    const std::size_t bytes = static_cast<std::size_t>(stride) * size.height * sizeof(T);
     data_.reset(bytes ? static_cast<T*>(::operator new(bytes, std::align_val_t{kAlign})) : nullptr);
+    stride_ = stride;
+    size_ = size;
     fill_bytes(0);
     return true;
   }

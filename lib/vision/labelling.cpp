@@ -36,11 +36,11 @@ int search(const std::uint64_t* row, int words, int x) {
 
 void Labeller::make_room(Size picture) {
   if (picture == size_) return;
-  size_ = picture;
   limits_ = fixed_ ? *fixed_ : usual_limits(picture);
   vision::make_room(runs_, limits_.runs);
   vision::make_room(forest_, limits_.runs);
   vision::make_room(components_, limits_.components);
+  size_ = picture;  // last: what threw is tried again
 }
 
 std::int32_t Labeller::root(std::int32_t i) {

@@ -90,10 +90,9 @@ struct RegionFinder::State {
 };
 
 void RegionFinder::State::make_room(Size picture) {
-  size = picture;
-  for (BitMask* bits : {&moving, &closed}) bits->resize(bit_mask_size(size));
-  labeller.make_room(size);
-  people.make_room(size);
+  for (BitMask* bits : {&moving, &closed}) bits->resize(bit_mask_size(picture));
+  labeller.make_room(picture);
+  people.make_room(picture);
   newcomers.make_room();
   const std::size_t parts = labeller.limits().components;
   vision::make_room(walkers, kMostWalkers);
@@ -102,8 +101,9 @@ void RegionFinder::State::make_room(Size picture) {
   vision::make_room(blocks_before, kMostBlocks);
   vision::make_room(group, std::min(parts, kMostParts));
   vision::make_room(bodies, parts);
-  vision::make_room(columns, static_cast<std::size_t>(size.width) + 1);
+  vision::make_room(columns, static_cast<std::size_t>(picture.width) + 1);
   vision::make_room(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
+  size = picture;  // last: what threw is tried again
 }
 
 // A shadow on the floor is wide and low: a component's box ends where its columns become low.

@@ -53,12 +53,12 @@ struct ThreeFrameDifference::State {
 
 void ThreeFrameDifference::State::make_room(Size to, bool both) {
   if (to != size) {
-    size = to;
     ring[0].resize(to);
     ring[1] = {};
     relit.resize({to.width, 1});
     spans.assign(static_cast<std::size_t>(to.height), {});
     forget();
+    size = to;  // last: what threw is tried again
   }
   if (both == !ring[1].empty()) return;
   ring[1] = both ? Image<std::uint8_t>(to) : Image<std::uint8_t>();

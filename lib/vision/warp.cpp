@@ -54,9 +54,9 @@ double bilinear_at(GrayView source, double x, double y) {
 
 bool Warp::prepare(const Transform& motion, Size size) {
   if (size_ != size) {
-    size_ = size;
     spans_.resize({size.height, 1});
     positions_.resize({size.width, 2});
+    size_ = size;  // last: what threw is tried again
   }
   valid_ = 0;
   kind_ = Kind::nothing;
