@@ -8,9 +8,7 @@
 namespace cerberus::plugin {
 
 FrameTimes::Time FrameTimes::taken(const GstSegment& segment, GstBuffer* frame) const {
-  GstClockTime running = GST_CLOCK_TIME_NONE;
-  if (segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(frame))
-    running = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, GST_BUFFER_PTS(frame));
+  const GstClockTime running = running_time_of(segment, frame);
   return GST_CLOCK_TIME_IS_VALID(running) ? time_of(running) : end_.value_or(Time::zero());
 }
 

@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <optional>
 #include <string>
 
 #include "camera_path.hpp"
 #include "cerberus/private/query.hpp"
+#include "clock_times.hpp"
 #include "history.hpp"
 #include "properties.hpp"
 #include "room.hpp"
@@ -99,16 +99,6 @@ std::optional<bool> answer(Analyser& analyser, GstQuery* query) {
   return std::nullopt;
 }
 
-// What the pose on the buffer says of the camera's tilt, radians.
-std::optional<double> read_tilt(const Frame& frame) {
-  const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer);
-  if (!pose) return std::nullopt;
-  double tilt = 0;
-  cerberus_pose_evaluate(pose, frame.running_time, nullptr, &tilt);
-  if (!(std::abs(tilt) <= 90)) return std::nullopt;  // a stranger's numbers may be anything
-  return radians(tilt);
-}
-
 // Nobody upstream has analysed this frame.
 bool is_first_stage(GstBuffer* buffer) {
   return !cerberus_buffer_get_camera_motion_meta(buffer) && !regions_known(buffer) &&
@@ -155,9 +145,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   Frame& frame = begun.frame;
   frame.buffer = buffer;
   frame.info = &priv.info;
-  if (trans->segment.format == GST_FORMAT_TIME && GST_BUFFER_PTS_IS_VALID(buffer))
-    frame.running_time =
-        gst_segment_to_running_time(&trans->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+  frame.running_time = running_time_of(trans->segment, buffer);
   const bool measures = priv.analyser->measures_camera();
   const CerberusCameraMotionMeta* meta = measures ? nullptr : cerberus_buffer_get_camera_motion_meta(buffer);
   const CameraFollower::Step camera =
@@ -176,7 +164,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   frame.planes_wanted = priv.planes_wanted;
   frame.previous_wanted = priv.previous_wanted;
   frame.sight_wanted = priv.sight_wanted;
-  frame.tilt = read_tilt(frame);
+  frame.look = look_of(buffer, frame.running_time);
   if (!frame.fresh) {
     frame.seconds = step.seconds;
     frame.previous = step.previous;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "clock_times.hpp"
 #include "room.hpp"
 
 namespace cerberus::plugin {
@@ -20,10 +21,6 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr Look kStrange{kUnknown, kUnknown};
 // Share of the picture that must agree before it is compared with the head.
 constexpr double kConfident = 0.5;
-
-Time clamped(GstClockTime time) {
-  return Time(static_cast<Time::rep>(std::min<GstClockTime>(time, G_MAXINT64)));
-}
 
 struct Words {
   const char* fault;
@@ -83,34 +80,28 @@ void Carrier::hear(GstEvent* event, const std::string& head) {
   g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
   const std::lock_guard guard(lock_);
   if (pose && (head.empty() || head == pose->head))
-    poses_.insert(clamped(pose->valid_from), *pose);
+    poses_.insert(time_of(pose->valid_from), *pose);
   else if (cerberus_event_parse_base(event, &rate, &from))
-    told_base_.hear(clamped(from), rate);
+    told_base_.hear(time_of(from), rate);
 }
 
 Carrier::Head Carrier::head_of(Frame& frame, const std::string& head) {
-  CerberusPose pose;
-  bool commanded = false;
   if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
     if (!head.empty() && head != carried->head) return {.look = kStrange, .name = carried->head};
-    pose = *carried;
-    cerberus_pose_evaluate(carried, frame.running_time, &pose.pan, &pose.tilt);
-  } else {
-    if (!GST_CLOCK_TIME_IS_VALID(frame.running_time)) return {};
-    const Time time = clamped(frame.running_time);
-    const std::lock_guard guard(lock_);
-    const CerberusPose* heard = poses_.at(time);
-    if (!heard) return {};
-    pose = *heard;
-    cerberus_pose_evaluate(heard, frame.running_time, &pose.pan, &pose.tilt);
-    pose.valid_from = frame.running_time;
-    if (pose.valid_until < pose.valid_from) pose.valid_until = pose.valid_from;
-    cerberus_buffer_set_pose(frame.buffer, &pose);
-    poses_.forget_before(time);
-    commanded = true;
+    return {frame.look.value_or(kStrange), carried->head};
   }
-  const bool possible = std::isfinite(pose.pan) && std::abs(pose.tilt) <= 90;
-  return {possible ? Look{radians(pose.pan), radians(pose.tilt)} : kStrange, pose.head, commanded};
+  if (!GST_CLOCK_TIME_IS_VALID(frame.running_time)) return {};
+  const Time time = time_of(frame.running_time);
+  const std::lock_guard guard(lock_);
+  const CerberusPose* heard = poses_.at(time);
+  if (!heard) return {};
+  CerberusPose pose = *heard;
+  cerberus_pose_evaluate(heard, frame.running_time, &pose.pan, &pose.tilt);
+  pose.valid_from = frame.running_time;
+  if (pose.valid_until < pose.valid_from) pose.valid_until = pose.valid_from;
+  cerberus_buffer_set_pose(frame.buffer, &pose);
+  poses_.forget_before(time);
+  return {look_of(pose, frame.running_time).value_or(kStrange), pose.head, true};
 }
 
 std::optional<vision::Transform> Carrier::look(Frame& frame, const std::string& head,
@@ -127,7 +118,7 @@ void Carrier::tell_base(Frame& frame, double seen) {
   cerberus_base_init(&base);
   base.yaw_rate = seen;
   if (GST_CLOCK_TIME_IS_VALID(frame.running_time)) {
-    const Time time = clamped(frame.running_time);
+    const Time time = time_of(frame.running_time);
     const std::lock_guard guard(lock_);
     if (const auto told = told_base_.at(time)) {
       base.yaw_rate = *told;
@@ -153,7 +144,7 @@ void Carrier::compare(GstElement* element, Frame& frame, const vision::Lens& len
 
   // What a faulty head really did is not known.
   const double base_turn = pan_.fault() != SlipFault::none && pan != 0 ? kUnknown : turn.yaw;
-  const Time time = GST_CLOCK_TIME_IS_VALID(frame.running_time) ? clamped(frame.running_time) : Time::zero();
+  const Time time = GST_CLOCK_TIME_IS_VALID(frame.running_time) ? time_of(frame.running_time) : Time::zero();
   base_.add(time, frame.seconds, base_turn, pan / frame.seconds);
   tell_base(frame, degrees(base_.at(time)));
 

@@ -18,6 +18,12 @@ constexpr std::chrono::nanoseconds time_of(GstClockTime time) {
   return std::chrono::nanoseconds(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
 }
 
+// Running time of a buffer; none where it has no time, or the stream's times are no times.
+inline GstClockTime running_time_of(const GstSegment& segment, GstBuffer* buffer) {
+  if (segment.format != GST_FORMAT_TIME || !GST_BUFFER_PTS_IS_VALID(buffer)) return GST_CLOCK_TIME_NONE;
+  return gst_segment_to_running_time(&segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+}
+
 // Running time by the clock, while there is one.
 inline std::optional<std::chrono::nanoseconds> clock_now(gpointer element) {
   const GstClockTime time = gst_element_get_current_running_time(GST_ELEMENT(element));
@@ -28,14 +34,13 @@ inline std::optional<std::chrono::nanoseconds> clock_now(gpointer element) {
 // Whether the source upstream of a sink pad is live; nothing where nobody answers (v4l2src without a frame rate): then
 // nobody may wait, and may ask again.
 inline std::optional<bool> is_live(GstPad* sinkpad) {
-  GstQuery* query = gst_query_new_latency();
+  g_autoptr(GstQuery) query = gst_query_new_latency();
   std::optional<bool> live;
   if (gst_pad_peer_query(sinkpad, query)) {
     gboolean answer = FALSE;
     gst_query_parse_latency(query, &answer, nullptr, nullptr);
     live = answer != FALSE;
   }
-  gst_query_unref(query);
   return live;
 }
 

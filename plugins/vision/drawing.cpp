@@ -81,7 +81,7 @@ std::optional<Object> clipped(Object object, Area frame) {
   return sane ? std::optional(object) : std::nullopt;
 }
 
-// Two significant digits at least.
+// As much as a glance takes in: 3.2, 45.
 std::string number(double value) {
   return text::fixed(std::min(value, 99999.0), value < 10 ? 1 : 0).string();
 }

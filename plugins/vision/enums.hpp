@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The enumerations of the corridor's properties. Their numbers are those of lib/vision, so that an element only casts.
+// The enumerations of the corridor's properties. Where lib/vision has the same one the numbers are the same, so that an
+// element only casts.
 #pragma once
 
 #include <glib-object.h>

@@ -6,6 +6,7 @@
 
 #include <optional>
 
+#include "control/base_rate.h"
 #include "vision/transform.h"
 
 namespace cerberus::plugin {
@@ -31,10 +32,10 @@ struct Frame {
   guint64 number = 0;                           // counts analysed frames without holes
   bool fresh = true;                            // first frame of a scene
   Motion motion;
-  std::optional<double> tilt;    // radians, of the head when the frame was taken, where a pose tells
-  bool planes_wanted = false;    // somebody downstream reads the stages' planes
-  bool previous_wanted = false;  // or makes something of the differences for which D(k-1) is needed
-  bool sight_wanted = false;     // motiontrack does: picture and mask, and takes them off the frame
+  std::optional<control::Look> look;  // of the head when the frame was taken, where a pose tells
+  bool planes_wanted = false;         // somebody downstream reads the stages' planes
+  bool previous_wanted = false;       // or makes something of the differences for which D(k-1) is needed
+  bool sight_wanted = false;          // motiontrack does: picture and mask, and takes them off the frame
 
   vision::Size size() const { return {GST_VIDEO_INFO_WIDTH(info), GST_VIDEO_INFO_HEIGHT(info)}; }
 };

@@ -61,7 +61,7 @@ class JsonLine {
   JsonLine& significant(double value, int digits) {
     return std::isfinite(value) ? raw(text::significant(value, digits)) : null();
   }
-  // So are these strings.
+  // A literal of ours, too.
   JsonLine& string(std::string_view literal) {
     separate();
     text_ += '"';

@@ -63,11 +63,13 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
+#include <limits>
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
+#include "clock_times.hpp"
 #include "json_line.hpp"
+#include "room.hpp"
 
 namespace {
 
@@ -83,6 +85,7 @@ GstStaticPadTemplate src_template =
 constexpr int kPixelDecimals = 2;
 constexpr int kShareDecimals = 3;
 constexpr int kCameraDigits = 9;
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct State {  // streaming thread only
   int width = 0, height = 0;
@@ -96,11 +99,6 @@ struct Private {
 
 CERBERUS_DEFINE_TYPE(CerberusMotionJson, cerberus_motion_json, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
-
-struct RegionsDeleter {
-  void operator()(GPtrArray* regions) const { g_ptr_array_unref(regions); }
-};
-using Regions = std::unique_ptr<GPtrArray, RegionsDeleter>;
 
 void write_object(cerberus::JsonLine& line, const CerberusRegion& region) {
   line.open('{').key("id");
@@ -119,14 +117,13 @@ void write_object(cerberus::JsonLine& line, const CerberusRegion& region) {
 }
 
 // Facts that only a system with a head and sensors knows.
-void write_system(cerberus::JsonLine& line, GstBuffer* buffer) {
+void write_system(cerberus::JsonLine& line, GstBuffer* buffer, GstClockTime time) {
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
-    line.key("pose").open('{').key("pan").fixed(pose->pan, kPixelDecimals);
-    line.key("tilt")
-        .fixed(pose->tilt, kPixelDecimals)
-        .key("moving")
-        .boolean(pose->moving != FALSE)
-        .close('}');
+    const auto look =
+        cerberus::plugin::look_of(*pose, time).value_or(cerberus::control::Look{kUnknown, kUnknown});
+    line.key("pose").open('{').key("pan").fixed(cerberus::sensing::degrees(look.pan), kPixelDecimals);
+    line.key("tilt").fixed(cerberus::sensing::degrees(look.tilt), kPixelDecimals);
+    line.key("moving").boolean(pose->moving != FALSE).close('}');
   }
   if (const CerberusBase* base = cerberus_buffer_peek_base(buffer))
     line.key("base").open('{').key("yaw-rate").fixed(base->yaw_rate, kPixelDecimals).close('}');
@@ -145,7 +142,7 @@ void write_system(cerberus::JsonLine& line, GstBuffer* buffer) {
   line.close('}');
 }
 
-std::string_view write_line(State& state, GstBuffer* buffer) {
+std::string_view write_line(State& state, GstBuffer* buffer, GstClockTime time) {
   cerberus::JsonLine& line = state.line;
   line.clear();
   line.open('{').key("pts");
@@ -175,11 +172,11 @@ std::string_view write_line(State& state, GstBuffer* buffer) {
     line.null();
 
   line.key("objects").open('[');
-  const Regions regions(cerberus_buffer_get_regions(buffer));
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   for (guint i = 0; i < regions->len; ++i)
-    write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions.get(), i)));
+    write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
   line.close(']');
-  write_system(line, buffer);
+  write_system(line, buffer, time);
   return line.close('}').finish();
 }
 
@@ -223,7 +220,8 @@ GstFlowReturn cerberus_motion_json_generate_output(GstBaseTransform* transform, 
   if (!in) return GST_FLOW_OK;  // asked again after each line
   const GstFlowReturn flow = cerberus::guarded(transform, GST_FLOW_ERROR, [&] {
     State& state = cerberus_motion_json_self(transform)->priv->state;
-    const std::string_view line = write_line(state, in);
+    const std::string_view line =
+        write_line(state, in, cerberus::plugin::running_time_of(transform->segment, in));
     *out = gst_buffer_new_memdup(line.data(), line.size());
     gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
     GST_BUFFER_OFFSET(*out) = state.frame;

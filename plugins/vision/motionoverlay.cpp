@@ -52,9 +52,11 @@
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
+#include "clock_times.hpp"
 #include "composition.hpp"
 #include "drawing.hpp"
 #include "properties.hpp"
+#include "room.hpp"
 #include "sensing/angles.h"
 #include "vision/trails.h"
 
@@ -63,6 +65,7 @@ namespace {
 using cerberus::plugin::Adjustable;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
+using cerberus::plugin::running_time_of;
 namespace draw = cerberus::draw;
 
 GST_DEBUG_CATEGORY_STATIC(motionoverlay_debug);
@@ -282,7 +285,7 @@ void read_objects(State& state, GstBuffer* buffer) {
   state.marks.clear();
   const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
   const bool follows = fusion && fusion->action == CERBERUS_FUSION_TRACK;
-  GPtrArray* regions = cerberus_buffer_get_regions(buffer);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   for (guint i = 0; i < regions->len; ++i) {
     const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
     draw::Object object;
@@ -302,7 +305,6 @@ void read_objects(State& state, GstBuffer* buffer) {
     if (object.id && !cut)
       state.marks.push_back({object.id, {region.x + region.width / 2, region.y + region.height}});
   }
-  g_ptr_array_unref(regions);
 }
 
 void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
@@ -351,12 +353,12 @@ std::vector<draw::Light> lights_of(const CerberusFusion& fusion) {
   return lights;
 }
 
-draw::System read_system(GstBuffer* buffer) {
+draw::System read_system(GstBuffer* buffer, GstClockTime time) {
   draw::System system;
-  if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
+  if (const auto look = cerberus::plugin::look_of(buffer, time)) {
     system.pose = true;
-    system.pan = pose->pan;
-    system.tilt = pose->tilt;
+    system.pan = cerberus::sensing::degrees(look->pan);
+    system.tilt = cerberus::sensing::degrees(look->tilt);
   }
   if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer)) {
     system.decision = true;
@@ -390,7 +392,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     scene.ids = settings.ids;
     scene.speeds = settings.speeds;
     scene.crosshair = settings.crosshair;
-    if (settings.system) scene.system = read_system(buffer);
+    if (settings.system) scene.system = read_system(buffer, running_time_of(transform->segment, buffer));
     state.patches.clear();
     state.painter.paint(scene, state.patches);
 

@@ -34,6 +34,7 @@
 #include <vector>
 
 #include "analysis_element.hpp"
+#include "clock_times.hpp"
 #include "elements.hpp"
 #include "nothing.hpp"
 #include "room.hpp"
@@ -105,13 +106,9 @@ const Property<Settings> kProperties[] = {
 
 using vision::Presence;
 
-// A time of GStreamer's as the library has it; far times are all the same.
-constexpr Presence::Time nanoseconds(GstClockTime time) {
-  return Presence::Time(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64)));
-}
 constexpr std::optional<Presence::Time> known(GstClockTime time) {
   if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
-  return nanoseconds(time);
+  return time_of(time);
 }
 
 // What is seen for so long is no motion.
@@ -174,7 +171,7 @@ void Private::apply(const Settings& s) {
 
 void Private::read_regions(GstBuffer* buffer) {
   state->found.clear();
-  GPtrArray* regions = cerberus_buffer_get_regions(buffer);
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   for (guint i = 0; i < regions->len; ++i) {
     const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
     vision::Region& r = state->found.emplace_back();
@@ -182,16 +179,12 @@ void Private::read_regions(GstBuffer* buffer) {
     r.area = r.box.area();
     r.confidence = region->confidence;
   }
-  g_ptr_array_unref(regions);
 }
 
 // Where the head looked, if a pose on the frame says so.
 std::optional<vision::Gaze> gaze(const Frame& frame, const vision::Lens& lens) {
-  const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer);
-  if (!pose || !lens.known()) return std::nullopt;
-  double pan = 0, tilt = 0;
-  cerberus_pose_evaluate(pose, frame.running_time, &pan, &tilt);
-  return vision::Gaze{lens, radians(pan), radians(tilt)};
+  if (!frame.look || !lens.known()) return std::nullopt;
+  return vision::Gaze{lens, frame.look->pan, frame.look->tilt};
 }
 
 bool Private::analyse(Frame& frame) {
@@ -210,8 +203,8 @@ bool Private::analyse(Frame& frame) {
   drop_sight(frame.buffer);
   const bool present = !state->published.empty();
   if (present) state->last = state->published;
-  announce(state->presence.update(present, known(frame.running_time), nanoseconds(clock_time(frame.seconds)),
-                                  nanoseconds(state->settings.hold_time)),
+  announce(state->presence.update(present, known(frame.running_time), time_of(clock_time(frame.seconds)),
+                                  time_of(state->settings.hold_time)),
            frame.running_time);
   return true;
 }
@@ -235,7 +228,7 @@ void Private::publish(const Frame& frame, const vision::Lens& lens, std::span<co
   const Settings& s = state->settings;
   for (const vision::Track& track : tracks) {
     const vision::Placement place =
-        lens.place(track.box, 0, frame.tilt.value_or(radians(s.tilt)), s.mounting_height);
+        lens.place(track.box, 0, frame.look ? frame.look->tilt : radians(s.tilt), s.mounting_height);
     const double speed = std::hypot(track.vx, track.vy);
     if (!vision::passes(state->gate, speed, track.top_speed, place)) continue;
     CerberusRegion& out = state->published.emplace_back();

@@ -2,7 +2,13 @@
 // How the camera stands in the room: the properties that motionregions and motiontrack share.
 #pragma once
 
-#include <numbers>
+#include <cerberus/cerberus.h>
+
+#include <cmath>
+#include <optional>
+
+#include "control/base_rate.h"
+#include "sensing/angles.h"
 
 namespace cerberus::plugin {
 
@@ -20,11 +26,21 @@ inline constexpr char kTiltBlurb[] =
     "Angle in degrees by which the camera looks up, negative: down; where a head's pose is on the frame, "
     "that counts instead";
 
-constexpr double radians(double degrees) {
-  return degrees * std::numbers::pi / 180;
+using sensing::degrees;
+using sensing::radians;
+
+// Where `pose` says that the head looked at `running_time`; nothing where its numbers are none of a camera's: a stranger's
+// may be anything.
+inline std::optional<control::Look> look_of(const CerberusPose& pose, GstClockTime running_time) {
+  double pan = 0, tilt = 0;
+  cerberus_pose_evaluate(&pose, running_time, &pan, &tilt);
+  if (!std::isfinite(pan) || !(std::abs(tilt) <= kMaximumTilt)) return std::nullopt;
+  return control::Look{radians(pan), radians(tilt)};
 }
-constexpr double degrees(double radians) {
-  return radians * 180 / std::numbers::pi;
+// The same of the pose on a frame; nothing where it has none.
+inline std::optional<control::Look> look_of(GstBuffer* frame, GstClockTime running_time) {
+  const CerberusPose* pose = cerberus_buffer_peek_pose(frame);
+  return pose ? look_of(*pose, running_time) : std::nullopt;
 }
 
 }  // namespace cerberus::plugin

@@ -229,7 +229,8 @@ void RegionStage::publish(Frame& frame, std::span<const vision::Region> regions,
   for (const vision::Region& region : regions) {
     const vision::Box box{region.box.x * sx, region.box.y * sy, region.box.width * sx,
                           region.box.height * sy};
-    if (!vision::passes(gate_, box, lens.place(box, 0, frame.tilt.value_or(tilt_), mounting_height_)))
+    if (!vision::passes(gate_, box,
+                        lens.place(box, 0, frame.look ? frame.look->tilt : tilt_, mounting_height_)))
       continue;
     CerberusRegion out;
     cerberus_region_init(&out);

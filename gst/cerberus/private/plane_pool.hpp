@@ -24,7 +24,7 @@ class MappedPlane {
     return *this;
   }
 
-  // Reads the plane of `kind` on `frame`; false where there is none, or where it is smaller than it says.
+  // Reads the plane of `kind` on `frame`; false where there is none. (Its size was checked when it was added.)
   static MappedPlane read(GstBuffer* frame, CerberusPlaneKind kind) {
     MappedPlane plane;
     const CerberusPlaneMeta* meta = cerberus_buffer_get_plane_meta(frame, kind);
