@@ -172,8 +172,8 @@ int fuzzy_threshold(const Histogram& histogram, const FuzzyThresholdOptions& opt
   return choose(options, c);
 }
 
-int clamp_to_noise(int threshold, double sigma, double minimum) {
-  const double floor = std::max(minimum, 4 * sigma);
+int clamp_to_noise(int threshold, double sigma) {
+  const double floor = std::max(6.0, 4 * sigma);
   const int low = static_cast<int>(std::lround(std::min(floor, 255.0)));
   const int high = static_cast<int>(std::lround(std::min(1.5 * floor, 255.0)));
   return std::clamp(threshold, low, high);

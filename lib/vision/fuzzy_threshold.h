@@ -36,7 +36,7 @@ struct FuzzyThresholdCurves {
 int fuzzy_threshold(const Histogram& histogram, const FuzzyThresholdOptions& options,
                     FuzzyThresholdCurves* curves = nullptr);
 
-// Th held inside [floor, 1.5 floor], floor = max(minimum, 4 sigma): the guard rail of preset `default`.
-int clamp_to_noise(int threshold, double sigma, double minimum = 6.0);
+// Th held inside [floor, 1.5 floor], floor = max(6, 4 sigma): the guard rail of preset `default`.
+int clamp_to_noise(int threshold, double sigma);
 
 }  // namespace cerberus::vision

@@ -3,9 +3,9 @@
 
 namespace cerberus::vision {
 
-SizeGate human_size(double body_width) {
+SizeGate human_size() {
   SizeGate gate;
-  gate.metres_wide = {0.5 * body_width, 3 * body_width};
+  gate.metres_wide = {0.5 * kBodyWidth, 3 * kBodyWidth};
   return gate;
 }
 

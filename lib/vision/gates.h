@@ -11,7 +11,6 @@ namespace cerberus::vision {
 struct Range {
   double least = 0;
   double most = 0;
-  bool unlimited() const { return !(least > 0) && !(most > 0); }
   // An unknown value (NaN) passes: what cannot be measured cannot be refused.
   bool holds(double value) const { return !(value < least) && !(most > 0 && value > most); }
 };
@@ -30,7 +29,7 @@ struct SpeedGate {
 // accepted (seen from the side, partly hidden) and three times of it (a stride with swinging arms, two arm in
 // arm).
 constexpr double kBodyWidth = 0.48;
-SizeGate human_size(double body_width = kBodyWidth);
+SizeGate human_size();
 SpeedGate human_speed();
 
 bool passes(const SizeGate& gate, const Box& box, const Placement& place);

@@ -195,8 +195,7 @@ void Morphology::vote(MutableBitView bits, int width, int least) {
   clear_beyond(bits, width);
 }
 
-void Morphology::reconstruct(MutableBitView seeds, BitView within, int width) {
-  (void)width;
+void Morphology::reconstruct(MutableBitView seeds, BitView within) {
   if (seeds.empty()) return;
   scratch_.resize({seeds.width, 2});
   intersect(seeds, within, seeds);

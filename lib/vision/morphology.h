@@ -22,7 +22,7 @@ class Morphology {
   // Keeps a pixel that has at least `least` set ones in its 3x3 neighbourhood, itself included (5: median).
   void vote(MutableBitView bits, int width, int least);
   // Reconstruction: seeds := the 8-connected parts of `within` that hold a seed.
-  void reconstruct(MutableBitView seeds, BitView within, int width);
+  void reconstruct(MutableBitView seeds, BitView within);
 
   std::size_t bytes() const { return scratch_.bytes(); }
 

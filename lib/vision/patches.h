@@ -31,7 +31,7 @@ struct PatchMatch {
 
 // Follows one patch on one level: inverse compositional Gauss-Newton (Baker and Matthews, IJCV 56(3), 2004) with gain
 // and offset as further unknowns, so that light may change. Template and gradients come from the earlier picture and
-// are made once, however often it is looked for.
+// are the same wherever it is looked for.
 class PatchFollower {
  public:
   static constexpr int kSide = kPatch + 2;  // of what is looked at: the patch, and a pixel around it

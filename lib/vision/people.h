@@ -21,9 +21,8 @@ struct Window {
 };
 
 struct Person {
-  Box box;  // of the expected height and width, may leave the picture
-  double score =
-      0;  // evidence per pixel of the box; about 1 for a whole person seen well, kLeastScore at least
+  Box box;           // of the expected height and width, may leave the picture
+  double score = 0;  // evidence per pixel of the box; about 1 for a whole person seen well
 };
 
 class PeopleFinder {

@@ -55,10 +55,10 @@ struct CompareRow {
 };
 struct CompareLimits {
   std::array<std::uint8_t, kBrightness> noise{};  // sigma of frame - memory by brightness, 1/16 level
-  int weak_sigmas = 3, strong_sigmas = 5;
-  int weak_least = 6 * 16, strong_least = 9 * 16;  // 1/16 level
-  int young = 2;            // below this age the memory says nothing and D(k) decides ...
-  bool registered = false;  // ... and may be an error of registration itself
+  static constexpr int weak_sigmas = 3, strong_sigmas = 5;
+  static constexpr int weak_least = 6 * 16, strong_least = 9 * 16;  // 1/16 level
+  static constexpr int young = 2;  // below this age the memory says nothing and D(k) decides ...
+  bool registered = false;         // ... and may be an error of registration itself
 };
 // weak, strong: bits of the pixels that differ from the memory by more than noise and registration explain. With
 //   s = max(noise[m / 16], 5/4 spread), edge = |gradient of m| * tolerance, e = |present - m|:

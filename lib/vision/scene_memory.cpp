@@ -152,7 +152,6 @@ void SceneMemory::reset() {
 
 void SceneMemory::State::prepare(Size to) {
   if (to != size) {
-    size = to;
     mean.resize(to);
     for (auto* plane : {&spread, &age, &quiet, &present}) plane->resize(to);
     light.make_room(to);
@@ -166,6 +165,7 @@ void SceneMemory::State::prepare(Size to) {
     rows = (to.height + kSceneBlock - 1) / kSceneBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
     frames = 0;
+    size = to;  // last: what threw is tried again
   }
   if (frames == 0) {
     mean.fill_bytes(0);
@@ -392,7 +392,7 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   const MutableBitView seeds = strong.view();
   morphology.vote(weak.view(), w, 4);  // four of nine: noise is lonely
   morphology.vote(seeds, w, 4);
-  morphology.reconstruct(seeds, weak.view(), w);
+  morphology.reconstruct(seeds, weak.view());
   std::memcpy(weak.view().data, seeds.data, weak.bytes());
   const ScenePlanes planes{present.view(), light.known(),
                            age.view(),     quiet.view(),

@@ -33,7 +33,7 @@ Tracker::State::State() {
   make_room(kUsualTracks, kUsualRegions);
 }
 
-// For what one frame may make of them; keeps what there is.
+// Keeps what there is.
 void Tracker::State::make_room(std::size_t tracks, std::size_t seen) {
   bodies.reserve(tracks);
   published.reserve(tracks);
@@ -226,7 +226,6 @@ void Tracker::State::publish() {
     const double x1 = std::clamp(box.right(), 0.0, static_cast<double>(frame.width));
     const double y1 = std::clamp(box.bottom(), 0.0, static_cast<double>(frame.height));
     if (x1 - x0 < 1 || y1 - y0 < 1) continue;
-    if (b.top_speed < options.minimum_speed) continue;
     published.push_back({b.id,
                          {x0, y0, x1 - x0, y1 - y0},
                          b.x.velocity,

@@ -22,7 +22,6 @@ struct TrackOptions {
   double coast_time = 1.0;     // s a moving track is carried without evidence
   double hold_stopped = 30.0;  // s a confirmed track that stopped is held
   double away_time = 5.0;      // s a moving track is kept in mind while the camera looks elsewhere
-  double minimum_speed = 0;    // frame pixels a second; what never was as fast is not published (0: no limit)
   double maximum_speed = 0;    // frame pixels a second; faster jumps are not the same object (0: no limit)
 };
 

@@ -290,7 +290,6 @@ GST_START_TEST(tracks_have_identity_velocity_age_and_state) {
 }
 GST_END_TEST
 
-// That regions were looked for is known behind tees, queues, converters and scalers, even where none was left.
 // From the third frame of a scene on, as the regions are; with the default somebody has to be seen for a while.
 GST_START_TEST(without_confirm_time_a_region_is_an_object_at_once) {
   Line regions("motionregions"), at_once("motiontrack confirm-time=0"), later("motiontrack");

@@ -22,7 +22,7 @@ START_TEST(a_range_holds_its_ends_and_what_is_unknown) {
   const Range range{2, 5};
   ck_assert(range.holds(2) && range.holds(5) && range.holds(kNan));
   ck_assert(!range.holds(1.99) && !range.holds(5.01));
-  ck_assert(Range{}.holds(1e9) && Range{}.holds(0) && Range{}.unlimited());
+  ck_assert(Range{}.holds(1e9) && Range{}.holds(0));
   ck_assert((Range{3, 0}.holds(1e9)) && !(Range{3, 0}.holds(2)));
 }
 END_TEST

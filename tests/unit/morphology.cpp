@@ -189,7 +189,7 @@ START_TEST(reconstruction_keeps_the_parts_that_hold_a_seed) {
   const auto within = drawn({"##..###.", "..#...#.", "#..##.#.", "#.....#."});
   auto seeds = packed(drawn({"........", "........", "...#....", ".......#"}).view());
   Morphology morphology;
-  morphology.reconstruct(seeds.view(), packed(within.view()).view(), 8);
+  morphology.reconstruct(seeds.view(), packed(within.view()).view());
   // 8-connected: (3,2)-(2,1)-(1,0); the seed outside `within` counts for nothing.
   assert_same(seeds.view(), drawn({"##......", "..#.....", "...##...", "........"}).view());
 }
@@ -202,7 +202,7 @@ START_TEST(reconstruction_agrees_with_flooding_on_random_pictures) {
       const auto within = random_mask(size, percent, 4);
       const auto seed = random_mask(size, 2, 5);
       auto bits = packed(seed.view());
-      morphology.reconstruct(bits.view(), packed(within.view()).view(), size.width);
+      morphology.reconstruct(bits.view(), packed(within.view()).view());
       Image<std::uint8_t> expected(size);
       std::vector<std::pair<int, int>> open;
       const auto visit = [&](int x, int y) {
@@ -233,7 +233,7 @@ START_TEST(a_second_picture_of_the_same_size_allocates_nothing) {
     morphology.close(mask.view(), 320, 11);
     morphology.open(mask.view(), 320, 5);
     morphology.vote(mask.view(), 320, 4);
-    morphology.reconstruct(mask.view(), within.view(), 320);
+    morphology.reconstruct(mask.view(), within.view());
   };
   work();
   const auto before = allocations();
