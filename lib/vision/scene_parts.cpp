@@ -24,9 +24,27 @@ constexpr double kGap = 0.2;       // between neighbours that are one
 constexpr double kFrontGap = 1;    // between two fronts of one
 constexpr double kPieceGap = 0.5;  // between a part and its pieces, a front and the rest
 constexpr double kNarrow = 0.3;    // a front is narrower than this share of its height
-constexpr double kLevel = 0.5;     // share of the lower one's height at which they stand beside each other
+// Share of what lies between two fronts of one that may show more than noise.
+constexpr double kUneven = 0.25;
+constexpr double kLevel = 0.5;  // share of the lower one's height at which they stand beside each other
 constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
 constexpr double kPiece = 1 / 3.0;     // share of the bigger part's area below which a part is a piece
+
+struct Between {
+  int left, top, right, bottom;
+};
+
+// Inside of what moves only an even part differs from nothing. What shows more than noise between two fronts, and has not
+// changed, is the scene behind two things.
+bool is_even(GrayView frame, const Between& part) {
+  int uneven = 0, seen = 0;
+  for (int y = part.top; y < part.bottom; ++y)
+    for (int x = std::max(part.left, 2); x < std::min(part.right, frame.width - 2); ++x) {
+      ++seen;
+      uneven += std::abs(frame.at(x + 2, y) - frame.at(x - 2, y)) > kEdge;
+    }
+  return uneven <= kUneven * seen;
+}
 
 }  // namespace
 
@@ -233,13 +251,15 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
       if (i == j || b.area < a.area || (b.area == a.area && j < i)) continue;
       const int tall = std::max(a.height(), b.height());
       const int across = gap(a.left, a.right, b.left, b.right), down = gap(a.top, a.bottom, b.top, b.bottom);
+      const Between between{std::min(a.right, b.right), std::max(a.top, b.top), std::max(a.left, b.left),
+                            std::min(a.bottom, b.bottom)};
       const bool level = -down > kLevel * std::min(a.height(), b.height());
       const bool narrow_a = a.width() < kNarrow * a.height(), narrow_b = b.width() < kNarrow * b.height();
       const double reach = narrow_a && narrow_b ? kFrontGap : narrow_a || narrow_b ? kPieceGap : kGap;
       const bool two = a.area >= kPiece * b.area || narrow_a || narrow_b;
-      if (level && across > 0 && across < reach * tall && two && !parts_[i].piece) {
-        for (int y = std::max(a.top, b.top); y < std::min(a.bottom, b.bottom); ++y)
-          set_bits(mask.row(y), std::min(a.right, b.right), std::max(a.left, b.left));
+      if (level && across > 0 && across < reach * tall && two && !parts_[i].piece &&
+          is_even(planes.present, between)) {
+        for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
         parts_[i].whole = parts_[j].whole = true;
       } else if (across < kPieceGap * tall && down < kPieceGap * tall && a.area < kPiece * b.area) {
         parts_[i].piece = true;

@@ -43,8 +43,8 @@ class SceneParts {
              MutableBitView absorb);
   // A place that somebody leaves who stood there when the scene began looks like an object: the memory has his picture, a
   // moving edge goes along it, and from a few frames nobody can tell which is which. So where the memory is young, what
-  // lies close together is one: two of about a size, or two fronts, with a gap between them (the gap belongs to it), or a
-  // big part and its pieces (which are dropped: joined to it they would be a strip of the scene beside it). closed: the mask with its gaps closed, used as scratch; mask: in and out.
+  // lies close together is one: two of about a size, or two fronts, with an even gap between them (which belongs to it), or
+  // a big part and its pieces (which are dropped: joined to it they would be a strip of the scene beside it). closed: the mask with its gaps closed, used as scratch; mask: in and out.
   void join(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView closed,
             MutableBitView mask);
   std::size_t bytes() const;

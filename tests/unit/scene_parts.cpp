@@ -188,6 +188,23 @@ START_TEST(two_fronts_are_one_where_the_memory_is_young) {
 }
 END_TEST
 
+// As high and as far from each other as the fronts of one body: a wall of bricks between them, which has not changed,
+// says that they are two people.
+START_TEST(two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one) {
+  constexpr Rect kLeft{100, 80, 20, 80}, kBetween{120, 80, 60, 80}, kRight{180, 80, 20, 80};
+  for (const bool bricks : {false, true}) {
+    Scene s(10);
+    if (bricks)
+      for (int x = 0; x < kSize.width; x += 8) Scene::paint(s.present, {x, 0, 4, kSize.height}, 120);
+    s.differs(kLeft, 1);
+    s.differs(kRight, 1);
+    s.join();
+    ck_assert_int_eq(count(s.mask, kBetween), bricks ? 0 : all(kBetween));
+    ck_assert_int_eq(count(s.mask, kLeft) + count(s.mask, kRight), all(kLeft) + all(kRight));
+  }
+}
+END_TEST
+
 START_TEST(a_front_belongs_to_what_is_near) {
   Scene s(10);
   constexpr Rect kFront{155, 80, 8, 80};  // 25 away: between a fifth and half of their height
@@ -353,7 +370,8 @@ int main() {
        whose_place_is_empty_is_forgotten_at_once, what_the_memory_saw_for_moments_needs_motion_now,
        objects_before_a_young_memory_are_told, before_a_camera_that_moves_only_what_moves_now_counts,
        before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
-       two_fronts_are_one_where_the_memory_is_young, a_front_belongs_to_what_is_near,
+       two_fronts_are_one_where_the_memory_is_young,
+       two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one, a_front_belongs_to_what_is_near,
        fronts_far_apart_or_of_other_heights_are_two,
        a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
        a_piece_beside_a_big_part_is_dropped_not_joined,
