@@ -5,6 +5,8 @@
 // A sensor's rise is told at once (debounce delays falls only), decided at once as if the last frame came again, and obeyed at
 // once: what passes is the work. A sensor that spoke before the first frame waits for that.
 #include <algorithm>
+#include <atomic>
+#include <chrono>
 #include <cstdio>
 #include <functional>
 #include <mutex>
@@ -69,8 +71,6 @@ class Detection {
     fail_unless_equals_int(gst_harness_push(harness_, seen), GST_FLOW_OK);
     GstBuffer* found = gst_harness_try_pull(harness_);
     fail_unless(found && GST_BUFFER_PTS(found) == time, "motiondetect kept a frame");
-    const CerberusPose ahead = rig::pose(0, time);
-    cerberus_buffer_set_pose(found, &ahead);
     turned_ += std::abs(cerberus_buffer_get_camera_motion_meta(found)->motion.matrix[2] + world_.pan) < 0.5;
     return found;
   }
@@ -108,13 +108,14 @@ bool hand_on(rig::Rig& fusion, head_rig::Rig& head) {
 
 // Time from an edge to the first command, behind a camera with a frame each `step`, which are `age` old when they come.
 GstClockTime reaction(GstClockTime edge, GstClockTime step, GstClockTime age, bool detects = false) {
+  const std::string name = head_rig::new_head();
   Detection detection(step);
-  rig::Rig fusion;
+  rig::Rig fusion(true, "head=" + name);
   gst_harness_set_src_caps_str(fusion.video, Detection::kCaps);
   fusion.add_pir();
   fusion.read(0, {0, 0, 0});
   head_rig::Pipe record;
-  head_rig::Rig head("driver=scripted watchdog-timeout=0 script=\"record " + record.writer() + "\"",
+  head_rig::Rig head("watchdog-timeout=0 " + head_rig::scripted("record " + record.writer(), name),
                      head_rig::Source::live);
   const auto set_time = [&](GstClockTime now) {
     gst_harness_set_time(fusion.video, now);
@@ -130,9 +131,10 @@ GstClockTime reaction(GstClockTime edge, GstClockTime step, GstClockTime age, bo
       if (hand_on(fusion, head) && command(record) == 1) return 0;
     }
     set_time(now);
-    fail_unless_equals_int(
-        gst_harness_push(fusion.video, detects ? detection.frame(time) : rig::frame_at(time, 0)),
-        GST_FLOW_OK);
+    GstBuffer* frame = detects ? detection.frame(time) : rig::frame(time);
+    const CerberusPose ahead = rig::pose(0, time, 0, name.c_str());
+    cerberus_buffer_set_pose(frame, &ahead);
+    fail_unless_equals_int(gst_harness_push(fusion.video, frame), GST_FLOW_OK);
     head.push(gst_harness_pull(fusion.video));
     const int way = command(record);
     if (way == 0) {
@@ -197,57 +199,102 @@ class Listener {
 
 constexpr int kEdges = 50;
 
-// Of the edges that were obeyed before the next one came: how long that took, in milliseconds, sorted.
-std::vector<double> reactions() {
-  const auto edge = [](int k) { return (300 + 113 * static_cast<GstClockTime>(k)) * GST_MSECOND; };
+GstClockTime edge(int k) {
+  return (300 + 113 * static_cast<GstClockTime>(k)) * GST_MSECOND;
+}
+
+// Somebody who does nothing but wake up at each edge: how late he is tells what the machine keeps everybody from.
+class Witness {
+ public:
+  explicit Witness(GstElement* pipeline) : thread_([this, pipeline] { run(pipeline); }) {}
+  // When the pipeline has ended: whether the machine itself kept half the promise, nine times in ten.
+  bool saw_a_prompt_machine() {
+    stop();
+    return prompt_ >= kEdges * 9 / 10;
+  }
+  ~Witness() { stop(); }
+  Witness(const Witness&) = delete;
+
+ private:
+  void run(GstElement* pipeline) {
+    for (int k = 0; k < kEdges && !over_; ++k) {
+      GstClockTime now = 0;
+      while (!over_ && (now = gst_element_get_current_running_time(pipeline)) < edge(k))
+        std::this_thread::sleep_for(std::chrono::nanoseconds(edge(k) - now));
+      prompt_ += now <= edge(k) + kPromise / 2;
+    }
+  }
+  void stop() {
+    over_ = true;
+    if (thread_.joinable()) thread_.join();
+  }
+
+  std::atomic<bool> over_ = false;
+  int prompt_ = 0;
+  std::thread thread_;
+};
+
+struct Round {
+  std::vector<double> took;  // of the edges that were obeyed before the next one came: milliseconds, sorted
+  bool counts = false;       // the machine had time for them
+};
+
+Round reactions() {
   const auto way = [](int k) { return k % 2 ? 1 : -1; };
   std::string script = "0,0,0,0";
   for (int k = 0; k < kEdges; ++k)
     script += "; " + std::to_string(edge(k) / 1e9) + (way(k) < 0 ? ",0,1,0" : ",0,0,1") + "; " +
               std::to_string(edge(k) / 1e9 + 0.06) + ",0,0,0";
+  const std::string name = head_rig::new_head();
   head_rig::Pipe record;
   std::vector<Command> commands;
+  Round round;
   {
     // The head reaches neither sensor's sector: it is always on the way there, or at the stop before it. The picture goes
     // by as before a camera that turns, which is the most work; there is nobody in it.
     loop::Pipeline pipeline(
         "videotestsrc is-live=true num-buffers=62 pattern=pinwheel horizontal-speed=2 ! "
         "video/x-raw,format=GRAY8,width=160,height=120,framerate=10/1 ! motiondetect ! "
-        "pirfusion name=fusion pan-min=-10 pan-max=10 ! pantiltsink driver=scripted pan-min=-10 pan-max=10 "
-        "script=\"record " +
-        record.writer() + "\" pirsrc driver=scripted is-live=true script=\"" + script + "\" ! fusion.pir_0");
+        "pirfusion name=fusion head=" +
+        name + " pan-min=-10 pan-max=10 ! pantiltsink pan-min=-10 pan-max=10 " +
+        head_rig::scripted("record " + record.writer(), name) +
+        " pirsrc driver=scripted is-live=true script=\"" + script + "\" ! fusion.pir_0");
     Listener listener(record, pipeline.element());
     pipeline.play();
+    Witness witness(pipeline.element());
     pipeline.wait_for_end();
+    round.counts = witness.saw_a_prompt_machine();
     pipeline.stop();
     record.close_writer();
     commands = listener.commands();
   }
 
-  std::vector<double> took;  // milliseconds
   for (int k = 0; k < kEdges; ++k) {
     const auto first = std::ranges::find_if(
         commands, [&](const Command& c) { return c.time >= edge(k) && c.way == way(k); });
     if (first != commands.end() && first->time < edge(k + 1))
-      took.push_back(static_cast<double>(first->time - edge(k)) / GST_MSECOND);
+      round.took.push_back(static_cast<double>(first->time - edge(k)) / GST_MSECOND);
   }
-  std::ranges::sort(took);
-  return took;
+  std::ranges::sort(round.took);
+  return round;
 }
 
-// A machine with other work may be late with any of them, and for a while with many: one round of some counts. At 10 frames a
-// second four of ten edges would come too late if they waited for a frame: seven of ten in time tell that they do not.
+// A machine with other work may be late with any of them, and for a while with many: one round of some counts, and none on
+// a machine that has no time for anybody. At 10 frames a second four of ten edges would come too late if they waited for a
+// frame: seven of ten in time tell that they do not.
 GST_START_TEST(sixty_milliseconds_from_an_edge_to_the_motors) {
   bool kept = false;
-  for (int round = 0; round < 5 && !kept; ++round) {
-    const std::vector<double> took = reactions();
+  int rounds = 0;
+  for (int k = 0; k < 5 && !kept; ++k) {
+    const auto [took, counts] = reactions();
+    rounds += counts;
+    g_print("%zu of %d edges obeyed%s", took.size(), kEdges,
+            counts ? "" : " by a machine that is late itself");
     if (took.empty()) continue;
-    const double median = took[took.size() / 2];
-    g_print("%zu of %d edges obeyed: best %.1f, median %.1f, worst %.1f ms\n", took.size(), kEdges,
-            took.front(), median, took.back());
+    g_print(": best %.1f, median %.1f, worst %.1f ms\n", took.front(), took[took.size() / 2], took.back());
     kept = took.size() >= kEdges * 4 / 5 && took[took.size() * 7 / 10] <= kPromise / 1e6;
   }
-  fail_unless(kept, "in none of the rounds above most edges were obeyed in time");
+  fail_unless(kept || rounds == 0, "in none of the rounds above most edges were obeyed in time");
 }
 GST_END_TEST
 

@@ -36,16 +36,6 @@ void set_time(Rig& rig, GstClockTime now) {
   gst_harness_set_time(rig.harness, now);
 }
 
-// Lets the clock go to the time that the element waits for, and that work be done.
-GstClockTime crank(Rig& rig) {
-  GstTestClock* clock = rig.clock();
-  fail_unless(gst_test_clock_crank(clock));
-  gst_test_clock_wait_for_next_pending_id(clock, nullptr);
-  const GstClockTime now = gst_clock_get_time(GST_CLOCK(clock));
-  gst_object_unref(clock);
-  return now;
-}
-
 // A live head that holds because a frame says so, at 100 ms.
 void begin(Rig& rig) {
   set_time(rig, 100 * kMs);
@@ -138,7 +128,7 @@ GST_START_TEST(frames_alone_keep_the_watchdog_quiet) {
   fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 250 * kMs)) == "turning");
   GstClockTime now = 0;
   for (bool stopped = false; !stopped;) {
-    now = crank(rig);
+    now = rig.crank();
     fail_unless(now < GST_SECOND);
     stopped = rig.states() == "stopped";
   }
@@ -152,7 +142,7 @@ GST_START_TEST(limits_hold) {
   begin(rig);
   told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs));
   double most = 0;
-  while (crank(rig) < 3 * GST_SECOND && most < 9.99)
+  while (rig.crank() < 3 * GST_SECOND && most < 9.99)
     for (const CerberusPose& pose : rig.poses()) most = std::max(most, pose.pan);
   fail_unless(most > 9.9 && most < 10.0001, "it came to %g", most);
 }

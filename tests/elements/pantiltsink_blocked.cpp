@@ -25,12 +25,6 @@ GstBuffer* turning_right() {
   return buffer;
 }
 
-// Its driver, on a head of its own: one that still blocks is not free.
-std::string scripted(const std::string& script) {
-  static int heads = 0;
-  return "driver=scripted head=h" + std::to_string(++heads) + " script=\"" + script + "\"";
-}
-
 milliseconds change(Rig& rig, GstState state) {
   return time_taken([&] { fail_if(gst_element_set_state(rig.element, state) == GST_STATE_CHANGE_FAILURE); });
 }

@@ -199,8 +199,9 @@ GST_START_TEST(with_a_clock_a_limit_counts_without_a_frame) {
   g_object_set(rig.element, "pan-max", 45.0, nullptr);
   const std::string limit = record.line();
   fail_unless(limit.starts_with("limit ") && limit.find(" 0.7853") != std::string::npos, "%s", limit.c_str());
-  CerberusPose pose = rig.next_pose();
-  while (std::fabs(pose.pan - 45) > 1e-9) pose = rig.next_pose();
+  // The driver may answer later than the element waits, which asks again when the clock has gone on.
+  for (double pan = 0; std::fabs(pan - 45) > 1e-9; rig.crank())
+    for (const CerberusPose& pose : rig.poses()) pan = pose.pan;
 }
 GST_END_TEST
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pantiltsink with a clock: poses by the clock, the watchdog, drivers that fail, and every way of asking for what cannot be.
+#include <chrono>  // before gst-check, whose macros bite standard headers
+
 #include "../support/entries.h"
 #include "head_rig.h"
+#include "promises.h"
 
 namespace {
 
@@ -13,19 +16,6 @@ GstBuffer* frame_with(CerberusFusionAction action, GstClockTime pts) {
   return buffer;
 }
 
-// Lets the clock go to the time that the element waits for.
-void crank(Rig& rig) {
-  GstTestClock* clock = rig.clock();
-  fail_unless(gst_test_clock_crank(clock));
-  gst_test_clock_wait_for_next_pending_id(clock, nullptr);  // it has done its work and waits again
-  gst_object_unref(clock);
-}
-GstClockTime time_of(Rig& rig) {
-  GstTestClock* clock = rig.clock();
-  const GstClockTime time = gst_clock_get_time(GST_CLOCK(clock));
-  gst_object_unref(clock);
-  return time;
-}
 // Waits for a pose that says so; the clock stands still.
 template <typename Says>
 CerberusPose wait_for_pose(Rig& rig, Says says) {
@@ -39,12 +29,12 @@ GST_START_TEST(at_rest_poses_come_five_times_a_second) {
   Rig rig("watchdog-timeout=0", Source::live);
   rig.next_pose();
   rig.push(frame_with(CERBERUS_FUSION_HOLD, 0));
-  crank(rig);
+  rig.crank();
   rig.poses();
-  const GstClockTime start = time_of(rig);
+  const GstClockTime start = rig.time();
   int poses = 0;
-  while (time_of(rig) < start + GST_SECOND) {
-    crank(rig);
+  while (rig.time() < start + GST_SECOND) {
+    rig.crank();
     const auto told = rig.poses();
     poses += told.size();
     for (const CerberusPose& pose : told) {
@@ -61,12 +51,12 @@ GST_START_TEST(a_moving_head_tells_where_it_is_fifty_times_a_second) {
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   // At once: the plan has changed, its first piece ends when the latency has passed.
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
-  while (time_of(rig) < 200 * GST_MSECOND) crank(rig);
+  while (rig.time() < 200 * GST_MSECOND) rig.crank();
   rig.poses();
-  const GstClockTime start = time_of(rig);
+  const GstClockTime start = rig.time();
   int poses = 0;
-  while (time_of(rig) < start + GST_SECOND) {
-    crank(rig);
+  while (rig.time() < start + GST_SECOND) {
+    rig.crank();
     for (const CerberusPose& pose : rig.poses()) {
       fail_unless(pose.moving);
       fail_unless(std::fabs(pose.pan_speed - 40) < 1e-9);
@@ -84,7 +74,7 @@ GST_START_TEST(a_piece_that_ends_is_followed_by_the_next_at_that_time) {
       wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
   bool accelerated = false;
   for (int k = 0; k < 12; ++k) {
-    crank(rig);
+    rig.crank();
     for (const CerberusPose& pose : rig.poses()) {
       fail_unless(pose.valid_from <= last.valid_until);
       if (pose.valid_from == 60 * GST_MSECOND) {
@@ -102,7 +92,7 @@ GST_START_TEST(when_frames_stay_away_the_head_stops) {
   Rig rig("watchdog-timeout=300000000", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
-  while (time_of(rig) < 800 * GST_MSECOND) crank(rig);
+  while (rig.time() < 800 * GST_MSECOND) rig.crank();
   const auto poses = rig.poses();
   fail_if(poses.back().moving);
   // 40 degrees a second from 60 + 33 ms on until the stop of 300 ms is obeyed at 360.
@@ -122,7 +112,7 @@ GST_START_TEST(when_frames_stay_away_an_order_is_over) {
   Rig rig("watchdog-timeout=300000000 max-speed=20", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_LEFT, 0));
   fail_unless(rig.call("move-to", 90, 0));
-  while (time_of(rig) < GST_SECOND) crank(rig);
+  while (rig.time() < GST_SECOND) rig.crank();
   const CerberusPose stopped = rig.poses().back();
   fail_unless(!stopped.moving && stopped.pan > 0 && stopped.pan < 20 * 0.4, "%g", stopped.pan);
   auto messages = rig.messages();
@@ -133,11 +123,11 @@ GST_START_TEST(when_frames_stay_away_an_order_is_over) {
   messages = rig.messages();
   fail_unless_equals_int(messages.size(), 1);
   fail_unless_equals_string(messages[0].state.c_str(), "manual");
-  while (time_of(rig) < 2 * GST_SECOND) crank(rig);
+  while (rig.time() < 2 * GST_SECOND) rig.crank();
   for (const CerberusPose& pose : rig.poses()) fail_unless(pose.pan == stopped.pan);
   // Who orders now knows that no frames come.
   fail_unless(rig.call("move-to", 30, 0));
-  while (time_of(rig) < 5 * GST_SECOND) crank(rig);
+  while (rig.time() < 5 * GST_SECOND) rig.crank();
   fail_unless(std::fabs(rig.poses().back().pan - 30) < 1e-9);
 }
 GST_END_TEST
@@ -146,7 +136,7 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   Rig rig("watchdog-timeout=0", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   wait_for_pose(rig, [](const CerberusPose& pose) { return pose.valid_until == 60 * GST_MSECOND; });
-  while (time_of(rig) < 500 * GST_MSECOND) crank(rig);
+  while (rig.time() < 500 * GST_MSECOND) rig.crank();
   const double before = rig.poses().back().pan;
   fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
   // Told to the end: at 40 degrees a second for the latency of 60 ms, then braking at 600.
@@ -160,28 +150,24 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   // What the application wants meanwhile is done afterwards.
   fail_unless(rig.call("move-to", -30, 0));
   fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PLAYING), GST_STATE_CHANGE_SUCCESS);
-  while (time_of(rig) < 4 * GST_SECOND) crank(rig);
+  while (rig.time() < 4 * GST_SECOND) rig.crank();
   fail_unless(std::fabs(rig.poses().back().pan + 30) < 1e-9);
 }
 GST_END_TEST
 
 GST_START_TEST(an_order_that_goes_on_says_so) {
-  for (const char* properties : {"", "driver=scripted"}) {
-    Rig rig(properties, Source::live);
-    fail_unless(rig.call("move-to", 90, 0));
-    gst_element_set_state(rig.element, GST_STATE_PAUSED);
-    std::string states = rig.states();
-    fail_unless_equals_string(states.c_str(), "manual stopped");
-    gst_element_set_state(rig.element, GST_STATE_PLAYING);
-    const auto messages = rig.messages();
-    fail_unless_equals_int(messages.size(), 1);
-    fail_unless_equals_string(messages[0].state.c_str(), "manual");
-    fail_unless_equals_string(messages[0].reason.c_str(), "told to move");
-    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
-    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
-    states = rig.states();
-    fail_unless_equals_string(states.c_str(), "stopped manual");
-  }
+  for (const bool on_a_thread : {false, true})
+    assert_said("manual stopped, manual (told to move), stopped manual", [on_a_thread] {
+      Rig rig(on_a_thread ? scripted("") : "", Source::live);
+      fail_unless(rig.call("move-to", 90, 0));
+      gst_element_set_state(rig.element, GST_STATE_PAUSED);
+      std::string said = rig.states() + ",";
+      gst_element_set_state(rig.element, GST_STATE_PLAYING);
+      for (const Message& message : rig.messages()) said += " " + message.state + " (" + message.reason + ")";
+      fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
+      fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
+      return said + ", " + rig.states();
+    });
 }
 GST_END_TEST
 
@@ -191,10 +177,10 @@ GST_START_TEST(after_a_fault_an_order_that_goes_on_says_so) {
   fail_unless(rig.call("move-to", 90, 0));
   std::string states = rig.states();
   fail_unless_equals_string(states.c_str(), "manual");
-  while ((states = rig.states()).empty()) crank(rig);  // it is silent
+  while ((states = rig.states()).empty()) rig.crank();  // it is silent
   fail_unless_equals_string(states.c_str(), "fault");
   gate.close_writer();
-  while ((states = rig.states()).empty()) crank(rig);
+  while ((states = rig.states()).empty()) rig.crank();
   fail_unless_equals_string(states.c_str(), "manual");
 }
 GST_END_TEST
@@ -203,15 +189,15 @@ GST_START_TEST(an_order_does_not_survive_the_end_of_the_stream) {
   Rig rig("max-speed=20", Source::live);
   rig.push(frame_with(CERBERUS_FUSION_HOLD, 0));
   fail_unless(rig.call("move-to", 90, 0));
-  while (time_of(rig) < 300 * GST_MSECOND) crank(rig);
+  while (rig.time() < 300 * GST_MSECOND) rig.crank();
   fail_unless(gst_harness_push_event(rig.harness, gst_event_new_eos()));
-  while (time_of(rig) < GST_SECOND) crank(rig);
+  while (rig.time() < GST_SECOND) rig.crank();
   const CerberusPose end = rig.poses().back();
   fail_unless(!end.moving && end.pan > 0 && end.pan < 20, "%g", end.pan);
   gst_element_set_state(rig.element, GST_STATE_PAUSED);
   gst_element_set_state(rig.element, GST_STATE_PLAYING);
   fail_if(rig.call("move-to", -60, 0));
-  while (time_of(rig) < 3 * GST_SECOND) crank(rig);
+  while (rig.time() < 3 * GST_SECOND) rig.crank();
   for (const CerberusPose& pose : rig.poses()) fail_unless(pose.pan == end.pan && !pose.moving);
   const auto messages = rig.messages();
   fail_unless_equals_string(messages.back().reason.c_str(), "end of the stream");
@@ -221,18 +207,20 @@ GST_END_TEST
 GST_START_TEST(a_driver_that_fails_warns_once_and_the_video_goes_on) {
   for (const Source source : {Source::stored, Source::live}) {
     Pipe record;
-    Rig rig("driver=scripted script=\"record " + record.writer() + "; command 2 fail no power\"", source);
+    const std::string head = new_head();
+    Rig rig(scripted("record " + record.writer() + "; command 2 fail no power", head), source);
     for (int k = 0; k < 10; ++k) {
       rig.push(frame_with(k % 2 ? CERBERUS_FUSION_TURN_LEFT : CERBERUS_FUSION_TURN_RIGHT, k * kFrame));
       while (!record.line().starts_with("command")) {
       }
       if (k > 0) fail_unless(record.line().starts_with("stop"));
     }
-    GstMessage* warning = gst_bus_timed_pop_filtered(rig.bus, 10 * GST_SECOND, GST_MESSAGE_WARNING);
+    GstMessage* warning = gst_bus_timed_pop_filtered(rig.bus, 60 * GST_SECOND, GST_MESSAGE_WARNING);
     fail_unless(warning != nullptr);
     GError* error = nullptr;
     gst_message_parse_warning(warning, &error, nullptr);
-    fail_unless(strstr(error->message, "\"head\"") && strstr(error->message, "no power"), "%s",
+    const std::string name = "\"" + head + "\"";
+    fail_unless(strstr(error->message, name.c_str()) && strstr(error->message, "no power"), "%s",
                 error->message);
     g_error_free(error);
     gst_message_unref(warning);
@@ -242,15 +230,17 @@ GST_START_TEST(a_driver_that_fails_warns_once_and_the_video_goes_on) {
 }
 GST_END_TEST
 
-// What the element says when it does not start; it says it once.
+// What the element says when it does not start; it says it once. A driver on a thread of its own may say it a moment later.
 std::string refusal(const std::string& properties) {
   GstElement* element = gst_parse_launch(("pantiltsink " + properties).c_str(), nullptr);
   gst_object_ref_sink(element);
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(element, bus);
-  fail_unless_equals_int(gst_element_set_state(element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  const bool late = gst_element_set_state(element, GST_STATE_PAUSED) != GST_STATE_CHANGE_FAILURE;
+  fail_if(late && properties.find("driver=scripted") == std::string::npos, "%s: started", properties.c_str());
   std::string text;
-  while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR)) {
+  while (GstMessage* message =
+             gst_bus_timed_pop_filtered(bus, late && text.empty() ? 60 * GST_SECOND : 0, GST_MESSAGE_ERROR)) {
     GError* error = nullptr;
     gst_message_parse_error(message, &error, nullptr);
     fail_unless(text.empty(), "and also: %s", error->message);
@@ -275,7 +265,8 @@ GST_START_TEST(what_cannot_be_is_refused_with_its_name) {
       {"max-acceleration=1e9", "acceleration of 1e+09"},
       {"latency=6000000000", ": latency must be 0 to 5 s, and is 6 s."},
       {"start-pan=-170.5", ": start-pan -170.5 is not between pan-min -170 and pan-max 170."},
-      {"driver=scripted start-tilt=50", ": start-tilt 50 is not between tilt-min -45 and tilt-max 45."},
+      {"driver=scripted head=attic start-tilt=50",
+       ": start-tilt 50 is not between tilt-min -45 and tilt-max 45."},
       {"pan-max=0 start-pan=0.5", ": start-pan 0.5 is not between pan-min -170 and pan-max 0."},
       {"driver=scripted head=cellar script=\"open fail no such device\"",
        "head \"cellar\" cannot be opened: no such device"},
@@ -296,7 +287,7 @@ GST_START_TEST(a_head_that_cannot_be_opened_is_an_error_however_late) {
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   gate.close_writer();
   GstMessage* message = nullptr;
-  while (!(message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ERROR))) crank(rig);
+  while (!(message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ERROR))) rig.crank();
   GError* error = nullptr;
   gst_message_parse_error(message, &error, nullptr);
   fail_unless_equals_string(error->message, "The head \"head\" cannot be opened: no such serial port.");
@@ -305,7 +296,7 @@ GST_START_TEST(a_head_that_cannot_be_opened_is_an_error_however_late) {
   gst_message_unref(message);
   // Once.
   rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, GST_SECOND));
-  for (int k = 0; k < 20; ++k) crank(rig);
+  for (int k = 0; k < 20; ++k) rig.crank();
   fail_unless(gst_bus_pop_filtered(
                   rig.bus, static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ERROR)) == nullptr);
 }
@@ -386,7 +377,7 @@ GST_START_TEST(many_starts_and_stops_leave_no_thread) {
   }
   gst_object_unref(element);
   // A thread that was joined may be listed for a moment longer.
-  for (int k = 0; k < 500 && threads() > before; ++k) g_usleep(10000);
+  for (int k = 0; k < 6000 && threads() > before; ++k) g_usleep(10000);
   fail_unless_equals_int(threads(), before);
 }
 GST_END_TEST

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <string>
 
 #include <gst/check/gstcheck.h>  // last: its macro `fail` is a name in the library's headers
 
@@ -25,4 +26,12 @@ void assert_prompt(const char* what, Round&& round) {
   auto best = std::chrono::milliseconds::max();
   for (int k = 0; k < kRounds && best >= kPromised; ++k) best = std::min(best, round());
   fail_unless(best < kPromised, "%s takes %d ms", what, static_cast<int>(best.count()));
+}
+
+// round(): what was said, where a driver's thread may answer later than it is waited for, and that be said.
+template <typename Round>
+void assert_said(const std::string& expected, Round&& round) {
+  std::string said;
+  for (int k = 0; k < kRounds && said != expected; ++k) said = round();
+  fail_unless(said == expected, "\"%s\" and not \"%s\"", said.c_str(), expected.c_str());
 }
