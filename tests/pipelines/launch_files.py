@@ -5,19 +5,20 @@
     launch_files.py NAME live|file|444
 
 The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
-objects are found. Networks are the loopback, on ports that were free a moment ago.
+objects are found. Where people are told by their size, it has the shape of one. Networks are the loopback, on ports that were free a moment ago.
 """
 import contextlib
 import os
 import pathlib
 import signal
 import socket
+import statistics
 import subprocess
 import sys
 import tempfile
 import time
 
-from support import LIMIT, TOP, ball, gst_launch, json_lines, must, video
+from support import DISTANCE, LIMIT, TOP, ball, gst_launch, json_lines, must, person, video
 
 WIDTH, HEIGHT, FRAMES = 320, 240, 75
 
@@ -40,14 +41,14 @@ def finish(process):
     return output
 
 
-def source(kind):
+def source(kind, scene=ball):
     if kind == 'live':
-        return ball(frames=FRAMES, live=True)
+        return scene(frames=FRAMES, live=True)
     if kind == '444':  # a camera or a file with colour at full resolution, which most players cannot play as H.264
-        return f'{ball(frames=FRAMES)} ! videoconvert ! video/x-raw,format=Y444'
-    if not os.path.exists('ball.mp4'):
-        video('ball.mp4', 'mp4mux', frames=FRAMES)
-    return 'filesrc location=ball.mp4 ! decodebin'
+        return f'{scene(frames=FRAMES)} ! videoconvert ! video/x-raw,format=Y444'
+    if not os.path.exists('scene.mp4'):
+        video('scene.mp4', 'mp4mux', scene, frames=FRAMES)
+    return 'filesrc location=scene.mp4 ! decodebin'
 
 
 def decode(path, pixel_format='I420'):
@@ -152,7 +153,7 @@ def test_virtualptz(kind):
 
 
 def check_the_loop(lines, width, reach):
-    """The head turned, and towards its target: where that is right of the middle, the head looks further right soon after."""
+    """The head turned, and towards its target: where that is on the right, the head looks further right soon after."""
     actions = {line['fusion']['action'] for line in lines}
     assert 'track' in actions, f'nobody was tracked: {actions}'
     pans = [line['pose']['pan'] for line in lines]
@@ -164,7 +165,8 @@ def check_the_loop(lines, width, reach):
             if line['fusion']['action'] == 'track' and each['id'] == line['fusion']['target'] \
                     and abs(pans[k]) < reach and abs(right) > 0.15 * width:
                 ways.append(right * (pans[k + 4] - pans[k]) > 0)
-    assert len(ways) > 5 and sum(ways) > 0.8 * len(ways), f'the head turned towards its target {sum(ways)} times of {len(ways)}'
+    assert len(ways) > 5 and sum(ways) > 0.8 * len(ways), \
+        f'the head turned towards its target {sum(ways)} times of {len(ways)}'
 
 
 def closed_loop(kind, name):
@@ -251,14 +253,14 @@ def test_rtp(kind):
 
 
 def test_robot(kind):
-    """With a recording in place of the sensors. The stream drops what is late, so all that is sure of it is that it begins."""
+    """With a recording in place of the sensors. The stream drops what is late: all that is sure is that it begins."""
     pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,0,0,1\n600,0,0,1\n', 'ascii')
     sensors = f'pirsrc driver=replay location=pir.csv is-live={kind == "live"}'
     with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as stream:
         stream.bind(('127.0.0.1', 0))
         stream.settimeout(LIMIT)
-        # Without a height above the ground nothing is judged in metres, for the ball is not as large as a person everywhere.
-        finish(start('robot', SOURCE=source(kind), SENSORS=sensors, CLEARANCE=0, FILE='out.mkv', JSON='out.jsonl',
+        # With nothing else said, who is not of a person's size and speed in metres is nobody.
+        finish(start('robot', SOURCE=source(kind, person), SENSORS=sensors, FILE='out.mkv', JSON='out.jsonl',
                      HOST='127.0.0.1', PORT=stream.getsockname()[1]))
         packet = stream.recv(65536)
     assert packet[0] >> 6 == 2 and packet[1] & 127 == 96, f'no RTP of a dynamic type: {packet[:12].hex()}'
@@ -268,6 +270,8 @@ def test_robot(kind):
     assert len(recorded) == count, f'{len(recorded)} frames in the recording, {count} lines'
     assert not any(map(coloured, recorded)), 'the recording is not the original picture'
     lines = json_lines('out.jsonl')
+    away = statistics.median(each['distance'] for line in lines for each in line['objects'])
+    assert abs(away - DISTANCE) < 1, f'somebody {DISTANCE} m away is told to be {away} m away'
     assert all(line.keys() >= {'pir', 'fusion'} for line in lines), 'a line without sensors or decision'
     assert lines[-1]['pir'] == [0, 0, 1], 'the sensors are not those of the file'
     actions = {line['fusion']['action'] for line in lines}

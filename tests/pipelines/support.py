@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What the pipeline tests share: running programs that must end, and making small videos."""
 import json
+import math
 import os
 import pathlib
 import subprocess
@@ -32,19 +33,43 @@ def must(result):
     return output
 
 
-def ball(frames=60, width=320, height=240, live=False, name='scene'):
-    """The text of a source: a grey ball that bounces in front of a grey wall with rings on it, which stands still."""
-    part = ('videotestsrc num-buffers={frames} is-live={live} {what} ! video/x-raw,format=AYUV,width={width},'
-            'height={height},framerate=25/1 ! {name}.')
+def before_rings(ball_width, ball_height, place, frames, width, height, live, name):
+    """The text of a source: a grey ball in a picture of so many pixels, which is laid over rings at a place."""
+    def part(pattern, size):
+        return (f'videotestsrc num-buffers={frames} is-live={live} {pattern} ! '
+                f'video/x-raw,format=AYUV,width={size[0]},height={size[1]},framerate=25/1 ! {name}.')
+    left, top, over_width, over_height = place
     return ' '.join([
-        part.format(what='pattern=zone-plate kx2=12 ky2=12', **locals()),
-        part.format(what='pattern=ball background-color=0', **locals()),  # that is, a transparent one
-        f'compositor name={name} ! video/x-raw,format=AYUV,width={width},height={height} ! videoconvert ! '
+        part('pattern=zone-plate kx2=12 ky2=12', (width, height)) + 'sink_0',
+        part('pattern=ball background-color=0', (ball_width, ball_height)) + 'sink_1',  # that is, a transparent one
+        f'compositor name={name} sink_1::xpos={left} sink_1::ypos={top} sink_1::width={over_width} '
+        f'sink_1::height={over_height} ! video/x-raw,format=AYUV,width={width},height={height} ! videoconvert ! '
         'video/x-raw,format=I420'])
 
 
-def video(path, muxer, **what):
-    must(gst_launch(f'{ball(**what)} ! x264enc key-int-max=10 ! {muxer} ! filesink location={path}'))
+def ball(frames=60, width=320, height=240, live=False, name='scene'):
+    """The text of a source: a grey ball that bounces in front of a grey wall with rings on it, which stands still."""
+    return before_rings(width, height, (0, 0, width, height), frames, width, height, live, name)
+
+
+# A lens of VIEW degrees that looks straight ahead, CLEARANCE metres above the ground, as robot.launch takes it to be; and
+# somebody who runs to and fro before it, at most 2.1 m a second.
+VIEW, CLEARANCE, DISTANCE, TALL, WIDE = 60, 0.8, 5, 1.7, 0.5
+
+
+def person(frames=60, width=320, height=240, live=False, name='scene'):
+    """The text of a source: a ball again, but as large in the picture as a person of that size at that distance is.
+
+    It stays on the ground: a picture as high as the ball, 40 pixels, leaves it no room but to the sides.
+    """
+    metre = width / 2 / math.tan(math.radians(VIEW / 2)) / DISTANCE  # in pixels, at the distance
+    top = height / 2 + (CLEARANCE - TALL) * metre
+    return before_rings(round(width * 40 / (WIDE * metre)), 40, (0, round(top), width, round(TALL * metre)),
+                        frames, width, height, live, name)
+
+
+def video(path, muxer, scene=ball, **what):
+    must(gst_launch(f'{scene(**what)} ! x264enc key-int-max=10 ! {muxer} ! filesink location={path}'))
     return pathlib.Path(path)
 
 
