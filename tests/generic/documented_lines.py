@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Every gst-launch line and Python program of the documentation runs, but for what a test machine does not have.
 
-Lines are taken from the fenced blocks of README.md and docs/ and from the |[ ... ]| blocks of the elements' SECTION
-comments. Cameras become a test source, files that are read become a small video, windows become a fakesink.
+Lines are taken from the fenced blocks of the pages here and in docs/, and from the |[ ... ]| blocks of the elements'
+SECTION comments. Cameras become a test source, files that are read become a small video, windows become a fakesink. Of
+`./pipelines/run` it is only judged whether it can make its line: tests/pipelines run those.
 """
 import os
 import pathlib
@@ -30,7 +31,7 @@ def blocks(path, language='(?:sh|shell|bash)?'):
             yield from re.findall(r'\|\[(?:\s*<!--.*?-->)?(.*?)\]\|', comment, re.S)
 
 
-PAGES = [TOP / 'README.md', *sorted((TOP / 'docs').rglob('*.md')), *sorted((TOP / 'plugins').rglob('*.cpp'))]
+PAGES = [*sorted(TOP.glob('*.md')), *sorted((TOP / 'docs').rglob('*.md')), *sorted((TOP / 'plugins').rglob('*.cpp'))]
 PAGES = [path for path in PAGES if path.parent != TOP / 'docs' / 'elements']  # those repeat the comments
 
 
@@ -41,6 +42,17 @@ def lines():
                 line = line.strip().removeprefix('$ ')
                 if line.startswith('gst-launch-1.0 '):
                     yield path.relative_to(TOP), line
+
+
+def launch_files():
+    """Every `./pipelines/run ...` in a block or in the text, as what prints its line."""
+    for path in PAGES:
+        if path.suffix == '.md':
+            for call in re.findall(r'\./pipelines/run( [^`\n]*)', path.read_text('utf-8')):
+                words = shlex.split(call.replace('NAME', 'annotate'))
+                if words[0] not in ('--list', '--print', '--help'):
+                    words.insert(0, '--print')
+                yield path.relative_to(TOP), [TOP / 'pipelines' / 'run', *words]
 
 
 def programs():
@@ -99,17 +111,19 @@ def main():
         print('FAIL' if wrong else 'ok  ', name)
         if wrong:
             failed += 1
-            print(f'  run as: {shlex.join(words)}\n  {wrong}')
+            print(f'  run as: {shlex.join(map(str, words))}\n  {wrong}')
 
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        subprocess.run(['gst-launch-1.0', '-q', *f'{BALL} ! x264enc ! matroskamux ! filesink location=ball.mkv'.split()],
-                       check=True, timeout=60)
+        make = f'gst-launch-1.0 -q {BALL} ! x264enc ! matroskamux ! filesink location=ball.mkv'
+        subprocess.run(make.split(), check=True, timeout=60)
         for path, line in lines():
             if any(name in line for name in NEEDS_HARDWARE) or REAL_DRIVER.search(line):
                 print(f'skip {path}: {line} (its hardware is not here)')
             else:
                 judge(f'{path}: {line}', stand_in(line))
+        for path, words in launch_files():
+            judge(f'{path}: {shlex.join(map(str, words[1:]))}', words)
         for path, program in programs():
             judge(f'{path}: a program', ['/usr/bin/python3', '-c', program])
         os.chdir('/')
