@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// cerberus-demo: runs the line of closed-loop.launch as gst-launch-1.0 would, with what a line cannot do: the view is made to
-// fit the video, there is progress and a summary, and a window on the screen that may be missing or be closed.
+// cerberus-demo: runs the line of closed-loop.launch as gst-launch-1.0 would, with what a line cannot do: the view is
+// made to fit the video, there is progress and a summary, and a window on the screen that may be missing or be closed.
 //
 //   pipelines/run --with build/pipelines/cerberus-demo closed-loop FILE=... MP4=... JSON=...
 #include <glib/gstdio.h>
@@ -56,8 +56,8 @@ std::string location(GstElement* element) {
   return text ? text : "";
 }
 
-// The line says which angles; here they meet the video's size: the view gets the video's shape, in pixels of the video or larger,
-// and the head the limits at which the view ends.
+// The line says which angles; here they meet the video's size: the view gets the video's shape, in pixels of the video
+// or larger, and the head the limits at which the view ends.
 void fit_view(const Parts& parts, vision::Size video) {
   double wide = 0, view = 0;
   g_object_get(parts.camera, "wide-fov", &wide, "horizontal-fov", &view, nullptr);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The window on the screen, where there is one: a pipeline of its own, so that whatever happens to it (no display after all,
-// closed by its user) ends there and disturbs nobody.
+// The window on the screen, where there is one: a pipeline of its own, so that whatever happens to it (no display after
+// all, closed by its user) ends there and disturbs nobody.
 #pragma once
 
 #include <gst/gst.h>
@@ -14,7 +14,8 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  // Shows what leaves `pad`, as much of it as the screen keeps up with. Says so where a display is there and cannot be used.
+  // Shows what leaves `pad`, as much of it as the screen keeps up
+  // with. Says so where a display is there and cannot be used.
   void show(GstPad* pad);
 
  private:

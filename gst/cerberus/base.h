@@ -10,10 +10,10 @@ G_BEGIN_DECLS
  * CERBERUS_EVENT_BASE:
  *
  * Name of the structure of the custom upstream event by which an application (or a simulator) tells how fast the body
- * that carries head and sensors turns. It holds from its running time until the next one's, for %CERBERUS_BASE_LIFETIME at
- * the most, and goes before what `cameramotion` sees. Say it some times a second, also when nothing changes: who falls
- * silent is not believed for ever. Fields: `yaw-rate` (double, degrees a second, positive to the right), `running-time` (uint64,
- * nanoseconds).
+ * that carries head and sensors turns. It holds from its running time until the next one's, for %CERBERUS_BASE_LIFETIME
+ * at the most, and goes before what `cameramotion` sees. Say it some times a second, also when nothing changes: who
+ * falls silent is not believed for ever. Fields: `yaw-rate` (double, degrees a second, positive to the right),
+ * `running-time` (uint64, nanoseconds).
  *
  * Since: 0.1
  */

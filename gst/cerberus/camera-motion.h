@@ -18,8 +18,8 @@ G_BEGIN_DECLS
  * @scene_age: frames of this scene so far, this one included: 1 is the first frame after the start, a cut, a seek or a
  *     gap (it has no predecessor, and everybody drops history); 0 is unknown
  * @path_id: the same for all frames that @path connects; 0 is none
- * @path: (array fixed-size=9): where the picture went from the frame at which the path began to this one, as @matrix. Who
- *     missed frames in between learns from two frames of one path how the camera moved from one to the other: the
+ * @path: (array fixed-size=9): where the picture went from the frame at which the path began to this one, as @matrix.
+ *     Who missed frames in between learns from two frames of one path how the camera moved from one to the other: the
  *     later one's path times the inverse of the earlier one's
  *
  * The camera's own motion between two consecutive frames.
@@ -46,8 +46,8 @@ struct _CerberusCameraMotion {
  * @meta: parent
  * @motion: the camera's motion
  *
- * Carries a #CerberusCameraMotion on a video buffer. Scaled with the picture, lost where it is cropped; videoflip keeps it
- * as it is, which is wrong, and gives nobody a chance to notice. At most one a buffer.
+ * Carries a #CerberusCameraMotion on a video buffer. Scaled with the picture, lost where it is cropped; videoflip keeps
+ * it as it is, which is wrong, and gives nobody a chance to notice. At most one a buffer.
  *
  * Since: 0.1
  */

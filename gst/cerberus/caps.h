@@ -22,8 +22,8 @@ G_BEGIN_DECLS
 /**
  * CERBERUS_VIDEO_CAPS:
  *
- * Caps string of raw video in %CERBERUS_VIDEO_FORMATS, any size and frame rate. Caps that name no frame rate at all are a
- * subset of it too.
+ * Caps string of raw video in %CERBERUS_VIDEO_FORMATS, any size and frame
+ * rate. Caps that name no frame rate at all are a subset of it too.
  *
  * Since: 0.1
  */

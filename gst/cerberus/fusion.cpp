@@ -56,7 +56,8 @@ int number_of(const CerberusFusionAction& action) {
   return number;
 }
 
-// An application may have left anything in it: a number that is no action moves nobody, no reading that is none says somebody.
+// An application may have left anything in it: a number that is
+// no action moves nobody, no reading that is none says somebody.
 CerberusFusion sane(CerberusFusion fusion) {
   if (!is_action(number_of(fusion.action))) fusion.action = CERBERUS_FUSION_HOLD;
   if (!fusion.rule_name) fusion.rule_name = g_intern_static_string("none");

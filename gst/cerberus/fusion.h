@@ -12,9 +12,10 @@ G_BEGIN_DECLS
  * CERBERUS_MESSAGE_FUSION:
  *
  * Name of the structure of the element message that tells of every change of the fusion's decision. Fields:
- * `running-time` (uint64, nanoseconds: of the frame, or, of what was decided between two frames, when that was), `rule` (int), `rule-name` (string), `action` (#CerberusFusionAction), `target`
- * (uint), `pan`, `sector-from`, `sector-to` (double, degrees), `limited`, `camera-found` (boolean), `sensors` (array of
- * int: 0, 1, 2 = invalid), `bearings` (array of double, degrees, one a sensor), `doubtful` (uint, one bit a sensor).
+ * `running-time` (uint64, nanoseconds: of the frame, or, of what was decided between two frames, when that was), `rule`
+ * (int), `rule-name` (string), `action` (#CerberusFusionAction), `target` (uint), `pan`, `sector-from`, `sector-to`
+ * (double, degrees), `limited`, `camera-found` (boolean), `sensors` (array of int: 0, 1, 2 = invalid), `bearings`
+ * (array of double, degrees, one a sensor), `doubtful` (uint, one bit a sensor).
  *
  * Since: 0.1
  */
@@ -25,8 +26,8 @@ G_BEGIN_DECLS
  *
  * Name of the structure of the custom downstream out-of-band event by which a live fusion tells a head what it decided
  * between two frames, because a sensor changed its mind: nobody waits for the next frame, and no queue holds it up. It
- * counts as if the last frame had carried it, until a frame that was decided later (#CerberusFusion.decided). Fields: `head`
- * (string: whom it is for; empty: any), and those of %CERBERUS_MESSAGE_FUSION.
+ * counts as if the last frame had carried it, until a frame that was decided later (#CerberusFusion.decided). Fields:
+ * `head` (string: whom it is for; empty: any), and those of %CERBERUS_MESSAGE_FUSION.
  *
  * Since: 0.1
  */
@@ -78,7 +79,8 @@ typedef enum {
  * @camera_found: the camera sees a confirmed object
  * @n_sensors: number of PIR sensors
  * @sensors: their readings: 0 nothing, 1 somebody, 2 invalid
- * @bearings: where each of them looks, degrees, positive to the right of straight ahead; 0 for one that has not told yet
+ * @bearings: where each of them looks, degrees, positive to the
+ *     right of straight ahead; 0 for one that has not told yet
  * @doubtful: one bit a sensor: its reading was not counted because the robot itself turned
  * @decided: running time until which the sensors were heard for it: of two decisions the later one counts;
  *     %GST_CLOCK_TIME_NONE if it is not known
@@ -276,7 +278,8 @@ GstEvent *cerberus_event_new_fusion (const gchar *head, const CerberusFusion *fu
  *
  * Reads a %CERBERUS_EVENT_FUSION.
  *
- * Returns: (transfer full) (nullable): what was decided; %NULL (and nothing is written) if @event is no well-formed one.
+ * Returns: (transfer full) (nullable): what was decided; %NULL
+ *     (and nothing is written) if @event is no well-formed one.
  *
  * Since: 0.1
  */
@@ -310,8 +313,8 @@ GstMessage *cerberus_message_new_pantilt (GstObject *src, GstClockTime running_t
  *
  * Reads a %CERBERUS_MESSAGE_PANTILT.
  *
- * Returns: (transfer full) (nullable): where the head looked at @running_time: its name, pan and tilt, and nothing more;
- *     %NULL (and nothing is written) if @message is no well-formed one.
+ * Returns: (transfer full) (nullable): where the head looked at @running_time: its name, pan and tilt, and nothing
+ *     more; %NULL (and nothing is written) if @message is no well-formed one.
  *
  * Since: 0.1
  */

@@ -9,8 +9,9 @@ G_BEGIN_DECLS
 /**
  * CERBERUS_PIR_CAPS:
  *
- * Caps string of every stream of PIR readings. Complete caps name `format`, `sensors` (int), `bearings` (array of double,
- * degrees, one a sensor, positive to the right of straight ahead) and `field-of-view` (double, degrees, of each sensor).
+ * Caps string of every stream of PIR readings. Complete caps name `format`, `sensors`
+ * (int), `bearings` (array of double, degrees, one a sensor, positive to the right of
+ * straight ahead) and `field-of-view` (double, degrees, of each sensor).
  *
  * Since: 0.1
  */
@@ -142,8 +143,8 @@ GstMessage *cerberus_message_new_pir (GstObject *src, GstClockTime running_time,
  *
  * Reads a %CERBERUS_MESSAGE_PIR.
  *
- * Returns: (transfer full) (nullable): the readings, a byte a sensor: 0 nothing, 1 somebody, 2 invalid; %NULL if @message
- *     is no well-formed one.
+ * Returns: (transfer full) (nullable): the readings, a byte a sensor: 0 nothing, 1 somebody, 2 invalid; %NULL if
+ *     @message is no well-formed one.
  *
  * Since: 0.1
  */

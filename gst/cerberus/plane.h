@@ -10,8 +10,8 @@ G_BEGIN_DECLS
  * CerberusPlaneKind:
  * @CERBERUS_PLANE_LUMA: brightness at analysis size, 8 bit
  * @CERBERUS_PLANE_DIFFERENCE: registered difference of this frame and the previous one, 8 bit
- * @CERBERUS_PLANE_PREVIOUS_DIFFERENCE: registered difference of the two frames before, in this frame's coordinates, 8 bit;
- *   made only where somebody downstream asks for planes (%CERBERUS_QUERY_PLANES) or needs it for the moving area
+ * @CERBERUS_PLANE_PREVIOUS_DIFFERENCE: registered difference of the two frames before, in this frame's coordinates,
+ *   8 bit; made only where somebody downstream asks for planes (%CERBERUS_QUERY_PLANES) or needs it for the moving area
  * @CERBERUS_PLANE_HISTOGRAM: histogram of the difference: one row of words of 32 bit, host byte order; the
  *   first 256 are the counts, what follows belongs to the elements
  * @CERBERUS_PLANE_MASK: moving area, 0 or 255, 8 bit

@@ -12,8 +12,8 @@ G_BEGIN_DECLS
  * Name of the structure of the custom query that asks downstream whether anybody wants the stages' planes.
  *
  * An element that wants them answers: it calls cerberus_query_set_planes_wanted() and returns %TRUE from its query
- * function. All others let the query pass (a tee asks branch after branch until one answers); one that takes the planes off the
- * frames returns %FALSE itself, so that nobody behind it is asked.
+ * function. All others let the query pass (a tee asks branch after branch until one answers); one that takes the planes
+ * off the frames returns %FALSE itself, so that nobody behind it is asked.
  *
  * Since: 0.1
  */

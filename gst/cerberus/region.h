@@ -45,16 +45,16 @@ typedef enum {
  * @vy: speed downwards, frame pixels a second, the camera's motion taken out
  * @age: time since the object was first seen
  * @state: how its place is known
- * @bearing: direction of its centre from the camera's axis (the head's pan is not in it), degrees, positive to the right; NaN if
- *     unknown
+ * @bearing: direction of its centre from the camera's axis (the head's
+ *     pan is not in it), degrees, positive to the right; NaN if unknown
  * @distance: metres from the camera; NaN if unknown
  *
  * Something that moves. On a buffer it is also a #GstVideoRegionOfInterestMeta of type `motion` (`person` if @person),
  * which other elements and tools read.
  *
- * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do not
- * turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them as they
- * are, which is wrong, and gives nobody a chance to notice.
+ * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do
+ * not turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them as
+ * they are, which is wrong, and gives nobody a chance to notice.
  *
  * Since: 0.1
  */

@@ -20,11 +20,11 @@ struct Turn {
   double yaw = 0, pitch = 0;
 };
 
-// What is left of `motion` (frame k-1 to k, pixels of a picture of this size, as seen through `lens`) when the head's way
-// from `before` to `after` is taken out: the turn of what carries the head.
+// What is left of `motion` (frame k-1 to k, pixels of a picture of this size, as seen through `lens`) when the head's
+// way from `before` to `after` is taken out: the turn of what carries the head.
 //   mean over a grid of the picture of  direction(p, before) - direction(motion p, after)
-// A mean over bearings, because a simple model's shift is one over pixels: at the border of a 60 degree lens a degree has
-// a third more of them than in the middle. NaN for an unknown lens or look.
+// A mean over bearings, because a simple model's shift is one over pixels: at the border of a 60 degree lens a degree
+// has a third more of them than in the middle. NaN for an unknown lens or look.
 Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision::Size picture,
                const Look& before, const Look& after);
 
@@ -39,9 +39,9 @@ class BaseRate {
   static constexpr Time kSettle = std::chrono::milliseconds(150);  // a head may be that late
 
   void reset();
-  // A frame taken at `time`, `seconds` after the one before. `turn`: of the base since then, radians; NaN: the picture does
-  // not say. `head_rate`: the head's mean speed since then, radians a second. Where that changes abruptly, and just
-  // after, a head that is a little late looks like a base that turns: such frames do not count.
+  // A frame taken at `time`, `seconds` after the one before. `turn`: of the base since then, radians; NaN: the picture
+  // does not say. `head_rate`: the head's mean speed since then, radians a second. Where that changes abruptly, and
+  // just after, a head that is a little late looks like a base that turns: such frames do not count.
   void add(Time time, double seconds, double turn, double head_rate);
   // Radians a second, positive to the right. NaN: not known.
   double at(Time time) const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a head may do, axis by axis. Radians and seconds; pan positive to the right, tilt positive up. Positions are a line:
-// nothing wraps on it. Zero, straight ahead, always lies between the stops.
+// What a head may do, axis by axis. Radians and seconds; pan positive to the right, tilt positive up. Positions are a
+// line: nothing wraps on it. Zero, straight ahead, always lies between the stops.
 #pragma once
 
 #include <chrono>
@@ -39,8 +39,8 @@ constexpr double kMostPosition = sensing::radians(3600);
 constexpr double kMostSpeed = sensing::radians(3600);
 constexpr double kMostAcceleration = sensing::radians(1e6);
 
-// Empty, or what is wrong in words for a user, with the numbers in degrees: limits that exclude zero or are in the wrong
-// order, a speed or an acceleration that is not above 0, anything that is not a number or absurd.
+// Empty, or what is wrong in words for a user, with the numbers in degrees: limits that exclude zero or are in the
+// wrong order, a speed or an acceleration that is not above 0, anything that is not a number or absurd.
 std::string check(const Limits& limits);
 // Empty, or which of these positions lies beyond the stops, as above.
 std::string check_start(const Limits& limits, double pan, double tilt);
@@ -50,9 +50,10 @@ struct Reach {
   bool limited = false;  // the bearing itself lies beyond them
 };
 
-// Where to turn to so as to look along `bearing` (any angle, it wraps): among the positions bearing + n 2 pi between the
-// stops the one nearest to `position`; where there is none, the stop nearest to the bearing (equally near: the one nearest
-// to `position`). So the limits decide the way round, not the shorter arc. A bearing that is not a number: stay.
+// Where to turn to so as to look along `bearing` (any angle, it wraps): among the positions
+// bearing + n 2 pi between the stops the one nearest to `position`; where there is none,
+// the stop nearest to the bearing (equally near: the one nearest to `position`). So the
+// limits decide the way round, not the shorter arc. A bearing that is not a number: stay.
 Reach reach(double bearing, double position, const AxisLimits& limits);
 
 }  // namespace cerberus::control

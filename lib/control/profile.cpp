@@ -41,8 +41,8 @@ void Plan::add(double length, double acceleration, double& position, double& spe
   speed += acceleration * length;
 }
 
-// From (x, v) to rest at X under |v| <= V and |acceleration| <= a. With s = sign of the way that is left after braking at
-// once (X - x - v|v| / 2a), D = s (X - x) and u = s v, the peak w of the trapezoid is
+// From (x, v) to rest at X under |v| <= V and |acceleration| <= a. With s = sign of the way that is left after braking
+// at once (X - x - v|v| / 2a), D = s (X - x) and u = s v, the peak w of the trapezoid is
 //   w = min(V, sqrt(a D + u^2 / 2)),   accelerate (w - u) / a,  cruise (D - (2 w^2 - u^2) / 2a) / w,  brake w / a
 // and where u > V the first piece brakes to V.
 void Plan::travel(double position, double speed, double target, double most, double acceleration) {

@@ -10,14 +10,14 @@
 //   all this for heads that are 0 .. (kLags - 1) kLag late: the lag that leaves the least stir counts
 //   finding: least_episodes() in a row that say the same, and kLeastTravel
 //
-// One case looks like a head that slips and is none: a head that holds a target while the robot turns below it moves, and
-// the picture stands. It cannot do so without being late, though (it sees the robot turn before it answers), and
-// the picture jerks at every change. So a picture that jerks (stirs) is no evidence but of a head that follows or turns the
-// wrong way, which no robot's turning looks like. And a gain that is another one at each change is the robot's doing,
-// or a person's: a wrong lens or gear is always wrong by the same. Twice in a row it may be the same by chance, three times
-// hardly, while one that slips or is reversed is so much off that two are enough. (Simulated: in the three days of robots and
-// people that tests/unit/slip.cpp makes with CERBERUS_SLIP_SEEDS=100, nothing wrong was found; with two for a wrong scale,
-// 17 times.)
+// One case looks like a head that slips and is none: a head that holds a target while the robot turns below it moves,
+// and the picture stands. It cannot do so without being late, though (it sees the robot turn before it answers), and
+// the picture jerks at every change. So a picture that jerks (stirs) is no evidence but of a head that follows or turns
+// the wrong way, which no robot's turning looks like. And a gain that is another one at each change is the robot's
+// doing, or a person's: a wrong lens or gear is always wrong by the same. Twice in a row it may be the same by chance,
+// three times hardly, while one that slips or is reversed is so much off that two are enough. (Simulated: in the three
+// days of robots and people that tests/unit/slip.cpp makes with CERBERUS_SLIP_SEEDS=100, nothing wrong was found; with
+// two for a wrong scale, 17 times.)
 #pragma once
 
 #include <array>
@@ -55,9 +55,9 @@ class SlipWatch {
 
   // Forgets everything.
   void reset() { *this = {}; }
-  // The next frame: `seconds` after the one before it, in which the picture turned by `picture` and the head was told to
-  // turn by `head`, radians. NaN: the picture does not say. Returns a fault when it is found, once; it is found anew only
-  // after the head has followed again.
+  // The next frame: `seconds` after the one before it, in which the picture turned by `picture` and the head was told
+  // to turn by `head`, radians. NaN: the picture does not say. Returns a fault when it is found, once; it is found anew
+  // only after the head has followed again.
   std::optional<SlipFinding> add(double seconds, double picture, double head);
   SlipFault fault() const { return fault_; }  // that stands
 

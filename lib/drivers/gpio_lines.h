@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Lines of one GPIO chip: the part of libgpiod that the sensors need, alike for libgpiod 1.6 (gpio_lines_v1.cpp) and 2.x
-// (gpio_lines_v2.cpp), which differ in every call. The build takes one of the two by the library's version.
+// Lines of one GPIO chip: the part of libgpiod that the sensors need, alike for libgpiod 1.6 (gpio_lines_v1.cpp) and
+// 2.x (gpio_lines_v2.cpp), which differ in every call. The build takes one of the two by the library's version.
 // Functions that can fail return errno, 0 = good.
 #pragma once
 

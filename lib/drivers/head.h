@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The interface to a pan-tilt head: a driver executes, it does not think. One thread calls at a time; calls may block (a
-// serial line), except close() and stop(), which only do what is in their power. Texts are for a user and name the device;
-// empty = good. Time is a parameter: running time of the pipeline, never going back.
+// The interface to a pan-tilt head: a driver executes, it does not think. One thread calls at a time; calls may block
+// (a serial line), except close() and stop(), which only do what is in their power. Texts are for a user and name the
+// device; empty = good. Time is a parameter: running time of the pipeline, never going back.
 #pragma once
 
 #include <memory>
@@ -36,8 +36,8 @@ class Head {
   virtual void close() noexcept = 0;         // stops; safe at any time and any number of times
   virtual void stop(Time now) noexcept = 0;  // brakes as hard as permitted and stays; as close()
   virtual std::string command(const HeadCommand& command) = 0;
-  // From `now` on (as a command) other limits, which have passed control::check(): what was commanded last goes on within
-  // them. Who is beyond them returns, and goes no further out.
+  // From `now` on (as a command) other limits, which have passed control::check(): what was commanded last goes on
+  // within them. Who is beyond them returns, and goes no further out.
   virtual std::string limit(Time now, const control::Limits& limits) = 0;
   // Where it looks (or will look, as far as it is known: until the latency has passed nothing new can change it).
   // `pose` is the piece that holds at `time`: pose.from = time.

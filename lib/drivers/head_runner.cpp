@@ -23,8 +23,8 @@ struct Question {
 
 }  // namespace
 
-// Shared by owner and worker; whoever is last destroys it. `lock` guards what is below it; where there is a worker, the head is
-// its own.
+// Shared by owner and worker; whoever is last destroys it. `lock` guards
+// what is below it; where there is a worker, the head is its own.
 struct HeadRunner::Core {
   std::unique_ptr<Head> head;
   bool blocks = true;                // the head has a worker

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head on a thread of its own: whoever drives it waits as long as he wants to and not as long as the driver does. A head
-// that never blocks has no thread: its answer is there at once, whatever else the machine does.
+// A head on a thread of its own: whoever drives it waits as long as he wants to and not as long as the driver does. A
+// head that never blocks has no thread: its answer is there at once, whatever else the machine does.
 //
-// Requests do not queue up. Of what was asked for while the driver was busy the newest command counts, and a stop beats the
-// commands before it: nothing is caught up with. A driver that blocks for ever keeps its thread, its device and its lease
-// (whatever they are) until it returns, then stops, closes and ends by itself; the runner's owner may be long gone.
+// Requests do not queue up. Of what was asked for while the driver was busy the newest command
+// counts, and a stop beats the commands before it: nothing is caught up with. A driver that
+// blocks for ever keeps its thread, its device and its lease (whatever they are) until it
+// returns, then stops, closes and ends by itself; the runner's owner may be long gone.
 #pragma once
 
 #include <functional>
@@ -26,8 +27,8 @@ class HeadRunner {
     late,         // no answer yet; it goes on
     interrupted,  // somebody called interrupt(true)
   };
-  // moved: called when the head was opened, stopped or commanded; refused: when it cannot be opened, however late. On the
-  // worker's thread if there is one; must not block nor call the runner.
+  // moved: called when the head was opened, stopped or commanded; refused: when it cannot be opened, however late. On
+  // the worker's thread if there is one; must not block nor call the runner.
   HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> moved = {},
              std::function<void()> refused = {});
   // Gives the driver close_patience to stop and close.
@@ -41,8 +42,8 @@ class HeadRunner {
   Answer stop(Time now, Patience patience);
   // Hands over and returns.
   void command(const HeadCommand& command);
-  // As command(). A command that waits is carried out within the new limits, and none without them: a head that refuses them
-  // is stopped, and asked again before each command.
+  // As command(). A command that waits is carried out within the new limits, and none without them: a head that refuses
+  // them is stopped, and asked again before each command.
   void limit(Time now, const control::Limits& limits);
   // Carries out `command`, if there is one, then asks for the pieces of the way from `from` until `until` (one piece at
   // least, 64 at most). Two who ask at once are answered one after the other.
@@ -53,7 +54,8 @@ class HeadRunner {
   void interrupt(bool on);
   // What the driver complained of since the last call; empty: nothing.
   std::string failure();
-  // Why the head could not be opened, which is what everything else fails of then; once. Empty: it is open, or being opened.
+  // Why the head could not be opened, which is what everything
+  // else fails of then; once. Empty: it is open, or being opened.
   std::string refusal();
   // The driver carried out the last command, and told its state when last asked.
   bool healthy() const;

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head for tests: writes down what it is told, and fails or blocks on request. At rest it looks where the last command
-// sent it, at once.
+// A head for tests: writes down what it is told, and fails or blocks on
+// request. At rest it looks where the last command sent it, at once.
 //
 //   script = part {";" part}
 //   part   = "record" FD | call [NUMBER] "fail" TEXT | call [NUMBER] "wait" FD
 //   call   = "open" | "command" | "state" | "stop" | "close" | "limit"
 //
-// "record 7" writes a line a call to file descriptor 7: `command 40000000 position 0.5 1.2 hold 0 0` (time in nanoseconds,
-// pan, tilt in radians), `limit 40000000 -0.5 0.5 -0.2 0.2` (pan, tilt). "command 3 fail no power" lets the third command fail, and all later ones; "stop wait 8" blocks each stop until
-// file descriptor 8 has something to read or is closed by its writer. Without a number: the first and all later ones.
+// "record 7" writes a line a call to file descriptor 7: `command 40000000 position 0.5 1.2 hold 0 0` (time in
+// nanoseconds, pan, tilt in radians), `limit 40000000 -0.5 0.5 -0.2 0.2` (pan, tilt). "command 3 fail no power" lets
+// the third command fail, and all later ones; "stop wait 8" blocks each stop until file descriptor 8 has something to
+// read or is closed by its writer. Without a number: the first and all later ones.
 #pragma once
 
 #include <array>

@@ -8,9 +8,9 @@
 //          | SECONDS "fail" TEXT               from then on reading fails
 //          | "show fail" TEXT                  the LEDs fail
 //          | "wait" FD FD                      not a recording but a device that blocks, for a live source: its first
-//                                              read() gives what the script says of 0 s, its second writes a byte to the
-//                                              second descriptor, waits for something to read, or the end, at the first,
-//                                              and gives the rest
+//                                              read() gives what the script says of 0 s, its second writes
+//                                              a byte to the second descriptor, waits for something to
+//                                              read, or the end, at the first, and gives the rest
 #pragma once
 
 #include "drivers/recorded_sensor.h"

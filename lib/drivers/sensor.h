@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The interface to a set of PIR sensors: a driver tells what its lines do, it does not think (polarity, debounce and the
-// rest are sensing::PirModel's). One thread calls at a time. A default SensorError = good. Calls may block, so a device has a
-// thread of its own (sensor_runner.h), and so has the opening of a recording, which from then on answers at once.
+// The interface to a set of PIR sensors: a driver tells what its lines do, it does not think
+// (polarity, debounce and the rest are sensing::PirModel's). One thread calls at a time. A
+// default SensorError = good. Calls may block, so a device has a thread of its own
+// (sensor_runner.h), and so has the opening of a recording, which from then on answers at once.
 //
-// A device has a clock of its own, CLOCK_MONOTONIC: wait for fd(), then read(). A recording lives in the time that it is
-// told, 0 = its begin, however slow or fast that runs: read() when next() has come.
+// A device has a clock of its own, CLOCK_MONOTONIC: wait for fd(), then read(). A recording lives in the time that it
+// is told, 0 = its begin, however slow or fast that runs: read() when next() has come.
 #pragma once
 
 #include <limits>

@@ -37,8 +37,8 @@ class SensorArray {
   SensorArray();
   ~SensorArray();
 
-  // Takes the sensors and opens them, and waits for that as long as patience goes. heartbeat > 0. refused: called on another
-  // thread if they cannot be opened, however late; must not block, nor call the array.
+  // Takes the sensors and opens them, and waits for that as long as patience goes. heartbeat > 0. refused: called on
+  // another thread if they cannot be opened, however late; must not block, nor call the array.
   SensorError open(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
                    const sensing::PirOptions& options, Time heartbeat,
                    Patience patience = std::chrono::minutes(10), std::function<void()> refused = {});
@@ -48,7 +48,8 @@ class SensorArray {
 
   // The next reading not later than `now`. Readings begin with the time of the first call; there is one at least.
   Step next(Time now, SensorReading& reading);
-  // Of a recording: the next reading is that of `start`, of which everything before it is known as if it had been played.
+  // Of a recording: the next reading is that of `start`, of which
+  // everything before it is known as if it had been played.
   void seek(Time start);
   // Of drivers that measure: a reading for each sample, whatever changes; false at the begin.
   void tell_samples(bool all) { tell_samples_ = all; }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors on a thread of their own: whoever reads them takes what is there, and never waits for their driver, neither while it
-// is opened nor when it reads or lights LEDs. A recording is only opened there, then handed over. (Heads have a head_runner.h.)
+// Sensors on a thread of their own: whoever reads them takes what is there, and never
+// waits for their driver, neither while it is opened nor when it reads or lights LEDs.
+// A recording is only opened there, then handed over. (Heads have a head_runner.h.)
 //
 // A driver that blocks for ever keeps its thread and its device until it returns, then closes and ends by itself; the
 // runner may be long gone.
@@ -20,7 +21,8 @@ class SensorRunner final : public Sensor {
   SensorRunner() = default;
   ~SensorRunner() override { close(); }
 
-  // Begins to open the sensors. refused: called if they cannot be opened, on the thread; must not block, nor call the runner.
+  // Begins to open the sensors. refused: called if they cannot be
+  // opened, on the thread; must not block, nor call the runner.
   void begin(std::unique_ptr<Sensor> sensor, const SensorSetup& setup, std::function<void()> refused);
   // It is over, well or not, within so long. Before that there is nothing to read, and fd() becomes readable then.
   bool opened(Patience patience = {}) const;

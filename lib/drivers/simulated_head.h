@@ -3,7 +3,8 @@
 // commands with the same times give the same way, and the noise is a function of seed and time alone.
 //
 //   command at t -> from t + latency on the motors follow control::Plan -> the camera follows the motor with play:
-//   while the motor turns to the right, camera = max(camera, motor - backlash / 2), to the left min(camera, motor + backlash / 2)
+//   while the motor turns to the right, camera = max(camera, motor - backlash / 2),
+//   to the left min(camera, motor + backlash / 2)
 #pragma once
 
 #include <array>

@@ -15,8 +15,8 @@ using Patience = std::chrono::steady_clock::duration;
 
 class Worker {
  public:
-  // `work` owns or shares all that it touches: if it hangs, it keeps that until it returns, and whoever began it may be long
-  // gone.
+  // `work` owns or shares all that it touches: if it hangs, it keeps
+  // that until it returns, and whoever began it may be long gone.
   template <typename Work>
   explicit Worker(Work work) {
     std::promise<void> over;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The track that an application chose itself: followed while it lives, whatever the usual choice would be.
 //
-// One who is not on a frame is waited for, because who leaves the picture while the camera turns comes back with the same
-// identity (vision::TrackOptions::away_time). After that, and when it has never been on a frame, the choice has come to
-// nothing.
+// One who is not on a frame is waited for, because who leaves the picture while the
+// camera turns comes back with the same identity (vision::TrackOptions::away_time).
+// After that, and when it has never been on a frame, the choice has come to nothing.
 #pragma once
 
 #include <cstdint>

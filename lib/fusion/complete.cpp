@@ -44,8 +44,9 @@ double nearest_stop(const Arc& arc, const Interval& limits, double pan) {
   return std::abs(pan - limits.to) < std::abs(pan - limits.from) ? limits.to : limits.from;
 }
 
-// Where a head that stands at `pan` looks for what lies in an arc: the arc's positions on the pan axis (it repeats every
-// turn; those more than a turn away say nothing new), cut to the limits. Calls take(place, whether pan can get there).
+// Where a head that stands at `pan` looks for what lies in an arc: the arc's
+// positions on the pan axis (it repeats every turn; those more than a turn away say
+// nothing new), cut to the limits. Calls take(place, whether pan can get there).
 template <typename Take>
 void for_each_place(const Arc& arc, SensorBits sensors, double pan, double lens, const Interval& limits,
                     Take&& take) {

@@ -33,8 +33,8 @@ using Places = sensing::FixedList<Place, kMaxPlaces>;
 //     then the lower number
 // Within each of the two, what the head can turn to goes before what it cannot. Each is cut to the limits; a sector cut
 // in two by the stops gives two places; one out of reach becomes the nearest limit. The sweep is the place with its
-// edges pulled in by half a lens, because there the picture's border meets the edge; narrower than the lens: its middle.
-// fired: sensors beyond the geometry's count are ignored. lens: the camera's horizontal field of view, [0, pi).
+// edges pulled in by half a lens, because there the picture's border meets the edge; narrower than the lens: its
+// middle. fired: sensors beyond the geometry's count are ignored. lens: the camera's horizontal field of view, [0, pi).
 Places places(const Geometry& geometry, SensorBits fired, double pan,
               const std::array<int, kMaxSensors>& order, double lens, const Interval& limits);
 

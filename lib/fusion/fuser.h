@@ -95,8 +95,8 @@ class Fuser {
 
   // Forget tracks, detections and timers (flush, DISCONT, new segment). Options, geometry and table stay.
   void reset();
-  // Time that goes back resets first; `heard` alone does not go back. Long gaps let timers expire as if frames had come. The
-  // same frame may come again, with what was heard since.
+  // Time that goes back resets first; `heard` alone does not go back. Long gaps let timers expire as if frames had
+  // come. The same frame may come again, with what was heard since.
   const Decision& update(const Input& input);
 
  private:

@@ -22,13 +22,14 @@ struct RuleProblem {
 //   open           no rule applies (either precedence)
 //   contradiction  precedence exact: two rules, or two limited bands of one rule, give different actions
 //   malformed      sensor count not in 1..16, a rule that names other sensors, asks one to detect and not to, or has no
-//                  bands; a band that is empty or has NaN limits; a search without a proper interval; or all of it is too
-//                  large to be checked in some seconds: dozens of rules and hundreds of bands for 16 sensors are
-//   idle           a rule, or a band of one, that decides in no case, because others go before it: not what its author meant
+//                  bands; a band that is empty or has NaN limits; a search without a proper interval; or all of it is
+//                  too large to be checked in some seconds: dozens of rules and hundreds of bands for 16 sensors are
+//   idle           a rule, or a band of one, that decides in no case, because others go before it: its author did not
+//                  mean that
 std::vector<RuleProblem> check(const RuleTable& table, int most = 8);
 
-// What a head with these pan limits (radians) never does of it, in words: sweeps and bands of angles that lie beyond them
-// altogether.
+// What a head with these pan limits (radians) never does of it, in
+// words: sweeps and bands of angles that lie beyond them altogether.
 std::vector<std::string> out_of_reach(const RuleTable& table, const sensing::Interval& limits);
 
 }  // namespace cerberus::fusion

@@ -42,7 +42,8 @@ struct PirOptions {
 };
 
 // Modules as data (the makers' data sheets; the paper's Table 1). What the module does to its own output line (hold,
-// block) the model need not do again; it is told here because a user should know. Equal ends: not adjustable; 0: not known.
+// block) the model need not do again; it is told here because a
+// user should know. Equal ends: not adjustable; 0: not known.
 struct PirPreset {
   struct Span {
     Time least{}, most{};
@@ -109,8 +110,8 @@ class PirModel {
 
 // A body that turns faster than this trips its own PIR sensors: 5 degrees a second, an assumption.
 constexpr double kDoubtfulTurn = radians(5);
-// So long holds what was said of the base, if nothing more is: who knows how a robot turns says so many times a second, and who
-// has been silent for so long is dead or gone, and must not be believed for ever.
+// So long holds what was said of the base, if nothing more is: who knows how a robot turns says so many times a second,
+// and who has been silent for so long is dead or gone, and must not be believed for ever.
 constexpr Time kBaseLifetime = std::chrono::seconds(1);
 // A module holds its output for some seconds after the turn that tripped it.
 constexpr Time kDoubtLinger = std::chrono::seconds(3);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file of text that a user names, as a whole. What is named by mistake keeps nobody waiting: not a pipe that nobody writes
-// to, nor a device or a video that goes on for ever.
+// A file of text that a user names, as a whole. What is named by mistake keeps nobody waiting: not a pipe that nobody
+// writes to, nor a device or a video that goes on for ever.
 #pragma once
 
 #include <fcntl.h>
@@ -33,8 +33,8 @@ inline File read_file(const std::string& path, std::size_t most) {
     file.fault = File::Fault::failed;
     file.error = errno;
   };
-  // O_NONBLOCK: a pipe is opened though nobody writes to it. O_NOCTTY: nor does a terminal become that of a daemon, whom its
-  // Ctrl-C would end.
+  // O_NONBLOCK: a pipe is opened though nobody writes to it. O_NOCTTY: nor
+  // does a terminal become that of a daemon, whom its Ctrl-C would end.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) {
     failed();

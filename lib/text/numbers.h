@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Numbers as text: the same in every locale (gst-launch sets the user's, and printf() then writes 1,5), never "-0", without
-// an allocation.
+// Numbers as text: the same in every locale (gst-launch sets the user's,
+// and printf() then writes 1,5), never "-0", without an allocation.
 #pragma once
 
 #include <algorithm>

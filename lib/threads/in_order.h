@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several threads have something to tell, and it is told in the order in which it was put in. One at a time tells, without a
-// lock, for whoever is told may take his time or come back: so what one put in may be told by another, a moment after the
-// first one has gone on. Thread-safe; allocates when it is made and never again.
+// Several threads have something to tell, and it is told in the order in which it was put in. One at a time tells,
+// without a lock, for whoever is told may take his time or come back: so what one put in may be told by another, a
+// moment after the first one has gone on. Thread-safe; allocates when it is made and never again.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace cerberus::threads {
 
-// T has a default value. kMost: as many wait at most, while one who is told keeps the one who tells; of more the oldest go,
-// for what was said last is what counts. The usual number is that of the poses of a moving head in five seconds.
+// T has a default value. kMost: as many wait at most, while one who is told keeps the one who tells; of more the oldest
+// go, for what was said last is what counts. The usual number is that of the poses of a moving head in five seconds.
 template <typename T, std::size_t kMost = 256>
 class InOrder {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The fuser, and those who ask it: the video's thread with each frame and, live, the sensors' threads between two frames.
-// Thread-safe; of two decisions the later one never knows less of the sensors.
+// The fuser, and those who ask it: the video's thread with each frame and, live, the sensors' threads between two
+// frames. Thread-safe; of two decisions the later one never knows less of the sensors.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -35,8 +35,8 @@ class Decisions {
 
   // For the frame of `time`, by what was heard until `heard`. live: others may ask before the next one.
   Told frame(GstBuffer* frame, Time time, Time heard, const std::string& head, bool live);
-  // Until the next frame: the last one once more, with what sensors, head and base have said until `heard`. Nothing: they
-  // have said nothing new, or there is no live frame to speak of.
+  // Until the next frame: the last one once more, with what sensors, head and base have said until `heard`. Nothing:
+  // they have said nothing new, or there is no live frame to speak of.
   std::optional<Told> between(Time heard, const std::string& head);
 
   // Tells every change that was decided and not told yet, in their order.

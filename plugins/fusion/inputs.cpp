@@ -23,8 +23,8 @@ bool is_missing(GstPad* pad, Time time) {
   return pir.linked && !pir.given_up && !pir.history.covers(time);
 }
 
-// What a pad counts as whose caps nobody has told, or a number that no pad has. It says nothing, so where it looks and how
-// wide does not matter.
+// What a pad counts as whose caps nobody has told, or a number that no pad
+// has. It says nothing, so where it looks and how wide does not matter.
 Reading unknown_sensor() {
   static const auto array = [] {
     auto one = std::make_shared<SensorArray>();

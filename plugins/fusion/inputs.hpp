@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What pirfusion's pads share: what was heard of sensors, head and base, by running time, and who waits for whom. PIR
-// threads and upstream events write; the video's thread reads, and, between two frames of a live one, the PIR threads do.
+// threads and upstream events write; the video's thread reads,
+// and, between two frames of a live one, the PIR threads do.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -44,23 +45,24 @@ struct SilentPad {
   bool ended;
 };
 
-// The lock is never held while something is pushed, queried or posted, and no GStreamer object's lock is taken under it.
+// The lock is never held while something is pushed, queried or
+// posted, and no GStreamer object's lock is taken under it.
 class Inputs {
  public:
   // ---- video thread
   // A frame of `time` is here; with `max_wait` it waits until every linked PIR pad covers `time` or has been silent for
   // so long (those are added to `silent`, and given up until they speak). False: the video was flushed meanwhile.
   bool frame_came(Time time, std::optional<guint64> max_wait, std::vector<SilentPad>& silent);
-  // Where nobody waits: gives up the linked PIR pads that have said nothing in the last `patience` before `heard`, but for
-  // recordings, whose last word stays true.
+  // Where nobody waits: gives up the linked PIR pads that have said nothing in the last `patience` before `heard`, but
+  // for recordings, whose last word stays true.
   void give_up_silent(Time heard, Time patience, std::vector<SilentPad>& silent);
 
   // ---- whoever decides: the video thread, or a PIR thread between two frames (see decisions.hpp)
-  // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before a
-  // pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
+  // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before
+  // a pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
   Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
-  // Brings the moment of the frame of `frame_time` up to `heard`: other sensors, and pan and base as events have told them
-  // since.
+  // Brings the moment of the frame of `frame_time` up to `heard`:
+  // other sensors, and pan and base as events have told them since.
   void listen(Time heard, Time frame_time, const std::string& head, Moment& moment);
   bool flushing();
 
@@ -74,9 +76,10 @@ class Inputs {
   void hear_stranger(const CerberusPose& pose);  // of another head than the one that counts
   void hear_base(double degrees_a_second, Time from);
 
-  // ---- PIR pads (those of pir_pad.hpp), counted in the order of their numbers. Rules know sensors by their places, so a pad
-  // that has no caps yet keeps the place of one sensor, and so does a number that no pad has, below one that a pad has.
-  // A new one with the number in `name`, or the next free one; nullptr when it is taken, or 16 or more. Floating.
+  // ---- PIR pads (those of pir_pad.hpp), counted in the order of their numbers. Rules know
+  // sensors by their places, so a pad that has no caps yet keeps the place of one sensor, and
+  // so does a number that no pad has, below one that a pad has. A new one with the number in
+  // `name`, or the next free one; nullptr when it is taken, or 16 or more. Floating.
   GstPad* add_pad(const char* name, GstPadTemplate* pad_template);
   void drop_pad(GstPad* pad);
   std::vector<GstPad*> pads();  // with a reference each

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Settings that fit neither the sensors nor the head that there are: nothing fails, and nothing does what was meant. Each is
-// told once, in words for a user; empty: it fits, or was told.
+// Settings that fit neither the sensors nor the head that there are: nothing fails, and nothing does what was meant.
+// Each is told once, in words for a user; empty: it fits, or was told.
 #pragma once
 
 #include <chrono>

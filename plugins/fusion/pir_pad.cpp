@@ -256,8 +256,8 @@ GstFlowReturn chain_function(GstPad* pad, GstObject* parent, GstBuffer* buffer) 
 
 // ---- links and activation
 
-// Links come with the pad's lock held: nothing but our own flag here. A pad without a parent was released, and its element
-// may be gone.
+// Links come with the pad's lock held: nothing but our own flag here.
+// A pad without a parent was released, and its element may be gone.
 GstPadLinkReturn link_function(GstPad* pad, GstObject* parent, GstPad*) {
   if (parent) pir_pad(pad).inputs->set(pir_pad(pad).linked, true);
   return GST_PAD_LINK_OK;

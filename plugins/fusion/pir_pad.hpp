@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A request pad of pirfusion: takes caps, segments and buffers of PIR readings and keeps what it heard. Nothing of it goes
-// anywhere else; what cannot be used is an error message of the element, which names the pad.
+// A request pad of pirfusion: takes caps, segments and buffers of PIR readings and keeps what it heard. Nothing of it
+// goes anywhere else; what cannot be used is an error message of the element, which names the pad.
 #pragma once
 
 #include <cerberus/cerberus.h>

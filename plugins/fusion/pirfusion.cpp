@@ -9,33 +9,39 @@
  *
  * Pads: `sink` and `src` take any caps; caps, allocation and latency are theirs alone. Each `pir_%u` takes PIR readings
  * (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the order of their
- * numbers, 16 sensors at most). A pad that has no caps yet, and a number that is left out (`pir_1` without `pir_0`), counts
- * as one sensor whose readings are invalid: the others keep their places, and rules mean whom they meant. `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by
- * default; let `pirsrc` do that where it is the source: it knows the module's warm-up and hold.
+ * numbers, 16 sensors at most). A pad that has no caps yet, and a number that is left out (`pir_1` without `pir_0`),
+ * counts as one sensor whose readings are invalid: the others keep their places, and rules mean whom they meant.
+ * `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by default; let `pirsrc` do
+ * that where it is the source: it knows the module's warm-up and hold.
  *
- * - Live: a frame never waits; the newest reading counts that there is when it comes, even one that is younger than the
- *   frame: a camera's frames are old when they arrive, and who is heard shall not wait for that. Nor for the next frame: when
- *   a sensor of a live source changes its mind, that is decided at once, as if the last frame came again (if that was in the last
- *   second) with the newest pose that the head has told, and goes downstream as the event `cerberus-fusion`, which
- *   `pantiltsink` obeys while frames come. Those of another `pirfusion` upstream end here. Without a reading the
- *   sensors are invalid. So are those of a pad that was silent for `lost-after`, or ended so long ago: a warning names it.
+ * - Live: a frame never waits. The newest reading counts that is there when the frame comes, even one that is younger
+ *   than the frame: a camera's frames are old when they arrive, and a sensor shall not wait for that. Nor does it wait
+ *   for the next frame: when a sensor of a live source changes its mind, that is decided at once, as if the last frame
+ *   came again (if that was in the last second), and goes downstream as the event `cerberus-fusion`, which
+ *   `pantiltsink` obeys while frames come. Such events of another `pirfusion` upstream end here. Without a reading the
+ *   sensors are invalid. So are those of a pad that was silent for `lost-after`, or ended so long ago: a warning names
+ *   it.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
  *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
  *   it speaks. Video and PIR need a thread each (a `queue`) where one element makes both.
  * - A PIR source that is not live keeps its last reading when it ends (EOS). One that is live (also a recording with
  *   `is-live`) beside a live video keeps it for `lost-after`.
  *
- * The pan angle comes from the pose on the buffer, else from the head's `cerberus-pose` events passing upstream,
- * evaluated at the frame's running time; until a head has told, it is not known, and no turn is ordered. Readings that
- * come while the robot turns faster than 5 degrees a second are doubtful and do not count: a `cerberus-base` event says
- * so, or, where none came within a second, what `cameramotion` saw (#CerberusBase on the buffer), which the PIR pads are
- * told by that event. Both events, and seeks, are passed on to the video and to the PIR pads; where a video can begin at key
- * frames only, accurate seeks keep a recording of sensors in step with it.
+ * The pan angle of a frame comes from the pose on the buffer, else from the head's `cerberus-pose` events passing
+ * upstream, evaluated at the frame's running time. Between two frames it is that of the newest such event, evaluated at
+ * the time of the decision; where none came for a time after a frame that carried a pose, it is still the frame's.
+ * Until a head has told, it is not known, and no turn is ordered.
  *
- * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A table of your own is
- * described in the manual (rules); one that leaves a case open, contradicts itself or has a rule that never applies is refused
- * and the case named. A warning tells what of it lies beyond `pan-min` and `pan-max`, and when rules speak of another number of
- * sensors than the PIR pads have; another one, when a head tells its pose that is not `head`, and that one does not.
+ * Readings that come while the robot turns faster than 5 degrees a second are doubtful and do not count: a
+ * `cerberus-base` event says so, or, where none came within a second, what `cameramotion` saw (#CerberusBase on the
+ * buffer), which the PIR pads are told by that event. Both events, and seeks, are passed on to the video and to the PIR
+ * pads; where a video can begin at key frames only, accurate seeks keep a recording of sensors in step with it.
+ *
+ * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A
+ * table of your own is described in the manual (rules); one that leaves a case open, contradicts
+ * itself or has a rule that never applies is refused and the case named. A warning tells what of it
+ * lies beyond `pan-min` and `pan-max`, and when rules speak of another number of sensors than the
+ * PIR pads have; another one, when a head tells its pose that is not `head`, and that one does not.
  *
  * ## Example
  * |[
@@ -115,8 +121,8 @@ struct BufferDeleter {
 };
 using Buffer = std::unique_ptr<GstBuffer, BufferDeleter>;
 
-// Takes over the rules of a file (empty: none of the user's own); false with the reason when they cannot be used. The old
-// ones stay then.
+// Takes over the rules of a file (empty: none of the user's own); false
+// with the reason when they cannot be used. The old ones stay then.
 bool load_rules(CerberusPirFusion* self, const std::string& path, std::string& error) {
   std::shared_ptr<const fusion::RuleTable> table;
   if (!path.empty()) {
@@ -185,8 +191,8 @@ void tell_changes(CerberusPirFusion* self) {
   });
 }
 
-// A sensor has spoken, in its source's thread. What follows from that goes to the head past all queues: a camera of 10 frames a
-// second leaves it no time to wait for the next one.
+// A sensor has spoken, in its source's thread. What follows from that goes to the head past all queues: a camera of 10
+// frames a second leaves it no time to wait for the next one.
 void decide_between_frames(CerberusPirFusion* self) {
   const auto now = clock_now(self);
   if (!now) return;
@@ -213,8 +219,8 @@ void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
   }
 }
 
-// The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter, and before
-// they forget it; that it stands is what they take silence for.
+// The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter, and
+// before they forget it; that it stands is what they take silence for.
 void pass_base_on(CerberusPirFusion* self, Time time, const Moment& moment) {
   constexpr double kMatters = 1;  // degrees a second
   const auto doubtful = [](double rate) { return std::abs(sensing::radians(rate)) > sensing::kDoubtfulTurn; };
@@ -381,8 +387,8 @@ void forget_everything(Private& priv) {
   priv.inputs.forget();
 }
 
-// A sink pad that is switched off lets go of the frame that waits in its chain function, and no frame is the last one any
-// more: the sensors' threads may still run.
+// A sink pad that is switched off lets go of the frame that waits in its chain function, and no frame is the last one
+// any more: the sensors' threads may still run.
 gboolean activate(GstPad*, GstObject* parent, GstPadMode mode, gboolean active) {
   if (mode != GST_PAD_MODE_PUSH) return FALSE;
   Private& priv = *cerberus_pir_fusion_self(parent)->priv;

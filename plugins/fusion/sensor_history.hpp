@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What one PIR pad said, by running time, and how far that goes. Not live it is asked for the frame's running time, and only
-// when it covers that; live for the moment in which the frame came, which may be later. Knows no GStreamer; not thread-safe.
+// What one PIR pad said, by running time, and how far that goes. Not live it is asked
+// for the frame's running time, and only when it covers that; live for the moment in
+// which the frame came, which may be later. Knows no GStreamer; not thread-safe.
 #pragma once
 
 #include <array>

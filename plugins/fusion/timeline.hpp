@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What was said when: entries in the order of their running time, for "the newest one not later than this moment". Which
-// moment that is, the asker knows: of poses the frame's own, of PIR readings, live, the one in which the frame came.
+// What was said when: entries in the order of their running time, for "the newest
+// one not later than this moment". Which moment that is, the asker knows: of
+// poses the frame's own, of PIR readings, live, the one in which the frame came.
 #pragma once
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Leads a station through the states of its sink: opens and closes the head by the settings, lets the clock's time pass where
-// that moves the head, and sends off what the station says. Thread-safe where nothing else is said.
+// Leads a station through the states of its sink: opens and closes the head by the settings, lets the clock's time pass
+// where that moves the head, and sends off what the station says. Thread-safe where nothing else is said.
 #pragma once
 
 #include <atomic>
@@ -34,8 +34,8 @@ struct Conductor {
   void resume();
   // Once the stream has told.
   void set_live(bool live);
-  // Lets the clock's time pass from now on, if it moves the head; until pause(). False: it is not `watched`, and the sink has
-  // said so.
+  // Lets the clock's time pass from now on, if it moves the head; until
+  // pause(). False: it is not `watched`, and the sink has said so.
   bool run();
   void pause();
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // When the frames of a stream are taken, in running time, and where some are missing.
 //
-// After a frame a head tells its way until the next one, where it takes that to be. Where frames are missing (lost ones, a
-// variable rate, a decoder that was cut off) it has to be told that none comes, or it waits for one, and one for it.
+// After a frame a head tells its way until the next one, where it takes that to
+// be. Where frames are missing (lost ones, a variable rate, a decoder that was cut
+// off) it has to be told that none comes, or it waits for one, and one for it.
 #pragma once
 
 #include <gst/video/video.h>

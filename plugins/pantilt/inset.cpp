@@ -27,8 +27,8 @@ bool convert(GstVideoConverter* converter, GstVideoFrame* from, const GstVideoIn
 
 }  // namespace
 
-// In two steps: a frame is made small plane by plane, without a conversion (2 ms of a core for 3840x2160 I420, measured), and
-// only what is left of it takes other colours.
+// In two steps: a frame is made small plane by plane, without a conversion (2 ms of a core for 3840x2160 I420,
+// measured), and only what is left of it takes other colours.
 void Inset::begin(const GstVideoInfo& scene, const GstVideoInfo& window) {
   scale_.reset();
   color_.reset();

@@ -31,8 +31,8 @@ struct Lost {  // the identity that was to be followed and is not there: for a w
 
 using Notice = std::variant<Status, Refusal, Fault, Lost>;
 
-// What all threads have put in and nobody has sent off yet; of which head (interned; may be nullptr), for whoever sends it may
-// have begun when the sink drove another one.
+// What all threads have put in and nobody has sent off yet; of which head (interned; may be nullptr), for whoever sends
+// it may have begun when the sink drove another one.
 struct Outgoing {
   template <typename T>
   struct Of {

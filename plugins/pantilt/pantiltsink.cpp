@@ -5,57 +5,60 @@
  * @short_description: turns a pan-tilt head towards what the camera and the sensors found
  * @see_also: pirfusion, virtualptz, motiontrack
  *
- * Reads from each video frame what the head is to do, and drives the head through a driver. The pixels are not looked at.
+ * Reads from each video frame what the head is to do, and drives
+ * the head through a driver. The pixels are not looked at.
  *
- * What to do comes from the fusion meta (`pirfusion`): track, turn left or right, search a sector, return to zero, hold.
- * Without it the head follows the tracked regions (`motiontrack`, `motiondetect`): the one it follows already, else the
- * nearest, largest or newest (`target`); when nobody was there for `return-delay` it returns to zero.
+ * What to do comes from the fusion meta (`pirfusion`): track, turn left or right, search a sector, return to zero,
+ * hold. Without it the head follows the tracked regions (`motiontrack`, `motiondetect`): the one it follows already,
+ * else the nearest, largest or newest (`target`); when nobody was there for `return-delay` it returns to zero.
  *
- * A pixel becomes an angle through the lens (`horizontal-fov`), with the pose that the head had when the frame was taken:
- * the pose meta of the frame if it is this head's, else the element's own memory. The head follows proportionally (`gain`) and
- * rests within a dead band that has two thresholds. It never passes `pan-min`, `pan-max`, `tilt-min`, `tilt-max`, which must
- * include 0. Tilt holds unless a target is tracked or the head returns to zero. Limits, `max-speed` and `max-acceleration`
- * that change while it plays go to the head at once: who is beyond a new limit returns to it, in PAUSED when that ends. Limits
- * that cannot be are a warning, and the old ones stay.
+ * A pixel becomes an angle through the lens (`horizontal-fov`), with the pose that the head had when the frame was
+ * taken: the pose meta of the frame if it is this head's, else the element's own memory. The head follows
+ * proportionally (`gain`) and rests within a dead band that has two thresholds. It never passes `pan-min`, `pan-max`,
+ * `tilt-min`, `tilt-max`, which must include 0. Tilt holds unless a target is tracked or the head returns to zero.
+ * Limits, `max-speed` and `max-acceleration` that change while it plays go to the head at once: who is beyond a new
+ * limit returns to it, in PAUSED when that ends. Limits that cannot be are a warning, and the old ones stay.
  *
- * Live, what `pirfusion` decides between two frames because a sensor changed its mind (the event `cerberus-fusion`, in the
- * name of this head or of any) is obeyed at once as if the last frame had said so: in the same states and within the same limits,
- * and only while frames come that carry its decisions. A target is followed with frames alone.
+ * Live, what `pirfusion` decides between two frames because a sensor changed its mind (the event `cerberus-fusion`, in
+ * the name of this head or of any) is obeyed at once as if the last frame had said so: in the same states and within
+ * the same limits, and only while frames come that carry its decisions. A target is followed with frames alone.
  *
- * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits for
- * the clock and asks nobody upstream to hurry.
+ * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits
+ * for the clock and asks nobody upstream to hurry.
  *
- * Each pose of the head goes upstream as the event `cerberus-pose`. In a live pipeline, or with a real head, it is sent at
- * every change of plan and at 50 Hz while the head moves, 5 Hz while it rests, and when no frame comes for
- * `watchdog-timeout` the head stops. In a pipeline that is not live a simulated head's time is the running time of the
- * frames, never a clock: each frame is answered with the poses until its running time plus `latency` (or until the next
- * frame, if that is later), so that a source upstream can keep in step with it and two runs give the same.
+ * Each pose of the head goes upstream as the event `cerberus-pose`. In a live pipeline, or with a real head, it is sent
+ * at every change of plan and at 50 Hz while the head moves, 5 Hz while it rests, and when no frame comes for
+ * `watchdog-timeout` the head stops. That is the work of a thread; where the system gives none, an error says so, and
+ * PLAYING or the frames of a live stream are refused rather than let a head move unwatched. In a pipeline that is not
+ * live a simulated head's time is the running time of the frames, never a clock: each frame is answered with the poses
+ * until its running time plus `latency` (or until the next frame, if that is later), so that a source upstream can keep
+ * in step with it and two runs give the same.
  *
- * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by hand
- * goes on after PAUSED, but not after the end of the stream, nor when frames came and stay away for `watchdog-timeout`: then
- * the head stands until another order or `auto`. At the end of the stream `move-to`, `move-by`, `home` and `follow` are
- * refused until a flush begins it anew; where no frames come, an order is obeyed. Driver calls are made on a thread of their
- * own; a driver that blocks delays no change of state by more than 100 ms. A driver that cannot be opened is an error,
- * however late it says so, and in PAUSED too; one that fails later is a warning and the state `fault`, until it answers
- * again: the video goes on.
+ * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by
+ * hand goes on after PAUSED, but not after the end of the stream, nor when frames came and stay away for
+ * `watchdog-timeout`: then the head stands until another order or `auto`. At the end of the stream `move-to`,
+ * `move-by`, `home` and `follow` are refused until a flush begins it anew; where no frames come, an order is obeyed.
+ * Driver calls are made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A
+ * driver that cannot be opened is an error, however late it says so, and in PAUSED too; one that fails later is a
+ * warning and the state `fault`, until it answers again: the video goes on.
  *
- * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`,
- * `manual`, `limited`, `fault`) and `reason` at every change of either.
+ * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`,
+ * `holding`, `manual`, `limited`, `fault`) and `reason` at every change of either.
  *
- * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees; false
- * if the head is not there, the stream is over, or a number is none), `stop`, `home`, `auto`.
+ * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees;
+ * false if the head is not there, the stream is over, or a number is none), `stop`, `home`, `auto`.
  *
- * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over) chooses
- * whom to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on no frame the
- * head turns to nobody else that the camera sees; after 5 s, also if it never came, a warning names it and the usual choice
- * goes on. `auto` takes the choice back, and so does each of the other signals: the last one counts.
+ * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over)
+ * chooses whom to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on
+ * no frame the head turns to nobody else that the camera sees; after 5 s, also if it never came, a warning names it and
+ * the usual choice goes on. `auto` takes the choice back, and so does each of the other signals: the last one counts.
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
  * tests: what `script` says). One head has one name (`head`) and in a process one sink.
  *
- * No change of state waits for its first frame (`async=false`). A pipeline with `decodebin` in which all sinks are such may not
- * end with its file: GStreamer can lose the end of the stream there (with `fakesink async=false`, too). Another sink beside it
- * cures that: `tee name=t ! queue ! pantiltsink t. ! queue ! fakesink`.
+ * No change of state waits for its first frame (`async=false`). A pipeline with `decodebin` in which all sinks are such
+ * may not end with its file: GStreamer can lose the end of the stream there (with `fakesink async=false`, too). Another
+ * sink beside it cures that: `tee name=t ! queue ! pantiltsink t. ! queue ! fakesink`.
  *
  * ## Example launch lines
  * |[
@@ -64,8 +67,8 @@
  *
  * Since: 0.1
  */
-// The paper's II.D turns and tracks but does not say how; the law is lib/control/law.h, the heads are lib/drivers/. This file
-// only connects them with GStreamer: station.cpp holds what is decided and said.
+// The paper's II.D turns and tracks but does not say how; the law is lib/control/law.h, the heads are lib/drivers/.
+// This file only connects them with GStreamer: station.cpp holds what is decided and said.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasesink.h>
 #include <gst/video/video.h>
@@ -136,8 +139,8 @@ void ask_whether_live(Private& self) {
   conductor.set_live(is_live(GST_BASE_SINK_PAD(conductor.sink)).value_or(false));
 }
 
-// A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts, then
-// has the lock while whoever was interrupted waits here, and goes on where it was when told to.
+// A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts,
+// then has the lock while whoever was interrupted waits here, and goes on where it was when told to.
 template <typename Ask>
 GstFlowReturn persist(Conductor& conductor, Ask ask) {
   for (;;) {
@@ -226,9 +229,9 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   return done;
 }
 
-// The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes under
-// the lock too: a frame that comes in the middle waits until the change is through. The head obeys nobody before the base
-// class plays and there is a thread that watches over it, which begins when all is said.
+// The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes
+// under the lock too: a frame that comes in the middle waits until the change is through. The head obeys nobody before
+// the base class plays and there is a thread that watches over it, which begins when all is said.
 GstStateChangeReturn play(Conductor& conductor) {
   GstElement* element = GST_ELEMENT(conductor.sink);
   GstElementClass* base = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class());

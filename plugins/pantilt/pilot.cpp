@@ -47,8 +47,8 @@ Pilot::Verdict Pilot::decide(control::Time time, double pan) {
   return verdict;
 }
 
-// Whom the application chose goes before the usual verdict, which is found all the same: it goes on when the choice ends, and
-// sensors may know where somebody went whom the camera has lost.
+// Whom the application chose goes before the usual verdict, which is found all the same: it goes on when the choice
+// ends, and sensors may know where somebody went whom the camera has lost.
 void Pilot::prefer(control::Time time, Verdict& verdict) {
   const guint id = chosen_.id();
   follows_ = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What a frame wants of the head: read from its fusion meta, or, where nobody fused, decided here by the two rules that
-// need no sensors (1: follow whom the camera sees; 7: nobody there, return to zero). Whom the application chose goes before
-// both.
+// need no sensors (1: follow whom the camera sees; 7: nobody there,
+// return to zero). Whom the application chose goes before both.
 #pragma once
 
 #include <cerberus/fusion.h>
@@ -30,8 +30,9 @@ class Pilot {
   void follow(guint id) { chosen_.choose(id); }
   // pan: radians, when the frame was taken.
   Verdict look(GstBuffer* frame, control::Time time, double pan);
-  // What was decided since the last frame: as if that had carried it, and it goes before frames that were decided earlier
-  // (they come late, through queues). Nothing: it is not to be obeyed, or it is about a point of a picture and waits for one.
+  // What was decided since the last frame: as if that had carried it, and it goes
+  // before frames that were decided earlier (they come late, through queues). Nothing:
+  // it is not to be obeyed, or it is about a point of a picture and waits for one.
   std::optional<Verdict> heed(const CerberusFusion& fusion);
 
  private:

@@ -83,8 +83,8 @@ control::Pose PoseFeed::at(Time time) {
     here_.from = here_.until = time;
     return here_;
   }
-  // Of two pieces that meet at `time` the earlier one, which is known when that time is: the later one may be still on its
-  // way, and two runs must give the same.
+  // Of two pieces that meet at `time` the earlier one, which is known when that time is: the later one may be still on
+  // its way, and two runs must give the same.
   return here_ = history_.at(time - Time(1)).at(time);
 }
 

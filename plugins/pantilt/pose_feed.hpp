@@ -31,8 +31,8 @@ class PoseFeed {
 
   // Where the head looks at `time`, by what is known.
   control::Pose at(control::Time time);
-  // Waits until that is certain. The first time after begin() or forget() it is: where the head was. silent: nobody told
-  // anything for `patience` of real time; zero or less: never give up.
+  // Waits until that is certain. The first time after begin() or forget() it is: where the head was. silent: nobody
+  // told anything for `patience` of real time; zero or less: never give up.
   Answer wait(control::Time time, control::Time patience);
 
  private:

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Between frames, the application's wishes and a head: decides, commands, remembers where the head looked, and says what
-// is to be told to others. Thread-safe; what it tells is put into the caller's outbox, to be sent off without any lock held.
+// Between frames, the application's wishes and a head: decides, commands, remembers
+// where the head looked, and says what is to be told to others. Thread-safe; what
+// it tells is put into the caller's outbox, to be sent off without any lock held.
 //
-// Times in and out are running times. The head's own time never goes back: where running time does (a flush), it goes on.
+// Times in and out are running times. The head's own time never
+// goes back: where running time does (a flush), it goes on.
 #pragma once
 
 #include <gst/gst.h>
@@ -33,7 +35,8 @@ class Station {
   // Gives the driver the rest of its patience, then leaves it to itself.
   void close(drivers::HeadRunner::Patience patience);
 
-  // While the head is there; at once, and in a halt when that ends. What is wrong with them, once; then they stay as they were.
+  // While the head is there; at once, and in a halt when that ends.
+  // What is wrong with them, once; then they stay as they were.
   std::string set_limits(const control::Limits& limits, std::optional<Time> now);
   // The limits are not those of `law`.
   void set_options(const control::LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
@@ -63,7 +66,8 @@ class Station {
   // Brakes, in the time that patience gives. Frames are not obeyed until resume(). now: by the clock, if there is one.
   void halt(const char* reason, std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
   void resume(std::optional<Time> now, Outbox& out);
-  // The stream is over: a halt that only forget() and open() end; nothing moves the head meanwhile. An order by hand ends, too.
+  // The stream is over: a halt that only forget() and open() end;
+  // nothing moves the head meanwhile. An order by hand ends, too.
   void end(std::optional<Time> now, drivers::HeadRunner::Patience patience, Outbox& out);
 
   // Manual override until automatic(). now: as for halt(). false: not possible.

@@ -16,8 +16,8 @@ class Ticker {
   using Tick = std::function<GstClockTime(GstClockTime)>;
 
   ~Ticker() { stop(); }
-  // Nothing when it runs already. False: the system has no thread for it. One thread at a time, and not its own, starts and
-  // stops it.
+  // Nothing when it runs already. False: the system has no thread for
+  // it. One thread at a time, and not its own, starts and stops it.
   bool start(GstClock* clock, Tick tick);
   void stop();
   // The next call comes at once. From any thread; a wake-up before the wait is not lost.

@@ -5,32 +5,32 @@
  * @short_description: a pan-tilt camera made of a wide picture
  * @see_also: pantiltsink, motiondetect, pirfusion
  *
- * Gives the part of a wide picture that a camera on a pan-tilt head would see: a window that moves with the head's pose,
- * resampled with sub-pixel precision. With a `pantiltsink driver=simulated` downstream a fixed 4K camera becomes a pan-tilt
- * camera without a motor, and the whole loop can be closed on recorded footage.
+ * Gives the part of a wide picture that a camera on a pan-tilt head would see: a window that moves with the head's
+ * pose, resampled with sub-pixel precision. With a `pantiltsink driver=simulated` downstream a fixed 4K camera becomes
+ * a pan-tilt camera without a motor, and the whole loop can be closed on recorded footage.
  *
- * The head tells its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are passed on. On
- * each frame is the pose meta with which it was made, and what upstream said of the base (that it stands, where nobody did).
- * The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window sees
- * `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
+ * The head tells its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are passed on.
+ * On each frame is the pose meta with which it was made, and what upstream said of the base (that it stands, where
+ * nobody did). The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window
+ * sees `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
  * what downstream takes. It ends at the picture's edges: `pan-min`, `pan-max`, `tilt-min`, `tilt-max` tell how far it
- * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know. A head that looks
- * beyond is told in a warning, once.
+ * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know. A head that
+ * looks beyond is told in a warning, once.
  *
  * In a pipeline that is not live, each frame but the first waits until the head's way is known up to its running time
- * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event tells those
- * behind. So it does after half the `lockstep-timeout`, at most half a second, without a pose, in case a frame was lost on
- * its way to the head (a leaky queue).
+ * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event tells
+ * those behind. So it does after half the `lockstep-timeout`, at most half a second, without a pose, in case a frame
+ * was lost on its way to the head (a leaky queue).
  * When no pose comes for `lockstep-timeout` the element gives up with an error. The first frame (also after a flush)
- * shows where the head looked last, `start-pan` and `start-tilt` at the start. In a live pipeline nothing waits: the newest
- * pose counts.
+ * shows where the head looked last, `start-pan` and `start-tilt` at
+ * the start. In a live pipeline nothing waits: the newest pose counts.
  *
  * With `inset` each frame carries a small picture of the whole scene, with the window's place in it, as a
- * GstVideoOverlayComposition for the upper right corner: `motionoverlay` draws it, and so do most sinks that draw with a
- * graphics card. The frame's own pixels stay as they are for those who look for motion in them.
+ * GstVideoOverlayComposition for the upper right corner: `motionoverlay` draws it, and so do most sinks that draw with
+ * a graphics card. The frame's own pixels stay as they are for those who look for motion in them.
  *
- * Pads: raw progressive video in system memory, in and out in the same format. Regions and overlays that lie on the wide
- * picture are dropped: stages that look for motion belong behind the window.
+ * Pads: raw progressive video in system memory, in and out in the same format. Regions and overlays that lie on the
+ * wide picture are dropped: stages that look for motion belong behind the window.
  *
  * ## Example launch lines
  * |[
@@ -44,8 +44,8 @@
  *
  * Since: 0.1
  */
-// This file only connects with GStreamer: when a pose is known is pose_feed.hpp, when frames are taken frame_times.hpp, and
-// what is drawn window_view.hpp.
+// This file only connects with GStreamer: when a pose is known is pose_feed.hpp, when frames are taken frame_times.hpp,
+// and what is drawn window_view.hpp.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/video-overlay-composition.h>
@@ -228,7 +228,8 @@ void attach_base(GstBuffer* in, GstBuffer* out) {
   cerberus_buffer_set_base(out, &base);
 }
 
-// When no pose came for half the time-out, at most for so long, the last frame may have been lost on its way to the head.
+// When no pose came for half the time-out, at most for so long,
+// the last frame may have been lost on its way to the head.
 constexpr Time kLost = std::chrono::milliseconds(500);
 
 // Until the head's way is known up to `time`, when `in` was taken.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The two clocks of a live source of a device's readings: the pipeline's, and CLOCK_MONOTONIC, which the kernel stamps with.
+// The two clocks of a live source of a device's readings: the
+// pipeline's, and CLOCK_MONOTONIC, which the kernel stamps with.
 #pragma once
 
 #include <gst/gst.h>

@@ -7,29 +7,30 @@
  * `heartbeat` when nothing changes. Caps tell where the sensors look, so `pirfusion` need not be told again.
  *
  * Where volts are measured, downstream may take those instead, with the caps `application/x-pir,format=level`: a 32-bit
- * float a sensor in this machine's byte order, at every sample, NaN before the first one. Whoever takes both gets presence.
+ * float a sensor in this machine's byte order, at every sample,
+ * NaN before the first one. Whoever takes both gets presence.
  *
  * Drivers (`driver`):
  * - `gpio`: lines of a GPIO chip, edges with the kernel's time stamps; LEDs on output lines (`leds-red` while a sensor
  *   detects, `leds-blue` while it does not). Live.
  * - `iio`: channels of an A/D converter, compared with `threshold`. Live.
  * - `replay`: a file of `seconds,level,level,...` lines or of JSON lines with `time` (or `pts`) and `pir`, as
- *   `motionjson` writes them; ends with the file. What was measured is written with its unit, `seconds,0.1V,3.2V,...` (in
- *   JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
+ *   `motionjson` writes them; ends with the file. What was measured is written with its unit, `seconds,0.1V,3.2V,...`
+ *   (in JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
  * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
  *
- * A recording that is not live can be sought in: readings go on with what it says of that time. A seek backwards in time (a
- * negative rate) is refused. A last line without its line feed counts if it is complete in itself.
+ * A recording that is not live can be sought in: readings go on with what it says of that time. A seek backwards in
+ * time (a negative rate) is refused. A last line without its line feed counts if it is complete in itself.
  *
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
  * knows modules. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
  * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, as an upstream event
- * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last reading
- * is invalid for all sensors; then comes the error.
+ * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last
+ * reading is invalid for all sensors; then comes the error.
  *
- * A driver's calls are made on a thread of its own: one that blocks delays no change of state by more than 100 ms. While it is
- * still being opened a live source says that nothing is known (2), and one that is not live waits for it. That it cannot be
- * opened is an error, however late.
+ * A driver's calls are made on a thread of its own: one that blocks delays no change of state by more than 100 ms.
+ * While it is still being opened a live source says that nothing is known (2), and one that is not live waits for it.
+ * That it cannot be opened is an error, however late.
  *
  * ## Examples
  * |[
@@ -68,8 +69,8 @@ using drivers::SensorArray;
 using sensing::Time;
 
 constexpr Time kLeastHeartbeat = std::chrono::milliseconds(1);
-// A change of state waits for a driver so long, then plays while that is still being opened. 100 ms is promised, and one
-// that fails behind it waits 30 ms more for the driver to end (see drivers::SensorRunner).
+// A change of state waits for a driver so long, then plays while that is still being opened. 100 ms is promised, and
+// one that fails behind it waits 30 ms more for the driver to end (see drivers::SensorRunner).
 constexpr auto kOpenPatience = std::chrono::milliseconds(60);
 
 GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
@@ -136,8 +137,8 @@ GstFlowReturn end_of_failure(CerberusPirSrc* self) {
   return priv.flushing ? GST_FLOW_FLUSHING : GST_FLOW_EOS;
 }
 
-// At once: in PAUSED a live source makes no buffer that could end in an error. On a thread of GStreamer's, since a message may
-// keep whoever posts it.
+// At once: in PAUSED a live source makes no buffer that could end in an error. On a thread of GStreamer's, since a
+// message may keep whoever posts it.
 void refused(CerberusPirSrc* self) {
   gst_element_call_async(
       GST_ELEMENT(self),
@@ -272,7 +273,8 @@ GstFlowReturn agree_again(CerberusPirSrc* self) {
   return GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(self)) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
 }
 
-// What ends in EOS behind an error message would end so in any case; behind GST_FLOW_ERROR the base class would tell it again.
+// What ends in EOS behind an error message would end so in any
+// case; behind GST_FLOW_ERROR the base class would tell it again.
 GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
   Private& priv = *self->priv;
   for (;;) {
@@ -343,8 +345,8 @@ gboolean do_seek(GstBaseSrc* base, GstSegment* segment) {
   return TRUE;
 }
 
-// Readings are made onwards only. The base class would ask do_seek() behind the flush, which takes the segment away: what is
-// refused there goes on without one.
+// Readings are made onwards only. The base class would ask do_seek() behind the flush, which takes the segment away:
+// what is refused there goes on without one.
 bool is_backwards(GstEvent* event) {
   if (GST_EVENT_TYPE(event) != GST_EVENT_SEEK) return false;
   gdouble rate = 1;

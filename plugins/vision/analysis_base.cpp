@@ -85,8 +85,8 @@ void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
   priv.sight_wanted = peer_says_yes(pad, kSightQuery);
 }
 
-// Whether the query is answered; nothing: by those downstream, if at all. A no is no answer to it: a tee upstream goes on
-// to its other branches, and an answer would speak for them.
+// Whether the query is answered; nothing: by those downstream, if at all. A no is no answer to it: a tee upstream goes
+// on to its other branches, and an answer would speak for them.
 std::optional<bool> answer(Analyser& analyser, GstQuery* query) {
   if (cerberus_query_is_planes(query)) {
     const Planes planes = analyser.planes();
@@ -153,8 +153,8 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
 
   const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
   const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
-  // A mark of DISCONT may be a cut or dropped frames. Who measures the camera sees a cut among dropped frames, and tells
-  // the others.
+  // A mark of DISCONT may be a cut or dropped frames. Who measures
+  // the camera sees a cut among dropped frames, and tells the others.
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
                       !(measures && priv.history.misses_frames(frame.running_time, nominal));
   if (marked) priv.history.drop();

@@ -6,10 +6,11 @@
 // below), the camera's motion as found on the buffer, buffers that hold no picture, the property analysis-width, and
 // that no exception leaves.
 //
-// A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new segment, DISCONT, a gap in
-// time, a step back as wide as one, several buffers in a row without a usable picture, a cut seen by `cameramotion`, and
-// when it is not known how the camera moved since the last frame seen here. Frames dropped between the stages, or in front
-// of all, end nothing: see camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only.
+// A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new
+// segment, DISCONT, a gap in time, a step back as wide as one, several buffers in a row without a
+// usable picture, a cut seen by `cameramotion`, and when it is not known how the camera moved since
+// the last frame seen here. Frames dropped between the stages, or in front of all, end nothing: see
+// camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only.
 #pragma once
 
 #include <gst/base/gstbasetransform.h>

@@ -6,17 +6,17 @@
  * #CerberusCameraMotion (transform, confidence, residual, scene age) and the small luma plane that the following
  * stages analyse. The frame goes through untouched and is never copied. A cut starts a new scene (scene age 1).
  *
- * Where a head's pose is known (its meta on the buffer, else the events `cerberus-pose` that pass upstream), the pose at the
- * frame's own running time is attached too, and with `horizontal-fov` the head's turn is the first guess; a turned
- * picture is bent, which is taken from it too. The events are passed on.
+ * Where a head's pose is known (its meta on the buffer, else the events `cerberus-pose` that pass upstream), the pose
+ * at the frame's own running time is attached too, and with `horizontal-fov` the head's turn is the first guess; a
+ * turned picture is bent, which is taken from it too. The events are passed on.
  *
  * With `horizontal-fov` it tells two more things. How fast the body turns that carries the camera (a robot) is attached
  * as a #CerberusBase: the picture's rotation without the head's. An event `cerberus-base` from the application (it
  * holds for a second), or what the buffer carries already, goes before it. And the picture is compared with the head:
  * where in 20 degrees of travel it does not follow the changes of the commanded speed, a warning says whether the head
- * slips, turns the wrong way, or by another angle (a wrong lens or gear); once for each fault. The message's details: `head`, `axis` (`pan`, `tilt`),
- * `fault` (`slips`, `reversed`, `scale`), `gain`, `travel` (degrees). Poses that came on the frames are not compared: who
- * made the frames knew.
+ * slips, turns the wrong way, or by another angle (a wrong lens or gear); once for each fault. The message's details:
+ * `head`, `axis` (`pan`, `tilt`), `fault` (`slips`, `reversed`, `scale`), `gain`, `travel` (degrees). Poses that came
+ * on the frames are not compared: who made the frames knew.
  *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
  *

@@ -25,8 +25,8 @@ struct Canvas {
   void clear_padding(std::size_t bytes) const;
 };
 
-// Fills a canvas with a plane of another size by nearest neighbour: a pixel shows the sample that covers its centre, the
-// areas of both being the same. Keeps its table from frame to frame.
+// Fills a canvas with a plane of another size by nearest neighbour: a pixel shows the sample that covers its centre,
+// the areas of both being the same. Keeps its table from frame to frame.
 class Enlarger {
  public:
   // Grey levels times gain, up to white.

@@ -28,11 +28,11 @@ class Carrier {
   void hear(GstEvent* event, const std::string& head);
 
   // For each frame look() and then compare(), in the streaming thread.
-  // Where the head looked, from the frame's own pose, else by what was heard; that is put on the frame. Returns where the
-  // picture went since the previous frame as far as the head says, frame pixels.
+  // Where the head looked, from the frame's own pose, else by what was heard; that is put on the frame. Returns where
+  // the picture went since the previous frame as far as the head says, frame pixels.
   std::optional<vision::Transform> look(Frame& frame, const std::string& head, const vision::Lens& lens);
-  // `motion` since the previous frame, frame pixels, and how sure it is. Puts the body's turning on the frame where it is
-  // known, and warns in the name of `element` of a head that does not do what it was told.
+  // `motion` since the previous frame, frame pixels, and how sure it is. Puts the body's turning on the frame where it
+  // is known, and warns in the name of `element` of a head that does not do what it was told.
   void compare(GstElement* element, Frame& frame, const vision::Lens& lens, const vision::Transform& motion,
                double confidence);
 

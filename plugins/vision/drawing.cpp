@@ -413,8 +413,8 @@ void Painter::paint_crosshair(std::vector<Patch>& patches) {
   add_patch(patches, frame_, around(cx - arm, cy - arm, cx + arm, cy + arm, reach), draw);
 }
 
-// A panel in the corner: the head's angles, the sensors as the paper's LEDs (red: detects, blue: does not, grey: says nothing)
-// with their numbers, as they look from left to right, the rule and the action.
+// A panel in the corner: the head's angles, the sensors as the paper's LEDs (red: detects, blue: does not, grey: says
+// nothing) with their numbers, as they look from left to right, the rule and the action.
 void Painter::paint_system(std::vector<Patch>& patches) {
   const System& system = scene_->system;
   const auto degrees = [](double value) {

@@ -3,10 +3,10 @@
  * SECTION:element-fuzzythreshold
  *
  * Chooses the threshold of the registered differences by the indices of fuzziness, binarises both with it and attaches
- * the moving area as the plane `mask` (0 or 255) and a #CerberusThreshold. The frame goes through untouched. Stages that
- * are missing upstream are done here with their defaults. The mask is empty, and the threshold not `ready`, until three
- * frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the other areas
- * need of the third frame is not kept for `all`.
+ * the moving area as the plane `mask` (0 or 255) and a #CerberusThreshold. The frame goes through untouched. Stages
+ * that are missing upstream are done here with their defaults. The mask is empty, and the threshold not `ready`, until
+ * three frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the
+ * other areas need of the third frame is not kept for `all`.
  *
  * ## Example
  * |[
@@ -15,12 +15,13 @@
  *
  * Since: 0.1
  */
-// Paper Eq. 3 (d = 1 where the difference is above Th), M(k-1) = D(k) and D(k-1), M(k) = D(k) - M(k-1); Eq. 4 to 10 for Th,
-// in the reading of Tobias and Seara (IEEE Trans. Image Processing 11(12), 2002), from where the paper has them: Eq. 8 and
-// 9 both print the factor 2 / n^(1/k), which belongs once, and Eq. 8 needs the absolute value. See
+// Paper Eq. 3 (d = 1 where the difference is above Th), M(k-1) = D(k) and D(k-1), M(k) = D(k) - M(k-1); Eq. 4 to 10 for
+// Th, in the reading of Tobias and Seara (IEEE Trans. Image Processing 11(12), 2002), from where the paper has them:
+// Eq. 8 and 9 both print the factor 2 / n^(1/k), which belongs once, and Eq. 8 needs the absolute value. See
 // lib/vision/fuzzy_threshold.h and moving_area.h. Deviations of the defaults, each a property: Th is held near the
-// measured noise (`noise-floor`), lone bright pixels do not count (`clip`), and a registered memory of the scene completes
-// what two neighbouring frames cannot see (`memory`, of D(k) alone: M(k) and M(k-1) are sets of the two differences).
+// measured noise (`noise-floor`), lone bright pixels do not count (`clip`), and a
+// registered memory of the scene completes what two neighbouring frames cannot
+// see (`memory`, of D(k) alone: M(k) and M(k-1) are sets of the two differences).
 
 #include "analysis_element.hpp"
 #include "elements.hpp"

@@ -27,7 +27,8 @@ class History {
 
   // time: running time of the frame, or NONE. nominal: frame distance of the caps in seconds, 0 = variable.
   Step next(GstClockTime time, double nominal);
-  // Whether frames are missing between the last one and this: what a queue that leaks marks DISCONT, as others mark a cut.
+  // Whether frames are missing between the last one and this:
+  // what a queue that leaks marks DISCONT, as others mark a cut.
   bool misses_frames(GstClockTime time, double nominal) const;
 
  private:

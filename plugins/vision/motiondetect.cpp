@@ -10,11 +10,11 @@
  * Every property that the application sets wins over `preset`, whichever was set first. Settings with which nothing can
  * ever be found are warned of by the stage that they are for.
  *
- * Timestamps may be missing: the frames are taken as evenly spaced then. Timestamps may step back a little: such a frame
- * is taken to follow the one before it at the usual distance, and the third of them brings a warning, once a stream. A
- * step by more than three times that distance, and more than a quarter of a second, begins a new scene, whether it is
- * backwards or forwards. A buffer without its picture is passed on with the flag CORRUPTED and one warning, and ends no
- * scene unless more than five come in a row.
+ * Timestamps may be missing: the frames are taken as evenly spaced then. Timestamps may step back a little: such a
+ * frame is taken to follow the one before it at the usual distance, and the third of them brings a warning, once a
+ * stream. A step by more than three times that distance, and more than a quarter of a second, begins a new scene,
+ * whether it is backwards or forwards. A buffer without its picture is passed on with the flag CORRUPTED and one
+ * warning, and ends no scene unless more than five come in a row.
  *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
  *

@@ -27,23 +27,26 @@
  *   pixels of this frame; identity where nothing upstream measured it, and `confidence` is null then, else 0 to 1.
  * - `objects`: `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion`
  *   (`person` is reserved: nothing verifies that yet); `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
- *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and frame rate: at 25 frames a second);
- *   `bearing`: degrees from the camera's axis, wherever the head looks, positive to the right; `distance`: metres.
+ *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and
+ *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, wherever the head looks, positive to
+ *   the right; `distance`: metres.
  *
  * Keys that are there only where an element told, after `objects`:
  * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
  *   `moving` true or false.
  * - `base`: `yaw-rate`, how fast the body turned that carries the camera (a robot), degrees a second, positive to the
  *   right (`cameramotion` with `horizontal-fov`, or the application).
- * - `pir`: the sensors' readings, 0 nothing, 1 somebody, 2 invalid; and `fusion`: what `pirfusion` decided: `rule` (number,
- *   0 for one without), `name` (the rule's: of the default rules `camera`, `sector`, `overlap`, `return`, `zero`, `stopped`), `action` (`track`, `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's
- *   identity or null).
+ * - `pir`: the sensors' readings, 0 nothing, 1 somebody, 2 invalid; and `fusion`: what
+ *   `pirfusion` decided: `rule` (number, 0 for one without), `name` (the rule's: of the default
+ *   rules `camera`, `sector`, `overlap`, `return`, `zero`, `stopped`), `action` (`track`,
+ *   `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's identity or null).
  *
  * Numbers have a point whatever the locale. Pixels, speeds, degrees and metres are rounded to 2 decimals,
  * confidences to 3, `camera` to 9 significant digits. What is unknown, not a number or infinite is null.
  * Readers ignore keys that they do not know.
  *
- * Reads the camera-motion, threshold and region metas of motiondetect's stages, the pose, base and fusion metas. Posts no messages.
+ * Reads the camera-motion, threshold and region metas of motiondetect's
+ * stages, the pose, base and fusion metas. Posts no messages.
  *
  * ## Example launch lines
  * |[

@@ -10,18 +10,19 @@
  * bars in the label = it stands and is held. Colours belong to identities and are told apart with any colour
  * vision. Trails lie on the scene: while the camera turns they turn with the picture.
  *
- * Pads: raw video in and out, in every format that the stages read. Where downstream takes GstVideoOverlayComposition (caps
- * feature or allocation query, as most sinks that draw with a graphics card do) the pictures are attached and
+ * Pads: raw video in and out, in every format that the stages read. Where downstream takes GstVideoOverlayComposition
+ * (caps feature or allocation query, as most sinks that draw with a graphics card do) the pictures are attached and
  * the frame is not touched; otherwise they are blended into a writable copy of what they cover. A frame in
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
  *
- * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor (red:
- * detects, blue: does not, grey: no valid reading) in the order in which they look from left to right, with its number, counted as
- * in `bearings` of `pirsrc`, the rule that fired (its number if it has one, and its name) and the action. Whom `pirfusion` has the
- * head follow is marked by thick corners round the box. What others attached to the frame (`inset` of `virtualptz`, say) lies on top.
+ * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor
+ * (red: detects, blue: does not, grey: no valid reading) in the order in which they look from left to right, with its
+ * number, counted as in `bearings` of `pirsrc`, the rule that fired (its number if it has one, and its name) and the
+ * action. Whom `pirfusion` has the head follow is marked by thick corners round the box. What others attached to the
+ * frame (`inset` of `virtualptz`, say) lies on top.
  *
- * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn in
- * white, without identity and trail. What reaches beyond the frame is cut at its edge.
+ * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn
+ * in white, without identity and trail. What reaches beyond the frame is cut at its edge.
  *
  * ## Example launch lines
  * |[
@@ -168,8 +169,8 @@ bool downstream_draws(GstBaseTransform* transform, GstCaps* caps) {
   return draws;
 }
 
-// Draws the patches into the frame, then what upstream attached (if anything): an inset, say, is a picture of its own, and boxes
-// that belong to what it hides would seem to be the inset's.
+// Draws the patches into the frame, then what upstream attached (if anything): an inset, say, is a picture of its own,
+// and boxes that belong to what it hides would seem to be the inset's.
 bool draw_into(State& state, GstBuffer* buffer, GstVideoOverlayComposition* before) {
   // Mapping for writing copies memory that others (a tee's other branch) hold too.
   cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);

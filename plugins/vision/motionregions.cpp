@@ -4,23 +4,26 @@
  *
  * Turns the moving area into regions of interest: cleans the mask, labels it, joins one person's fragments, parts two
  * people side by side, and attaches every region that passes `zones` and the limits of size as a
- * #GstVideoRegionOfInterestMeta of type `motion` (see #CerberusRegion). The frame goes through untouched. Stages that are
- * missing upstream are done here with their defaults. No region is published until three frames of a scene were seen.
- * Limits of size that contradict each other or the frame, and zones that leave no part of the picture, are warned of.
+ * #GstVideoRegionOfInterestMeta of type `motion` (see #CerberusRegion). The frame goes
+ * through untouched. Stages that are missing upstream are done here with their defaults. No
+ * region is published until three frames of a scene were seen. Limits of size that contradict
+ * each other or the frame, and zones that leave no part of the picture, are warned of.
  *
  * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
- * element downstream (motionview) asks for them; see `keep-planes`. Where `motiontrack` follows, the small picture and the mask stay on
- * as far as there, whatever `keep-planes` says.
+ * element downstream (motionview) asks for them. `keep-planes` says otherwise: `always` leaves them there, and with
+ * `never` nobody who asks is heard. Where `motiontrack` follows, the small picture and
+ * the mask stay on as far as there, whatever `keep-planes` says.
  *
  * ## Example
  * |[
- * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! motionregions zones="include 0,0 1,0 1,0.5 0,0.5" ! fakesink
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! \
+ *     motionregions zones="include 0,0 1,0 1,0.5 0,0.5" ! fakesink
  * ]|
  *
  * Since: 0.1
  */
-// The paper calls this step "post treatment" (II.B) and leaves it open. Ours: see lib/vision/regions.h. Limits in metres
-// use the body width of 48 cm (III) and count only while `horizontal-fov` is known.
+// The paper calls this step "post treatment" (II.B) and leaves it open. Ours: see lib/vision/regions.h. Limits in
+// metres use the body width of 48 cm (III) and count only while `horizontal-fov` is known.
 #include <cerberus/cerberus.h>
 
 #include <string>

@@ -4,17 +4,18 @@
  *
  * Gives the regions of interest a stable identity, a velocity with the camera's motion taken out, an age and a state:
  * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
- * replaced by the tracked ones; the frame goes through untouched. Who leaves the picture because the camera turns keeps the
- * identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames where `horizontal-fov` is
- * known, else from the camera's own motion. People who meet are told apart by how bright coat and legs are, where the planes
- * of the stages reach this element (nothing converts or scales the picture between `motionregions` and it). Without `motionregions` upstream the regions are found
- * here with the defaults. With `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the
- * camera's axis, wherever the head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of
- * a head's pose on the frame. Limits of speed that contradict each other and a `confirm-time` above an hour are warned of.
+ * replaced by the tracked ones; the frame goes through untouched. Who leaves the picture because the camera turns keeps
+ * the identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames where
+ * `horizontal-fov` is known, else from the camera's own motion. People who meet are told apart by how bright coat and
+ * legs are, where the planes of the stages reach this element (nothing converts or scales the picture between
+ * `motionregions` and it). Without `motionregions` upstream the regions are found here with the defaults. With
+ * `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the camera's axis, wherever the
+ * head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of a head's
+ * pose on the frame. Limits of speed that contradict each other and a `confirm-time` above an hour are warned of.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
- * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last frame
- * that had any.
+ * none was there for `hold-time`, at the end of the stream and when
+ * the element stops, with the objects of the last frame that had any.
  *
  * ## Example
  * |[
@@ -23,8 +24,8 @@
  *
  * Since: 0.1
  */
-// The paper tracks one target and says no more; see lib/vision/tracks.h for the method. Its limits of speed, 0.1 to 4 m/s
-// (III), are the defaults in metres a second and count only while `horizontal-fov` is known.
+// The paper tracks one target and says no more; see lib/vision/tracks.h for the method. Its limits of speed, 0.1 to 4
+// m/s (III), are the defaults in metres a second and count only while `horizontal-fov` is known.
 #include <cerberus/cerberus.h>
 
 #include <algorithm>

@@ -16,15 +16,16 @@
  *   memberships, indices of fuzziness (as `fuzzythreshold` was set), the threshold that was used.
  *
  * Pads: `sink` takes raw video in every format that the stages read; `src` gives GRAY8 (or BGRx) for the grey
- * stages, BGRx for labels and histogram. Regions, threshold and camera motion stay on the buffers, so that motionoverlay
- * and motionjson work behind it. Answers the query `cerberus-planes`: with it in the pipeline the stages leave
- * their planes on the buffers. Where a plane is missing the picture is black; one warning message says so.
+ * stages, BGRx for labels and histogram. Regions, threshold and camera motion stay on the buffers, so that
+ * motionoverlay and motionjson work behind it. Answers the query `cerberus-planes`: with it in the pipeline the stages
+ * leave their planes on the buffers. Where a plane is missing the picture is black; one warning message says so.
  *
  * ## Example launch lines
  * |[
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionview stage=mask ! videoconvert ! autovideosink
- * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! threeframediff ! fuzzythreshold ! motionview stage=histogram ! \
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionview stage=mask ! \
  *     videoconvert ! autovideosink
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! threeframediff ! fuzzythreshold ! \
+ *     motionview stage=histogram ! videoconvert ! autovideosink
  * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! motionview stage=difference gain=4 ! \
  *     motionoverlay ! videoconvert ! autovideosink
  * ]|

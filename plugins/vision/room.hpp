@@ -29,8 +29,8 @@ inline constexpr char kTiltBlurb[] =
 using sensing::degrees;
 using sensing::radians;
 
-// Where `pose` says that the head looked at `running_time`; nothing where its numbers are none of a camera's: a stranger's
-// may be anything.
+// Where `pose` says that the head looked at `running_time`; nothing where
+// its numbers are none of a camera's: a stranger's may be anything.
 inline std::optional<control::Look> look_of(const CerberusPose& pose, GstClockTime running_time) {
   double pan = 0, tilt = 0;
   cerberus_pose_evaluate(&pose, running_time, &pan, &tilt);

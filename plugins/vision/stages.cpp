@@ -19,8 +19,8 @@ MappedPlane acquire(PlanePool& pool, vision::Size size, int sample_size = 1) {
   return plane;
 }
 
-// Kernels may work on whole vectors. A plane whose rows are not padded as a PlanePool pads them comes from a stranger and
-// counts as missing.
+// Kernels may work on whole vectors. A plane whose rows are not padded
+// as a PlanePool pads them comes from a stranger and counts as missing.
 MappedPlane read(GstBuffer* buffer, CerberusPlaneKind kind) {
   MappedPlane plane = MappedPlane::read(buffer, kind);
   if (plane && plane.stride() != vision::padded_row(plane.width()) * cerberus_plane_kind_sample_size(kind))

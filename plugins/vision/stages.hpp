@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The steps from a frame to its regions, each with its predecessor inside: a stage whose input is not on the buffer
 // makes that input itself, with the defaults, and leaves it there for those who follow. Every element of the corridor
-// is one of these stages with properties; so the bin and the chain cannot differ. What a predecessor needs it takes when it
-// is needed first: mostly it is upstream.
+// is one of these stages with properties; so the bin and the chain cannot differ. What a predecessor needs it takes
+// when it is needed first: mostly it is upstream.
 #pragma once
 
 #include <optional>
@@ -118,9 +118,9 @@ class RegionStage {
   PlanePool mask_pool_, label_pool_;
 };
 
-// What motiontrack wants to see of a frame, the planes LUMA and MASK, may stay on it though nobody else asks for planes:
-// leave_sight() takes off all the others (all of them where there is no motiontrack), drop_sight() what it left. Planes that
-// stay for everybody are told by the LABELS among them.
+// What motiontrack wants to see of a frame, the planes LUMA and MASK, may stay on it though nobody else asks for
+// planes: leave_sight() takes off all the others (all of them where there is no motiontrack), drop_sight() what it
+// left. Planes that stay for everybody are told by the LABELS among them.
 void leave_sight(const Frame& frame);
 void drop_sight(GstBuffer* buffer);
 

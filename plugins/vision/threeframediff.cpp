@@ -4,8 +4,8 @@
  *
  * Attaches what changed between three consecutive frames once the camera's own motion is taken out: the planes
  * `difference` and `previous-difference` and the histogram of the first. The frame goes through untouched. The plane
- * `previous-difference` is left out where a `fuzzythreshold` with `area=all` follows and nobody asks for planes: it is not
- * read then.
+ * `previous-difference` is left out where a `fuzzythreshold` with
+ * `area=all` follows and nobody asks for planes: it is not read then.
  * Without `cameramotion` upstream the camera stands still and the luma plane is made here. `difference` is zero in
  * the first frame of a scene, `previous-difference` in the first two.
  *

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How right the camera's motion is. Synthetic pictures, whose motion is known exactly: what a lens shows of a camera that turns
-// and shakes, with noise and something large that moves. And real frames, where somebody else's estimate is there to compare with.
-// Errors are distances between where two transforms take a grid of 16 points, in pixels of the frame.
+// How right the camera's motion is. Synthetic pictures, whose motion is known exactly: what
+// a lens shows of a camera that turns and shakes, with noise and something large that moves.
+// And real frames, where somebody else's estimate is there to compare with. Errors are
+// distances between where two transforms take a grid of 16 points, in pixels of the frame.
 #include "vision/camera_motion.h"
 
 #include <gst/gst.h>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Does the closed loop keep somebody in the picture? A window of 320 x 240 over vtest.avi, turned by a simulated head
 // towards one annotated person: chosen on the first frame on which a track has that person's box, as an application
-// chooses, by pantiltsink's signal `follow`; before that the head stands. Counted from then on: annotated frames on which
-// the person's middle, and nine tenths of what the picture shows of the person, are inside the window. The last columns
-// tell whether that is the loop's merit: on how many of these frames the chosen track has the person's box, and how many
-// tracks had it.
+// chooses, by pantiltsink's signal `follow`; before that the head stands. Counted from then on:
+// annotated frames on which the person's middle, and nine tenths of what the picture shows of
+// the person, are inside the window. The last columns tell whether that is the loop's merit: on
+// how many of these frames the chosen track has the person's box, and how many tracks had it.
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
@@ -30,7 +30,8 @@ const double kPan = std::atan((kWidth - kWindowWidth) / 2 / kFocal) * kRadian;
 const double kTilt = std::atan((kHeight - kWindowHeight) / 2 / kFocal) * kRadian;
 constexpr int kLeastFrames = 40;  // annotated
 constexpr double kAsked = 0.95;   // of the frames with the middle inside
-// Who, from which frame on, is known not to be kept as long: not with every processor's vectors, which round in other ways.
+// Who, from which frame on, is known not to be kept as long: not
+// with every processor's vectors, which round in other ways.
 constexpr std::pair<int, int> kNotYet[] = {{9, 4}, {11, 20}, {11, 354}};
 
 struct Run {
@@ -52,7 +53,8 @@ vision::Box window_of(GstBuffer* buffer) {
           kWindowHeight};
 }
 
-// In front of pantiltsink, and in its thread, so that a choice counts for the frame that it is made on: counts and chooses.
+// In front of pantiltsink, and in its thread, so that a choice
+// counts for the frame that it is made on: counts and chooses.
 GstPadProbeReturn look(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
   Run& run = *static_cast<Run*>(data);
   auto* buffer = GST_PAD_PROBE_INFO_BUFFER(info);

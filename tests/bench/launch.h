@@ -20,8 +20,8 @@ inline GstElement* launch(const std::string& line) {
   return nullptr;
 }
 
-// The next that comes out of appsink `out`; nullptr at the end. An error ends it too, with a word about it: many leave the
-// sink waiting for ever.
+// The next that comes out of appsink `out`; nullptr at the end. An error
+// ends it too, with a word about it: many leave the sink waiting for ever.
 inline GstSample* pull(GstElement* pipeline, GstElement* out, bool& failed) {
   GstBus* bus = gst_element_get_bus(pipeline);
   GstSample* sample = nullptr;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Does detection go on while the camera turns? A window of 320 x 240 goes to and fro over vtest.avi at 12 pixels a frame;
-// beside it windows at rest over the same places. Box precision and recall of both, as tests/bench/quality.cpp scores
-// them, on the people as the window cuts them.
+// Does detection go on while the camera turns? A window of 320 x 240 goes to and fro over vtest.avi at 12 pixels a
+// frame; beside it windows at rest over the same places. Box precision and recall of both, as tests/bench/quality.cpp
+// scores them, on the people as the window cuts them.
 #include <cerberus/cerberus.h>
 #include <gst/video/video.h>
 

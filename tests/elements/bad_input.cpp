@@ -207,7 +207,8 @@ GST_START_TEST(timestamps_out_of_order_blind_nobody) {
 }
 GST_END_TEST
 
-// One buffer in ten without a picture, at rest and while the camera turns: the others go on as if it had not been there.
+// One buffer in ten without a picture, at rest and while the
+// camera turns: the others go on as if it had not been there.
 GST_START_TEST(lost_pictures_end_no_scene) {
   const char* const lines[] = {
       "motiondetect ! identity",
@@ -278,8 +279,8 @@ GST_START_TEST(metas_from_strangers_do_no_harm) {
                gst_buffer_iterate_meta_filtered(out, &position, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
       faces += reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta)->roi_type == g_quark_from_string("face");
     fail_unless_equals_int(faces, 1);
-    // Where the camera is measured anew, all that follows from it is made anew: the answer is the one without strangers.
-    // The others cannot follow such a camera, and find nothing but what planes say that look like ours.
+    // Where the camera is measured anew, all that follows from it is made anew: the answer is the one without
+    // strangers. The others cannot follow such a camera, and find nothing but what planes say that look like ours.
     GstBuffer* without = alone.through(scene::grey_buffer(world, k));
     const std::string is = Regions(out).text(), should = Regions(without).text();
     const std::string element = kElements[__i__];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What cameramotion makes of head and picture together: how the body turns below, and heads that do not do as they are told.
-// Pictures of a wall that shift by what a camera's turning shows of it; degrees everywhere.
+// What cameramotion makes of head and picture together: how the body turns below, and heads that do not do as they are
+// told. Pictures of a wall that shift by what a camera's turning shows of it; degrees everywhere.
 #include "scene.h"
 #include "support.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What holds for every element of the corridor, cameramotion to motiontrack and motiondetect: frames go through whole and
-// uncopied, every format gives the same answer, and what cannot be analysed is refused in one clear sentence.
+// What holds for every element of the corridor, cameramotion to motiontrack and motiondetect: frames go through whole
+// and uncopied, every format gives the same answer, and what cannot be analysed is refused in one clear sentence.
 #include <set>
 
 #include "scene.h"

@@ -182,8 +182,8 @@ GST_START_TEST(bearing_and_distance_follow_from_the_lens) {
 }
 GST_END_TEST
 
-// The lens 0.8 m above the floor, pitched down by 10 degrees: the feet's ray falls steeper, so they are nearer. A pose on
-// the frame says so, or the property; the pose wins.
+// The lens 0.8 m above the floor, pitched down by 10 degrees: the feet's ray falls steeper, so they are nearer. A pose
+// on the frame says so, or the property; the pose wins.
 GST_START_TEST(the_tilt_of_the_camera_counts_for_the_distance) {
   const World world = entering();
   const char* const tilts[] = {"", "tilt=-10", "tilt=30"};
@@ -217,8 +217,9 @@ GST_START_TEST(the_tilt_of_the_camera_counts_for_the_distance) {
 }
 GST_END_TEST
 
-// A fixed camera 5 m up, 60 degrees wide, that looks down by 35. By hand: f = 160 / tan 30 = 277.13; feet in row 168, 48 below
-// the middle, are 9.826 degrees below the axis, so 44.826 below the horizon, and 5 / tan 44.826 = 5.030 m away.
+// A fixed camera 5 m up, 60 degrees wide, that looks down by 35. By hand: f = 160
+// / tan 30 = 277.13; feet in row 168, 48 below the middle, are 9.826 degrees
+// below the axis, so 44.826 below the horizon, and 5 / tan 44.826 = 5.030 m away.
 GST_START_TEST(a_fixed_camera_that_looks_down_tells_distances) {
   World world = entering();
   Line line(
@@ -234,8 +235,8 @@ GST_START_TEST(a_fixed_camera_that_looks_down_tells_distances) {
 }
 GST_END_TEST
 
-// Of the same camera: one pixel at the feet is 5 / (48 / f cos 35 + sin 35) / f = 0.0252 m wide, so somebody 28 to 36 pixels
-// wide passes the limit of 1.44 m. Level, it would be 5 / 48 = 0.104 m, and he would not.
+// Of the same camera: one pixel at the feet is 5 / (48 / f cos 35 + sin 35) / f = 0.0252 m wide, so somebody 28 to 36
+// pixels wide passes the limit of 1.44 m. Level, it would be 5 / 48 = 0.104 m, and he would not.
 GST_START_TEST(the_tilt_counts_for_the_limits_in_metres) {
   for (const bool looks_down : {true, false}) {
     Line line(std::string("motionregions horizontal-fov=60 mounting-height=5 ") +

@@ -105,7 +105,8 @@ GST_START_TEST(a_property_that_was_set_wins_over_the_preset_in_any_order) {
 }
 GST_END_TEST
 
-// A thread that sets a property while another one's preset is on its way to the stages, as soon as the first stage tells.
+// A thread that sets a property while another one's preset is
+// on its way to the stages, as soon as the first stage tells.
 GST_START_TEST(a_property_that_another_thread_sets_meanwhile_wins_over_the_preset) {
   GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
   GstElement* stage = gst_bin_get_by_name(GST_BIN(detect), "threeframediff");

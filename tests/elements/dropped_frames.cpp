@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Frames that somebody drops on the way (videorate, a leaky queue): whatever stands where must go on seeing, and must say
-// so where it cannot.
+// Frames that somebody drops on the way (videorate, a leaky queue):
+// whatever stands where must go on seeing, and must say so where it cannot.
 #include "../../plugins/vision/camera_path.hpp"
 
 #include "scene.h"
@@ -127,7 +127,8 @@ GST_START_TEST(the_path_of_another_camera_is_not_followed) {
 }
 GST_END_TEST
 
-// Three times round: of a path this long the steps are still right, whoever missed how many frames. The truth is a lens's.
+// Three times round: of a path this long the steps are still
+// right, whoever missed how many frames. The truth is a lens's.
 GST_START_TEST(a_path_of_many_turns_tells_the_steps) {
   using namespace cerberus;
   const vision::Size frame{320, 240};
@@ -194,8 +195,8 @@ GST_START_TEST(frames_dropped_in_front_blind_nobody) {
 }
 GST_END_TEST
 
-// Marked without a hole: a cut every time, for all that can be known. One message says why nothing is found, also where a
-// frame in five is marked, and none where one in ten is: a seek now and then is nobody's fault.
+// Marked without a hole: a cut every time, for all that can be known. One message says why nothing is found, also where
+// a frame in five is marked, and none where one in ten is: a seek now and then is nobody's fault.
 GST_START_TEST(a_stream_of_breaks_is_complained_of_once) {
   constexpr int kEvery[] = {1, 3, 5, 10};
   const World world;
@@ -213,8 +214,8 @@ GST_START_TEST(a_stream_of_breaks_is_complained_of_once) {
 }
 GST_END_TEST
 
-// Somebody else's camera motion, which nothing but its times connects, and dropped frames; and a seek now and then, which
-// is nobody's fault.
+// Somebody else's camera motion, which nothing but its times connects,
+// and dropped frames; and a seek now and then, which is nobody's fault.
 GST_START_TEST(motions_that_cannot_be_followed_are_complained_of_once) {
   const World world;
   Line stage("threeframediff"), sought("threeframediff");

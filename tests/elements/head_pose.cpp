@@ -78,8 +78,8 @@ GST_START_TEST(poses_of_the_run_before_are_forgotten) {
 }
 GST_END_TEST
 
-// A blank wall says nothing of the camera: then the head does. F = 160 / tan 30; a turn of atan(40 / F) to the right moves
-// the middle of the picture by 40 pixels to the left.
+// A blank wall says nothing of the camera: then the head does. F = 160 / tan 30; a turn of atan(40 / F) to the right
+// moves the middle of the picture by 40 pixels to the left.
 GST_START_TEST(a_heads_turn_counts_where_the_picture_says_nothing) {
   const double pan = std::atan(40 * std::tan(30 * M_PI / 180) / 160) * 180 / M_PI;
   for (const bool known : {true, false}) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A thousand pipelines of all these elements begin and end, in every way, and leave nothing: no thread, no descriptor, no
-// memory. (Objects that stay alive are found by the leak tracer, tests/run leaks.)
+// A thousand pipelines of all these elements begin and end, in every way, and leave nothing: no thread, no descriptor,
+// no memory. (Objects that stay alive are found by the leak tracer, tests/run leaks.)
 #include <malloc.h>
 
 #include <chrono>

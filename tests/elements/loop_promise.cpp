@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From the edge of a PIR sensor to the first command of the motors at most 60 ms pass in a live pipeline, whatever its frame
-// rate is and the camera needs to deliver a frame.
+// From the edge of a PIR sensor to the first command of the motors at most 60 ms pass in a live pipeline, whatever its
+// frame rate is and the camera needs to deliver a frame.
 //
-// A sensor's rise is told at once (debounce delays falls only), decided at once as if the last frame came again, and obeyed at
-// once: what passes is the work. A sensor that spoke before the first frame waits for that.
+// A sensor's rise is told at once (debounce delays falls only), decided at once as if the last frame came again, and
+// obeyed at once: what passes is the work. A sensor that spoke before the first frame waits for that.
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -250,8 +250,8 @@ Round reactions() {
   std::vector<Command> commands;
   Round round;
   {
-    // The head reaches neither sensor's sector: it is always on the way there, or at the stop before it. The picture goes
-    // by as before a camera that turns, which is the most work; there is nobody in it.
+    // The head reaches neither sensor's sector: it is always on the way there, or at the stop before it. The picture
+    // goes by as before a camera that turns, which is the most work; there is nobody in it.
     loop::Pipeline pipeline(
         "videotestsrc is-live=true num-buffers=62 pattern=pinwheel horizontal-speed=2 ! "
         "video/x-raw,format=GRAY8,width=160,height=120,framerate=10/1 ! motiondetect ! "
@@ -279,9 +279,9 @@ Round reactions() {
   return round;
 }
 
-// A machine with other work may be late with any of them, and for a while with many: one round of some counts, and none on
-// a machine that has no time for anybody. At 10 frames a second four of ten edges would come too late if they waited for a
-// frame: seven of ten in time tell that they do not.
+// A machine with other work may be late with any of them, and for a while with many: one round of some counts, and none
+// on a machine that has no time for anybody. At 10 frames a second four of ten edges would come too late if they waited
+// for a frame: seven of ten in time tell that they do not.
 GST_START_TEST(sixty_milliseconds_from_an_edge_to_the_motors) {
   bool kept = false;
   int rounds = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The closed loop gives the same JSON lines, byte by byte, however its work is spread over threads and whatever else
-// the machine does. Over somebody who walks before a wall, or, with CERBERUS_SEQUENCE=vtest in the environment, over that
-// video; where it is not there the test is skipped, and says so.
+// the machine does. Over somebody who walks before a wall, or, with CERBERUS_SEQUENCE=vtest in the environment, over
+// that video; where it is not there the test is skipped, and says so.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>

@@ -19,7 +19,8 @@ std::size_t held() {
   return info.uordblks + info.hblkhd;
 }
 
-// Sanitizers and valgrind have a heap of their own, of which mallinfo2() knows nothing; a tracer keeps its records on ours.
+// Sanitizers and valgrind have a heap of their own, of which
+// mallinfo2() knows nothing; a tracer keeps its records on ours.
 bool heap_tells() {
   if (g_getenv("GST_TRACERS")) {
     g_print("left out: the tracer's records would be counted\n");
@@ -72,7 +73,8 @@ struct Case {
     return columns * columns * height / width;
   }
 };
-// In a small picture much is what five elements are to GStreamer, and lists that do not depend on its size: about 60 kB.
+// In a small picture much is what five elements are to GStreamer,
+// and lists that do not depend on its size: about 60 kB.
 constexpr Case kCases[] = {{kUsual, 320, 240, 18}, {kUsual, 320, 180, 18}, {kUsual, 640, 360, 18},
                            {kUsual, 160, 120, 22}, {kUsual, 160, 90, 23},  {kUsual, 128, 96, 24},
                            {kKept, 320, 240, 22},  {kKept, 640, 360, 22},  {kKept, 160, 120, 24}};

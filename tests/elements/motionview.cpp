@@ -249,7 +249,8 @@ GST_START_TEST(each_option_of_the_threshold_moves_the_curves) {
     curves.emplace_back();
     for (int x = 0; x < p.width(); ++x) curves.back().push_back(curves_at(p, x));
   }
-  // By columns with both curves in both pictures, away from the upright lines, which hide them: more than a line's width.
+  // By columns with both curves in both pictures, away from the
+  // upright lines, which hide them: more than a line's width.
   for (std::size_t i = 1; i < curves.size(); ++i)
     for (std::size_t j = 0; j < i; ++j) {
       double farthest = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A driver that blocks for ever keeps nobody: not a change of state, not a frame on its way, not the next element.
 //
-// Beside the promise (promises.h), no round may take seconds, whatever the load: the element's own patience with a driver is
-// 10 s, so that is what a lock held at the wrong moment costs.
+// Beside the promise (promises.h), no round may take seconds, whatever the load: the element's own patience with a
+// driver is 10 s, so that is what a lock held at the wrong moment costs.
 #include <array>
 #include <chrono>
 #include <future>
@@ -34,8 +34,8 @@ milliseconds change(Rig& rig, GstState state) {
 enum class What { segment, frame, gap };
 constexpr const char* kWhat[] = {"segment", "frame", "gap"};
 
-// Stands between pantiltsink and its base class: when `change` is under way and the element has done its own part of it,
-// `what` is pushed, and the base class does its part once it has handed that to the element or keeps it waiting.
+// Stands between pantiltsink and its base class: when `change` is under way and the element has done its own part of
+// it, `what` is pushed, and the base class does its part once it has handed that to the element or keeps it waiting.
 class Meeting {
  public:
   Meeting(Rig& rig, GstStateChange when, What what) : rig_(rig), when_(when), what_(what) {
@@ -119,7 +119,8 @@ void meet(const std::string& script, GstStateChange when, What what) {
   fail_unless(down < kHang, "%s, then READY took %d ms", where.c_str(), static_cast<int>(down.count()));
 }
 
-// A frame that the base class lets through before the element itself is in PLAYING waits for the element, which has to wake it.
+// A frame that the base class lets through before the element
+// itself is in PLAYING waits for the element, which has to wake it.
 class EarlyFrame {
  public:
   explicit EarlyFrame(Rig& rig) : rig_(rig) {
@@ -203,7 +204,8 @@ GST_START_TEST(a_frame_that_is_early_for_playing_goes_on_by_itself) {
 }
 GST_END_TEST
 
-// The base class may refuse PLAYING: the head obeys nobody then, as before, and does nothing that it was told in PAUSED.
+// The base class may refuse PLAYING: the head obeys nobody
+// then, as before, and does nothing that it was told in PAUSED.
 GST_START_TEST(who_does_not_come_to_playing_stands) {
   Pipe record;
   Rig rig(scripted("record " + record.writer()), Source::live);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pantiltsink with a clock: poses by the clock, the watchdog, drivers that fail, and every way of asking for what cannot be.
+// pantiltsink with a clock: poses by the clock, the watchdog,
+// drivers that fail, and every way of asking for what cannot be.
 #include <chrono>  // before gst-check, whose macros bite standard headers
 
 #include "../support/entries.h"
@@ -230,7 +231,8 @@ GST_START_TEST(a_driver_that_fails_warns_once_and_the_video_goes_on) {
 }
 GST_END_TEST
 
-// What the element says when it does not start; it says it once. A driver on a thread of its own may say it a moment later.
+// What the element says when it does not start; it says it once.
+// A driver on a thread of its own may say it a moment later.
 std::string refusal(const std::string& properties) {
   GstElement* element = gst_parse_launch(("pantiltsink " + properties).c_str(), nullptr);
   gst_object_ref_sink(element);

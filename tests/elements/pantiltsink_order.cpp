@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a head does is told in the order in which it did it, whichever thread says so and whoever keeps the one that does.
+// What a head does is told in the order in which it did it,
+// whichever thread says so and whoever keeps the one that does.
 #include <future>
 #include <thread>
 

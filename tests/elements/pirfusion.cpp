@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pirfusion's decisions: what it takes from frames and events, and what it says. (Its rules are in pirfusion_rules.cpp, what
-// comes to its pads in pirfusion_pads.cpp, who waits for whom in pirfusion_waiting.cpp.)
+// pirfusion's decisions: what it takes from frames and events, and what it says. (Its rules are in pirfusion_rules.cpp,
+// what comes to its pads in pirfusion_pads.cpp, who waits for whom in pirfusion_waiting.cpp.)
 #include "fusion_rig.h"
 
 namespace {

@@ -131,7 +131,8 @@ GST_START_TEST(the_newest_pose_counts) {
 }
 END_TEST
 
-// A module holds its output for a while: counted from when the robot was heard to stand, not from the frame before that.
+// A module holds its output for a while: counted from when the
+// robot was heard to stand, not from the frame before that.
 GST_START_TEST(doubt_lasts_from_when_the_robot_stands) {
   Rig rig;
   rig.add_pir();
@@ -272,8 +273,8 @@ GST_START_TEST(without_a_frame_to_speak_of_nothing_is_decided) {
 }
 GST_END_TEST
 
-// Two sensors' threads and the video's at once: every change of a sensor is decided before its thread brings the next one,
-// so each is in what is told. In another order sensors would seem to have changed more often.
+// Two sensors' threads and the video's at once: every change of a sensor is decided before its thread brings the next
+// one, so each is in what is told. In another order sensors would seem to have changed more often.
 GST_START_TEST(changes_are_told_once_and_in_their_order) {
   Rig rig;
   rig.add_pir(with_sensors(1, 0, 0).c_str());

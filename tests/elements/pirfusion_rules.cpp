@@ -13,8 +13,8 @@ struct Expected {
   CerberusFusionAction action;
 };
 
-// The paper's rules (II.D), written down anew: order 1, 5, 6, 2, 3, 4, 7; rules 2-4 turn AT their edge, 5-6 track at it. "Camera
-// Tracking" without a target is standing still.
+// The paper's rules (II.D), written down anew: order 1, 5, 6, 2, 3, 4, 7; rules 2-4 turn AT their edge, 5-6 track at
+// it. "Camera Tracking" without a target is standing still.
 Expected paper(bool camera, bool i1, bool i2, bool i3, double a) {
   const auto turn = [](int rule, bool right, bool left) {
     return Expected{rule, right  ? CERBERUS_FUSION_TURN_RIGHT

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors whose driver hangs while it is opened: no change of state waits for it, nothing is known meanwhile, and what comes
-// of it is told, however late.
+// Sensors whose driver hangs while it is opened: no change of state waits for it, nothing is known meanwhile, and what
+// comes of it is told, however late.
 #include <algorithm>
 #include <array>
 #include <atomic>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is promised in real time. A machine with other work may take a time slice anywhere, so the best of several rounds
-// counts: what waits for something is slow in each of them.
+// What is promised in real time. A machine with other work may take a time slice anywhere, so the best of several
+// rounds counts: what waits for something is slow in each of them.
 #pragma once
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A virtualptz in a harness, and pictures for it.
 //
-// A picture of 320 x 240 that sees 60 degrees has F = 160 / tan 30 = 277.128; a window of 160 x 120 rests at (80, 60) and
-// reaches atan(80 / F) = 16.102 degrees to each side and atan(60 / F) = 12.216 up and down. A pan of atan(40 / F) =
+// A picture of 320 x 240 that sees 60 degrees has F = 160 / tan 30 = 277.128; a window of 160 x 120 rests at (80, 60)
+// and reaches atan(80 / F) = 16.102 degrees to each side and atan(60 / F) = 12.216 up and down. A pan of atan(40 / F) =
 // 8.2132 degrees moves it by 40 pixels.
 #pragma once
 

@@ -109,5 +109,6 @@ int
 main (int argc, char **argv)
 {
   gst_init (&argc, &argv);
-  return boxed_types_copy_and_compare () + a_buffer_carries_it_all () + a_head_and_its_sensors_are_told_of () + versions_agree ();
+  return boxed_types_copy_and_compare () + a_buffer_carries_it_all () + a_head_and_its_sensors_are_told_of () +
+      versions_agree ();
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The scene of 320 x 240 in the corner of a window of 160 x 120: 0.3 x 160 = 48 pixels wide, 36 high, 0.02 x 160 = 3 from the
-// upper right corner. A window that looks straight ahead lies at (80, 60), so its place in the inset is 12..36 x 9..27.
-// A pan of 8.2132 degrees moves it by 40 pixels (virtualptz.cpp), 6 of the inset.
+// The scene of 320 x 240 in the corner of a window of 160 x 120: 0.3 x 160 = 48 pixels wide, 36 high, 0.02 x 160 = 3
+// from the upper right corner. A window that looks straight ahead lies at (80, 60), so its place in the inset is 12..36
+// x 9..27. A pan of 8.2132 degrees moves it by 40 pixels (virtualptz.cpp), 6 of the inset.
 #include <cmath>
 #include <string>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// virtualptz with the head behind it that turns it: over somebody who walks before a wall, 320 x 240 pixels, a window of
-// 160 x 120 that reaches 16.1 degrees (80 pixels) to each side.
+// virtualptz with the head behind it that turns it: over somebody who walks before a wall, 320 x 240 pixels, a window
+// of 160 x 120 that reaches 16.1 degrees (80 pixels) to each side.
 #include <atomic>
 #include <cmath>
 #include <future>

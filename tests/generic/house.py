@@ -106,7 +106,8 @@ def check_links(path):
                 complain(path, f'points to {target}, which is not there')
 
 
-PAGES = {page.name for folder in (*FOLDERS, '.') for page in (TOP / folder).glob('*.md' if folder == '.' else '**/*.md')}
+PAGES = {page.name for page in TOP.glob('*.md')}
+PAGES |= {page.name for folder in FOLDERS for page in (TOP / folder).rglob('*.md')}
 
 
 def check_named_pages(path):

@@ -15,8 +15,8 @@ namespace {
 
 using namespace simulated;
 
-// What libgpiod's requests for lines end with, as a kernel driver or a sandbox may refuse them though the chip opens; 0: they
-// go through. The files of a simulated chip know no such thing: the program's own ioctl() comes before libc's.
+// What libgpiod's requests for lines end with, as a kernel driver or a sandbox may refuse them though the chip opens;
+// 0: they go through. The files of a simulated chip know no such thing: the program's own ioctl() comes before libc's.
 int inputs_refused = 0, outputs_refused = 0;
 
 int refusal_of(unsigned long request, const void* argument) {

@@ -1,6 +1,7 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 /* The first and only process of the virtual machine: puts a writable layer over the host's files, enters it, runs the
- * command of the kernel's command line after "--", says how it ended, and switches the machine off. Linked statically. */
+ * command of the kernel's command line after "--", says how it
+ * ended, and switches the machine off. Linked statically. */
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/reboot.h>

@@ -62,7 +62,8 @@ def script(commands, keep):
     lines = ['#!/bin/sh', 'status=0', f'cd {shlex.quote(os.getcwd())}']
     lines += [f'export {name}={shlex.quote(os.environ[name])}' for name in keep if name in os.environ]
     for command in commands:
-        lines += [f'echo {shlex.quote("guest: " + pathlib.Path(command[0]).name)}', shlex.join(command) + ' || status=1']
+        lines += [f'echo {shlex.quote("guest: " + pathlib.Path(command[0]).name)}',
+                  shlex.join(command) + ' || status=1']
     return '\n'.join([*lines, 'exit $status', ''])
 
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// with_hardware PROGRAM [ARG ...]: runs a program that finds its hardware in CERBERUS_GPIO_CHIP and CERBERUS_IIO_DEVICE.
+// with_hardware PROGRAM [ARG ...]: runs a program that finds
+// its hardware in CERBERUS_GPIO_CHIP and CERBERUS_IIO_DEVICE.
 #include <sys/wait.h>
 
 #include "simulated.h"

@@ -90,7 +90,8 @@ def test_the_demos_sensors_call_the_head_to_whom_the_camera_does_not_see():
 
 
 def test_the_view_has_the_shape_of_the_video():
-    # 5/12 of 1920 x 1080 are 800 x 450 pixels, enough to be read; of 640 x 270 they are 266.7 x 112.5, enlarged to 640 x 270.
+    # 5/12 of 1920 x 1080 are 800 x 450 pixels, enough to be read;
+    # of 640 x 270 they are 266.7 x 112.5, enlarged to 640 x 270.
     for name, size, view in (('wide', (1920, 1080), (800, 450)), ('flat', (640, 270), (640, 270))):
         video(f'{name}.mp4', 'mp4mux', frames=4, width=size[0], height=size[1])
         must(annotate(f'{name}.mp4'))
@@ -125,7 +126,8 @@ def test_a_file_name_with_spaces_and_a_folder_that_is_not_there_yet():
 
 
 def test_odd_sizes_become_an_mp4_all_the_same():
-    must(gst_launch(f'{ball(frames=20, width=321, height=243)} ! videoconvert ! video/x-raw,format=BGR ! avimux ! filesink location=odd.avi'))
+    must(gst_launch(f'{ball(frames=20, width=321, height=243)} ! videoconvert ! video/x-raw,format=BGR ! avimux ! '
+                    'filesink location=odd.avi'))
     must(annotate('odd.avi'))
     assert len(json_lines('out/objects.jsonl')) == 20
     assert decoded('out/annotated.mp4') > 0

@@ -5,7 +5,8 @@
     launch_files.py NAME live|file|444
 
 The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
-objects are found. Where people are told by their size, it has the shape of one. Networks are the loopback, on ports that were free a moment ago.
+objects are found. Where people are told by their size, it has the shape of one. Networks are the loopback, on ports
+that were free a moment ago.
 """
 import contextlib
 import os

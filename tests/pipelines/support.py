@@ -52,8 +52,8 @@ def ball(frames=60, width=320, height=240, live=False, name='scene'):
     return before_rings(width, height, (0, 0, width, height), frames, width, height, live, name)
 
 
-# A lens of VIEW degrees that looks straight ahead, CLEARANCE metres above the ground, as robot.launch takes it to be; and
-# somebody who runs to and fro before it, at most 2.1 m a second.
+# A lens of VIEW degrees that looks straight ahead, CLEARANCE metres above the ground, as robot.launch takes it to be;
+# and somebody who runs to and fro before it, at most 2.1 m a second.
 VIEW, CLEARANCE, DISTANCE, TALL, WIDE = 60, 0.8, 5, 1.7, 0.5
 
 

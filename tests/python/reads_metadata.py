@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Reads regions, tracks, threshold and camera motion from Python, through GObject introspection.
 
-It is also the example to start from: the class at the end shows how a program gets at each frame's metadata. What sensors,
-fusion and head attach and post is read by reads_the_loop.py beside it.
+It is also the example to start from: the class at the end shows how a program gets at each frame's metadata. What
+sensors, fusion and head attach and post is read by reads_the_loop.py beside it.
 """
 import math
 import sys
@@ -115,14 +115,16 @@ class ThroughAPipeline(unittest.TestCase):
     def test_a_probe_reads_what_rides_on_the_frame(self):
         # Python's wrapper of a buffer inside a probe holds a second reference, so a probe can read but not annotate.
         seen = []
-        list(frames("videotestsrc num-buffers=3 ! video/x-raw,width=64,height=48 ! identity name=mark ! appsink name=sink",
+        list(frames("videotestsrc num-buffers=3 ! video/x-raw,width=64,height=48 ! identity name=mark ! "
+                    "appsink name=sink",
                     lambda buffer: seen.append((Cerberus.buffer_get_regions(buffer),
                                                 Cerberus.buffer_add_region(buffer, region(id=1))))))
         self.assertEqual(seen, [([], False)] * 3)
 
     def test_an_application_annotates_and_reads(self):
-        pipeline = Gst.parse_launch("appsrc name=source caps=video/x-raw,format=GRAY8,width=64,height=48,framerate=25/1 "
-                                    "format=time ! queue ! videoscale ! video/x-raw,width=128,height=96 ! "
+        pipeline = Gst.parse_launch("appsrc name=source format=time "
+                                    "caps=video/x-raw,format=GRAY8,width=64,height=48,framerate=25/1 ! queue ! "
+                                    "videoscale ! video/x-raw,width=128,height=96 ! "
                                     "videoconvert ! video/x-raw,format=RGB ! appsink name=sink")
         source, sink = pipeline.get_by_name("source"), pipeline.get_by_name("sink")
         pipeline.set_state(Gst.State.PLAYING)

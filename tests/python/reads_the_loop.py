@@ -98,7 +98,8 @@ class WithATurningRobot(unittest.TestCase):
     """The application tells how the robot turns, by an event upstream; frames and sensors know it from then on."""
 
     def test_what_it_tells_is_on_the_frames_and_in_the_lines(self):
-        pipeline = Gst.parse_launch(f"appsrc name=source caps={CAPS} format=time ! motiondetect ! pirfusion ! tee name=t "
+        pipeline = Gst.parse_launch(f"appsrc name=source caps={CAPS} format=time ! motiondetect ! pirfusion ! "
+                                    "tee name=t "
                                     "t. ! queue ! motionjson ! appsink name=lines sync=false "
                                     "t. ! queue ! appsink name=frames sync=false")
         source, lines, sink = map(pipeline.get_by_name, ("source", "lines", "frames"))
@@ -127,7 +128,8 @@ DEBOUNCE, RETURN_DELAY = 0.02, 0.3
 LOOP = f"""
     videotestsrc num-buffers=120 pattern=black ! video/x-raw,format=GRAY8,width=640,height=240,framerate=30/1 !
     virtualptz wide-fov={WIDE} width=320 height=240 ! motiondetect !
-    pirfusion name=fusion horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH} return-delay={round(RETURN_DELAY * SECOND)} ! tee name=t
+    pirfusion name=fusion horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH}
+        return-delay={round(RETURN_DELAY * SECOND)} ! tee name=t
     pirsrc driver=scripted bearings=0,-20,20 field-of-view=20 script="{SCRIPT}" ! queue ! fusion.pir_0
     t. ! queue ! pantiltsink driver=simulated horizontal-fov={WINDOW} pan-min=-{REACH} pan-max={REACH}
     t. ! queue ! motionjson ! filesink location=%s
@@ -222,7 +224,8 @@ class WithARecording(unittest.TestCase):
             file = pathlib.Path(folder, "night.json")
             file.write_bytes(lines('script="0,2,0,1; 0.5,2,1,2; 0.7,1,1,2; 1,0,2,2; 1.2,0,1,0; 2,0,1,0"'))
             again = lines(f"driver=replay location={file}")
-            told, again = ([json.loads(line)["pir"] for line in text.splitlines()] for text in (file.read_bytes(), again))
+            told, again = ([json.loads(line)["pir"] for line in text.splitlines()]
+                           for text in (file.read_bytes(), again))
         expected = [[2, 0, 1]] * 10 + [[2, 1, 2]] * 4 + [[1, 1, 2]] * 6 + [[0, 2, 2]] * 4 + [[0, 1, 0]] * 16
         self.assertEqual(told, expected)
         self.assertEqual(again, expected)

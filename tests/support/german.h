@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A locale with a decimal comma, for as long as this lives. Where none is installed it is made: its source comes with libc.
+// A locale with a decimal comma, for as long as this lives. Where
+// none is installed it is made: its source comes with libc.
 #pragma once
 
 #include <clocale>

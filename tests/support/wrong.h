@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is wrong in a picture: counted, and asserted once. An assertion for each pixel costs more than what it looks at, as
-// check writes down each one that it comes by.
+// What is wrong in a picture: counted, and asserted once. An assertion for each pixel costs more than what it looks at,
+// as check writes down each one that it comes by.
 #pragma once
 
 #include <check.h>

@@ -63,8 +63,8 @@ START_TEST(a_picture_that_goes_left_is_a_base_that_turns_right) {
 }
 END_TEST
 
-// The exact motion of a turning head (Lens::turn has tests of its own) leaves nothing, wherever it looks; that of a head that
-// stands on a turning base leaves the base.
+// The exact motion of a turning head (Lens::turn has tests of its own) leaves nothing, wherever it looks; that of a
+// head that stands on a turning base leaves the base.
 START_TEST(a_heads_own_turn_leaves_nothing_and_a_bases_turn_remains) {
   for (const double tilt : {0.0, -20.0, 30.0})
     for (const double head : {0.0, 3.0, -5.0})
@@ -79,8 +79,8 @@ START_TEST(a_heads_own_turn_leaves_nothing_and_a_bases_turn_remains) {
 }
 END_TEST
 
-// A similarity fits a pan by the mean shift over the picture; taken as an angle in the middle that is 11 % too much for 60
-// degrees: the mean of 1 + (x / F)^2.
+// A similarity fits a pan by the mean shift over the picture; taken as an angle in the middle that is 11 % too much for
+// 60 degrees: the mean of 1 + (x / F)^2.
 START_TEST(a_mean_shift_is_taken_as_the_mean_angle) {
   const double pan = radians(3);
   const Transform exact = kLens.turn(0, 0, pan, 0);

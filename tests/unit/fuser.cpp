@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What camera and sensors together decide. (Whom to follow is asked in follower.cpp, how to search in fuser_search.cpp.)
+// What camera and sensors together decide. (Whom to follow is
+// asked in follower.cpp, how to search in fuser_search.cpp.)
 #include "fuser_stream.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head that blocks must block nobody else. The scripted head blocks on pipes, so nothing here waits for a clock but the
-// patience that is tested.
+// A head that blocks must block nobody else. The scripted head blocks on
+// pipes, so nothing here waits for a clock but the patience that is tested.
 #include "drivers/head_runner.h"
 
 #include <check.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The way of an axis against times and places worked out by hand, with limits that give round numbers: 2 a second and 4 a
-// second squared, so 0.5 s and 0.5 of way to full speed.
+// The way of an axis against times and places worked out by hand, with limits that give round numbers: 2 a second and 4
+// a second squared, so 0.5 s and 0.5 of way to full speed.
 #include "control/profile.h"
 
 #include <check.h>
@@ -147,8 +147,8 @@ START_TEST(numbers_that_are_none_brake) {
 }
 END_TEST
 
-// Whatever is commanded whenever: never beyond a stop, never faster than permitted (but for what it began with), position
-// and speed without a jump, rest at the end.
+// Whatever is commanded whenever: never beyond a stop, never faster than permitted (but for what it began with),
+// position and speed without a jump, rest at the end.
 START_TEST(no_commands_make_an_axis_jump_or_pass_its_stops) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> place(-15, 15), speed(-3, 3), wait(0, 1.5);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What only a simulated head does: latency, steps, play, noise. 1 a second and 2 a second squared: 0.5 s and 0.25 of way to
-// full speed.
+// What only a simulated head does: latency, steps, play, noise. 1 a
+// second and 2 a second squared: 0.5 s and 0.25 of way to full speed.
 #include "drivers/simulated_head.h"
 
 #include <check.h>

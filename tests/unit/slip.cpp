@@ -133,8 +133,8 @@ Speed robot(unsigned seed, double acceleration) {
   };
 }
 
-// The speeds of a head that follows what moves with `target` (a bearing's speed as the robot sees it): proportionally, over
-// a delay, within its acceleration, with a dead band.
+// The speeds of a head that follows what moves with `target` (a bearing's speed as the robot sees it): proportionally,
+// over a delay, within its acceleration, with a dead band.
 Speed follower(const Speed& target, double delay, double gain = 4, double acceleration = 600) {
   constexpr double kStep = 0.005;
   std::vector<double> speeds;
@@ -189,7 +189,8 @@ START_TEST(a_head_that_turns_by_another_angle_is_found_once) {
 END_TEST
 
 // Every fault, by a picture as noisy as the real ones (0.03 degrees a frame; a head up to a tenth of a second late). In
-// the first 20 degrees nothing may be said; a second change of speed there must be, for a wrong scale a third, and then it is.
+// the first 20 degrees nothing may be said; a second change of
+// speed there must be, for a wrong scale a third, and then it is.
 START_TEST(a_fault_is_found_soon_after_twenty_degrees) {
   const struct {
     const char* what;

@@ -109,7 +109,8 @@ class PlanePool {
   PlanePool(const PlanePool&) = delete;
   PlanePool& operator=(const PlanePool&) = delete;
 
-  // A plane to write, its rows padded as those of a vision::Image. What it holds is undefined. False where memory ran out.
+  // A plane to write, its rows padded as those of a vision::Image.
+  // What it holds is undefined. False where memory ran out.
   MappedPlane acquire(vision::Size size, int sample_size = 1);
   // Lets go of the memory; planes that still ride on frames stay valid.
   void clear();

@@ -9,8 +9,8 @@
 
 namespace cerberus {
 
-// A message is UTF-8 or whoever reads it fails, and ends at the first NUL: bytes that are no UTF-8, and control characters but
-// the line feed, are written as \xNN.
+// A message is UTF-8 or whoever reads it fails, and ends at the first NUL: bytes that are no UTF-8, and control
+// characters but the line feed, are written as \xNN.
 inline std::string printable(std::string_view text) {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string result;
