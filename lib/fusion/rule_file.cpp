@@ -33,7 +33,7 @@ namespace cerberus::fusion {
 
 namespace {
 
-// A rule file is a page; a video named by mistake is not.
+// A rule file has a page or two; what is larger (a video, say) was named by mistake.
 constexpr std::size_t kMostBytes = 1 << 20;
 
 constexpr std::array kActions{Action::track,  Action::turn_left, Action::turn_right,

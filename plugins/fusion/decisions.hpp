@@ -35,8 +35,8 @@ class Decisions {
 
   // For the frame of `time`, by what was heard until `heard`. live: others may ask before the next one.
   Told frame(GstBuffer* frame, Time time, Time heard, const std::string& head, bool live);
-  // Until the next frame: the last one once more, with what sensors, head and base have said until `heard`. Nothing:
-  // they have said nothing new, or there is no live frame to speak of.
+  // Until the next frame: the last one once more, with what sensors, head and base have said until `heard`. Nothing: no
+  // sensor says anything else than for the last decision, or there is no live frame to speak of.
   std::optional<Told> between(Time heard, const std::string& head);
 
   // Tells every change that was decided and not told yet, in their order.
