@@ -396,7 +396,8 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   std::memcpy(weak.view().data, seeds.data, weak.bytes());
   const ScenePlanes planes{present.view(), light.known(),
                            age.view(),     quiet.view(),
-                           in.still,       !in.still && unreliable < kMostUnreliable * columns * rows};
+                           in.still,       !in.still && unreliable < kMostUnreliable * columns * rows,
+                           warp.spans()};
   const bool young = parts.judge(planes, windows, seeds, absorb.view());
   const int side = std::max(3, kClosing * w / 320 | 1);
   std::memcpy(plain().data, seeds.data, moved.bytes());

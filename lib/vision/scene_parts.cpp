@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "vision/scene_light.h"
+
 namespace cerberus::vision {
 namespace {
 
@@ -84,10 +86,16 @@ void SceneParts::measure(const ScenePlanes& planes, const SceneWindows& windows,
     part.lately += before;
     part.young += young;
     part.newest += newest;
+    const RowSpan shown =
+        planes.shown.empty() ? RowSpan{0, w} : planes.shown[static_cast<std::size_t>(r.row)];
     const auto contrast = [&](int outside, int inside) {
+      ++part.outline;
+      if (outside < shown.begin || outside >= shown.end) return;
+      // What has just come into the picture beside a thing is learnt from that thing: its end is no edge of the scene.
+      if (!planes.still && age[outside] < std::min(age[inside], kRelearn)) return;
       part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
       part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
-      ++part.outline;
+      ++part.compared;
     };
     if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
     if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
@@ -132,13 +140,13 @@ void SceneParts::weigh(const ScenePlanes& planes, const Component& c, Part& part
   const SceneOrigins::Before& b = part.before;
   const bool here = planes.still && (b.any ? 2 * b.here > b.any : young || (moved_ == 0 && !at_edge));
   part.origin = here ? SceneOrigins::Origin::here : SceneOrigins::Origin::elsewhere;
-  part.object = part.outline > 0 && part.frame > 1.3 * part.memory + 2 * part.outline;
-  part.ghost = part.outline > 0 && part.memory > 1.3 * part.frame + 2 * part.outline;
+  part.object = part.compared > 0 && part.frame > 1.3 * part.memory + 2 * part.compared;
+  part.ghost = part.compared > 0 && part.memory > 1.3 * part.frame + 2 * part.compared;
   // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
   part.moving =
       part.lately >= std::max<double>(kLeastMoved, std::min<double>(kMovingShare * area, part.outline));
   // At the picture's edge the motion of a place that somebody has just left is his last.
-  const bool was_here = part.memory > 2 * part.frame + 4 * part.outline && young;
+  const bool was_here = part.memory > 2 * part.frame + 4 * part.compared && young;
   const double least =
       was_here && at_edge ? std::min<double>(kEmptyShare * area, part.outline) : kFreshShare * area;
   part.fresh = part.now >= std::max<double>(kLeastMoved, least);

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "vision/image.h"
 #include "vision/labelling.h"
 #include "vision/mask.h"
 #include "vision/scene_origins.h"
+#include "vision/warp.h"
 
 namespace cerberus::vision {
 
@@ -30,6 +32,8 @@ struct ScenePlanes {
   GrayView quiet;            // frames since a pixel moved
   bool still = false;        // the camera stands
   bool followed = false;     // it moves, and the memory fits the frame nearly everywhere
+  // What the frame shows of each row; none: all.
+  std::span<const RowSpan> shown{};
 };
 
 class SceneParts {
@@ -54,8 +58,9 @@ class SceneParts {
   struct Part {
     int now = 0, lately = 0;    // pixels that moved in the last frames, and for some time back
     int young = 0, newest = 0;  // pixels that the memory has learnt for no longer than those windows
-    int frame = 0, memory = 0;  // contrast across its outline in frame and memory ...
-    int outline = 0;            // ... and over how many places
+    int outline = 0;            // places of it to the left and right
+    int frame = 0, memory = 0;  // contrast across those in frame and memory ...
+    int compared = 0;           // ... of which so many are known in both
     // Places of it, above and below too, that are an edge of one of them only.
     int frame_only = 0, memory_only = 0;
     int places = 0;

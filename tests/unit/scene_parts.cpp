@@ -4,6 +4,8 @@
 #include "vision/scene_parts.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
 
 #include "support/suite.h"
 
@@ -276,6 +278,38 @@ START_TEST(a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion) {
 }
 END_TEST
 
+// A camera that moves shows new columns, and does not show others any more. Neither end is an edge of anything.
+START_TEST(the_end_of_what_is_known_is_no_edge) {
+  constexpr Rect kAll{5, 80, 40, 30}, kFar{25, 80, 20, 30}, kStrip{0, 0, 5, 240};
+  const auto judge = [&](Scene& s, std::span<const RowSpan> shown) {
+    s.differs(kAll, 0);
+    ScenePlanes planes = s.planes(false);
+    planes.followed = true;
+    planes.shown = shown;
+    s.parts.judge(planes, kWindows, s.mask.view(), s.absorb.view());
+    return count(s.mask, kAll);
+  };
+  // Somebody is there, his far side little brighter than the scene. The strip that has just come in shows him, and the
+  // memory has it from there.
+  for (const int strip_age : {1, 10}) {
+    Scene s(10);
+    Scene::paint(s.present, kAll, 200);
+    Scene::paint(s.present, kFar, 120);
+    for (auto* picture : {&s.present, &s.memory}) Scene::paint(*picture, {0, 80, 5, 30}, 200);
+    Scene::paint(s.age, kStrip, strip_age);
+    ck_assert_int_eq(judge(s, {}), strip_age == 1 ? all(kAll) : 0);
+  }
+  // Somebody was there, and the frame ends beside it.
+  for (const bool ends : {true, false}) {
+    Scene s(10);
+    Scene::paint(s.memory, kAll, 200);
+    Scene::paint(s.present, kStrip, 0);
+    const std::vector<RowSpan> shown(kSize.height, RowSpan{ends ? 5 : 0, kSize.width});
+    ck_assert_int_eq(judge(s, shown), ends ? 0 : all(kAll));
+  }
+}
+END_TEST
+
 START_TEST(two_people_stay_two) {
   // 20 away: more than a fifth of their height. The child has 0.42 of the other's area: more than a piece.
   constexpr Rect kOther{150, 80, 30, 80}, kChild{150, 110, 20, 50};
@@ -375,8 +409,8 @@ int main() {
        fronts_far_apart_or_of_other_heights_are_two,
        a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
        a_piece_beside_a_big_part_is_dropped_not_joined,
-       a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion, two_people_stay_two,
-       a_tiny_part_says_nothing_while_the_memory_is_young,
+       a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion, the_end_of_what_is_known_is_no_edge,
+       two_people_stay_two, a_tiny_part_says_nothing_while_the_memory_is_young,
        a_piece_of_the_place_that_somebody_leaves_is_taken_over,
        who_left_a_place_is_an_object_where_he_stops});
 }
