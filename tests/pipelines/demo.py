@@ -10,7 +10,7 @@ import subprocess
 import sys
 import time
 
-from support import TOP, all_tests, ball, gst_launch, json_lines, must, run, video
+from support import LIMIT, TOP, all_tests, ball, gst_launch, json_lines, must, run, video
 
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 WINDOW = 640 * 480
@@ -206,13 +206,13 @@ def test_a_display_that_cannot_be_opened_does_not_stop_it():
 def test_ctrl_c_finishes_the_files():
     file = video('long.mp4', 'mp4mux', frames=3000)
     process = subprocess.Popen(line(file), stderr=subprocess.PIPE, text=True)
-    until = time.monotonic() + 60
+    until = time.monotonic() + LIMIT
     while process.poll() is None and time.monotonic() < until:
         if os.path.exists('out/objects.jsonl') and os.path.getsize('out/objects.jsonl') > 0:
             break
         time.sleep(0.005)
     process.send_signal(signal.SIGINT)
-    said = process.communicate(timeout=60)[1]
+    said = process.communicate(timeout=LIMIT)[1]
     assert process.returncode == 0, f'exit status {process.returncode}: {said}'
     lines = json_lines('out/objects.jsonl')
     assert 0 < len(lines) < 3000, f'{len(lines)} lines'

@@ -52,6 +52,11 @@ def source(kind, scene=ball):
     return 'filesrc location=scene.mp4 ! decodebin'
 
 
+def paced(kind):
+    """A source no faster than its clock: who drops what he has no time for shall have some, on a busy machine too."""
+    return source(kind) if kind == 'live' else source(kind) + ' ! identity sync=true'
+
+
 def decode(path, pixel_format='I420'):
     """The frames of a file, through a decoder that knows nothing of how it was made."""
     raw = path + '.raw'
@@ -80,7 +85,7 @@ def coloured(frame):
 
 
 def least(kind):
-    """So many frames come through. A live compositor leaves out those that a busy machine is too late for."""
+    """So many frames come through. Live, those are left out for which a busy machine is too late (support.PATIENCE)."""
     return FRAMES // 2 if kind == 'live' else FRAMES - 2
 
 
@@ -112,7 +117,7 @@ def test_annotate(kind):
 
 
 def test_live(kind):
-    finish(start('live', SOURCE=source(kind), SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
+    finish(start('live', SOURCE=paced(kind), SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
     pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
     assert len(pictures) >= FRAMES // 10, f'{len(pictures)} frames were shown'  # it may drop late ones
     assert any(map(coloured, pictures)), 'no box was shown'
@@ -132,7 +137,8 @@ def test_stages(kind):
     width, height = 384, 288
     pictures = frames('out.raw', 3 * width * 2 * height)
     # A live compositor starts when its first input does, and may repeat or skip a frame.
-    assert abs(len(pictures) - FRAMES) <= (FRAMES // 2 if kind == 'live' else 0), f'{len(pictures)} frames'
+    few, many = (least(kind), most(kind)) if kind == 'live' else (FRAMES, FRAMES)
+    assert few <= len(pictures) <= many, f'{len(pictures)} frames'
     for tile, stage in enumerate(('luma', 'difference', 'histogram', 'mask', 'labels', 'result')):
         left, top = tile % 3 * width, tile // 3 * height
         rows = (range(top, top + height))
@@ -143,7 +149,7 @@ def test_stages(kind):
 
 def test_virtualptz(kind):
     size = 160 * 120 * 3 // 2
-    finish(start('virtualptz', SOURCE=source(kind), WIDE=60, VIEW=32.2, WIDTH=160, HEIGHT=120, PAN=16, TILT=12,
+    finish(start('virtualptz', SOURCE=paced(kind), WIDE=60, VIEW=32.2, WIDTH=160, HEIGHT=120, PAN=16, TILT=12,
                  SINK='video/x-raw,format=I420 ! filesink location=out.raw'))
     pictures = frames('out.raw', size)
     assert len(pictures) >= FRAMES // 10, f'{len(pictures)} frames were shown'  # it may drop late ones
@@ -184,22 +190,27 @@ def closed_loop(kind, name):
 
 def test_closed_loop(kind):
     lines = closed_loop(kind, 'a')
+    if kind == 'live':
+        # Nobody waits for a sensor's word there, and when the head obeys depends on the machine.
+        assert [0, 0, 1] in [line['pir'] for line in lines], 'the sensors are not those of the file'
+        return
     for line in lines:
         seconds = (line['pts'] - lines[0]['pts']) / 1e9
         if abs(seconds - 0.2) > 0.1 and abs(seconds - 0.8) > 0.1:
             assert line['pir'] == [0, 0, int(0.2 < seconds < 0.8)], 'the sensors are not those of the file'
-    if kind == 'live':  # when the head obeys depends on the machine then
-        return
     closed_loop(kind, 'b')
     assert pathlib.Path('a.jsonl').read_bytes() == pathlib.Path('b.jsonl').read_bytes(), 'two runs differ'
     assert lines[0]['pose'] == {'pan': 0, 'tilt': 0, 'moving': False}
     check_the_loop(lines, 160, 14)
 
 
-def free_port():
-    with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as sock:
-        sock.bind(('127.0.0.1', 0))
-        return sock.getsockname()[1]
+def free_ports(count):
+    """Held until all are found: no two are the same."""
+    with contextlib.ExitStack() as held:
+        sockets = [held.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) for _ in range(count)]
+        for each in sockets:
+            each.bind(('127.0.0.1', 0))
+        return [each.getsockname()[1] for each in sockets]
 
 
 def wait_for(what, condition, process):
@@ -236,21 +247,23 @@ def rested(*paths):
 
 
 def test_rtp(kind):
-    port, json_port = free_port(), free_port()
+    port, json_port = free_ports(2)
     stream = source(kind)
     receiver = start('rtp-receive', ADDRESS='127.0.0.1', PORT=port, JSON_PORT=json_port, JSON='out.jsonl',
                      SINK='video/x-raw,format=I420 ! filesink buffer-mode=unbuffered location=out.raw')
     wait_for('its ports', lambda: listening(port) and listening(json_port), receiver)
     finish(start('rtp-send', SOURCE=stream, HOST='127.0.0.1', PORT=port, JSON_PORT=json_port))
-    # The decoder keeps a few frames until the stream ends, which a receiver of UDP never hears of.
-    wait_for('the frames', lambda: size('out.raw') >= (least(kind) - 5) * WIDTH * HEIGHT * 3 // 2, receiver)
+    # Of the pictures, not of the lines, a sender leaves out what would come too late; a live one has time to spare.
+    # The decoder keeps a few until the stream ends, which a receiver of UDP never hears of.
+    fewest = least(kind) - 5 if kind == 'live' else FRAMES // 10
+    wait_for('the frames', lambda: size('out.raw') >= fewest * WIDTH * HEIGHT * 3 // 2, receiver)
     wait_for('the last of them', rested('out.jsonl', 'out.raw'), receiver)
     os.killpg(receiver.pid, signal.SIGINT)
     finish(receiver)
     count = check_lines('out.jsonl', kind)
     pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
-    assert count - 5 <= len(pictures) <= count, f'{len(pictures)} frames were received of {count}'
-    assert sum(map(coloured, pictures)) > count // 3, 'the received picture has no boxes'
+    assert fewest <= len(pictures) <= count, f'{len(pictures)} frames were received of {count}'
+    assert sum(map(coloured, pictures)) > len(pictures) // 3, 'the received picture has no boxes'
 
 
 def test_robot(kind):
@@ -274,7 +287,9 @@ def test_robot(kind):
     away = statistics.median(each['distance'] for line in lines for each in line['objects'])
     assert abs(away - DISTANCE) < 1, f'somebody {DISTANCE} m away is told to be {away} m away'
     assert all(line.keys() >= {'pir', 'fusion'} for line in lines), 'a line without sensors or decision'
-    assert lines[-1]['pir'] == [0, 0, 1], 'the sensors are not those of the file'
+    # A live sensor that a busy machine keeps silent counts as lost for a while.
+    heard = [line['pir'] for line in (lines if kind == 'live' else lines[-1:])]
+    assert [0, 0, 1] in heard, 'the sensors are not those of the file'
     actions = {line['fusion']['action'] for line in lines}
     assert actions & {'track', 'turn-right'}, f'nobody looked at what was found: {actions}'
 
