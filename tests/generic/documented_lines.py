@@ -14,7 +14,9 @@ import subprocess
 import sys
 import tempfile
 
-TOP = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'pipelines'))
+from support import LIMIT, TOP  # noqa: E402
+
 BALL = 'videotestsrc num-buffers=30 pattern=ball ! video/x-raw,format=I420,width=320,height=240,framerate=25/1'
 NEEDS_HARDWARE = ('nvarguscamerasrc', 'nvvidconv', 'nvvideoconvert', 'vapostproc', 'v4l2convert', 'glupload')
 
@@ -95,7 +97,7 @@ def stand_in(line):
 def goes_well(words):
     """Runs to its end; what went wrong, else nothing."""
     try:
-        done = subprocess.run(words, capture_output=True, text=True, timeout=60, errors='replace')
+        done = subprocess.run(words, capture_output=True, text=True, timeout=LIMIT, errors='replace')
     except subprocess.TimeoutExpired:
         return 'it did not end'
     return '' if done.returncode == 0 and 'Traceback' not in done.stderr else done.stdout[-2000:] + done.stderr
@@ -116,7 +118,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         make = f'gst-launch-1.0 -q {BALL} ! x264enc ! matroskamux ! filesink location=ball.mkv'
-        subprocess.run(make.split(), check=True, timeout=60)
+        subprocess.run(make.split(), check=True, timeout=LIMIT)
         for path, line in lines():
             if any(name in line for name in NEEDS_HARDWARE) or REAL_DRIVER.search(line):
                 print(f'skip {path}: {line} (its hardware is not here)')

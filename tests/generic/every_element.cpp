@@ -184,7 +184,7 @@ void run_to_the_end(const std::string& name, GstElement* pipeline, const std::st
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   GstBus* bus = gst_element_get_bus(pipeline);
   GstMessage* message = gst_bus_timed_pop_filtered(
-      bus, 20 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+      bus, 100 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
   fail_unless(message != nullptr, "%s hangs with %s", name.c_str(), what.c_str());
   gst_message_unref(message);
   gst_object_unref(bus);

@@ -10,13 +10,13 @@ import sys
 import tempfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / 'pipelines'))
-from support import ball  # noqa: E402
+from support import LIMIT, ball  # noqa: E402
 
 LINE = f'gst-launch-1.0 -q {ball(frames=40)} ! motiondetect horizontal-fov=60 preset=traffic ! motionjson ! filesink'
 
 
 def lines(name, **environment):
-    subprocess.run([*LINE.split(), f'location={name}'], check=True, timeout=60, env={**os.environ, **environment})
+    subprocess.run([*LINE.split(), f'location={name}'], check=True, timeout=LIMIT, env={**os.environ, **environment})
     return pathlib.Path(name).read_bytes()
 
 
