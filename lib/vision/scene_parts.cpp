@@ -26,7 +26,9 @@ constexpr double kGap = 0.2;       // between neighbours that are one
 constexpr double kFrontGap = 1;    // between two fronts of one
 constexpr double kPieceGap = 0.5;  // between a part and its pieces, a front and the rest
 constexpr double kNarrow = 0.3;    // a front is narrower than this share of its height
-// Share of what lies between two fronts of one that may show more than noise.
+// Grey levels by which a pixel would surely differ from the memory, and the share of what lies between two fronts of one
+// that may be as uneven.
+constexpr int kShows = 12;
 constexpr double kUneven = 0.25;
 constexpr double kLevel = 0.5;  // share of the lower one's height at which they stand beside each other
 constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
@@ -36,14 +38,15 @@ struct Between {
   int left, top, right, bottom;
 };
 
-// Inside of what moves only an even part differs from nothing. What shows more than noise between two fronts, and has not
-// changed, is the scene behind two things.
-bool is_even(GrayView frame, const Between& part) {
+// Inside of what moves only an even part differs from nothing. What is uneven over as many pixels as it would have moved,
+// the width of the fronts, and has not changed is the scene behind two things.
+bool is_even(GrayView frame, const Between& part, int moved) {
+  const int step = std::max(std::min(moved, (part.right - part.left) / 2), 1);
   int uneven = 0, seen = 0;
   for (int y = part.top; y < part.bottom; ++y)
-    for (int x = std::max(part.left, 2); x < std::min(part.right, frame.width - 2); ++x) {
+    for (int x = part.left; x + step < part.right; ++x) {
       ++seen;
-      uneven += std::abs(frame.at(x + 2, y) - frame.at(x - 2, y)) > kEdge;
+      uneven += std::abs(frame.at(x + step, y) - frame.at(x, y)) > kShows;
     }
   return uneven <= kUneven * seen;
 }
@@ -266,7 +269,7 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
       const double reach = narrow_a && narrow_b ? kFrontGap : narrow_a || narrow_b ? kPieceGap : kGap;
       const bool two = a.area >= kPiece * b.area || narrow_a || narrow_b;
       if (level && across > 0 && across < reach * tall && two && !parts_[i].piece &&
-          is_even(planes.present, between)) {
+          is_even(planes.present, between, std::min(a.width(), b.width()))) {
         for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
         parts_[i].whole = parts_[j].whole = true;
       } else if (across < kPieceGap * tall && down < kPieceGap * tall && a.area < kPiece * b.area) {

@@ -190,19 +190,26 @@ START_TEST(two_fronts_are_one_where_the_memory_is_young) {
 }
 END_TEST
 
-// As high and as far from each other as the fronts of one body: a wall of bricks between them, which has not changed,
-// says that they are two people.
+// As high and as far from each other as the fronts of one body. What lies between them has not changed: where a wall of
+// bricks or a slope would have, had it moved as far as they are wide, they are two people.
 START_TEST(two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one) {
-  constexpr Rect kLeft{100, 80, 20, 80}, kBetween{120, 80, 60, 80}, kRight{180, 80, 20, 80};
-  for (const bool bricks : {false, true}) {
+  enum Wall { even, bricks, slope };
+  struct Case {
+    Wall wall;
+    int width;  // of each
+    bool one;
+  };
+  for (const Case& c : {Case{even, 20, true}, {bricks, 20, false}, {slope, 20, false}, {slope, 10, true}}) {
+    const Rect left{120 - c.width, 80, c.width, 80}, right{180, 80, c.width, 80}, between{120, 80, 60, 80};
     Scene s(10);
-    if (bricks)
-      for (int x = 0; x < kSize.width; x += 8) Scene::paint(s.present, {x, 0, 4, kSize.height}, 120);
-    s.differs(kLeft, 1);
-    s.differs(kRight, 1);
+    for (int x = 0; x < 256; ++x)
+      if (c.wall == slope || (c.wall == bricks && x % 16 < 8))
+        Scene::paint(s.present, {x, 0, 1, kSize.height}, c.wall == slope ? x : 120);
+    s.differs(left, 1);
+    s.differs(right, 1);
     s.join();
-    ck_assert_int_eq(count(s.mask, kBetween), bricks ? 0 : all(kBetween));
-    ck_assert_int_eq(count(s.mask, kLeft) + count(s.mask, kRight), all(kLeft) + all(kRight));
+    ck_assert_int_eq(count(s.mask, between), c.one ? all(between) : 0);
+    ck_assert_int_eq(count(s.mask, left) + count(s.mask, right), all(left) + all(right));
   }
 }
 END_TEST
