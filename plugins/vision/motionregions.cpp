@@ -9,6 +9,10 @@
  * region is published until three frames of a scene were seen. Limits of size that contradict
  * each other or the frame, and zones that leave no part of the picture, are warned of.
  *
+ * A limit in metres judges only what has a distance: `horizontal-fov` and `mounting-height` are known, and the feet are in
+ * the picture and below the horizon. The rest passes, for who cannot be measured may be somebody; limits in pixels and zones
+ * are for what flies and shines up there.
+ *
  * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
  * element downstream (motionview) asks for them. `keep-planes` says otherwise: `always` leaves them there, and with
  * `never` nobody who asks is heard. Where `motiontrack` follows, the small picture and
@@ -84,18 +88,22 @@ const Property<Settings> kProperties[] = {
              "Regions as found that are lower than this, in frame pixels, are dropped; 0 = no limit"),
     property("maximum-height", &Settings::maximum_height, 0, kMaximumPixels,
              "Regions as found that are higher than this, in frame pixels, are dropped; 0 = no limit"),
-    property("minimum-width-metres", &Settings::minimum_width_metres, 0, kMaximumMetres,
-             "Regions as found that are narrower than this, in metres, are dropped while horizontal-fov is "
-             "known; 0 = no limit"),
-    property("maximum-width-metres", &Settings::maximum_width_metres, 0, kMaximumMetres,
-             "Regions as found that are wider than this, in metres, are dropped while horizontal-fov is "
-             "known; 0 = no limit"),
-    property("minimum-height-metres", &Settings::minimum_height_metres, 0, kMaximumMetres,
-             "Regions as found that are lower than this, in metres, are dropped while horizontal-fov is "
-             "known; 0 = no limit"),
-    property("maximum-height-metres", &Settings::maximum_height_metres, 0, kMaximumMetres,
-             "Regions as found that are higher than this, in metres, are dropped while horizontal-fov is "
-             "known; 0 = no limit"),
+    property(
+        "minimum-width-metres", &Settings::minimum_width_metres, 0, kMaximumMetres,
+        "Regions as found that are narrower than this, in metres, are dropped where their distance is known "
+        "(horizontal-fov); 0 = no limit"),
+    property(
+        "maximum-width-metres", &Settings::maximum_width_metres, 0, kMaximumMetres,
+        "Regions as found that are wider than this, in metres, are dropped where their distance is known "
+        "(horizontal-fov); 0 = no limit"),
+    property(
+        "minimum-height-metres", &Settings::minimum_height_metres, 0, kMaximumMetres,
+        "Regions as found that are lower than this, in metres, are dropped where their distance is known "
+        "(horizontal-fov); 0 = no limit"),
+    property(
+        "maximum-height-metres", &Settings::maximum_height_metres, 0, kMaximumMetres,
+        "Regions as found that are higher than this, in metres, are dropped where their distance is known "
+        "(horizontal-fov); 0 = no limit"),
     property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
     property("tilt", &Settings::tilt, -kMaximumTilt, kMaximumTilt, kTiltBlurb),

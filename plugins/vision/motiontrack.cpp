@@ -94,12 +94,11 @@ const Property<Settings> kProperties[] = {
              "it allows is "
              "taken for the same object; 0 = no limit"),
     property("minimum-speed-metres", &Settings::minimum_speed_metres, 0, 1000,
-             "Objects that never were as fast as this, in metres a second, are not published while "
-             "horizontal-fov is "
-             "known; 0 = no limit"),
+             "Objects that never were as fast as this, in metres a second, are not published where their "
+             "distance is known (horizontal-fov); 0 = no limit"),
     property("maximum-speed-metres", &Settings::maximum_speed_metres, 0, 1000,
-             "Objects faster than this, in metres a second, are not published while horizontal-fov is known; "
-             "0 = no limit"),
+             "Objects faster than this, in metres a second, are not published where their distance is known "
+             "(horizontal-fov); 0 = no limit"),
     property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
     property("tilt", &Settings::tilt, -kMaximumTilt, kMaximumTilt, kTiltBlurb),
@@ -118,8 +117,10 @@ constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
 std::string why_nothing(const Settings& s, const vision::SpeedGate& gate) {
   if (s.confirm_time > kLongestConfirmTime)
     return "confirm-time is longer than an hour: nothing can be found. Make it shorter.";
-  std::string why = contradiction("speed", gate.pixels);
-  if (why.empty() && s.horizontal_fov > 0) why = contradiction("speed-metres", gate.metres);
+  // The lower limit is for the highest speed ever, the upper one for the speed now.
+  constexpr char kResult[] = "only who was as fast once and is slower now is found";
+  std::string why = contradiction("speed", gate.pixels, 0, kResult);
+  if (why.empty() && s.horizontal_fov > 0) why = contradiction("speed-metres", gate.metres, 0, kResult);
   return why;
 }
 

@@ -11,11 +11,12 @@
 namespace cerberus::plugin {
 
 // Limits between which nothing lies; empty: something may. `what`: as in the properties minimum-... and maximum-...
-// possible: none is larger, 0 = not known.
-inline std::string contradiction(const char* what, const vision::Range& range, double possible = 0) {
+// possible: none is larger, 0 = not known. result: what comes of the two.
+inline std::string contradiction(const char* what, const vision::Range& range, double possible = 0,
+                                 const char* result = "nothing can be found") {
   if (range.most > 0 && range.least > range.most)
-    return std::string("minimum-") + what + " is larger than maximum-" + what +
-           ": nothing can be found. Make it smaller, or set one of the two to 0 (no limit).";
+    return std::string("minimum-") + what + " is larger than maximum-" + what + ": " + result +
+           ". Make it smaller, or set one of the two to 0 (no limit).";
   if (possible > 0 && range.least > possible)
     return std::string("minimum-") + what +
            " is larger than the frame: nothing can be found. Make it smaller, or 0 (no limit).";

@@ -125,6 +125,8 @@ GST_START_TEST(a_video_meta_that_does_not_fit_is_an_unusable_buffer) {
       {GST_VIDEO_FORMAT_GRAY8, 320, 240, 320, gsize{1} << 40},  // begins nowhere
       {GST_VIDEO_FORMAT_GRAY8, 320, 240, -320, 0},              // bottom-up, begins at the top
       {GST_VIDEO_FORMAT_GRAY8, 320, 240, std::numeric_limits<gint>::min(), 0},
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, 100, 0},  // rows over one another
+      {GST_VIDEO_FORMAT_GRAY8, 320, 240, 0, 0},
       {GST_VIDEO_FORMAT_GRAY8, 64, 48, 320, 0},   // another size
       {GST_VIDEO_FORMAT_NV12, 320, 240, 320, 0},  // another format
   };
@@ -436,7 +438,8 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
       {"horizontal-fov=60 minimum-width-metres=2",
        "minimum-width-metres is larger than maximum-width-metres"},
       {"horizontal-fov=60 minimum-height-metres=2 maximum-height-metres=1", "maximum-height-metres"},
-      {"minimum-speed=100 maximum-speed=10", "minimum-speed is larger than maximum-speed"},
+      {"minimum-speed=100 maximum-speed=10",
+       "minimum-speed is larger than maximum-speed: only who was as fast once"},
       {"horizontal-fov=60 minimum-speed-metres=5", "minimum-speed-metres is larger"},
       {"confirm-time=18446744073709551615", "confirm-time"},
       {"zones=\"include 0,0 0,0 0,0\"", "zones"},

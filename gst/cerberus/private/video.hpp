@@ -5,6 +5,7 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "vision/luma.h"
 
@@ -56,6 +57,7 @@ class VideoFrame {
           gint64{GST_VIDEO_FRAME_COMP_WIDTH(&frame_, c) - 1} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, c) + 1;
       const gint64 last = (rows - 1) * GST_VIDEO_FRAME_COMP_STRIDE(&frame_, c);  // negative: bottom-up
       const gint64 first = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame_, c)) - map.data;
+      if (rows > 1 && std::abs(last) < (rows - 1) * row) return false;  // rows that lie over one another
       if (first + std::min<gint64>(0, last) < 0) return false;
       if (first + std::max<gint64>(0, last) + row > static_cast<gint64>(map.size)) return false;
     }
