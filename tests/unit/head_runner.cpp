@@ -90,7 +90,7 @@ START_TEST(who_cannot_wait_is_not_kept) {
   ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 20ms) == Answer::late);
   ck_assert(runner->stop(0s, 20ms) == Answer::late);
   ck_assert(!runner->idle());
-  ck_assert(Clock::now() - start < 1s);
+  ck_assert(Clock::now() - start < 5s);
   gate.close_writer();
   ck_assert(runner->stop(1s, 10s) == Answer::done);
 }
@@ -300,7 +300,7 @@ START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
     runner->set_close_patience(20ms);
     const auto start = Clock::now();
     runner.reset();
-    ck_assert(Clock::now() - start < 1s);
+    ck_assert(Clock::now() - start < 5s);
   }
   ck_assert(!watch.expired());
   gate.close_writer();
