@@ -57,6 +57,12 @@ void SceneLight::relight(GrayView present) {
   repeat_borders();
 }
 
+void SceneLight::relight_rows(GrayView present, std::span<const RowSpan> shown) {
+  estimate(present, shown, true);
+  if (change_.agreement() >= kAgreement && !change_.none()) relight(present);
+  change_.clear();
+}
+
 // White stays white: it may have been anything from there on.
 const std::uint8_t* SceneLight::remembered(int y, const std::uint8_t* present) {
   const RowLight light = change_.row(y);

@@ -44,6 +44,8 @@ class SceneLight {
   // known() has been relit for the frame that shows it, it is as that says, and learnt anew.
   void adopt(const ScenePixels& pixels, SceneSurroundings& surroundings, std::span<const RowSpan> shown = {});
 
+  // known, as it was drawn, under the light of `present`, by rows, as before a standing camera: to align the two.
+  void relight_rows(GrayView present, std::span<const RowSpan> shown);
   // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one:
   // ages become 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.
   bool compensate(const ScenePixels& pixels, SceneSurroundings& surroundings, GrayView present,

@@ -430,7 +430,8 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
   s.measure_time(in.seconds);
-  if (!in.still && s.light.is_other()) s.light.adopt(s.pixels(), s.surroundings);
+  const bool other_light = !in.still && s.light.is_other();
+  if (other_light) s.light.adopt(s.pixels(), s.surroundings);
   s.follow(in);
   GrayView blurred = mask;
   if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);
@@ -441,7 +442,12 @@ void SceneMemory::update(const SceneMemoryInput& in, MutableGrayView mask) {
     for (int y = 0; y < mask.height; ++y) std::fill_n(mask.row(y), mask.width, std::uint8_t{0});
     return;
   }
-  if (!in.still && s.frames > 1) s.align(in, blurred);
+  if (!in.still && s.frames > 1) {
+    // Lamps' light may be in bands, which no adopting takes away; they would pull at the alignment.
+    if (other_light) s.light.relight_rows(s.present.view(), s.warp.spans());
+    s.align(in, blurred);
+    if (other_light) s.light.draw(s.mean.view());
+  }
   const bool step = s.frames > 1 && s.light.compensate(s.pixels(), s.surroundings, s.present.view(),
                                                        s.warp.spans(), in.still);
   s.surroundings.doubt(s.pixels(), s.present.view(), s.light.known(), s.warp.spans());

@@ -120,10 +120,27 @@ START_TEST(a_camera_that_begins_to_move_in_another_light_finds_nothing_wrong) {
 }
 END_TEST
 
+// Lamps' light in bands, under which nothing can be aligned: taken out for that, and not measured.
+START_TEST(what_is_to_be_aligned_is_compared_in_the_light_of_each_row) {
+  Memory m;
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x)
+      m.present.view().at(x, y) = to_byte((1 + 0.08 * std::sin(y / 22.0)) * Memory::scene(x, y));
+  m.light.draw(m.mean.view());
+  const int before = m.off();
+  m.light.relight_rows(m.present.view(), m.shown);
+  ck_assert_int_gt(before, 12);
+  ck_assert_msg(m.off() <= 5, "it is %d off", m.off());
+  ck_assert_ptr_eq(m.light.remembered(28, m.present.view().row(28)), m.present.view().row(28));
+  ck_assert(!m.light.is_other());
+}
+END_TEST
+
 int main() {
   return run_suite(
       "scene_light",
       {another_light_is_taken_out_and_what_was_white_may_be_anything_from_there_on,
        what_is_remembered_of_a_frame_is_in_the_memorys_light, a_light_that_goes_away_slowly_is_never_seen,
-       a_camera_that_begins_to_move_in_another_light_finds_nothing_wrong});
+       a_camera_that_begins_to_move_in_another_light_finds_nothing_wrong,
+       what_is_to_be_aligned_is_compared_in_the_light_of_each_row});
 }
