@@ -119,9 +119,18 @@ bool Body::predict(double seconds) {
 void Body::magnify(double scale) {
   for (MovingValue* a : {&x, &y})
     for (double* p : {&a->pp, &a->pv, &a->vv}) *p *= scale * scale;
-  for (SlowValue* e : {&w, &h}) e->value += std::log(scale);
+  for (double* e : {&w.value, &h.value, &born_width, &born_height}) *e += std::log(scale);
   widest *= scale;
   tallest *= scale;
+}
+
+// How far, in S, its edges have gone because it came nearer or went away. Who walks straight towards the camera grows
+// and his middle stays where it is. Both ways alike: a place that somebody uncovers, and a piece of which more and more
+// is seen, grow one way.
+double Body::neared() const {
+  const double wider = w.value - born_width, taller = h.value - born_height;
+  if (wider * taller <= 0) return 0;
+  return 0.5 * (1 - std::exp(-std::min(std::abs(wider), std::abs(taller))));
 }
 
 // To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
@@ -216,6 +225,8 @@ void Body::resize(SlowValue& extent, double seen, bool is_cut, double seconds) {
 void Body::adopt(const Box& seen) {
   w = {std::log(seen.width), square(kSizeNoise)};
   h = {std::log(seen.height), square(kSizeNoise)};
+  born_width = w.value;
+  born_height = h.value;
   x.position = centre(seen).x;
   y.position = centre(seen).y;
   misfit = fitted = 0;
@@ -297,7 +308,7 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
   unseen = 0;
   const double keep = std::exp(-seconds / 0.5);
   confidence = keep * confidence + (1 - keep) * (0.5 + 0.5 * r.confidence) * (fits ? 1 : 0.7);
-  travelled = std::max(travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s);
+  travelled = std::max({travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s, neared()});
   slow = speed() < kStandSpeed * s ? slow + seconds : 0;
   if (id != 0) top_speed = std::max(top_speed, speed());
 }

@@ -35,8 +35,10 @@ struct Body {
   SlowValue w, h;                  // logarithms of the extent
   double widest = 0, tallest = 0;  // the largest extent it has had
   Point origin;                    // where it was first seen, carried with the scene
-  double travelled = 0;            // largest distance from the origin, S
-  double top_speed = 0;            // pixels a second, since it was confirmed
+  // Logarithms of the extent it was first seen with, carried with the scene.
+  double born_width = 0, born_height = 0;
+  double travelled = 0;  // largest distance from the origin, S; of its edges, where it comes nearer
+  double top_speed = 0;  // pixels a second, since it was confirmed
   double confidence = 0;
   double age = 0, unseen = 0;  // s since first and since last seen
   double fitted = 0;           // s during which a region had its extent: how well the extent is known
@@ -48,7 +50,7 @@ struct Body {
   Point walk;              // velocity, pixels a second, when last seen away from the picture's edges
   bool uncovered = false;  // first seen where the camera had just begun to look
   bool stood = false;      // it stood, or nearly, when the misfit began
-  bool parted = false;     // its box was that of two who have come apart
+  bool parted = false;     // its box was that of two who have come apart, or of a piece
   bool hidden = false;     // behind somebody else whose region this is
   double lost = 0;         // s in regions of several without being found there
   Look look;
@@ -121,6 +123,7 @@ struct Body {
 
  private:
   void magnify(double scale);
+  double neared() const;
   void adopt(const Box& seen);
   bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);

@@ -406,6 +406,7 @@ void SceneMemory::State::decide(const SceneMemoryInput& in) {
   unite(weak.view(), seeds, weak.view());
   morphology.dilate(weak.view(), w, 3);
   if (young) parts.join(planes, windows, seeds, plain());
+  parts.join_fronts(planes, seeds, plain());
 }
 
 // Before a camera that moves what is measured of the light is half errors of registration: better the frame as it is.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "vision/scene_fronts.h"
 #include "vision/scene_light.h"
 
 namespace cerberus::vision {
@@ -31,8 +32,10 @@ constexpr double kNarrow = 0.3;    // a front is narrower than this share of its
 constexpr int kShows = 12;
 constexpr double kUneven = 0.25;
 constexpr double kLevel = 0.5;  // share of the lower one's height at which they stand beside each other
-constexpr double kLeast = 1 / 1280.0;  // share of the picture below which a part says nothing yet
-constexpr double kPiece = 1 / 3.0;     // share of the bigger part's area below which a part is a piece
+constexpr double kLeast = 1 / 1280.0;       // share of the picture below which a part says nothing yet
+constexpr double kPiece = 1 / 3.0;          // share of the bigger part's area below which a part is a piece
+constexpr double kLeastFront = 1 / 2560.0;  // share of the picture below which a part is no front of anybody
+constexpr std::size_t kMostFronts = 128;    // parts beyond which a picture is clutter
 
 struct Between {
   int left, top, right, bottom;
@@ -279,6 +282,14 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
   }
   for (const Run& r : labeller_.runs())
     if (parts_[r.component].piece && !parts_[r.component].whole) clear_bits(mask.row(r.row), r.first, r.end);
+}
+
+void SceneParts::join_fronts(const ScenePlanes& planes, MutableBitView closed, MutableBitView mask) {
+  if (!planes.still || labeller_.components().size() < 2) return;
+  const Size size = planes.present.size();
+  const auto parts =
+      labeller_.find(closed, size.width, static_cast<std::uint32_t>(kLeastFront * size.area()));
+  if (parts.size() <= kMostFronts) vision::join_fronts(planes.present, parts, mask);
 }
 
 std::size_t SceneParts::bytes() const {

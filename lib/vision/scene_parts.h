@@ -51,6 +51,10 @@ class SceneParts {
   // a big part and its pieces (which are dropped: joined to it they would be a strip of the scene beside it). closed: the mask with its gaps closed, used as scratch; mask: in and out.
   void join(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView closed,
             MutableBitView mask);
+  // After these: what lies between fronts of one thing, one above the other, belongs to it (scene_fronts.h), if the
+  // camera stands: errors of registration lie along edges of the scene, which are sides of nothing. closed: as for
+  // join().
+  void join_fronts(const ScenePlanes& planes, MutableBitView closed, MutableBitView mask);
   std::size_t bytes() const;
 
  private:

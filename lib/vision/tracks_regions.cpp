@@ -24,7 +24,10 @@ constexpr double kSudden = 0.45;
 constexpr double kAwayUnlike = 0.35;  // who comes back must look as before
 // Of two who walk side by side: how much taller than wide, and the gap between them in widths, at least.
 constexpr double kUpright = 1.3, kGap = 0.3;
-constexpr double kSmall = 0.2;     // of somebody's area: nobody else
+constexpr double kSmall = 0.2;  // of somebody's area: nobody else
+// Of pieces of one person above one another: the share of the smaller one's height that they have in common at most, of
+// its width at least; and how many times as tall as wide their region is at most.
+constexpr double kApartRows = 0.3, kSameColumns = 0.8, kLean = 5;
 constexpr double kTogether = 0.3;  // s in one region before pieces are taken for one
 
 Box bounding(const Box& a, const Box& b) {
@@ -32,15 +35,29 @@ Box bounding(const Box& a, const Box& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.bottom(), b.bottom()) - y};
 }
 
+bool is_upright(const Box& b) {
+  return b.height > kUpright * b.width;
+}
+
 // Two upright boxes of one size with a clear gap between them, as tall as what they come from, are two people who walk
 // side by side, not pieces of one.
 bool side_by_side(const Box& a, const Box& b, const Box& expected) {
-  const auto upright = [](const Box& box) { return box.height > kUpright * box.width; };
   const auto alike = [](double p, double q) { return std::min(p, q) > 0.6 * std::max(p, q); };
   const double clear = std::max(a.x, b.x) - std::min(a.right(), b.right());
   const double low = std::max(a.y, b.y), high = std::min(a.bottom(), b.bottom());
-  return upright(a) && upright(b) && alike(a.width, b.width) && alike(a.height, b.height) &&
+  return is_upright(a) && is_upright(b) && alike(a.width, b.width) && alike(a.height, b.height) &&
          high - low > 0.6 * expected.height && clear > kGap * std::min(a.width, b.width);
+}
+
+// Are they pieces, one above the other, of somebody whose region this is? Who walks straight up or down the picture is
+// seen in fronts before he is seen whole: head, waist and feet. Two people in a region have rows in common; where they
+// have not, one far behind the other, both are upright and stand aslant, or the region is taller than anybody.
+bool are_one_above_another(const Box& a, const Box& b, const Box& region) {
+  const double columns = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+  const double rows = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  return is_upright(region) && region.height < kLean * region.width &&
+         rows < kApartRows * std::min(a.height, b.height) &&
+         (columns > kSameColumns * std::min(a.width, b.width) || !is_upright(a) || !is_upright(b));
 }
 
 // Is it a small thing that lies within the other, all but for its rim?
@@ -161,6 +178,10 @@ void Tracker::State::share_regions() {
       const Body& first = bodies[owner[j]];
       const Box& blob = regions[j].box;
       if (first.id == 0 || overlap_area(box, blob) < 0.5 * box.area()) continue;
+      if (are_one_above_another(b.box(), first.box(), blob)) {
+        b.region = static_cast<int>(j);
+        continue;
+      }
       if (hides(first, b, blob)) {
         b.region = static_cast<int>(j);
         b.hidden = true;
@@ -207,8 +228,15 @@ void Tracker::State::absorb_pieces() {
     }
     if (count > 1)
       for (Body& b : bodies) {
-        if (b.region != static_cast<int>(j) || &b == oldest || b.hidden || apart(b, *oldest)) continue;
+        if (b.region != static_cast<int>(j) || &b == oldest || b.hidden) continue;
         if (b.shared < kTogether) continue;
+        if (are_one_above_another(b.box(), oldest->box(), r.box)) {
+          b.dead = true;
+          oldest->parted = true;
+          --count;
+          continue;
+        }
+        if (apart(b, *oldest)) continue;
         // A part does not look like the whole.
         if (!small_part(b.box(), oldest->box()) && (filled >= 0.4 * r.box.area() || strangers(b, *oldest)))
           continue;
