@@ -234,8 +234,8 @@ void Body::adopt(const Box& seen) {
 
 // One object, one region, extents that disagree: is the region right? One that is cut by the picture's edge is, as the
 // object comes or goes, and a whole one is after two looks. A larger one soon is: only a piece was seen before. A
-// smaller one is a piece of an object that stands (an arm) as long as it stays in place; it is right when the object was
-// on the way, when its extent was never well known, or when the piece walks away on its own.
+// smaller one is a piece of an object that stands (an arm) as long as it stays in place; it is right when the object
+// was on the way, when its extent was never well known, or when the piece walks away on its own.
 bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
   if (misfit == 0) {
     misfit_from = seen;

@@ -89,7 +89,8 @@ struct Body {
   bool predict(double seconds);
   bool carry(const Transform& motion, Size frame);
 
-  // The camera has turned away from it; along its own velocity and with the camera, by angles; it is in the picture again.
+  // The camera has turned away from it; along its own velocity and with the camera, by angles; it is in the picture
+  // again.
   void leave(const Gaze& gaze);
   void predict_away(double seconds, const Gaze& gaze);
   void come_back(const Box& seen);
@@ -101,8 +102,8 @@ struct Body {
 
   // It stood, and its place looks as it did: whoever was there is there, whatever moves.
   bool stays() const;
-  // Seen in this region; `alone`: by no other track. `found`: so far from its expected place what looks like it is, in a
-  // region of several.
+  // Seen in this region; `alone`: by no other track. `found`: so far from its expected place what looks like it is, in
+  // a region of several.
   void correct(const Region& region, bool alone, double seconds, Size frame,
                const std::optional<Point>& found = {});
   // Seen alone, in a region of its own extent, and so it looks. `nobody_near`: nobody else stands in a part of the

@@ -36,7 +36,8 @@ void exchange(Body& a, Body& b) {
   }
 }
 
-// How much less unlike themselves both are with each other's identities. Of somebody who is not seen alone nothing is said.
+// How much less unlike themselves both are with each other's identities. Of somebody who is not seen alone nothing is
+// said.
 double gain(const Body& a, const Body& b) {
   const auto of = [](const Body& seen, const Body& other) {
     return seen.knows_recent() ? unlike(seen.look, seen.recent) - unlike(other.look, seen.recent) : 0;

@@ -112,8 +112,8 @@ std::span<const Component> Labeller::find(MutableBitView bits, int width, std::u
   for (least = std::max(least, 1u); !fits(); least *= 2) {
   }
 
-  // A root is its component's first run, so it is met before the others and numbers are given in reading order. Its area
-  // has then been read: in the forest, the component's number takes its place.
+  // A root is its component's first run, so it is met before the others and numbers are given in reading order. Its
+  // area has then been read: in the forest, the component's number takes its place.
   constexpr std::int32_t gone = std::numeric_limits<std::int32_t>::min();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < forest_.size(); ++i) {

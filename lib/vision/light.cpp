@@ -30,8 +30,8 @@ constexpr auto kInverse = [] {
   return inverse;
 }();
 
-// A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter, or
-// mostly darker. No median is as far from 0 as kLeastBand otherwise.
+// A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter,
+// or mostly darker. No median is as far from 0 as kLeastBand otherwise.
 bool has_one_direction(const LightSums& sums) {
   int thirds = 0, up = 0, down = 0;
   for (std::size_t i = 0; i < 3; ++i) {

@@ -3,9 +3,9 @@
 // pass each other closely, where their places alone cannot; not enough to find somebody again in a crowd.
 //
 // The upper and the lower half of an object each have a histogram of the logarithm of their brightness, under the mask
-// of what moves: what stands around does not count (or all of a place, where there is no mask). Change of exposure is a factor, a shift of the logarithm, and is
-// taken out by BrightnessLevel. Two looks are compared by the share of their pixels that are not as bright (one minus
-// the intersection of the histograms; M. J. Swain, D. H. Ballard 1991).
+// of what moves: what stands around does not count (or all of a place, where there is no mask). Change of exposure is a
+// factor, a shift of the logarithm, and is taken out by BrightnessLevel. Two looks are compared by the share of their
+// pixels that are not as bright (one minus the intersection of the histograms; M. J. Swain, D. H. Ballard 1991).
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 
 namespace cerberus::vision {
 
-// The analysed picture, and what moves in it (not 0). Where both are known people have looks; look_at() reads all of a box
-// where the mask is empty.
+// The analysed picture, and what moves in it (not 0). Where both are known people have looks; look_at() reads all of a
+// box where the mask is empty.
 struct Sight {
   GrayView luma, mask;
   bool known() const { return !luma.empty() && luma.size() == mask.size(); }

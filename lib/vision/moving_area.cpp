@@ -19,8 +19,8 @@ struct MovingArea::State {
 
 namespace {
 
-// What differs from the scene is where the object is now: it has no leading and no common part. Who asks for one asks for
-// the sets of the two differences.
+// What differs from the scene is where the object is now: it has no leading and no common part. Who asks for one asks
+// for the sets of the two differences.
 bool uses_memory(const MovingAreaOptions& options) {
   return options.memory && options.area == Area::all;
 }

@@ -21,11 +21,11 @@ struct MovingAreaOptions {
 };
 
 struct MovingAreaInput {
-  GrayView picture;    // F(k), analysis pixels
-  Transform motion;    // frame k-1 to k
-  bool still = false;  // the camera stands
-  GrayView current,
-      previous;  // D(k), D(k-1); the latter empty where it is not known: only area=all goes without
+  GrayView picture;     // F(k), analysis pixels
+  Transform motion;     // frame k-1 to k
+  bool still = false;   // the camera stands
+  GrayView current{};   // D(k)
+  GrayView previous{};  // D(k-1); empty where it is not known: only area=all goes without
   const Histogram* histogram = nullptr;
   int frames = 0;      // DifferenceResult::frames
   double seconds = 0;  // since frame k-1; 0: unknown

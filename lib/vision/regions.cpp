@@ -130,8 +130,8 @@ void RegionFinder::State::trim() {
   }
 }
 
-// Only walkers teach: blobs that look like one person, with nobody and nothing near, of the same height for three looks,
-// and on the way. Pieces of somebody close by come in crowds, flicker and stay in place.
+// Only walkers teach: blobs that look like one person, with nobody and nothing near, of the same height for three
+// looks, and on the way. Pieces of somebody close by come in crowds, flicker and stay in place.
 void RegionFinder::State::learn(const Transform& motion) {
   const auto parts = labeller.components();
   std::swap(walkers, walkers_before);
@@ -188,8 +188,9 @@ void RegionFinder::State::add_plain(std::size_t i, bool person) {
   if (regions.size() == regions.capacity()) return;
   Box box = box_of(bodies[i]);
   const double filled = c.area / box.area();
-  // What somebody leaves who stood there when the scene began differs from the memory as he does: the edge that moves has
-  // him on one side and the place he left on the other, and nobody can tell which is which yet. The box takes in both.
+  // What somebody leaves who stood there when the scene began differs from the memory as he does: the edge that moves
+  // has him on one side and the place he left on the other, and nobody can tell which is which yet. The box takes in
+  // both.
   if (options.people && !person && seen <= kYoung) {
     const double rim = std::max(1.0, std::round(kRim * size.width / 320));
     const double left = std::max(box.x - rim, 0.0), top = std::max(box.y - rim, 0.0);

@@ -104,8 +104,8 @@ HWY_INLINE void put_bits(D d, hn::Mask<D> mask, std::uint64_t* row, int x) {
   std::memcpy(reinterpret_cast<std::uint8_t*>(row) + x / 8, bytes, hn::Lanes(d) / 8);
 }
 
-// Calls run(vectors, x) along a row: 32 samples at a time where the processor has such vectors, and the rest by 16 or what
-// there is. Planes are padded for that (scene_kernels.h).
+// Calls run(vectors, x) along a row: 32 samples at a time where the processor has such vectors, and the rest by 16 or
+// what there is. Planes are padded for that (scene_kernels.h).
 template <class Run>
 HWY_INLINE void along_row(int width, Run&& run) {
   const hn::CappedTag<std::int16_t, 32> wide;

@@ -9,7 +9,8 @@
 namespace cerberus::vision {
 namespace {
 
-// Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that much.
+// Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that
+// much.
 constexpr double kOtherLight = 3, kFlicker = 40;
 constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
 // Share of pixels a change of light has to explain, else it is another scene.

@@ -126,8 +126,8 @@ struct SceneMemory::State {
   void measure_time(double seconds);
   void follow(const SceneMemoryInput& in);
   void redraw();
-  // The mask before it is closed: who makes regions of it needs the gaps between people. What moved is not needed any more
-  // once the frame is compared.
+  // The mask before it is closed: who makes regions of it needs the gaps between people. What moved is not needed any
+  // more once the frame is compared.
   MutableBitView plain() { return moved.view(); }
   ScenePixels pixels() { return {mean.view(), spread.view(), age.view(), quiet.view()}; }
   bool draw_present(const SceneMemoryInput& in, GrayView blurred);
@@ -370,8 +370,8 @@ void SceneMemory::State::compare(const SceneMemoryInput& in) {
   if (!in.still) forgive_blur();
 }
 
-// A camera that moves blurs its pictures, a camera that shakes blurs some of them. The other way round, a memory that is
-// still young may be of blurred frames; later it is softer than a frame for other reasons.
+// A camera that moves blurs its pictures, a camera that shakes blurs some of them. The other way round, a memory that
+// is still young may be of blurred frames; later it is softer than a frame for other reasons.
 void SceneMemory::State::forgive_blur() {
   const GrayView frame = present.view(), memory = light.known();
   const double sharpness = blur.sharpness(frame, memory, age.view(), warp.spans());
@@ -386,7 +386,8 @@ void SceneMemory::State::forgive_blur() {
                strong.view());
 }
 
-// strong := the mask, closed; plain: as it is published. weak := what must not be learnt. absorb := what is to be taken over.
+// strong := the mask, closed; plain: as it is published. weak := what must not be learnt. absorb := what is to be taken
+// over.
 void SceneMemory::State::decide(const SceneMemoryInput& in) {
   const int w = size.width;
   const MutableBitView seeds = strong.view();

@@ -24,8 +24,8 @@ class SceneOrigins {
   };
   void add(const Run& run, Before& before) const;
 
-  // What is now known of a run's part: new pixels are as most of it is. found: it is known where all of it began, and no
-  // doubt is left.
+  // What is now known of a run's part: new pixels are as most of it is. found: it is known where all of it began, and
+  // no doubt is left.
   enum class Origin { elsewhere, here, found };
   void note(const Run& run, Origin origin);
   // This frame is the one before now. differs: all that was noted; gone: what does not differ any more from now on.

@@ -27,8 +27,8 @@ constexpr double kGap = 0.2;       // between neighbours that are one
 constexpr double kFrontGap = 1;    // between two fronts of one
 constexpr double kPieceGap = 0.5;  // between a part and its pieces, a front and the rest
 constexpr double kNarrow = 0.3;    // a front is narrower than this share of its height
-// Grey levels by which a pixel would surely differ from the memory, and the share of what lies between two fronts of one
-// that may be as uneven.
+// Grey levels by which a pixel would surely differ from the memory, and the share of what lies between two fronts of
+// one that may be as uneven.
 constexpr int kShows = 12;
 constexpr double kUneven = 0.25;
 constexpr double kLevel = 0.5;  // share of the lower one's height at which they stand beside each other
@@ -41,8 +41,8 @@ struct Between {
   int left, top, right, bottom;
 };
 
-// Inside of what moves only an even part differs from nothing. What is uneven over as many pixels as it would have moved,
-// the width of the fronts, and has not changed is the scene behind two things.
+// Inside of what moves only an even part differs from nothing. What is uneven over as many pixels as it would have
+// moved, the width of the fronts, and has not changed is the scene behind two things.
 bool is_even(GrayView frame, const Between& part, int moved) {
   const int step = std::max(std::min(moved, (part.right - part.left) / 2), 1);
   int uneven = 0, seen = 0;

@@ -41,14 +41,15 @@ class SceneParts {
   void make_room(Size picture);
   // The memory begins.
   void begin();
-  // mask: what differs in; out, the objects. absorb := what the memory shall take over. True if the memory is young under
-  // one of the objects: then join() is due.
+  // mask: what differs in; out, the objects. absorb := what the memory shall take over. True if the memory is young
+  // under one of the objects: then join() is due.
   bool judge(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView mask,
              MutableBitView absorb);
-  // A place that somebody leaves who stood there when the scene began looks like an object: the memory has his picture, a
-  // moving edge goes along it, and from a few frames nobody can tell which is which. So where the memory is young, what
-  // lies close together is one: two of about a size, or two fronts, with an even gap between them (which belongs to it), or
-  // a big part and its pieces (which are dropped: joined to it they would be a strip of the scene beside it). closed: the mask with its gaps closed, used as scratch; mask: in and out.
+  // A place that somebody leaves who stood there when the scene began looks like an object: the memory has his picture,
+  // a moving edge goes along it, and from a few frames nobody can tell which is which. So where the memory is young,
+  // what lies close together is one: two of about a size, or two fronts, with an even gap between them (which belongs
+  // to it), or a big part and its pieces (which are dropped: joined to it they would be a strip of the scene beside
+  // it). closed: the mask with its gaps closed, used as scratch; mask: in and out.
   void join(const ScenePlanes& planes, const SceneWindows& windows, MutableBitView closed,
             MutableBitView mask);
   // After these: what lies between fronts of one thing, one above the other, belongs to it (scene_fronts.h), if the

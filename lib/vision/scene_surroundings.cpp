@@ -15,8 +15,8 @@ namespace {
 constexpr int kCell = SceneSurroundings::kCell, kQuarter = kCell / 2;
 constexpr double kWide = 2.5, kHigh = 1.25;  // of the mosaic, in pictures
 constexpr int kSlack = 4;                    // cells the mosaic follows the picture by, beyond what it must
-// How much larger or smaller than the picture shows it the mosaic may hold something: 2 is 37 degrees from where it began,
-// for a camera that turns.
+// How much larger or smaller than the picture shows it the mosaic may hold something: 2 is 37 degrees from where it
+// began, for a camera that turns.
 constexpr double kMagnification = 2;
 // Grey levels by which a pixel is darker or brighter, more than most noise and details make, and the share of what came
 // back that must be: people who fill the edge of the picture are less, mostly.
@@ -209,7 +209,8 @@ void SceneSurroundings::follow(Size picture) {
     begin(picture);
     return;
   }
-  // By how many cells the content has to move for the picture to lie inside; where it is too large for that, in the middle.
+  // By how many cells the content has to move for the picture to lie inside; where it is too large for that, in the
+  // middle.
   const auto cells_to_go = [](double low, double high, int count) {
     const double over = high - (count * kCell - 1);
     if (low < 0 && over > 0)

@@ -26,7 +26,8 @@ class Sightings {
   Look place(const Box& box) const;
   // The frame is done: what was handed to update() may go.
   void done() { sight_ = {}; }
-  // How far, in frame pixels, from where the body is expected what looks like it is in the region. Nothing: nothing does.
+  // How far, in frame pixels, from where the body is expected what looks like it is in the region. Nothing: nothing
+  // does.
   std::optional<Point> find(const Body& body, const Box& region) const;
   std::size_t bytes() const { return looks_.capacity() * sizeof(Look); }
 

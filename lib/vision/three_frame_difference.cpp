@@ -148,7 +148,8 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     s.subtract_before(first, second, previous);
   else
     clear(previous);
-  // F(k-1) lies in `current` if it was warped, else it may have no other place than that of F(k), which then has to wait.
+  // F(k-1) lies in `current` if it was warped, else it may have no other place than that of F(k), which then has to
+  // wait.
   const bool waits = still && !both_wanted;
   if (waits)
     blur3(picture, s.options.blur, current);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the tracker knows between frames, and the steps that a frame takes: for the files that are the tracker, tracks.cpp
-// (from frame to frame) and tracks_regions.cpp (whose a region is).
+// What the tracker knows between frames, and the steps that a frame takes: for the files that are the tracker,
+// tracks.cpp (from frame to frame) and tracks_regions.cpp (whose a region is).
 #pragma once
 
 #include <algorithm>

@@ -216,8 +216,8 @@ void Tracker::State::publish() {
     const Box box = b.box();
     if (b.region < 0 && !b.stopped && std::sqrt(b.x.pp) > 0.4 * box.width)
       continue;  // where it is, nobody knows
-    // Who is not seen at the picture's edge has left, as far as anybody knows; and what has hardly been seen may have been
-    // nobody.
+    // Who is not seen at the picture's edge has left, as far as anybody knows; and what has hardly been seen may have
+    // been nobody.
     if (b.region < 0 && !b.stopped &&
         (b.at_border(frame) || b.age - b.unseen < kProvenTimes * options.confirm_time))
       continue;

@@ -18,8 +18,8 @@ constexpr double kShared = 1;  // what it costs to live on in a blob of several
 // people are .36 apart in the median.
 constexpr double kUsual = 0.15;     // nothing to pay for
 constexpr double kLookPrice = 3.0;  // for the whole difference beyond that
-// A region that looks so much less like the body than what was seen of it last is not taken. Who walks into the shade gets
-// darker step by step.
+// A region that looks so much less like the body than what was seen of it last is not taken. Who walks into the shade
+// gets darker step by step.
 constexpr double kSudden = 0.45;
 constexpr double kAwayUnlike = 0.35;  // who comes back must look as before
 // Of two who walk side by side: how much taller than wide, and the gap between them in widths, at least.
@@ -166,8 +166,8 @@ bool Tracker::State::hides(const Body& first, const Body& b, const Box& region) 
          (strangers(b, first) || apart(b, first)) && intersection_over_union(b.visible(frame), region) > 0.3;
 }
 
-// Two objects, one region: a confirmed track without region of its own lives on in a blob larger than its owner that it is
-// expected in, and unseen behind somebody else. Who stopped stays where he is: a region that passes would take him
+// Two objects, one region: a confirmed track without region of its own lives on in a blob larger than its owner that it
+// is expected in, and unseen behind somebody else. Who stopped stays where he is: a region that passes would take him
 // along.
 void Tracker::State::share_regions() {
   for (Body& b : bodies) {
@@ -211,8 +211,8 @@ bool Tracker::State::crowded(const Body& b, const Region& region) const {
   });
 }
 
-// Tracks that together fill only a small part of the blob they share and have moved as one were pieces of one object: the
-// oldest becomes it and the others go.
+// Tracks that together fill only a small part of the blob they share and have moved as one were pieces of one object:
+// the oldest becomes it and the others go.
 void Tracker::State::absorb_pieces() {
   for (std::size_t j = 0; j < regions.size(); ++j) {
     const Region& r = regions[j];

@@ -65,10 +65,10 @@ HWY_INLINE hn::Vec<D> blend(D, hn::Vec<D> p00, hn::Vec<D> p01, hn::Vec<D> p10, h
   return hn::ShiftRight<14>(hn::Add(sum, hn::Set(D(), 1 << 13)));
 }
 
-// A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly always neighbours in the
-// source: then whole vectors are read. Where a column or a row is left out or comes twice, or the next one begins, the
-// first part of the vector is as its first lane says and the rest as its last one does. Otherwise one pixel at a time: no
-// gather instruction is needed.
+// A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly always neighbours in
+// the source: then whole vectors are read. Where a column or a row is left out or comes twice, or the next one begins,
+// the first part of the vector is as its first lane says and the rest as its last one does. Otherwise one pixel at a
+// time: no gather instruction is needed.
 template <class D, typename T>
 HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, const std::int32_t* y,
                               T* out) {

@@ -61,8 +61,8 @@ class Inputs {
   // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before
   // a pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
   Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
-  // Brings the moment of the frame of `frame_time` up to `heard`: the sensors' readings; the pan by the newest pose that
-  // was heard, unless the frame carried one that is not older; the base's rate, where an event has told it.
+  // Brings the moment of the frame of `frame_time` up to `heard`: the sensors' readings; the pan by the newest pose
+  // that was heard, unless the frame carried one that is not older; the base's rate, where an event has told it.
   void listen(Time heard, Time frame_time, const std::string& head, Moment& moment);
   bool flushing();
 

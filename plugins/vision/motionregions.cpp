@@ -9,9 +9,9 @@
  * region is published until three frames of a scene were seen. Limits of size that contradict
  * each other or the frame, and zones that leave no part of the picture, are warned of.
  *
- * A limit in metres judges only what has a distance: `horizontal-fov` and `mounting-height` are known, and the feet are in
- * the picture and below the horizon. The rest passes, for who cannot be measured may be somebody; limits in pixels and zones
- * are for what flies and shines up there.
+ * A limit in metres judges only what has a distance: `horizontal-fov` and `mounting-height` are known, and the feet are
+ * in the picture and below the horizon. The rest passes, for who cannot be measured may be somebody; limits in pixels
+ * and zones are for what flies and shines up there.
  *
  * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
  * element downstream (motionview) asks for them. `keep-planes` says otherwise: `always` leaves them there, and with

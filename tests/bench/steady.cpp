@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Does it report only what moves? After cuts, seeks and in shaking pictures: what of it overlaps nothing that moves, by the
-// ground truth, and what is told before three frames of the new scene were seen. It is because of the cut unless something
-// wrong is there in the same frame of the same sequence without any cut, too. And before still pictures of real places,
-// lit by what flickers, whose exposure changes: every region is wrong.
+// Does it report only what moves? After cuts, seeks and in shaking pictures: what of it overlaps nothing that moves, by
+// the ground truth, and what is told before three frames of the new scene were seen. It is because of the cut unless
+// something wrong is there in the same frame of the same sequence without any cut, too. And before still pictures of
+// real places, lit by what flickers, whose exposure changes: every region is wrong.
 //
 //   bench-steady [--list]    with a line for everything that is wrong
 #include <gst/gst.h>
@@ -62,8 +62,8 @@ tests::Chain& step(tests::Chain& chain, GrayView frame) {
   return chain;
 }
 
-// A sequence that has been seen for long without any cut: once backwards, from the last frame to the first, before it is
-// judged. What is wrong in a frame then, is so whether or not there was a cut.
+// A sequence that has been seen for long without any cut: once backwards, from the last frame to the first, before it
+// is judged. What is wrong in a frame then, is so whether or not there was a cut.
 void settle(Pictures& pictures) {
   tests::Chain chain;
   const std::size_t count = pictures.frames.data.size();
@@ -167,7 +167,8 @@ Tally cuts(const Pictures& one, const Pictures& other, int runs, int pieces) {
   return all;
 }
 
-// From the start to the end, forgetting all `each` frames, as a seek does: `shifts` ways, so that all ages meet all pictures.
+// From the start to the end, forgetting all `each` frames, as a seek does: `shifts` ways, so that all ages meet all
+// pictures.
 Tally restarts(const Pictures& pictures, int each, int shifts) {
   Tally all;
   for (int shift = 0; shift < shifts; ++shift) {

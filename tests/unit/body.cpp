@@ -56,7 +56,8 @@ START_TEST(a_zoom_scales_all_of_its_lengths) {
 END_TEST
 
 START_TEST(towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it) {
-  // 40 degrees off the axis, then on it, then 40 degrees off again. The oracle: a square of a thousandth of a radian, projected.
+  // 40 degrees off the axis, then on it, then 40 degrees off again. The oracle: a square of a thousandth of a radian,
+  // projected.
   const Lens lens(90 * kDegree, kFrame);
   const auto side = [&](double pan) {
     const auto at = [&](double bearing, double elevation) {

@@ -16,7 +16,8 @@ using namespace cerberus::tests;
 namespace {
 
 // Two come towards each other, meet, stand before each other for a second and a half, and each goes back where he came
-// from. Places alone say that they passed. Returns whether each has the identity he had; `dimmed` from their meeting on.
+// from. Places alone say that they passed. Returns whether each has the identity he had; `dimmed` from their meeting
+// on.
 bool turn_back(Place& place, Person a, Person b, double dimmed = 1) {
   std::uint32_t left = 0, right = 0;
   for (int k = 0; k < 70; ++k) {

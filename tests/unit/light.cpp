@@ -107,7 +107,8 @@ START_TEST(few_columns_that_are_not_white_tell_of_bands) {
 }
 END_TEST
 
-// Below a wall all is white but for a few pixels: what light they are in nobody knows, but that it is one of those above.
+// Below a wall all is white but for a few pixels: what light they are in nobody knows, but that it is one of those
+// above.
 START_TEST(where_nobody_knows_the_light_of_a_row_it_may_be_that_of_any_other) {
   Image<std::uint8_t> reference(kSize), present(kSize);
   for (int y = 0; y < kSize.height; ++y)
@@ -157,8 +158,8 @@ START_TEST(an_object_in_less_than_half_of_its_rows_is_no_band) {
 END_TEST
 
 START_TEST(white_in_less_light_may_be_anything_brighter_than_its_share) {
-  // 250 may have been 250 or much more: in half the light what is brighter than about 125 is as it has to be, and what is
-  // darker is not. 100 was 100, and in the same light so was 250.
+  // 250 may have been 250 or much more: in half the light what is brighter than about 125 is as it has to be, and what
+  // is darker is not. 100 was 100, and in the same light so was 250.
   for (const double gain : {0.5, 1.0}) {
     Image<std::uint8_t> before(kSize), after(kSize);
     fill_ramp(before.view(), 1, 0);

@@ -45,7 +45,8 @@ Look look_of(const Street& street, const BrightnessLevel& level = {}, const Box&
 
 }  // namespace
 
-// log2(128 + 8) = 7.0875 is (7.0875 - 3) / 5.05 x 8 - 0.5 = 5.975 bins of the way: the middle of bin 6, as near as 1/16.
+// log2(128 + 8) = 7.0875 is (7.0875 - 3) / 5.05 x 8 - 0.5 = 5.975 bins of the way: the middle of bin 6, as near as
+// 1/16.
 START_TEST(a_band_of_one_brightness_is_in_the_bin_of_its_logarithm) {
   const Look look = look_of(Street(128, 128));
   for (const auto& band : look.share)

@@ -164,7 +164,8 @@ START_TEST(the_range_has_two_ends_and_a_tolerance_by_brightness) {
 }
 END_TEST
 
-// The whole of it: a camera that shakes. Every third frame is blurred; first after 20 sharp ones, then from the second on.
+// The whole of it: a camera that shakes. Every third frame is blurred; first after 20 sharp ones, then from the second
+// on.
 START_TEST(frames_that_are_blurred_have_no_area_but_what_moves) {
   for (const int first : {20, 1}) {
     const auto scene = street(5);

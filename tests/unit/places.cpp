@@ -73,7 +73,8 @@ Seen watch(int frames, int from, const std::function<double(int)>& left_of) {
 
 }  // namespace
 
-// At 4 pixels a frame he has gone as far as two pairs of the floor's boards when nine frames are over: they look as if they went along.
+// At 4 pixels a frame he has gone as far as two pairs of the floor's boards when nine frames are over: they look as if
+// they went along.
 START_TEST(the_place_of_somebody_who_stood_there_since_the_start_is_no_region) {
   struct Case {
     int stood;     // frames

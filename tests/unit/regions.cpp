@@ -218,8 +218,8 @@ START_TEST(a_car_among_people_is_not_cut_into_people_nor_lost) {
 }
 END_TEST
 
-// No rectangle, so that boxes of people cut from it hold what does not move; it is told by its one outline. What is left of
-// it at the border is as wide as two people, one after another.
+// No rectangle, so that boxes of people cut from it hold what does not move; it is told by its one outline. What is
+// left of it at the border is as wide as two people, one after another.
 START_TEST(a_round_car_as_tall_as_people_is_one_region_until_it_has_left) {
   for (const int step : {-4, 4}) {
     RegionFinder finder;

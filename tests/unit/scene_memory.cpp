@@ -94,7 +94,8 @@ START_TEST(who_is_there_when_the_camera_turns_back_is_seen_at_once) {
   Turn turn(size, 5);
   Score score;
   for (int k = 0; k <= 2 * kAway; ++k) {
-    // Has come while the camera looked elsewhere, and walks on: whole in the picture for the first and second time here.
+    // Has come while the camera looked elsewhere, and walks on: whole in the picture for the first and second time
+    // here.
     const Square square{40 + 2.0 * (k - 2 * kAway), 45, 28};
     turn.feed(k, k > kAway ? &square : nullptr);
     const double left = square.x - turned(k);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which parts of a difference are objects. Pictures here are 320 x 240, the scene is 100 everywhere, what stands before it
-// 200; expectations follow from the header's rules by hand.
+// Which parts of a difference are objects. Pictures here are 320 x 240, the scene is 100 everywhere, what stands before
+// it 200; expectations follow from the header's rules by hand.
 #include "vision/scene_parts.h"
 
 #include <algorithm>
@@ -341,8 +341,8 @@ START_TEST(a_tiny_part_says_nothing_while_the_memory_is_young) {
 }
 END_TEST
 
-// What stood there was 160 on the right of it, what is there now is 200 on the left: half of its outline is an edge of the
-// frame, half one of the memory.
+// What stood there was 160 on the right of it, what is there now is 200 on the left: half of its outline is an edge of
+// the frame, half one of the memory.
 void half_and_half(Scene& s, const Rect& r) {
   Scene::paint(s.present, {r.x, r.y, r.width / 2, r.height}, 200);
   Scene::paint(s.memory, {r.x + r.width / 2, r.y, r.width - r.width / 2, r.height}, 160);
@@ -406,18 +406,24 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "scene_parts",
-      {windows_are_times_not_frames, what_moves_is_an_object, who_stopped_is_kept_for_ten_seconds,
-       whose_place_is_empty_is_forgotten_at_once, what_the_memory_saw_for_moments_needs_motion_now,
-       objects_before_a_young_memory_are_told, before_a_camera_that_moves_only_what_moves_now_counts,
-       before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
-       two_fronts_are_one_where_the_memory_is_young,
-       two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one, a_front_belongs_to_what_is_near,
-       fronts_far_apart_or_of_other_heights_are_two,
-       a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
-       a_piece_beside_a_big_part_is_dropped_not_joined,
-       a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion, the_end_of_what_is_known_is_no_edge,
-       two_people_stay_two, a_tiny_part_says_nothing_while_the_memory_is_young,
-       a_piece_of_the_place_that_somebody_leaves_is_taken_over,
-       who_left_a_place_is_an_object_where_he_stops});
+      "scene_parts", {windows_are_times_not_frames,
+                      what_moves_is_an_object,
+                      who_stopped_is_kept_for_ten_seconds,
+                      whose_place_is_empty_is_forgotten_at_once,
+                      what_the_memory_saw_for_moments_needs_motion_now,
+                      objects_before_a_young_memory_are_told,
+                      before_a_camera_that_moves_only_what_moves_now_counts,
+                      before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
+                      two_fronts_are_one_where_the_memory_is_young,
+                      two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one,
+                      a_front_belongs_to_what_is_near,
+                      fronts_far_apart_or_of_other_heights_are_two,
+                      a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
+                      a_piece_beside_a_big_part_is_dropped_not_joined,
+                      a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion,
+                      the_end_of_what_is_known_is_no_edge,
+                      two_people_stay_two,
+                      a_tiny_part_says_nothing_while_the_memory_is_young,
+                      a_piece_of_the_place_that_somebody_leaves_is_taken_over,
+                      who_left_a_place_is_an_object_where_he_stops});
 }

@@ -262,8 +262,8 @@ START_TEST(all_of_it_together_makes_no_region) {
 }
 END_TEST
 
-// A wall with windows: too bright for the sensor but for the bars before them, and so is all of the lower third but for a
-// narrow post.
+// A wall with windows: too bright for the sensor but for the bars before them, and so is all of the lower third but for
+// a narrow post.
 std::vector<float> windows(std::uint32_t seed) {
   std::vector<float> scene = wall(kSize, seed);
   for (int y = 0; y < kSize.height; ++y)
@@ -341,8 +341,8 @@ START_TEST(after_a_cut_to_a_camera_that_pans_regions_are_right) {
 }
 END_TEST
 
-// A figure brighter than the wall, and a camera that turns slower than it walks: the place where it stood when the scene
-// began is soon far from it.
+// A figure brighter than the wall, and a camera that turns slower than it walks: the place where it stood when the
+// scene began is soon far from it.
 START_TEST(after_a_cut_to_a_turning_camera_the_place_that_was_left_is_no_region) {
   const std::vector<float> scene = wall({2 * kSize.width, kSize.height}, 61);
   for (const double pan : {2.0, 5.0, 8.0}) {

@@ -508,8 +508,8 @@ struct Turning {
   double pan = 0;    // degrees
   std::vector<Track> tracks;
 
-  // 10 frames a second; people at these bearings, degrees, level, who see to be 7 by 17.4 degrees (40 x 98 pixels in the
-  // middle), as far as the picture shows them.
+  // 10 frames a second; people at these bearings, degrees, level, who see to be 7 by 17.4 degrees (40 x 98 pixels in
+  // the middle), as far as the picture shows them.
   void step(double to, std::vector<double> people) {
     std::vector<Region> regions;
     for (const double bearing : people) {
