@@ -31,6 +31,11 @@ int search_level(Size size) {
   return level;
 }
 
+// The coarsest one on which patches are looked for.
+int top_level(Size size) {
+  return std::max(0, search_level(size) - 1);
+}
+
 // RMS motion over a grid of the picture: what a shift of that many pixels would give.
 double mean_motion(const Transform& t, Size size) {
   constexpr int kGrid = 4;
@@ -75,8 +80,10 @@ struct CameraMotion::State {
   // matches, samples: from the reference to the current picture.
   Transform first_guess(PatchMatches& matches, int level, const std::array<Shift, 2>& shifts,
                         const std::optional<Transform>& prior) const;
-  MotionFit fit_beyond(const MotionSamples& samples, const Transform& prior, MotionModel model,
-                       const Transform& guess, int hypotheses, bool turns) const;
+  MotionFit fit_on(int level, const MotionSamples& samples, std::span<const Transform> guesses,
+                   const LensBend& known) const;
+  MotionFit fit_beyond(const Transform& prior, int level, const MotionSamples& samples,
+                       const Transform& guess) const;
   MotionFit best_without(const MotionSamples& samples, const std::optional<Transform>& prior) const;
   void count_followers(const PatchMatches& matches, const MotionFit& fit);
   bool is_cut(const Shift& shift) const;
@@ -126,7 +133,8 @@ CameraMotionResult CameraMotion::State::start_scene() {
   return result;
 }
 
-// Follows every patch on the coarsest level. Guesses: standing still, the last motion, the coarse search, the head's pose.
+// Follows every patch on the coarsest level. Guesses: standing still, the last motion, the coarse search, the head's
+// pose.
 Transform CameraMotion::State::first_guess(PatchMatches& matches, int level,
                                            const std::array<Shift, 2>& shifts,
                                            const std::optional<Transform>& prior) const {
@@ -148,26 +156,36 @@ void CameraMotion::State::measure_noise(const PatchMatches& matches) {
   if (const auto measured = matches.noise()) noise += 0.1 * (*measured - noise);
 }
 
-// What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a simple
-// model then only has to follow by how much the head's word is wrong.
-MotionFit CameraMotion::State::fit_beyond(const MotionSamples& samples, const Transform& prior,
-                                          MotionModel model, const Transform& guess, int hypotheses,
-                                          bool turns) const {
+MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
+                                      std::span<const Transform> guesses, const LensBend& known) const {
+  const Size size = reference.size();
+  const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
+  const bool top = level == top_level(size);  // finer ones begin with what was found there
+  const MotionFit fit = fit_motion(samples, model, size, guesses, top ? 96 : 24, top ? 24 : 0, known);
+  // On a coarse level only what would put the finer ones off: a patch is found a few of its pixels away.
+  const bool turns =
+      model == MotionModel::similarity && (level == 0 || !fit.transform.is_affine() ||
+                                           mean_motion(fit.transform, size) > kBentAtOnce * (1 << level));
+  return turns ? fit_turn(samples, size, fit, known) : fit;
+}
+
+// What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a
+// simple model then only has to follow by how much the head's word is wrong.
+MotionFit CameraMotion::State::fit_beyond(const Transform& prior, int level, const MotionSamples& samples,
+                                          const Transform& guess) const {
   MotionSamples beyond = samples;
   for (int i = 0; i < beyond.count; ++i) {
     const Point p = prior.apply({samples.x[i], samples.y[i]});
     beyond.x[i] = static_cast<float>(p.x), beyond.y[i] = static_cast<float>(p.y);
   }
   const std::array guesses{Transform{}, guess * prior.inverse()};
-  MotionFit fit = fit_motion(beyond, model, reference.size(), guesses, hypotheses);
-  if (turns) fit = fit_turn(beyond, reference.size(), fit, {});
-  return rate_motion(samples, fit.transform * prior);
+  return rate_motion(samples, fit_on(level, beyond, guesses, {}).transform * prior);
 }
 
-// A cut: hardly anything of the earlier picture is well found again wherever it is looked for, and the pictures at large
-// are unlike. From a picture without texture: texture where there was none. Measured: 1440 pairs of unrelated real
-// pictures, share.well at most .20, difference at least .77; 2309 pairs of successive ones, share.well at least .32; half
-// the picture replaced: share.well at least .26 in 95 of 100.
+// A cut: hardly anything of the earlier picture is well found again wherever it is looked for, and the pictures at
+// large are unlike. From a picture without texture: texture where there was none. Measured: 1440 pairs of unrelated
+// real pictures, share.well at most .20, difference at least .77; 2309 pairs of successive ones, share.well at least
+// .32; half the picture replaced: share.well at least .26 in 95 of 100.
 bool CameraMotion::State::is_cut(const Shift& shift) const {
   const double before = reference_relief.contrast(), now = current_relief.contrast();
   if (sites.count < PatchMatches::kLeast) return now > 3 * before + 1;
@@ -181,8 +199,8 @@ PatchMatches CameraMotion::State::found_in_place() const {
   return matches;
 }
 
-// How well standing explains the picture, if the camera stands. One that stood is asked anew before it moves: boards of a
-// floor look alike wherever they are looked for, and go along with whoever walks over them.
+// How well standing explains the picture, if the camera stands. One that stood is asked anew before it moves: boards of
+// a floor look alike wherever they are looked for, and go along with whoever walks over them.
 std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samples,
                                                        const MotionFit& fit) const {
   if (options.model == MotionModel::none) return rate_motion(samples, {});
@@ -203,8 +221,8 @@ std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samp
 
 // A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
 // camera that stood needs more to be set in motion, or what is wider than somebody who would not show in as many parts:
-// the few things on a bare wall. Nothing of those must stay behind then. One that moves shows it also in few parts beside
-// one another.
+// the few things on a bare wall. Nothing of those must stay behind then. One that moves shows it also in few parts
+// beside one another.
 bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit& fit) const {
   std::bitset<MotionSamples::kRegions> seen;
   std::array<float, MotionSamples::kMax> across;
@@ -238,8 +256,9 @@ bool CameraMotion::State::leaves_behind(const MotionFit& fit) const {
   return count > 1;
 }
 
-// A camera that stood mostly stands: where most patches are found again in their places, on the finest level alone, nothing
-// else can come out of the search, which costs five times as much. None where that is not so, or the reference is due.
+// A camera that stood mostly stands: where most patches are found again in their places, on the finest level alone,
+// nothing else can come out of the search, which costs five times as much. None where that is not so, or the reference
+// is due.
 std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   if (!still || reference_age == 0 || sites.count < PatchMatches::kLeast ||
       reference_age + 1 >= kReferenceAge)
@@ -263,8 +282,8 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   return result;
 }
 
-// Where the picture says too little: what the head says, or that it stands or goes on, whichever the little there is speaks
-// for.
+// Where the picture says too little: what the head says, or that it stands or goes on, whichever the little there is
+// speaks for.
 MotionFit CameraMotion::State::best_without(const MotionSamples& samples,
                                             const std::optional<Transform>& prior) const {
   if (prior) return rate_motion(samples, *prior);
@@ -275,7 +294,7 @@ MotionFit CameraMotion::State::best_without(const MotionSamples& samples,
 CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>& prior) {
   const Size size = reference.size();
   PatchMatches matches(sites);
-  const int top = std::max(0, search_level(size) - 1);
+  const int top = top_level(size);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
   Transform motion = first_guess(matches, top, shifts, prior);
   const bool bent = prior && bend(*prior, size) > kBent;
@@ -286,15 +305,9 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
     if (level < top && level > 0 && share.all > kMajority) continue;
     if (level < top) matches.follow(reference, current, level, motion);
     const std::array guesses{Transform{}, motion};
-    const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
-    const int hypotheses = level == top ? 96 : 24;
-    fit = fit_motion(matches.samples(), model, size, guesses, hypotheses);
-    // On a coarse level only what would put the finer ones off: a patch is found a few of its pixels away.
-    const bool turns = model == MotionModel::similarity &&
-                       (level == 0 || mean_motion(fit.transform, size) > kBentAtOnce * (1 << level));
-    if (turns) fit = fit_turn(matches.samples(), size, fit, lens);
-    if (bent && model != MotionModel::none)
-      if (const MotionFit turned = fit_beyond(matches.samples(), *prior, model, motion, hypotheses, turns);
+    fit = fit_on(level, matches.samples(), guesses, lens);
+    if (bent && options.model != MotionModel::none)
+      if (const MotionFit turned = fit_beyond(*prior, level, matches.samples(), motion);
           turned.support > fit.support)
         fit = turned;
     motion = fit.transform;

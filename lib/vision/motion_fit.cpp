@@ -11,8 +11,9 @@ namespace cerberus::vision {
 
 namespace {
 
-// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, as the start may be a simpler model.
-constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f};
+// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, as the start is a guess, and wider for a
+// model that starts from a similarity.
+constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f}, kRicherGates{50.0f, 12.0f, 3.0f, 1.5f, 1.5f};
 
 using Distances = std::array<float, MotionSamples::kMax>;
 
@@ -58,7 +59,8 @@ double support_of(const MotionSamples& s, const Transform& t) {
   return support_of(s, distances);
 }
 
-// The similarity that takes sample i's and j's points of frame k-1 to those of frame k; false if it is no camera motion.
+// The similarity that takes sample i's and j's points of frame k-1 to those of frame k; false if it is no camera
+// motion.
 bool similarity_through(const MotionSamples& s, int i, int j, double least_distance, Transform& t) {
   const double px = s.x[j] - s.x[i], py = s.y[j] - s.y[i], qx = s.u[j] - s.u[i], qy = s.v[j] - s.v[i];
   const double square = px * px + py * py;
@@ -128,7 +130,7 @@ void reweight(const MotionSamples& s, std::span<const float> gates, Size picture
   }
 }
 
-// A turning camera's picture is bent, by what its lens alone decides; `motion` is the similarity to begin with.
+// A turning camera's picture is bent, by what its lens alone decides; `motion` is what to begin with.
 MotionFit turned(const MotionSamples& s, Size picture, Shutter shutter, const LensBend& known,
                  Transform motion) {
   const MotionLeastSquares squares(picture);
@@ -144,8 +146,17 @@ MotionFit turned(const MotionSamples& s, Size picture, Shutter shutter, const Le
   return fit;
 }
 
-// Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at about
-// one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
+// A turn without its bend, which is nothing in the middle of the picture.
+Transform unbent(const Transform& turn, Size picture) {
+  const double x = 0.5 * (picture.width - 1), y = 0.5 * (picture.height - 1);
+  Transform centred = Transform::translation(-x, -y) * turn * Transform::translation(x, y);
+  for (double& m : centred.m) m /= centred.m[8];
+  centred.m[6] = centred.m[7] = 0;
+  return Transform::translation(x, y) * centred * Transform::translation(-x, -y);
+}
+
+// Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at
+// about one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
 constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 4.6,
                  kHomographyEarns = 4 * 4.6;  // F(1), F(2), F(4), many
 // What honest samples leave of the cost, each direction.
@@ -188,13 +199,13 @@ MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
 
 double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Transform& motion) {
   const MotionLeastSquares squares(picture);
-  reweight(s, kGates, picture, motion,
+  reweight(s, model > MotionModel::similarity ? kRicherGates : kGates, picture, motion,
            [&](const Distances& weights, Transform& next) { return squares.step(model, s, weights, next); });
   return support_of(s, motion);
 }
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
-                     std::span<const Transform> guesses, int hypotheses) {
+                     std::span<const Transform> guesses, int hypotheses, int turns, const LensBend& known) {
   Contenders contenders(picture);
   for (const Transform& t : guesses) contenders.add(t, support_of(s, t));
   if (model == MotionModel::none || s.count == 0) return rate_motion(s, contenders.best());
@@ -212,18 +223,36 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     const bool shift = model == MotionModel::translation || h % 4 == 0;
     if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t, support_of(s, t));
   }
+  // What a wide lens bends is too far from any similarity to be found from one: turns through the lens that is known,
+  // each of one sample.
+  const bool may_bend = model == MotionModel::similarity || model == MotionModel::homography;
+  const MotionLeastSquares squares(picture);
+  for (int h = 0; h < turns && may_bend && known.earned > kBendEarns && contenders.most() < enough; ++h) {
+    const int i = draw();
+    const Transform t = squares.turn({s.x[i], s.y[i]}, {s.u[i], s.v[i]}, known.bend);
+    if (t.is_sane(picture)) contenders.add(t, support_of(s, t));
+  }
   // A hypothesis from two samples carries their errors; only refined ones can be compared.
   constexpr double kHopeless = 0.7;
   const MotionModel simple = std::min(model, MotionModel::similarity);
   Transform best;
+  LensBend lens;
   double most = -1;
   for (const auto& [hypothesis, support] : contenders.all()) {
     if (support < kHopeless * most) break;
     Transform refined = hypothesis;
-    const double after = refine_motion(s, simple, picture, refined);
-    if (after > most) most = after, best = refined;
+    double after = 0;
+    LensBend seen;
+    if (may_bend && !hypothesis.is_affine()) {
+      const MotionFit turn = turned(s, picture, Shutter::global, known, hypothesis);
+      refined = turn.transform, after = turn.support, seen = turn.lens;
+    } else {
+      after = refine_motion(s, simple, picture, refined);
+    }
+    if (after > most) most = after, best = refined, lens = seen;
   }
-  const MotionFit fit = rate_motion(s, best);
+  MotionFit fit = rate_motion(s, best);
+  fit.lens = lens;
   if (model <= MotionModel::similarity) return fit;
   refine_motion(s, model, picture, best);
   const MotionFit finer = rate_motion(s, best);
@@ -231,8 +260,15 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
   return is_as_supported(finer, fit) && earned(finer, fit) > earns ? finer : fit;
 }
 
-MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& similarity, const LensBend& known) {
-  MotionFit bent = turned(s, picture, Shutter::global, known, similarity.transform);
+MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& found, const LensBend& known) {
+  MotionFit similarity = found, bent = found;
+  if (found.transform.is_affine()) {
+    bent = turned(s, picture, Shutter::global, known, found.transform);
+  } else {
+    Transform straight = unbent(found.transform, picture);
+    refine_motion(s, MotionModel::similarity, picture, straight);
+    similarity = rate_motion(s, straight);
+  }
   bent.lens.earned = earned(bent, similarity);
   const bool bends = is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kBendEarns;
   MotionFit fit = bends ? bent : similarity;

@@ -32,8 +32,8 @@ struct LensBend {
   double information = 0;  // 1 / variance of that
   double earned = 0;       // F statistic: how much better the samples are explained with it than without
 
-  // What one more picture says of it. A lens may zoom and a robot drive: what is old counts less, and what is contradicted
-  // is forgotten.
+  // What one more picture says of it. A lens may zoom and a robot drive: what is old counts less, and what is
+  // contradicted is forgotten.
   void learn(const LensBend& seen);
 };
 
@@ -43,7 +43,7 @@ struct MotionFit {
   double cost = 0;      // sum of evidence times the squared Mahalanobis distance, cut off at kGate
   double agreeing = 0;  // evidence of the samples within the gate
   double residual = 0;  // RMS distance of those, pixels
-  LensBend lens;        // what these samples say by themselves; of fit_turn() only
+  LensBend lens;        // what these samples say by themselves; of a turn only
 };
 
 // Squared Mahalanobis distance (two degrees of freedom: 1 % of honest samples are beyond) at which a sample disagrees.
@@ -52,21 +52,23 @@ constexpr float kGate = 9.0f;
 // Whether sample i lies within the gate of `transform`.
 bool follows(const MotionSamples& samples, int i, const Transform& transform);
 
-// How well `transform` explains the samples. Agreement in many parts of the picture counts for more than the same number
-// in one: objects are compact, the background is everywhere.
+// How well `transform` explains the samples. Agreement in many parts of the picture counts for more than the same
+// number in one: objects are compact, the background is everywhere.
 MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
 
-// Consensus over `hypotheses` random pairs of samples (a fixed sequence: the same input gives the same output), over `guesses`, then
-// least squares with Tukey's weights over what agrees. The model is reduced where the samples cannot carry it. Returns
-// the guess with most support where there are no samples at all (identity without guesses).
+// Consensus over `hypotheses` random pairs of samples (a fixed sequence: the same input gives the same output), over
+// `guesses`, and over as many `turns` through the lens, where that is `known`; then least squares with Tukey's weights
+// over what agrees. The model is reduced where the samples cannot carry it. Returns the guess with most support where
+// there are no samples at all (identity without guesses). A similarity comes out bent where a turn has most support:
+// fit_turn() says whether it is worth it.
 MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
-                     std::span<const Transform> guesses, int hypotheses);
+                     std::span<const Transform> guesses, int hypotheses, int turns = 0,
+                     const LensBend& known = {});
 
-// What a camera that turns adds to a similarity, where the samples show it: the bend of its picture (a lens of 60 degrees shifts
-// its edges by a third more), and the shear of a rolling shutter. `known`: what earlier pictures said of the lens; it needs
-// to earn its place only once.
-MotionFit fit_turn(const MotionSamples& samples, Size picture, const MotionFit& similarity,
-                   const LensBend& known);
+// What a camera that turns adds to a similarity, where the samples show it: the bend of its picture (a lens of 60
+// degrees shifts its edges by a third more), and the shear of a rolling shutter. `found`: by fit_motion(). `known`:
+// what earlier pictures said of the lens; it needs to earn its place only once.
+MotionFit fit_turn(const MotionSamples& samples, Size picture, const MotionFit& found, const LensBend& known);
 
 // Only the least squares part: improves `motion`, returns its support.
 double refine_motion(const MotionSamples& samples, MotionModel model, Size picture, Transform& motion);

@@ -8,10 +8,8 @@ namespace cerberus::vision {
 
 namespace {
 
-// (half diagonal / focal length)^2 of a lens of 110 degrees: wider ones are no longer plane.
-constexpr double kMostBend = 3.2;
-// Priors, standard deviations over the half diagonal: shift free, linear part 10 %, perspective 3 %, what a rolling shutter
-// makes of a jerk 2 %.
+// Priors, standard deviations over the half diagonal: shift free, linear part 10 %, perspective 3 %, what a rolling
+// shutter makes of a jerk 2 %.
 constexpr double kFree = 10, kLinear = 0.1, kPerspective = 0.03, kRolling = 0.02;
 
 using Distances = std::array<float, MotionSamples::kMax>;
@@ -73,6 +71,15 @@ Transform MotionLeastSquares::in_pixels(const Transform& scaled) const {
   const Transform to{{per_scale, 0, -cx_ * per_scale, 0, per_scale, -cy_ * per_scale, 0, 0, 1}};
   const Transform from{{scale_, 0, cx_, 0, scale_, cy_, 0, 0, 1}};
   return from * scaled * to;
+}
+
+// With x, u about the middle, u - x = t + bend (t . x) u: solved for t (Sherman and Morrison).
+Transform MotionLeastSquares::turn(Point from, Point to, double bend) const {
+  const double x = (from.x - cx_) / scale_, y = (from.y - cy_) / scale_;
+  const double u = (to.x - cx_) / scale_, v = (to.y - cy_) / scale_, dx = u - x, dy = v - y;
+  const double along = bend * (x * dx + y * dy) / (1 + bend * (x * u + y * v));
+  const double tx = dx - along * u, ty = dy - along * v;
+  return in_pixels({{1, 0, tx, 0, 1, ty, -bend * tx, -bend * ty, 1}});
 }
 
 // The unknowns come out over the half diagonal.

@@ -19,16 +19,22 @@ class MotionLeastSquares {
  public:
   explicit MotionLeastSquares(Size picture);
 
+  // (half diagonal / focal length)^2 of a lens of 110 degrees: wider ones are no longer plane.
+  static constexpr double kMostBend = 3.2;
+
+  // The turn, through a lens of this bend, that takes `from` to `to`.
+  Transform turn(Point from, Point to, double bend) const;
+
   // The motion of least sum of weight * squared Mahalanobis distance. False where the samples do not determine it.
   bool step(MotionModel model, const MotionSamples& samples,
             const std::array<float, MotionSamples::kMax>& weights, Transform& motion) const;
 
-  // The same for a similarity and the bend of a camera that turns about its own centre, H = K R K^-1 (Hartley, Zisserman,
-  // Multiple View Geometry, 2nd ed., 8.4): to first order in the angle it adds (t . x) x / f^2 to every point, with the
-  // shift t of the middle and the focal length f, one unknown more. t is that of `motion`, in and out. With a rolling
-  // shutter the lower rows see more of a turn that becomes faster: to first order a shear and a stretch along the columns
-  // (Forssen, Ringaby, Rectifying rolling shutter video from hand-held devices, CVPR 2010), two unknowns more.
-  // `lens`: in, what is known of it; out, what the samples by themselves say.
+  // The same for a similarity and the bend of a camera that turns about its own centre, H = K R K^-1 (Hartley,
+  // Zisserman, Multiple View Geometry, 2nd ed., 8.4): to first order in the angle it adds (t . x) x / f^2 to every
+  // point, with the shift t of the middle and the focal length f, one unknown more. t is that of `motion`, in and out.
+  // With a rolling shutter the lower rows see more of a turn that becomes faster: to first order a shear and a stretch
+  // along the columns (Forssen, Ringaby, Rectifying rolling shutter video from hand-held devices, CVPR 2010), two
+  // unknowns more. `lens`: in, what is known of it; out, what the samples by themselves say.
   bool step_turned(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,
                    Shutter shutter, LensBend& lens, Transform& motion) const;
 

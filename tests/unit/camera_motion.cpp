@@ -121,8 +121,8 @@ START_TEST(objects_over_nearly_half_the_picture_do_not_move_the_camera) {
 }
 END_TEST
 
-// By how many pixels a camera is astray in each frame that pans by 4 of them past shelves, and then along a wall with these
-// things on it.
+// By how many pixels a camera is astray in each frame that pans by 4 of them past shelves, and then along a wall with
+// these things on it.
 std::vector<double> pan_along_a_wall(std::initializer_list<std::array<int, 4>> things, int frames) {
   constexpr int kPan = 4;
   std::mt19937 random(21);

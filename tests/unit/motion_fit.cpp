@@ -10,6 +10,7 @@
 #include "support/allocations.h"
 #include "support/suite.h"
 #include "vision/lens.h"
+#include "vision/motion_least_squares.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -155,7 +156,8 @@ Transform turn_of(double field_of_view, double pan, double tilt, double roll) {
 }
 
 MotionFit turn_in(const MotionSamples& samples, const LensBend& known = {}) {
-  return fit_turn(samples, kSize, fit_motion(samples, MotionModel::similarity, kSize, {}, 96), known);
+  return fit_turn(samples, kSize, fit_motion(samples, MotionModel::similarity, kSize, {}, 96, 24, known),
+                  known);
 }
 
 START_TEST(a_similarity_bends_as_a_turning_camera_does_whatever_its_lens) {
@@ -168,6 +170,47 @@ START_TEST(a_similarity_bends_as_a_turning_camera_does_whatever_its_lens) {
       ck_assert_msg(disagreement(t, truth) < 0.25, "a lens of %g degrees, %g %g %g: off by %g", view, pan,
                     tilt, roll, disagreement(t, truth));
     }
+}
+END_TEST
+
+START_TEST(a_turn_through_a_lens_takes_one_point_to_the_other_and_bends) {
+  const MotionLeastSquares squares(kSize);
+  for (const double bend : {0.0, 0.34, MotionLeastSquares::kMostBend}) {
+    const Transform t = squares.turn({300, 20}, {287, 23}, bend);
+    const Point q = t.apply({300, 20});
+    ck_assert_double_eq_tol(q.x, 287, 1e-9);
+    ck_assert_double_eq_tol(q.y, 23, 1e-9);
+    ck_assert(t.is_affine() == (bend == 0));
+  }
+  // As the lens does, to first order: of 90 degrees, bend is (half diagonal / half width)^2.
+  const Transform turn = Lens(90 * kDegree, kSize).turn(0, 0, kDegree, 0);
+  ck_assert_double_lt(disagreement(squares.turn({300, 20}, turn.apply({300, 20}), 1.5625), turn), 0.1);
+}
+END_TEST
+
+START_TEST(a_wide_lens_that_is_known_turns_behind_somebody_close) {
+  std::mt19937 random(16);
+  for (const double pan : {-3.0, 2.5, 3.0}) {
+    const Transform truth = turn_of(95 * kDegree, pan * kDegree, 0.3 * kDegree, 0);
+    MotionSamples s = samples_of(truth, random);
+    for (int i = 0; i < s.count; ++i)  // a third of the picture
+      if (s.x[i] > 80 && s.x[i] < 220 && s.y[i] > 60) s.u[i] = s.x[i] + 6, s.v[i] = s.y[i];
+    LensBend known;
+    for (int i = 0; i < 5; ++i) known.learn(turn_in(samples_of(truth, random), known).lens);
+    ck_assert_double_lt(disagreement(turn_in(s, known).transform, truth), 0.6);
+  }
+}
+END_TEST
+
+START_TEST(a_turn_that_the_samples_do_not_show_comes_out_unbent) {
+  std::mt19937 random(17);
+  for (int i = 0; i < 50; ++i) {
+    const MotionSamples s = samples_of(Transform::translation(9, -4), random);
+    MotionFit turn;
+    turn.transform = MotionLeastSquares(kSize).turn({170, 110}, {179, 106}, 0.77);
+    const Transform t = fit_turn(s, kSize, turn, {}).transform;
+    ck_assert_double_lt(disagreement(t, Transform::translation(9, -4)), 0.2);
+  }
 }
 END_TEST
 
@@ -187,8 +230,8 @@ START_TEST(what_is_not_bent_stays_a_similarity) {
 }
 END_TEST
 
-// A pan that becomes faster, seen row after row: rows below have gone further. 6 pixels a frame, then 9, and the shutter takes
-// a frame's time from the first row to the last.
+// A pan that becomes faster, seen row after row: rows below have gone further. 6 pixels a frame, then 9, and the
+// shutter takes a frame's time from the first row to the last.
 START_TEST(a_rolling_shutter_shears_a_pan_and_stretches_a_tilt) {
   std::mt19937 random(13);
   const double jerk = 3.0 / kSize.height;
@@ -275,15 +318,18 @@ START_TEST(a_fit_allocates_nothing) {
 END_TEST
 
 int main() {
-  return run_suite("motion_fit",
-                   {every_model_recovers_its_own_motion, exact_samples_give_the_exact_motion,
-                    a_compact_object_of_45_percent_is_left_out, scattered_nonsense_of_60_percent_is_left_out,
-                    agreement_all_over_the_picture_beats_the_same_number_in_one_place,
-                    edges_that_know_one_direction_only_are_combined,
-                    a_richer_model_is_taken_only_where_it_earns_its_unknowns,
-                    a_similarity_bends_as_a_turning_camera_does_whatever_its_lens,
-                    what_is_not_bent_stays_a_similarity, a_rolling_shutter_shears_a_pan_and_stretches_a_tilt,
-                    a_lens_that_is_known_bends_what_too_few_samples_show,
-                    few_samples_give_the_simplest_motion_that_they_carry,
-                    no_model_takes_the_best_guess_as_it_is, a_fit_allocates_nothing});
+  return run_suite(
+      "motion_fit",
+      {every_model_recovers_its_own_motion, exact_samples_give_the_exact_motion,
+       a_compact_object_of_45_percent_is_left_out, scattered_nonsense_of_60_percent_is_left_out,
+       agreement_all_over_the_picture_beats_the_same_number_in_one_place,
+       a_turn_through_a_lens_takes_one_point_to_the_other_and_bends,
+       a_wide_lens_that_is_known_turns_behind_somebody_close,
+       a_turn_that_the_samples_do_not_show_comes_out_unbent, edges_that_know_one_direction_only_are_combined,
+       a_richer_model_is_taken_only_where_it_earns_its_unknowns,
+       a_similarity_bends_as_a_turning_camera_does_whatever_its_lens, what_is_not_bent_stays_a_similarity,
+       a_rolling_shutter_shears_a_pan_and_stretches_a_tilt,
+       a_lens_that_is_known_bends_what_too_few_samples_show,
+       few_samples_give_the_simplest_motion_that_they_carry, no_model_takes_the_best_guess_as_it_is,
+       a_fit_allocates_nothing});
 }
