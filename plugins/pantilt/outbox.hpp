@@ -4,6 +4,7 @@
 
 #include <gst/base/gstbasesink.h>
 
+#include <atomic>
 #include <string>
 #include <utility>
 #include <variant>
@@ -46,7 +47,8 @@ struct Outgoing {
 // What one call puts in, with the station's lock held: so it goes out in the order in which it came to be.
 class Outbox {
  public:
-  Outbox(Outgoing& outgoing, const char* head) : outgoing_(outgoing), head_(head) {}
+  // head: whose what is put in is at that moment; it is set before the station has that head.
+  Outbox(Outgoing& outgoing, const std::atomic<const gchar*>& head) : outgoing_(outgoing), head_(head) {}
   void tell(const control::Pose& pose) {
     outgoing_.poses.put({head_, pose});
     poses_ = true;
@@ -60,7 +62,7 @@ class Outbox {
 
  private:
   Outgoing& outgoing_;
-  const char* head_;
+  const std::atomic<const gchar*>& head_;
   bool poses_ = false, notices_ = false;
 };
 

@@ -248,7 +248,8 @@ GstStateChangeReturn play(Conductor& conductor) {
   GST_BASE_SINK_PREROLL_LOCK(element);
   conductor.station.interrupt(false);
   if (done != GST_STATE_CHANGE_FAILURE) {
-    guarded(element, [&] { conductor.station.resume(conductor.now(), out); });
+    // A segment that came meanwhile may have asked for a thread, and got none.
+    if (conductor.watched) guarded(element, [&] { conductor.station.resume(conductor.now(), out); });
     conductor.playing = true;
   }
   GST_BASE_SINK_PREROLL_SIGNAL(element);
