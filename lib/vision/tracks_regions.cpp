@@ -51,13 +51,13 @@ bool side_by_side(const Box& a, const Box& b, const Box& expected) {
 
 // Are they pieces, one above the other, of somebody whose region this is? Who walks straight up or down the picture is
 // seen in fronts before he is seen whole: head, waist and feet. Two people in a region have rows in common; where they
-// have not, one far behind the other, both are upright and stand aslant, or the region is taller than anybody.
+// have not, one far behind the other, both are upright, or the region is taller than anybody.
 bool are_one_above_another(const Box& a, const Box& b, const Box& region) {
   const double columns = std::min(a.right(), b.right()) - std::max(a.x, b.x);
   const double rows = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
   return is_upright(region) && region.height < kLean * region.width &&
          rows < kApartRows * std::min(a.height, b.height) &&
-         (columns > kSameColumns * std::min(a.width, b.width) || !is_upright(a) || !is_upright(b));
+         columns > kSameColumns * std::min(a.width, b.width) && !(is_upright(a) && is_upright(b));
 }
 
 // Is it a small thing that lies within the other, all but for its rim?
