@@ -8,6 +8,7 @@
 #include <gst/check/gsttestclock.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <string>
 #include <vector>
@@ -80,6 +81,14 @@ inline std::string new_head() {
 // The scripted driver, on a head of its own.
 inline std::string scripted(const std::string& script, const std::string& head = new_head()) {
   return "driver=scripted head=" + head + " script=\"" + script + "\"";
+}
+
+// Which way a line of the scripted driver's record turns the head: -1, 1, or 0.
+inline int way_of(const std::string& line) {
+  char kind[16];
+  double value = 0;
+  if (std::sscanf(line.c_str(), "command %*u %15s %lf", kind, &value) != 2) return 0;
+  return value < 0 ? -1 : value > 0 ? 1 : 0;
 }
 
 struct Message {
