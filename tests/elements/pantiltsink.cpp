@@ -332,7 +332,7 @@ GST_END_TEST
 
 GST_START_TEST(the_head_stops_at_the_end_in_pause_and_on_a_flush) {
   for (const int what : {0, 1, 2})
-    assert_said("stopped", [what] {
+    assert_said("stopped", Answers::on_a_thread, [what] {
       Pipe record;
       Rig rig(scripted("record " + record.writer()));
       act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 3);

@@ -157,9 +157,9 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
 GST_END_TEST
 
 GST_START_TEST(an_order_that_goes_on_says_so) {
-  for (const bool on_a_thread : {false, true})
-    assert_said("manual stopped, manual (told to move), stopped manual", [on_a_thread] {
-      Rig rig(on_a_thread ? scripted("") : "", Source::live);
+  for (const Answers answers : {Answers::at_once, Answers::on_a_thread})
+    assert_said("manual stopped, manual (told to move), stopped manual", answers, [answers] {
+      Rig rig(answers == Answers::on_a_thread ? scripted("") : "", Source::live);
       fail_unless(rig.call("move-to", 90, 0));
       gst_element_set_state(rig.element, GST_STATE_PAUSED);
       std::string said = rig.states() + ",";
