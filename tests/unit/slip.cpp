@@ -5,11 +5,14 @@
 #include <check.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <limits>
 #include <random>
+#include <system_error>
 #include <vector>
 
 #include "support/suite.h"
@@ -111,7 +114,13 @@ void assert_silent(const std::vector<SlipFinding>& all, const char* what, unsign
 // Of the robots and people that turn below a head that does what it is told. 33 are a day of them.
 unsigned seeds() {
   const char* asked = std::getenv("CERBERUS_SLIP_SEEDS");
-  return asked ? static_cast<unsigned>(std::atoi(asked)) : 20;
+  if (!asked) return 20;
+  unsigned number = 0;
+  const char* const end = asked + std::strlen(asked);
+  const auto [stop, error] = std::from_chars(asked, end, number);
+  ck_assert_msg(stop == end && error == std::errc() && number > 0,
+                "CERBERUS_SLIP_SEEDS=%s: how many is that? A number from 1 on", asked);
+  return number;
 }
 
 // A robot that turns now and then, at speeds and accelerations (degrees a second squared) of its own.
