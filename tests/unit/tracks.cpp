@@ -6,38 +6,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
-#include <numbers>
-#include <optional>
 #include <random>
 #include <span>
 #include <vector>
 
 #include "support/allocations.h"
 #include "support/suite.h"
+#include "unit/walkers.h"
 
 using namespace cerberus::vision;
-
-namespace {
-
-constexpr Size kFrame{640, 480};
-
-// A person 100 pixels tall; whole = known to be one.
-Region person(double x, double y, double confidence = 0.9, double width = 40, double height = 100) {
-  return {{x - width / 2, y - height / 2, width, height}, width * height / 2, confidence, 1};
-}
-
-const Track* with_id(std::span<const Track> tracks, std::uint32_t id) {
-  const auto it = std::find_if(tracks.begin(), tracks.end(), [&](const Track& t) { return t.id == id; });
-  return it == tracks.end() ? nullptr : &*it;
-}
-
-Point centre(const Track& t) {
-  return {t.box.x + t.box.width / 2, t.box.y + t.box.height / 2};
-}
-
-}  // namespace
+using namespace cerberus::tests;
 
 START_TEST(a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed) {
   Tracker tracker;
@@ -247,64 +226,6 @@ START_TEST(who_was_seen_for_a_moment_only_is_not_carried_on) {
 }
 END_TEST
 
-START_TEST(two_who_meet_in_one_blob_come_out_with_the_identities_they_had) {
-  Tracker tracker;
-  std::uint32_t left_id = 0, right_id = 0;
-  for (int k = 0; k < 60; ++k) {
-    const double a = 150 + 6 * k, b = 486 - 6 * k;  // they pass at 318, frame 28
-    std::vector<Region> seen;
-    if (std::abs(a - b) > 44) {
-      seen = {person(a, 240, 0.4), person(b, 250, 0.4, 44, 110)};
-    } else {
-      const double from = std::min(a - 20, b - 22), to = std::max(a + 20, b + 22);
-      seen = {{{from, 190, to - from, 115}, 4000, 0.4, 1}};
-    }
-    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
-    if (k == 10) {
-      ck_assert_uint_eq(tracks.size(), 2);
-      left_id = centre(tracks[0]).x < centre(tracks[1]).x ? tracks[0].id : tracks[1].id;
-      right_id = 3 - left_id;
-    }
-    if (k < 10) continue;
-    ck_assert_uint_eq(tracks.size(), 2);
-    ck_assert_ptr_nonnull(with_id(tracks, left_id));
-    ck_assert_ptr_nonnull(with_id(tracks, right_id));
-    // Each has a box of its own inside the blob.
-    for (const Track& t : tracks) ck_assert_double_lt(t.box.width, 65);
-    if (k < 45) continue;
-    ck_assert_double_eq_tol(centre(*with_id(tracks, left_id)).x, a, 15);
-    ck_assert_double_eq_tol(centre(*with_id(tracks, right_id)).x, b, 15);
-  }
-}
-END_TEST
-
-START_TEST(three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three) {
-  Tracker tracker;
-  std::vector<std::uint32_t> ids(3);
-  for (int k = 0; k < 44; ++k) {
-    // One from the left, one from the right, one from below, all through the same place.
-    const double far = (25 - k) * 8.0, out = std::abs(far);
-    const Point at[] = {{320 - far, 200}, {320 + far, 200}, {320, 200 + far}};
-    std::vector<Region> seen;
-    if (out > 110)
-      for (const Point& p : at) seen.push_back(person(p.x, p.y));
-    else
-      seen = {{{300 - out, std::min(150.0, 150 + far), 40 + 2 * out, 100 + out}, 8000, 0.2, 1}};
-    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
-    if (k < 5) continue;
-    ck_assert_uint_eq(tracks.size(), 3);
-    for (const Track& t : tracks)
-      for (std::size_t i = 0; i < 3; ++i)
-        if (k == 5 && std::hypot(centre(t).x - at[i].x, centre(t).y - at[i].y) < 10) ids[i] = t.id;
-    if (k < 41) continue;
-    for (std::size_t i = 0; i < 3; ++i) {
-      ck_assert_double_eq_tol(centre(*with_id(tracks, ids[i])).x, at[i].x, 15);
-      ck_assert_double_eq_tol(centre(*with_id(tracks, ids[i])).y, at[i].y, 15);
-    }
-  }
-}
-END_TEST
-
 START_TEST(a_sliver_beside_somebody_unseen_is_not_the_person) {
   Tracker tracker;
   double x = 100;
@@ -334,77 +255,6 @@ START_TEST(legs_tell_less_of_where_somebody_is_than_the_whole_person) {
     else
       ck_assert_double_lt(centre(tracks[0]).x, 268);
   }
-}
-END_TEST
-
-START_TEST(a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people) {
-  Tracker tracker;
-  std::uint32_t in_front = 0;
-  for (int k = 0; k < 30; ++k) {
-    const double x = 100 + 8 * k;
-    // One is lost from sight behind the other; a third appears ahead.
-    std::vector<Region> seen = {person(x + 45, 240)};
-    if (k < 20) seen.push_back(person(x, 240));
-    if (k >= 20) seen.push_back(person(x + 90, 240));
-    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
-    if (k < 10) continue;
-    for (const Track& t : tracks)
-      if (k == 19 && std::abs(centre(t).x - x - 45) < 10) in_front = t.id;
-    if (k < 20) continue;
-    ck_assert_ptr_nonnull(with_id(tracks, in_front));
-    ck_assert_double_eq_tol(centre(*with_id(tracks, in_front)).x, x + 45, 10);
-  }
-}
-END_TEST
-
-START_TEST(who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it) {
-  Tracker tracker;
-  for (int k = 0; k < 50; ++k) {
-    // Two walk in and stand beside each other, first apart, then in one blob; from behind them somebody walks away.
-    const double a = 200 - 8.0 * std::max(0, 12 - k), b = 240 - 8.0 * std::max(0, 12 - k);
-    std::vector<Region> seen = {person(a, 240), person(b, 240)};
-    if (k >= 25) seen = {{{a - 20, 190, b - a + 40, 100}, 5000, 0.3, 1}};
-    if (k >= 35) seen.push_back(person(295 + 8.0 * (k - 35), 240));
-    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
-    if (k < 5) continue;
-    ck_assert_uint_eq(tracks.size(), k < 37 ? 2 : 3);
-    ck_assert_double_eq_tol(centre(*with_id(tracks, 1)).x, a, 12);
-    ck_assert_double_eq_tol(centre(*with_id(tracks, 2)).x, b, 12);
-  }
-}
-END_TEST
-
-START_TEST(a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost) {
-  Tracker tracker;
-  for (int k = 0; k < 40; ++k) {
-    const double x = 150 + 6 * k;
-    std::vector<Region> seen;
-    if (k < 15)
-      seen = {person(x, 240, 0.4, 90, 110)};
-    else
-      seen = {person(x - 22, 240), person(x + 22, 242)};
-    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
-    if (k < 20) continue;
-    ck_assert_uint_eq(tracks.size(), 2);
-    for (const Track& t : tracks) ck_assert_double_lt(t.box.width, 50);
-  }
-}
-END_TEST
-
-START_TEST(pieces_of_one_object_are_not_counted_apart_for_long) {
-  Tracker tracker;
-  std::size_t last = 0;
-  for (int k = 0; k < 60; ++k) {
-    const double x = 60 + 8 * k;  // a car: three spots first, then all of it
-    std::vector<Region> seen;
-    if (k < 10)
-      seen = {person(x, 240, 0.3, 20, 20), person(x + 70, 250, 0.3, 24, 20),
-              person(x + 140, 240, 0.3, 20, 24)};
-    else
-      seen = {person(x + 70, 245, 0.4, 170, 60)};
-    last = tracker.update(seen, {}, 0.1, kFrame).size();
-  }
-  ck_assert_uint_eq(last, 1);
 }
 END_TEST
 
@@ -488,139 +338,12 @@ START_TEST(the_steady_state_allocates_nothing_and_thousands_of_regions_are_survi
   for (auto& frame : frames)
     for (int i = 0; i < 60; ++i) frame.push_back(person(random() % 640, random() % 480, 0.4, 20, 40));
   for (const auto& frame : frames) tracker.update(frame, {}, 0.04, kFrame);
-  const std::size_t before = cerberus::tests::allocations();
+  const std::size_t before = allocations();
   for (const auto& frame : frames) tracker.update(frame, Transform::translation(1, 0), 0.04, kFrame);
-  ck_assert_uint_eq(cerberus::tests::allocations(), before);
+  ck_assert_uint_eq(allocations(), before);
   std::vector<Region> many;
   for (int i = 0; i < 3000; ++i) many.push_back(person(random() % 640, random() % 480, 0.4, 3, 3));
   for (int k = 0; k < 3; ++k) ck_assert_uint_le(tracker.update(many, {}, 0.04, kFrame).size(), 128);
-}
-END_TEST
-
-namespace {
-
-// A camera of 90 degrees that turns, and people at bearings: f = 320 pixels.
-struct Turning {
-  static constexpr double kDegree = std::numbers::pi / 180;
-  Lens lens{90 * kDegree, kFrame};
-  Tracker tracker;
-  bool head = true;  // tells its pose; else the camera's motion is all there is
-  double pan = 0;    // degrees
-  std::vector<Track> tracks;
-
-  // 10 frames a second; people at these bearings, degrees, level, who see to be 7 by 17.4 degrees (40 x 98 pixels in
-  // the middle), as far as the picture shows them.
-  void step(double to, std::vector<double> people) {
-    std::vector<Region> regions;
-    for (const double bearing : people) {
-      const auto at = [&](double side, double up) {
-        return lens.project({(bearing + side) * kDegree, up * kDegree}, to * kDegree, 0);
-      };
-      const auto left = at(-3.5, 0), right = at(3.5, 0), top = at(0, 8.7), foot = at(0, -8.7);
-      if (!left || !right || !top || !foot) continue;
-      const double x0 = std::max(left->x, 0.0), x1 = std::min<double>(right->x, kFrame.width);
-      if (x1 - x0 >= 8) regions.push_back(person((x0 + x1) / 2, 240, 0.9, x1 - x0, foot->y - top->y));
-    }
-    const Transform motion = to == pan ? Transform{} : lens.turn(pan * kDegree, 0, to * kDegree, 0);
-    pan = to;
-    const auto found = tracker.update(regions, motion, 0.1, kFrame,
-                                      head ? std::optional(Gaze{lens, to * kDegree, 0}) : std::nullopt);
-    tracks.assign(found.begin(), found.end());
-  }
-  void watch(double from, double speed, int frames) {
-    for (int k = 0; k < frames; ++k) step(pan, {from + speed * k});
-  }
-  void turn(double to, double by, std::vector<double> people = {}) {
-    const double way = to - pan, sign = way < 0 ? -1 : 1;
-    for (int k = static_cast<int>(std::abs(way) / by + 0.5); k > 0; --k) step(pan + sign * by, people);
-  }
-  std::uint32_t id() const { return tracks.empty() ? 0 : tracks[0].id; }
-};
-
-}  // namespace
-
-START_TEST(who_is_left_by_the_camera_is_the_same_when_it_comes_back) {
-  for (const bool head : {true, false}) {
-    Turning camera;
-    camera.head = head;
-    camera.watch(-20, 1.5, 20);  // 15 degrees a second, to 8.5
-    const std::uint32_t id = camera.id();
-    ck_assert_uint_gt(id, 0);
-    camera.turn(-90, 6, {9});  // 1.6 s; left behind after half of it
-    ck_assert_uint_eq(camera.tracks.size(), 0);
-    camera.turn(-18, 6, {14});  // 1.2 s; walked on a little
-    camera.step(-18, {14.5});
-    ck_assert_uint_eq(camera.tracks.size(), 1);
-    ck_assert_uint_eq(camera.id(), id);
-    ck_assert(camera.tracks[0].state == TrackState::seen);
-  }
-}
-END_TEST
-
-START_TEST(a_head_that_turned_its_back_finds_the_same_person_again) {
-  Turning camera;
-  camera.watch(-30, 1.5, 20);
-  const std::uint32_t id = camera.id();
-  ck_assert_uint_gt(id, 0);
-  camera.turn(168, 12);  // the person is out of every picture, behind the camera
-  ck_assert_uint_eq(camera.tracks.size(), 0);
-  camera.turn(0, 12, {12});
-  ck_assert_uint_eq(camera.tracks.size(), 1);
-  ck_assert_uint_eq(camera.id(), id);
-}
-END_TEST
-
-START_TEST(somebody_else_in_another_place_is_somebody_else) {
-  Turning camera;
-  camera.watch(-30, 1.5, 20);
-  const std::uint32_t id = camera.id();
-  camera.turn(-60, 6, {-1});
-  for (int k = 0; k < 5; ++k)
-    camera.step(-60, {-80.0 + k});  // nobody comes four body lengths in half a second
-  ck_assert_uint_eq(camera.tracks.size(), 1);
-  ck_assert_uint_ne(camera.id(), id);
-}
-END_TEST
-
-START_TEST(who_is_away_too_long_is_forgotten) {
-  for (const double seconds : {3.0, 8.0}) {
-    Turning camera;
-    camera.watch(-30, 1.5, 20);
-    const std::uint32_t id = camera.id();
-    camera.turn(-90, 10, {0});
-    for (int k = 0; k < 10 * seconds - 18; ++k) camera.step(-90, {});
-    camera.turn(0, 10, {10});
-    for (int k = 0; k < 5; ++k) camera.step(0, {10.0 + 0.8 * k});
-    ck_assert_uint_eq(camera.tracks.size(), 1);
-    ck_assert_int_eq(camera.id() == id, seconds < 5);
-  }
-}
-END_TEST
-
-START_TEST(who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new) {
-  Turning camera;
-  camera.watch(0, 2, 22);
-  const std::uint32_t id = camera.id();
-  ck_assert_uint_gt(id, 0);
-  for (int k = 22; k < 30; ++k) camera.step(0, {2.0 * k});  // out at 45 degrees
-  ck_assert_uint_eq(camera.tracks.size(), 0);
-  for (int k = 0; k < 8; ++k) camera.step(0, {46 - 2.0 * k});
-  ck_assert_uint_eq(camera.tracks.size(), 1);
-  ck_assert_uint_ne(camera.id(), id);
-}
-END_TEST
-
-START_TEST(what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far) {
-  for (const bool turned : {true, false}) {
-    Turning camera;
-    camera.step(0, {});
-    if (turned) camera.turn(20, 4);
-    for (int k = 0; k < 6; ++k) {
-      if (turned) camera.step(24 + 4 * k, {65 + 0.1 * k});  // first seen at the right edge
-      if (!turned) camera.step(0, {20 + 0.1 * k});
-    }
-    ck_assert_uint_eq(camera.tracks.size(), turned);
-  }
 }
 END_TEST
 
@@ -643,61 +366,26 @@ START_TEST(the_same_regions_give_the_same_tracks) {
 }
 END_TEST
 
-// They were one blob at first, so their common box holds both later regions. Nobody knows how tall people are.
-START_TEST(two_who_come_out_of_one_blob_side_by_side_are_two) {
-  for (const double gap : {15.0, 25.0, 45.0}) {
-    Tracker tracker;
-    for (int k = 0; k < 30; ++k) {
-      const double x = 100 + 5 * k;
-      std::vector<Region> seen{person(x, 240, 0.4), person(x + 40 + gap, 242, 0.4)};
-      if (k < 6) seen = {person(x + 20 + gap / 2, 241, 0.4, 80 + gap)};
-      const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
-      if (k >= 7) ck_assert_double_eq_tol(tracks[0].box.width, 40, 10);  // the box shrinks at once
-      if (k < 12) continue;
-      ck_assert_uint_eq(tracks.size(), 2);
-      const bool first = centre(tracks[0]).x < centre(tracks[1]).x;
-      ck_assert_double_eq_tol(centre(tracks[first ? 0 : 1]).x, x, 8);
-      ck_assert_double_eq_tol(centre(tracks[first ? 1 : 0]).x, x + 40 + gap, 8);
-      for (const Track& t : tracks) ck_assert_double_eq_tol(t.box.width, 40, 10);
-    }
-  }
-}
-END_TEST
-
 int main() {
-  return cerberus::tests::run_suite(
-      "tracks", {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
-                 the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
-                 blobs_that_flash_up_here_and_there_are_never_published,
-                 what_never_moves_is_never_published,
-                 a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change,
-                 a_zoom_scales_box_and_speed_of_a_track_without_evidence,
-                 a_flickering_object_is_coasted_over_its_gaps,
-                 who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go,
-                 who_stood_and_walks_on_is_the_same_person,
-                 a_standing_person_s_moving_arm_does_not_make_the_person_small,
-                 who_leaves_the_picture_is_gone_within_half_a_second,
-                 who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_seen_again,
-                 who_was_seen_for_a_moment_only_is_not_carried_on,
-                 two_who_meet_in_one_blob_come_out_with_the_identities_they_had,
-                 three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three,
-                 a_sliver_beside_somebody_unseen_is_not_the_person,
-                 legs_tell_less_of_where_somebody_is_than_the_whole_person,
-                 a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people,
-                 who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it,
-                 a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost,
-                 pieces_of_one_object_are_not_counted_apart_for_long,
-                 an_unknown_time_is_taken_as_the_last_known_one,
-                 impossible_regions_and_transforms_do_no_harm,
-                 boxes_are_clamped_to_the_frame_and_identities_never_come_again,
-                 a_limit_of_speed_keeps_the_too_fast_apart,
-                 the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
-                 who_is_left_by_the_camera_is_the_same_when_it_comes_back,
-                 a_head_that_turned_its_back_finds_the_same_person_again,
-                 somebody_else_in_another_place_is_somebody_else,
-                 who_is_away_too_long_is_forgotten,
-                 who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
-                 what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far,
-                 the_same_regions_give_the_same_tracks,
-                 two_who_come_out_of_one_blob_side_by_side_are_two});
+  return run_suite("tracks", {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
+                              the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
+                              blobs_that_flash_up_here_and_there_are_never_published,
+                              what_never_moves_is_never_published,
+                              a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change,
+                              a_zoom_scales_box_and_speed_of_a_track_without_evidence,
+                              a_flickering_object_is_coasted_over_its_gaps,
+                              who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go,
+                              who_stood_and_walks_on_is_the_same_person,
+                              a_standing_person_s_moving_arm_does_not_make_the_person_small,
+                              who_leaves_the_picture_is_gone_within_half_a_second,
+                              who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_seen_again,
+                              who_was_seen_for_a_moment_only_is_not_carried_on,
+                              a_sliver_beside_somebody_unseen_is_not_the_person,
+                              legs_tell_less_of_where_somebody_is_than_the_whole_person,
+                              an_unknown_time_is_taken_as_the_last_known_one,
+                              impossible_regions_and_transforms_do_no_harm,
+                              boxes_are_clamped_to_the_frame_and_identities_never_come_again,
+                              a_limit_of_speed_keeps_the_too_fast_apart,
+                              the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
+                              the_same_regions_give_the_same_tracks});
 }

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Tracks of people whom a turning camera leaves, and finds again.
+#include "unit/walkers.h"
+
+#include <check.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace cerberus::tests;
+
+namespace {
+
+// A camera of 90 degrees that turns, and people at bearings: f = 320 pixels.
+struct Turning {
+  static constexpr double kDegree = std::numbers::pi / 180;
+  Lens lens{90 * kDegree, kFrame};
+  Tracker tracker;
+  bool head = true;  // tells its pose; else the camera's motion is all there is
+  double pan = 0;    // degrees
+  std::vector<Track> tracks;
+
+  // 10 frames a second; people at these bearings, degrees, level, who see to be 7 by 17.4 degrees (40 x 98 pixels in
+  // the middle), as far as the picture shows them.
+  void step(double to, std::vector<double> people) {
+    std::vector<Region> regions;
+    for (const double bearing : people) {
+      const auto at = [&](double side, double up) {
+        return lens.project({(bearing + side) * kDegree, up * kDegree}, to * kDegree, 0);
+      };
+      const auto left = at(-3.5, 0), right = at(3.5, 0), top = at(0, 8.7), foot = at(0, -8.7);
+      if (!left || !right || !top || !foot) continue;
+      const double x0 = std::max(left->x, 0.0), x1 = std::min<double>(right->x, kFrame.width);
+      if (x1 - x0 >= 8) regions.push_back(person((x0 + x1) / 2, 240, 0.9, x1 - x0, foot->y - top->y));
+    }
+    const Transform motion = to == pan ? Transform{} : lens.turn(pan * kDegree, 0, to * kDegree, 0);
+    pan = to;
+    const auto found = tracker.update(regions, motion, 0.1, kFrame,
+                                      head ? std::optional(Gaze{lens, to * kDegree, 0}) : std::nullopt);
+    tracks.assign(found.begin(), found.end());
+  }
+  void watch(double from, double speed, int frames) {
+    for (int k = 0; k < frames; ++k) step(pan, {from + speed * k});
+  }
+  void turn(double to, double by, std::vector<double> people = {}) {
+    const double way = to - pan, sign = way < 0 ? -1 : 1;
+    for (int k = static_cast<int>(std::abs(way) / by + 0.5); k > 0; --k) step(pan + sign * by, people);
+  }
+  std::uint32_t id() const { return tracks.empty() ? 0 : tracks[0].id; }
+};
+
+}  // namespace
+
+START_TEST(who_is_left_by_the_camera_is_the_same_when_it_comes_back) {
+  for (const bool head : {true, false}) {
+    Turning camera;
+    camera.head = head;
+    camera.watch(-20, 1.5, 20);  // 15 degrees a second, to 8.5
+    const std::uint32_t id = camera.id();
+    ck_assert_uint_gt(id, 0);
+    camera.turn(-90, 6, {9});  // 1.6 s; left behind after half of it
+    ck_assert_uint_eq(camera.tracks.size(), 0);
+    camera.turn(-18, 6, {14});  // 1.2 s; walked on a little
+    camera.step(-18, {14.5});
+    ck_assert_uint_eq(camera.tracks.size(), 1);
+    ck_assert_uint_eq(camera.id(), id);
+    ck_assert(camera.tracks[0].state == TrackState::seen);
+  }
+}
+END_TEST
+
+START_TEST(a_head_that_turned_its_back_finds_the_same_person_again) {
+  Turning camera;
+  camera.watch(-30, 1.5, 20);
+  const std::uint32_t id = camera.id();
+  ck_assert_uint_gt(id, 0);
+  camera.turn(168, 12);  // the person is out of every picture, behind the camera
+  ck_assert_uint_eq(camera.tracks.size(), 0);
+  camera.turn(0, 12, {12});
+  ck_assert_uint_eq(camera.tracks.size(), 1);
+  ck_assert_uint_eq(camera.id(), id);
+}
+END_TEST
+
+START_TEST(somebody_else_in_another_place_is_somebody_else) {
+  Turning camera;
+  camera.watch(-30, 1.5, 20);
+  const std::uint32_t id = camera.id();
+  camera.turn(-60, 6, {-1});
+  for (int k = 0; k < 5; ++k)
+    camera.step(-60, {-80.0 + k});  // nobody comes four body lengths in half a second
+  ck_assert_uint_eq(camera.tracks.size(), 1);
+  ck_assert_uint_ne(camera.id(), id);
+}
+END_TEST
+
+START_TEST(who_is_away_too_long_is_forgotten) {
+  for (const double seconds : {3.0, 8.0}) {
+    Turning camera;
+    camera.watch(-30, 1.5, 20);
+    const std::uint32_t id = camera.id();
+    camera.turn(-90, 10, {0});
+    for (int k = 0; k < 10 * seconds - 18; ++k) camera.step(-90, {});
+    camera.turn(0, 10, {10});
+    for (int k = 0; k < 5; ++k) camera.step(0, {10.0 + 0.8 * k});
+    ck_assert_uint_eq(camera.tracks.size(), 1);
+    ck_assert_int_eq(camera.id() == id, seconds < 5);
+  }
+}
+END_TEST
+
+START_TEST(who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new) {
+  Turning camera;
+  camera.watch(0, 2, 22);
+  const std::uint32_t id = camera.id();
+  ck_assert_uint_gt(id, 0);
+  for (int k = 22; k < 30; ++k) camera.step(0, {2.0 * k});  // out at 45 degrees
+  ck_assert_uint_eq(camera.tracks.size(), 0);
+  for (int k = 0; k < 8; ++k) camera.step(0, {46 - 2.0 * k});
+  ck_assert_uint_eq(camera.tracks.size(), 1);
+  ck_assert_uint_ne(camera.id(), id);
+}
+END_TEST
+
+START_TEST(what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far) {
+  for (const bool turned : {true, false}) {
+    Turning camera;
+    camera.step(0, {});
+    if (turned) camera.turn(20, 4);
+    for (int k = 0; k < 6; ++k) {
+      if (turned) camera.step(24 + 4 * k, {65 + 0.1 * k});  // first seen at the right edge
+      if (!turned) camera.step(0, {20 + 0.1 * k});
+    }
+    ck_assert_uint_eq(camera.tracks.size(), turned);
+  }
+}
+END_TEST
+
+int main() {
+  return run_suite("turning",
+                   {who_is_left_by_the_camera_is_the_same_when_it_comes_back,
+                    a_head_that_turned_its_back_finds_the_same_person_again,
+                    somebody_else_in_another_place_is_somebody_else, who_is_away_too_long_is_forgotten,
+                    who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
+                    what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far});
+}
