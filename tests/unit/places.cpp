@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The complete chain, where somebody is there when a scene begins: the memory has his picture, and the place that he
 // leaves is no region.
+#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <random>
-#include <vector>
 
-#include "support/chain.h"
-#include "support/sensor.h"
+#include "support/room.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -15,15 +13,11 @@ using namespace cerberus::tests;
 
 namespace {
 
-constexpr Size kSize{320, 240};
-constexpr double kFrame = 1.0 / 25;
-
-// A room: a wall, a floor with boards, a table on one dark leg where he stands.
-float room(int x, int y) {
+// The room, with a table on one dark leg where he stands.
+float room_with_a_table(int x, int y) {
   if (y >= 96 && y < 102 && x >= 130 && x < 190) return 215;
   if (y >= 102 && y < 172 && x >= 158 && x < 162) return 40;
-  if (y >= 150 && y < 154) return 60;
-  return y < 150 ? 190.0f - 0.06f * static_cast<float>(x) : 110.0f + 12.0f * static_cast<float>(x / 9 % 2);
+  return room(x, y);
 }
 
 // His head, a coat that is nearly as bright as the wall, trousers.
@@ -42,21 +36,15 @@ struct Seen {
 // left_of: where he is in each frame. Counted from frame `from` on.
 Seen watch(int frames, int from, const std::function<double(int)>& left_of) {
   constexpr int kTop = 85;
-  Chain chain;
-  Noise noise;
-  Image<std::uint8_t> frame(kSize);
-  std::vector<float> picture(static_cast<std::size_t>(kSize.area()));
+  RoomCamera camera;
   Seen seen;
   for (int k = 0; k < frames; ++k) {
     const int left = static_cast<int>(std::lround(left_of(k)));
-    for (int y = 0; y < kSize.height; ++y)
-      for (int x = 0; x < kSize.width; ++x) {
-        const bool inside = x >= left && x < left + kWidth && y >= kTop && y < kTop + kHeight;
-        const float he = inside ? person(x - left, y - kTop) : -1;
-        picture[static_cast<std::size_t>(y) * kSize.width + x] = he < 0 ? room(x, y) : he;
-      }
-    expose(picture.data(), kSize.width, {}, noise, frame.view());
-    chain.step({frame.view().data, kSize.width, kSize.height, frame.view().stride}, kFrame);
+    const Chain& chain = camera.see([left](int x, int y) {
+      const bool inside = x >= left && x < left + kWidth && y >= kTop && y < kTop + kHeight;
+      const float he = inside ? person(x - left, y - kTop) : -1;
+      return he < 0 ? room_with_a_table(x, y) : he;
+    });
     if (k < from) continue;
     const Box him{static_cast<double>(left), kTop, kWidth, kHeight};
     bool right = false;
@@ -66,7 +54,7 @@ Seen watch(int frames, int from, const std::function<double(int)>& left_of) {
       seen.wrong += !on_him;
     }
     seen.right += right;
-    seen.empty += left >= kSize.width && !chain.regions().empty();
+    seen.empty += left >= RoomCamera::kSize.width && !chain.regions().empty();
   }
   return seen;
 }

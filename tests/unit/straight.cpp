@@ -6,23 +6,13 @@
 #include <optional>
 #include <vector>
 
-#include "support/chain.h"
-#include "support/sensor.h"
+#include "support/room.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
 
 namespace {
-
-constexpr Size kSize{320, 240};
-constexpr double kFrame = 1.0 / 25;
-
-// A wall, a floor with boards.
-float room(int x, int y) {
-  if (y >= 150 && y < 154) return 60;
-  return y < 150 ? 190.0f - 0.06f * static_cast<float>(x) : 110.0f + 12.0f * static_cast<float>(x / 9 % 2);
-}
 
 struct Clothes {
   float head, coat, trousers;
@@ -40,22 +30,18 @@ std::optional<float> person(const Clothes& clothes, double u, double v) {
   return std::abs(std::abs(u - 0.5) - 0.2) < 0.18 ? std::optional(clothes.trousers) : std::nullopt;
 }
 
-void draw(std::vector<float>& picture, const Clothes& clothes, const Box& him) {
+// How bright it is at a pixel: he stands at `him` in the room.
+float brightness(const Clothes& clothes, const Box& him, int x, int y) {
   constexpr int kSub = 4;  // samples of a pixel, each way
-  for (int y = 0; y < kSize.height; ++y)
-    for (int x = 0; x < kSize.width; ++x) {
-      float& to = picture[static_cast<std::size_t>(y) * kSize.width + x];
-      to = room(x, y);
-      if (x + 1 < him.x || x > him.right() || y + 1 < him.y || y > him.bottom()) continue;
-      const float behind = to;
-      float sum = 0;
-      for (int k = 0; k < kSub * kSub; ++k) {
-        const double u = (x + (k % kSub + 0.5) / kSub - him.x) / him.width;
-        const double v = (y + (k / kSub + 0.5) / kSub - him.y) / him.height;
-        sum += u >= 0 && u < 1 && v >= 0 && v < 1 ? person(clothes, u, v).value_or(behind) : behind;
-      }
-      to = sum / (kSub * kSub);
-    }
+  const float behind = room(x, y);
+  if (x + 1 < him.x || x > him.right() || y + 1 < him.y || y > him.bottom()) return behind;
+  float sum = 0;
+  for (int k = 0; k < kSub * kSub; ++k) {
+    const double u = (x + (k % kSub + 0.5) / kSub - him.x) / him.width;
+    const double v = (y + (k / kSub + 0.5) / kSub - him.y) / him.height;
+    sum += u >= 0 && u < 1 && v >= 0 && v < 1 ? person(clothes, u, v).value_or(behind) : behind;
+  }
+  return sum / (kSub * kSub);
 }
 
 enum class Way { down, up, towards };
@@ -76,16 +62,11 @@ struct Shares {
 // He is there from the first frame on, and sets out with it.
 Shares watch(Way way, double speed, const Clothes& clothes) {
   constexpr int kFrames = 110;
-  Chain chain;
-  Noise noise;
-  Image<std::uint8_t> frame(kSize);
-  std::vector<float> picture(static_cast<std::size_t>(kSize.area()));
+  RoomCamera camera;
   int regions = 0, tracks = 0, wrong = 0;
   for (int k = 0; k < kFrames; ++k) {
     const Box him = place(way, speed * k);
-    draw(picture, clothes, him);
-    expose(picture.data(), kSize.width, {}, noise, frame.view());
-    chain.step({frame.view().data, kSize.width, kSize.height, frame.view().stride}, kFrame);
+    const Chain& chain = camera.see([&](int x, int y) { return brightness(clothes, him, x, y); });
     const auto is_he = [&](const auto& found) { return intersection_over_union(found.box, him) >= 0.3; };
     const auto is_elsewhere = [&](const auto& found) { return overlap_area(found.box, him) <= 0; };
     regions += std::ranges::any_of(chain.regions(), is_he);
@@ -103,7 +84,7 @@ Region piece(double x, double y, double width, double height, double confidence 
 }
 
 std::vector<Track> told(Tracker& tracker, const std::vector<Region>& regions, const Transform& motion = {}) {
-  const auto tracks = tracker.update(regions, motion, kStep, kSize);
+  const auto tracks = tracker.update(regions, motion, kStep, RoomCamera::kSize);
   return {tracks.begin(), tracks.end()};
 }
 
