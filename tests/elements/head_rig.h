@@ -65,6 +65,13 @@ inline void add(GstBuffer* buffer, CerberusFusionAction action, guint target = 0
   cerberus_buffer_set_fusion(buffer, &fusion);
 }
 
+// A frame on which fusion says what to do.
+inline GstBuffer* frame_with(CerberusFusionAction action, GstClockTime pts = 0) {
+  GstBuffer* buffer = frame_at(pts);
+  add(buffer, action);
+  return buffer;
+}
+
 // A person of 20x60 pixels whose middle is this many degrees right of the camera's axis, behind 60 degrees.
 inline Person somebody(guint id, double degrees_right) {
   const double focal = kWidth / 2.0 / std::tan(30 * std::numbers::pi / 180);
@@ -213,5 +220,18 @@ class Rig {
     return TRUE;
   }
 };
+
+// Frames with one action, from frame `first` on, `count` of them; every pose that is told for them.
+inline std::vector<CerberusPose> act(Rig& rig, CerberusFusionAction action, int first, int count,
+                                     double from = NAN, double to = NAN) {
+  std::vector<CerberusPose> all;
+  for (int k = first; k < first + count; ++k) {
+    GstBuffer* buffer = frame_at(k * kFrame);
+    add(buffer, action, 0, from, to);
+    rig.push(buffer);
+    for (const CerberusPose& pose : rig.poses()) all.push_back(pose);
+  }
+  return all;
+}
 
 }  // namespace head_rig

@@ -213,9 +213,7 @@ GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen)
       gst_harness_push_event(line.harness, gst_event_new_flush_stop(TRUE));
       [[fallthrough]];
     case SEGMENT: {
-      GstSegment segment;
-      gst_segment_init(&segment, GST_FORMAT_TIME);
-      gst_harness_push_event(line.harness, gst_event_new_segment(&segment));
+      push_segment(line.harness);
       break;
     }
     case BACKWARDS:

@@ -219,9 +219,7 @@ GST_START_TEST(frames_count_from_0_after_every_start) {
   gst_element_set_state(h->element, GST_STATE_PLAYING);
   gst_harness_push_event(h.get(), gst_event_new_stream_start("again"));
   gst_harness_set_src_caps_str(h.get(), kCaps.c_str());
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(h.get(), gst_event_new_segment(&segment));
+  push_segment(h.get());
   expect(line_of(h.get(), frame(info_of(kCaps))), empty_line("0", 0));
 }
 GST_END_TEST

@@ -101,14 +101,6 @@ struct Bus {
   }
 };
 
-inline void push_flush(GstHarness* h) {
-  fail_unless(gst_harness_push_event(h, gst_event_new_flush_start()));
-  fail_unless(gst_harness_push_event(h, gst_event_new_flush_stop(TRUE)));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  fail_unless(gst_harness_push_event(h, gst_event_new_segment(&segment)));
-}
-
 // Whether an event of this type came out since the last call.
 inline bool event_came(GstHarness* h, GstEventType type) {
   bool came = false;

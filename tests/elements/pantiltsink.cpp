@@ -17,19 +17,6 @@ double pan_at(const std::vector<CerberusPose>& poses, GstClockTime time) {
   return pan;
 }
 
-// Frames with one action, from frame `first` on, `count` of them.
-std::vector<CerberusPose> act(Rig& rig, CerberusFusionAction action, int first, int count, double from = NAN,
-                              double to = NAN) {
-  std::vector<CerberusPose> all;
-  for (int k = first; k < first + count; ++k) {
-    GstBuffer* buffer = frame_at(k * kFrame);
-    add(buffer, action, 0, from, to);
-    rig.push(buffer);
-    for (const CerberusPose& pose : rig.poses()) all.push_back(pose);
-  }
-  return all;
-}
-
 GST_START_TEST(the_start_pose_is_told_before_the_first_frame) {
   Rig rig("start-pan=20 start-tilt=-5 latency=80000000");
   const CerberusPose pose = rig.next_pose();
@@ -373,9 +360,7 @@ GST_START_TEST(after_the_end_of_the_stream_nothing_moves_the_head) {
     fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
     fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
     gst_element_set_state(rig.element, GST_STATE_PLAYING);
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    fail_unless(gst_harness_push_event(rig.harness, gst_event_new_segment(&segment)));
+    push_segment(rig.harness);
     // The order is over, and the head still in the application's hand.
     auto poses = act(rig, CERBERUS_FUSION_TURN_LEFT, 0, 25);
     const double here = poses.back().pan;
@@ -392,11 +377,7 @@ GST_END_TEST
 GST_START_TEST(after_a_flush_time_begins_anew_and_the_head_goes_on_from_where_it_is) {
   Rig rig;
   const double before = act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 50).back().pan;
-  fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
-  fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  fail_unless(gst_harness_push_event(rig.harness, gst_event_new_segment(&segment)));
+  push_flush(rig.harness);
   const CerberusPose start = rig.next_pose();
   fail_unless_equals_uint64(start.valid_from, 0);
   fail_unless(start.pan >= before);

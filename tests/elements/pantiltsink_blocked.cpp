@@ -19,12 +19,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kHang(5000);
 
-GstBuffer* turning_right() {
-  GstBuffer* buffer = frame_at(0);
-  add(buffer, CERBERUS_FUSION_TURN_RIGHT);
-  return buffer;
-}
-
 milliseconds change(Rig& rig, GstState state) {
   return time_taken([&] { fail_if(gst_element_set_state(rig.element, state) == GST_STATE_CHANGE_FAILURE); });
 }
@@ -87,7 +81,7 @@ class Meeting {
     took_place_ = true;  // before there is anybody to see it
     pusher_ = std::thread([this] {
       if (what_ == What::segment) rig_.begin();
-      if (what_ == What::frame) gst_harness_push(rig_.harness, turning_right());
+      if (what_ == What::frame) gst_harness_push(rig_.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT));
       if (what_ == What::gap) gst_harness_push_event(rig_.harness, gst_event_new_gap(0, kFrame));
     });
     there_.get_future().wait();
@@ -197,7 +191,7 @@ GST_START_TEST(a_frame_that_is_early_for_playing_goes_on_by_itself) {
   fail_unless(record.line().starts_with("open"));
   fail_unless(record.line().starts_with("stop"));  // of PAUSED
   EarlyFrame early(rig);
-  std::thread pusher([&] { gst_harness_push(rig.harness, turning_right()); });
+  std::thread pusher([&] { gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT)); });
   change(rig, GST_STATE_PLAYING);
   fail_unless(record.line().starts_with("command"));
   pusher.join();
@@ -235,7 +229,7 @@ GST_START_TEST(a_blocked_driver_delays_no_change_of_state) {
         Rig rig(scripted(std::string(call) + " wait " + gate.reader()), source, false);
         std::thread pusher([&] {
           rig.begin();
-          gst_harness_push(rig.harness, turning_right());
+          gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT));
         });
         if (source == Source::live) {
           const milliseconds took = time_taken([&] { pusher.join(); });
@@ -262,7 +256,7 @@ GST_START_TEST(a_frame_that_waits_for_the_driver_lets_go_of_a_flush_and_of_a_sto
     assert_prompt(flush ? "flush" : "READY", [&] {
       Pipe gate, record;
       Rig rig(scripted("record " + record.writer() + "; command wait " + gate.reader()));
-      std::thread pusher([&] { gst_harness_push(rig.harness, turning_right()); });
+      std::thread pusher([&] { gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT)); });
       while (!record.line().starts_with("command")) {  // it is in the call
       }
       const milliseconds took = time_taken([&] {

@@ -8,18 +8,6 @@ namespace {
 
 using namespace head_rig;
 
-// Frames with one action from `first` on, `count` of them; every pose that is told for them.
-std::vector<CerberusPose> act(Rig& rig, CerberusFusionAction action, int first, int count) {
-  std::vector<CerberusPose> all;
-  for (int k = first; k < first + count; ++k) {
-    GstBuffer* buffer = frame_at(k * kFrame);
-    add(buffer, action);
-    rig.push(buffer);
-    for (const CerberusPose& pose : rig.poses()) all.push_back(pose);
-  }
-  return all;
-}
-
 struct Axis {
   const char* property;
   double from, limit;  // where the head is sent, and how far it may go then

@@ -11,12 +11,6 @@ namespace {
 
 using namespace head_rig;
 
-GstBuffer* frame_with(CerberusFusionAction action, GstClockTime pts) {
-  GstBuffer* buffer = frame_at(pts);
-  add(buffer, action);
-  return buffer;
-}
-
 // Waits for a pose that says so; the clock stands still.
 template <typename Says>
 CerberusPose wait_for_pose(Rig& rig, Says says) {

@@ -10,12 +10,6 @@ namespace {
 
 using namespace head_rig;
 
-GstBuffer* turning_right(GstClockTime pts) {
-  GstBuffer* buffer = frame_at(pts);
-  add(buffer, CERBERUS_FUSION_TURN_RIGHT);
-  return buffer;
-}
-
 // Keeps whoever posts the first state of this name until it is let go.
 class Keeper {
  public:
@@ -49,7 +43,7 @@ class Keeper {
 GST_START_TEST(who_is_kept_while_posting_is_not_overtaken) {
   Rig rig("watchdog-timeout=0", Source::live);
   Keeper keeper(rig, "turning");
-  std::thread frames([&] { gst_harness_push(rig.harness, turning_right(0)); });
+  std::thread frames([&] { gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT)); });
   keeper.wait();
   // Nor does it keep the application.
   fail_unless(rig.call("stop"));
@@ -66,7 +60,7 @@ GST_START_TEST(who_waits_for_the_driver_is_not_overtaken) {
   Pipe gate, record;
   Rig rig("driver=scripted script=\"record " + record.writer() + "; command wait " + gate.reader() + "\"");
   rig.messages();
-  std::thread frames([&] { gst_harness_push(rig.harness, turning_right(0)); });
+  std::thread frames([&] { gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT)); });
   while (!record.line().starts_with("command")) {  // it is in the call
   }
   fail_unless(rig.call("stop"));
@@ -89,7 +83,7 @@ GST_START_TEST(an_answer_is_told_behind_what_it_answers) {
         return GST_BUS_PASS;
       },
       &rig, nullptr);
-  rig.push(turning_right(0));
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT));
   const std::string states = rig.states();
   fail_unless(states == "turning manual", "\"%s\"", states.c_str());
   gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);

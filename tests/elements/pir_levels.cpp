@@ -197,9 +197,7 @@ GST_START_TEST(what_is_no_measurement_is_invalid) {
   gst_harness_push_event(rig.pir[0], gst_event_new_flush_start());
   gst_harness_push_event(rig.pir[0], gst_event_new_flush_stop(TRUE));
   assert_says(text(sensors(rig.at(160 * kMs))), "22");
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(rig.pir[0], gst_event_new_segment(&segment));
+  push_segment(rig.pir[0]);
   assert_says(after(rig, 200 * kMs, {1.6F, 3}),
               "01");  // not as before: between the thresholds, it begins low
 }

@@ -146,10 +146,8 @@ GST_START_TEST(it_begins_anew_after_it_was_stopped) {
   gst_element_set_state(rig.element, GST_STATE_READY);
   gst_element_set_state(rig.element, GST_STATE_PLAYING);
   gst_harness_set_src_caps_str(rig.video, kVideo);
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
   gst_harness_push_event(rig.video, gst_event_new_stream_start("again"));
-  gst_harness_push_event(rig.video, gst_event_new_segment(&segment));
+  push_segment(rig.video);
   const CerberusFusion fusion = rig.at(40 * kMs);
   fail_unless(std::isnan(fusion.pan) && !fusion.camera_found);
   assert_says(text(sensors(fusion)), "2");  // of the pad, whose caps are forgotten, too

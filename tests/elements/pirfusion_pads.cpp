@@ -196,9 +196,7 @@ GST_START_TEST(what_happens_at_a_pir_pad_stays_there) {
   rig.at(80 * kMs);  // in the middle of the flush
   fail_unless(gst_harness_push_event(pir, gst_event_new_flush_stop(TRUE)));
   assert_says(text(sensors(rig.at(120 * kMs))), "2");  // what was said is forgotten
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  fail_unless(gst_harness_push_event(pir, gst_event_new_segment(&segment)));
+  push_segment(pir);
   rig.read(160 * kMs, {1});
   assert_says(text(sensors(rig.at(160 * kMs))), "1");
   fail_unless(gst_harness_push_event(pir, gst_event_new_eos()));

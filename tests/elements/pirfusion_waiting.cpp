@@ -331,9 +331,7 @@ GST_START_TEST(after_a_flush_a_frame_waits_again) {
   gst_harness_push_event(rig.video, gst_event_new_flush_start());
   fail_unless_equals_int(stopped.flow(), GST_FLOW_FLUSHING);
   gst_harness_push_event(rig.video, gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(rig.video, gst_event_new_segment(&segment));
+  push_segment(rig.video);
   Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(100 * kMs));
   rig.read(50 * kMs, {0, 1, 0});
   rig.read(150 * kMs, {1, 0, 0});
@@ -347,11 +345,7 @@ GST_START_TEST(a_flush_of_a_pir_pad_takes_back_what_it_covered) {
   GstHarness* pir = rig.add_pir();
   rig.read(GST_SECOND, {1, 0, 0});
   gst_harness_push_event(pir, gst_event_new_eos());
-  gst_harness_push_event(pir, gst_event_new_flush_start());
-  gst_harness_push_event(pir, gst_event_new_flush_stop(TRUE));
-  GstSegment segment;
-  gst_segment_init(&segment, GST_FORMAT_TIME);
-  gst_harness_push_event(pir, gst_event_new_segment(&segment));
+  push_flush(pir);
   Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(100 * kMs));
   rig.read(50 * kMs, {0, 1, 0});
   rig.read(150 * kMs, {1, 0, 0});

@@ -17,6 +17,8 @@
 #include <gst/check/gstharness.h>
 #include <gst/video/video.h>
 
+#include "support.h"
+
 namespace scene {
 
 // The corridor, and the bin of all of it.
@@ -218,9 +220,7 @@ class Line {
     gst_element_set_state(harness->element, GST_STATE_PLAYING);
     gst_harness_push_event(harness, gst_event_new_stream_start("again"));
     push_caps(caps_text);
-    GstSegment segment;
-    gst_segment_init(&segment, GST_FORMAT_TIME);
-    gst_harness_push_event(harness, gst_event_new_segment(&segment));
+    push_segment(harness);
   }
   // Messages of this type posted so far (removes them).
   std::vector<std::string> messages(GstMessageType type) {

@@ -3,11 +3,26 @@
 #pragma once
 
 #include <gst/check/gstcheck.h>
+#include <gst/check/gstharness.h>
 
 // Every format that our elements take.
 inline constexpr const char* kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
                                            "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
                                            "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
+
+// A new segment, of time from 0 on.
+inline void push_segment(GstHarness* h) {
+  GstSegment segment;
+  gst_segment_init(&segment, GST_FORMAT_TIME);
+  fail_unless(gst_harness_push_event(h, gst_event_new_segment(&segment)));
+}
+
+// A flush, and the segment after it.
+inline void push_flush(GstHarness* h) {
+  fail_unless(gst_harness_push_event(h, gst_event_new_flush_start()));
+  fail_unless(gst_harness_push_event(h, gst_event_new_flush_stop(TRUE)));
+  push_segment(h);
+}
 
 // gst-check watches the log of GStreamer and GLib only: a critical of our own library must fail a test as well, unless
 // EXPECT_CRITICAL expects it. Call it at the start of a suite.
