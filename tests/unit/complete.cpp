@@ -12,24 +12,19 @@
 #include <vector>
 
 #include "sensing/angles.h"
+#include "support/geometry.h"
 #include "support/suite.h"
 
 using namespace cerberus::fusion;
 using cerberus::sensing::degrees;
 using cerberus::sensing::radians;
+using cerberus::tests::geometry;
 
 namespace {
 
 constexpr int kRing = 720;  // half degrees
 constexpr double kHysteresis = radians(2);
 constexpr std::array<int, kMaxSensors> kNoOrder{};
-
-Geometry geometry(std::vector<double> bearings, double field_of_view) {
-  for (double& bearing : bearings) bearing = radians(bearing);
-  Geometry result;
-  ck_assert(result.set(bearings, radians(field_of_view)));
-  return result;
-}
 
 Interval limits(double from, double to) {
   return {radians(from), radians(to)};

@@ -10,17 +10,16 @@
 #include <random>
 #include <string>
 
+#include "support/text.h"
+
 using namespace cerberus::control;
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
 using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
 using Kind = AxisCommand::Kind;
 
 namespace {
-
-void assert_text(const std::string& text, const char* expected) {
-  ck_assert_str_eq(text.c_str(), expected);
-}
 
 constexpr const char* kDrivers[] = {"simulated", "scripted"};
 

@@ -8,17 +8,15 @@
 #include <random>
 #include <string>
 
-#include "../support/suite.h"
+#include "support/suite.h"
+#include "support/text.h"
 
 using namespace cerberus::control;
 using cerberus::sensing::degrees;
 using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
 
 namespace {
-
-void assert_text(const std::string& text, const char* expected) {
-  ck_assert_str_eq(text.c_str(), expected);
-}
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 

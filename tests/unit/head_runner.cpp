@@ -13,20 +13,18 @@
 
 #include "support/pipe.h"
 #include "support/suite.h"
+#include "support/text.h"
 
 using namespace cerberus::control;
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
+using cerberus::tests::assert_text;
 using cerberus::tests::Pipe;
 using Answer = HeadRunner::Answer;
 using Clock = std::chrono::steady_clock;
 using Kind = AxisCommand::Kind;
 
 namespace {
-
-void assert_text(const std::string& text, const char* expected) {
-  ck_assert_str_eq(text.c_str(), expected);
-}
 
 std::unique_ptr<HeadRunner> runner_with(const std::string& script, std::shared_ptr<void> lease = {}) {
   auto runner = std::make_unique<HeadRunner>(make_head("scripted"), std::move(lease));

@@ -11,34 +11,18 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/masks.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
+using namespace cerberus::tests;
 
 namespace {
 
 using Gray = Image<std::uint8_t>;
 
-// '#' moves; rows must have equal lengths.
-Gray draw(const std::vector<std::string>& rows) {
-  Gray mask({static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
-  for (std::size_t y = 0; y < rows.size(); ++y)
-    for (std::size_t x = 0; x < rows[y].size(); ++x)
-      mask.view().at(static_cast<int>(x), static_cast<int>(y)) = rows[y][x] == '#' ? 255 : 0;
-  return mask;
-}
-
-Gray random_mask(std::mt19937& random, Size size, int percent) {
-  Gray mask(size);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      mask.view().at(x, y) = static_cast<int>(random() % 100) < percent ? 255 : 0;
-  return mask;
-}
-
 std::span<const Component> find(Labeller& labeller, Gray& mask, std::uint32_t least = 1) {
-  BitMask bits(bit_mask_size(mask.size()));
-  pack(mask.view(), bits.view());
+  BitMask bits = packed(mask.view());
   const auto found = labeller.find(bits.view(), mask.size().width, least);
   unpack(bits.view(), mask.view());
   return found;
@@ -125,7 +109,7 @@ START_TEST(an_empty_mask_has_no_components) {
 END_TEST
 
 START_TEST(two_shapes_have_the_box_and_area_counted_by_hand) {
-  auto mask = draw({
+  auto mask = drawn({
       "..........",
       ".##.....#.",
       ".##....#..",
@@ -148,7 +132,7 @@ START_TEST(two_shapes_have_the_box_and_area_counted_by_hand) {
 END_TEST
 
 START_TEST(arms_that_meet_late_are_one_component_with_the_earliest_label) {
-  auto mask = draw({
+  auto mask = drawn({
       "#.#.#...#",
       "#.#.#....",
       "#.#.#..#.",
@@ -170,7 +154,7 @@ START_TEST(random_masks_of_odd_sizes_agree_with_the_flood_fill) {
   for (const Size size : sizes)
     for (const int percent : {3, 20, 40, 60, 97, 100})
       for (const std::uint32_t least : {1u, 2u, 9u})
-        compare_with_flood(random_mask(random, size, percent), least);
+        compare_with_flood(random_mask(size, percent, random), least);
 }
 END_TEST
 

@@ -9,23 +9,21 @@
 #include <random>
 #include <string>
 
-#include "../support/allocations.h"
-#include "../support/suite.h"
 #include "drivers/simulated_head.h"
+#include "support/allocations.h"
+#include "support/suite.h"
+#include "support/text.h"
 
 using namespace cerberus::control;
 using namespace std::chrono_literals;
 using cerberus::fusion::Action;
 using cerberus::sensing::degrees;
 using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
 using cerberus::vision::Lens;
 using Kind = AxisCommand::Kind;
 
 namespace {
-
-void assert_text(const std::string& text, const char* expected) {
-  ck_assert_str_eq(text.c_str(), expected);
-}
 
 const Lens kLens(radians(90), {640, 480});
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

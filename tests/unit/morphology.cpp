@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/masks.h"
 #include "support/pictures.h"
 #include "support/targets.h"
 #include "support/wrong.h"
@@ -21,19 +22,9 @@ namespace {
 const std::vector<Size> kSizes{{1, 1},   {2, 3},   {33, 35},  {63, 9}, {64, 8},
                                {65, 17}, {127, 5}, {130, 40}, {1, 50}, {200, 1}};
 
-Image<std::uint8_t> random_mask(Size size, int percent, unsigned seed) {
+Image<std::uint8_t> random_mask(Size size, unsigned percent, unsigned seed) {
   std::mt19937 random(seed);
-  Image<std::uint8_t> mask(size);
-  for (int y = 0; y < size.height; ++y)
-    for (int x = 0; x < size.width; ++x)
-      mask.view().at(x, y) = random() % 100 < static_cast<unsigned>(percent) ? 255 : 0;
-  return mask;
-}
-
-BitMask packed(GrayView mask) {
-  BitMask bits(bit_mask_size(mask.size()));
-  pack(mask, bits.view());
-  return bits;
+  return cerberus::tests::random_mask(size, percent, random);
 }
 
 void assert_same(BitView bits, GrayView expected) {
@@ -47,15 +38,6 @@ void assert_same(BitView bits, GrayView expected) {
   }
   pixels.assert_none("mask");
   beyond.assert_none("bits beyond the width");
-}
-
-// A picture in text: # is set.
-Image<std::uint8_t> drawn(const std::vector<std::string>& rows) {
-  Image<std::uint8_t> mask({static_cast<int>(rows[0].size()), static_cast<int>(rows.size())});
-  for (std::size_t y = 0; y < rows.size(); ++y)
-    for (std::size_t x = 0; x < rows[y].size(); ++x)
-      mask.view().row(static_cast<int>(y))[x] = rows[y][x] == '#' ? 255 : 0;
-  return mask;
 }
 
 }  // namespace

@@ -13,19 +13,13 @@
 #include "drivers/sensor.h"
 #include "support/says.h"
 #include "support/suite.h"
+#include "support/temporary_file.h"
 
 namespace {
 
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
-
-std::string file(const std::string& text) {
-  char path[] = "/tmp/cerberus-pir-XXXXXX";
-  const int fd = mkstemp(path);
-  if (write(fd, text.data(), text.size()) != static_cast<ssize_t>(text.size())) std::abort();
-  close(fd);
-  return path;
-}
+using cerberus::tests::temporary_file;
 
 SensorError parse(const std::string& text, Recording& recording, int sensors = 3) {
   return parse_recording(text, "night.csv", sensors, recording);
@@ -114,7 +108,7 @@ START_TEST(files_that_cannot_be_recordings_are_refused_at_once) {
   ck_assert(why("/nowhere").fault == SensorFault::not_found);
   ck_assert(says(why("/dev/zero").text, "/dev/zero is no regular file"));
   ck_assert(says(why("/tmp").text, "/tmp is no regular file"));
-  const std::string empty = file("# nothing\n");
+  const std::string empty = temporary_file("# nothing\n");
   ck_assert(why(empty).fault == SensorFault::data && says(why(empty).text, empty + " holds no readings"));
   unlink(empty.c_str());
 }
@@ -122,7 +116,7 @@ END_TEST
 
 START_TEST(a_recording_that_may_not_be_read_is_named) {
   SensorSetup setup;
-  setup.location = file("0,0,0,0\n");
+  setup.location = temporary_file("0,0,0,0\n");
   chmod(setup.location.c_str(), 0);
   const bool root = geteuid() == 0;
   ck_assert(!root || seteuid(65534) == 0);

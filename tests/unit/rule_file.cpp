@@ -13,9 +13,11 @@
 
 #include "sensing/angles.h"
 #include "support/suite.h"  // after the streams: check defines fail()
+#include "support/temporary_file.h"
 
 using namespace cerberus::fusion;
 using cerberus::sensing::radians;
+using cerberus::tests::temporary_file;
 
 namespace {
 
@@ -189,26 +191,22 @@ START_TEST(a_pipe_is_refused_at_once) {
 END_TEST
 
 START_TEST(a_file_that_may_not_be_read_is_named) {
-  char path[] = "/tmp/cerberus-rules-XXXXXX";
-  close(mkstemp(path));
-  chmod(path, 0);
+  const std::string path = temporary_file("");
+  chmod(path.c_str(), 0);
   const bool root = geteuid() == 0;
   ck_assert(!root || seteuid(65534) == 0);
   const RuleFile forbidden = load_rules(path);
   ck_assert(!root || seteuid(0) == 0);
-  unlink(path);
+  unlink(path.c_str());
   ck_assert(!forbidden.table.has_value());
-  ck_assert(forbidden.error == std::string(path) + ": Permission denied");
+  ck_assert(forbidden.error == path + ": Permission denied");
 }
 END_TEST
 
 START_TEST(a_file_is_read_as_its_text_is) {
-  char path[] = "/tmp/cerberus-rules-XXXXXX";
-  const int descriptor = mkstemp(path);
-  ck_assert_int_ge(descriptor, 0);
-  std::ofstream(path) << manual_examples().at(0);
+  const std::string path = temporary_file(manual_examples().at(0));
   const RuleFile file = load_rules(path);
-  std::remove(path);
+  unlink(path.c_str());
   ck_assert_msg(file.table.has_value(), "%s", file.error.c_str());
 }
 END_TEST

@@ -10,20 +10,15 @@
 #include <vector>
 
 #include "sensing/angles.h"
+#include "support/geometry.h"
 #include "support/suite.h"
 
 using namespace cerberus::sensing;
+using cerberus::tests::geometry;
 
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-Geometry geometry(std::vector<double> bearings, double field_of_view) {
-  for (double& bearing : bearings) bearing = radians(bearing);
-  Geometry result;
-  ck_assert(result.set(bearings, radians(field_of_view)));
-  return result;
-}
 
 void assert_arc(const Arc& arc, double from, double width) {
   ck_assert_double_eq_tol(degrees(arc.from), from, 1e-6);

@@ -14,6 +14,7 @@
 
 #include "support/says.h"
 #include "support/suite.h"
+#include "support/temporary_file.h"
 
 namespace {
 
@@ -21,6 +22,7 @@ using namespace cerberus::drivers;
 using namespace std::chrono_literals;
 using cerberus::sensing::kNever;
 using cerberus::sensing::Presence;
+using cerberus::tests::temporary_file;
 
 Time monotonic() {
   return std::chrono::steady_clock::now().time_since_epoch();
@@ -32,18 +34,10 @@ struct Backend {
   std::string thing;  // that the error of `bad` names
 };
 
-std::string file(const std::string& text) {
-  char path[] = "/tmp/cerberus-pir-XXXXXX";
-  const int fd = mkstemp(path);
-  if (write(fd, text.data(), text.size()) != static_cast<ssize_t>(text.size())) std::abort();
-  close(fd);
-  return path;
-}
-
 std::vector<Backend> backends() {
   std::vector<Backend> all;
   SensorSetup good, bad;
-  good.location = file("0,0,1,0\n1,1,1,0\n");
+  good.location = temporary_file("0,0,1,0\n1,1,1,0\n");
   bad.location = "/nowhere/pir.csv";
   all.push_back({"replay", good, bad, "/nowhere/pir.csv"});
   good = bad = {};
