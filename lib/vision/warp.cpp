@@ -58,7 +58,6 @@ bool Warp::prepare(const Transform& motion, Size size) {
     positions_.resize({size.width, 2});
     size_ = size;  // last: what threw is tried again
   }
-  valid_ = 0;
   kind_ = Kind::nothing;
   for (int y = 0; y < size.height; ++y) spans_.view().at(y, 0) = {};
   if (size.width <= 0 || size.height <= 0 || !motion.is_sane(size)) return false;
@@ -88,7 +87,6 @@ bool Warp::prepare(const Transform& motion, Size size) {
            : kind_ == Kind::projective ? projective_span(y, span)
                                        : shift_span(y);
     spans_.view().at(y, 0) = span;
-    valid_ += span.end - span.begin;
   }
   return true;
 }
@@ -159,17 +157,16 @@ void Warp::find_positions(int y) {
   }
 }
 
-template <typename T, typename Sample>
-void Warp::draw(View<const T> source, View<T> target, T fill, Sample&& sample) {
+template <typename Sample>
+void Warp::draw(GrayView source, MutableGrayView target, std::uint8_t fill, Sample&& sample) {
   for (int y = 0; y < size_.height; ++y) {
     const RowSpan span = spans_.view().at(y, 0);
-    T* out = target.row(y);
+    std::uint8_t* out = target.row(y);
     std::fill(out, out + span.begin, fill);
     std::fill(out + span.end, out + size_.width, fill);
     if (span.begin == span.end) continue;
     if (kind_ == Kind::identity || kind_ == Kind::shift) {
-      std::memcpy(out + span.begin, source.row(y - dy_) + span.begin - dx_,
-                  sizeof(T) * (span.end - span.begin));
+      std::memcpy(out + span.begin, source.row(y - dy_) + span.begin - dx_, span.end - span.begin);
     } else {
       find_positions(y);
       sample(positions_.view().row(0), positions_.view().row(1), span.end - span.begin, out + span.begin);
@@ -179,24 +176,22 @@ void Warp::draw(View<const T> source, View<T> target, T fill, Sample&& sample) {
 
 namespace {
 
-template <typename T>
-auto bilinear_sampler(View<const T> source) {
-  return [source](const std::int32_t* u, const std::int32_t* v, int count, T* out) {
+auto bilinear_sampler(GrayView source) {
+  return [source](const std::int32_t* u, const std::int32_t* v, int count, std::uint8_t* out) {
     if (source.width >= 2 && source.height >= 2) return sample_bilinear(source, u, v, count, out);
     // One row or column of pixels: its valid positions lie on it in the other direction.
     const int one = 1 << kPositionBits;
     for (int i = 0; i < count; ++i) {
       const int x = u[i] / one, y = v[i] / one, f = u[i] % one + v[i] % one;
-      const T next = source.at(std::min(x + (u[i] % one != 0), source.width - 1),
-                               std::min(y + (v[i] % one != 0), source.height - 1));
-      out[i] = static_cast<T>((source.at(x, y) * (one - f) + next * f + one / 2) / one);
+      const int next = source.at(std::min(x + (u[i] % one != 0), source.width - 1),
+                                 std::min(y + (v[i] % one != 0), source.height - 1));
+      out[i] = static_cast<std::uint8_t>((source.at(x, y) * (one - f) + next * f + one / 2) / one);
     }
   };
 }
 
-template <typename T>
-auto nearest_sampler(View<const T> source) {
-  return [source](const std::int32_t* u, const std::int32_t* v, int count, T* out) {
+auto nearest_sampler(GrayView source) {
+  return [source](const std::int32_t* u, const std::int32_t* v, int count, std::uint8_t* out) {
     constexpr int kHalfPixel = 1 << (kPositionBits - 1);
     for (int i = 0; i < count; ++i)
       out[i] = source.at((u[i] + kHalfPixel) >> kPositionBits, (v[i] + kHalfPixel) >> kPositionBits);
@@ -209,15 +204,7 @@ void Warp::bilinear(GrayView source, MutableGrayView target, std::uint8_t fill) 
   draw(source, target, fill, bilinear_sampler(source));
 }
 
-void Warp::bilinear(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill) {
-  draw(source, target, fill, bilinear_sampler(source));
-}
-
 void Warp::nearest(GrayView source, MutableGrayView target, std::uint8_t fill) {
-  draw(source, target, fill, nearest_sampler(source));
-}
-
-void Warp::nearest(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill) {
   draw(source, target, fill, nearest_sampler(source));
 }
 

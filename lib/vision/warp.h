@@ -37,14 +37,11 @@ class Warp {
   std::span<const RowSpan> spans() const {
     return {spans_.view().data, static_cast<std::size_t>(size_.height)};
   }
-  long valid_pixels() const { return valid_; }
 
   // Bilinear with 1/128 pixel weights, rounded to nearest.
   void bilinear(GrayView source, MutableGrayView target, std::uint8_t fill = 0);
-  void bilinear(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill = 0);
-  // The nearest source pixel (ties to the right and down): for labels, ages, flags.
+  // The nearest source pixel (ties to the right and down): for ages and flags.
   void nearest(GrayView source, MutableGrayView target, std::uint8_t fill = 0);
-  void nearest(View<const std::uint16_t> source, View<std::uint16_t> target, std::uint16_t fill = 0);
 
   std::size_t bytes() const { return spans_.bytes() + positions_.bytes(); }
 
@@ -56,14 +53,13 @@ class Warp {
   RowSpan projective_span(int y, RowSpan above) const;
   bool projective_position(int x, int y, std::int32_t& u, std::int32_t& v) const;
   void find_positions(int y);
-  template <typename T, typename Sample>
-  void draw(View<const T> source, View<T> target, T fill, Sample&& sample);
+  template <typename Sample>
+  void draw(GrayView source, MutableGrayView target, std::uint8_t fill, Sample&& sample);
 
   Kind kind_ = Kind::nothing;
   Size size_;
-  int dx_ = 0, dy_ = 0;  // Kind::shift: source = target - (dx, dy)
-  Transform inverse_;    // target to source, third coordinate positive where it is valid
-  long valid_ = 0;
+  int dx_ = 0, dy_ = 0;            // Kind::shift: source = target - (dx, dy)
+  Transform inverse_;              // target to source, third coordinate positive where it is valid
   Image<RowSpan> spans_;           // height x 1
   Image<std::int32_t> positions_;  // source positions of the row at hand, 1/128 pixel: row 0 x, row 1 y
 };

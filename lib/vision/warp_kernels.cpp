@@ -54,8 +54,7 @@ void project_positions(const float (&m)[9], int x0, int y, int count, std::int32
   for (; i < count; ++i) run(one, i);
 }
 
-// (p00 (128 - fx) + p01 fx) (128 - fy) + (p10 (128 - fx) + p11 fx) fy, rounded: at most 65535 * 2^14, below
-// 2^31.
+// (p00 (128 - fx) + p01 fx) (128 - fy) + (p10 (128 - fx) + p11 fx) fy, rounded: at most 255 * 2^14.
 template <class D>
 HWY_INLINE hn::Vec<D> blend(D, hn::Vec<D> p00, hn::Vec<D> p01, hn::Vec<D> p10, hn::Vec<D> p11, hn::Vec<D> fx,
                             hn::Vec<D> fy) {
@@ -69,10 +68,10 @@ HWY_INLINE hn::Vec<D> blend(D, hn::Vec<D> p00, hn::Vec<D> p01, hn::Vec<D> p10, h
 // the source: then whole vectors are read. Where a column or a row is left out or comes twice, or the next one begins,
 // the first part of the vector is as its first lane says and the rest as its last one does. Otherwise one pixel at a
 // time: no gather instruction is needed.
-template <class D, typename T>
-HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, const std::int32_t* y,
-                              T* out) {
-  const hn::Rebind<T, D> dt;
+template <class D>
+HWY_INLINE void sample_vector(D d, GrayView source, const std::int32_t* x, const std::int32_t* y,
+                              std::uint8_t* out) {
+  const hn::Rebind<std::uint8_t, D> dt;
   constexpr int kLanes = static_cast<int>(hn::MaxLanes(D()));
   const auto right = hn::Set(d, source.width - 2), low = hn::Set(d, source.height - 2);
   const auto px = hn::LoadU(d, x), py = hn::LoadU(d, y);
@@ -81,10 +80,10 @@ HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, 
   const int x0 = hn::GetLane(ix), y0 = hn::GetLane(iy);
   const auto begins =
       hn::And(hn::Eq(ix, hn::Add(hn::Iota(d, 0), hn::Set(d, x0))), hn::Eq(iy, hn::Set(d, y0)));
-  const auto load = [&](const T* p) { return hn::PromoteTo(d, hn::LoadU(dt, p)); };
+  const auto load = [&](const std::uint8_t* p) { return hn::PromoteTo(d, hn::LoadU(dt, p)); };
   const auto read = [&](std::ptrdiff_t offset) {
-    const T* p = source.data + offset;
-    const T* q = p + source.stride;
+    const std::uint8_t* p = source.data + offset;
+    const std::uint8_t* q = p + source.stride;
     return blend(d, load(p), load(p + 1), load(q), load(q + 1), fx, fy);
   };
   const std::ptrdiff_t first = y0 * source.stride + x0;
@@ -104,20 +103,19 @@ HWY_INLINE void sample_vector(D d, View<const T> source, const std::int32_t* x, 
     return;
   }
   HWY_ALIGN std::int32_t xs[kLanes], ys[kLanes];
-  HWY_ALIGN T p00[kLanes], p01[kLanes], p10[kLanes], p11[kLanes];
+  HWY_ALIGN std::uint8_t p00[kLanes], p01[kLanes], p10[kLanes], p11[kLanes];
   hn::Store(ix, d, xs);
   hn::Store(iy, d, ys);
   for (int i = 0; i < static_cast<int>(hn::Lanes(d)); ++i) {
-    const T* p = &source.at(xs[i], ys[i]);
-    const T* q = p + source.stride;
+    const std::uint8_t* p = &source.at(xs[i], ys[i]);
+    const std::uint8_t* q = p + source.stride;
     p00[i] = p[0], p01[i] = p[1], p10[i] = q[0], p11[i] = q[1];
   }
   hn::StoreU(hn::DemoteTo(dt, blend(d, load(p00), load(p01), load(p10), load(p11), fx, fy)), dt, out);
 }
 
-template <typename T>
-HWY_INLINE void sample(View<const T> source, const std::int32_t* x, const std::int32_t* y, int count,
-                       T* out) {
+void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
+                     std::uint8_t* out) {
   const hn::CappedTag<std::int32_t, 16> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   int i = 0;
@@ -130,16 +128,6 @@ HWY_INLINE void sample(View<const T> source, const std::int32_t* x, const std::i
   for (; i < count; ++i) sample_vector(one, source, x + i, y + i, out + i);
 }
 
-void sample_bytes(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
-                  std::uint8_t* out) {
-  sample(source, x, y, count, out);
-}
-
-void sample_words(View<const std::uint16_t> source, const std::int32_t* x, const std::int32_t* y, int count,
-                  std::uint16_t* out) {
-  sample(source, x, y, count, out);
-}
-
 }  // namespace cerberus::vision::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -148,8 +136,7 @@ namespace cerberus::vision {
 
 HWY_EXPORT(step_positions);
 HWY_EXPORT(project_positions);
-HWY_EXPORT(sample_bytes);
-HWY_EXPORT(sample_words);
+HWY_EXPORT(sample_bilinear);
 
 void step_positions(std::int32_t start, std::int32_t step, int shift, int count, std::int32_t* out) {
   HWY_DYNAMIC_DISPATCH(step_positions)(start, step, shift, count, out);
@@ -162,12 +149,7 @@ void project_positions(const float (&m)[9], int x0, int y, int count, std::int32
 
 void sample_bilinear(GrayView source, const std::int32_t* x, const std::int32_t* y, int count,
                      std::uint8_t* out) {
-  HWY_DYNAMIC_DISPATCH(sample_bytes)(source, x, y, count, out);
-}
-
-void sample_bilinear(View<const std::uint16_t> source, const std::int32_t* x, const std::int32_t* y,
-                     int count, std::uint16_t* out) {
-  HWY_DYNAMIC_DISPATCH(sample_words)(source, x, y, count, out);
+  HWY_DYNAMIC_DISPATCH(sample_bilinear)(source, x, y, count, out);
 }
 
 }  // namespace cerberus::vision
