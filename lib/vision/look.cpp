@@ -10,7 +10,7 @@ namespace {
 constexpr double kDark = 8;  // grey levels: added, so that noise in the dark is not a difference
 constexpr double kLowest = 3, kHighest = 8.05;  // log2 of 0 and of 255 with it
 constexpr int kShares = 16;
-constexpr int kBlack = 12, kWhite = 243;  // beyond them a picture does not tell how bright it is
+constexpr int kDarkest = 12, kBrightest = 243;  // beyond them a picture does not tell how bright it is
 constexpr int kLeastPairs = 24;
 // Of the level, by each frame: small errors of a minute ago do not add up for ever, and looks live for seconds.
 constexpr double kKeep = 1 - 1.0 / 2000;
@@ -53,7 +53,7 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
       const Point p = motion.apply(place(i));
       if (!(p.x >= 0 && p.y >= 0 && p.x < luma.width && p.y < luma.height)) continue;
       const int now = grey(static_cast<int>(p.x), static_cast<int>(p.y)), then = before_[i];
-      if (now < kBlack || now > kWhite || then < kBlack || then > kWhite) continue;
+      if (now < kDarkest || now > kBrightest || then < kDarkest || then > kBrightest) continue;
       ratio[count++] = std::log2(static_cast<double>(now) / then);
     }
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The likelihood: a pixel moves with probability kCore in the middle half of a person's columns, kSide in the outer
-// ones and kOutside elsewhere. A person at a place gains, for each pixel not yet explained by another, the logarithm
-// of the ratio to "outside"; whoever gains less than its price is not there. (The idea of explaining foreground by
-// boxes of known size: F. Fleuret et al., "Multi-camera people tracking with a probabilistic occupancy map", PAMI
-// 30(2), 2008; here one camera, greedy, with all sums from one table.)
+// The likelihood: a pixel moves with one probability in the middle half of a person's columns, with a lower one in the
+// outer ones and with hardly any elsewhere (people_kernels.h). A person at a place gains, for each pixel not yet
+// explained by another, the logarithm of the ratio to "elsewhere"; whoever gains less than its price is not there. (The
+// idea of explaining foreground by boxes of known size: F. Fleuret et al., "Multi-camera people tracking with a
+// probabilistic occupancy map", PAMI 30(2), 2008; here one camera, greedy, with all sums from one table.)
 #include "vision/people.h"
 
 #include <algorithm>
