@@ -246,6 +246,21 @@ GST_START_TEST(labels_keep_clear_of_each_other) {
 }
 GST_END_TEST
 
+// Above the box, where the frame leaves room there; below it; inside.
+GST_START_TEST(a_label_lies_where_there_is_room) {
+  const auto label = [](double top, double height) {
+    Harness h = attaching("motionoverlay show-boxes=false show-trails=false");
+    const auto all = drawn(h.get(), with_region(info_of(kCaps), region(1, 100, top, 60, height)));
+    fail_unless_equals_int(all.size(), 1);
+    return all[0];
+  };
+  const Rectangle above = label(80, 90), below = label(4, 90), inside = label(0, kHeight);
+  fail_unless(above.y + static_cast<int>(above.height) <= 80, "%d", above.y);
+  fail_unless(below.y >= 4 + 90, "%d", below.y);
+  fail_unless(inside.y >= 0 && inside.y < 20, "%d", inside.y);
+}
+GST_END_TEST
+
 GST_START_TEST(whom_the_head_follows_has_corners) {
   Harness h = attaching("motionoverlay show-ids=false show-trails=false show-system=false");
   const GstVideoInfo info = info_of(kCaps);
@@ -267,6 +282,35 @@ GST_START_TEST(whom_the_head_follows_has_corners) {
   fail_unless((count(1, CERBERUS_FUSION_TRACK) == std::array{none[0] + 4, none[1]}));
   fail_unless((count(2, CERBERUS_FUSION_TRACK) == std::array{none[0], none[1] + 4}));
   fail_unless(count(1, CERBERUS_FUSION_HOLD) == none);
+}
+GST_END_TEST
+
+GST_START_TEST(the_corners_lie_round_the_box) {
+  Harness h = attaching("motionoverlay show-ids=false show-trails=false show-system=false");
+  int number = 0;
+  // Left, top, right and bottom of all that is drawn.
+  const auto extent = [&](CerberusFusionAction action) {
+    CerberusFusion fusion;
+    cerberus_fusion_init(&fusion);
+    fusion.target = 1;
+    fusion.action = action;
+    GstBuffer* in = with_region(info_of(kCaps), region(1, 100, 80, 60, 90), number++);
+    cerberus_buffer_set_fusion(in, &fusion);
+    std::array sides{kWidth, kHeight, 0, 0};
+    for (const Rectangle& r : drawn(h.get(), in)) {
+      sides[0] = std::min(sides[0], r.x);
+      sides[1] = std::min(sides[1], r.y);
+      sides[2] = std::max(sides[2], r.x + static_cast<int>(r.width));
+      sides[3] = std::max(sides[3], r.y + static_cast<int>(r.height));
+    }
+    return sides;
+  };
+  const auto box = extent(CERBERUS_FUSION_HOLD), all = extent(CERBERUS_FUSION_TRACK);
+  const int room = box[0] - all[0];
+  fail_unless(room >= 2);
+  fail_unless_equals_int(box[1] - all[1], room);
+  fail_unless_equals_int(all[2] - box[2], room);
+  fail_unless_equals_int(all[3] - box[3], room);
 }
 GST_END_TEST
 
@@ -343,7 +387,9 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, what_lies_outside_or_is_nonsense_is_not_drawn);
   tcase_add_test(tc, speeds_and_distances_that_are_not_numbers_leave_a_label_without_them);
   tcase_add_test(tc, labels_keep_clear_of_each_other);
+  tcase_add_test(tc, a_label_lies_where_there_is_room);
   tcase_add_test(tc, whom_the_head_follows_has_corners);
+  tcase_add_test(tc, the_corners_lie_round_the_box);
   tcase_add_test(tc, regions_without_identity_have_a_box_only);
   tcase_add_test(tc, properties_change_while_playing);
   tcase_add_test(tc, lines_are_as_wide_as_asked);

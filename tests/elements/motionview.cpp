@@ -153,6 +153,9 @@ GST_START_TEST(every_label_has_a_colour_and_the_background_none) {
   std::vector<guint32> colors;
   for (int label = 0; label < 8; ++label) colors.push_back(p.at(label * 8 + 4, 16));
   fail_unless_equals_int(colors[0], 0);
+  // As the identity of the same number has it: Okabe and Ito's orange (.902, .624, 0), their sky blue (.337, .706, .914).
+  fail_unless_equals_int(colors[1], 0xe69f00);
+  fail_unless_equals_int(colors[2], 0x56b4e9);
   for (int i = 1; i < 7; ++i)
     for (int j = 0; j < i; ++j) fail_if(colors[i] == colors[j]);
   fail_if(colors[7] == 0);
@@ -193,6 +196,29 @@ GST_START_TEST(the_histogram_shows_the_threshold_where_it_is) {
   const int c = threshold_column(shown(harness.get(), with_histogram(info_of(caps), 40)));
   fail_unless(a > 0 && b > a && c > b, "%d %d %d", a, b, c);
   fail_unless(std::abs((c - b) - 2 * (b - a)) <= 3, "%d %d %d", a, b, c);
+}
+GST_END_TEST
+
+// The seeds of background and objects, blue and orange bars as the panel's dark paper shows through them: the column in
+// the middle of those of a colour.
+GST_START_TEST(the_histogram_shows_which_levels_are_seeds) {
+  const std::string caps = caps_string("I420", 640, 480);
+  Harness harness = started("motionview stage=histogram", caps);
+  const Picture p = shown(harness.get(), with_histogram(info_of(caps), 20));
+  const auto middle = [&p](guint32 color) {
+    const auto is_near = [](guint32 a, guint32 b) { return std::abs(int(a & 255) - int(b & 255)) <= 4; };
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < p.height() / 2; ++y)
+      for (int x = 0; x < p.width(); ++x) {
+        const guint32 c = p.at(x, y);
+        if (!is_near(c >> 16, color >> 16) || !is_near(c >> 8, color >> 8) || !is_near(c, color)) continue;
+        sum += x, ++count;
+      }
+    fail_unless(count > 20, "%06x: %d pixels", color, count);
+    return sum / count;
+  };
+  fail_unless(middle(0x3b7596) < middle(0x92680a));
 }
 GST_END_TEST
 
@@ -457,6 +483,7 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, equal_pictures_are_equal_bytes_between_the_rows_too);
   tcase_add_test(tc, every_label_has_a_colour_and_the_background_none);
   tcase_add_test(tc, the_histogram_shows_the_threshold_where_it_is);
+  tcase_add_test(tc, the_histogram_shows_which_levels_are_seeds);
   tcase_add_test(tc, the_curves_are_those_of_the_options_that_were_used);
   tcase_add_test(tc, each_option_of_the_threshold_moves_the_curves);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);

@@ -47,6 +47,22 @@ GST_START_TEST(each_frame_is_answered_with_the_poses_until_its_time_plus_the_lat
 }
 GST_END_TEST
 
+// Position, speed and acceleration of both axes: where a pose ends, the next one begins.
+GST_START_TEST(poses_meet) {
+  Rig rig;
+  fail_unless(rig.call("move-to", 50, 20));
+  CerberusPose last = rig.next_pose();
+  for (const CerberusPose& pose : act(rig, CERBERUS_FUSION_HOLD, 0, 75)) {
+    double pan = NAN, tilt = NAN;
+    fail_unless(cerberus_pose_evaluate(&last, pose.valid_from, &pan, &tilt));
+    fail_unless(std::fabs(pan - pose.pan) < 1e-9, "pan at %g: %g", pose.pan, pan);
+    fail_unless(std::fabs(tilt - pose.tilt) < 1e-9, "tilt at %g: %g", pose.tilt, tilt);
+    last = pose;
+  }
+  fail_unless(std::fabs(last.pan - 50) < 1e-9 && std::fabs(last.tilt - 20) < 1e-9);
+}
+GST_END_TEST
+
 GST_START_TEST(slow_frames_are_answered_until_the_next_one) {
   Rig rig;
   for (int k = 0; k < 5; ++k) {
@@ -442,6 +458,7 @@ Suite* pantiltsink_suite() {
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_test(tests, the_start_pose_is_told_before_the_first_frame);
   tcase_add_test(tests, each_frame_is_answered_with_the_poses_until_its_time_plus_the_latency);
+  tcase_add_test(tests, poses_meet);
   tcase_add_test(tests, slow_frames_are_answered_until_the_next_one);
   tcase_add_test(tests, turn_turns_at_turn_speed_as_far_as_the_stop);
   tcase_add_test(tests, search_sweeps_from_edge_to_edge);

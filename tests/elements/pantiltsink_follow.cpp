@@ -43,8 +43,9 @@ struct Scene {
   }
   void assert_warns_of(const char* track) {
     const std::string text = rig.warnings();
-    fail_unless(text.starts_with(std::string("Track ") + track + ", which was to be followed"), "%d: '%s'",
-                next, text.c_str());
+    fail_unless(text.starts_with(std::string("Track ") + track +
+                                 ", which was to be followed, is on no frame for 5 s: "),
+                "%d: '%s'", next, text.c_str());
     fail_unless(text.find('\n') == text.size() - 1, "%s", text.c_str());  // one
   }
   void assert_no_warning() {

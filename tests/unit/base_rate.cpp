@@ -126,6 +126,27 @@ START_TEST(a_frame_measured_wrongly_and_a_shaking_camera_are_no_turn) {
 }
 END_TEST
 
+// By hand: of eight the lowest and the highest two are left out, and 0, 4, 8 and 8 have the mean 5 (their median is 6).
+START_TEST(the_rate_is_the_mean_of_the_middle_half) {
+  Frames frames(0.03);
+  for (const double rate : {8.0, 0.0, 90.0, 4.0, 0.0, 8.0, -50.0, 8.0}) frames.run(1, rate);
+  ck_assert_double_eq_tol(frames.rate(), 5, 1e-9);
+}
+END_TEST
+
+START_TEST(time_that_does_not_go_on_begins_anew) {
+  for (const auto later : {0, -40}) {
+    BaseRate rate;
+    Time now{};
+    for (int k = 0; k < 5; ++k) rate.add(now += std::chrono::milliseconds(40), 0.04, radians(1), 0);
+    ck_assert(!std::isnan(rate.at(now)));
+    now += std::chrono::milliseconds(later);
+    rate.add(now, 0.04, radians(1), 0);
+    ck_assert(std::isnan(rate.at(now)));
+  }
+}
+END_TEST
+
 START_TEST(while_a_head_starts_or_brakes_nothing_new_is_believed) {
   Frames frames;
   frames.run(10, 0);
@@ -165,6 +186,7 @@ int main() {
       {a_picture_that_goes_left_is_a_base_that_turns_right,
        a_heads_own_turn_leaves_nothing_and_a_bases_turn_remains, a_mean_shift_is_taken_as_the_mean_angle,
        an_unknown_lens_or_look_tells_nothing, a_steady_turn_is_known_after_three_frames,
-       a_frame_measured_wrongly_and_a_shaking_camera_are_no_turn,
-       while_a_head_starts_or_brakes_nothing_new_is_believed, what_was_seen_grows_stale_and_is_forgotten});
+       a_frame_measured_wrongly_and_a_shaking_camera_are_no_turn, the_rate_is_the_mean_of_the_middle_half,
+       time_that_does_not_go_on_begins_anew, while_a_head_starts_or_brakes_nothing_new_is_believed,
+       what_was_seen_grows_stale_and_is_forgotten});
 }

@@ -68,8 +68,8 @@ END_TEST
 START_TEST(tilt_follows_as_well) {
   Law law;
   const Order order =
-      law.update(person(320, 240 - 320 * std::tan(radians(20))), kLens, looking(0, 5), looking(0, 5));
-  assert_goes(order.tilt, 25, 4 * 20);
+      law.update(person(320, 240 - 320 * std::tan(radians(20))), kLens, looking(0, 5), looking(0, 15));
+  assert_goes(order.tilt, 25, 4 * 10);
   ck_assert(holds(order.pan));
 }
 END_TEST

@@ -79,6 +79,21 @@ START_TEST(gain_and_offset_are_found_at_every_size) {
 }
 END_TEST
 
+START_TEST(what_was_clipped_says_nothing_of_the_gain) {
+  // Most of the picture is a wall that is white in the light to come, and says less than the gain that this has.
+  Image<std::uint8_t> before(kSize), after(kSize);
+  for (int y = 0; y < kSize.height; ++y)
+    for (int x = 0; x < kSize.width; ++x) {
+      const int level = x % 4 ? 180 + 50 * x / kSize.width : 40 + 100 * x / kSize.width;
+      before.view().at(x, y) = static_cast<std::uint8_t>(level);
+      after.view().at(x, y) = static_cast<std::uint8_t>(std::min(1.5 * level + 0.5, 255.0));
+    }
+  const LightChange light = change(before.view(), after.view());
+  ck_assert_double_eq_tol(light.gain() * 60 + light.offset(), 90, 2);
+  ck_assert_double_eq_tol(light.gain() * 130 + light.offset(), 195, 2);
+}
+END_TEST
+
 START_TEST(bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart) {
   // Sky, a wall, a floor: every row has one brightness, and every brightness its own light.
   Image<std::uint8_t> reference(kSize);
@@ -178,12 +193,13 @@ START_TEST(white_in_less_light_may_be_anything_brighter_than_its_share) {
 END_TEST
 
 int main() {
-  return run_suite("light", {equal_pictures_have_no_change_of_light_whatever_their_size,
-                             gain_and_offset_are_found_at_every_size,
-                             bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart,
-                             bands_go_on_where_all_is_white, few_columns_that_are_not_white_tell_of_bands,
-                             where_nobody_knows_the_light_of_a_row_it_may_be_that_of_any_other,
-                             a_picture_that_is_white_in_one_light_only_agrees_with_nothing,
-                             an_object_in_less_than_half_of_its_rows_is_no_band,
-                             white_in_less_light_may_be_anything_brighter_than_its_share});
+  return run_suite("light",
+                   {equal_pictures_have_no_change_of_light_whatever_their_size,
+                    gain_and_offset_are_found_at_every_size, what_was_clipped_says_nothing_of_the_gain,
+                    bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart,
+                    bands_go_on_where_all_is_white, few_columns_that_are_not_white_tell_of_bands,
+                    where_nobody_knows_the_light_of_a_row_it_may_be_that_of_any_other,
+                    a_picture_that_is_white_in_one_light_only_agrees_with_nothing,
+                    an_object_in_less_than_half_of_its_rows_is_no_band,
+                    white_in_less_light_may_be_anything_brighter_than_its_share});
 }

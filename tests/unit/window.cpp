@@ -125,6 +125,9 @@ START_TEST(the_window_ends_at_the_pictures_edges_and_says_so) {
   const auto left = geometry.at(-4, 4);
   ck_assert_double_eq_tol(left.left, 0, 1e-9);
   ck_assert_double_eq_tol(left.top, 0, 1e-9);
+  // Each direction alone is enough to say so.
+  ck_assert(geometry.at(20 * kDegree, 0).limited);
+  ck_assert(geometry.at(0, 20 * kDegree).limited);
   const auto lost = geometry.at(NAN, NAN);
   ck_assert_double_eq_tol(lost.left, 224, 1e-9);
 }
