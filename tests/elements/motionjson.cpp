@@ -204,6 +204,21 @@ GST_START_TEST(every_buffer_has_exactly_one_line_also_across_a_flush) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_buffer_has_its_frames_number_and_times) {
+  Harness h = started();
+  for (guint64 k = 0; k < 3; ++k) {
+    GstBuffer* in = frame(info_of(kCaps), static_cast<int>(k));
+    GST_BUFFER_DURATION(in) = 7;
+    fail_unless_equals_int(gst_harness_push(h.get(), in), GST_FLOW_OK);
+    g_autoptr(GstBuffer) out = gst_harness_pull(h.get());
+    fail_unless_equals_uint64(GST_BUFFER_OFFSET(out), k);
+    fail_unless_equals_uint64(GST_BUFFER_OFFSET_END(out), k + 1);
+    fail_unless_equals_uint64(GST_BUFFER_PTS(out), k * 40 * GST_MSECOND);
+    fail_unless_equals_uint64(GST_BUFFER_DURATION(out), 7);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(an_empty_buffer_has_a_line_too) {
   Harness h = started();
   GstBuffer* empty = gst_buffer_new();
@@ -326,6 +341,7 @@ static Suite* motionjson_suite() {
   tc = tcase_create("stream");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, every_buffer_has_exactly_one_line_also_across_a_flush);
+  tcase_add_test(tc, a_buffer_has_its_frames_number_and_times);
   tcase_add_test(tc, an_empty_buffer_has_a_line_too);
   tcase_add_test(tc, frames_count_from_0_after_every_start);
   tcase_add_test(tc, a_new_frame_size_is_on_the_next_line);

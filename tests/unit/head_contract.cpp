@@ -169,6 +169,8 @@ START_TEST(stop_stops_and_may_be_said_again) {
   head.head->stop(1s);
   head.head->stop(1s);
   head.head->stop(0s);  // late, and safe
+  // What is stale stays so.
+  ck_assert(!head.head->command({500ms, {Kind::position, 1, 1}, {}}).empty());
   const Pose pose = head.at(20s);
   ck_assert(!pose.moving());
   ck_assert_double_eq_tol(head.at(90s).pan.position, pose.pan.position, 1e-12);

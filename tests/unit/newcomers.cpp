@@ -56,6 +56,19 @@ START_TEST(what_lies_where_the_camera_was_pointed_before_is_not_the_same) {
 }
 END_TEST
 
+// A quarter of the smaller side and 4 pixels: 9 of a box of 20 x 30, with its half in what was there 19, in 20 x 50 as
+// well.
+START_TEST(what_walks_no_further_than_its_smaller_side_allows_is_the_same) {
+  for (const double height : {30.0, 50.0})
+    for (const double step : {18.0, 20.0}) {
+      Scene s;
+      s.frames = 5;
+      ck_assert_int_eq(s.see({region({100, 100, 20, height})}, {}), 0);
+      ck_assert_int_eq(s.see({region({100 + step, 100, 20, height})}, {}), step < 19);
+    }
+}
+END_TEST
+
 START_TEST(a_piece_of_what_was_seen_is_no_newcomer) {
   Scene s;
   ck_assert_int_eq(s.see({region(kLarge)}), 1);
@@ -71,13 +84,19 @@ START_TEST(what_is_large_is_told_at_once) {
 END_TEST
 
 START_TEST(how_long_it_lasts_depends_on_what_errs) {
-  const Box at_edge{0, 100, 20, 30};
+  const Box at_left{0, 100, 20, 30}, at_top{100, 0, 20, 30}, at_right{300, 100, 20, 30},
+      at_bottom{100, 210, 20, 30};
   struct Case {
     Box box;
     Transform motion;
     int first, last;  // frames in which it is held back
   };
-  for (const Case& c : {Case{kSmall, kPan, 3, 25}, {at_edge, kPan, 3, 12}, {kSmall, {}, 4, 12}})
+  for (const Case& c : {Case{kSmall, kPan, 3, 25},
+                        {at_left, kPan, 3, 12},
+                        {at_top, kPan, 3, 12},
+                        {at_right, kPan, 3, 12},
+                        {at_bottom, kPan, 3, 12},
+                        {kSmall, {}, 4, 12}})
     for (int frame = 3; frame < 30; ++frame) {
       Scene s;
       s.frames = frame;
@@ -111,11 +130,12 @@ START_TEST(clutter_is_survived_without_allocation) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite(
-      "newcomers",
-      {something_small_is_told_when_it_is_seen_again,
-       what_lies_where_the_camera_was_pointed_before_is_not_the_same, a_piece_of_what_was_seen_is_no_newcomer,
-       what_is_large_is_told_at_once, how_long_it_lasts_depends_on_what_errs,
-       a_speck_says_nothing_until_somebody_says_how_small_a_thing_may_be,
-       clutter_is_survived_without_allocation});
+  return cerberus::tests::run_suite("newcomers",
+                                    {something_small_is_told_when_it_is_seen_again,
+                                     what_lies_where_the_camera_was_pointed_before_is_not_the_same,
+                                     what_walks_no_further_than_its_smaller_side_allows_is_the_same,
+                                     a_piece_of_what_was_seen_is_no_newcomer, what_is_large_is_told_at_once,
+                                     how_long_it_lasts_depends_on_what_errs,
+                                     a_speck_says_nothing_until_somebody_says_how_small_a_thing_may_be,
+                                     clutter_is_survived_without_allocation});
 }

@@ -97,10 +97,13 @@ START_TEST(a_flood_of_commands_is_refused_not_forgotten) {
   HeadSetup with = setup();
   with.latency = 5s;
   Opened head(with);
+  head.send(0s, {Kind::velocity, 0.1, 0});
   bool refused = false;
   for (int k = 0; k < 1000 && !refused; ++k)
-    refused = !head.head.command({k * 1ms, {Kind::position, k * 0.001, 1}, {}}).empty();
+    refused = !head.head.command({6s + k * 1ms, {Kind::position, k * 0.001, 1}, {}}).empty();
   ck_assert(refused);
+  // Until the first of the flood has come, at 11 s, it does as it was told before.
+  ck_assert_double_eq_tol(head.pan(10s), 5 * 0.1 - 0.1 * 0.1 / (2 * 2), 1e-9);
   with.latency = 100ms;
   Opened quick(with);
   for (int k = 0; k < 1000; ++k) quick.send(k * 1ms, {Kind::position, k * 0.001, 1});
