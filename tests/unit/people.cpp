@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Drawn people, so that the right boxes are known: a body is a head, a trunk and two legs with a gap between them.
+// Drawn people, so that the right boxes are known.
 #include "vision/people.h"
 
 #include <check.h>
@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <vector>
 
+#include "support/bodies.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
+namespace tests = cerberus::tests;
 
 namespace {
 
@@ -29,19 +31,10 @@ struct Scene {
   }
 
   void fill(double left, double top, double right, double bottom, std::uint8_t value = 255) {
-    for (int y = std::max(0, static_cast<int>(top)); y < std::min<int>(size.height, static_cast<int>(bottom));
-         ++y)
-      for (int x = std::max(0, static_cast<int>(left));
-           x < std::min<int>(size.width, static_cast<int>(right)); ++x)
-        mask.view().at(x, y) = value;
+    tests::fill(mask.view(), left, top, right, bottom, value);
   }
   Box draw(double middle, double foot, double height) {
-    const double w = 0.36 * height, top = foot - height;
-    fill(middle - 0.2 * w, top, middle + 0.2 * w, top + 0.15 * height);
-    fill(middle - 0.5 * w, top + 0.15 * height, middle + 0.5 * w, top + 0.55 * height);
-    fill(middle - 0.4 * w, top + 0.55 * height, middle - 0.08 * w, foot);
-    fill(middle + 0.08 * w, top + 0.55 * height, middle + 0.4 * w, foot);
-    return {middle - w / 2, top, w, height};
+    return tests::draw_body(mask.view(), middle, foot, height);
   }
   // The window is the box of all that moves.
   std::span<const Person> find(PeopleFinder& finder) {

@@ -6,9 +6,11 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/bodies.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
+namespace tests = cerberus::tests;
 
 namespace {
 
@@ -20,21 +22,10 @@ struct Picture {
 
   void clear() { mask.fill_bytes(0); }
   void fill(double left, double top, double right, double bottom) {
-    for (int y = std::max(0, static_cast<int>(top)); y < std::min(kSize.height, static_cast<int>(bottom));
-         ++y)
-      for (int x = std::max(0, static_cast<int>(left)); x < std::min(kSize.width, static_cast<int>(right));
-           ++x)
-        mask.view().at(x, y) = 255;
+    tests::fill(mask.view(), left, top, right, bottom);
   }
   // A person is a quarter as tall as the row of its feet.
-  Box person(double middle, double foot) {
-    const double h = foot / 4, w = 0.36 * h, top = foot - h;
-    fill(middle - 0.2 * w, top, middle + 0.2 * w, top + 0.15 * h);
-    fill(middle - 0.5 * w, top + 0.15 * h, middle + 0.5 * w, top + 0.55 * h);
-    fill(middle - 0.4 * w, top + 0.55 * h, middle - 0.08 * w, foot);
-    fill(middle + 0.08 * w, top + 0.55 * h, middle + 0.4 * w, foot);
-    return {middle - w / 2, top, w, h};
-  }
+  Box person(double middle, double foot) { return tests::draw_body(mask.view(), middle, foot, foot / 4); }
   // As tall as people at its place, rounded, with windows that do not move and wheels.
   void car(double middle, double bottom) {
     const double h = bottom / 4, w = 3 * h;
