@@ -83,7 +83,12 @@ void Conductor::resume() {
 void Conductor::set_live(bool live) {
   clock_driven = live || real_;
   station.set_clock_driven(clock_driven);
-  start_ticker();
+  bool new_lack = false;
+  {
+    const std::lock_guard guard(ticker_lock_);
+    new_lack = watched && !start_ticker();
+  }
+  if (new_lack) say_unwatched();
 }
 
 void Conductor::heed(GstEvent* event) {
@@ -109,28 +114,29 @@ GstClockTime Conductor::tick(GstClockTime time) {
   return next;
 }
 
-void Conductor::start_ticker() {
-  {
-    const std::lock_guard guard(ticker_lock_);
-    if (!running_ || !clock_driven) return;
-    g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(sink));
-    if (!clock) return;
-    watched = ticker_.start(clock, [this](GstClockTime time) { return tick(time); });
-  }
-  if (watched) return;
-  GST_ELEMENT_ERROR(sink, RESOURCE, FAILED,
-                    ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
-                    ("the system gives none: too many of this user or process, or too little memory"));
-  halt("nobody watches over it");
+// False: there is no thread. With ticker_lock_ held.
+bool Conductor::start_ticker() {
+  if (!running_ || !clock_driven) return true;
+  g_autoptr(GstClock) clock = gst_element_get_clock(GST_ELEMENT(sink));
+  if (!clock) return true;
+  const bool started = ticker_.start(clock, [this](GstClockTime time) { return tick(time); });
+  watched = started;
+  return started;
 }
 
 bool Conductor::run() {
-  {
-    const std::lock_guard guard(ticker_lock_);
-    running_ = true;
-  }
-  start_ticker();
-  return watched;
+  const std::lock_guard guard(ticker_lock_);
+  running_ = true;
+  return start_ticker();
+}
+
+void Conductor::say_unwatched() {
+  Outbox out = outbox();
+  station.halt("nobody watches over it", now(), kHaltPatience, out);
+  GST_ELEMENT_ERROR(sink, RESOURCE, FAILED,
+                    ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
+                    ("the system gives none: too many of this user or process, or too little memory"));
+  tell(out);
 }
 
 void Conductor::pause() {

@@ -34,10 +34,11 @@ struct Conductor {
   void resume();
   // Once the stream has told.
   void set_live(bool live);
-  // Lets the clock's time pass from now on, if it moves the head; until
-  // pause(). False: it is not `watched`, and the sink has said so.
+  // Lets the clock's time pass from now on, if it moves the head; until pause(). False: there is no thread for it, and
+  // the caller says so when it holds no lock.
   bool run();
   void pause();
+  void say_unwatched();
 
   // A downstream event; a decision between two frames is obeyed.
   void heed(GstEvent* event);
@@ -59,7 +60,7 @@ struct Conductor {
  private:
   void hear_soon();
   void hear();
-  void start_ticker();
+  bool start_ticker();
   GstClockTime tick(GstClockTime time);
 
   Outgoing outgoing_;

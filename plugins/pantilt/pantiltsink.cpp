@@ -238,7 +238,9 @@ GstStateChangeReturn play(Conductor& conductor) {
   conductor.station.interrupt(true);
   GstStateChangeReturn done = base->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
   std::unique_lock changing(conductor.changing);
-  if (done != GST_STATE_CHANGE_FAILURE && !guarded(element, false, [&] { return conductor.run(); })) {
+  const bool unwatched =
+      done != GST_STATE_CHANGE_FAILURE && !guarded(element, false, [&] { return conductor.run(); });
+  if (unwatched) {
     changing.unlock();
     conductor.pause();
     base->change_state(element, GST_STATE_CHANGE_PLAYING_TO_PAUSED);
@@ -255,7 +257,10 @@ GstStateChangeReturn play(Conductor& conductor) {
   GST_BASE_SINK_PREROLL_SIGNAL(element);
   GST_BASE_SINK_PREROLL_UNLOCK(element);
   if (changing) changing.unlock();
-  guarded(element, [&] { conductor.tell(out); });
+  guarded(element, [&] {
+    conductor.tell(out);
+    if (unwatched) conductor.say_unwatched();  // last: whoever is told may change the state again
+  });
   return done;
 }
 

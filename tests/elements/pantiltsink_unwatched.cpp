@@ -81,6 +81,41 @@ GST_START_TEST(without_a_thread_a_head_with_a_clock_does_not_come_to_playing) {
 }
 GST_END_TEST
 
+// A handler of messages runs in the thread that posts: no lock is held that it would need to begin anew.
+GST_START_TEST(who_hears_that_there_is_no_thread_may_begin_anew_at_once) {
+  Pipe record;
+  Rig rig("driver=scripted script=\"record " + record.writer() + "\"", Source::live);
+  struct Heard {
+    GstElement* element;
+    int errors = 0;
+    GstStateChangeReturn anew = GST_STATE_CHANGE_FAILURE;
+  } heard{rig.element};
+  const auto hear = [](GstBus*, GstMessage* message, gpointer data) {
+    auto& heard = *static_cast<Heard*>(data);
+    if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ERROR) return GST_BUS_PASS;
+    ++heard.errors;
+    no_threads = false;
+    gst_element_set_state(heard.element, GST_STATE_READY);
+    heard.anew = gst_element_set_state(heard.element, GST_STATE_PLAYING);
+    return GST_BUS_PASS;
+  };
+  gst_bus_set_sync_handler(rig.bus, hear, &heard, nullptr);
+  gst_element_set_state(rig.element, GST_STATE_PAUSED);
+  {
+    const WithoutThreads none;
+    gst_element_set_state(rig.element, GST_STATE_PLAYING);
+  }
+  gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
+  fail_unless_equals_int(heard.errors, 1);
+  fail_unless_equals_int(heard.anew, GST_STATE_CHANGE_SUCCESS);
+  rig.begin();  // and it plays: what comes next is the order that it is given, 20 degrees, in radians
+  fail_unless(rig.call("move-to", 20, 0));
+  std::string line;
+  while (!line.starts_with("command")) line = record.line();
+  fail_unless(line.find(" 0.349") != std::string::npos, "%s", line.c_str());
+}
+GST_END_TEST
+
 // Only with the stream it is known that the clock moves a simulated one.
 GST_START_TEST(without_a_thread_no_frame_of_a_live_stream_is_taken) {
   Rig rig("", Source::live, false);
@@ -123,6 +158,7 @@ static Suite* pantiltsink_unwatched_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, without_a_thread_a_head_with_a_clock_does_not_come_to_playing);
+  tcase_add_test(tests, who_hears_that_there_is_no_thread_may_begin_anew_at_once);
   tcase_add_test(tests, without_a_thread_no_frame_of_a_live_stream_is_taken);
   return suite;
 }
