@@ -11,14 +11,20 @@
 
 namespace cerberus::threads {
 
-// T has a default value. kMost: as many wait at most, while one who is told keeps the one who tells; of more the oldest
-// go, for what was said last is what counts. The usual number is that of the poses of a moving head in five seconds.
+// T has a default value. kMost: as many wait at most, while one who is told keeps the one who tells; the usual number
+// is that of the poses of a moving head in five seconds. Of more the oldest goes that a younger one replaces, so that
+// what is said rarely outlasts what is said all the time; if none is replaced, the oldest of all.
 template <typename T, std::size_t kMost = 256>
 class InOrder {
  public:
+  // Who has heard the newer one misses nothing without the older one. Called with the lock held.
+  using Replaces = bool (*)(const T& newer, const T& older);
+
+  explicit InOrder(Replaces replaces = [](const T&, const T&) { return true; }) : replaces_(replaces) {}
+
   void put(T thing) {
     const std::lock_guard guard(lock_);
-    if (waiting_ == kMost) take();
+    if (waiting_ == kMost) drop_one(thing);
     things_[(first_ + waiting_++) % kMost] = std::move(thing);
   }
   // What was not told yet is told by nobody.
@@ -66,6 +72,24 @@ class InOrder {
     return thing;
   }
 
+  T& at(std::size_t place) { return things_[(first_ + place) % kMost]; }
+
+  // Makes room for `next`. With the lock held, and all places taken.
+  void drop_one(const T& next) {
+    const auto is_replaced = [&](std::size_t place) {
+      if (replaces_(next, at(place))) return true;
+      for (std::size_t younger = place + 1; younger < kMost; ++younger)
+        if (replaces_(at(younger), at(place))) return true;
+      return false;
+    };
+    std::size_t place = 0;
+    while (place < kMost && !is_replaced(place)) ++place;
+    if (place == kMost) place = 0;
+    for (; place > 0; --place) at(place) = std::move(at(place - 1));  // the older ones move up
+    take();
+  }
+
+  const Replaces replaces_;
   std::mutex lock_;
   std::vector<T> things_ = std::vector<T>(kMost);  // its owner may have no room for them
   std::size_t first_ = 0, waiting_ = 0;

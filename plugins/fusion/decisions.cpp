@@ -15,6 +15,11 @@ constexpr Time kBetween = std::chrono::seconds(1);
 
 }  // namespace
 
+bool Decisions::Change::replaces(const Change& newer, const Change& older) {
+  const CerberusFusion &a = newer.fusion, &b = older.fusion;
+  return a.rule == b.rule && a.rule_name == b.rule_name && a.action == b.action;
+}
+
 void Decisions::configure(const fusion::FuserOptions& options, const fusion::RuleTable& table) {
   const std::lock_guard guard(lock_);
   fuser_.set_table(table);

@@ -50,6 +50,9 @@ class Decisions {
   struct Change {
     Time time;
     CerberusFusion fusion;
+
+    // While nobody can be told, the newest change to each action of each rule stays.
+    static bool replaces(const Change& newer, const Change& older);
   };
   // `at`: what a change is told with. Both with the lock held.
   CerberusFusion decide(const Frame& frame, Time at);
@@ -62,7 +65,7 @@ class Decisions {
   RuleName rule_name_;
   Time heard_{};               // by the last decision
   std::optional<Frame> last_;  // of a live stream
-  threads::InOrder<Change> news_;
+  threads::InOrder<Change> news_{Change::replaces};
 };
 
 }  // namespace cerberus::plugin

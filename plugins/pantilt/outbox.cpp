@@ -3,6 +3,8 @@
 
 #include <cerberus/cerberus.h>
 
+#include <type_traits>
+
 #include "fusion/chosen.h"
 #include "pose_feed.hpp"
 #include "times.hpp"
@@ -47,6 +49,18 @@ struct Posting {
 void refuse(GstElement* element, const char* head, const std::string& why) {
   GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
                     ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
+}
+
+bool Outgoing::replaces(const Of<Notice>& newer, const Of<Notice>& older) {
+  if (newer.head != older.head || newer.thing.index() != older.thing.index()) return false;
+  return std::visit(
+      [&older]<typename Kind>(const Kind& said) {
+        if constexpr (std::is_same_v<Kind, Status>)
+          return true;
+        else
+          return said == std::get<Kind>(older.thing);
+      },
+      newer.thing);
 }
 
 void Outbox::send(GstBaseSink* sink) const {

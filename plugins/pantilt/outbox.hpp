@@ -22,12 +22,15 @@ struct Status {
 };
 struct Refusal {  // why the head cannot be opened: for an error
   std::string why;
+  bool operator==(const Refusal&) const = default;
 };
 struct Fault {  // new: for a warning
   std::string what;
+  bool operator==(const Fault&) const = default;
 };
 struct Lost {  // the identity that was to be followed and is not there: for a warning
   guint id;
+  bool operator==(const Lost&) const = default;
 };
 
 using Notice = std::variant<Status, Refusal, Fault, Lost>;
@@ -40,8 +43,11 @@ struct Outgoing {
     const char* head = nullptr;
     T thing;
   };
+  // A newer state says all that an older one does; a warning is replaced by the same one only.
+  static bool replaces(const Of<Notice>& newer, const Of<Notice>& older);
+
   threads::InOrder<Of<control::Pose>> poses;
-  threads::InOrder<Of<Notice>> notices;
+  threads::InOrder<Of<Notice>> notices{replaces};
 };
 
 // What one call puts in, with the station's lock held: so it goes out in the order in which it came to be.

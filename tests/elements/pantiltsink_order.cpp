@@ -120,6 +120,36 @@ GST_START_TEST(of_each_head_is_told_by_its_name) {
 }
 GST_END_TEST
 
+// However long who posts is kept, and however often the state changes meanwhile.
+GST_START_TEST(a_warning_is_not_lost_among_states) {
+  Rig rig;
+  Keeper keeper(rig, "manual");
+  std::thread application([&] { rig.call("stop"); });
+  keeper.wait();
+  fail_unless(rig.call("auto") && rig.follow(7));
+  GstBuffer* here = frame_at(0);
+  add(here, somebody(7, 5));
+  rig.push(here);
+  rig.push(frame_at(kFrame));
+  rig.push(frame_at(6 * GST_SECOND));  // without 7 for longer than it is waited for
+  for (int k = 0; k < 300; ++k) fail_unless(rig.call("stop") && rig.call("auto"));
+  fail_unless(rig.call("stop"));
+  keeper.let_go();
+  application.join();
+  int warnings = 0;
+  std::string last;
+  while (GstMessage* message = gst_bus_pop(rig.bus)) {
+    warnings += GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING;
+    g_autofree gchar* state = nullptr;
+    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
+    if (pose) last = state;
+    gst_message_unref(message);
+  }
+  fail_unless_equals_int(warnings, 1);
+  fail_unless(last == "manual", "\"%s\"", last.c_str());
+}
+GST_END_TEST
+
 static Suite* pantiltsink_order_suite() {
   watch_library_log();
   Suite* suite = suite_create("pantiltsink's messages in their order");
@@ -128,6 +158,7 @@ static Suite* pantiltsink_order_suite() {
   tcase_add_test(tests, who_is_kept_while_posting_is_not_overtaken);
   tcase_add_test(tests, who_waits_for_the_driver_is_not_overtaken);
   tcase_add_test(tests, an_answer_is_told_behind_what_it_answers);
+  tcase_add_test(tests, a_warning_is_not_lost_among_states);
   tcase_add_test(tests, of_each_head_is_told_by_its_name);
   return suite;
 }

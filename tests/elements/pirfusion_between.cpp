@@ -199,6 +199,46 @@ GST_START_TEST(two_decisions_never_have_one_time_and_no_frame_knows_less) {
 }
 GST_END_TEST
 
+// However long who posts is kept, and however often a sensor changes its mind meanwhile.
+GST_START_TEST(what_was_decided_once_is_not_lost_among_what_is_decided_often) {
+  struct Keeper {
+    std::promise<void> there, go;
+    bool kept = false;
+  } keeper;
+  Rig rig;
+  rig.add_pir();
+  rig.add_pir(kPaper);
+  rig.read(0, {0, 0, 0}, 1);
+  begin(rig);
+  const auto keep = [](GstBus*, GstMessage* message, gpointer data) {
+    auto* keeper = static_cast<Keeper*>(data);
+    if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ELEMENT || std::exchange(keeper->kept, true))
+      return GST_BUS_PASS;
+    keeper->there.set_value();
+    keeper->go.get_future().wait();
+    return GST_BUS_PASS;
+  };
+  gst_bus_set_sync_handler(rig.bus, keep, &keeper, nullptr);
+  set_time(rig, 50 * kMs);
+  std::thread sensor([&] { rig.read(50 * kMs, {0, 0, 1}, 0); });
+  keeper.there.get_future().wait();
+  see(rig, 80 * kMs, frame_with(60 * kMs, 7));
+  see(rig, 2 * GST_SECOND, frame_at(2 * GST_SECOND, 0));
+  for (guint k = 1; k <= 600; ++k) {
+    set_time(rig, 2 * GST_SECOND + k * kMs);
+    const guint8 left = k % 2;
+    rig.read(2 * GST_SECOND + k * kMs, {0, left, static_cast<guint8>(1 - left)}, 1);
+  }
+  keeper.go.set_value();
+  sensor.join();
+  gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
+  const std::vector<std::string> told = rig.told();
+  fail_unless(told.size() > 2 && told[0] == "50:0:turn-right" && told[1] == "60:1:track", "%zu %s %s",
+              told.size(), told[0].c_str(), told[1].c_str());
+  assert_says(told.back(), "2600:0:turn-right");
+}
+GST_END_TEST
+
 GST_START_TEST(where_it_is_not_live_frames_alone_decide) {
   for (const auto& [live_video, live_sensors] : {std::pair{false, false}, {true, false}, {false, true}}) {
     Rig rig(live_video);
@@ -318,6 +358,7 @@ static Suite* pirfusion_between_suite() {
   tcase_add_test(tc, doubt_lasts_from_when_the_robot_stands);
   tcase_add_test(tc, what_another_one_upstream_decided_goes_no_further);
   tcase_add_test(tc, two_decisions_never_have_one_time_and_no_frame_knows_less);
+  tcase_add_test(tc, what_was_decided_once_is_not_lost_among_what_is_decided_often);
   tcase_add_test(tc, where_it_is_not_live_frames_alone_decide);
   tcase_add_test(tc, without_a_frame_to_speak_of_nothing_is_decided);
   tcase_add_test(tc, changes_are_told_once_and_in_their_order);

@@ -87,6 +87,31 @@ START_TEST(of_more_than_can_wait_the_oldest_are_never_told) {
 }
 END_TEST
 
+// Ones replace ones, tens tens.
+constexpr auto kSameKind = [](const int& a, const int& b) { return (a < 10) == (b < 10); };
+
+START_TEST(of_more_than_can_wait_what_is_said_rarely_stays) {
+  InOrder<int, 4> order(kSameKind);
+  put_all(order, {10, 1, 2, 3, 4, 5});
+  ck_assert((told(order) == Numbers{10, 3, 4, 5}));
+  put_all(order, {1, 10, 2, 3, 20, 4, 5});  // also where the places begin anew, and in the middle
+  ck_assert((told(order) == Numbers{3, 20, 4, 5}));
+  put_all(order, {1, 10, 2, 3, 4});
+  ck_assert((told(order) == Numbers{10, 2, 3, 4}));
+  put_all(order, {10, 1, 2, 3, 20});  // the oldest that is replaced, by whomever
+  ck_assert((told(order) == Numbers{1, 2, 3, 20}));
+}
+END_TEST
+
+START_TEST(where_none_is_replaced_the_oldest_goes) {
+  InOrder<int, 4> order([](const int& a, const int& b) { return a == b; });
+  put_all(order, {1, 2, 3, 4, 5, 6});
+  ck_assert((told(order) == Numbers{3, 4, 5, 6}));
+  put_all(order, {1, 2, 3, 4, 3, 5});
+  ck_assert((told(order) == Numbers{2, 4, 3, 5}));
+}
+END_TEST
+
 START_TEST(what_was_cleared_is_told_by_nobody) {
   InOrder<int, 4> order;
   put_all(order, {1, 2, 3});
@@ -176,6 +201,7 @@ int main() {
       "what several threads tell, in order",
       {what_was_put_in_first_is_told_first_and_once, who_is_told_and_answers_is_told_the_answer_next,
        who_is_kept_by_a_listener_tells_for_the_others_too, of_more_than_can_wait_the_oldest_are_never_told,
+       of_more_than_can_wait_what_is_said_rarely_stays, where_none_is_replaced_the_oldest_goes,
        what_was_cleared_is_told_by_nobody, after_a_listener_that_throws_the_next_one_hears_the_rest,
        nothing_is_kept_of_what_was_told_or_has_gone, of_each_thread_the_numbers_come_in_its_order,
        nothing_is_allocated});
