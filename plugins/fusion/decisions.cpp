@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "settings.hpp"
-#include "tracks.hpp"
+#include "shared/tracks.hpp"
 
 namespace cerberus::plugin {
 namespace {

@@ -17,8 +17,8 @@
 
 #include "sensing/sectors.h"
 #include "sensor_history.hpp"
-#include "timeline.hpp"
-#include "told_base.hpp"
+#include "shared/timeline.hpp"
+#include "shared/told_base.hpp"
 
 namespace cerberus::plugin {
 

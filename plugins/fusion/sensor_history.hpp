@@ -10,7 +10,7 @@
 #include <span>
 
 #include "sensing/sectors.h"
-#include "timeline.hpp"
+#include "shared/timeline.hpp"
 
 namespace cerberus::plugin {
 

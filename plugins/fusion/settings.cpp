@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "settings.hpp"
 
-#include "choices.hpp"
 #include "control/head_limits.h"
 #include "sensing/angles.h"
+#include "shared/choices.hpp"
 
 namespace cerberus::plugin {
 namespace {

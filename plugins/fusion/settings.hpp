@@ -6,8 +6,8 @@
 
 #include "fusion/fuser.h"
 #include "sensing/levels.h"
-#include "vision/clock_times.hpp"
-#include "vision/properties.hpp"
+#include "shared/clock_times.hpp"
+#include "shared/properties.hpp"
 
 namespace cerberus::plugin {
 

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "choices.hpp"
 #include "sensing/angles.h"
 #include "settings.hpp"
+#include "shared/choices.hpp"
 #include "text/numbers.h"
 
 namespace cerberus::plugin {

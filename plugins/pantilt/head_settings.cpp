@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "head_settings.hpp"
 
-#include "fusion/choices.hpp"
+#include "shared/choices.hpp"
 #include "times.hpp"
 
 namespace cerberus::plugin {

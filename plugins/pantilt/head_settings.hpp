@@ -8,7 +8,7 @@
 #include "control/law.h"
 #include "drivers/head.h"
 #include "fusion/fuser.h"
-#include "vision/properties.hpp"
+#include "shared/properties.hpp"
 
 namespace cerberus::plugin {
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "fusion/choices.hpp"
-#include "fusion/tracks.hpp"
+#include "shared/choices.hpp"
+#include "shared/tracks.hpp"
 
 namespace cerberus::plugin {
 

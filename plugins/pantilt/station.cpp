@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "vision/clock_times.hpp"
+#include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "control/head_limits.h"
-#include "vision/clock_times.hpp"
+#include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
 

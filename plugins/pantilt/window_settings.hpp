@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "vision/properties.hpp"
+#include "shared/properties.hpp"
 
 namespace cerberus::plugin {
 

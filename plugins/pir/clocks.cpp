@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "vision/clock_times.hpp"
+#include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
 

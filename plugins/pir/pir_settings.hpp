@@ -9,8 +9,8 @@
 #include <string>
 
 #include "drivers/sensor_setup.h"
-#include "vision/clock_times.hpp"
-#include "vision/properties.hpp"
+#include "shared/clock_times.hpp"
+#include "shared/properties.hpp"
 
 namespace cerberus::plugin {
 

@@ -10,10 +10,10 @@
 
 #include "camera_path.hpp"
 #include "cerberus/private/query.hpp"
-#include "clock_times.hpp"
 #include "history.hpp"
-#include "properties.hpp"
 #include "room.hpp"
+#include "shared/clock_times.hpp"
+#include "shared/properties.hpp"
 #include "stages.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);

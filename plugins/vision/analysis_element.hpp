@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "analysis_base.hpp"
-#include "properties.hpp"
+#include "shared/properties.hpp"
 
 namespace cerberus::plugin {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "clock_times.hpp"
 #include "room.hpp"
+#include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
 

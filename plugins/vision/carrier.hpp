@@ -12,8 +12,8 @@
 #include "control/base_rate.h"
 #include "control/slip.h"
 #include "frame.hpp"
-#include "fusion/timeline.hpp"
-#include "fusion/told_base.hpp"
+#include "shared/timeline.hpp"
+#include "shared/told_base.hpp"
 
 namespace cerberus::plugin {
 

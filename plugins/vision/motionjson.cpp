@@ -70,9 +70,9 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
-#include "clock_times.hpp"
 #include "json_line.hpp"
 #include "room.hpp"
+#include "shared/clock_times.hpp"
 
 namespace {
 

@@ -53,12 +53,12 @@
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
-#include "clock_times.hpp"
 #include "composition.hpp"
 #include "drawing.hpp"
-#include "properties.hpp"
 #include "room.hpp"
 #include "sensing/angles.h"
+#include "shared/clock_times.hpp"
+#include "shared/properties.hpp"
 #include "vision/trails.h"
 
 namespace {

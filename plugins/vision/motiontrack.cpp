@@ -35,10 +35,10 @@
 #include <vector>
 
 #include "analysis_element.hpp"
-#include "clock_times.hpp"
 #include "elements.hpp"
 #include "nothing.hpp"
 #include "room.hpp"
+#include "shared/clock_times.hpp"
 #include "stages.hpp"
 #include "vision/presence.h"
 #include "vision/tracks.h"

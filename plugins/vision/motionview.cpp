@@ -50,7 +50,7 @@
 #include "drawing.hpp"
 #include "enums.hpp"
 #include "figures.hpp"
-#include "properties.hpp"
+#include "shared/properties.hpp"
 #include "stages.hpp"
 #include "vision/luma.h"
 

@@ -68,6 +68,33 @@ def check_direction(path):
                 complain(path, f'names {word}: dependencies run lib <- gst <- plugins <- pipelines')
 
 
+# A plugin takes from no other plugin: what several need is in plugins/shared (or in lib, or in gst). And what only one
+# needs is not there.
+users_of_shared = {}
+
+
+def check_plugin(path):
+    parts = path.relative_to(TOP).parts
+    if parts[0] != 'plugins' or path.suffix not in {'.hpp', '.cpp'}:
+        return
+    for name in re.findall(r'^\s*#\s*include\s*"([^"]+)', path.read_text('utf-8'), re.M):
+        found = [folder / name for folder in (path.parent, TOP / 'plugins') if (folder / name).exists()]
+        if not found:
+            continue  # of lib or gst
+        owner = found[0].resolve().relative_to(TOP / 'plugins').parts[0]
+        if owner not in (parts[1], 'shared'):
+            complain(path, f'includes {name} of another plugin: what both need belongs in plugins/shared')
+        if owner == 'shared':
+            users_of_shared.setdefault(found[0].resolve(), set()).add(parts[1])
+
+
+def check_shared():
+    for path in sorted((TOP / 'plugins' / 'shared').glob('*.hpp')):
+        users = users_of_shared.get(path, set())
+        if len(users - {'shared'}) < 2 and 'shared' not in users:
+            complain(path, f'is needed by fewer than two plugins')
+
+
 # An installed header must not lean on one that is not installed.
 def check_installed_header(path):
     parts = path.relative_to(TOP).parts
@@ -121,12 +148,14 @@ def check_named_pages(path):
 for each in files():
     check_licence(each)
     check_direction(each)
+    check_plugin(each)
     check_installed_header(each)
     check_launch_file(each)
     check_links(each)
     check_named_pages(each)
 for each in TOP.glob('*.md'):
     check_links(each)
+check_shared()
 check_commands()
 print('\n'.join(complaints))
 sys.exit(1 if complaints else 0)

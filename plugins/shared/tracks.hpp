@@ -8,9 +8,9 @@
 #include <chrono>
 #include <vector>
 
+#include "clock_times.hpp"
 #include "fusion/fuser.h"
 #include "sensing/angles.h"
-#include "vision/clock_times.hpp"
 
 namespace cerberus::plugin {
 
