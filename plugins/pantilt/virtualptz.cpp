@@ -59,6 +59,7 @@
 #include "cerberus/private/video.hpp"
 #include "frame_times.hpp"
 #include "pose_feed.hpp"
+#include "shared/single_fields.hpp"
 #include "text/numbers.h"
 #include "times.hpp"
 #include "window_caps.hpp"
@@ -76,7 +77,7 @@ using sensing::degrees;
 using sensing::radians;
 
 GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_SINK_CAPS));
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
 
@@ -106,7 +107,8 @@ CERBERUS_DEFINE_TYPE(CerberusVirtualPtz, cerberus_virtual_ptz, GstBaseTransform,
 // ---- caps
 
 GstCaps* transform_caps(GstBaseTransform* trans, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
-  GstCaps* others = window_caps(caps, direction, cerberus_virtual_ptz_self(trans)->priv->settings.snapshot());
+  GstCaps* others = across_single_fields(
+      direction, window_caps(caps, direction, cerberus_virtual_ptz_self(trans)->priv->settings.snapshot()));
   if (filter) {
     GstCaps* common = gst_caps_intersect_full(filter, others, GST_CAPS_INTERSECT_FIRST);
     gst_caps_unref(others);

@@ -14,6 +14,7 @@
 #include "room.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/properties.hpp"
+#include "shared/single_fields.hpp"
 #include "stages.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
@@ -251,6 +252,14 @@ std::string complaint(const GstCaps* caps, GstVideoInfo* info) {
          ": put `videoscale` in front.";
 }
 
+GstCaps* transform_caps(GstBaseTransform*, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
+  GstCaps* others = across_single_fields(direction, gst_caps_ref(caps));
+  if (!filter) return others;
+  GstCaps* common = gst_caps_intersect_full(filter, others, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(others);
+  return common;
+}
+
 gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
   AnalysisPrivate& priv = priv_of(trans);
   GstVideoInfo info;
@@ -325,7 +334,7 @@ void class_init(CerberusAnalysisClass* klass) {
   install_properties<CerberusAnalysis, kProperties>(G_OBJECT_CLASS(klass));
 
   static GstStaticPadTemplate sink =
-      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_SINK_CAPS));
   static GstStaticPadTemplate src =
       GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink);
@@ -334,6 +343,7 @@ void class_init(CerberusAnalysisClass* klass) {
   GstBaseTransformClass* trans = GST_BASE_TRANSFORM_CLASS(klass);
   trans->start = start;
   trans->stop = stop;
+  trans->transform_caps = transform_caps;
   trans->set_caps = set_caps;
   trans->query = query;
   trans->sink_event = sink_event;

@@ -41,6 +41,7 @@
 #include "cerberus/private/element.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
+#include "shared/single_fields.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(motiondetect_debug);
 #define GST_CAT_DEFAULT motiondetect_debug
@@ -283,7 +284,7 @@ void cerberus_motion_detect_class_init(CerberusMotionDetectClass* klass) {
           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING)));
 
   static GstStaticPadTemplate sink =
-      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_SINK_CAPS));
   static GstStaticPadTemplate src =
       GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
   GstElementClass* element = GST_ELEMENT_CLASS(klass);

@@ -51,6 +51,7 @@
 #include "enums.hpp"
 #include "figures.hpp"
 #include "shared/properties.hpp"
+#include "shared/single_fields.hpp"
 #include "stages.hpp"
 #include "vision/luma.h"
 
@@ -75,7 +76,7 @@ GST_DEBUG_CATEGORY_STATIC(motionview_debug);
 #endif
 
 GstStaticPadTemplate sink_template =
-    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_SINK_CAPS));
 GstStaticPadTemplate src_template = GST_STATIC_PAD_TEMPLATE(
     "src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(GST_VIDEO_CAPS_MAKE("{ GRAY8, " COLOR_FORMAT " }")));
 
@@ -238,13 +239,15 @@ GstCaps* cerberus_motion_view_transform_caps(GstBaseTransform* transform, GstPad
   GstCaps* formats = direction == GST_PAD_SRC ? gst_static_pad_template_get_caps(&sink_template)
                      : colour                 ? gst_caps_from_string(GST_VIDEO_CAPS_MAKE(COLOR_FORMAT))
                                               : gst_static_pad_template_get_caps(&src_template);
-  GstCaps* sizes = gst_caps_copy(caps);  // whatever describes the frame, not its pixels
+  // Whatever describes the frame, not its pixels.
+  GstCaps* sizes = cerberus::plugin::without_single_fields(gst_caps_copy(caps));
   for (guint i = 0; i < gst_caps_get_size(sizes); ++i)
     gst_structure_remove_fields(gst_caps_get_structure(sizes, i), "format", "colorimetry", "chroma-site",
                                 "interlace-mode", "field-order", nullptr);
   GstCaps* result = gst_caps_intersect_full(formats, sizes, GST_CAPS_INTERSECT_FIRST);
   gst_caps_unref(formats);
   gst_caps_unref(sizes);
+  if (direction == GST_PAD_SRC) result = cerberus::plugin::with_single_fields(result);
   if (!filter) return result;
   GstCaps* common = gst_caps_intersect_full(filter, result, GST_CAPS_INTERSECT_FIRST);
   gst_caps_unref(result);

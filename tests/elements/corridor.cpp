@@ -127,6 +127,10 @@ GST_START_TEST(interlaced_video_is_refused_naming_deinterlace) {
         kElements[__i__],
         scene::caps("I420", 320, 240, (std::string(",framerate=25/1,interlace-mode=") + mode).c_str()),
         "deinterlace", "Interlaced");
+  expect_refusal(kElements[__i__],
+                 "video/x-raw(format:Interlaced),format=I420,width=320,height=240,framerate=25/1,"
+                 "interlace-mode=alternate",
+                 "deinterlace", "Interlaced");
 }
 GST_END_TEST
 

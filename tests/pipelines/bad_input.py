@@ -86,6 +86,18 @@ def test_interlaced_video_is_refused_and_deinterlace_is_named():
     assert status != 0 and 'deinterlace' in said, said
 
 
+def test_so_is_video_of_single_fields():
+    """Also where what follows would not take it; and what is named helps."""
+    fields = ('videotestsrc num-buffers=20 ! video/x-raw,format=I420,width=320,height=240,framerate=50/1 ! '
+              'interlace field-pattern=1 ! video/x-raw(format:Interlaced),interlace-mode=alternate')
+    for line in (TAIL, 'cameramotion ! videoscale ! video/x-raw,width=160 ! fakesink', 'motionview ! fakesink',
+                 'virtualptz ! fakesink'):
+        status, said = gst_launch(f'{fields} ! {line}')
+        assert status != 0 and 'deinterlace' in said, said
+    must(gst_launch(f'{fields} ! deinterlace ! {TAIL}'))
+    assert len(json_lines('out.jsonl')) >= 20
+
+
 def test_a_stream_without_a_frame_rate():
     must(gst_launch('videotestsrc num-buffers=60 ! video/x-raw,format=I420,width=320,height=240,framerate=25/1 ! '
                     f'capssetter caps=video/x-raw,framerate=0/1 ! {TAIL}'))

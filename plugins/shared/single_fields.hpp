@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Video of single fields (`interlace-mode=alternate`), which has a caps feature of its own. Nobody here reads it. Sink
+// pads take its caps all the same, and source pads give what `deinterlace` would make of it: so a pipeline is linked,
+// and whoever refuses it in set_caps can say what to do, where there would be a bare "not negotiated".
+#pragma once
+
+#include <cerberus/caps.h>
+
+namespace cerberus::plugin {
+
+#define CERBERUS_SINGLE_FIELDS_CAPS \
+  "video/x-raw(" GST_CAPS_FEATURE_FORMAT_INTERLACED "), interlace-mode = (string) alternate"
+// For the template of a sink pad that refuses them in words.
+#define CERBERUS_SINK_CAPS CERBERUS_VIDEO_CAPS "; " CERBERUS_SINGLE_FIELDS_CAPS
+
+// In transform_caps, from the source pad to the sink pad: `caps` and those. Takes `caps`.
+inline GstCaps* with_single_fields(GstCaps* caps) {
+  return gst_caps_merge(caps, gst_caps_from_string(CERBERUS_SINGLE_FIELDS_CAPS));
+}
+
+// And from the sink pad to the source pad: `caps`, with whole pictures in place of those. Takes `caps`.
+inline GstCaps* without_single_fields(GstCaps* caps) {
+  caps = gst_caps_make_writable(caps);
+  for (guint i = 0; i < gst_caps_get_size(caps); ++i) {
+    GstCapsFeatures* features = gst_caps_get_features(caps, i);
+    if (gst_caps_features_is_any(features) ||
+        !gst_caps_features_contains(features, GST_CAPS_FEATURE_FORMAT_INTERLACED))
+      continue;
+    gst_caps_features_remove(features, GST_CAPS_FEATURE_FORMAT_INTERLACED);
+    gst_structure_remove_fields(gst_caps_get_structure(caps, i), "interlace-mode", "field-order", nullptr);
+  }
+  return caps;
+}
+
+// Where nothing else changes on the way. Takes `caps`.
+inline GstCaps* across_single_fields(GstPadDirection direction, GstCaps* caps) {
+  return direction == GST_PAD_SRC ? with_single_fields(caps) : without_single_fields(caps);
+}
+
+}  // namespace cerberus::plugin
