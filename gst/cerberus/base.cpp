@@ -13,19 +13,12 @@ struct BaseMeta {
   CerberusBase base;
 };
 
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  cerberus_base_init(&reinterpret_cast<BaseMeta*>(meta)->base);
-  return TRUE;
-}
-
-// True of the moment, whatever is done to the picture.
-gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
-  return cerberus_buffer_set_base(to, &reinterpret_cast<BaseMeta*>(meta)->base);
-}
+const GstMetaInfo* meta_info();
+using Carried = cerberus::ValueMeta<&BaseMeta::base, cerberus_base_init, meta_info>;
 
 const GstMetaInfo* meta_info() {
-  static const GstMetaInfo* const info = cerberus::register_meta<BaseMeta>(
-      CERBERUS_BASE_META_API_TYPE, "CerberusBaseMeta", meta_init, nullptr, meta_transform);
+  static const GstMetaInfo* const info =
+      Carried::register_as(CERBERUS_BASE_META_API_TYPE, "CerberusBaseMeta");
   return info;
 }
 
@@ -34,10 +27,7 @@ const GstMetaInfo* meta_info() {
 G_DEFINE_BOXED_TYPE(CerberusBase, cerberus_base, cerberus_base_copy, cerberus_base_free)
 
 GType cerberus_base_meta_api_get_type(void) {
-  static const GType type = [] {
-    const gchar* tags[] = {nullptr};
-    return gst_meta_api_type_register("CerberusBaseMetaAPI", tags);
-  }();
+  static const GType type = cerberus::register_meta_api("CerberusBaseMetaAPI");
   return type;
 }
 
@@ -83,20 +73,12 @@ gboolean cerberus_event_parse_base(GstEvent* event, gdouble* yaw_rate, GstClockT
 
 gboolean cerberus_buffer_set_base(GstBuffer* buffer, const CerberusBase* base) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  if (!gst_buffer_is_writable(buffer)) return FALSE;
-  if (!base) {
-    cerberus::remove_meta(buffer, CERBERUS_BASE_META_API_TYPE);
-    return TRUE;
-  }
-  auto* meta = cerberus::ensure_meta<BaseMeta>(buffer, meta_info());
-  if (meta) meta->base = *base;
-  return meta != nullptr;
+  return Carried::set(buffer, base);
 }
 
 const CerberusBase* cerberus_buffer_peek_base(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
-  auto* meta = reinterpret_cast<BaseMeta*>(gst_buffer_get_meta(buffer, CERBERUS_BASE_META_API_TYPE));
-  return meta ? &meta->base : nullptr;
+  return Carried::peek(buffer);
 }
 
 CerberusBase* cerberus_buffer_get_base(GstBuffer* buffer) {

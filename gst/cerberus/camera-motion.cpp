@@ -26,10 +26,8 @@ constexpr CerberusCameraMotion kUnknown = {
     ._cerberus_reserved = {},
 };
 
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  reinterpret_cast<CerberusCameraMotionMeta*>(meta)->motion = kUnknown;
-  return TRUE;
-}
+using Carried = cerberus::ValueMeta<&CerberusCameraMotionMeta::motion, cerberus_camera_motion_init,
+                                    cerberus_camera_motion_meta_get_info>;
 
 void scale(gdouble (&matrix)[9], Size from, Size to) {
   Transform transform;
@@ -51,14 +49,14 @@ CerberusCameraMotion scaled(const CerberusCameraMotion& motion, Size from, Size 
 // Copies and scaling keep the meta; whatever else is done to a picture (cropping, turning) makes its pixels
 // wrong.
 gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
-  const CerberusCameraMotion& motion = reinterpret_cast<CerberusCameraMotionMeta*>(meta)->motion;
-  if (GST_META_TRANSFORM_IS_COPY(type)) return cerberus_buffer_add_camera_motion_meta(to, &motion) != nullptr;
+  const CerberusCameraMotion& motion = Carried::value_of(meta);
+  if (GST_META_TRANSFORM_IS_COPY(type)) return Carried::put(to, motion) != nullptr;
   if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
   const auto* scale = static_cast<GstVideoMetaTransform*>(data);
   const CerberusCameraMotion result =
       scaled(motion, {GST_VIDEO_INFO_WIDTH(scale->in_info), GST_VIDEO_INFO_HEIGHT(scale->in_info)},
              {GST_VIDEO_INFO_WIDTH(scale->out_info), GST_VIDEO_INFO_HEIGHT(scale->out_info)});
-  return cerberus_buffer_add_camera_motion_meta(to, &result) != nullptr;
+  return Carried::put(to, result) != nullptr;
 }
 
 }  // namespace
@@ -67,16 +65,14 @@ G_DEFINE_BOXED_TYPE(CerberusCameraMotion, cerberus_camera_motion, cerberus_camer
                     cerberus_camera_motion_free)
 
 GType cerberus_camera_motion_meta_api_get_type(void) {
-  static const GType type = [] {
-    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, nullptr};
-    return gst_meta_api_type_register("CerberusCameraMotionMetaAPI", tags);
-  }();
+  static const GType type = cerberus::register_meta_api("CerberusCameraMotionMetaAPI", GST_META_TAG_VIDEO_STR,
+                                                        GST_META_TAG_VIDEO_SIZE_STR);
   return type;
 }
 
 const GstMetaInfo* cerberus_camera_motion_meta_get_info(void) {
-  static const GstMetaInfo* const info = cerberus::register_meta<CerberusCameraMotionMeta>(
-      CERBERUS_CAMERA_MOTION_META_API_TYPE, "CerberusCameraMotionMeta", meta_init, nullptr, meta_transform);
+  static const GstMetaInfo* const info =
+      Carried::register_as(CERBERUS_CAMERA_MOTION_META_API_TYPE, "CerberusCameraMotionMeta", meta_transform);
   return info;
 }
 
@@ -120,23 +116,17 @@ CerberusCameraMotionMeta* cerberus_buffer_add_camera_motion_meta(GstBuffer* buff
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
   g_return_val_if_fail(gst_buffer_is_writable(buffer), nullptr);
   g_return_val_if_fail(motion, nullptr);
-  auto* meta = cerberus::ensure_meta<CerberusCameraMotionMeta>(buffer, CERBERUS_CAMERA_MOTION_META_INFO);
-  meta->motion = *motion;
-  return meta;
+  return Carried::put(buffer, *motion);
 }
 
 gboolean cerberus_buffer_set_camera_motion(GstBuffer* buffer, const CerberusCameraMotion* motion) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  if (!gst_buffer_is_writable(buffer)) return FALSE;
-  if (motion) return cerberus_buffer_add_camera_motion_meta(buffer, motion) != nullptr;
-  cerberus::remove_meta(buffer, CERBERUS_CAMERA_MOTION_META_API_TYPE);
-  return TRUE;
+  return Carried::set(buffer, motion);
 }
 
 const CerberusCameraMotionMeta* cerberus_buffer_get_camera_motion_meta(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
-  return reinterpret_cast<CerberusCameraMotionMeta*>(
-      gst_buffer_get_meta(buffer, CERBERUS_CAMERA_MOTION_META_API_TYPE));
+  return Carried::find(buffer);
 }
 
 CerberusCameraMotion* cerberus_buffer_get_camera_motion(GstBuffer* buffer) {

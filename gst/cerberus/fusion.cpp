@@ -27,19 +27,12 @@ struct FusionMeta {
   CerberusFusion fusion;
 };
 
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  cerberus_fusion_init(&reinterpret_cast<FusionMeta*>(meta)->fusion);
-  return TRUE;
-}
-
-// True of the moment, whatever is done to the picture.
-gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
-  return cerberus_buffer_set_fusion(to, &reinterpret_cast<FusionMeta*>(meta)->fusion);
-}
+const GstMetaInfo* meta_info();
+using Carried = cerberus::ValueMeta<&FusionMeta::fusion, cerberus_fusion_init, meta_info>;
 
 const GstMetaInfo* meta_info() {
-  static const GstMetaInfo* const info = cerberus::register_meta<FusionMeta>(
-      CERBERUS_FUSION_META_API_TYPE, "CerberusFusionMeta", meta_init, nullptr, meta_transform);
+  static const GstMetaInfo* const info =
+      Carried::register_as(CERBERUS_FUSION_META_API_TYPE, "CerberusFusionMeta");
   return info;
 }
 
@@ -144,10 +137,7 @@ GType cerberus_fusion_action_get_type(void) {
 }
 
 GType cerberus_fusion_meta_api_get_type(void) {
-  static const GType type = [] {
-    const gchar* tags[] = {nullptr};
-    return gst_meta_api_type_register("CerberusFusionMetaAPI", tags);
-  }();
+  static const GType type = cerberus::register_meta_api("CerberusFusionMetaAPI");
   return type;
 }
 
@@ -187,20 +177,14 @@ GBytes* cerberus_fusion_get_sensors(const CerberusFusion* fusion) {
 
 gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fusion) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  if (!gst_buffer_is_writable(buffer)) return FALSE;
-  if (!fusion) {
-    cerberus::remove_meta(buffer, CERBERUS_FUSION_META_API_TYPE);
-    return TRUE;
-  }
-  auto* meta = cerberus::ensure_meta<FusionMeta>(buffer, meta_info());
-  if (meta) meta->fusion = sane(*fusion);
-  return meta != nullptr;
+  if (!fusion) return Carried::set(buffer, nullptr);
+  const CerberusFusion carried = sane(*fusion);
+  return Carried::set(buffer, &carried);
 }
 
 const CerberusFusion* cerberus_buffer_peek_fusion(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
-  auto* meta = reinterpret_cast<FusionMeta*>(gst_buffer_get_meta(buffer, CERBERUS_FUSION_META_API_TYPE));
-  return meta ? &meta->fusion : nullptr;
+  return Carried::peek(buffer);
 }
 
 CerberusFusion* cerberus_buffer_get_fusion(GstBuffer* buffer) {

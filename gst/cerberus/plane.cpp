@@ -58,10 +58,8 @@ GType cerberus_plane_kind_get_type(void) {
 }
 
 GType cerberus_plane_meta_api_get_type(void) {
-  static const GType type = [] {
-    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_MEMORY_STR, nullptr};
-    return gst_meta_api_type_register("CerberusPlaneMetaAPI", tags);
-  }();
+  static const GType type =
+      cerberus::register_meta_api("CerberusPlaneMetaAPI", GST_META_TAG_VIDEO_STR, GST_META_TAG_MEMORY_STR);
   return type;
 }
 

@@ -15,19 +15,12 @@ struct PoseMeta {
   CerberusPose pose;
 };
 
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  cerberus_pose_init(&reinterpret_cast<PoseMeta*>(meta)->pose);
-  return TRUE;
-}
-
-// True of the moment, whatever is done to the picture.
-gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
-  return cerberus_buffer_set_pose(to, &reinterpret_cast<PoseMeta*>(meta)->pose);
-}
+const GstMetaInfo* meta_info();
+using Carried = cerberus::ValueMeta<&PoseMeta::pose, cerberus_pose_init, meta_info>;
 
 const GstMetaInfo* meta_info() {
-  static const GstMetaInfo* const info = cerberus::register_meta<PoseMeta>(
-      CERBERUS_POSE_META_API_TYPE, "CerberusPoseMeta", meta_init, nullptr, meta_transform);
+  static const GstMetaInfo* const info =
+      Carried::register_as(CERBERUS_POSE_META_API_TYPE, "CerberusPoseMeta");
   return info;
 }
 
@@ -57,10 +50,7 @@ GType cerberus_pose_source_get_type(void) {
 }
 
 GType cerberus_pose_meta_api_get_type(void) {
-  static const GType type = [] {
-    const gchar* tags[] = {nullptr};
-    return gst_meta_api_type_register("CerberusPoseMetaAPI", tags);
-  }();
+  static const GType type = cerberus::register_meta_api("CerberusPoseMetaAPI");
   return type;
 }
 
@@ -146,22 +136,15 @@ CerberusPose* cerberus_event_parse_pose(GstEvent* event) {
 
 gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  if (!gst_buffer_is_writable(buffer)) return FALSE;
-  if (!pose) {
-    cerberus::remove_meta(buffer, CERBERUS_POSE_META_API_TYPE);
-    return TRUE;
-  }
-  auto* meta = cerberus::ensure_meta<PoseMeta>(buffer, meta_info());
-  if (!meta) return FALSE;
-  meta->pose = *pose;
-  meta->pose.head = cerberus::head_of(*pose);
-  return TRUE;
+  if (!pose) return Carried::set(buffer, nullptr);
+  CerberusPose named = *pose;
+  named.head = cerberus::head_of(*pose);
+  return Carried::set(buffer, &named);
 }
 
 const CerberusPose* cerberus_buffer_peek_pose(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
-  auto* meta = reinterpret_cast<PoseMeta*>(gst_buffer_get_meta(buffer, CERBERUS_POSE_META_API_TYPE));
-  return meta ? &meta->pose : nullptr;
+  return Carried::peek(buffer);
 }
 
 CerberusPose* cerberus_buffer_get_pose(GstBuffer* buffer) {

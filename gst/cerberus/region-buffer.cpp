@@ -161,8 +161,8 @@ gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, g
 
 const GstMetaInfo* region_meta_info() {
   static const GstMetaInfo* const info = [] {
-    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR, nullptr};
-    const GType api = gst_meta_api_type_register("CerberusRegionMetaAPI", tags);
+    const GType api = cerberus::register_meta_api("CerberusRegionMetaAPI", GST_META_TAG_VIDEO_STR,
+                                                  GST_META_TAG_VIDEO_SIZE_STR);
     return cerberus::register_meta<RegionMeta>(api, "CerberusRegionMeta", meta_init, nullptr, meta_transform);
   }();
   return info;

@@ -6,32 +6,25 @@
 
 namespace {
 
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  reinterpret_cast<CerberusThresholdMeta*>(meta)->threshold = {};
-  return TRUE;
+void init(CerberusThreshold* threshold) {
+  *threshold = {};
 }
 
-// True of the moment, whatever is done to the picture.
-gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
-  const CerberusThreshold& threshold = reinterpret_cast<CerberusThresholdMeta*>(meta)->threshold;
-  return cerberus_buffer_add_threshold_meta(to, &threshold) != nullptr;
-}
+using Carried =
+    cerberus::ValueMeta<&CerberusThresholdMeta::threshold, init, cerberus_threshold_meta_get_info>;
 
 }  // namespace
 
 G_DEFINE_BOXED_TYPE(CerberusThreshold, cerberus_threshold, cerberus_threshold_copy, cerberus_threshold_free)
 
 GType cerberus_threshold_meta_api_get_type(void) {
-  static const GType type = [] {
-    const gchar* tags[] = {GST_META_TAG_VIDEO_STR, nullptr};
-    return gst_meta_api_type_register("CerberusThresholdMetaAPI", tags);
-  }();
+  static const GType type = cerberus::register_meta_api("CerberusThresholdMetaAPI", GST_META_TAG_VIDEO_STR);
   return type;
 }
 
 const GstMetaInfo* cerberus_threshold_meta_get_info(void) {
-  static const GstMetaInfo* const info = cerberus::register_meta<CerberusThresholdMeta>(
-      CERBERUS_THRESHOLD_META_API_TYPE, "CerberusThresholdMeta", meta_init, nullptr, meta_transform);
+  static const GstMetaInfo* const info =
+      Carried::register_as(CERBERUS_THRESHOLD_META_API_TYPE, "CerberusThresholdMeta");
   return info;
 }
 
@@ -52,23 +45,17 @@ CerberusThresholdMeta* cerberus_buffer_add_threshold_meta(GstBuffer* buffer,
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
   g_return_val_if_fail(gst_buffer_is_writable(buffer), nullptr);
   g_return_val_if_fail(threshold, nullptr);
-  auto* meta = cerberus::ensure_meta<CerberusThresholdMeta>(buffer, CERBERUS_THRESHOLD_META_INFO);
-  meta->threshold = *threshold;
-  return meta;
+  return Carried::put(buffer, *threshold);
 }
 
 gboolean cerberus_buffer_set_threshold(GstBuffer* buffer, const CerberusThreshold* threshold) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  if (!gst_buffer_is_writable(buffer)) return FALSE;
-  if (threshold) return cerberus_buffer_add_threshold_meta(buffer, threshold) != nullptr;
-  cerberus::remove_meta(buffer, CERBERUS_THRESHOLD_META_API_TYPE);
-  return TRUE;
+  return Carried::set(buffer, threshold);
 }
 
 const CerberusThresholdMeta* cerberus_buffer_get_threshold_meta(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
-  return reinterpret_cast<CerberusThresholdMeta*>(
-      gst_buffer_get_meta(buffer, CERBERUS_THRESHOLD_META_API_TYPE));
+  return Carried::find(buffer);
 }
 
 CerberusThreshold* cerberus_buffer_get_threshold(GstBuffer* buffer) {
