@@ -8,6 +8,7 @@
 #include <cerberus/caps.h>
 #include <cerberus/fusion.h>
 #include <cerberus/message.h>
+#include <cerberus/pantilt.h>
 #include <cerberus/pir.h>
 #include <cerberus/plane.h>
 #include <cerberus/pose.h>

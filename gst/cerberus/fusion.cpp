@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "private/head.hpp"
 #include "private/meta.hpp"
+#include "private/structure.hpp"
 
 namespace {
 
@@ -62,20 +62,6 @@ CerberusFusion sane(CerberusFusion fusion) {
   return fusion;
 }
 
-template <typename T>
-void add_array(GstStructure* structure, const char* field, GType type, void (*set)(GValue*, T), guint count,
-               const auto* values) {
-  GValue array = G_VALUE_INIT;
-  gst_value_array_init(&array, count);
-  for (guint i = 0; i < count; ++i) {
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, type);
-    set(&value, values[i]);
-    gst_value_array_append_and_take_value(&array, &value);
-  }
-  gst_structure_take_value(structure, field, &array);
-}
-
 // What messages and events say of a decision.
 GstStructure* structure_of(const gchar* name, GstClockTime running_time, const CerberusFusion& given) {
   const CerberusFusion fusion = sane(given);
@@ -86,8 +72,9 @@ GstStructure* structure_of(const gchar* name, GstClockTime running_time, const C
       G_TYPE_DOUBLE, fusion.sector_from, "sector-to", G_TYPE_DOUBLE, fusion.sector_to, "limited",
       G_TYPE_BOOLEAN, fusion.limited, "camera-found", G_TYPE_BOOLEAN, fusion.camera_found, "doubtful",
       G_TYPE_UINT, fusion.doubtful, nullptr);
-  add_array(structure, "sensors", G_TYPE_INT, g_value_set_int, fusion.n_sensors, fusion.sensors);
-  add_array(structure, "bearings", G_TYPE_DOUBLE, g_value_set_double, fusion.n_sensors, fusion.bearings);
+  cerberus::set_array(structure, "sensors", G_TYPE_INT, g_value_set_int, fusion.n_sensors, fusion.sensors);
+  cerberus::set_array(structure, "bearings", G_TYPE_DOUBLE, g_value_set_double, fusion.n_sensors,
+                      fusion.bearings);
   return structure;
 }
 
@@ -201,12 +188,10 @@ GstMessage* cerberus_message_new_fusion(GstObject* src, GstClockTime running_tim
 
 CerberusFusion* cerberus_message_parse_fusion(GstMessage* message, GstClockTime* running_time) {
   g_return_val_if_fail(GST_IS_MESSAGE(message), nullptr);
-  if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ELEMENT ||
-      !gst_message_has_name(message, CERBERUS_MESSAGE_FUSION))
-    return nullptr;
+  const GstStructure* structure = cerberus::element_structure(message, CERBERUS_MESSAGE_FUSION);
   CerberusFusion fusion;
   GstClockTime time = 0;
-  if (!read_structure(gst_message_get_structure(message), time, fusion)) return nullptr;
+  if (!structure || !read_structure(structure, time, fusion)) return nullptr;
   if (running_time) *running_time = time;
   return cerberus_fusion_copy(&fusion);
 }
@@ -231,39 +216,4 @@ CerberusFusion* cerberus_event_parse_fusion(GstEvent* event, const gchar** head)
   fusion.decided = time;
   if (head) *head = named;
   return cerberus_fusion_copy(&fusion);
-}
-
-GstMessage* cerberus_message_new_pantilt(GstObject* src, GstClockTime running_time, const gchar* state,
-                                         const gchar* reason, const CerberusPose* pose) {
-  g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
-  g_return_val_if_fail(state && pose, nullptr);
-  return gst_message_new_element(
-      src, gst_structure_new(CERBERUS_MESSAGE_PANTILT, "state", G_TYPE_STRING, state, "reason", G_TYPE_STRING,
-                             reason ? reason : "", "head", G_TYPE_STRING, cerberus::head_of(*pose), "pan",
-                             G_TYPE_DOUBLE, pose->pan, "tilt", G_TYPE_DOUBLE, pose->tilt, "running-time",
-                             G_TYPE_UINT64, static_cast<guint64>(running_time), nullptr));
-}
-
-CerberusPose* cerberus_message_parse_pantilt(GstMessage* message, GstClockTime* running_time, gchar** state,
-                                             gchar** reason) {
-  g_return_val_if_fail(GST_IS_MESSAGE(message), nullptr);
-  if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ELEMENT ||
-      !gst_message_has_name(message, CERBERUS_MESSAGE_PANTILT))
-    return nullptr;
-  const GstStructure* s = gst_message_get_structure(message);
-  const gchar* said = gst_structure_get_string(s, "state");
-  const gchar* why = gst_structure_get_string(s, "reason");
-  const gchar* head = gst_structure_get_string(s, "head");
-  CerberusPose pose;
-  cerberus_pose_init(&pose);
-  guint64 time = 0;
-  if (!said || !why || !head || !gst_structure_get_double(s, "pan", &pose.pan) ||
-      !gst_structure_get_double(s, "tilt", &pose.tilt) || !gst_structure_get_uint64(s, "running-time", &time))
-    return nullptr;
-  cerberus_pose_set_head(&pose, head);
-  pose.valid_from = time;
-  if (running_time) *running_time = time;
-  if (state) *state = g_strdup(said);
-  if (reason) *reason = g_strdup(why);
-  return cerberus_pose_copy(&pose);
 }

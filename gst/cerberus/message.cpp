@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cerberus/message.h>
 
+#include "private/structure.hpp"
+
 namespace {
 
 constexpr char kState[] = "state";
@@ -49,8 +51,7 @@ GstMessage* cerberus_message_new_motion(GstObject* src, gboolean started, GstClo
 
 gboolean cerberus_message_is_motion(GstMessage* message) {
   g_return_val_if_fail(GST_IS_MESSAGE(message), FALSE);
-  return GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT &&
-         gst_message_has_name(message, CERBERUS_MESSAGE_MOTION);
+  return cerberus::element_structure(message, CERBERUS_MESSAGE_MOTION) != nullptr;
 }
 
 gboolean cerberus_message_parse_motion(GstMessage* message, gboolean* started, GstClockTime* running_time,

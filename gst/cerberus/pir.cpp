@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "private/structure.hpp"
+
 namespace {
 
 constexpr char kRunningTime[] = "running-time";
@@ -24,16 +26,8 @@ const char* fault(const CerberusPirInfo& info) {
   return nullptr;
 }
 
-void append_bearings(GstStructure* structure, const CerberusPirInfo& info) {
-  GValue array = G_VALUE_INIT;
-  gst_value_array_init(&array, info.sensors);
-  for (guint i = 0; i < info.sensors; ++i) {
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, G_TYPE_DOUBLE);
-    g_value_set_double(&value, info.bearings[i]);
-    gst_value_array_append_and_take_value(&array, &value);
-  }
-  gst_structure_take_value(structure, kBearings, &array);
+void set_bearings(GstStructure* structure, const CerberusPirInfo& info) {
+  cerberus::set_array(structure, kBearings, G_TYPE_DOUBLE, g_value_set_double, info.sensors, info.bearings);
 }
 
 gboolean refuse(GError** error, const GstCaps* caps, const char* why) {
@@ -63,7 +57,7 @@ GstCaps* cerberus_pir_info_to_caps(const CerberusPirInfo* info) {
   GstStructure* structure = gst_structure_new(
       "application/x-pir", "format", G_TYPE_STRING, format_name(info->format), kSensors, G_TYPE_INT,
       static_cast<gint>(info->sensors), kFieldOfView, G_TYPE_DOUBLE, info->field_of_view, nullptr);
-  append_bearings(structure, *info);
+  set_bearings(structure, *info);
   GstCaps* caps = gst_caps_new_empty();
   gst_caps_append_structure(caps, structure);
   return caps;
@@ -112,25 +106,15 @@ GstMessage* cerberus_message_new_pir(GstObject* src, GstClockTime running_time, 
   g_return_val_if_fail(info && info->sensors <= CERBERUS_PIR_MAX_SENSORS && sensors, nullptr);
   GstStructure* structure = gst_structure_new(CERBERUS_MESSAGE_PIR, kRunningTime, G_TYPE_UINT64,
                                               static_cast<guint64>(running_time), nullptr);
-  GValue array = G_VALUE_INIT;
-  gst_value_array_init(&array, info->sensors);
-  for (guint i = 0; i < info->sensors; ++i) {
-    GValue value = G_VALUE_INIT;
-    g_value_init(&value, G_TYPE_INT);
-    g_value_set_int(&value, sensors[i]);
-    gst_value_array_append_and_take_value(&array, &value);
-  }
-  gst_structure_take_value(structure, kSensors, &array);
-  append_bearings(structure, *info);
+  cerberus::set_array(structure, kSensors, G_TYPE_INT, g_value_set_int, info->sensors, sensors);
+  set_bearings(structure, *info);
   return gst_message_new_element(src, structure);
 }
 
 GBytes* cerberus_message_parse_pir(GstMessage* message, GstClockTime* running_time) {
   g_return_val_if_fail(GST_IS_MESSAGE(message), nullptr);
-  if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ELEMENT ||
-      !gst_message_has_name(message, CERBERUS_MESSAGE_PIR))
-    return nullptr;
-  const GstStructure* structure = gst_message_get_structure(message);
+  const GstStructure* structure = cerberus::element_structure(message, CERBERUS_MESSAGE_PIR);
+  if (!structure) return nullptr;
   const GValue* array = gst_structure_get_value(structure, kSensors);
   guint64 time = 0;
   if (!gst_structure_get_uint64(structure, kRunningTime, &time) || !array || !GST_VALUE_HOLDS_ARRAY(array))
