@@ -37,7 +37,8 @@ class TypeBuilder {
   using Self = typename Traits::Self;
   using Private = typename Traits::Object;
   static_assert(alignof(Private) <= 2 * sizeof(gsize), "GObject aligns private data to two words only");
-  static_assert(sizeof(Private) <= G_MAXUINT16, "GObject has no more room for private data");
+  // GObject counts what a type and all its parents have in 16 bits. Those of GStreamer have less than 4 KiB together.
+  static_assert(sizeof(Private) <= G_MAXUINT16 - 4096, "GObject has no more room for private data");
 
  public:
   static inline gpointer parent_class = nullptr;
