@@ -12,6 +12,11 @@ namespace {
 
 constexpr double kMostDegrees = 3600;
 
+GType target_type() {
+  static const GType type = register_target_choice("CerberusPanTiltTarget");
+  return type;
+}
+
 const Property<HeadSettings> kProperties[] = {
     property("driver", &HeadSettings::driver, "What drives the head: simulated or scripted").read_at_start(),
     property("head", &HeadSettings::head, "Name of the head, in pose events and messages; one sink a name")
@@ -63,7 +68,7 @@ const Property<HeadSettings> kProperties[] = {
         .read_at_start(),
     property("seed", &HeadSettings::seed, 0, G_MAXINT, "Seed of the noise: equal seeds give equal runs")
         .read_at_start(),
-    property("target", &HeadSettings::target, pan_tilt_target_type,
+    property("target", &HeadSettings::target, target_type,
              "Whom to follow when nobody is followed yet, without pirfusion upstream"),
     property("return-delay", &HeadSettings::return_delay,
              "Nanoseconds without anybody after which the head returns to zero, without pirfusion upstream"),
@@ -74,11 +79,6 @@ const Property<HeadSettings> kProperties[] = {
 };
 
 }  // namespace
-
-GType pan_tilt_target_type() {
-  static const GType type = register_target_choice("CerberusPanTiltTarget");
-  return type;
-}
 
 std::span<const Property<HeadSettings>> head_properties() {
   return kProperties;

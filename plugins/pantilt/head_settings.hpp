@@ -32,7 +32,6 @@ struct HeadSettings {
 };
 
 std::span<const Property<HeadSettings>> head_properties();
-GType pan_tilt_target_type();
 
 control::Limits head_limits(const HeadSettings& settings);
 control::LawOptions law_options(const HeadSettings& settings);

@@ -368,7 +368,6 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   sink->propose_allocation = cerberus_pan_tilt_sink_propose_allocation;
   sink->event = cerberus_pan_tilt_sink_event;
   sink->render = cerberus_pan_tilt_sink_render;
-  gst_type_mark_as_plugin_api(pan_tilt_target_type(), static_cast<GstPluginAPIFlags>(0));
 }
 
 }  // namespace

@@ -367,7 +367,6 @@ void cerberus_motion_view_class_init(CerberusMotionViewClass* klass) {
                                         "The Cerberus developers");
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
-  gst_type_mark_as_plugin_api(stage_type(), static_cast<GstPluginAPIFlags>(0));
 
   GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = cerberus_motion_view_start;
