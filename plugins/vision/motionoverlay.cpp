@@ -113,10 +113,11 @@ const Property<Settings> kProperties[] = {
 
 struct State {  // streaming thread only
   GstVideoInfo info;
-  bool attach = false;  // downstream takes compositions
-  double time = 0;      // s, of the last frame
-  bool fresh = true;    // the next frame has no predecessor
-  bool warned = false;  // a frame that cannot be written
+  bool attach = false;                         // downstream takes compositions
+  double time = 0;                             // s, of the last frame
+  GstClockTime running = GST_CLOCK_TIME_NONE;  // likewise
+  bool fresh = true;                           // the next frame has no predecessor
+  bool warned = false;                         // a frame that cannot be written
   cerberus::plugin::CameraFollower camera;
   cerberus::vision::Trails trails;
   draw::Painter painter;
@@ -308,12 +309,12 @@ void read_objects(State& state, GstBuffer* buffer) {
   }
 }
 
-void update_trails(State& state, GstBuffer* buffer, const Settings& settings) {
+void update_trails(State& state, GstBuffer* buffer, GstClockTime running, const Settings& settings) {
   using Link = cerberus::plugin::CameraFollower::Link;
   const cerberus::vision::Size frame{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
   const auto* meta = cerberus_buffer_get_camera_motion_meta(buffer);
   const CerberusCameraMotion* measured = meta ? &meta->motion : nullptr;
-  const auto camera = state.camera.next(measured, measured ? measured->from : GST_CLOCK_TIME_NONE, frame);
+  const auto camera = state.camera.next(measured, std::exchange(state.running, running), frame);
   if (camera.link == Link::cut || camera.link == Link::lost) state.fresh = true;
   if (GST_BUFFER_IS_DISCONT(buffer) && !camera.connected) state.fresh = true;
   const double nominal = GST_VIDEO_INFO_FPS_N(&state.info) > 0
@@ -377,7 +378,8 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     const Settings settings = self.settings.snapshot();
     if (self.undecided.exchange(false)) decide(transform, state);
     read_objects(state, buffer);
-    update_trails(state, buffer, settings);
+    const GstClockTime running = running_time_of(transform->segment, buffer);
+    update_trails(state, buffer, running, settings);
     GstVideoOverlayCompositionMeta* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
     read_covered(state, meta);
 
@@ -393,7 +395,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     scene.ids = settings.ids;
     scene.speeds = settings.speeds;
     scene.crosshair = settings.crosshair;
-    if (settings.system) scene.system = read_system(buffer, running_time_of(transform->segment, buffer));
+    if (settings.system) scene.system = read_system(buffer, running);
     state.patches.clear();
     state.painter.paint(scene, state.patches);
 

@@ -9,11 +9,13 @@ using namespace outputs;
 
 namespace {
 
-// way: of the picture since a path began; 0 = there is no path.
+// From the frame before `buffer` to it. way: of the picture since a path began; 0 = there is no path.
 void set_camera(GstBuffer* buffer, double dx, guint scene_age, double way = 0) {
   CerberusCameraMotion motion;
   cerberus_camera_motion_init(&motion);
   motion.matrix[2] = dx;
+  const GstClockTime length = GST_SECOND / 25, now = GST_BUFFER_PTS(buffer);
+  if (now >= length) motion.from = now - length;
   motion.scene_age = scene_age;
   motion.path_id = way != 0;
   motion.path[2] = way;
@@ -68,6 +70,28 @@ GST_START_TEST(a_trail_lies_on_the_scene_across_dropped_frames) {
   int left = kWidth, right = 0;
   for (const Rectangle& r : all) left = std::min(left, r.x), right = std::max(right, r.x + int(r.width));
   fail_unless(right - left <= 12, "%d", right - left);
+}
+GST_END_TEST
+
+// Of a stranger's motion, which counts no frames and has no path, the time from which it starts says that a frame is
+// missing.
+GST_START_TEST(where_nobody_knows_the_way_across_a_dropped_frame_a_trail_begins_anew) {
+  const auto extent = [](int dropped) {
+    Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
+    std::vector<Rectangle> all;
+    for (int k = 0; k < 30; ++k) {
+      if (k == dropped) continue;
+      GstBuffer* in = frame(info_of(kCaps), k);
+      add(in, region(1, 150 + 4 * (k - 15), 100, 20, 40));
+      set_camera(in, 0, 0);
+      all = drawn(h.get(), in);
+    }
+    int left = kWidth, right = 0;
+    for (const Rectangle& r : all) left = std::min(left, r.x), right = std::max(right, r.x + int(r.width));
+    return right - left;
+  };
+  fail_unless(extent(-1) >= 116, "%d", extent(-1));
+  fail_unless(extent(24) >= 16 && extent(24) <= 26, "%d", extent(24));  // four steps since then
 }
 GST_END_TEST
 
@@ -135,6 +159,7 @@ static Suite* motionoverlay_trails_suite() {
   tcase_add_test(tc, a_trail_is_as_long_as_the_way);
   tcase_add_test(tc, a_trail_lies_on_the_scene_while_the_camera_turns);
   tcase_add_test(tc, a_trail_lies_on_the_scene_across_dropped_frames);
+  tcase_add_test(tc, where_nobody_knows_the_way_across_a_dropped_frame_a_trail_begins_anew);
   tcase_add_test(tc, a_trail_is_as_old_as_trail_time);
   tcase_add_test(tc, trails_are_forgotten_where_the_scene_begins_anew);
   tcase_add_test(tc, a_trail_does_not_follow_the_edge_of_the_frame);
