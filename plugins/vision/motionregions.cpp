@@ -81,29 +81,25 @@ const Property<Settings> kProperties[] = {
              "the picture from "
              "its top left corner; empty = everywhere"),
     property("minimum-width", &Settings::minimum_width, 0, kMaximumPixels,
-             "Regions as found that are narrower than this, in frame pixels, are dropped; 0 = no limit"),
+             "Least width in frame pixels of a region as found; 0 = no limit"),
     property("maximum-width", &Settings::maximum_width, 0, kMaximumPixels,
-             "Regions as found that are wider than this, in frame pixels, are dropped; 0 = no limit"),
+             "Greatest width in frame pixels of a region as found; 0 = no limit"),
     property("minimum-height", &Settings::minimum_height, 0, kMaximumPixels,
-             "Regions as found that are lower than this, in frame pixels, are dropped; 0 = no limit"),
+             "Least height in frame pixels of a region as found; 0 = no limit"),
     property("maximum-height", &Settings::maximum_height, 0, kMaximumPixels,
-             "Regions as found that are higher than this, in frame pixels, are dropped; 0 = no limit"),
+             "Greatest height in frame pixels of a region as found; 0 = no limit"),
     property(
         "minimum-width-metres", &Settings::minimum_width_metres, 0, kMaximumMetres,
-        "Regions as found that are narrower than this, in metres, are dropped where their distance is known "
-        "(horizontal-fov); 0 = no limit"),
-    property(
-        "maximum-width-metres", &Settings::maximum_width_metres, 0, kMaximumMetres,
-        "Regions as found that are wider than this, in metres, are dropped where their distance is known "
-        "(horizontal-fov); 0 = no limit"),
+        "Least width in metres of a region as found, where horizontal-fov tells its distance; 0 = no limit"),
+    property("maximum-width-metres", &Settings::maximum_width_metres, 0, kMaximumMetres,
+             "Greatest width in metres of a region as found, where horizontal-fov tells its distance; 0 = no "
+             "limit"),
     property(
         "minimum-height-metres", &Settings::minimum_height_metres, 0, kMaximumMetres,
-        "Regions as found that are lower than this, in metres, are dropped where their distance is known "
-        "(horizontal-fov); 0 = no limit"),
-    property(
-        "maximum-height-metres", &Settings::maximum_height_metres, 0, kMaximumMetres,
-        "Regions as found that are higher than this, in metres, are dropped where their distance is known "
-        "(horizontal-fov); 0 = no limit"),
+        "Least height in metres of a region as found, where horizontal-fov tells its distance; 0 = no limit"),
+    property("maximum-height-metres", &Settings::maximum_height_metres, 0, kMaximumMetres,
+             "Greatest height in metres of a region as found, where horizontal-fov tells its distance; 0 = "
+             "no limit"),
     property("horizontal-fov", &Settings::horizontal_fov, 0, kMaximumFieldOfView, kFieldOfViewBlurb),
     property("mounting-height", &Settings::mounting_height, 0, kMaximumMountingHeight, kMountingHeightBlurb),
     property("tilt", &Settings::tilt, -kMaximumTilt, kMaximumTilt, kTiltBlurb),
