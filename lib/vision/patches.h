@@ -46,8 +46,6 @@ class PatchFollower {
   PatchFollower(GrayView part, const Corner& corner) { begin(part, corner); }
   // Looks around displacement (dx, dy), pixels of the level, for at most `rounds` steps; 0 only rates the given place.
   PatchMatch follow(GrayView later, float dx, float dy, int rounds) const;
-  float x() const { return match_.x; }  // centre on that level
-  float y() const { return match_.y; }
 
  private:
   void begin(GrayView part, const Corner& corner);

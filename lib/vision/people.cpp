@@ -50,7 +50,7 @@ std::size_t PeopleFinder::bytes() const {
 
 // Cells around the window, wide enough that every place a person may be judged at lies on the grid. Outside the picture
 // nothing is counted; inside the picture but outside the window nothing moves.
-bool PeopleFinder::lay_grid(BitView pixels, const Window& window, std::span<std::uint8_t> room) {
+bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std::uint8_t> room) {
   const double tallest = prior_->height(window.bottom);
   if (tallest <= 0) return false;
   // A crowd all across the picture is looked at more coarsely.
@@ -268,7 +268,7 @@ void PeopleFinder::choose(bool was_wide_block) {
          static_cast<double>(c.gain) / kUnit});
 }
 
-std::span<const Person> PeopleFinder::find(BitView pixels, const Window& window, const HeightPrior& prior,
+std::span<const Person> PeopleFinder::find(BitView pixels, const Bounds& window, const HeightPrior& prior,
                                            bool was_wide_block) {
   people_.clear();
   wide_block_ = false;

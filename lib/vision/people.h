@@ -14,7 +14,7 @@
 namespace cerberus::vision {
 
 // Part of the picture: columns and rows from (left, top) up to but not including (right, bottom).
-struct Window {
+struct Bounds {
   int left = 0, top = 0, right = 0, bottom = 0;
   int width() const { return right - left; }
   int height() const { return bottom - top; }
@@ -33,7 +33,7 @@ class PeopleFinder {
   // pixels: one bit a pixel of the picture that make_room() was told. Looks at the window only. Returns nobody when the
   // prior does not know the heights there, and for a block: what has no gaps where people side by side would leave
   // some. was_wide_block: found_wide_block() said so a frame ago. Deterministic; the span lives until the next call.
-  std::span<const Person> find(BitView pixels, const Window& window, const HeightPrior& prior,
+  std::span<const Person> find(BitView pixels, const Bounds& window, const HeightPrior& prior,
                                bool was_wide_block = false);
   // By the last find(): a block of which too much is seen to be people, or what is left of one.
   bool found_wide_block() const { return wide_block_; }
@@ -51,7 +51,7 @@ class PeopleFinder {
     int height = 0, width = 0;
   };
 
-  bool lay_grid(BitView pixels, const Window& window, std::span<std::uint8_t> room);
+  bool lay_grid(BitView pixels, const Bounds& window, std::span<std::uint8_t> room);
   void choose(bool was_wide_block);
   std::uint8_t* cells(int row) { return &cells_[static_cast<std::size_t>(row) * columns_]; }
   void forget_explained();
@@ -70,7 +70,7 @@ class PeopleFinder {
   bool wide_block_ = false;
   // The grid: cells of step_ x step_ pixels, the first one's corner at (x0_, y0_); the picture and the window in it.
   int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
-  Window inside_, window_;
+  Bounds inside_, window_;
   std::vector<Shape> shapes_;          // of each foot row 0..rows_
   std::span<std::uint8_t> cells_;      // kCell... of people_kernels.h; find() has them on its stack
   std::vector<std::uint32_t> moving_;  // moving cells not yet explained in the columns before each

@@ -30,13 +30,13 @@ constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
 
 // One person seen alone is upright and reasonably filled.
-bool looks_like_one_person(const Component& c, const Window& body, Size picture) {
+bool looks_like_one_person(const Component& c, const Bounds& body, Size picture) {
   const double aspect = static_cast<double>(body.height()) / body.width();
   return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * body.width() * body.height() &&
          c.left > 0 && c.top > 0 && c.right < picture.width && c.bottom < picture.height;
 }
 
-Box box_of(const Window& w) {
+Box box_of(const Bounds& w) {
   return {static_cast<double>(w.left), static_cast<double>(w.top), static_cast<double>(w.width()),
           static_cast<double>(w.height())};
 }
@@ -71,7 +71,7 @@ struct RegionFinder::State {
   std::vector<Walker> walkers, walkers_before;
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
-  std::vector<Window> bodies;              // of each component: its box without the shadow it casts
+  std::vector<Bounds> bodies;              // of each component: its box without the shadow it casts
   std::vector<int> columns;                // scratch: moving pixels of a component in each of its columns
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
@@ -86,7 +86,7 @@ struct RegionFinder::State {
   void group_components();
   void explain(int group);
   void add_plain(std::size_t component, bool person = false);
-  Box fit(const Box& expected, const Window& window, std::size_t self, std::span<const Person> all) const;
+  Box fit(const Box& expected, const Bounds& window, std::size_t self, std::span<const Person> all) const;
 };
 
 void RegionFinder::State::make_room(Size picture) {
@@ -138,7 +138,7 @@ void RegionFinder::State::learn(const Transform& motion) {
   walkers.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Component& c = parts[i];
-    const Window& body = bodies[i];
+    const Bounds& body = bodies[i];
     if (!looks_like_one_person(c, body, size)) continue;
     const double reach = 0.4 * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(),
@@ -204,14 +204,14 @@ void RegionFinder::State::add_plain(std::size_t i, bool person) {
 
 // Pulls the edges of an expected box to the moving pixels around it that no other person explains better, a quarter
 // of the body either way at most.
-Box RegionFinder::State::fit(const Box& expected, const Window& window, std::size_t self,
+Box RegionFinder::State::fit(const Box& expected, const Bounds& window, std::size_t self,
                              std::span<const Person> all) const {
   const double reach_x = 0.3 * expected.width, reach_y = 0.15 * expected.height;
   const int left = std::max(window.left, static_cast<int>(expected.x - reach_x));
   const int right = std::min(window.right, static_cast<int>(std::ceil(expected.right() + reach_x)));
   const int top = std::max(window.top, static_cast<int>(expected.y - reach_y));
   const int bottom = std::min(window.bottom, static_cast<int>(std::ceil(expected.bottom() + reach_y)));
-  Window seen{right, bottom, left, top};
+  Bounds seen{right, bottom, left, top};
   for (int y = top; y < bottom; ++y) {
     const std::uint64_t* bits = moving.view().row(y);
     for_bits(bits, left, right, [&](int x) {
@@ -236,8 +236,8 @@ Box RegionFinder::State::fit(const Box& expected, const Window& window, std::siz
 
 void RegionFinder::State::explain(int g) {
   const auto parts = labeller.components();
-  Window window{size.width, size.height, 0, 0};
-  Window body = window;
+  Bounds window{size.width, size.height, 0, 0};
+  Bounds body = window;
   int members = 0;
   std::size_t first = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -38,7 +38,7 @@ struct Scene {
   }
   // The window is the box of all that moves.
   std::span<const Person> find(PeopleFinder& finder) {
-    Window window{size.width, size.height, 0, 0};
+    Bounds window{size.width, size.height, 0, 0};
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x)
         if (mask.view().at(x, y)) {
