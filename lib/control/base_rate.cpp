@@ -31,7 +31,7 @@ Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision
       const vision::Point q = motion.apply({p.x - 0.5, p.y - 0.5});
       const vision::Direction was = lens.direction(p, before.pan, before.tilt);
       const vision::Direction is = lens.direction({q.x + 0.5, q.y + 0.5}, after.pan, after.tilt);
-      sum.yaw += vision::wrap_angle(was.bearing - is.bearing);
+      sum.yaw += sensing::wrap(was.bearing - is.bearing);
       sum.pitch += was.elevation - is.elevation;
     }
   return {sum.yaw / (kGrid * kGrid), sum.pitch / (kGrid * kGrid)};

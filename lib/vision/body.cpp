@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/body.h"
 
+#include "sensing/angles.h"
+
 namespace cerberus::vision {
 namespace {
 
@@ -172,7 +174,7 @@ void Body::predict_away(double seconds, const Gaze& gaze) {
   const Point before{x.position, y.position};
   predict(seconds);
   const double pixels = gaze.lens.focal_length() * magnification;  // a radian, about there
-  where.bearing = wrap_angle(where.bearing + (x.position - before.x) / pixels);
+  where.bearing = sensing::wrap(where.bearing + (x.position - before.x) / pixels);
   where.elevation -= (y.position - before.y) / pixels;
   const auto seen = gaze.project(where);
   ahead = seen.has_value();

@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include "sensing/angles.h"
+
 namespace cerberus::vision {
 namespace {
 
@@ -12,15 +14,6 @@ constexpr double kAhead = 0.05;  // cosine: less than 87 degrees off the axis
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
-
-double wrap_angle(double radians) {
-  constexpr double turn = 2 * std::numbers::pi;
-  if (!std::isfinite(radians)) return kNan;
-  double a = std::fmod(radians + std::numbers::pi, turn);
-  if (a < 0) a += turn;
-  // fmod of a tiny negative number plus a turn rounds to the turn itself.
-  return a >= turn ? -std::numbers::pi : a - std::numbers::pi;
-}
 
 Lens::Lens(double horizontal_fov, Size frame) : frame_(frame) {
   if (horizontal_fov > 0 && horizontal_fov < std::numbers::pi && frame.width > 0 && frame.height > 0)
@@ -36,7 +29,7 @@ Lens::Ray Lens::ray(Point p, double tilt) const {
 Direction Lens::direction(Point p, double pan, double tilt) const {
   if (!known()) return {kNan, kNan};
   const Ray r = ray(p, tilt);
-  return {wrap_angle(pan + std::atan2(r.right, r.ahead)), std::atan2(r.up, std::hypot(r.right, r.ahead))};
+  return {sensing::wrap(pan + std::atan2(r.right, r.ahead)), std::atan2(r.up, std::hypot(r.right, r.ahead))};
 }
 
 std::optional<Point> Lens::project(const Direction& d, double pan, double tilt) const {

@@ -25,9 +25,6 @@ struct Direction {
   double elevation = 0;  // -pi/2 .. pi/2
 };
 
-// The same angle in [-pi, pi). NaN and infinity become NaN.
-double wrap_angle(double radians);
-
 // Where an object stands, as far as lens and floor tell. NaN = unknown.
 struct Placement {
   double bearing;           // of the middle of the box, radians
