@@ -5,13 +5,12 @@
 #include <cmath>
 
 #include "vision/room.h"
+#include "vision/scene_memory.h"
 
 namespace cerberus::vision {
 namespace {
 
-constexpr int kSecond = 25;  // frames in which something small must be seen twice,
-constexpr int kUnsettled =
-    12;  // and those in which the scene's memory has errors of its own nearly everywhere
+constexpr int kSecond = 25;            // frames in which something small must be seen twice
 constexpr double kSmall = 0.015;       // share of the picture
 constexpr double kSpeck = 1 / 1280.0;  // and below this it says nothing yet
 constexpr double kCommon = 0.5;        // share of a box that lies where something was

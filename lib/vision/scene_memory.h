@@ -10,6 +10,9 @@
 
 namespace cerberus::vision {
 
+// Frames in which a memory has errors of registration of its own nearly everywhere.
+inline constexpr int kUnsettled = 12;
+
 struct SceneMemoryInput {
   GrayView picture;     // F(k), analysis pixels, not blurred
   GrayView difference;  // D(k) in frame k
