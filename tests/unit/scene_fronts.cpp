@@ -3,6 +3,8 @@
 #include "vision/scene_fronts.h"
 
 #include <algorithm>
+#include <random>
+#include <vector>
 
 #include "support/suite.h"
 
@@ -79,12 +81,28 @@ START_TEST(one_side_is_the_scene_s) {
 }
 END_TEST
 
-START_TEST(noise_has_no_sides) {
+// Seventy grey levels of noise, in grains of so many pixels, are full of edges.
+START_TEST(gravel_has_no_sides_that_go_on) {
+  for (const int grain : {1, 2, 3, 4}) {
+    Scene scene;
+    std::mt19937 random(5);
+    std::vector<std::uint8_t> grains(static_cast<std::size_t>(kSize.area()));
+    for (std::uint8_t& g : grains) g = static_cast<std::uint8_t>(65 + random() % 71);
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x)
+        scene.frame.view().at(x, y) =
+            grains[static_cast<std::size_t>(y / grain) * kSize.width + static_cast<std::size_t>(x / grain)];
+    ck_assert_int_eq(scene.join({60, 16, 20, 8}, {60, 76, 20, 6}), 0);
+  }
+}
+END_TEST
+
+// Where the wall behind somebody ends and the floor begins his sides are the other way round from there on.
+START_TEST(a_side_may_turn_where_another_scene_begins) {
   Scene scene;
-  for (int y = 0; y < kSize.height; ++y)
-    for (int x = 0; x < kSize.width; ++x)
-      scene.frame.view().at(x, y) = static_cast<std::uint8_t>(100 + (x * 7 + y * 13 + x * y) % 5);
-  ck_assert_int_eq(scene.join({60, 16, 20, 8}, {60, 76, 20, 6}), 0);
+  scene.paint({0, 48, 160, 72}, 40);
+  scene.paint({60, 20, 20, 60}, 70);
+  ck_assert_int_eq(scene.join({60, 16, 20, 8}, {60, 76, 20, 6}), 20 * 52);
 }
 END_TEST
 
@@ -111,9 +129,9 @@ START_TEST(a_side_out_of_the_picture_is_none) {
 END_TEST
 
 int main() {
-  return run_suite(
-      "scene_fronts",
-      {what_has_its_sides_from_front_to_front_is_one, the_sides_may_lean,
-       where_the_scene_is_seen_between_them_they_are_two, one_side_is_the_scene_s, noise_has_no_sides,
-       who_is_beside_or_far_or_of_other_columns_is_another, a_side_out_of_the_picture_is_none});
+  return run_suite("scene_fronts",
+                   {what_has_its_sides_from_front_to_front_is_one, the_sides_may_lean,
+                    where_the_scene_is_seen_between_them_they_are_two, one_side_is_the_scene_s,
+                    gravel_has_no_sides_that_go_on, a_side_may_turn_where_another_scene_begins,
+                    who_is_beside_or_far_or_of_other_columns_is_another, a_side_out_of_the_picture_is_none});
 }
