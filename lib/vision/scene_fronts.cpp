@@ -12,9 +12,9 @@ constexpr double kCommon = 0.6;  // share of the wider one's columns that both h
 constexpr double kLean = 4.5;    // nobody is so many times as tall as wide
 constexpr int kEdge = 6;         // grey levels of contrast: what is noise to the comparison is so here
 constexpr int kSlack = 2;        // pixels to either side in which a side is looked for
-// Beside a thing it is brighter, or darker, all along. Gravel has edges in every row, too, but which way they go changes
-// from grain to grain: of rows as far apart as a side is looked for, both go the same way in a quarter. Of a thing's it
-// is more than half, also where one scene ends behind it and another begins.
+// Beside a thing it is brighter, or darker, all along. Gravel has edges in every row, too, but which way they go
+// changes from grain to grain: of rows as far apart as a side is looked for, both go the same way in a quarter. Of a
+// thing's it is more than half, also where one scene ends behind it and another begins.
 constexpr int kGrain = 2 * kSlack;
 constexpr double kSides = 0.5;
 
