@@ -19,10 +19,10 @@ constexpr double degrees(double radians) {
 
 // The same direction in [-pi, pi). NaN and infinity become NaN.
 inline double wrap(double radians) {
-  constexpr double turn = 2 * std::numbers::pi;
   if (radians >= -std::numbers::pi && radians < std::numbers::pi) return radians;
-  const double wrapped = radians - turn * std::floor((radians + std::numbers::pi) / turn);
-  return wrapped >= std::numbers::pi ? wrapped - turn : wrapped;
+  const double wrapped =
+      std::remainder(radians, 2 * std::numbers::pi);  // without a rounding error, in [-pi, pi]
+  return wrapped == std::numbers::pi ? -std::numbers::pi : wrapped;
 }
 
 }  // namespace cerberus::sensing

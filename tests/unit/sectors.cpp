@@ -36,8 +36,16 @@ START_TEST(directions_wrap_and_keep_their_meaning) {
       ck_assert_double_eq_tol(wrap(radians(angle + 360 * turn)), radians(angle), 1e-12);
   ck_assert(std::isnan(wrap(kNan)));
   ck_assert(std::isnan(wrap(std::numeric_limits<double>::infinity())));
-  // Never pi itself, however the rounding falls.
+  // Never pi itself nor beyond -pi, however the rounding falls and however far a stranger says a head has turned.
   ck_assert(wrap(std::nextafter(-std::numbers::pi, -4)) < std::numbers::pi);
+  for (double degrees = -1e6 + 100; degrees < 1e6; degrees += 180) {  // odd and even multiples of half a turn
+    const double wrapped = wrap(radians(degrees - std::fmod(degrees, 180)));
+    ck_assert(wrapped >= -std::numbers::pi && wrapped < std::numbers::pi);
+  }
+  for (const double far : {3e15, 1e16, 1e300}) {
+    ck_assert_double_eq_tol(std::sin(wrap(far)), std::sin(std::remainder(far, 2 * std::numbers::pi)), 1e-12);
+    ck_assert_double_eq(wrap(-far), -wrap(far));
+  }
 }
 END_TEST
 
