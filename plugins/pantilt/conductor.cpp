@@ -88,7 +88,7 @@ void Conductor::set_live(bool live) {
     const std::lock_guard guard(ticker_lock_);
     new_lack = watched && !start_ticker();
   }
-  if (new_lack) say_unwatched();
+  if (new_lack) halt_unwatched();
 }
 
 void Conductor::heed(GstEvent* event) {
@@ -130,7 +130,7 @@ bool Conductor::run() {
   return start_ticker();
 }
 
-void Conductor::say_unwatched() {
+void Conductor::halt_unwatched() {
   Outbox out = outbox();
   station.halt("nobody watches over it", now(), kHaltPatience, out);
   GST_ELEMENT_ERROR(sink, RESOURCE, FAILED,

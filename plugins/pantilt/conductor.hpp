@@ -38,7 +38,8 @@ struct Conductor {
   // the caller says so when it holds no lock.
   bool run();
   void pause();
-  void say_unwatched();
+  // What is to be done then: the head stops, and an error says why. With no lock held.
+  void halt_unwatched();
 
   // A downstream event; a decision between two frames is obeyed.
   void heed(GstEvent* event);

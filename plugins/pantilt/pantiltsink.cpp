@@ -259,7 +259,7 @@ GstStateChangeReturn play(Conductor& conductor) {
   if (changing) changing.unlock();
   guarded(element, [&] {
     conductor.tell(out);
-    if (unwatched) conductor.say_unwatched();  // last: whoever is told may change the state again
+    if (unwatched) conductor.halt_unwatched();  // last: whoever is told may change the state again
   });
   return done;
 }

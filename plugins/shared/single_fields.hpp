@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Video of single fields (`interlace-mode=alternate`), which has a caps feature of its own. Nobody here reads it. Sink
 // pads take its caps all the same, and source pads give what `deinterlace` would make of it: so a pipeline is linked,
-// and whoever refuses it in set_caps can say what to do, where there would be a bare "not negotiated".
+// and whoever refuses it in set_caps can say what to do, where there would be a bare "not negotiated". (That stays
+// where something downstream asks for another size.)
 #pragma once
 
 #include <cerberus/caps.h>
 
-namespace cerberus::plugin {
-
-#define CERBERUS_SINGLE_FIELDS_CAPS \
+#define SINGLE_FIELDS_CAPS \
   "video/x-raw(" GST_CAPS_FEATURE_FORMAT_INTERLACED "), interlace-mode = (string) alternate"
 // For the template of a sink pad that refuses them in words.
-#define CERBERUS_SINK_CAPS CERBERUS_VIDEO_CAPS "; " CERBERUS_SINGLE_FIELDS_CAPS
+#define VIDEO_AND_SINGLE_FIELDS_CAPS CERBERUS_VIDEO_CAPS "; " SINGLE_FIELDS_CAPS
 
-// In transform_caps, from the source pad to the sink pad: `caps` and those. Takes `caps`.
+namespace cerberus::plugin {
+
+// In transform_caps, from the source pad to the sink pad: `caps` and those, or none where none fit. Takes `caps`.
 inline GstCaps* with_single_fields(GstCaps* caps) {
-  return gst_caps_merge(caps, gst_caps_from_string(CERBERUS_SINGLE_FIELDS_CAPS));
+  if (gst_caps_is_empty(caps)) return caps;
+  return gst_caps_merge(caps, gst_caps_from_string(SINGLE_FIELDS_CAPS));
 }
 
 // And from the sink pad to the source pad: `caps`, with whole pictures in place of those. Takes `caps`.

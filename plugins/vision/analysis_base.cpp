@@ -333,8 +333,8 @@ void class_init(CerberusAnalysisClass* klass) {
                           "what all analysing elements share");
   install_properties<CerberusAnalysis, kProperties>(G_OBJECT_CLASS(klass));
 
-  static GstStaticPadTemplate sink =
-      GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_SINK_CAPS));
+  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS,
+                                                             GST_STATIC_CAPS(VIDEO_AND_SINGLE_FIELDS_CAPS));
   static GstStaticPadTemplate src =
       GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink);

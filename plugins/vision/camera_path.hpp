@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Where the camera went since the last frame seen here, however many frames were dropped on the way: `cameramotion`
 // adds up what it measures (CameraPath), and two points of one path tell the rest of the corridor the way from one to
-// the other (CameraFollower). Knows nothing of time stamps, which whoever drops frames may have written anew.
+// the other (CameraFollower). Where there is a path no time stamps are needed: whoever drops frames may have written them
+// anew.
 #pragma once
 
 #include <cerberus/cerberus.h>

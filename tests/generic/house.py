@@ -69,7 +69,7 @@ def check_direction(path):
 
 
 # A plugin takes from no other plugin: what several need is in plugins/shared (or in lib, or in gst). And what only one
-# needs is not there.
+# needs, and no header there, is not there.
 users_of_shared = {}
 
 
@@ -92,7 +92,7 @@ def check_shared():
     for path in sorted((TOP / 'plugins' / 'shared').glob('*.hpp')):
         users = users_of_shared.get(path, set())
         if len(users - {'shared'}) < 2 and 'shared' not in users:
-            complain(path, f'is needed by fewer than two plugins')
+            complain(path, 'is needed by fewer than two plugins')
 
 
 # An installed header must not lean on one that is not installed.
