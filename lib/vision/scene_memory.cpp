@@ -2,7 +2,6 @@
 #include "vision/scene_memory.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "vision/blur.h"

@@ -131,6 +131,7 @@ Round reactions() {
 std::atomic<bool>& judged_nothing() {
   static void* const place =
       mmap(nullptr, sizeof(std::atomic<bool>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  g_assert(place != MAP_FAILED);
   return *static_cast<std::atomic<bool>*>(place);
 }
 

@@ -32,12 +32,6 @@ struct WithoutThreads {
   ~WithoutThreads() { no_threads = false; }
 };
 
-GstBuffer* turning_right(GstClockTime pts) {
-  GstBuffer* buffer = frame_at(pts);
-  add(buffer, CERBERUS_FUSION_TURN_RIGHT);
-  return buffer;
-}
-
 // It was said once what is the matter.
 void assert_complained(Rig& rig) {
   g_autoptr(GstMessage) message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ERROR);
@@ -122,14 +116,16 @@ GST_START_TEST(without_a_thread_no_frame_of_a_live_stream_is_taken) {
   {
     const WithoutThreads none;
     rig.begin();
-    fail_unless_equals_int(gst_harness_push(rig.harness, turning_right(0)), GST_FLOW_ERROR);
+    fail_unless_equals_int(gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT, 0)),
+                           GST_FLOW_ERROR);
   }
   assert_complained(rig);
   const std::vector<Message> messages = rig.messages();
   fail_unless_equals_int(static_cast<int>(messages.size()), 1);
   fail_unless_equals_string(messages[0].state.c_str(), "stopped");
   fail_unless_equals_string(messages[0].reason.c_str(), "nobody watches over it");
-  fail_unless_equals_int(gst_harness_push(rig.harness, turning_right(kFrame)), GST_FLOW_ERROR);
+  fail_unless_equals_int(gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT, kFrame)),
+                         GST_FLOW_ERROR);
   assert_no_complaint(rig);
   // Nor is it in anybody's hand, whatever is flushed.
   fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
@@ -145,7 +141,7 @@ GST_START_TEST(without_a_thread_no_frame_of_a_live_stream_is_taken) {
   gst_element_set_state(rig.element, GST_STATE_PLAYING);
   rig.messages();
   rig.begin();
-  rig.push(turning_right(0));
+  rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, 0));
   const std::string states = rig.states();
   fail_unless_equals_string(states.c_str(), "turning");
 }

@@ -4,9 +4,7 @@
 #include "vision/labelling.h"
 
 #include <algorithm>
-#include <cstring>
 #include <random>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <random>
-#include <string>
 
 #include "drivers/simulated_head.h"
 #include "support/allocations.h"

@@ -5,7 +5,6 @@
 #include <check.h>
 
 #include <random>
-#include <string>
 #include <vector>
 
 #include "support/allocations.h"
