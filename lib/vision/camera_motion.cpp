@@ -166,7 +166,10 @@ MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
   const bool turns =
       model == MotionModel::similarity && (level == 0 || !fit.transform.is_affine() ||
                                            mean_motion(fit.transform, size) > kBentAtOnce * (1 << level));
-  return turns ? fit_turn(samples, size, fit, known) : fit;
+  if (!turns) return fit;
+  MotionFit turned = fit_turn(samples, size, fit, known);
+  turned.rival = fit.rival;
+  return turned;
 }
 
 // What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a
@@ -211,7 +214,12 @@ std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samp
   const auto stands = [&] {
     if (motion < (still ? kStillMotion : 0.1)) return true;
     // A large and lively object: the rest of the picture, in many places, says that nothing moves.
-    if (motion > 1) return none.support > (still ? 0.6 : 0.85) * fit.support;
+    const bool contested = fit.rival.has_value();
+    const double here = contested ? none.ground : none.support, there = contested ? fit.ground : fit.support;
+    if (motion > 1) return here > (still ? 0.6 : 0.85) * there;
+    // A camera that stood is not set in motion by so little of which so few know: what moves on adds up, as the
+    // reference stays.
+    if (still && (contested || share.all < 0.5)) return true;
     // Too little to tell: the fit explains the samples hardly better than standing still does.
     const double unexplained = fit.agreeing > 1 ? fit.cost / fit.agreeing : 1;
     return none.support > 0.9 * fit.support && none.cost - fit.cost < 12 * std::max(1.0, unexplained);
@@ -299,13 +307,19 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   Transform motion = first_guess(matches, top, shifts, prior);
   const bool bent = prior && bend(*prior, size) > kBent;
   MotionFit fit;
+  std::optional<Transform> rival;  // patches are looked for on its way, too
   share = {};
   for (int level = top; level >= 0; --level) {
     // Where the coarsest level agreed, the finest one finds its patches without those in between.
     if (level < top && level > 0 && share.all > kMajority) continue;
-    if (level < top) matches.follow(reference, current, level, motion);
-    const std::array guesses{Transform{}, motion};
+    const std::array motions{Transform{}, motion, rival.value_or(motion)};
+    const auto guesses = std::span(motions).first(rival ? 3 : 2);
+    if (level < top && rival)
+      matches.follow(reference, current, level, guesses.subspan(1));
+    else if (level < top)
+      matches.follow(reference, current, level, motion);
     fit = fit_on(level, matches.samples(), guesses, lens);
+    rival = fit.rival;
     if (bent && options.model != MotionModel::none)
       if (const MotionFit turned = fit_beyond(*prior, level, matches.samples(), motion);
           turned.support > fit.support)

@@ -2,6 +2,7 @@
 #include "vision/motion_fit.h"
 
 #include <algorithm>
+#include <bitset>
 #include <cmath>
 #include <span>
 
@@ -37,7 +38,8 @@ void measure(const MotionSamples& s, const Transform& t, Distances& distances) {
   }
 }
 
-double support_of(const MotionSamples& s, const Distances& distances) {
+// Evidence of what lies within the gate, of each region.
+std::array<float, MotionSamples::kRegions> agreement_of(const MotionSamples& s, const Distances& distances) {
   Distances parts;
   for (int i = 0; i < s.count; ++i) {
     const float part = 1.0f - distances[i] * (1.0f / kGate);
@@ -47,9 +49,15 @@ double support_of(const MotionSamples& s, const Distances& distances) {
   constexpr int kLanes = 4;
   std::array<std::array<float, MotionSamples::kRegions>, kLanes> sums{};
   for (int i = 0; i < s.count; ++i) sums[i % kLanes][s.region[i]] += parts[i];
-  double support = 0;
+  std::array<float, MotionSamples::kRegions> agreement;
   for (int r = 0; r < MotionSamples::kRegions; ++r)
-    support += std::sqrt(sums[0][r] + sums[1][r] + (sums[2][r] + sums[3][r]));
+    agreement[r] = sums[0][r] + sums[1][r] + (sums[2][r] + sums[3][r]);
+  return agreement;
+}
+
+double support_of(const MotionSamples& s, const Distances& distances) {
+  double support = 0;
+  for (const float agreement : agreement_of(s, distances)) support += std::sqrt(agreement);
   return support;
 }
 
@@ -57,6 +65,33 @@ double support_of(const MotionSamples& s, const Transform& t) {
   Distances distances;
   measure(s, t, distances);
   return support_of(s, distances);
+}
+
+// Who is near fills the middle and reaches the lower edge; what surrounds him is ground (the prior of Wei, Wen, Zhu,
+// Sun, Geodesic saliency using background priors, ECCV 2012). What the six parts in the middle say counts a quarter.
+constexpr double kInside = 0.25;
+constexpr std::array<double, MotionSamples::kRegions> kGround{1, 1,       1,       1,  //
+                                                              1, kInside, kInside, 1,  //
+                                                              1, kInside, kInside, 1,  //
+                                                              1, kInside, kInside, 1};
+
+using Followers = std::bitset<MotionSamples::kMax>;
+
+Followers followers_of(const MotionSamples& s, const Distances& distances) {
+  Followers followers;
+  for (int i = 0; i < s.count; ++i) followers[i] = distances[i] <= kGate;
+  return followers;
+}
+
+Followers followers_of(const MotionSamples& s, const Transform& t) {
+  Distances distances;
+  measure(s, t, distances);
+  return followers_of(s, distances);
+}
+
+// Whether two motions mean the same: most of what follows the one that fewer follow goes along with the other.
+bool alike(const Followers& a, const Followers& b) {
+  return 2 * (a & b).count() > std::min(a.count(), b.count());
 }
 
 // The similarity that takes sample i's and j's points of frame k-1 to those of frame k; false if it is no camera
@@ -77,37 +112,32 @@ class Contenders {
   struct Entry {
     Transform transform;
     double support = 0;
+    Followers followers;
   };
 
-  explicit Contenders(Size picture) : picture_(picture), alike_(0.02 * picture.width) {}
+  explicit Contenders(const MotionSamples& samples) : samples_(samples) {}
 
-  void add(const Transform& t, double support) {
+  void add(const Transform& t) {
+    Distances distances;
+    measure(samples_, t, distances);
+    const double support = support_of(samples_, distances);
     if (count_ == kMost && support <= entries_[kMost - 1].support) return;
+    const Followers followers = followers_of(samples_, distances);
     int place = 0;  // of the entry it takes over: its like, or the weakest
-    while (place < count_ && !alike(entries_[place].transform, t)) ++place;
+    while (place < count_ && !alike(entries_[place].followers, followers)) ++place;
     if (place < count_ && support <= entries_[place].support) return;
     if (place == count_) place = count_ < kMost ? count_++ : kMost - 1;
     for (; place > 0 && entries_[place - 1].support < support; --place) entries_[place] = entries_[place - 1];
-    entries_[place] = {t, support};
+    entries_[place] = {t, support, followers};
   }
   Transform best() const { return entries_[0].transform; }
   double most() const { return entries_[0].support; }
   std::span<const Entry> all() const { return {entries_.data(), static_cast<std::size_t>(count_)}; }
 
  private:
-  static constexpr int kMost = 3;
+  static constexpr int kMost = 5;
 
-  bool alike(const Transform& a, const Transform& b) const {
-    const double right = picture_.width - 1, low = picture_.height - 1;
-    for (const Point p : {Point{0, 0}, Point{right, low}, Point{0.5 * right, 0.5 * low}}) {
-      const Point q = a.apply(p), r = b.apply(p);
-      if (std::abs(q.x - r.x) + std::abs(q.y - r.y) > alike_) return false;
-    }
-    return true;
-  }
-
-  Size picture_;
-  double alike_;
+  const MotionSamples& samples_;
   int count_ = 0;
   std::array<Entry, kMost> entries_;
 };
@@ -183,7 +213,11 @@ MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
   measure(s, transform, distances);
   MotionFit fit;
   fit.transform = transform;
-  fit.support = support_of(s, distances);
+  const auto agreement = agreement_of(s, distances);
+  for (int r = 0; r < MotionSamples::kRegions; ++r) {
+    const double part = std::sqrt(agreement[r]);
+    fit.support += part, fit.ground += kGround[r] * part;
+  }
   double squares = 0;
   for (int i = 0; i < s.count; ++i) {
     fit.cost += s.evidence[i] * std::min(distances[i], kGate);
@@ -206,8 +240,8 @@ double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Tr
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses, int turns, const LensBend& known) {
-  Contenders contenders(picture);
-  for (const Transform& t : guesses) contenders.add(t, support_of(s, t));
+  Contenders contenders(s);
+  for (const Transform& t : guesses) contenders.add(t);
   if (model == MotionModel::none || s.count == 0) return rate_motion(s, contenders.best());
   const double least_distance = 0.15 * picture.width;
   std::uint32_t random = 12345;  // linear congruence (Numerical Recipes), its upper bits
@@ -221,41 +255,52 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     const int i = draw(), j = draw();
     Transform t = Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]);
     const bool shift = model == MotionModel::translation || h % 4 == 0;
-    if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t, support_of(s, t));
+    if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t);
   }
   // What a wide lens bends is too far from any similarity to be found from one: turns through the lens that is known,
-  // each of one sample.
+  // or of 50, 65, 80 and 100 degrees, each of one sample.
+  constexpr std::array kLenses{0.3, 0.6, 1.2, 2.4};
   const bool may_bend = model == MotionModel::similarity || model == MotionModel::homography;
   const MotionLeastSquares squares(picture);
-  for (int h = 0; h < turns && may_bend && known.earned > kBendEarns && contenders.most() < enough; ++h) {
+  for (int h = 0; h < turns && may_bend && contenders.most() < enough; ++h) {
     const int i = draw();
-    const Transform t = squares.turn({s.x[i], s.y[i]}, {s.u[i], s.v[i]}, known.bend);
-    if (t.is_sane(picture)) contenders.add(t, support_of(s, t));
+    const double bend = known.earned > kBendEarns ? known.bend : kLenses[h % kLenses.size()];
+    const Transform t = squares.turn({s.x[i], s.y[i]}, {s.u[i], s.v[i]}, bend);
+    if (t.is_sane(picture)) contenders.add(t);
   }
   // A hypothesis from two samples carries their errors; only refined ones can be compared.
-  constexpr double kHopeless = 0.7;
+  constexpr double kHopeless = 0.4;
   const MotionModel simple = std::min(model, MotionModel::similarity);
-  Transform best;
-  LensBend lens;
-  double most = -1;
-  for (const auto& [hypothesis, support] : contenders.all()) {
-    if (support < kHopeless * most) break;
-    Transform refined = hypothesis;
-    double after = 0;
-    LensBend seen;
+  MotionFit fit, rival;
+  Followers follow_fit;
+  bool first = true;
+  for (const auto& [hypothesis, support, unrefined] : contenders.all()) {
+    if (support < kHopeless * contenders.most()) break;
+    MotionFit refined;
     if (may_bend && !hypothesis.is_affine()) {
-      const MotionFit turn = turned(s, picture, Shutter::global, known, hypothesis);
-      refined = turn.transform, after = turn.support, seen = turn.lens;
+      refined = turned(s, picture, Shutter::global, known, hypothesis);
     } else {
-      after = refine_motion(s, simple, picture, refined);
+      Transform t = hypothesis;
+      refine_motion(s, simple, picture, t);
+      refined = rate_motion(s, t);
     }
-    if (after > most) most = after, best = refined, lens = seen;
+    const Followers followers = followers_of(s, refined.transform);
+    if (first) {
+      fit = refined, follow_fit = followers, first = false;
+    } else if (alike(followers, follow_fit)) {
+      if (refined.support > fit.support) fit = refined, follow_fit = followers;
+    } else if (refined.ground > fit.ground) {
+      rival = fit, fit = refined, follow_fit = followers;
+    } else if (refined.ground > rival.ground) {
+      rival = refined;
+    }
   }
-  MotionFit fit = rate_motion(s, best);
-  fit.lens = lens;
+  if (rival.ground > 0) fit.rival = rival.transform;
   if (model <= MotionModel::similarity) return fit;
+  Transform best = fit.transform;
   refine_motion(s, model, picture, best);
-  const MotionFit finer = rate_motion(s, best);
+  MotionFit finer = rate_motion(s, best);
+  finer.rival = fit.rival;
   const double earns = model == MotionModel::affine ? kAffineEarns : kHomographyEarns;
   return is_as_supported(finer, fit) && earned(finer, fit) > earns ? finer : fit;
 }

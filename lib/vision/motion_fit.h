@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "vision/transform.h"
@@ -40,10 +41,13 @@ struct LensBend {
 struct MotionFit {
   Transform transform;
   double support = 0;   // sum over regions of the square root of their evidence that agrees
+  double ground = 0;    // the same with what the middle of the picture says counted less
   double cost = 0;      // sum of evidence times the squared Mahalanobis distance, cut off at kGate
   double agreeing = 0;  // evidence of the samples within the gate
   double residual = 0;  // RMS distance of those, pixels
   LensBend lens;        // what these samples say by themselves; of a turn only
+  // Another motion that others of the samples follow, with nearly as much support; of fit_motion() only.
+  std::optional<Transform> rival;
 };
 
 // Squared Mahalanobis distance (two degrees of freedom: 1 % of honest samples are beyond) at which a sample disagrees.
@@ -57,10 +61,11 @@ bool follows(const MotionSamples& samples, int i, const Transform& transform);
 MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
 
 // Consensus over `hypotheses` random pairs of samples (a fixed sequence: the same input gives the same output), over
-// `guesses`, and over as many `turns` through the lens, where that is `known`; then least squares with Tukey's weights
-// over what agrees. The model is reduced where the samples cannot carry it. Returns the guess with most support where
-// there are no samples at all (identity without guesses). A similarity comes out bent where a turn has most support:
-// fit_turn() says whether it is worth it.
+// `guesses`, and over as many `turns` through the lens that is `known`, or through lenses of all kinds; then least
+// squares with Tukey's weights over what agrees. Where motions with different followers compete, that of the ground is
+// taken: who is near stands in the middle, and what surrounds him is the background. The model is reduced where the
+// samples cannot carry it. Returns the guess with most support where there are no samples at all (identity without
+// guesses). A similarity comes out bent where a turn is the best: fit_turn() says whether it is worth it.
 MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses, int turns = 0,
                      const LensBend& known = {});

@@ -5,6 +5,7 @@
 #include <check.h>
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <numeric>
 #include <vector>
@@ -118,6 +119,41 @@ START_TEST(objects_over_nearly_half_the_picture_do_not_move_the_camera) {
   const CameraMotionResult r = camera.update(later.view());
   ck_assert_msg(disagreement(r.transform, truth) < 0.3, "off by %g", disagreement(r.transform, truth));
   ck_assert_double_lt(r.confidence, 0.75);  // it says how much disagrees
+}
+END_TEST
+
+// Frames in which a camera is astray by more than a pixel while it stands for 5 frames and then pans by `pan` pixels a
+// frame, 24 in all. Somebody who covers that many pixels to a side sways before it.
+int astray_behind(int side, double pan, double view) {
+  const Scene scene(31);
+  const Image<std::uint8_t> coat = picture(Scene(90, 60));
+  const Lens lens(view * M_PI / 180, kSize);
+  std::mt19937 random(24);
+  CameraMotion camera;
+  Transform motion;
+  int astray = 0;
+  for (int k = 0; k < 24; ++k) {
+    const double angle = k < 5 ? 0 : std::atan(pan / lens.focal_length());
+    const Transform turn = lens.turn(0, 0, angle, 0);
+    motion = turn * motion;
+    Image<std::uint8_t> frame = picture(scene, motion);
+    const int x = (kSize.width - side) / 2 + static_cast<int>(std::lround(30 * std::sin(k / 5.0)));
+    paste(coat, frame.view(), x, kSize.height - side, side, side);
+    add_noise(frame.view(), 2, 4, random);
+    const CameraMotionResult r = camera.update(frame.view());
+    ck_assert_int_eq(r.scene_age, k + 1);
+    if (k > 0) astray += disagreement(r.transform, turn) > 1;
+  }
+  return astray;
+}
+
+START_TEST(a_pan_is_followed_behind_somebody_close) {
+  for (const double view : {60.0, 95.0})
+    for (const double pan : {1.0, 4.0, 10.0}) {
+      const int fifth = astray_behind(120, pan, view), quarter = astray_behind(138, pan, view);
+      ck_assert_msg(fifth == 0 && quarter <= 1, "a lens of %g, %g pixels a frame: %d and %d frames astray",
+                    view, pan, fifth, quarter);
+    }
 }
 END_TEST
 
@@ -252,7 +288,7 @@ int main() {
        over_a_heads_turn_a_simple_model_is_as_good_as_a_homography,
        an_affine_motion_is_found_by_the_affine_model,
        translation_alone_gives_translation_alone_and_none_gives_identity,
-       objects_over_nearly_half_the_picture_do_not_move_the_camera,
+       objects_over_nearly_half_the_picture_do_not_move_the_camera, a_pan_is_followed_behind_somebody_close,
        a_camera_that_pans_along_a_bare_wall_goes_on,
        a_camera_that_saw_nothing_for_a_while_knows_where_it_goes_from_the_first_wide_thing,
        an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy,

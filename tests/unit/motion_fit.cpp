@@ -121,6 +121,34 @@ START_TEST(agreement_all_over_the_picture_beats_the_same_number_in_one_place) {
 }
 END_TEST
 
+// Somebody who covers nearly half of the picture, from the lower edge on, and a wall with little on it.
+START_TEST(what_surrounds_the_middle_of_the_picture_is_the_background) {
+  std::mt19937 random(15);
+  for (const Transform& camera : {Transform::translation(-6, 1), Transform{}, kTurn}) {
+    MotionSamples s = samples_of(camera, random);
+    int near = 0, bare = 0;
+    for (int i = 0; i < s.count; ++i)
+      if (s.x[i] > 60 && s.x[i] < 260 && s.y[i] > 60)
+        s.u[i] = s.x[i] + 5, s.v[i] = s.y[i] - 1, ++near;
+      else if (i % 3 == 0)
+        s.evidence[i] = 0.05f, s.wxx[i] = s.wyy[i] = 0.2f, ++bare;
+    ck_assert_int_eq(near, 90);
+    ck_assert_int_gt(bare, 30);
+    const MotionFit fit = fit_motion(s, MotionModel::similarity, kSize, {}, 96);
+    ck_assert_double_lt(disagreement(fit.transform, camera), 0.3);
+    ck_assert(fit.rival);
+    ck_assert_double_lt(disagreement(*fit.rival, Transform::translation(5, -1)), 0.3);
+  }
+}
+END_TEST
+
+START_TEST(where_all_go_along_nothing_competes) {
+  std::mt19937 random(18);
+  for (int i = 0; i < 20; ++i)
+    ck_assert(!fit_motion(samples_of(kTurn, random), MotionModel::similarity, kSize, {}, 96).rival);
+}
+END_TEST
+
 START_TEST(edges_that_know_one_direction_only_are_combined) {
   // Half of the samples know x only, half y only; what they do not know is wildly wrong.
   std::mt19937 random(6);
@@ -199,6 +227,21 @@ START_TEST(a_wide_lens_that_is_known_turns_behind_somebody_close) {
     for (int i = 0; i < 5; ++i) known.learn(turn_in(samples_of(truth, random), known).lens);
     ck_assert_double_lt(disagreement(turn_in(s, known).transform, truth), 0.6);
   }
+}
+END_TEST
+
+// A similarity follows neither the whole of such a turn nor more than somebody who goes another way.
+START_TEST(a_wide_lens_that_nobody_told_of_turns_behind_somebody_close) {
+  std::mt19937 random(19);
+  for (const double view : {65.0, 80.0, 100.0})
+    for (const double pan : {-4.0, 4.0}) {
+      const Transform truth = turn_of(view * kDegree, pan * kDegree, 0.3 * kDegree, 0);
+      MotionSamples s = samples_of(truth, random);
+      for (int i = 0; i < s.count; ++i)  // a quarter of the picture
+        if (s.x[i] > 80 && s.x[i] < 200 && s.y[i] > 80) s.u[i] = s.x[i] + 6, s.v[i] = s.y[i];
+      const double off = disagreement(turn_in(s).transform, truth);
+      ck_assert_msg(off < 0.6, "a lens of %g degrees, %g: off by %g", view, pan, off);
+    }
 }
 END_TEST
 
@@ -318,18 +361,24 @@ START_TEST(a_fit_allocates_nothing) {
 END_TEST
 
 int main() {
-  return run_suite(
-      "motion_fit",
-      {every_model_recovers_its_own_motion, exact_samples_give_the_exact_motion,
-       a_compact_object_of_45_percent_is_left_out, scattered_nonsense_of_60_percent_is_left_out,
-       agreement_all_over_the_picture_beats_the_same_number_in_one_place,
-       a_turn_through_a_lens_takes_one_point_to_the_other_and_bends,
-       a_wide_lens_that_is_known_turns_behind_somebody_close,
-       a_turn_that_the_samples_do_not_show_comes_out_unbent, edges_that_know_one_direction_only_are_combined,
-       a_richer_model_is_taken_only_where_it_earns_its_unknowns,
-       a_similarity_bends_as_a_turning_camera_does_whatever_its_lens, what_is_not_bent_stays_a_similarity,
-       a_rolling_shutter_shears_a_pan_and_stretches_a_tilt,
-       a_lens_that_is_known_bends_what_too_few_samples_show,
-       few_samples_give_the_simplest_motion_that_they_carry, no_model_takes_the_best_guess_as_it_is,
-       a_fit_allocates_nothing});
+  return run_suite("motion_fit", {every_model_recovers_its_own_motion,
+                                  exact_samples_give_the_exact_motion,
+                                  a_compact_object_of_45_percent_is_left_out,
+                                  scattered_nonsense_of_60_percent_is_left_out,
+                                  agreement_all_over_the_picture_beats_the_same_number_in_one_place,
+                                  what_surrounds_the_middle_of_the_picture_is_the_background,
+                                  where_all_go_along_nothing_competes,
+                                  a_turn_through_a_lens_takes_one_point_to_the_other_and_bends,
+                                  a_wide_lens_that_is_known_turns_behind_somebody_close,
+                                  a_wide_lens_that_nobody_told_of_turns_behind_somebody_close,
+                                  a_turn_that_the_samples_do_not_show_comes_out_unbent,
+                                  edges_that_know_one_direction_only_are_combined,
+                                  a_richer_model_is_taken_only_where_it_earns_its_unknowns,
+                                  a_similarity_bends_as_a_turning_camera_does_whatever_its_lens,
+                                  what_is_not_bent_stays_a_similarity,
+                                  a_rolling_shutter_shears_a_pan_and_stretches_a_tilt,
+                                  a_lens_that_is_known_bends_what_too_few_samples_show,
+                                  few_samples_give_the_simplest_motion_that_they_carry,
+                                  no_model_takes_the_best_guess_as_it_is,
+                                  a_fit_allocates_nothing});
 }
