@@ -18,8 +18,9 @@ constexpr double kEmptyShare = 0.2;   // and of one whose owner may be out of th
 constexpr int kShake = 3;             // frames a camera moves and stands again
 constexpr int kLeastMoved = 4;        // pixels
 constexpr int kEdge = 6;              // grey levels of contrast: what is noise to the comparison is so here
-// Times as many places of an outline are an edge of the frame only as of the memory only: an object beyond doubt.
-constexpr double kSure = 5;
+// Times as many places of an outline are an edge of the frame only as of the memory only: an object, and one beyond
+// doubt.
+constexpr double kClear = 2, kSure = 5;
 constexpr double kOutline = 0.1;    // share of the outline that says so at least
 constexpr double kOwner = 1 / 8.0;  // share of its owner's area that a place has, or an owner of its place's
 // Shares of the taller part's height.
@@ -166,7 +167,8 @@ void SceneParts::weigh(const ScenePlanes& planes, const Component& c, Part& part
 
 // Where somebody stood since the scene began the memory has his picture. He goes, the place stays: what rests while
 // something moves on that began there, too, is a place, unless its outline leaves no doubt. By itself the outline of a
-// piece of a place tells little: it ends where what stood there and what is there now happen to be alike.
+// piece of a place tells little: it ends where what stood there and what is there now happen to be alike. That of a
+// small piece tells nothing.
 void SceneParts::find_places() {
   const auto components = labeller_.components();
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -175,12 +177,13 @@ void SceneParts::find_places() {
     const bool newest = 2 * part.newest > static_cast<int>(a.area);
     const bool sure =
         part.object && !newest && part.frame_only > kSure * part.memory_only + kOutline * part.places;
-    if (part.fresh || sure || part.origin != SceneOrigins::Origin::here) continue;
+    if (part.fresh || part.origin != SceneOrigins::Origin::here) continue;
     for (std::size_t j = 0; j < components.size(); ++j) {
       const Part& other = parts_[j];
       if (!other.moving || !other.fresh || other.ghost || other.origin != SceneOrigins::Origin::here)
         continue;
       const Component& b = components[j];
+      if (sure && a.area >= kOwner * b.area) continue;
       if (b.area > kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
         part.doubtful = true, part.kept = false;
         break;
@@ -189,13 +192,14 @@ void SceneParts::find_places() {
   }
 }
 
-// Whose place has been found came from there, and is an object wherever it stops.
+// Whose place has been found came from there, and is an object wherever it stops. A piece of a place beside another one
+// is no such thing: its outline is not clear.
 void SceneParts::find_owners() {
   const auto components = labeller_.components();
   for (std::size_t i = 0; i < components.size(); ++i) {
     Part& part = parts_[i];
     if (part.origin != SceneOrigins::Origin::here || !part.moving || !part.fresh || part.ghost) continue;
-    if (!part.object) continue;
+    if (!part.object || part.frame_only < kClear * part.memory_only) continue;
     const Component& a = components[i];
     for (std::size_t j = 0; j < components.size(); ++j) {
       const Component& b = components[j];
