@@ -5,8 +5,8 @@
     in_a_machine.py INIT KERNEL-FOLDER COMMAND [ARG ...] [-- COMMAND [ARG ...]] ...
 
 INIT is guest_init, built. The machine sees the host's files, read-only, with a layer over them that is thrown away.
-The kernel: $CERBERUS_KERNEL, else the one that tests/hardware/kernel built in KERNEL-FOLDER; it is asked to build one
-if need be. Ends with 77, and says why, where something is missing.
+The kernel: $CERBERUS_KERNEL, else ../shared/vm/bzImage beside the checkout, else the one that tests/hardware/kernel
+built in KERNEL-FOLDER; it is asked to build one if need be. Ends with 77, and says why, where something is missing.
 """
 import os
 import pathlib
@@ -17,6 +17,7 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
+TOP = HERE.parents[1]
 BOOT_SECONDS = 280
 
 
@@ -29,7 +30,7 @@ def kernel(folder):
     named = os.environ.get('CERBERUS_KERNEL')
     if named and not pathlib.Path(named).is_file():
         sys.exit(f'CERBERUS_KERNEL names {named}, and there is no such file')
-    for path in (named, folder / 'bzImage'):
+    for path in (named, TOP.parent / 'shared' / 'vm' / 'bzImage', folder / 'bzImage'):
         if path and pathlib.Path(path).is_file():
             return pathlib.Path(path)
     done = subprocess.run([HERE / 'kernel', folder])

@@ -62,10 +62,9 @@ def test_the_whole_system_is_in_its_lines():
 
 def vtest():
     """The demo's own video, or None; the C++ tests look for it in the same places."""
-    places = [PROGRAM.parents[1] / 'media' / 'vtest.avi',
+    data = os.environ.get('CERBERUS_DATA') or TOP.parent / 'shared' / 'data'
+    places = [PROGRAM.parents[1] / 'media' / 'vtest.avi', pathlib.Path(data) / 'pets09_s2l1_view1' / 'vtest.avi',
               pathlib.Path('/usr/share/doc/opencv-doc/examples/data/vtest.avi')]
-    if data := os.environ.get('CERBERUS_DATA'):
-        places.insert(1, pathlib.Path(data) / 'pets09_s2l1_view1' / 'vtest.avi')
     if named := os.environ.get('CERBERUS_VIDEO'):
         places = [pathlib.Path(named)]
     return next((place for place in places if place.exists()), None)

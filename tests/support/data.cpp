@@ -29,7 +29,7 @@ std::optional<fs::path> first_there(const std::vector<fs::path>& places) {
 }  // namespace
 
 std::optional<fs::path> data_folder() {
-  return first_there(places("CERBERUS_DATA", {}));
+  return first_there(places("CERBERUS_DATA", {fs::path(CERBERUS_SOURCE_ROOT) / ".." / "shared" / "data"}));
 }
 
 std::optional<fs::path> vtest() {

@@ -9,7 +9,8 @@
 
 namespace cerberus::tests {
 
-// The folder of research data with ground truth: the environment's CERBERUS_DATA.
+// The folder of research data with ground truth: the environment's CERBERUS_DATA; else ../shared/data beside the
+// checkout.
 std::optional<std::filesystem::path> data_folder();
 
 // vtest.avi, people on a campus seen by a still camera: the environment's CERBERUS_VIDEO; else what `pipelines/setup`
