@@ -73,14 +73,15 @@ def vtest():
 def test_the_demos_sensors_call_the_head_to_whom_the_camera_does_not_see():
     if not vtest():
         return print('no vtest.avi (CERBERUS_VIDEO names it)')
-    must(gst_launch(f'filesrc location={vtest()} ! decodebin ! videoconvert ! identity eos-after=46 ! '
+    # Cut before it is decoded: a decoder of several threads may go on for frames behind an end that comes after it.
+    must(gst_launch(f'filesrc location={vtest()} ! avidemux ! identity eos-after=46 ! decodebin ! videoconvert ! '
                     'jpegenc quality=95 ! avimux ! filesink location=cut.avi'))
     start = re.search(r'start="(start-pan=[^"]+)"', (TOP / 'pipelines' / 'demo').read_text('utf-8'))[1]
     done = {}
     for sensors in (f'PIR={TOP}/pipelines/closed-loop.csv', 'SENSORS='):
         must(run(line('cut.avi', sensors=sensors) + [f'START={start}']))
         lines = json_lines('out/objects.jsonl')
-        assert len(lines) > 40, len(lines)
+        assert len(lines) == 45, len(lines)
         done[sensors[:3]] = [each['fusion']['action'] for each in lines]
         turned = max(each['pose']['pan'] for each in lines) - lines[0]['pose']['pan']
         assert (turned > 20) == (sensors != 'SENSORS='), f'{sensors}: it turned {turned} degrees'
