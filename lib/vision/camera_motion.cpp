@@ -102,6 +102,7 @@ CameraMotion& CameraMotion::operator=(CameraMotion&&) noexcept = default;
 
 void CameraMotion::set_options(const CameraMotionOptions& options) {
   state_->options = options;
+  if (options.model == MotionModel::none) state_->on_its_way = 0;
 }
 
 void CameraMotion::reset() {

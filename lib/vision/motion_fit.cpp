@@ -187,7 +187,7 @@ Transform unbent(const Transform& turn, Size picture) {
 
 // Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at
 // about one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
-constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 4.6,
+constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 6.9,
                  kHomographyEarns = 4 * 4.6;  // F(1), F(2), F(4), many
 // What honest samples leave of the cost, each direction.
 double unexplained(const MotionFit& fit) {

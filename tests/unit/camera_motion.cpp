@@ -157,10 +157,12 @@ START_TEST(a_pan_is_followed_behind_somebody_close) {
 }
 END_TEST
 
-// By how many pixels a camera is astray in each frame that pans by 4 of them past shelves, and then along a wall with
-// these things on it.
-std::vector<double> pan_along_a_wall(std::initializer_list<std::array<int, 4>> things, int frames) {
-  constexpr int kPan = 4;
+constexpr int kPan = 4;
+
+// By how many pixels a camera is astray in each frame that pans by kPan of them past shelves, and then along a wall
+// with these things on it. It is said to stand from frame none_from on.
+std::vector<double> pan_along_a_wall(std::initializer_list<std::array<int, 4>> things, int frames,
+                                     int none_from = -1) {
   std::mt19937 random(21);
   const Image<std::uint8_t> texture = picture(Scene(84, 60));
   Image<std::uint8_t> wall = flat(130, random, {kSize.width + kPan * frames, kSize.height});
@@ -173,6 +175,7 @@ std::vector<double> pan_along_a_wall(std::initializer_list<std::array<int, 4>> t
     for (int y = 0; y < kSize.height; ++y)
       std::copy_n(wall.view().row(y) + kPan * k, kSize.width, frame.view().row(y));
     add_noise(frame.view(), 2, 4, random);
+    if (k == none_from) camera.set_options({MotionModel::none});
     const CameraMotionResult r = camera.update(frame.view());
     ck_assert_int_eq(r.scene_age, k + 1);
     if (k > 0) astray.push_back(disagreement(r.transform, Transform::translation(-kPan, 0)));
@@ -184,6 +187,14 @@ START_TEST(a_camera_that_pans_along_a_bare_wall_goes_on) {
   const auto astray = pan_along_a_wall({{330, 70, 50, 60}, {600, 20, 60, 50}, {830, 150, 50, 60}}, 140);
   ck_assert_double_lt(*std::ranges::max_element(astray), 2);
   ck_assert_double_lt(std::accumulate(astray.begin(), astray.end(), 0.0), 0.3 * 139);
+}
+END_TEST
+
+// Though it is on its way past a wall that says nothing.
+START_TEST(a_camera_that_moved_stands_from_the_frame_on_in_which_the_model_says_so) {
+  const auto astray = pan_along_a_wall({{330, 70, 50, 60}}, 90, 80);
+  ck_assert_double_lt(*std::max_element(astray.begin(), astray.begin() + 79), 2);
+  for (std::size_t k = 79; k < astray.size(); ++k) ck_assert_double_eq(astray[k], kPan);
 }
 END_TEST
 
@@ -290,6 +301,7 @@ int main() {
        translation_alone_gives_translation_alone_and_none_gives_identity,
        objects_over_nearly_half_the_picture_do_not_move_the_camera, a_pan_is_followed_behind_somebody_close,
        a_camera_that_pans_along_a_bare_wall_goes_on,
+       a_camera_that_moved_stands_from_the_frame_on_in_which_the_model_says_so,
        a_camera_that_saw_nothing_for_a_while_knows_where_it_goes_from_the_first_wide_thing,
        an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy,
        the_heads_pose_finds_what_no_search_reaches_and_a_wrong_one_is_not_believed,

@@ -177,6 +177,18 @@ START_TEST(a_richer_model_is_taken_only_where_it_earns_its_unknowns) {
 }
 END_TEST
 
+// By chance one in a thousand does; in a thousand, more than five have one chance in 1700.
+START_TEST(chance_gives_an_affine_motion_one_time_in_a_thousand) {
+  std::mt19937 random(12);
+  int affine = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Transform t = fit_motion(samples_of(kTurn, random), MotionModel::affine, kSize, {}, 96).transform;
+    affine += std::abs(t.m[0] - t.m[4]) > 1e-6 || std::abs(t.m[1] + t.m[3]) > 1e-6;
+  }
+  ck_assert_msg(affine <= 5, "%d of 1000", affine);
+}
+END_TEST
+
 // K R K^-1 with the principal point in the middle.
 Transform turn_of(double field_of_view, double pan, double tilt, double roll) {
   return Lens(field_of_view, kSize).turn(0, 0, pan, tilt) * Transform::translation(159.5, 119.5) *
@@ -374,6 +386,7 @@ int main() {
                                   a_turn_that_the_samples_do_not_show_comes_out_unbent,
                                   edges_that_know_one_direction_only_are_combined,
                                   a_richer_model_is_taken_only_where_it_earns_its_unknowns,
+                                  chance_gives_an_affine_motion_one_time_in_a_thousand,
                                   a_similarity_bends_as_a_turning_camera_does_whatever_its_lens,
                                   what_is_not_bent_stays_a_similarity,
                                   a_rolling_shutter_shears_a_pan_and_stretches_a_tilt,
