@@ -96,6 +96,34 @@ START_TEST(what_moves_is_an_object) {
 }
 END_TEST
 
+// Two halves that belong together, in a picture of four times the size; and so many specks beside them, each too far
+// from the next.
+START_TEST(where_there_is_nothing_but_clutter_nothing_is_joined) {
+  constexpr Size kLarge{1280, 960};
+  constexpr Rect kLeft{400, 300, 40, 300}, kRight{460, 300, 40, 300}, kBetween{440, 300, 20, 300};
+  for (const int specks : {0, 400, 600}) {
+    Image<std::uint8_t> present(kLarge), memory(kLarge), age(kLarge), quiet(kLarge);
+    for (auto* picture : {&present, &memory}) picture->fill_bytes(100);
+    age.fill_bytes(5);
+    quiet.fill_bytes(0);
+    BitMask mask, closed;
+    for (auto* bits : {&mask, &closed}) {
+      bits->resize(bit_mask_size(kLarge));
+      const auto add = [&](const Rect& r) {
+        for (int y = r.y; y < r.y + r.height; ++y) set_bits(bits->view().row(y), r.x, r.x + r.width);
+      };
+      add(kLeft), add(kRight);
+      for (int i = 0; i < specks; ++i) add({700 + 20 * (i % 25), 10 + 30 * (i / 25), 2, 2});
+    }
+    SceneParts parts;
+    parts.make_room(kLarge);
+    parts.join({present.view(), memory.view(), age.view(), quiet.view(), true}, kWindows, closed.view(),
+               mask.view());
+    ck_assert_int_eq(count(mask, kBetween), specks > 512 ? 0 : all(kBetween));
+  }
+}
+END_TEST
+
 START_TEST(who_stopped_is_kept_for_ten_seconds) {
   for (const int since : {100, 249, 250, 251}) {
     Scene s(255);
@@ -434,6 +462,7 @@ int main() {
   return cerberus::tests::run_suite(
       "scene_parts", {windows_are_times_not_frames,
                       what_moves_is_an_object,
+                      where_there_is_nothing_but_clutter_nothing_is_joined,
                       who_stopped_is_kept_for_ten_seconds,
                       whose_place_is_empty_is_forgotten_at_once,
                       what_the_memory_saw_for_moments_needs_motion_now,
