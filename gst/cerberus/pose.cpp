@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cerberus/pose.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -86,8 +87,10 @@ gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_t
                                 gdouble* tilt) {
   g_return_val_if_fail(pose, FALSE);
   GstClockTime when = running_time;
-  if (!GST_CLOCK_TIME_IS_VALID(when) || when < pose->valid_from) when = pose->valid_from;
-  if (GST_CLOCK_TIME_IS_VALID(pose->valid_until) && when > pose->valid_until) when = pose->valid_until;
+  if (!GST_CLOCK_TIME_IS_VALID(when) || when < pose->valid_from)
+    when = pose->valid_from;
+  else if (GST_CLOCK_TIME_IS_VALID(pose->valid_until) && when > pose->valid_until)
+    when = std::max(pose->valid_from, pose->valid_until);
   const double dt = static_cast<double>(when - pose->valid_from) / GST_SECOND;
   if (pan) *pan = pose->pan + (pose->pan_speed + 0.5 * pose->pan_acceleration * dt) * dt;
   if (tilt) *tilt = pose->tilt + (pose->tilt_speed + 0.5 * pose->tilt_acceleration * dt) * dt;

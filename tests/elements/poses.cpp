@@ -53,6 +53,18 @@ START_TEST(a_pose_is_evaluated_within_its_span_and_held_outside) {
 }
 END_TEST
 
+START_TEST(a_pose_that_ends_before_it_begins_holds_what_it_began_with) {
+  CerberusPose backwards = turning();
+  backwards.valid_until = backwards.valid_from - GST_SECOND;
+  for (const GstClockTime time :
+       {GstClockTime{0}, GstClockTime{2 * GST_SECOND}, GstClockTime{9 * GST_SECOND}, GST_CLOCK_TIME_NONE}) {
+    double pan = 0, tilt = 0;
+    cerberus_pose_evaluate(&backwards, time, &pan, &tilt);
+    fail_unless(std::abs(pan - -30.5) < 1e-9 && std::abs(tilt - 4) < 1e-9, "%g %g", pan, tilt);
+  }
+}
+END_TEST
+
 START_TEST(a_pose_event_says_what_it_was_told) {
   const CerberusPose pose = turning();
   g_autoptr(GstEvent) event = cerberus_event_new_pose(&pose);
@@ -200,6 +212,7 @@ static Suite* poses_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_new_pose_looks_straight_ahead_for_ever);
   tcase_add_test(tc, a_pose_is_evaluated_within_its_span_and_held_outside);
+  tcase_add_test(tc, a_pose_that_ends_before_it_begins_holds_what_it_began_with);
   tcase_add_test(tc, a_pose_event_says_what_it_was_told);
   tcase_add_test(tc, a_pose_event_that_is_not_right_is_no_pose);
   tcase_add_test(tc, other_events_are_neither_pose_nor_base);
