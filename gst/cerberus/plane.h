@@ -15,7 +15,8 @@ G_BEGIN_DECLS
  * @CERBERUS_PLANE_HISTOGRAM: histogram of the difference: one row of words of 32 bit, host byte order; the
  *   first 256 are the counts, what follows belongs to the elements
  * @CERBERUS_PLANE_MASK: moving area, 0 or 255, 8 bit
- * @CERBERUS_PLANE_LABELS: number of the region that a pixel belongs to, 0 for none, 16 bit, host byte order
+ * @CERBERUS_PLANE_LABELS: number of the connected part of the mask that a pixel belongs to, 0 for none, 16 bit, host
+ *   byte order; a region may be several parts, and two people in one part are two regions
  *
  * What a plane holds.
  *

@@ -58,7 +58,7 @@ void Conductor::configure() {
     wrong = station.set_limits(head_limits(s), now());
   }
   if (!wrong.empty())
-    GST_ELEMENT_WARNING(sink, LIBRARY, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
+    GST_ELEMENT_WARNING(sink, RESOURCE, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
                         ("head %s", head.load()));
 }
 

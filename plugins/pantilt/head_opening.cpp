@@ -13,12 +13,12 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
   const char* name = s.head.c_str();
   const drivers::HeadSetup setup = head_setup(s);
   if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
-    GST_ELEMENT_ERROR(element, LIBRARY, SETTINGS, ("%s.", wrong.c_str()), ("head %s", name));
+    GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("%s.", wrong.c_str()), ("head %s", name));
     return nullptr;
   }
   auto head = drivers::make_head(s.driver);
   if (!head) {
-    GST_ELEMENT_ERROR(element, LIBRARY, SETTINGS,
+    GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
                       ("There is no head driver \"%s\": take one of %s.", s.driver.c_str(),
                        drivers::head_drivers().c_str()),
                       ("head %s", name));

@@ -182,7 +182,7 @@ void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
   const std::optional<Settings> changed = priv.settings.changes();
   if (!changed || changed->analysis_width == 0 || changed->analysis_width >= kLeastAnalysisWidth) return;
   GST_ELEMENT_WARNING(
-      trans, LIBRARY, SETTINGS,
+      trans, RESOURCE, SETTINGS,
       ("analysis-width=%d is too small to see anything: %d counts instead. Set that, or more.",
        changed->analysis_width, kLeastAnalysisWidth),
       (nullptr));
@@ -279,8 +279,10 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
 }
 
 gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* query) {
-  if (direction == GST_PAD_SINK)
-    if (const auto answered = answer(*priv_of(trans).analyser, query)) return *answered;
+  if (direction == GST_PAD_SINK) {
+    const auto ask = [&] { return answer(*priv_of(trans).analyser, query); };
+    if (const std::optional<bool> answered = guarded(trans, std::nullopt, ask)) return *answered;
+  }
   return parent_class()->query(trans, direction, query);
 }
 

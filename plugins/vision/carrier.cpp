@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "cerberus/private/text.hpp"
 #include "room.hpp"
 #include "shared/clock_times.hpp"
 
@@ -28,7 +29,7 @@ struct Words {
 };
 
 Words in_words(const control::SlipFinding& finding, const char* head, const char* axis) {
-  const std::string name = "The head \"" + std::string(head) + "\" ";
+  const std::string name = "The head \"" + printable(head) + "\" ";
   const std::string told = std::to_string(std::lround(degrees(finding.travel))) + " degrees of " + axis;
   switch (finding.fault) {
     case SlipFault::slips:

@@ -11,7 +11,7 @@
  * - `stage=luma`: the picture that is analysed (made here if no stage upstream did).
  * - `stage=difference`, `previous-difference`: the registered differences D(k), D(k-1), times `gain`.
  * - `stage=mask`: 0 or 255, the moving area; behind `motionregions` the cleaned one that regions are made from.
- * - `stage=labels`: one colour a region.
+ * - `stage=labels`: one colour a connected part of the mask: what regions are made from.
  * - `stage=histogram`: how the threshold was chosen, after the paper's figures 2 and 3: histogram of the difference,
  *   memberships, indices of fuzziness (as `fuzzythreshold` was set), the threshold that was used.
  *
@@ -95,7 +95,7 @@ GType stage_type() {
       {STAGE_DIFFERENCE, "Registered difference to the previous frame", "difference"},
       {STAGE_PREVIOUS_DIFFERENCE, "Registered difference of the two frames before", "previous-difference"},
       {STAGE_MASK, "Moving area, as regions are made from it", "mask"},
-      {STAGE_LABELS, "Regions, a colour each", "labels"},
+      {STAGE_LABELS, "Connected parts of the mask, a colour each", "labels"},
       {STAGE_HISTOGRAM, "How the threshold was chosen", "histogram"},
       {0, nullptr, nullptr}};
   static const GType type = g_enum_register_static("CerberusMotionViewStage", values);
@@ -117,7 +117,8 @@ const Property<Settings> kProperties[] = {
 
 struct State {  // streaming thread only
   GstVideoInfo in, out;
-  guint warned = 0;  // one bit a stage
+  guint warned = 0;                 // one bit a stage
+  const char* complaint = nullptr;  // about the caps, once said; a literal
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> luma;
   draw::Enlarger enlarger;
@@ -256,18 +257,17 @@ GstCaps* cerberus_motion_view_transform_caps(GstBaseTransform* transform, GstPad
 
 gboolean cerberus_motion_view_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps* out) {
   State& state = cerberus_motion_view_self(transform)->priv->state;
-  if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out)) {
-    GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video's description is incomplete."),
+  const char* wrong = nullptr;
+  if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out))
+    wrong = "The video's description is incomplete.";
+  else if (GST_VIDEO_INFO_IS_INTERLACED(&state.in))
+    wrong = "Interlaced video cannot be shown: put the element `deinterlace` in front of the stages.";
+  // Upstream tries again with every frame: one message a failure.
+  if (wrong && wrong != state.complaint)
+    GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("%s", wrong),
                       ("from %" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
-    return FALSE;
-  }
-  if (GST_VIDEO_INFO_IS_INTERLACED(&state.in)) {
-    GST_ELEMENT_ERROR(
-        transform, CORE, NEGOTIATION,
-        ("Interlaced video cannot be shown: put the element `deinterlace` in front of the stages."),
-        ("%" GST_PTR_FORMAT, in));
-    return FALSE;
-  }
+  state.complaint = wrong;
+  if (wrong) return FALSE;
   state.warned = 0;
   return TRUE;
 }

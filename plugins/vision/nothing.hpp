@@ -29,7 +29,7 @@ class NothingFound {
   void tell(GstElement* element, const std::string& why) {
     if (why == told_) return;
     told_ = why;
-    if (!why.empty()) GST_ELEMENT_WARNING(element, LIBRARY, SETTINGS, ("%s", why.c_str()), (nullptr));
+    if (!why.empty()) GST_ELEMENT_WARNING(element, RESOURCE, SETTINGS, ("%s", why.c_str()), (nullptr));
   }
 
  private:
