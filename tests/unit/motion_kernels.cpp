@@ -74,23 +74,31 @@ START_TEST(a_template_holds_value_and_gradients_without_their_means) {
   PatchTemplate patch;
   make_template(picture.view(), 1, 1, patch);
   const GrayView v = picture.view();
-  double value = 0, gx = 0;
+  double value = 0, gx = 0, gy = 0;
   for (int y = 1; y <= kPatch; ++y)
     for (int x = 1; x <= kPatch; ++x) {
       value += v.at(x, y) / 64.0;
       gx += (v.at(x + 1, y) - v.at(x - 1, y)) / 128.0;
+      gy += (v.at(x, y + 1) - v.at(x, y - 1)) / 128.0;
     }
-  double xx = 0, xv = 0, yv = 0;
+  double xx = 0, xy = 0, yy = 0, xv = 0, yv = 0, vv = 0;
   for (int y = 1; y <= kPatch; ++y)
     for (int x = 1; x <= kPatch; ++x) {
       const int i = (y - 1) * kPatch + x - 1;
       ck_assert_double_eq_tol(patch.value[i], v.at(x, y) - value, 1e-3);
       ck_assert_double_eq_tol(patch.gx[i], (v.at(x + 1, y) - v.at(x - 1, y)) / 2.0 - gx, 1e-3);
+      ck_assert_double_eq_tol(patch.gy[i], (v.at(x, y + 1) - v.at(x, y - 1)) / 2.0 - gy, 1e-3);
       xx += double{patch.gx[i]} * patch.gx[i];
+      xy += double{patch.gx[i]} * patch.gy[i];
+      yy += double{patch.gy[i]} * patch.gy[i];
+      vv += double{patch.value[i]} * patch.value[i];
       xv += double{patch.gx[i]} * patch.value[i];
       yv += double{patch.gy[i]} * patch.value[i];
     }
   ck_assert_double_eq_tol(patch.xx, xx, 1e-5 * xx);
+  ck_assert_double_eq_tol(patch.xy, xy, 1e-5 * xx);
+  ck_assert_double_eq_tol(patch.yy, yy, 1e-5 * xx);
+  ck_assert_double_eq_tol(patch.vv, vv, 1e-5 * vv);
   ck_assert_double_eq_tol(patch.xv, xv, 1e-5 * xx);
   ck_assert_double_eq_tol(patch.yv, yv, 1e-5 * xx);
 }
@@ -107,17 +115,19 @@ START_TEST(matching_gives_the_inner_products_with_the_interpolated_picture) {
       {0, 0}, {0.25f, 1.5f}, {2.75f, 0.125f}, {3, 3}};  // the last one ends with the memory
   for (const auto& at : places) {
     const PatchProducts p = match_patch(v, at[0], at[1], patch);
-    double with_x = 0, with_value = 0, sum = 0, squares = 0;
+    double with_x = 0, with_y = 0, with_value = 0, sum = 0, squares = 0;
     for (int j = 0; j < kPatch; ++j)
       for (int i = 0; i < kPatch; ++i) {
         const int x = static_cast<int>(at[0]) + i, y = static_cast<int>(at[1]) + j;
         const double fx = at[0] - std::floor(at[0]), fy = at[1] - std::floor(at[1]);
         const double value = (v.at(x, y) * (1 - fx) + v.at(x + 1, y) * fx) * (1 - fy) +
                              (v.at(x, y + 1) * (1 - fx) + v.at(x + 1, y + 1) * fx) * fy;
-        with_x += value * patch.gx[j * kPatch + i], with_value += value * patch.value[j * kPatch + i];
+        with_x += value * patch.gx[j * kPatch + i], with_y += value * patch.gy[j * kPatch + i];
+        with_value += value * patch.value[j * kPatch + i];
         sum += value, squares += value * value;
       }
     ck_assert_double_eq_tol(p.x, with_x, 2.0);
+    ck_assert_double_eq_tol(p.y, with_y, 2.0);
     ck_assert_double_eq_tol(p.value, with_value, 2.0);
     ck_assert_double_eq_tol(p.sum, sum, 0.1);
     ck_assert_double_eq_tol(p.squares, squares, 1e-5 * squares);
