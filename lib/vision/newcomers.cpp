@@ -10,7 +10,7 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr int kSecond = 25;            // frames in which something small must be seen twice
+constexpr int kUnsure = 25;            // frames in which something small must be seen twice
 constexpr double kSmall = 0.015;       // share of the picture
 constexpr double kSpeck = 1 / 1280.0;  // and below this it says nothing yet
 constexpr double kCommon = 0.5;        // share of a box that lies where something was
@@ -36,7 +36,7 @@ bool Newcomers::was_there(const Box& box, std::size_t before, const Transform& m
 
 void Newcomers::hold_back(std::vector<Region>& regions, int frames, double minimum_area,
                           const Transform& motion, Size picture) {
-  if (frames > kSecond) return;
+  if (frames > kUnsure) return;
   const std::size_t before = last_.size();
   const auto whole = [](double v) { return static_cast<std::int16_t>(std::lround(v)); };
   for (const Region& r : regions)

@@ -16,8 +16,8 @@ class Newcomers {
  public:
   void make_room();
   void reset() { last_.clear(); }
-  // Takes out of `regions` what is small and was not there one frame ago, in the first second of a scene: before a
-  // standing camera, and of what comes in at the picture's edge, in the first half of it. And what is too small to
+  // Takes out of `regions` what is small and was not there one frame ago, in the first 25 frames of a scene: before
+  // a standing camera, and of what comes in at the picture's edge, in the first 12. And what is too small to
   // tell, unless somebody has said how small it may be (minimum_area > 0). frames: of the scene, this one included;
   // motion: frame k-1 to k.
   void hold_back(std::vector<Region>& regions, int frames, double minimum_area, const Transform& motion,
