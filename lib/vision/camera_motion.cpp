@@ -313,13 +313,11 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   for (int level = top; level >= 0; --level) {
     // Where the coarsest level agreed, the finest one finds its patches without those in between.
     if (level < top && level > 0 && share.all > kMajority) continue;
-    const std::array motions{Transform{}, motion, rival.value_or(motion)};
-    const auto guesses = std::span(motions).first(rival ? 3 : 2);
     if (level < top && rival)
-      matches.follow(reference, current, level, guesses.subspan(1));
+      matches.follow(reference, current, level, std::array{motion, *rival});
     else if (level < top)
       matches.follow(reference, current, level, motion);
-    fit = fit_on(level, matches.samples(), guesses, lens);
+    fit = fit_on(level, matches.samples(), std::array{Transform{}, motion}, lens);
     rival = fit.rival;
     if (bent && options.model != MotionModel::none)
       if (const MotionFit turned = fit_beyond(*prior, level, matches.samples(), motion);
