@@ -164,8 +164,13 @@ void SceneParts::weigh(const ScenePlanes& planes, const Component& c, Part& part
   // textured: like a ghost it needs its owner's motion, or it goes at once. Who walked in a second after the start and
   // stopped has the outline of an object.
   part.doubtful = part.ghost || (planes.still && (newest || (young && !part.object)));
+  // What a camera that moves has learnt for moments only may be anybody's place: who rests altogether in this frame is
+  // an object if his outline says so. That of a small part says nothing.
+  const bool rests =
+      !planes.still && young && part.now < kLeastMoved && area >= kLeast * static_cast<double>(size.area());
   // Where the camera turns, a place that was left is soon far from its owner, and no join() will bring them together.
-  part.kept = part.moving && (part.fresh || !part.doubtful) && !(planes.followed && was_here);
+  part.kept = part.moving && (part.fresh || !part.doubtful) && (part.object || !rests) &&
+              !(planes.followed && was_here);
 }
 
 // Where somebody stood since the scene began the memory has his picture. He goes, the place stays: what rests while

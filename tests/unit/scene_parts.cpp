@@ -203,6 +203,34 @@ START_TEST(before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this
 }
 END_TEST
 
+START_TEST(before_a_camera_that_moves_who_rests_in_a_young_memory_is_known_by_his_outline) {
+  // What moved one frame ago and, but for some rows or none, does not move now; its outline is an edge of the frame only,
+  // or of the memory as well.
+  struct Case {
+    Rect part;
+    int age, moving_rows;
+    bool object, kept;
+  };
+  constexpr Rect kSmall{100, 80, 8, 7}, kLarger{100, 80, 8, 8};  // about 1/1280 of the picture, 60 pixels
+  for (const Case& c : {Case{kPerson, 10, 0, true, true},
+                        {kPerson, 10, 0, false, false},
+                        {kPerson, 49, 0, false, false},
+                        {kPerson, 50, 0, false, true},
+                        {kPerson, 10, 1, false, true},
+                        {kLarger, 10, 0, false, false},
+                        {kSmall, 10, 0, false, true}}) {
+    Scene s(c.age);
+    Scene::paint(s.present, c.part, 200);
+    if (!c.object) Scene::paint(s.memory, c.part, 190);
+    s.differs(c.part, 1);
+    s.differs({c.part.x, c.part.y, c.part.width, c.moving_rows}, 0);
+    s.judge(false);
+    ck_assert_int_eq(count(s.mask, c.part), c.kept ? all(c.part) : 0);
+    ck_assert_int_eq(count(s.absorb, c.part), 0);  // not taken over before it has rested for longer
+  }
+}
+END_TEST
+
 START_TEST(two_fronts_are_one_where_the_memory_is_young) {
   // A body of 40 x 80 that has moved by 6: a strip before it, a strip behind it.
   constexpr Rect kBehind{100, 80, 6, 80}, kBetween{106, 80, 34, 80}, kBefore{140, 80, 6, 80};
@@ -469,6 +497,7 @@ int main() {
                       objects_before_a_young_memory_are_told,
                       before_a_camera_that_moves_only_what_moves_now_counts,
                       before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
+                      before_a_camera_that_moves_who_rests_in_a_young_memory_is_known_by_his_outline,
                       two_fronts_are_one_where_the_memory_is_young,
                       two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one,
                       a_front_belongs_to_what_is_near,
