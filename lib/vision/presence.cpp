@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/presence.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace cerberus::vision {
 
+namespace {
+
+constexpr Presence::Time kUsual = std::chrono::milliseconds(40);
+constexpr Presence::Time kLeast = std::chrono::microseconds(100);  // no camera is faster
+
+}  // namespace
+
 Presence::Change Presence::update(bool present, std::optional<Time> time, Time step, Time hold) {
-  // The times tell the length of a gap as well; without them there is only the frame rate. Time that runs backwards
-  // (a seek) is no silence.
-  const Time passed = time && last_ ? std::max(*time - *last_, Time::zero()) : step;
+  const Time gap = time && last_ ? *time - *last_ : Time::zero();
+  const Time passed = step > Time::zero() ? step : gap >= kLeast ? gap : kUsual;
   last_ = time;
   if (present) {
     quiet_ = Time::zero();

@@ -13,10 +13,11 @@ class Presence {
   using Time = std::chrono::nanoseconds;
   enum class Change { none, started, ended };
 
-  // One frame. `present`: there is an object on it. `time`: the frame's time where it is known; `step`: from the frame
-  // before to this one, which counts where one of the two has no time. `hold`: without any object, before the end;
-  // 0 = the first frame without one ends it. The time before the first frame without an object counts: it was last
-  // seen on the frame before.
+  // One frame. `present`: there is an object on it. `step`: what it counts for since the frame before, as for the
+  // tracker; 0 where nobody knows, as on a scene's first frame: then `time`, the frame's own where it has one, tells
+  // how long the gap was. Where that tells nothing either (times that run backwards or stand still) there are 25 frames
+  // a second. `hold`: without any object, before the end; 0 = the first frame without one ends it. The time before the
+  // first frame without an object counts: it was last seen on the frame before.
   Change update(bool present, std::optional<Time> time, Time step, Time hold);
   // No frame comes any more: ended, if it was not before.
   Change end();

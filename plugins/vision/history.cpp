@@ -62,7 +62,7 @@ void History::follow(Step& step, GstClockTime time, bool timed, double rhythm) {
     return;
   }
   const double seconds = time > clock_ ? seconds_between(clock_, time) : 0;
-  if (seconds <= (late_ > 0 ? even / 4 : kLeast)) {
+  if (seconds <= std::max(kLeast, late_ > 0 ? even / 4 : 0)) {
     clock_ += static_cast<GstClockTime>(even * GST_SECOND);
     if (++late_ > kLate) late_ = 0;
     return;

@@ -166,24 +166,27 @@ GST_START_TEST(missing_timestamps_are_no_obstacle) {
 }
 GST_END_TEST
 
+struct Stamps {
+  GstClockTime (*of)(int frame);
+  bool warned;
+};
+const Stamps kStamps[] = {
+    {[](int k) -> GstClockTime { return (100 - k) * scene::kStep; }, true},
+    {[](int k) -> GstClockTime { return (k + 2 - (k % 10 == 9 ? 2 : 0)) * scene::kStep; }, true},
+    {[](int k) -> GstClockTime { return (k + 2 - (k % 5 == 4 ? 2 : 0)) * scene::kStep; }, true},
+    {[](int k) { return static_cast<GstClockTime>(k); }, false},
+    {[](int) -> GstClockTime { return GST_SECOND; }, false},
+    {[](int) -> GstClockTime { return GST_CLOCK_TIME_NONE; }, false},
+};
+constexpr int kStampCount = G_N_ELEMENTS(kStamps);
+
 // Frames that come as they should with timestamps that do not: who is there is found all the same, and one warning says
 // what to do. Far steps back are scenes.
 GST_START_TEST(timestamps_out_of_order_blind_nobody) {
-  struct Stamps {
-    GstClockTime (*of)(int frame);
-    bool warned;
-  };
-  const Stamps kinds[] = {
-      {[](int k) -> GstClockTime { return (100 - k) * scene::kStep; }, true},
-      {[](int k) -> GstClockTime { return (k + 2 - (k % 10 == 9 ? 2 : 0)) * scene::kStep; }, true},
-      {[](int k) -> GstClockTime { return (k + 2 - (k % 5 == 4 ? 2 : 0)) * scene::kStep; }, true},
-      {[](int k) { return static_cast<GstClockTime>(k); }, false},
-      {[](int) -> GstClockTime { return GST_SECOND; }, false},
-  };
   const char* const lines[] = {"motiondetect ! identity",
                                "threeframediff ! fuzzythreshold ! motionregions ! motiontrack"};
-  const Stamps& kind = kinds[__i__ % 5];
-  Line line(lines[__i__ / 5]), ordered(lines[__i__ / 5]);
+  const Stamps& kind = kStamps[__i__ % kStampCount];
+  Line line(lines[__i__ / kStampCount]), ordered(lines[__i__ / kStampCount]);
   const World world = scene::entering();
   int found = 0, expected = 0;
   for (int k = 0; k < 90; ++k) {
@@ -206,6 +209,31 @@ GST_START_TEST(timestamps_out_of_order_blind_nobody) {
   if (kind.warned)
     fail_unless(warnings[0].find("do-timestamp") != std::string::npos, "%s", warnings[0].c_str());
   fail_unless(ordered.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+// With the frame rate that the caps tell, or none: then 25 frames a second are assumed, as for speeds. So ten frames
+// without anybody are 0.4 s.
+GST_START_TEST(motion_ends_after_hold_time_whatever_the_timestamps_say) {
+  const Stamps& kind = kStamps[__i__ % kStampCount];
+  Line line("motiondetect coast-time=0 hold-stopped=0 hold-time=400000000 ! identity");
+  if (__i__ >= kStampCount) line.push_caps(scene::caps("GRAY8", scene::kWidth, scene::kHeight, ""));
+  World world;
+  world.start = 200;
+  world.speed = 4;
+  int last_seen = -1, ended = -1;
+  for (int k = 0; k < 80 && ended < 0; ++k) {
+    GstBuffer* in = scene::grey_buffer(world, k);
+    GST_BUFFER_PTS(in) = kind.of(k);
+    GST_BUFFER_DTS(in) = GST_BUFFER_DURATION(in) = GST_CLOCK_TIME_NONE;
+    GstBuffer* out = line.through(in);
+    if (Regions(out).size() > 0) last_seen = k;
+    gst_buffer_unref(out);
+    for (const std::string& state : line.messages(GST_MESSAGE_ELEMENT))
+      if (state == "ended") ended = k;
+  }
+  fail_unless(last_seen > 0);
+  fail_unless(std::abs(ended - last_seen - 10) <= 1, "seen until frame %d, ended at %d", last_seen, ended);
 }
 GST_END_TEST
 
@@ -519,7 +547,8 @@ Suite* bad_input_suite() {
   tcase_add_test(tests, a_video_meta_larger_than_the_caps_changes_nothing);
   tcase_add_test(tests, a_video_meta_that_does_not_fit_is_an_unusable_buffer);
   tcase_add_test(tests, missing_timestamps_are_no_obstacle);
-  tcase_add_loop_test(tests, timestamps_out_of_order_blind_nobody, 0, 10);
+  tcase_add_loop_test(tests, timestamps_out_of_order_blind_nobody, 0, 2 * kStampCount);
+  tcase_add_loop_test(tests, motion_ends_after_hold_time_whatever_the_timestamps_say, 0, 2 * kStampCount);
   tcase_add_loop_test(tests, lost_pictures_end_no_scene, 0, 4);
   tcase_add_loop_test(tests, metas_from_strangers_do_no_harm, 0, kElementCount);
   tcase_add_loop_test(tests, a_camera_motion_that_none_can_be_is_not_believed, 0, 6);
