@@ -145,13 +145,15 @@ bool Body::carry(const Transform& motion, Size frame) {
   const double xx = right.x - q.x, yx = right.y - q.y, xy = down.x - q.x, yy = down.y - q.y;
   const double det = xx * yy - xy * yx;
   if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(det) || !(det > 1e-3)) return false;
+  const auto turned = [&](Point v) { return Point{xx * v.x + xy * v.y, yx * v.x + yy * v.y}; };
+  const Point velocity = turned({x.velocity, y.velocity});
   x.position = q.x + kHalfPixel;
   y.position = q.y + kHalfPixel;
-  const double vx = xx * x.velocity + xy * y.velocity, vy = yx * x.velocity + yy * y.velocity;
-  x.velocity = vx;
-  y.velocity = vy;
+  x.velocity = velocity.x;
+  y.velocity = velocity.y;
+  walk = turned(walk);
   magnify(std::sqrt(det));
-  origin = motion.apply(origin);
+  for (Point* p : {&origin, &misfit_from}) *p = motion.apply(*p);
   return true;
 }
 
@@ -165,7 +167,7 @@ void Body::leave(const Gaze& gaze) {
     h.value = std::log(tallest);
   }
   away = ahead = true;
-  absent = 0;
+  absent = misfit = 0;
   where = gaze.direction({x.position, y.position});
   magnification = gaze.magnification(where);
 }
@@ -184,8 +186,7 @@ void Body::predict_away(double seconds, const Gaze& gaze) {
   origin.y += y.position - before.y;
   const double now = gaze.magnification(where), scale = now / magnification;
   magnification = now;
-  x.velocity *= scale;
-  y.velocity *= scale;
+  for (double* v : {&x.velocity, &y.velocity, &walk.x, &walk.y}) *v *= scale;
   magnify(scale);
 }
 
@@ -240,15 +241,16 @@ void Body::adopt(const Box& seen) {
 // was on the way, when its extent was never well known, or when the piece walks away on its own.
 bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
   if (misfit == 0) {
-    misfit_from = seen;
+    misfit_from = centre(seen);
     stood = slow > 0 || stopped;
   }
   misfit += seconds;
   if (cut || parted) return true;
   if (whole) return misfit >= 0.2;
   if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6);
-  const Point from = centre(misfit_from), to = centre(seen);
-  return misfit >= 0.5 && (!stood || fitted < 0.5 || std::hypot(to.x - from.x, to.y - from.y) > 0.5 * size());
+  const Point to = centre(seen);
+  const double gone = std::hypot(to.x - misfit_from.x, to.y - misfit_from.y);
+  return misfit >= 0.5 && (!stood || fitted < 0.5 || gone > 0.5 * size());
 }
 
 void Body::correct(const Region& r, bool alone, double seconds, Size frame,

@@ -45,14 +45,14 @@ struct Body {
   double proven = 0;           // the longest that ever was
   double shared = 0;           // s it has shared a region with others
   double slow = 0;             // s it has been seen standing, or nearly, up to now
-  double misfit = 0;           // s since a region had its extent, and the first one that had not
-  Box misfit_from;
-  Point walk;              // velocity, pixels a second, when last seen away from the picture's edges
-  bool uncovered = false;  // first seen where the camera had just begun to look
-  bool stood = false;      // it stood, or nearly, when the misfit began
-  bool parted = false;     // its box was that of two who have come apart, or of a piece
-  bool hidden = false;     // behind somebody else whose region this is
-  double lost = 0;         // s in regions of several without being found there
+  double misfit = 0;           // s since a region had its extent
+  Point misfit_from;           // where the middle of the first one was that had not, carried with the scene
+  Point walk;                  // velocity, pixels a second, when last seen away from the picture's edges
+  bool uncovered = false;      // first seen where the camera had just begun to look
+  bool stood = false;          // it stood, or nearly, when the misfit began
+  bool parted = false;         // its box was that of two who have come apart, or of a piece
+  bool hidden = false;         // behind somebody else whose region this is
+  double lost = 0;             // s in regions of several without being found there
   Look look;
   double unlikeness = 0;  // of what was last seen of it and its look
   int looked = 0;         // frames in which that was learnt

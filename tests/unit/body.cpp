@@ -37,6 +37,8 @@ void check_scaled(const Body& before, const Body& after, double scale, double mo
   equal(after.tallest, scale * before.tallest);
   equal(after.x.velocity, scale * before.x.velocity);
   equal(after.y.velocity, scale * before.y.velocity);
+  equal(after.walk.x, scale * before.walk.x);
+  equal(after.walk.y, scale * before.walk.y);
   equal(after.x.pp, scale * scale * (before.x.pp + more));
   equal(after.x.pv, scale * scale * before.x.pv);
   equal(after.x.vv, scale * scale * before.x.vv);
@@ -52,6 +54,38 @@ START_TEST(a_zoom_scales_all_of_its_lengths) {
   const double grain = after.x.pp / 2.25 - before.x.pp;  // a pixel of the analysed picture, whatever that is
   ck_assert_double_gt(grain, 0);
   check_scaled(before, after, 1.5, grain, 1e-9);
+}
+END_TEST
+
+START_TEST(a_camera_that_rolls_turns_the_way_he_goes) {
+  Body body = walker(200, 240);
+  ck_assert(body.carry({{0, -1, 400, 1, 0, 0, 0, 0, 1}}, kFrame));  // a quarter: x becomes y
+  ck_assert_double_eq_tol(body.x.velocity, 12, 1e-9);
+  ck_assert_double_eq_tol(body.y.velocity, 30, 1e-9);
+  ck_assert_double_eq_tol(body.walk.x, 12, 1e-9);
+  ck_assert_double_eq_tol(body.walk.y, 30, 1e-9);
+}
+END_TEST
+
+// He stands, and a piece of him is seen. The camera follows the piece, or does not.
+START_TEST(a_piece_walks_away_on_its_own_if_it_leaves_its_place_in_the_scene) {
+  for (const bool walks : {false, true})
+    for (const bool turns : {false, true}) {
+      Body body = walker(200, 240);
+      body.x.velocity = body.y.velocity = 0;
+      body.fitted = body.slow = 2;
+      const double step = 8, scene = turns ? -step : 0, piece = walks ? scene + step : scene;
+      for (int k = 0; k < 9; ++k) {
+        body.predict(0.1);
+        if (k > 0 && turns) body.carry(Transform::translation(scene, 0), kFrame);
+        const Region seen{{210 + piece * k, 220, 14, 20}, 200, 0.2, 1};
+        body.correct(seen, true, 0.1, kFrame);
+      }
+      if (walks)
+        ck_assert_double_lt(body.height(), 40);
+      else
+        ck_assert_double_gt(body.height(), 90);
+    }
 }
 END_TEST
 
@@ -101,7 +135,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "body",
-      {a_zoom_scales_all_of_its_lengths, towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it,
-       it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same});
+      "body", {a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_way_he_goes,
+               a_piece_walks_away_on_its_own_if_it_leaves_its_place_in_the_scene,
+               towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it,
+               it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same});
 }

@@ -161,17 +161,21 @@ START_TEST(who_stood_and_walks_on_is_the_same_person) {
 END_TEST
 
 START_TEST(a_standing_person_s_moving_arm_does_not_make_the_person_small) {
-  Tracker tracker;
-  for (int k = 0; k < 80; ++k) {
-    const double x = k < 20 ? 100 + 8 * k : 252;
-    const Region seen = k < 28 ? person(x, 240) : person(x + 12, 230 + 3 * (k % 3), 0.2, 14, 20);
-    const auto tracks = tracker.update({&seen, 1}, {}, 0.1, kFrame);
-    if (k < 3) continue;
-    ck_assert_uint_eq(tracks.size(), 1);
-    ck_assert_uint_eq(tracks[0].id, 1);
-    ck_assert_double_eq_tol(tracks[0].box.height, 100, 10);
-    ck_assert_double_eq_tol(tracks[0].box.width, 40, 8);
-    ck_assert_double_eq_tol(centre(tracks[0]).x, x, 10);
+  for (const double pan : {0.0, -9.0, 6.0}) {  // pixels a frame by which the picture moves, once he stands
+    Tracker tracker;
+    for (int k = 0; k < 60; ++k) {
+      const double turned = pan * std::max(0, k - 27);
+      const double x = (k < 20 ? 200 + 8 * k : 352) + turned;
+      const Region seen = k < 28 ? person(x, 240) : person(x + 12, 230 + 3 * (k % 3), 0.2, 14, 20);
+      const auto tracks =
+          tracker.update({&seen, 1}, k < 28 ? Transform{} : Transform::translation(pan, 0), 0.1, kFrame);
+      if (k < 3) continue;
+      ck_assert_uint_eq(tracks.size(), 1);
+      ck_assert_uint_eq(tracks[0].id, 1);
+      ck_assert_double_eq_tol(tracks[0].box.height, 100, 10);
+      ck_assert_double_eq_tol(tracks[0].box.width, 40, 8);
+      ck_assert_double_eq_tol(centre(tracks[0]).x, x, 10);
+    }
   }
 }
 END_TEST
