@@ -46,7 +46,7 @@ void Newcomers::hold_back(std::vector<Region>& regions, int frames, double minim
   // Of the first frame that may have regions nothing was there before: a standing camera makes few errors.
   if (frames > 3 || !stands)
     std::erase_if(regions, [&](const Region& r) {
-      if (minimum_area <= 0 && r.area > 0 && r.area < kSpeck * picture.area()) return true;
+      if (minimum_area <= 0 && r.area < kSpeck * picture.area()) return true;
       const Box& b = r.box;
       const bool at_edge = b.x <= 0 || b.y <= 0 || b.right() >= picture.width || b.bottom() >= picture.height;
       if (frames > kUnsettled && (stands || at_edge)) return false;

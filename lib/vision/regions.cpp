@@ -2,6 +2,7 @@
 #include "vision/regions.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -87,6 +88,7 @@ struct RegionFinder::State {
   void explain(int group);
   void add_plain(std::size_t component, bool person = false);
   Box fit(const Box& expected, const Bounds& window, std::size_t self, std::span<const Person> all) const;
+  long moving_in(const Box& box) const;
 };
 
 void RegionFinder::State::make_room(Size picture) {
@@ -197,8 +199,7 @@ void RegionFinder::State::add_plain(std::size_t i, bool person) {
     box = {left, top, std::min(box.right() + rim, static_cast<double>(size.width)) - left,
            std::min(box.bottom() + rim, static_cast<double>(size.height)) - top};
   }
-  regions.push_back({box, static_cast<double>(c.area),
-                     person ? std::min(1.0, 0.5 + 0.5 * filled) : std::min(1.0, 0.45 * filled),
+  regions.push_back({box, 0, person ? std::min(1.0, 0.5 + 0.5 * filled) : std::min(1.0, 0.45 * filled),
                      static_cast<int>(i) + 1});
 }
 
@@ -232,6 +233,20 @@ Box RegionFinder::State::fit(const Box& expected, const Bounds& window, std::siz
   const double x0 = blend(seen.left, expected.x), x1 = blend(seen.right, expected.right());
   const double y0 = blend(seen.top, expected.y), y1 = blend(seen.bottom, expected.bottom());
   return {x0, y0, x1 - x0, y1 - y0};
+}
+
+// Pixels of the cleaned mask whose centres lie in the box.
+long RegionFinder::State::moving_in(const Box& box) const {
+  const auto side = [](double at, int most) {
+    return std::clamp(static_cast<int>(std::ceil(at - 0.5)), 0, most);
+  };
+  const int left = side(box.x, size.width), right = side(box.right(), size.width);
+  long pixels = 0;
+  for (int y = side(box.y, size.height); y < side(box.bottom(), size.height); ++y) {
+    const std::uint64_t* row = closed.view().row(y);
+    for_words(left, right, [&](int word, std::uint64_t ones) { pixels += std::popcount(row[word] & ones); });
+  }
+  return pixels;
 }
 
 void RegionFinder::State::explain(int g) {
@@ -329,6 +344,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
   }
+  for (Region& r : s.regions) r.area = static_cast<double>(s.moving_in(r.box));
   if (s.options.people) s.newcomers.hold_back(s.regions, s.seen, s.options.minimum_area, motion, s.size);
   return s.regions;
 }

@@ -31,7 +31,7 @@ struct Region {
   // Analysis pixels. In the first 60 frames of a scene what nobody knows as a person is given two more (of 320) on
   // every side: the edge that moves is between the object and the place it leaves.
   Box box;
-  double area = 0;  // moving pixels inside
+  double area = 0;  // moving pixels inside, of the cleaned mask
   // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below:
   // moving pixels that hang together and may be a piece of an object or several objects.
   double confidence = 0;

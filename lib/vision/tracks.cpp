@@ -73,9 +73,9 @@ void Tracker::State::take(std::span<const Region> input) {
       regions.push_back(r);
       continue;
     }
-    const auto smallest = std::min_element(regions.begin(), regions.end(),
-                                           [](const Region& a, const Region& b) { return a.area < b.area; });
-    if (smallest->area < r.area) *smallest = r;
+    const auto area = [](const Region& region) { return region.box.area(); };
+    const auto smallest = std::ranges::min_element(regions, {}, area);
+    if (area(*smallest) < area(r)) *smallest = r;
   }
   owner.assign(regions.size(), -1);
   used.assign(regions.size(), 0);

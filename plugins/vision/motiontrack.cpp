@@ -178,7 +178,6 @@ void Private::read_regions(GstBuffer* buffer) {
     const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
     vision::Region& r = state->found.emplace_back();
     r.box = {region->x, region->y, region->width, region->height};
-    r.area = r.box.area();
     r.confidence = region->confidence;
   }
 }

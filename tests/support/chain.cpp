@@ -52,10 +52,7 @@ void Chain::run_stage(std::size_t stage) {
       const double sx = static_cast<double>(frame.width) / luma_.size().width;
       const double sy = static_cast<double>(frame.height) / luma_.size().height;
       scaled_.assign(found_.begin(), found_.end());
-      for (Region& r : scaled_) {
-        r.box = {r.box.x * sx, r.box.y * sy, r.box.width * sx, r.box.height * sy};
-        r.area *= sx * sy;
-      }
+      for (Region& r : scaled_) r.box = {r.box.x * sx, r.box.y * sy, r.box.width * sx, r.box.height * sy};
       break;
     }
     case 5:

@@ -184,6 +184,30 @@ START_TEST(two_people_arm_in_arm_are_one_region_before_and_two_after_people_were
 }
 END_TEST
 
+START_TEST(a_region_s_area_is_what_moves_in_its_box_whoever_it_is) {
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.person(150, 170);  // two who touch,
+  picture.person(166, 171);
+  picture.person(60, 230);           // one alone,
+  picture.fill(240, 188, 258, 200);  // a dog
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 4);
+  for (const Region& r : regions) {
+    long moving = 0;
+    for (int y = 0; y < kSize.height; ++y)
+      for (int x = 0; x < kSize.width; ++x) {
+        const double cx = x + 0.5, cy = y + 0.5;
+        moving += picture.mask.view().at(x, y) && cx >= r.box.x && cx < r.box.right() && cy >= r.box.y &&
+                  cy < r.box.bottom();
+      }
+    ck_assert_int_gt(moving, 100);
+    ck_assert_double_eq(r.area, static_cast<double>(moving));
+  }
+}
+END_TEST
+
 START_TEST(head_and_legs_without_a_trunk_are_one_person_once_people_are_known) {
   RegionFinder finder;
   let_people_walk_by(finder);
@@ -410,18 +434,24 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "regions",
-      {overlap_of_boxes_as_computed_by_hand, nothing_moving_gives_no_region_and_an_empty_label_picture,
-       before_anything_is_known_components_are_regions_with_box_area_and_label,
-       in_the_first_frames_of_a_scene_a_box_takes_in_both_sides_of_its_edge,
-       the_mask_comes_back_closed_and_without_specks, a_low_shadow_on_the_floor_is_not_part_of_the_box,
-       two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
-       head_and_legs_without_a_trunk_are_one_person_once_people_are_known,
-       a_car_among_people_is_not_cut_into_people_nor_lost,
-       a_round_car_as_tall_as_people_is_one_region_until_it_has_left,
-       a_row_of_people_is_no_block_not_even_where_one_was, a_solid_block_three_bodies_wide_is_no_people,
-       two_people_are_two_where_a_car_left_a_frame_before_the_last, a_dog_among_people_is_a_small_region,
-       what_never_walks_teaches_nothing, people_off_and_reset_give_plain_components_again,
-       what_was_learnt_follows_a_tilting_camera, a_mask_full_of_clutter_or_wholly_set_is_survived,
-       no_picture_takes_memory_after_the_first});
+      "regions", {overlap_of_boxes_as_computed_by_hand,
+                  nothing_moving_gives_no_region_and_an_empty_label_picture,
+                  before_anything_is_known_components_are_regions_with_box_area_and_label,
+                  in_the_first_frames_of_a_scene_a_box_takes_in_both_sides_of_its_edge,
+                  the_mask_comes_back_closed_and_without_specks,
+                  a_low_shadow_on_the_floor_is_not_part_of_the_box,
+                  two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
+                  a_region_s_area_is_what_moves_in_its_box_whoever_it_is,
+                  head_and_legs_without_a_trunk_are_one_person_once_people_are_known,
+                  a_car_among_people_is_not_cut_into_people_nor_lost,
+                  a_round_car_as_tall_as_people_is_one_region_until_it_has_left,
+                  a_row_of_people_is_no_block_not_even_where_one_was,
+                  a_solid_block_three_bodies_wide_is_no_people,
+                  two_people_are_two_where_a_car_left_a_frame_before_the_last,
+                  a_dog_among_people_is_a_small_region,
+                  what_never_walks_teaches_nothing,
+                  people_off_and_reset_give_plain_components_again,
+                  what_was_learnt_follows_a_tilting_camera,
+                  a_mask_full_of_clutter_or_wholly_set_is_survived,
+                  no_picture_takes_memory_after_the_first});
 }

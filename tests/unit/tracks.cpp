@@ -351,6 +351,25 @@ START_TEST(the_steady_state_allocates_nothing_and_thousands_of_regions_are_survi
 }
 END_TEST
 
+// However much moves in them: who has found them says it or does not.
+START_TEST(of_more_regions_than_there_is_room_for_the_largest_boxes_count) {
+  Tracker tracker;
+  std::mt19937 random(8);
+  for (int k = 0; k < 20; ++k) {
+    std::vector<Region> seen;
+    for (int i = 0; i < 300; ++i) seen.push_back(person(random() % 640, random() % 480, 0.4, 3, 3));
+    const double x = 100 + 8 * k;
+    seen.push_back(person(x, 240));
+    seen.back().area = 0;
+    const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
+    if (k < 4) continue;
+    ck_assert(std::ranges::any_of(tracks, [&](const Track& t) {
+      return intersection_over_union(t.box, seen.back().box) > 0.7 && t.state == TrackState::seen;
+    }));
+  }
+}
+END_TEST
+
 START_TEST(the_same_regions_give_the_same_tracks) {
   Tracker a, b;
   std::mt19937 random(9);
@@ -391,5 +410,6 @@ int main() {
                               boxes_are_clamped_to_the_frame_and_identities_never_come_again,
                               a_limit_of_speed_keeps_the_too_fast_apart,
                               the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
+                              of_more_regions_than_there_is_room_for_the_largest_boxes_count,
                               the_same_regions_give_the_same_tracks});
 }
