@@ -34,7 +34,6 @@ class BrightnessLevel {
   void update(GrayView luma, const Transform& motion);
   // A frame that nobody has looked at: the next one has nothing to be compared with.
   void skip() { size_ = {}; }
-  double level() const { return level_; }  // log2 of the factor
 
   struct Bin {
     std::uint8_t first, share;  // the lower of two neighbouring bins, and how much of 16 belongs to the next
@@ -45,7 +44,7 @@ class BrightnessLevel {
  private:
   static constexpr int kColumns = 12, kRows = 9;
   void make_bins();
-  double level_ = 0, made_for_ = 0;
+  double level_ = 0, made_for_ = 0;  // log2 of the factor; of that of the bins
   Size size_;
   std::array<std::uint8_t, kColumns * kRows> before_{};
   std::array<Bin, 256> bins_;

@@ -46,11 +46,4 @@ void subtract(BitView a, BitView b, MutableBitView out) {
   combine(a, b, out, [](std::uint64_t p, std::uint64_t q) { return p & ~q; });
 }
 
-long count(BitView bits) {
-  long total = 0;
-  for (int y = 0; y < bits.height; ++y)
-    for (int x = 0; x < bits.width; ++x) total += std::popcount(bits.row(y)[x]);
-  return total;
-}
-
 }  // namespace cerberus::vision

@@ -64,7 +64,4 @@ void intersect(BitView a, BitView b, MutableBitView out);
 void unite(BitView a, BitView b, MutableBitView out);
 void subtract(BitView a, BitView b, MutableBitView out);
 
-// Number of set pixels.
-long count(BitView bits);
-
 }  // namespace cerberus::vision

@@ -15,8 +15,6 @@ class Pyramid {
   static constexpr int kMaxLevels = 8;
 
   // All allocate only when the size changes. `levels` at most kMaxLevels; stops earlier at an empty level.
-  // Level 0 is a copy of the picture.
-  void build(GrayView picture, int levels);
   // Level 0 is the picture itself: it has to stay what and where it is for as long as it is looked at here.
   void borrow(GrayView picture, int levels);
   // More levels of the same picture.
@@ -25,15 +23,13 @@ class Pyramid {
   // built or to borrow anew.
   void take(Pyramid& other);
   int levels() const { return levels_; }
-  GrayView level(int l) const { return l > 0 ? images_[l].view() : picture_; }
+  GrayView level(int l) const { return l > 0 ? smaller_[l - 1].view() : picture_; }
   Size size() const { return levels_ ? picture_.size() : Size{}; }
   std::size_t bytes() const;
 
  private:
-  void copy(GrayView picture);
-
   GrayView picture_;
-  std::array<Image<std::uint8_t>, kMaxLevels> images_;  // [0]: the copy, where there is one
+  std::array<Image<std::uint8_t>, kMaxLevels - 1> smaller_;  // from level 1 on
   int levels_ = 0;
 };
 

@@ -30,11 +30,6 @@ Transform Transform::translation(double dx, double dy) {
   return {{1, 0, dx, 0, 1, dy, 0, 0, 1}};
 }
 
-Transform Transform::similarity(double scale, double angle, double dx, double dy) {
-  const double c = scale * std::cos(angle), s = scale * std::sin(angle);
-  return {{c, -s, dx, s, c, dy, 0, 0, 1}};
-}
-
 bool Transform::is_identity() const {
   return m == Transform{}.m;
 }

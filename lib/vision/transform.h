@@ -18,8 +18,6 @@ struct Transform {
   std::array<double, 9> m{1, 0, 0, 0, 1, 0, 0, 0, 1};
 
   static Transform translation(double dx, double dy);
-  // Rotation by `angle` radians (x towards y) and scaling about the origin, then the translation.
-  static Transform similarity(double scale, double angle, double dx, double dy);
 
   bool is_identity() const;
   bool is_affine() const { return m[6] == 0 && m[7] == 0 && m[8] == 1; }  // last row is 0 0 1

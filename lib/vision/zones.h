@@ -35,8 +35,6 @@ class Zones {
   // 255 where motion counts, drawn afresh; a pixel belongs to a polygon when its centre does.
   void draw(MutableGrayView plane) const;
 
-  std::size_t bytes() const { return plane_.bytes(); }
-
  private:
   struct Polygon {
     bool include = true;

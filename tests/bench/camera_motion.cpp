@@ -19,6 +19,7 @@
 #include "control/base_rate.h"
 #include "frames.h"
 #include "support/data.h"
+#include "support/motions.h"
 #include "support/pictures.h"
 #include "vision/luma.h"
 
@@ -88,7 +89,7 @@ void synthetic(const Turns& turns, MotionModel model, const char* name, double t
     const double pan = radians(turns.pan * any(random)), tilt = radians(turns.tilt * any(random));
     const double roll = radians(turns.roll * any(random));
     const double cx = 0.5 * (size.width - 1), cy = 0.5 * (size.height - 1);
-    const Transform truth = Transform::translation(cx, cy) * Transform::similarity(1, roll, 0, 0) *
+    const Transform truth = Transform::translation(cx, cy) * tests::similarity(1, roll, 0, 0) *
                             Transform::translation(-cx, -cy) * lens.turn(0, 0, pan, tilt);
     Image<std::uint8_t> earlier(size), later(size), object(size);
     tests::look(scene, {}, earlier.view());

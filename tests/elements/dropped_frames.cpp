@@ -3,6 +3,7 @@
 // whatever stands where must go on seeing, and must say so where it cannot.
 #include "../../plugins/vision/camera_path.hpp"
 
+#include "../support/motions.h"
 #include "scene.h"
 #include "support.h"
 #include "vision/lens.h"
@@ -166,7 +167,7 @@ GST_START_TEST(a_path_that_cannot_be_told_any_more_begins_anew) {
   for (int k = 0; k < 2000; ++k) {
     CerberusCameraMotion motion;
     cerberus_camera_motion_init(&motion);
-    const vision::Transform step = vision::Transform::similarity(0.5, 0, 80, 60);
+    const vision::Transform step = tests::similarity(0.5, 0, 80, 60);
     cerberus_camera_motion_set_matrix(&motion, step.m.data());
     motion.scene_age = k + 1;
     path.extend(motion, frame);

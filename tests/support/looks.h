@@ -7,6 +7,7 @@
 #include <optional>
 #include <random>
 
+#include "support/motions.h"
 #include "support/pictures.h"
 #include "vision/camera_motion.h"
 
@@ -18,8 +19,8 @@ inline constexpr vision::Size kSize{320, 240};
 inline vision::Transform about_centre(double scale, double angle, double dx, double dy,
                                       vision::Size size = kSize) {
   const double cx = 0.5 * (size.width - 1), cy = 0.5 * (size.height - 1);
-  return vision::Transform::translation(cx + dx, cy + dy) *
-         vision::Transform::similarity(scale, angle, 0, 0) * vision::Transform::translation(-cx, -cy);
+  return vision::Transform::translation(cx + dx, cy + dy) * similarity(scale, angle, 0, 0) *
+         vision::Transform::translation(-cx, -cy);
 }
 
 // Largest distance between where two motions take a grid of points.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <random>
@@ -26,6 +27,14 @@ inline vision::Image<std::uint8_t> random_mask(vision::Size size, unsigned perce
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) mask.view().at(x, y) = random() % 100 < percent ? 255 : 0;
   return mask;
+}
+
+// Number of set pixels.
+inline long count(vision::BitView bits) {
+  long total = 0;
+  for (int y = 0; y < bits.height; ++y)
+    for (int x = 0; x < bits.width; ++x) total += std::popcount(bits.row(y)[x]);
+  return total;
 }
 
 inline vision::BitMask packed(vision::GrayView mask) {

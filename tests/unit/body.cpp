@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/motions.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -50,7 +51,7 @@ void check_scaled(const Body& before, const Body& after, double scale, double mo
 START_TEST(a_zoom_scales_all_of_its_lengths) {
   const Body before = walker(200, 240);
   Body after = before;
-  ck_assert(after.carry(Transform::similarity(1.5, 0, 0, 0), kFrame));
+  ck_assert(after.carry(cerberus::tests::similarity(1.5, 0, 0, 0), kFrame));
   const double grain = after.x.pp / 2.25 - before.x.pp;  // a pixel of the analysed picture, whatever that is
   ck_assert_double_gt(grain, 0);
   check_scaled(before, after, 1.5, grain, 1e-9);

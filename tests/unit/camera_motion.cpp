@@ -52,7 +52,7 @@ START_TEST(a_real_pan_is_a_homography_and_found_without_a_word_from_the_head) {
   const double cx = 0.5 * (kSize.width - 1), cy = 0.5 * (kSize.height - 1);
   const Transform k{{f, 0, cx, 0, f, cy, 0, 0, 1}};
   const Transform pan{{std::cos(a), 0, -std::sin(a), 0, 1, 0, std::sin(a), 0, std::cos(a)}};
-  const Transform truth = k * pan * Transform::similarity(1, 0.5 * M_PI / 180, 0, 0) * k.inverse();
+  const Transform truth = k * pan * similarity(1, 0.5 * M_PI / 180, 0, 0) * k.inverse();
   // A similarity with the bend of a turning camera is all that a turn needs.
   for (const MotionModel model : {MotionModel::homography, MotionModel::similarity}) {
     const double off = disagreement(between(Scene(4), truth, model).transform, truth);

@@ -5,6 +5,7 @@
 
 #include <random>
 
+#include "support/motions.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -93,7 +94,7 @@ START_TEST(a_zoom_about_the_middle_scales_heights_and_rows) {
   teach(prior, 100, 60, 200, 0, 6);
   const double before = prior.height(160);
   // Twice about (160, 120): row 160 becomes 200.
-  const Transform zoom = Transform::similarity(1.25, 0, 160 - 1.25 * 160, 120 - 1.25 * 120);
+  const Transform zoom = cerberus::tests::similarity(1.25, 0, 160 - 1.25 * 160, 120 - 1.25 * 120);
   prior.advance(zoom, {320, 240});
   ck_assert_double_eq_tol(prior.height(120 + 1.25 * 40), 1.25 * before, 1e-6);
 }

@@ -9,6 +9,7 @@
 
 #include "support/allocations.h"
 #include "support/area.h"
+#include "support/masks.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "support/allocations.h"
+#include "support/motions.h"
 #include "support/suite.h"
 #include "vision/lens.h"
 #include "vision/motion_least_squares.h"
@@ -47,7 +48,7 @@ double disagreement(const Transform& a, const Transform& b) {
   return worst;
 }
 
-const Transform kTurn = Transform::similarity(1.04, 0.05, -12, 7);
+const Transform kTurn = similarity(1.04, 0.05, -12, 7);
 const Transform kShear{{1.03, 0.04, -5, 0.01, 0.98, 6, 0, 0, 1}};
 const Transform kPan{{1.02, 0.01, 8, 0.005, 1.01, -3, 1e-4, -5e-5, 1}};
 
@@ -192,7 +193,7 @@ END_TEST
 // K R K^-1 with the principal point in the middle.
 Transform turn_of(double field_of_view, double pan, double tilt, double roll) {
   return Lens(field_of_view, kSize).turn(0, 0, pan, tilt) * Transform::translation(159.5, 119.5) *
-         Transform::similarity(1, roll, 0, 0) * Transform::translation(-159.5, -119.5);
+         similarity(1, roll, 0, 0) * Transform::translation(-159.5, -119.5);
 }
 
 MotionFit turn_in(const MotionSamples& samples, const LensBend& known = {}) {

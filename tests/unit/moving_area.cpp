@@ -9,6 +9,7 @@
 
 #include "support/allocations.h"
 #include "support/area.h"
+#include "support/motions.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -279,7 +280,7 @@ START_TEST(turning_and_zooming_for_long_stays_registered) {
   AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   const Transform centre = Transform::translation(79.5, 59.5);
-  const Transform step = centre * Transform::similarity(1.004, 0.006, 0.3, 0.1) * centre.inverse();
+  const Transform step = centre * similarity(1.004, 0.006, 0.3, 0.1) * centre.inverse();
   Transform pose;
   long wrong = 0;
   for (int k = 0; k < 80; ++k) {
@@ -301,7 +302,7 @@ START_TEST(motion_that_cannot_be_and_odd_sizes_do_no_harm) {
       fill_random(picture.view(), random);
       const Transform wild = k % 3 == 0   ? Transform{{0, 0, 0, 0, 0, 0, 0, 0, 1}}
                              : k % 3 == 1 ? Transform::translation(1e6, -1e6)
-                                          : Transform::similarity(1.5, 2, 3, 4);
+                                          : similarity(1.5, 2, 3, 4);
       chain.feed(picture.view(), wild, false);
       for (int y = 0; y < size.height; ++y)
         for (int x = 0; x < size.width; ++x)

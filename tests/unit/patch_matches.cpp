@@ -5,8 +5,10 @@
 #include <check.h>
 
 #include <cmath>
+#include <utility>
 
 #include "support/looks.h"
+#include "support/pyramids.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -14,10 +16,8 @@ using namespace cerberus::tests;
 
 namespace {
 
-Pyramid pyramid_of(const Image<std::uint8_t>& image) {
-  Pyramid pyramid;
-  pyramid.build(image.view(), 4);
-  return pyramid;
+KeptPyramid pyramid_of(Image<std::uint8_t> image) {
+  return {std::move(image), 4};
 }
 
 PatchSites sites_of(const Pyramid& pyramid, double noise = 1) {
@@ -31,7 +31,7 @@ PatchSites sites_of(const Pyramid& pyramid, double noise = 1) {
 
 START_TEST(patches_are_found_where_they_went_on_every_level) {
   const Transform truth = Transform::translation(5.5, -3.25);
-  const Pyramid before = pyramid_of(picture(Scene(1))), after = pyramid_of(picture(Scene(1), truth));
+  const KeptPyramid before = pyramid_of(picture(Scene(1))), after = pyramid_of(picture(Scene(1), truth));
   const PatchSites sites = sites_of(before);
   PatchMatches matches(sites);
   ck_assert_int_ge(matches.count(), 180);
@@ -49,7 +49,7 @@ END_TEST
 
 START_TEST(of_several_guesses_the_right_one_is_found_and_the_first_in_doubt) {
   const Transform truth = Transform::translation(40, 9);
-  const Pyramid before = pyramid_of(picture(Scene(2))), after = pyramid_of(picture(Scene(2), truth));
+  const KeptPyramid before = pyramid_of(picture(Scene(2))), after = pyramid_of(picture(Scene(2), truth));
   const PatchSites sites = sites_of(before);
   PatchMatches matches(sites);
   const std::array guesses{Transform{}, Transform::translation(-20, 0), Transform::translation(39, 10)};
@@ -63,7 +63,7 @@ END_TEST
 START_TEST(the_share_is_of_the_patches_that_follow) {
   Image<std::uint8_t> later = picture(Scene(3), Transform::translation(4, 0));
   paste(picture(Scene(99)), later.view(), 160, 0, 160, 240);  // the right half is another place
-  const Pyramid before = pyramid_of(picture(Scene(3))), after = pyramid_of(later);
+  const KeptPyramid before = pyramid_of(picture(Scene(3))), after = pyramid_of(std::move(later));
   const PatchSites sites = sites_of(before);
   PatchMatches matches(sites);
   ck_assert_double_eq(matches.share_of({}).all, 0);  // nothing looked for yet
@@ -83,7 +83,7 @@ START_TEST(noise_is_what_the_matches_leave) {
     Image<std::uint8_t> a = picture(Scene(4)), b = picture(Scene(4));
     add_noise(a.view(), sigma, sigma, random);
     add_noise(b.view(), sigma, sigma, random);
-    const Pyramid before = pyramid_of(a), after = pyramid_of(b);
+    const KeptPyramid before = pyramid_of(std::move(a)), after = pyramid_of(std::move(b));
     const PatchSites sites = sites_of(before, sigma);
     PatchMatches matches(sites);
     ck_assert(!matches.noise());

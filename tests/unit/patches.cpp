@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "support/pictures.h"
+#include "support/pyramids.h"
 #include "support/targets.h"
 #include "vision/global_shift.h"
 
@@ -15,16 +16,14 @@ using namespace cerberus::tests;
 
 namespace {
 
-Pyramid pyramid_of(const Scene& scene, const Transform& motion, Size size, double gain = 1,
-                   double offset = 0) {
+KeptPyramid pyramid_of(const Scene& scene, const Transform& motion, Size size, double gain = 1,
+                       double offset = 0) {
   Image<std::uint8_t> image(size);
   look(scene, motion, image.view());
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
       image.view().at(x, y) = to_byte(gain * image.view().at(x, y) + offset);
-  Pyramid pyramid;
-  pyramid.build(image.view(), 5);
-  return pyramid;
+  return {std::move(image), 5};
 }
 
 }  // namespace
@@ -34,7 +33,7 @@ START_TEST(a_pyramid_halves_down_to_one_pixel_and_no_further) {
   for (int y = 0; y < 5; ++y)
     for (int x = 0; x < 9; ++x) image.view().at(x, y) = static_cast<std::uint8_t>(10 * y + x);
   Pyramid pyramid;
-  pyramid.build(image.view(), Pyramid::kMaxLevels);
+  pyramid.borrow(image.view(), Pyramid::kMaxLevels);
   ck_assert_int_eq(pyramid.levels(), 3);
   ck_assert(pyramid.level(1).size() == (Size{4, 2}));
   ck_assert(pyramid.level(2).size() == (Size{2, 1}));
@@ -51,7 +50,8 @@ START_TEST(a_pyramid_needs_a_borrowed_picture_until_another_takes_it_over) {
   Pyramid borrowed, kept;
   borrowed.borrow(image.view(), 2);
   ck_assert_ptr_eq(borrowed.level(0).data, image.view().data);
-  kept.build(Image<std::uint8_t>({4, 4}).view(), 1);
+  const Image<std::uint8_t> other({4, 4});
+  kept.borrow(other.view(), 2);
   kept.take(borrowed);
   image.fill_bytes(90);
   ck_assert_int_eq(borrowed.levels(), 0);
@@ -88,7 +88,7 @@ START_TEST(noise_alone_is_not_texture) {
   for (int y = 0; y < 240; ++y) std::memset(image.view().row(y), 120, 320);
   add_noise(image.view(), 6, 6, random);
   Pyramid pyramid;
-  pyramid.build(image.view(), 3);
+  pyramid.borrow(image.view(), 3);
   Image<std::int32_t> scratch;
   PatchSites sites;
   sites.choose(pyramid, 6, scratch);
@@ -101,7 +101,7 @@ START_TEST(a_patch_is_chosen_where_there_is_a_corner_not_an_edge) {
   for (int y = 0; y < 15; ++y)
     for (int x = 0; x < 15; ++x) image.view().at(x, y) = x < 3 || (x >= 9 && y >= 9) ? 200 : 50;
   Pyramid pyramid;
-  pyramid.build(image.view(), 1);
+  pyramid.borrow(image.view(), 1);
   Image<std::int32_t> scratch;
   PatchSites sites;
   sites.choose(pyramid, 0, scratch);
@@ -113,7 +113,7 @@ END_TEST
 
 START_TEST(patches_are_followed_to_a_fraction_of_a_pixel_under_any_light) {
   const Size size{160, 120};
-  const Pyramid earlier = pyramid_of(Scene(3), {}, size);
+  const KeptPyramid earlier = pyramid_of(Scene(3), {}, size);
   Image<std::int32_t> scratch;
   PatchSites sites;
   sites.choose(earlier, 1, scratch);
@@ -121,7 +121,7 @@ START_TEST(patches_are_followed_to_a_fraction_of_a_pixel_under_any_light) {
   for (const double shift : {0.0, 0.3, -0.5, 1.2, -1.8})
     for (const double gain : {1.0, 0.5, 1.5}) {
       const Transform motion = Transform::translation(shift, 0.5 * shift);
-      const Pyramid later = pyramid_of(Scene(3), motion, size, gain, 128 - 128 * gain);
+      const KeptPyramid later = pyramid_of(Scene(3), motion, size, gain, 128 - 128 * gain);
       int good = 0;
       for (int i = 0; i < sites.count; ++i) {
         const PatchMatch m =
@@ -137,17 +137,17 @@ START_TEST(patches_are_followed_to_a_fraction_of_a_pixel_under_any_light) {
 END_TEST
 
 START_TEST(what_lies_outside_or_has_no_texture_is_not_found) {
-  const Pyramid earlier = pyramid_of(Scene(4), {}, {64, 64});
+  const KeptPyramid earlier = pyramid_of(Scene(4), {}, {64, 64});
   const PatchFollower patch(earlier.level(0), 0, {30, 33, 0});
   const PatchMatch outside = patch.follow(earlier.level(0), -40, 0, 3);
   ck_assert(!outside.inside);
   ck_assert_float_eq(outside.correlation, 0);
   ck_assert_float_eq(patch.follow(earlier.level(0), NAN, 0, 3).correlation, 0);
-  const Pyramid flat = pyramid_of(Scene(4, 0), {}, {64, 64});
+  const KeptPyramid flat = pyramid_of(Scene(4, 0), {}, {64, 64});
   ck_assert_float_eq(
       PatchFollower(flat.level(0), 0, {30, 33, 0}).follow(earlier.level(0), 0, 0, 3).correlation, 0);
   ck_assert_float_eq(patch.follow(flat.level(0), 0, 0, 3).correlation, 0);
-  const Pyramid tiny = pyramid_of(Scene(4), {}, {9, 9});
+  const KeptPyramid tiny = pyramid_of(Scene(4), {}, {9, 9});
   ck_assert_float_eq(PatchFollower(tiny.level(0), 0, {4, 4, 0}).follow(tiny.level(0), 0, 0, 3).correlation,
                      0);
 }

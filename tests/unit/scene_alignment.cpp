@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "support/motions.h"
 #include "support/pictures.h"
 #include "support/suite.h"
 
@@ -60,7 +61,7 @@ END_TEST
 
 START_TEST(a_turn_about_the_centre_is_recovered) {
   const Transform centre = Transform::translation(159.5, 119.5);
-  assert_recovers(centre * Transform::similarity(1.003, 0.003, 0.2, 0) * centre.inverse(), false, 0.15);
+  assert_recovers(centre * similarity(1.003, 0.003, 0.2, 0) * centre.inverse(), false, 0.15);
 }
 END_TEST
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/motions.h"
 #include "support/suite.h"
 #include "vision/shift_content.h"
 
@@ -296,8 +297,8 @@ START_TEST(a_camera_that_zooms_too_far_forgets) {
   for (const double zoom : {1.5, 2.5, 0.4}) {
     Memory memory(even_wall);
     memory.look(kStep, 0);
-    memory.surroundings.recall(memory.pixels(), Transform::similarity(zoom, 0, 0, 0));
-    memory.surroundings.recall(memory.pixels(), Transform::similarity(1 / zoom, 0, 0, 0));
+    memory.surroundings.recall(memory.pixels(), similarity(zoom, 0, 0, 0));
+    memory.surroundings.recall(memory.pixels(), similarity(1 / zoom, 0, 0, 0));
     memory.look(-kStep, 0);
     ck_assert_int_eq(memory.pixels().age.at(2, 30), zoom == 1.5 ? SceneSurroundings::kOldest : 0);
   }
@@ -310,8 +311,8 @@ START_TEST(motions_that_cannot_be_do_no_harm_and_nothing_is_allocated) {
   const std::size_t before = allocations();
   for (const Transform& t :
        {Transform::translation(1e7, -1e7), Transform::translation(kSize.width, kSize.height),
-        Transform::similarity(3, 0, 0, 0), Transform::similarity(0.2, 1, 5, 5),
-        Transform::similarity(1, 3.1, 0, 0), Transform{{1, 0, 0, 0, 1, 0, 0.012, 0, 1}}, Transform{}}) {
+        similarity(3, 0, 0, 0), similarity(0.2, 1, 5, 5), similarity(1, 3.1, 0, 0),
+        Transform{{1, 0, 0, 0, 1, 0, 0.012, 0, 1}}, Transform{}}) {
     memory.surroundings.keep(p, t);
     memory.surroundings.recall(p, t);
     memory.learn();

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "support/motions.h"
 #include "support/room.h"
 #include "support/suite.h"
 
@@ -154,8 +155,8 @@ START_TEST(what_grows_one_way_or_by_the_camera_s_zoom_is_not_nearer) {
   for (int k = 0; k < 20; ++k) {
     const double height = 60 + 3.0 * k, scale = std::pow(kZoom, k);
     ck_assert_uint_eq(told(grows, {piece(150, 120 - height / 2, 20 + 0.1 * k, height)}).size(), 0);
-    const Transform zoom = Transform::translation(160, 120) * Transform::similarity(kZoom, 0, 0, 0) *
-                           Transform::translation(-160, -120);
+    const Transform zoom =
+        Transform::translation(160, 120) * similarity(kZoom, 0, 0, 0) * Transform::translation(-160, -120);
     ck_assert_uint_eq(
         told(zoomed, {piece(160 - 10 * scale, 120 - 30 * scale, 20 * scale, 60 * scale)}, zoom).size(), 0);
   }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "support/allocations.h"
+#include "support/motions.h"
 #include "support/suite.h"
 #include "unit/walkers.h"
 
@@ -102,7 +103,7 @@ START_TEST(a_zoom_scales_box_and_speed_of_a_track_without_evidence) {
     tracker.update({&seen, 1}, {}, 0.1, kFrame);
   }
   const Track before = tracker.update({}, {}, 1e-9, kFrame)[0];
-  const auto after = tracker.update({}, Transform::similarity(1.5, 0, 0, 0), 1e-9, kFrame);
+  const auto after = tracker.update({}, similarity(1.5, 0, 0, 0), 1e-9, kFrame);
   ck_assert_double_eq_tol(after[0].box.height, 1.5 * before.box.height, 0.1);
   ck_assert_double_eq_tol(after[0].vx, 1.5 * before.vx, 0.1);
   ck_assert_double_eq_tol(after[0].box.x, 1.5 * before.box.x, 1);

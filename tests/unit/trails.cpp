@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "support/motions.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -62,7 +63,7 @@ START_TEST(points_carried_far_away_are_dropped_with_all_before_them) {
   step(trails, 0.0, {}, 7, 10, 10);
   step(trails, 0.1, {}, 7, 300, 10);
   // Scaling by 10 about the origin: (10, 10) stays near the picture, the newer (300, 10) does not.
-  step(trails, 0.2, Transform::similarity(10, 0, 0, 0), 7, 50, 60);
+  step(trails, 0.2, cerberus::tests::similarity(10, 0, 0, 0), 7, 50, 60);
   ck_assert_int_eq(trails.trails()[0].points.size(), 1);
   ck_assert_double_eq(trails.trails()[0].points[0].position.x, 50);
 }

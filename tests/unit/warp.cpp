@@ -5,6 +5,7 @@
 #include <check.h>
 
 #include "support/allocations.h"
+#include "support/motions.h"
 #include "support/pictures.h"
 #include "support/targets.h"
 #include "support/wrong.h"
@@ -27,13 +28,13 @@ Transform pan(Size size, double degrees) {
 std::vector<Transform> motions(Size size) {
   return {Transform::translation(2.25, -1.5),
           Transform::translation(-0.37, 0.81),
-          Transform::similarity(1.01, 0.01, 3, -4),
-          Transform::similarity(0.9, -0.2, 5, 6),
-          Transform::similarity(1.4, 0.6, -9, 2),
-          Transform::similarity(1, M_PI / 2, size.height - 1.0, 0),
+          similarity(1.01, 0.01, 3, -4),
+          similarity(0.9, -0.2, 5, 6),
+          similarity(1.4, 0.6, -9, 2),
+          similarity(1, M_PI / 2, size.height - 1.0, 0),
           Transform{{1.1, 0.2, 3, -0.1, 0.8, 1, 0, 0, 1}},
           pan(size, 2.5),
-          pan(size, -10) * Transform::similarity(1.05, 0.1, 2, 1)};
+          pan(size, -10) * similarity(1.05, 0.1, 2, 1)};
 }
 
 bool inside(RowSpan span, int x) {
@@ -157,7 +158,7 @@ END_TEST
 START_TEST(the_scene_seen_through_the_warp_is_the_scene_seen_from_there) {
   const Size size{320, 240};
   const Scene scene(5);
-  for (const Transform& motion : {Transform::similarity(1.02, 0.02, -3.3, 4.1), pan(size, 1.5)}) {
+  for (const Transform& motion : {similarity(1.02, 0.02, -3.3, 4.1), pan(size, 1.5)}) {
     Image<std::uint8_t> earlier(size), later(size), registered(size);
     look(scene, {}, earlier.view());
     look(scene, motion, later.view());
@@ -238,7 +239,7 @@ START_TEST(the_steady_state_allocates_nothing) {
   Warp warp;
   warp.prepare({}, size);
   const std::size_t before = allocations();
-  const Transform turned = Transform::similarity(1, 0.1, 1, 2), panned = pan(size, 2);
+  const Transform turned = similarity(1, 0.1, 1, 2), panned = pan(size, 2);
   for (const Transform* motion : {&turned, &panned}) {
     warp.prepare(*motion, size);
     warp.bilinear(source.view(), target.view());
