@@ -230,7 +230,9 @@ bool show(State& state, const Settings& settings, GstBuffer* in, const draw::Can
 }
 
 gboolean cerberus_motion_view_start(GstBaseTransform* transform) {
-  cerberus_motion_view_self(transform)->priv->state.warned = 0;
+  State& state = cerberus_motion_view_self(transform)->priv->state;
+  state.warned = 0;
+  state.complaint = nullptr;
   return TRUE;
 }
 

@@ -434,10 +434,17 @@ GST_START_TEST(interlaced_video_is_refused_naming_deinterlace) {
     Harness harness = outputs::harness("motionview");
     Bus bus(harness.get());
     gst_harness_set_src_caps_str(harness.get(), caps.c_str());
-    fail_unless_equals_int(gst_harness_push(harness.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
-    std::string text;
-    fail_unless(bus.count(GST_MESSAGE_ERROR, &text) >= 1);  // the harness tries again and again
-    fail_unless(text.find("deinterlace") != std::string::npos, "%s", text.c_str());
+    for (int start = 0; start < 2; ++start) {
+      fail_unless_equals_int(gst_harness_push(harness.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+      fail_unless_equals_int(gst_harness_push(harness.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+      std::string text;
+      fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
+      fail_unless(text.find("deinterlace") != std::string::npos, "%s", text.c_str());
+      // A start anew is told anew.
+      gst_element_set_state(harness.get()->element, GST_STATE_READY);
+      gst_element_set_state(harness.get()->element, GST_STATE_PLAYING);
+      gst_harness_set_src_caps_str(harness.get(), caps.c_str());
+    }
   }
 }
 GST_END_TEST
