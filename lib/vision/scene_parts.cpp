@@ -37,7 +37,7 @@ constexpr double kLeast = 1 / 1280.0;       // share of the picture below which 
 constexpr double kPiece = 1 / 3.0;          // share of the bigger part's area below which a part is a piece
 constexpr double kLeastFront = 1 / 2560.0;  // share of the picture below which a part is no front of anybody
 constexpr std::size_t kMostFronts = 128;    // parts beyond which a picture is clutter
-// More than 320 x 240 pixels can have (labelling.h): of larger pictures so many are rain, or snow, and to compare each
+// More than 320 x 240 pixels can have (labelling.cpp): of larger pictures so many are rain, or snow, and to compare each
 // with each other would take longer than a frame.
 constexpr std::size_t kMostParts = 512;
 
@@ -230,7 +230,10 @@ bool SceneParts::judge(const ScenePlanes& planes, const SceneWindows& windows, M
   measure(planes, windows, mask);
   for (std::size_t i = 0; i < components.size(); ++i) weigh(planes, components[i], parts_[i]);
   if (planes.still) {
-    if (components.size() <= kMostParts) find_places(), find_owners();
+    if (components.size() <= kMostParts) {
+      find_places();
+      find_owners();
+    }
     for (const Run& r : labeller_.runs()) origins_.note(r, parts_[r.component].origin);
   }
   bool young_objects = false;
@@ -262,7 +265,6 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
                       MutableBitView mask) {
   labeller_.find(closed, planes.present.width);
   const auto components = labeller_.components();
-  if (components.size() > kMostParts) return;
   parts_.assign(components.size(), {});
   for (const Run& r : labeller_.runs()) {
     const std::uint8_t* age = planes.age.row(r.row);
@@ -272,7 +274,7 @@ void SceneParts::join(const ScenePlanes& planes, const SceneWindows& windows, Mu
     const Component& a = components[i];
     if (2 * parts_[i].young < static_cast<int>(a.area)) continue;
     parts_[i].piece = a.area < kLeast * planes.present.size().area();
-    for (std::size_t j = 0; j < components.size(); ++j) {
+    for (std::size_t j = 0; components.size() <= kMostParts && j < components.size(); ++j) {
       const Component& b = components[j];
       if (i == j || b.area < a.area || (b.area == a.area && j < i)) continue;
       const int tall = std::max(a.height(), b.height());
