@@ -181,8 +181,8 @@ CerberusRegion *cerberus_region_from_structure (const GstStructure *structure);
  * tracked) and `cerberus-object` (everything), and where GStreamer has it (1.24) in a #GstAnalyticsRelationMeta too.
  * The meta's whole pixels are the ones nearest to @region's edges, cut at the frame's left and top.
  *
- * Returns: %TRUE if attached; %FALSE if @buffer is not writable, or the position is not finite or beyond
- *   2^24 pixels, or an extent is negative.
+ * Returns: %TRUE if attached; %FALSE if @buffer is not writable, a number is not finite or beyond 2^24
+ *   pixels, or an extent is negative.
  *
  * Since: 0.1
  */

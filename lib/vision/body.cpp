@@ -153,7 +153,7 @@ bool Body::carry(const Transform& motion, Size frame) {
   y.velocity = velocity.y;
   walk = turned(walk);
   magnify(std::sqrt(det));
-  for (Point* p : {&origin, &misfit_from}) *p = motion.apply(*p);
+  for (Point* place : {&origin, &misfit_from}) *place = motion.apply(*place);
   return true;
 }
 

@@ -44,7 +44,8 @@ class BrightnessLevel {
  private:
   static constexpr int kColumns = 12, kRows = 9;
   void make_bins();
-  double level_ = 0, made_for_ = 0;  // log2 of the factor; of that of the bins
+  double level_ = 0;     // log2 of the factor
+  double made_for_ = 0;  // that of the bins
   Size size_;
   std::array<std::uint8_t, kColumns * kRows> before_{};
   std::array<Bin, 256> bins_;

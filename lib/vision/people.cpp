@@ -68,7 +68,7 @@ bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std:
   inside_ = {std::clamp(cell(0, x0_), 0, columns_), std::clamp(cell(0, y0_), 0, rows_),
              std::clamp(cell(picture_.width, x0_), 0, columns_),
              std::clamp(cell(picture_.height, y0_), 0, rows_)};
-  // It may begin and end within a cell, which belongs to it as far as it is in the picture.
+  // The window may begin and end within a cell, which belongs to it as far as it is in the picture.
   window_ = {std::max((window.left - x0_) / step_, inside_.left),
              std::max((window.top - y0_) / step_, inside_.top), std::min(cell(window.right, x0_), columns_),
              std::min(cell(window.bottom, y0_), rows_)};

@@ -14,13 +14,13 @@ class Pyramid {
  public:
   static constexpr int kMaxLevels = 8;
 
-  // All allocate only when the size changes. `levels` at most kMaxLevels; stops earlier at an empty level.
-  // Level 0 is the picture itself: it has to stay what and where it is for as long as it is looked at here.
+  // Level 0 is the picture itself: it has to stay what and where it is for as long as it is looked at here. `levels` at
+  // most kMaxLevels; stops earlier at an empty level. Nothing here allocates but when the size changes.
   void borrow(GrayView picture, int levels);
   // More levels of the same picture.
   void extend(int levels);
-  // Becomes what `other` is from level 1 on, with the size but not the pixels of its level 0. The other one is to be
-  // built or to borrow anew.
+  // Becomes what `other` is from level 1 on, with the size but not the pixels of its level 0. The other one has
+  // to borrow anew.
   void take(Pyramid& other);
   int levels() const { return levels_; }
   GrayView level(int l) const { return l > 0 ? smaller_[l - 1].view() : picture_; }

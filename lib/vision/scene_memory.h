@@ -36,7 +36,7 @@ struct SceneMemoryInput {
 // - a connected part stays only if enough of it has really moved lately, or if, the camera standing, its outline is an
 //   edge of the frame (something that stopped) and not one of the memory (a ghost: something that left).
 // Foreground is never learnt; parts that do not move are taken over as one: ghosts at once, things of unclear origin
-// when they have been there longer than what they replaced, things that stopped after ten seconds, or 250 frames (scene_parts.h).
+// when they have been there longer than what they replaced, things that stopped after ten seconds (scene_parts.h).
 class SceneMemory {
  public:
   SceneMemory();

@@ -21,7 +21,7 @@ struct SceneWindows {
   int now = 3;      // what moved so lately moves: 3 frames, 0.12 s
   int lately = 25;  // 1 s: what moved so lately may have stopped for a moment
   int young = 50;   // 2 s: what the memory has learnt for less may be an object's place
-  int hold = 250;   // 10 s, but no more frames than 250: how long something that stopped is kept
+  int hold = 250;   // 10 s, 50 to 250 frames: how long something that stopped is kept
   // seconds: from frame to frame, > 0.
   static SceneWindows of(double seconds);
 };
