@@ -2,7 +2,6 @@
 #include "vision/mask.h"
 
 #include <algorithm>
-#include <bit>
 
 #include "vision/mask_kernels.h"
 
