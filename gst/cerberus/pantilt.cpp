@@ -3,16 +3,20 @@
 
 #include "private/head.hpp"
 #include "private/structure.hpp"
+#include "private/text.hpp"
 
 GstMessage* cerberus_message_new_pantilt(GstObject* src, GstClockTime running_time, const gchar* state,
                                          const gchar* reason, const CerberusPose* pose) {
   g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
   g_return_val_if_fail(state && pose, nullptr);
+  // Of a driver and of a user: a field that is no UTF-8 would be lost, and the message with it.
+  const std::string why = cerberus::printable(reason ? reason : "");
+  const std::string head = cerberus::printable(cerberus::head_of(*pose));
   return gst_message_new_element(
       src, gst_structure_new(CERBERUS_MESSAGE_PANTILT, "state", G_TYPE_STRING, state, "reason", G_TYPE_STRING,
-                             reason ? reason : "", "head", G_TYPE_STRING, cerberus::head_of(*pose), "pan",
-                             G_TYPE_DOUBLE, pose->pan, "tilt", G_TYPE_DOUBLE, pose->tilt, "running-time",
-                             G_TYPE_UINT64, static_cast<guint64>(running_time), nullptr));
+                             why.c_str(), "head", G_TYPE_STRING, head.c_str(), "pan", G_TYPE_DOUBLE,
+                             pose->pan, "tilt", G_TYPE_DOUBLE, pose->tilt, "running-time", G_TYPE_UINT64,
+                             static_cast<guint64>(running_time), nullptr));
 }
 
 CerberusPose* cerberus_message_parse_pantilt(GstMessage* message, GstClockTime* running_time, gchar** state,

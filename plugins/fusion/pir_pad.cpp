@@ -30,8 +30,8 @@ std::shared_ptr<const SensorArray> sensor_array(const CerberusPirInfo& info) {
 // What cannot be used comes again with the next buffer: said once.
 bool refuse(GstElement* element, GstPad* pad, const std::string& fault) {
   if (!std::exchange(pir_pad(pad).refused, true))
-    GST_ELEMENT_ERROR(element, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), fault.c_str()),
-                      (nullptr));
+    CERBERUS_ELEMENT_ERROR(element, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), fault.c_str()),
+                           (nullptr));
   return false;
 }
 
@@ -174,10 +174,10 @@ Sample sample_of(GstElement* element, GstPad* pad, GstBuffer* buffer) {
         buffer, 0,
         volts ? static_cast<void*>(sample.volts.data()) : static_cast<void*>(sample.presence.data()), size);
   else if (!std::exchange(pir.complained, true))
-    GST_ELEMENT_WARNING(element, STREAM, FORMAT,
-                        ("Pad %s: a PIR reading of %" G_GSIZE_FORMAT " bytes for %u sensors is invalid.",
-                         GST_PAD_NAME(pad), size, pir.info.sensors),
-                        (nullptr));
+    CERBERUS_ELEMENT_WARNING(element, STREAM, FORMAT,
+                             ("Pad %s: a PIR reading of %" G_GSIZE_FORMAT " bytes for %u sensors is invalid.",
+                              GST_PAD_NAME(pad), size, pir.info.sensors),
+                             (nullptr));
   return sample;
 }
 
@@ -206,12 +206,12 @@ void report_faults(GstElement* element, GstPad* pad) {
     const auto number = static_cast<unsigned>(i + 1);
     const auto bearing = std::lround(pir.info.bearings[i]);
     if (fault == sensing::PirFault::none)
-      GST_ELEMENT_INFO(
+      CERBERUS_ELEMENT_INFO(
           element, RESOURCE, READ,
           ("PIR sensor infer%u (pad %s, bearing %ld) works again.", number, GST_PAD_NAME(pad), bearing),
           (nullptr));
     else
-      GST_ELEMENT_WARNING(
+      CERBERUS_ELEMENT_WARNING(
           element, RESOURCE, READ,
           ("PIR sensor infer%u (pad %s, bearing %ld) is %s: its readings do not count until it is well "
            "again. "

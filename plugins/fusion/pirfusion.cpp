@@ -63,10 +63,10 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/text.hpp"
 #include "decisions.hpp"
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
@@ -128,14 +128,13 @@ bool load_rules(CerberusPirFusion* self, const std::string& path, std::string& e
   if (!path.empty()) {
     fusion::RuleFile file = fusion::load_rules(path);
     if (!file.table) {
-      error = printable(file.error);
+      error = std::move(file.error);
       return false;
     }
     table = std::make_shared<const fusion::RuleTable>(std::move(*file.table));
     const sensing::Interval limits = fuser_options(self->priv->settings.snapshot(), true).limits;
     for (const std::string& text : fusion::out_of_reach(*table, limits))
-      GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
-                          ("%s: %s.", printable(path).c_str(), printable(text).c_str()), (nullptr));
+      CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, (path + ": " + text + "."), (nullptr));
   }
   {
     const std::lock_guard guard(self->priv->lock);
@@ -158,7 +157,7 @@ void apply_settings(CerberusPirFusion* self) {
   fusion::FuserOptions options = fuser_options(s, table != nullptr);
   if (const std::string fault = limits_fault(s); !fault.empty()) {
     options.limits = decisions.limits();
-    GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s The old limits stay.", fault.c_str()), (nullptr));
+    CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, (fault + " The old limits stay."), (nullptr));
   }
   const bool by_table = options.rules == fusion::RuleSet::table;
   self->priv->state->rules_sensors = !by_table ? 0 : table ? table->sensors : fusion::paper_rules().sensors;
@@ -176,7 +175,7 @@ void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guin
   const std::string seconds = text::significant(static_cast<double>(patience) / GST_SECOND, 3).string();
   for (const SilentPad& pad : silent) {
     const char* what = pad.ended ? "The PIR readings have ended at" : "No PIR reading comes to";
-    GST_ELEMENT_WARNING(
+    CERBERUS_ELEMENT_WARNING(
         self, RESOURCE, READ,
         ("%s pad %s, for %s s now: its sensors are invalid and nobody waits for them.", what,
          pad.name.c_str(), seconds.c_str()),
@@ -206,10 +205,10 @@ void decide_between_frames(CerberusPirFusion* self) {
 
 void warn_of_misfits(CerberusPirFusion* self, const Settings& s, const Moment& moment) {
   State& state = *self->priv->state;
-  const std::string rules = s.rules_file.empty() ? "rules=paper" : printable(s.rules_file);
+  const std::string rules = s.rules_file.empty() ? "rules=paper" : s.rules_file;
   for (const std::string& text : {state.misfits.sensors(rules, state.rules_sensors, moment),
-                                  state.misfits.head(printable(s.head), state.time, moment)})
-    if (!text.empty()) GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s", text.c_str()), (nullptr));
+                                  state.misfits.head(s.head, state.time, moment)})
+    if (!text.empty()) CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, (text), (nullptr));
 }
 
 void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
@@ -376,7 +375,7 @@ bool check_settings(CerberusPirFusion* self) {
   const Settings settings = self->priv->settings.snapshot();
   std::string fault = limits_fault(settings);
   if (fault.empty() && load_rules(self, settings.rules_file, fault)) return true;
-  GST_ELEMENT_ERROR(self, RESOURCE, SETTINGS, ("%s", fault.c_str()), (nullptr));
+  CERBERUS_ELEMENT_ERROR(self, RESOURCE, SETTINGS, (fault), (nullptr));
   return false;
 }
 
@@ -415,7 +414,7 @@ void set_property(GObject* object, guint id, const GValue* value, GParamSpec* sp
       std::string error;
       if (!load_rules(self, path ? path : "",
                       error)) {  // and the property keeps its value: that is what runs
-        GST_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("%s", error.c_str()), ("the rules of before stay"));
+        CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, (error), ("the rules of before stay"));
         return;
       }
     }

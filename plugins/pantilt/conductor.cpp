@@ -58,8 +58,8 @@ void Conductor::configure() {
     wrong = station.set_limits(head_limits(s), now());
   }
   if (!wrong.empty())
-    GST_ELEMENT_WARNING(sink, RESOURCE, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
-                        ("head %s", head.load()));
+    CERBERUS_ELEMENT_WARNING(sink, RESOURCE, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
+                             ("head %s", head.load()));
 }
 
 void Conductor::halt(const char* reason) {
@@ -133,9 +133,9 @@ bool Conductor::run() {
 void Conductor::halt_unwatched() {
   Outbox out = outbox();
   station.halt("nobody watches over it", now(), kHaltPatience, out);
-  GST_ELEMENT_ERROR(sink, RESOURCE, FAILED,
-                    ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
-                    ("the system gives none: too many of this user or process, or too little memory"));
+  CERBERUS_ELEMENT_ERROR(sink, RESOURCE, FAILED,
+                         ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
+                         ("the system gives none: too many of this user or process, or too little memory"));
   tell(out);
 }
 

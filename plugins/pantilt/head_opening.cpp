@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "cerberus/private/text.hpp"
+#include "cerberus/private/messages.hpp"
 #include "head_names.hpp"
 #include "outbox.hpp"
 
@@ -11,24 +11,23 @@ namespace cerberus::plugin {
 
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
                                                std::function<void()> moved, std::function<void()> refused) {
-  const std::string shown = printable(s.head);
-  const char* name = shown.c_str();
+  const char* name = s.head.c_str();
   const drivers::HeadSetup setup = head_setup(s);
   if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
-    GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("%s.", wrong.c_str()), ("head %s", name));
+    CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
     return nullptr;
   }
   auto head = drivers::make_head(s.driver);
   if (!head) {
-    GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
-                      ("There is no head driver \"%s\": take one of %s.", printable(s.driver).c_str(),
-                       drivers::head_drivers().c_str()),
-                      ("head %s", name));
+    CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
+                           ("There is no head driver \"%s\": take one of %s.", s.driver.c_str(),
+                            drivers::head_drivers().c_str()),
+                           ("head %s", name));
     return nullptr;
   }
   auto lease = lease_head(s.head);
   if (!lease) {
-    GST_ELEMENT_ERROR(
+    CERBERUS_ELEMENT_ERROR(
         element, RESOURCE, BUSY,
         ("Another pantiltsink drives the head \"%s\" already: give each its own name (head=).", name),
         (nullptr));

@@ -5,6 +5,7 @@
 
 #include <type_traits>
 
+#include "cerberus/private/messages.hpp"
 #include "fusion/chosen.h"
 #include "pose_feed.hpp"
 #include "times.hpp"
@@ -32,11 +33,11 @@ struct Posting {
   }
   void operator()(const Refusal& refusal) const { refuse(GST_ELEMENT(sink), head, refusal.why); }
   void operator()(const Fault& fault) const {
-    GST_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, fault.what.c_str()),
-                        (nullptr));
+    CERBERUS_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, fault.what.c_str()),
+                             (nullptr));
   }
   void operator()(const Lost& lost) const {
-    GST_ELEMENT_WARNING(
+    CERBERUS_ELEMENT_WARNING(
         sink, RESOURCE, NOT_FOUND,
         ("Track %u, which was to be followed, is on no frame for %d s: the usual choice goes on.", lost.id,
          static_cast<int>(fusion::Chosen::kPatience / std::chrono::seconds(1))),
@@ -47,8 +48,8 @@ struct Posting {
 }  // namespace
 
 void refuse(GstElement* element, const char* head, const std::string& why) {
-  GST_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
-                    ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
+  CERBERUS_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
+                         ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
 }
 
 bool Outgoing::replaces(const Of<Notice>& newer, const Of<Notice>& older) {

@@ -122,7 +122,8 @@ gboolean cerberus_pan_tilt_sink_set_caps(GstBaseSink* sink, GstCaps* caps) {
                 gst_structure_get_int(structure, "height", &state.info.height);
   gst_structure_get_fraction(structure, "framerate", &state.info.fps_n, &state.info.fps_d);
   if (state.known) return TRUE;
-  GST_ELEMENT_ERROR(sink, CORE, NEGOTIATION, ("The video has no size."), ("caps %" GST_PTR_FORMAT, caps));
+  CERBERUS_ELEMENT_ERROR(sink, CORE, NEGOTIATION, ("The video has no size."),
+                         ("caps %" GST_PTR_FORMAT, caps));
   return FALSE;
 }
 

@@ -160,8 +160,8 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
     if (!wrong.empty()) {
       // Upstream tries again with every frame: one message a failure.
       if (wrong != state.complaint)
-        GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION, ("%s", wrong.c_str()),
-                          ("%" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
+        CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong),
+                               ("%" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
       state.complaint = wrong;
       return FALSE;
     }
@@ -184,7 +184,8 @@ void apply_settings(GstBaseTransform* trans, Private& self) {
   if (const std::string wrong = state.view.set_angles(*changed); wrong.empty())
     tell_reach(trans, self);
   else
-    GST_ELEMENT_WARNING(trans, RESOURCE, SETTINGS, ("%s The old angles stay.", wrong.c_str()), (nullptr));
+    CERBERUS_ELEMENT_WARNING(trans, RESOURCE, SETTINGS, ("%s The old angles stay.", wrong.c_str()),
+                             (nullptr));
 }
 
 // Any stride will do.
@@ -260,12 +261,13 @@ GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* i
   }
   const std::string at = text::rounded(control::seconds(time), 3).string();
   const std::string waited = text::significant(control::seconds(patience), 3).string();
-  GST_ELEMENT_ERROR(trans, RESOURCE, READ,
-                    ("The head \"%s\" does not tell where it looks at %s s: for %s s no pose came. Is there "
-                     "a pantiltsink of "
-                     "that name downstream? Without one, set lockstep=off.",
-                     s.head.c_str(), at.c_str(), waited.c_str()),
-                    ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(time))));
+  CERBERUS_ELEMENT_ERROR(
+      trans, RESOURCE, READ,
+      ("The head \"%s\" does not tell where it looks at %s s: for %s s no pose came. Is there "
+       "a pantiltsink of "
+       "that name downstream? Without one, set lockstep=off.",
+       s.head.c_str(), at.c_str(), waited.c_str()),
+      ("running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(time))));
   return GST_FLOW_ERROR;
 }
 
@@ -280,7 +282,7 @@ void warn_of_limits(GstBaseTransform* trans, Private& self, const control::Pose&
   self.state.beyond = true;
   const auto angle = [](double degrees) { return text::significant(degrees, 4).string(); };
   const std::string far = angle(self.pan_reach), high = angle(self.tilt_reach);
-  GST_ELEMENT_WARNING(
+  CERBERUS_ELEMENT_WARNING(
       trans, RESOURCE, SETTINGS,
       ("The head looks at pan %s, tilt %s, and the window ends at pan -%s and %s, tilt -%s and %s: set the "
        "limits of pantiltsink (pan-min, pan-max, tilt-min, tilt-max) and of pirfusion (pan-min, pan-max) so.",
@@ -312,9 +314,10 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_CORRUPTED);
   if (!told) {
     state.warned = true;
-    GST_ELEMENT_WARNING(trans, STREAM, DECODE, ("A buffer does not hold the picture that its caps promise."),
-                        ("%" G_GSIZE_FORMAT " bytes, not %" G_GSIZE_FORMAT, gst_buffer_get_size(in),
-                         GST_VIDEO_INFO_SIZE(&state.view.picture())));
+    CERBERUS_ELEMENT_WARNING(trans, STREAM, DECODE,
+                             ("A buffer does not hold the picture that its caps promise."),
+                             ("%" G_GSIZE_FORMAT " bytes, not %" G_GSIZE_FORMAT, gst_buffer_get_size(in),
+                              GST_VIDEO_INFO_SIZE(&state.view.picture())));
   }
   return GST_FLOW_OK;
 }

@@ -185,7 +185,7 @@ bool open_sensors(CerberusPirSrc* self) {
   priv.running = true;
   guard.unlock();
   if (settings.driver == "scripted" && settings.script.empty())
-    GST_ELEMENT_WARNING(
+    CERBERUS_ELEMENT_WARNING(
         self, RESOURCE, SETTINGS,
         ("driver=scripted without a script knows nothing. Set driver to gpio, iio or replay."), (nullptr));
   return true;
@@ -231,7 +231,7 @@ bool fits_downstream(CerberusPirSrc* self) {
   if (gst_caps_can_intersect(wanted, given)) return true;
   g_autofree gchar* wish = gst_caps_to_string(wanted);
   g_autofree gchar* gift = gst_caps_to_string(given);
-  GST_ELEMENT_ERROR(
+  CERBERUS_ELEMENT_ERROR(
       self, CORE, NEGOTIATION,
       ("What follows pirsrc wants %s, and the sensors give %s. Volts (format=level) come from driver=iio "
        "and from recordings in volts only.",

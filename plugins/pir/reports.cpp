@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "reports.hpp"
 
-#include <cerberus/private/text.hpp>
+#include <cerberus/private/messages.hpp>
 #include <cmath>
 
 namespace cerberus::plugin {
@@ -9,44 +9,41 @@ namespace cerberus::plugin {
 using drivers::SensorFault;
 
 void report_error(GstElement* element, const drivers::SensorError& error) {
-  // They quote a recording's bytes, whatever those are.
-  const std::string all_text = printable(error.text), all_detail = printable(error.detail);
-  const char *text = all_text.c_str(), *detail = all_detail.c_str();
   switch (error.fault) {
     case SensorFault::none:
       return;
     case SensorFault::settings:
     case SensorFault::missing:
-      GST_ELEMENT_ERROR(element, RESOURCE, SETTINGS, ("%s", text), ("%s", detail));
+      CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (error.text), (error.detail));
       return;
     case SensorFault::not_found:
-      GST_ELEMENT_ERROR(element, RESOURCE, NOT_FOUND, ("%s", text), ("%s", detail));
+      CERBERUS_ELEMENT_ERROR(element, RESOURCE, NOT_FOUND, (error.text), (error.detail));
       return;
     case SensorFault::busy:
-      GST_ELEMENT_ERROR(element, RESOURCE, BUSY, ("%s", text), ("%s", detail));
+      CERBERUS_ELEMENT_ERROR(element, RESOURCE, BUSY, (error.text), (error.detail));
       return;
     case SensorFault::denied:
-      GST_ELEMENT_ERROR(element, RESOURCE, NOT_AUTHORIZED, ("%s", text), ("%s", detail));
+      CERBERUS_ELEMENT_ERROR(element, RESOURCE, NOT_AUTHORIZED, (error.text), (error.detail));
       return;
     case SensorFault::data:
-      GST_ELEMENT_ERROR(element, STREAM, DECODE, ("%s", text), ("%s", detail));
+      CERBERUS_ELEMENT_ERROR(element, STREAM, DECODE, (error.text), (error.detail));
       return;
     case SensorFault::gone:
-      GST_ELEMENT_ERROR(element, RESOURCE, READ, ("%s", text), ("%s", detail));
+      CERBERUS_ELEMENT_ERROR(element, RESOURCE, READ, (error.text), (error.detail));
       return;
   }
 }
 
 void report_fault(GstElement* element, int sensor, sensing::PirFault fault, double bearing,
                   const std::string& place) {
-  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + printable(place) +
-                           ", bearing " + std::to_string(std::lround(bearing)) + ")";
+  const std::string name = "PIR sensor infer" + std::to_string(sensor + 1) + " (" + place + ", bearing " +
+                           std::to_string(std::lround(bearing)) + ")";
   if (fault == sensing::PirFault::none) {
-    GST_ELEMENT_INFO(element, RESOURCE, READ, ("%s works again.", name.c_str()), (nullptr));
+    CERBERUS_ELEMENT_INFO(element, RESOURCE, READ, (name + " works again."), (nullptr));
     return;
   }
   const std::string what(sensing::describe(fault));
-  GST_ELEMENT_WARNING(
+  CERBERUS_ELEMENT_WARNING(
       element, RESOURCE, READ,
       ("%s is %s: its readings do not count until it is well again. Check its cable and supply, "
        "and what is warm or moving before it.",

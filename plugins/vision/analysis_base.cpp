@@ -112,7 +112,7 @@ void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, bool bro
   priv.breaks = std::clamp(priv.breaks + (broken ? kFew : -1), 0, kMany);
   if (priv.breaks < kMany || priv.complained) return;
   priv.complained = true;
-  GST_ELEMENT_WARNING(
+  CERBERUS_ELEMENT_WARNING(
       trans, STREAM, FAILED,
       ("Most frames do not continue the ones before them, and nothing can be found: drop frames in front of "
        "`cameramotion`, by `videorate drop-only=true` or a leaky queue, or behind `motiontrack`."),
@@ -124,7 +124,7 @@ void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, bool bro
 void complain_of_times(GstBaseTransform* trans, AnalysisPrivate& priv, bool backwards) {
   constexpr int kMany = 3;
   if (!backwards || ++priv.steps_back != kMany) return;
-  GST_ELEMENT_WARNING(
+  CERBERUS_ELEMENT_WARNING(
       trans, STREAM, FAILED,
       ("Timestamps run backwards, so that speeds and times are guessed: let the source stamp the frames "
        "(`do-timestamp=true`), or put the parser of the format (`h264parse`) in front of its decoder."),
@@ -181,7 +181,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
 void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
   const std::optional<Settings> changed = priv.settings.changes();
   if (!changed || changed->analysis_width == 0 || changed->analysis_width >= kLeastAnalysisWidth) return;
-  GST_ELEMENT_WARNING(
+  CERBERUS_ELEMENT_WARNING(
       trans, RESOURCE, SETTINGS,
       ("analysis-width=%d is too small to see anything: %d counts instead. Set that, or more.",
        changed->analysis_width, kLeastAnalysisWidth),
@@ -217,7 +217,7 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_CORRUPTED);
     if (!told) {
       priv.warned = true;
-      GST_ELEMENT_WARNING(
+      CERBERUS_ELEMENT_WARNING(
           trans, STREAM, DECODE,
           ("A buffer does not hold the picture that its caps promise; it is passed on, not analysed."),
           ("%" G_GSIZE_FORMAT " bytes at %" GST_TIME_FORMAT " for %d x %d %s need %" G_GSIZE_FORMAT,
@@ -268,7 +268,7 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
     if (!wrong.empty()) {
       // Upstream tries again with every frame: one message a failure.
       if (wrong != priv.complaint)
-        GST_ELEMENT_ERROR(trans, CORE, NEGOTIATION, ("%s", wrong.c_str()), ("%" GST_PTR_FORMAT, incaps));
+        CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong), ("%" GST_PTR_FORMAT, incaps));
       priv.complaint = wrong;
       return FALSE;
     }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "cerberus/private/text.hpp"
+#include "cerberus/private/messages.hpp"
 #include "room.hpp"
 #include "shared/clock_times.hpp"
 
@@ -29,7 +29,7 @@ struct Words {
 };
 
 Words in_words(const control::SlipFinding& finding, const char* head, const char* axis) {
-  const std::string name = "The head \"" + printable(head) + "\" ";
+  const std::string name = std::string("The head \"") + head + "\" ";
   const std::string told = std::to_string(std::lround(degrees(finding.travel))) + " degrees of " + axis;
   switch (finding.fault) {
     case SlipFault::slips:
@@ -53,10 +53,10 @@ Words in_words(const control::SlipFinding& finding, const char* head, const char
 void warn(GstElement* element, const control::SlipFinding& finding, const char* head, const char* axis) {
   const Words words = in_words(finding, head, axis);
   const double travel = degrees(finding.travel);
-  GST_ELEMENT_WARNING_WITH_DETAILS(
-      element, RESOURCE, FAILED, ("%s", words.text.c_str()), (nullptr),
-      ("head", G_TYPE_STRING, head, "axis", G_TYPE_STRING, axis, "fault", G_TYPE_STRING, words.fault, "gain",
-       G_TYPE_DOUBLE, finding.gain, "travel", G_TYPE_DOUBLE, travel, nullptr));
+  CERBERUS_ELEMENT_MESSAGE(element, WARNING, RESOURCE, FAILED, (words.text), (nullptr),
+                           gst_structure_new("details", "head", G_TYPE_STRING, head, "axis", G_TYPE_STRING,
+                                             axis, "fault", G_TYPE_STRING, words.fault, "gain", G_TYPE_DOUBLE,
+                                             finding.gain, "travel", G_TYPE_DOUBLE, travel, nullptr));
 }
 
 }  // namespace

@@ -207,7 +207,8 @@ gboolean cerberus_motion_json_set_caps(GstBaseTransform* transform, GstCaps* in,
   if (gst_structure_get_int(structure, "width", &state.width) &&
       gst_structure_get_int(structure, "height", &state.height))
     return TRUE;
-  GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video has no size."), ("caps %" GST_PTR_FORMAT, in));
+  CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video has no size."),
+                         ("caps %" GST_PTR_FORMAT, in));
   return FALSE;
 }
 

@@ -240,8 +240,8 @@ GstCaps* cerberus_motion_overlay_fixate_caps(GstBaseTransform* transform, GstPad
 gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
   State& state = cerberus_motion_overlay_self(transform)->priv->state;
   if (!gst_video_info_from_caps(&state.info, in)) {
-    GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video's description is incomplete."),
-                      ("caps %" GST_PTR_FORMAT, in));
+    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video's description is incomplete."),
+                           ("caps %" GST_PTR_FORMAT, in));
     return FALSE;
   }
   forget(state);
@@ -406,9 +406,9 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
       gst_buffer_add_video_overlay_composition_meta(buffer, draw::compose(state.patches, before.get()).get());
     } else if (!draw_into(state, buffer, before.get()) && !state.warned) {
       state.warned = true;
-      GST_ELEMENT_WARNING(transform, STREAM, FAILED, ("A frame could not be drawn on."),
-                          ("%" GST_PTR_FORMAT " is too small for %dx%d, or cannot be written", buffer,
-                           scene.frame.width, scene.frame.height));
+      CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, ("A frame could not be drawn on."),
+                               ("%" GST_PTR_FORMAT " is too small for %dx%d, or cannot be written", buffer,
+                                scene.frame.width, scene.frame.height));
     }
     state.patches.clear();
     return GST_FLOW_OK;

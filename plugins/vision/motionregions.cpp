@@ -33,7 +33,7 @@
 #include <string>
 
 #include "analysis_element.hpp"
-#include "cerberus/private/text.hpp"
+#include "cerberus/private/messages.hpp"
 #include "elements.hpp"
 #include "enums.hpp"
 #include "nothing.hpp"
@@ -151,8 +151,8 @@ bool Private::start() {
   nothing = {};
   const std::string wrong = state->zones().parse(settings.snapshot().zones);
   if (wrong.empty()) return true;
-  GST_ELEMENT_ERROR(base, RESOURCE, SETTINGS,
-                    ("The property zones cannot be used: %s", printable(wrong).c_str()), (nullptr));
+  CERBERUS_ELEMENT_ERROR(base, RESOURCE, SETTINGS, ("The property zones cannot be used: " + wrong),
+                         (nullptr));
   return false;
 }
 
@@ -181,8 +181,7 @@ bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
     apply(*changed);
     if (const std::string wrong = state->zones().parse(changed->zones); !wrong.empty())
-      GST_ELEMENT_WARNING(base, RESOURCE, SETTINGS, ("%s", printable(wrong).c_str()),
-                          ("the zones that were there stay"));
+      CERBERUS_ELEMENT_WARNING(base, RESOURCE, SETTINGS, (wrong), ("the zones that were there stay"));
   }
   state->luma().set_analysis_width(cerberus_analysis_width(base));
   frame.planes_wanted = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);

@@ -152,9 +152,9 @@ const char* stage_nick(int stage) {
 void warn_once(GstBaseTransform* transform, State& state, int stage, const char* why) {
   if (state.warned & (1u << stage)) return;
   state.warned |= 1u << stage;
-  GST_ELEMENT_WARNING(transform, STREAM, FAILED,
-                      ("There is nothing to show for stage=%s: the picture is black.", stage_nick(stage)),
-                      ("%s", why));
+  CERBERUS_ELEMENT_WARNING(
+      transform, STREAM, FAILED,
+      ("There is nothing to show for stage=%s: the picture is black.", stage_nick(stage)), ("%s", why));
 }
 
 draw::Canvas canvas_of(GstVideoFrame* frame) {
@@ -266,8 +266,8 @@ gboolean cerberus_motion_view_set_caps(GstBaseTransform* transform, GstCaps* in,
     wrong = "Interlaced video cannot be shown: put the element `deinterlace` in front of the stages.";
   // Upstream tries again with every frame: one message a failure.
   if (wrong && wrong != state.complaint)
-    GST_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("%s", wrong),
-                      ("from %" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
+    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("%s", wrong),
+                           ("from %" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
   state.complaint = wrong;
   if (wrong) return FALSE;
   state.warned = 0;
@@ -321,8 +321,8 @@ GstFlowReturn cerberus_motion_view_transform(GstBaseTransform* transform, GstBuf
     const Settings settings = self.settings.snapshot();
     cerberus::VideoFrame frame(state.out, out, GST_MAP_WRITE);
     if (!frame) {
-      GST_ELEMENT_ERROR(transform, RESOURCE, WRITE, ("The picture cannot be written."),
-                        ("%" GST_PTR_FORMAT, out));
+      CERBERUS_ELEMENT_ERROR(transform, RESOURCE, WRITE, ("The picture cannot be written."),
+                             ("%" GST_PTR_FORMAT, out));
       return GST_FLOW_ERROR;
     }
     const draw::Canvas canvas = canvas_of(frame.get());

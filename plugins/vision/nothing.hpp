@@ -6,6 +6,7 @@
 
 #include <string>
 
+#include "cerberus/private/messages.hpp"
 #include "vision/gates.h"
 
 namespace cerberus::plugin {
@@ -29,7 +30,7 @@ class NothingFound {
   void tell(GstElement* element, const std::string& why) {
     if (why == told_) return;
     told_ = why;
-    if (!why.empty()) GST_ELEMENT_WARNING(element, RESOURCE, SETTINGS, ("%s", why.c_str()), (nullptr));
+    if (!why.empty()) CERBERUS_ELEMENT_WARNING(element, RESOURCE, SETTINGS, (why), (nullptr));
   }
 
  private:

@@ -4,6 +4,7 @@
 #include <chrono>  // before gst-check, whose macros bite standard headers
 
 #include "../support/entries.h"
+#include "../support/says.h"
 #include "head_rig.h"
 #include "promises.h"
 
@@ -227,9 +228,10 @@ GST_END_TEST
 
 // What the element says when it does not start; it says it once.
 // A driver on a thread of its own may say it a moment later.
-std::string refusal(const std::string& properties) {
+std::string refusal(const std::string& properties, const char* script = nullptr) {
   GstElement* element = gst_parse_launch(("pantiltsink " + properties).c_str(), nullptr);
   gst_object_ref_sink(element);
+  if (script) g_object_set(element, "script", script, nullptr);
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(element, bus);
   const bool late = gst_element_set_state(element, GST_STATE_PAUSED) != GST_STATE_CHANGE_FAILURE;
@@ -271,6 +273,35 @@ GST_START_TEST(what_cannot_be_is_refused_with_its_name) {
   for (const auto& [properties, expected] : cases) {
     const std::string text = refusal(properties);
     fail_unless(text.find(expected) != std::string::npos, "%s: '%s'", properties, text.c_str());
+  }
+}
+GST_END_TEST
+
+// GStreamer loses a message with a field that is no UTF-8, and says so in a warning of its own.
+GST_START_TEST(whatever_a_driver_says_arrives) {
+  fail_unless(says(refusal(scripted("", "attic"), "open fail T\xfcr zu"), "cannot be opened: T\\xfcr zu."));
+  fail_unless(says(refusal(scripted("", "attic"), "\xff"), "script: '\\xff'"));
+  Rig rig(scripted(""), Source::live, false);
+  gst_element_set_state(rig.element, GST_STATE_READY);
+  g_object_set(rig.element, "script", "command 2 fail T\xfcr zu", nullptr);
+  gst_element_set_state(rig.element, GST_STATE_PLAYING);
+  rig.begin();
+  for (int k = 0; k < 2; ++k) rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, k * kFrame));
+  bool warned = false, told = false;
+  while (!warned || !told) {
+    const auto kinds = static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ELEMENT);
+    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(rig.bus, 60 * GST_SECOND, kinds);
+    fail_unless(message != nullptr);
+    g_autofree gchar *state = nullptr, *reason = nullptr;
+    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, &reason);
+    if (pose) {
+      if (g_str_equal(state, "fault")) told = says(reason, "T\\xfcr zu");
+      continue;
+    }
+    fail_unless(GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_warning(message, &error, nullptr);
+    warned = says(error->message, "fails: T\\xfcr zu");
   }
 }
 GST_END_TEST
@@ -395,6 +426,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, an_order_does_not_survive_the_end_of_the_stream);
   tcase_add_test(tests, a_driver_that_fails_warns_once_and_the_video_goes_on);
   tcase_add_test(tests, what_cannot_be_is_refused_with_its_name);
+  tcase_add_test(tests, whatever_a_driver_says_arrives);
   tcase_add_test(tests, a_head_that_cannot_be_opened_is_an_error_however_late);
   tcase_add_test(tests, a_head_that_cannot_be_opened_says_so_in_paused_too);
   tcase_add_test(tests, one_head_has_one_sink);

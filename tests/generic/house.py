@@ -95,6 +95,17 @@ def check_shared():
             complain(path, 'is needed by fewer than two plugins')
 
 
+# What elements tell the application goes through one place, which makes the words of others printable.
+BARE_MESSAGE = re.compile(r'\b(GST_ELEMENT_|gst_message_new_)(ERROR|WARNING|INFO)', re.I)
+
+
+def check_messages(path):
+    parts = path.relative_to(TOP).parts
+    if parts[0] in {'gst', 'plugins'} and path.suffix in {'.h', '.hpp', '.cpp'}:
+        if BARE_MESSAGE.search(path.read_text('utf-8')):
+            complain(path, 'posts a message by itself: use CERBERUS_ELEMENT_... of cerberus/private/messages.hpp')
+
+
 # An installed header must not lean on one that is not installed.
 def check_installed_header(path):
     parts = path.relative_to(TOP).parts
@@ -149,6 +160,7 @@ for each in files():
     check_licence(each)
     check_direction(each)
     check_plugin(each)
+    check_messages(each)
     check_installed_header(each)
     check_launch_file(each)
     check_links(each)

@@ -19,6 +19,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "cerberus/private/messages.hpp"
+
 namespace cerberus {
 
 namespace detail {
@@ -87,18 +89,19 @@ inline void post_current_exception(GstElement* element) noexcept {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    GST_ELEMENT_ERROR(element, RESOURCE, NO_SPACE_LEFT, ("Not enough memory."), ("std::bad_alloc"));
+    CERBERUS_ELEMENT_ERROR(element, RESOURCE, NO_SPACE_LEFT, ("Not enough memory."), ("std::bad_alloc"));
   } catch (const std::exception& e) {
-    GST_ELEMENT_ERROR(element, LIBRARY, FAILED, ("Internal error: %s", e.what()), ("uncaught C++ exception"));
+    CERBERUS_ELEMENT_ERROR(element, LIBRARY, FAILED, ("Internal error: %s", e.what()),
+                           ("uncaught C++ exception"));
   } catch (...) {
-    GST_ELEMENT_ERROR(element, LIBRARY, FAILED, ("Internal error."),
-                      ("uncaught C++ exception of unknown type"));
+    CERBERUS_ELEMENT_ERROR(element, LIBRARY, FAILED, ("Internal error."),
+                           ("uncaught C++ exception of unknown type"));
   }
 }
 
 }  // namespace detail
 
-// Runs `body` and returns its result; whatever it throws becomes one GST_ELEMENT_ERROR on `element`, and
+// Runs `body` and returns its result; whatever it throws becomes one error message on `element`, and
 // `fallback`.
 //   return guarded(self, GST_FLOW_ERROR, [&] { ...; return GST_FLOW_OK; });
 template <typename Element, typename Fallback, typename Body>

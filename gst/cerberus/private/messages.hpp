@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Errors, warnings and information for the application, as by GStreamer's macros of these names (which nobody else
+// uses). This is the one place where words of a user's, a file's or a driver's enter them: whoever writes a message
+// quotes them as they are. A text is (format, arguments...), (a whole string), which may hold anything, or (nullptr).
+//
+//   CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("No driver \"%s\".", name.c_str()), (error.detail));
+#pragma once
+
+#include <gst/gst.h>
+
+#include <cstdarg>
+#include <string>
+#include <utility>
+
+#include "cerberus/private/text.hpp"
+
+namespace cerberus::detail {
+
+inline std::string words(std::nullptr_t) noexcept {
+  return {};
+}
+inline std::string words(const std::string& whole) noexcept {
+  return printable(whole);
+}
+G_GNUC_PRINTF(1, 2) inline std::string words(const char* format, ...) noexcept {
+  va_list arguments;
+  va_start(arguments, format);
+  g_autofree gchar* text = gst_info_strdup_vprintf(format, arguments);  // it knows GST_PTR_FORMAT
+  va_end(arguments);
+  return printable(text);
+}
+
+// Where the message comes from.
+struct Origin {
+  GstDebugCategory* category;
+  const char* file;
+  const char* function;
+  int line;
+};
+
+// noexcept: as where GLib has no memory left, the program ends.
+// An empty text stands for GStreamer's own, an empty detail for none. Takes `facts`, for programs; may be nullptr.
+inline void post(GstElement* element, GstMessageType type, GQuark domain, gint code, const std::string& text,
+                 const std::string& detail, GstStructure* facts, const Origin& from) noexcept {
+  const GstDebugLevel level = type == GST_MESSAGE_INFO ? GST_LEVEL_INFO : GST_LEVEL_WARNING;
+  for (const std::string* said : {&text, &detail})
+    if (!said->empty())
+      GST_CAT_LEVEL_LOG(from.category, level, element, "%s: %s", gst_message_type_get_name(type),
+                        said->c_str());
+  const auto copy = [](const std::string& said) { return said.empty() ? nullptr : g_strdup(said.c_str()); };
+  gst_element_message_full_with_details(element, type, domain, code, copy(text), copy(detail), from.file,
+                                        from.function, from.line, facts);
+}
+
+}  // namespace cerberus::detail
+
+#define CERBERUS_ELEMENT_MESSAGE(element, type, domain, code, text, debug, facts)          \
+  ::cerberus::detail::post(GST_ELEMENT(element), GST_MESSAGE_##type, GST_##domain##_ERROR, \
+                           GST_##domain##_ERROR_##code, ::cerberus::detail::words text,    \
+                           ::cerberus::detail::words debug, facts,                         \
+                           {GST_CAT_DEFAULT, __FILE__, GST_FUNCTION, __LINE__})
+#define CERBERUS_ELEMENT_ERROR(element, domain, code, text, debug) \
+  CERBERUS_ELEMENT_MESSAGE(element, ERROR, domain, code, text, debug, nullptr)
+#define CERBERUS_ELEMENT_WARNING(element, domain, code, text, debug) \
+  CERBERUS_ELEMENT_MESSAGE(element, WARNING, domain, code, text, debug, nullptr)
+#define CERBERUS_ELEMENT_INFO(element, domain, code, text, debug) \
+  CERBERUS_ELEMENT_MESSAGE(element, INFO, domain, code, text, debug, nullptr)
