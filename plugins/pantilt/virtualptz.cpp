@@ -59,6 +59,7 @@
 #include "cerberus/private/video.hpp"
 #include "frame_times.hpp"
 #include "pose_feed.hpp"
+#include "shared/complaint.hpp"
 #include "shared/single_fields.hpp"
 #include "text/numbers.h"
 #include "times.hpp"
@@ -89,7 +90,7 @@ struct State {  // streaming thread, and state changes while it does not run
   FrameTimes times;
   WindowSettings settings;
   std::optional<bool> live;  // nothing: not asked yet
-  std::string complaint;     // about the caps, once said
+  Complaint complaint;       // about the caps
   bool warned = false;       // about an unusable buffer, once a stream
   bool beyond = false;       // about a head that looks where no window is, once a start
 };
@@ -157,15 +158,10 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
       wrong = "A window cannot move over interlaced video: put the element `deinterlace` in front.";
     else
       wrong = state.view.begin(picture, window, state.settings);
-    if (!wrong.empty()) {
-      // Upstream tries again with every frame: one message a failure.
-      if (wrong != state.complaint)
-        CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong),
-                               ("%" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
-      state.complaint = wrong;
-      return FALSE;
-    }
-    state.complaint.clear();
+    if (state.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong),
+                             ("%" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
+    if (!wrong.empty()) return FALSE;
     state.warned = false;
     tell_reach(trans, self);
     return TRUE;
@@ -358,7 +354,7 @@ GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
       self.settings.refresh();
       self.state.live.reset();
       self.state.times.forget();
-      self.state.complaint.clear();
+      self.state.complaint.forget();
       self.state.beyond = false;
       self.state.settings = s;
       control::Pose start;

@@ -13,6 +13,7 @@
 #include "history.hpp"
 #include "room.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/single_fields.hpp"
 #include "stages.hpp"
@@ -55,7 +56,7 @@ struct AnalysisPrivate {
   CameraFollower camera;
   int breaks = 0;           // of late: scenes that end for no reason in the picture; see complain_of_breaks()
   int steps_back = 0;       // frames older than the one before
-  std::string complaint;    // about the caps, once said
+  Complaint complaint;      // about the caps
   bool warned = false;      // about an unusable buffer, once a stream
   bool complained = false;  // about breaks, likewise
 };
@@ -239,7 +240,7 @@ void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
 }
 
 // What is wrong with these caps, for the user; empty for nothing.
-std::string complaint(const GstCaps* caps, GstVideoInfo* info) {
+std::string what_is_wrong(const GstCaps* caps, GstVideoInfo* info) {
   if (!gst_video_info_from_caps(info, caps)) return "These video caps cannot be used.";
   if (GST_VIDEO_INFO_IS_INTERLACED(info))
     return "Interlaced video cannot be analysed: put the element `deinterlace` in front.";
@@ -264,15 +265,10 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
   AnalysisPrivate& priv = priv_of(trans);
   GstVideoInfo info;
   return guarded(trans, FALSE, [&]() -> gboolean {
-    const std::string wrong = complaint(incaps, &info);
-    if (!wrong.empty()) {
-      // Upstream tries again with every frame: one message a failure.
-      if (wrong != priv.complaint)
-        CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong), ("%" GST_PTR_FORMAT, incaps));
-      priv.complaint = wrong;
-      return FALSE;
-    }
-    priv.complaint.clear();
+    const std::string wrong = what_is_wrong(incaps, &info);
+    if (priv.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong), ("%" GST_PTR_FORMAT, incaps));
+    if (!wrong.empty()) return FALSE;
     accept(priv, info);
     return TRUE;
   });
@@ -319,7 +315,7 @@ gboolean start(GstBaseTransform* trans) {
     priv.breaks = priv.steps_back = 0;
     priv.complained = false;
     priv.camera.forget();
-    priv.complaint.clear();
+    priv.complaint.forget();
     priv.settings.refresh();
     return priv.analyser->start();
   });

@@ -50,6 +50,7 @@
 #include "drawing.hpp"
 #include "enums.hpp"
 #include "figures.hpp"
+#include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/single_fields.hpp"
 #include "stages.hpp"
@@ -59,6 +60,7 @@ namespace {
 
 using cerberus::MappedPlane;
 using cerberus::plugin::Adjustable;
+using cerberus::plugin::Complaint;
 using cerberus::plugin::HistogramRecord;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
@@ -117,8 +119,8 @@ const Property<Settings> kProperties[] = {
 
 struct State {  // streaming thread only
   GstVideoInfo in, out;
-  guint warned = 0;                 // one bit a stage
-  const char* complaint = nullptr;  // about the caps, once said; a literal
+  guint warned = 0;     // one bit a stage
+  Complaint complaint;  // about the caps
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> luma;
   draw::Enlarger enlarger;
@@ -232,7 +234,7 @@ bool show(State& state, const Settings& settings, GstBuffer* in, const draw::Can
 gboolean cerberus_motion_view_start(GstBaseTransform* transform) {
   State& state = cerberus_motion_view_self(transform)->priv->state;
   state.warned = 0;
-  state.complaint = nullptr;
+  state.complaint.forget();
   return TRUE;
 }
 
@@ -258,20 +260,20 @@ GstCaps* cerberus_motion_view_transform_caps(GstBaseTransform* transform, GstPad
 }
 
 gboolean cerberus_motion_view_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps* out) {
-  State& state = cerberus_motion_view_self(transform)->priv->state;
-  const char* wrong = nullptr;
-  if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out))
-    wrong = "The video's description is incomplete.";
-  else if (GST_VIDEO_INFO_IS_INTERLACED(&state.in))
-    wrong = "Interlaced video cannot be shown: put the element `deinterlace` in front of the stages.";
-  // Upstream tries again with every frame: one message a failure.
-  if (wrong && wrong != state.complaint)
-    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("%s", wrong),
-                           ("from %" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
-  state.complaint = wrong;
-  if (wrong) return FALSE;
-  state.warned = 0;
-  return TRUE;
+  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
+    State& state = cerberus_motion_view_self(transform)->priv->state;
+    std::string wrong;
+    if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out))
+      wrong = "The video's description is incomplete.";
+    else if (GST_VIDEO_INFO_IS_INTERLACED(&state.in))
+      wrong = "Interlaced video cannot be shown: put the element `deinterlace` in front of the stages.";
+    if (state.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong),
+                             ("from %" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
+    if (!wrong.empty()) return FALSE;
+    state.warned = 0;
+    return TRUE;
+  });
 }
 
 gboolean cerberus_motion_view_get_unit_size(GstBaseTransform*, GstCaps* caps, gsize* size) {

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "cerberus/private/messages.hpp"
+#include "shared/complaint.hpp"
 #include "vision/gates.h"
 
 namespace cerberus::plugin {
@@ -28,13 +29,11 @@ inline std::string contradiction(const char* what, const vision::Range& range, d
 class NothingFound {
  public:
   void tell(GstElement* element, const std::string& why) {
-    if (why == told_) return;
-    told_ = why;
-    if (!why.empty()) CERBERUS_ELEMENT_WARNING(element, RESOURCE, SETTINGS, (why), (nullptr));
+    if (complaint_.is_new(why)) CERBERUS_ELEMENT_WARNING(element, RESOURCE, SETTINGS, (why), (nullptr));
   }
 
  private:
-  std::string told_;
+  Complaint complaint_;
 };
 
 }  // namespace cerberus::plugin

@@ -214,13 +214,20 @@ GST_START_TEST(what_does_not_fit_is_an_error_that_says_so) {
          " pixels that sees 61.5 degrees does not fit"}}) {
     Harness h = harness((std::string("virtualptz ") + more).c_str());
     Bus bus(h.get());
-    gst_harness_set_src_caps_str(h.get(), caps_string("GRAY8", kWidth, kHeight).c_str());
-    fail_unless_equals_int(gst_harness_push(h.get(), frame(info_of(caps_string("GRAY8", kWidth, kHeight)))),
-                           GST_FLOW_NOT_NEGOTIATED);
-    std::string text;
-    fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
-    fail_unless(text.find(std::string(told) + " into the picture of 320 x 240") != text.npos, "%s",
-                text.c_str());
+    const std::string caps = caps_string("GRAY8", kWidth, kHeight);
+    gst_harness_set_src_caps_str(h.get(), caps.c_str());
+    for (int start = 0; start < 2; ++start) {
+      for (int k = 0; k < 2; ++k)
+        fail_unless_equals_int(gst_harness_push(h.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+      std::string text;
+      fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
+      fail_unless(text.find(std::string(told) + " into the picture of 320 x 240") != text.npos, "%s",
+                  text.c_str());
+      // A start anew is told anew.
+      for (const GstState state : {GST_STATE_READY, GST_STATE_PLAYING})
+        gst_element_set_state(h.get()->element, state);
+      gst_harness_set_src_caps_str(h.get(), caps.c_str());
+    }
   }
 }
 GST_END_TEST
