@@ -364,18 +364,55 @@ GST_START_TEST(lines_are_as_wide_as_asked) {
 }
 GST_END_TEST
 
+// Five hundred of 12 x 18 pixels, one above the other where they must be.
 GST_START_TEST(a_crowd_is_drawn) {
-  Harness h = started();
-  GstBuffer* in = frame(info_of(kCaps));
-  for (guint id = 1; id <= 500; ++id) add(in, region(id, (id * 37) % 300, (id * 53) % 220, 12, 18));
+  constexpr int kMany = 500, kWide = 12, kHigh = 18;
+  const auto left = [](int id) { return id * 37 % 300; };
+  const auto top = [](int id) { return id * 53 % 220; };
+  const auto crowd = [&] {
+    GstBuffer* in = frame(info_of(kCaps));
+    for (int id = 1; id <= kMany; ++id)
+      add(in, region(static_cast<guint>(id), left(id), top(id), kWide, kHigh));
+    return in;
+  };
+
+  // Each has a box, which is as large as it is, and a number that touches the box, or nearly, and lies in the frame.
+  constexpr int kNear = 5;
+  Harness h = attaching("motionoverlay show-trails=false");
+  const auto all = drawn(h.get(), crowd());
+  fail_unless_equals_int(all.size(), 2 * kMany);
+  for (int id = 1; id <= kMany; ++id) {
+    const Rectangle &box = all[id - 1], &label = all[kMany + id - 1];
+    const int x = left(id), y = top(id);
+    const auto end = [](int from, unsigned length) { return from + static_cast<int>(length); };
+    // Beyond its line by a pixel, if the frame goes on there, and not by many; to the left and upwards all is negative.
+    const auto reaches = [](int line, int beyond, int end_of_frame) {
+      return beyond >= std::min(line + 1, end_of_frame) && beyond <= line + kNear;
+    };
+    fail_unless(reaches(-x, -box.x, 0) && reaches(-y, -box.y, 0), "box %d: %d, %d", id, box.x, box.y);
+    fail_unless(reaches(x + kWide, end(box.x, box.width), kWidth), "box %d: %u wide", id, box.width);
+    fail_unless(reaches(y + kHigh, end(box.y, box.height), kHeight), "box %d: %u high", id, box.height);
+    fail_unless(label.x >= 0 && label.y >= 0 && end(label.x, label.width) <= kWidth &&
+                    end(label.y, label.height) <= kHeight,
+                "label %d: %d, %d", id, label.x, label.y);
+    fail_unless(label.x < x + kWide && end(label.x, label.width) > x && label.y <= y + kHigh + kNear &&
+                    end(label.y, label.height) >= y - kNear,
+                "label %d: %d, %d", id, label.x, label.y);
+  }
+
+  // And in the picture: others may cover a line, but the frame's own grey is left on no side of anybody.
+  Harness into = started("motionoverlay show-trails=false");
   const GstVideoInfo info = info_of(kCaps);
-  GstBuffer* out = through(h.get(), in);
+  GstBuffer* out = through(into.get(), crowd());
   GstVideoFrame f;
   fail_unless(gst_video_frame_map(&f, &info, out, GST_MAP_READ));
-  // Boxes of others and their labels may cover a line, but not leave the picture's own grey where each line was.
-  for (int id = 1; id <= 500; ++id) {
-    const int x = (id * 37) % 300, y = (id * 53) % 220;
-    fail_unless(changed_pixels(&f, x + 4, y - 1, x + 8, y + 1, 100) > 0, "nothing is drawn for %d", id);
+  for (int id = 1; id <= kMany; ++id) {
+    const int x = left(id), y = top(id);
+    for (const int row : {y, y + kHigh})
+      fail_unless(changed_pixels(&f, x + 4, row - 1, x + 8, row + 1, 100) > 0, "%d: row %d", id, row);
+    for (const int column : {x, x + kWide})
+      fail_unless(changed_pixels(&f, column - 1, y + 6, column + 1, y + 12, 100) > 0, "%d: column %d", id,
+                  column);
   }
   gst_video_frame_unmap(&f);
   gst_buffer_unref(out);

@@ -21,16 +21,16 @@ struct Rect {
 };
 
 struct Scene {
-  Image<std::uint8_t> present{kSize}, memory{kSize}, age{kSize}, quiet{kSize};
+  Image<std::uint8_t> present, memory, age, quiet;
   BitMask mask, absorb;
   SceneParts parts;
 
-  explicit Scene(int scene_age) {
+  explicit Scene(int scene_age, Size size = kSize) : present(size), memory(size), age(size), quiet(size) {
     for (auto* picture : {&present, &memory}) picture->fill_bytes(100);
     age.fill_bytes(scene_age);
     quiet.fill_bytes(200);
-    for (auto* bits : {&mask, &absorb}) bits->resize(bit_mask_size(kSize));
-    parts.make_room(kSize);
+    for (auto* bits : {&mask, &absorb}) bits->resize(bit_mask_size(size));
+    parts.make_room(size);
   }
   static void paint(Image<std::uint8_t>& picture, const Rect& r, int value) {
     for (int y = r.y; y < r.y + r.height; ++y)
@@ -451,6 +451,27 @@ START_TEST(what_is_small_beside_somebody_who_leaves_is_a_piece_of_his_place) {
 }
 END_TEST
 
+// So many parts are rain: whose place a thing is would take too long to find out. Those two, and specks.
+START_TEST(in_clutter_nobody_looks_for_places) {
+  constexpr Rect kPlace{120, 100, 17, 17};
+  for (const int parts : {2, 512, 513}) {
+    Scene s(255, {1280, 960});
+    s.judge();
+    for (const int since : {0, 10}) {
+      s.mask.fill_bytes(0);
+      for (int i = 2; i < parts; ++i) s.differs({700 + 20 * (i % 25), 10 + 30 * (i / 25), 2, 2}, 0);
+      for (const Rect& r : {kPlace, kWalker}) Scene::paint(s.present, r, 200);
+      s.differs(kPlace, since);
+      s.differs(kWalker, 0);
+      s.judge();
+    }
+    ck_assert_int_eq(count(s.mask, kPlace), parts > 512 ? all(kPlace) : 0);
+    ck_assert_int_eq(count(s.absorb, kPlace), parts > 512 ? 0 : all(kPlace));
+    ck_assert_int_eq(count(s.mask, kWalker), all(kWalker));
+  }
+}
+END_TEST
+
 START_TEST(who_left_a_place_is_an_object_where_he_stops) {
   // His outline tells little there, and somebody else who was there from the beginning walks near.
   constexpr Rect kOther{220, 80, 30, 80};
@@ -511,5 +532,6 @@ int main() {
                       a_tiny_part_says_nothing_while_the_memory_is_young,
                       what_is_small_beside_somebody_who_leaves_is_a_piece_of_his_place,
                       a_piece_of_the_place_that_somebody_leaves_is_taken_over,
+                      in_clutter_nobody_looks_for_places,
                       who_left_a_place_is_an_object_where_he_stops});
 }
