@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the chain costs, beside its peers on the same frames in the same run. Single-threaded everywhere:
-// figures are CPU time of the one streaming thread (or of the calling thread), medians of five runs; quote
-// the ratios.
+// What the chain costs, beside its peers on the same frames in the same run. Single-threaded everywhere: figures are
+// CPU time of the one streaming thread (or of the calling thread), medians of five rounds, in each of which everybody
+// runs once; quote the ratios.
 #include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
 
@@ -23,18 +23,15 @@ using namespace cerberus::bench;
 
 namespace {
 
-constexpr int kRuns = 5;
+constexpr int kRounds = 5;
 
-struct Cost {
-  double milliseconds = 0;
-  double lowest = 0, highest = 0;
-  bool measured = false;
+// Who is measured.
+struct Row {
+  const char* name;
+  // Seconds a frame of one run; negative: it does not run; none: it is not there.
+  std::function<double()> run;
+  const char* most = nullptr;  // what the ratio is asked to be at most, where it is; time is not judged
 };
-
-Cost summarise(std::vector<double> runs) {
-  const auto [low, high] = std::minmax_element(runs.begin(), runs.end());
-  return {1e3 * median(runs), 1e3 * *low, 1e3 * *high, true};
-}
 
 // Thread CPU time of the streaming thread between the first buffer and the end of the stream.
 struct StreamClock {
@@ -90,39 +87,42 @@ double run_pipeline(const std::string& elements, const Frames& frames, std::size
   return finished ? (clock.last - clock.begin) / static_cast<double>(count - 1) : -1;
 }
 
-Cost pipeline_cost(const std::string& elements, const Frames& frames, std::size_t count) {
-  std::vector<double> runs;
-  for (int run = 0; run < kRuns; ++run) {
-    const double seconds = run_pipeline(elements, frames, count);
-    if (seconds < 0) return {};
-    runs.push_back(seconds);
+// Seconds a frame of one run of `work` over `count` frames.
+double run_loop(const Frames& frames, std::size_t count, const std::function<void(const cv::Mat&)>& work) {
+  const double begin = thread_seconds();
+  for (std::size_t n = 0; n < count; ++n) {
+    auto& frame = frames.data[frames.loop(n)];
+    work(cv::Mat(frames.height, frames.width, CV_8UC1, const_cast<std::uint8_t*>(frame.data())));
   }
-  return summarise(runs);
+  return (thread_seconds() - begin) / static_cast<double>(count);
 }
 
-Cost loop_cost(const Frames& frames, std::size_t count, const std::function<void(const cv::Mat&)>& work) {
-  std::vector<double> runs;
-  for (int run = 0; run < kRuns; ++run) {
-    const double begin = thread_seconds();
-    for (std::size_t n = 0; n < count; ++n) {
-      auto& frame = frames.data[frames.loop(n)];
-      work(cv::Mat(frames.height, frames.width, CV_8UC1, const_cast<std::uint8_t*>(frame.data())));
+// The first row is the unit. A machine's speed may jump from one second to the next: so everybody runs once in each
+// round, and is compared with the unit of that round.
+void compare(const std::vector<Row>& rows) {
+  std::vector<std::vector<double>> seconds(rows.size()), ratios(rows.size());
+  std::vector<bool> there(rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) there[i] = rows[i].run != nullptr;
+  for (int round = 0; round < kRounds; ++round)
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      if (!there[i]) continue;
+      const double a_frame = rows[i].run();
+      there[i] = a_frame >= 0;
+      seconds[i].push_back(a_frame);
+      if (there[0]) ratios[i].push_back(a_frame / seconds[0].back());
     }
-    runs.push_back((thread_seconds() - begin) / static_cast<double>(count));
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (!there[i]) {
+      std::printf("  %-58s %s\n", rows[i].name, "not there");
+      continue;
+    }
+    const auto [low, high] = std::ranges::minmax(seconds[i]);
+    std::printf("  %-58s %8.3f ms  (%.3f .. %.3f)", rows[i].name, 1e3 * median(seconds[i]), 1e3 * low,
+                1e3 * high);
+    if (there[0]) std::printf("   %6.2f", median(ratios[i]));
+    if (there[0] && rows[i].most) std::printf("   asked: at most %s", rows[i].most);
+    std::printf("\n");
   }
-  return summarise(runs);
-}
-
-// `most`: what the ratio is asked to be at most, where it is; time is not judged.
-void print(const char* name, const Cost& cost, const Cost& unit, const char* most = nullptr) {
-  if (!cost.measured) {
-    std::printf("  %-58s %s\n", name, "not there");
-    return;
-  }
-  std::printf("  %-58s %8.3f ms  (%.3f .. %.3f)", name, cost.milliseconds, cost.lowest, cost.highest);
-  if (unit.measured) std::printf("   %6.2f", cost.milliseconds / unit.milliseconds);
-  if (unit.measured && most) std::printf("   asked: at most %s", most);
-  std::printf("\n");
 }
 
 bool has(const char* element) {
@@ -163,40 +163,46 @@ void stages(const Frames& frames, const char* what) {
               1e3 * total, static_cast<double>(chain.bytes()) / pixels);
 }
 
+// A word about the column that compare() prints last.
+constexpr char kLastColumn[] = "last column: median of the rounds' ratios to";
+
 void against_opencv(const Frames& frames, const char* what) {
   const std::size_t count = 300;
-  std::printf("\n%s, %dx%d grey, cost a frame (last column: ratio to MOG2)\n", what, frames.width,
-              frames.height);
+  std::printf("\n%s, %dx%d grey, cost a frame (%s MOG2)\n", what, frames.width, frames.height, kLastColumn);
   auto mog2 = cv::createBackgroundSubtractorMOG2();
   auto knn = cv::createBackgroundSubtractorKNN();
   cv::Mat mask;
-  const Cost unit = loop_cost(frames, count, [&](const cv::Mat& f) { mog2->apply(f, mask); });
-  print("OpenCV MOG2", unit, unit);
-  print("OpenCV KNN", loop_cost(frames, count, [&](const cv::Mat& f) { knn->apply(f, mask); }), unit);
-  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit, "1.00");
-  print("motiondetect preset=paper", pipeline_cost("motiondetect preset=paper", frames, count), unit);
-  print("no element at all", pipeline_cost("identity", frames, count), unit);
+  const auto pipeline = [&](const char* elements) {
+    return [&frames, elements] { return run_pipeline(elements, frames, count); };
+  };
+  const auto apply = [&](auto& subtractor) {
+    return [&] { return run_loop(frames, count, [&](const cv::Mat& f) { subtractor->apply(f, mask); }); };
+  };
+  compare({{"OpenCV MOG2", apply(mog2)},
+           {"OpenCV KNN", apply(knn)},
+           {"motiondetect", pipeline("motiondetect"), "1.00"},
+           {"motiondetect preset=paper", pipeline("motiondetect preset=paper")},
+           {"no element at all", pipeline("identity")}});
 }
 
 void against_gstreamer(const Frames& frames) {
   const std::size_t count = frames.width > 1000 ? 120 : 240;
-  std::printf(
-      "\nThrough GStreamer, %dx%d I420, cost a frame (last column: ratio to videoconvert ! motioncells)\n",
-      frames.width, frames.height);
-  const Cost unit =
-      has("motioncells") ? pipeline_cost("videoconvert n-threads=1 ! motioncells", frames, count) : Cost{};
-  print("videoconvert ! motioncells", unit, unit);
-  if (has("segmentation"))
-    print("videoconvert ! segmentation method=mog2",
-          pipeline_cost("videoconvert n-threads=1 ! segmentation method=mog2", frames, count), unit);
-  else
-    std::printf("  segmentation is not there (package gstreamer1.0-opencv)\n");
-  print("motiondetect", pipeline_cost("motiondetect", frames, count), unit,
-        frames.width == 1920 ? "0.20" : nullptr);
-  print("cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack",
-        pipeline_cost("cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack", frames,
-                      count),
-        unit);
+  std::printf("\nThrough GStreamer, %dx%d I420, cost a frame (%s videoconvert ! motioncells)\n", frames.width,
+              frames.height, kLastColumn);
+  for (const char* element : {"motioncells", "segmentation"})
+    if (!has(element)) std::printf("  %s is not there (package gstreamer1.0-opencv)\n", element);
+  const auto pipeline = [&](const char* elements) -> std::function<double()> {
+    return [&frames, count, elements] { return run_pipeline(elements, frames, count); };
+  };
+  const auto peer = [&](const char* element, const char* elements) {
+    return has(element) ? pipeline(elements) : nullptr;
+  };
+  constexpr char kStages[] = "cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack";
+  compare({{"videoconvert ! motioncells", peer("motioncells", "videoconvert n-threads=1 ! motioncells")},
+           {"videoconvert ! segmentation method=mog2",
+            peer("segmentation", "videoconvert n-threads=1 ! segmentation method=mog2")},
+           {"motiondetect", pipeline("motiondetect"), frames.width == 1920 ? "0.20" : nullptr},
+           {kStages, pipeline(kStages)}});
 }
 
 }  // namespace
