@@ -9,8 +9,8 @@
 #include <gst/gst.h>
 
 #include <cstdarg>
+#include <cstddef>
 #include <string>
-#include <utility>
 
 #include "cerberus/private/text.hpp"
 
