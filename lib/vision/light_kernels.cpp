@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <cstring>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vision/light_kernels.cpp"
@@ -14,14 +15,49 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A plain loop, compiled once per target: compilers vectorise it as well as intrinsics would.
-// Saturating at the ends as a sensor does; a gain below 8 and an offset of a few hundred levels keep 32 bits safe.
-HWY_INLINE void relight(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out) {
-  const std::int32_t gain = light.gain, offset = light.offset + 128;
-  for (int x = 0; x < count; ++x) {
-    const std::int32_t value = (reference[x] * gain + offset) >> 8;
-    out[x] = static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
+// (level * gain + offset + 128) >> 8 from its high and low bytes, so that 16 bits hold all: plain loops, compiled once per
+// target; compilers vectorise them as well as intrinsics would. A gain below 8 and an offset of a few hundred levels
+// keep them safe.
+struct Relit {
+  std::uint16_t gain_low, offset_low;
+  std::int16_t gain_high, offset_high;
+
+  explicit Relit(RowLight light)
+      : gain_low(light.gain & 255),
+        offset_low((light.offset + 128) & 255),
+        gain_high(static_cast<std::int16_t>(light.gain >> 8)),
+        offset_high(static_cast<std::int16_t>((light.offset + 128) >> 8)) {}
+  // Saturating at the ends as a sensor does.
+  HWY_INLINE std::uint8_t operator()(std::uint8_t level) const {
+    const std::uint16_t low = static_cast<std::uint16_t>(level * gain_low + offset_low);
+    const std::int16_t value = static_cast<std::int16_t>(level * gain_high + offset_high + (low >> 8));
+    return static_cast<std::uint8_t>(value < 0 ? 0 : value > 255 ? 255 : value);
   }
+};
+
+// Calls each(begin, count) for the pieces of a row. What a piece holds is copied, as `out` may be `reference`: compilers
+// would have to go pixel by pixel there.
+constexpr int kPiece = 32;
+template <typename Each>
+HWY_INLINE void in_pieces(int count, Each&& each) {
+  for (int x = 0; x < count; x += kPiece) each(x, static_cast<std::size_t>(std::min(count - x, kPiece)));
+}
+
+HWY_INLINE void copy(std::uint8_t* to, const std::uint8_t* from, std::size_t bytes) {
+  if (bytes == kPiece)  // no call
+    std::memcpy(to, from, kPiece);
+  else
+    std::memcpy(to, from, bytes);
+}
+
+HWY_INLINE void relight(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out) {
+  const Relit relit(light);
+  in_pieces(count, [&](int x, std::size_t bytes) {
+    std::uint8_t levels[kPiece] = {};
+    copy(levels, reference + x, bytes);
+    for (std::uint8_t& level : levels) level = relit(level);
+    copy(out + x, levels, bytes);
+  });
 }
 
 void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out) {
@@ -42,16 +78,20 @@ LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out) {
   if (light == RowLight{}) return relight(reference, light, count, out);
-  const std::int32_t gain = light.gain, offset = light.offset + 128;
-  for (int x = 0; x < count; ++x) {
-    const std::int32_t then = reference[x], seen = present[x];
-    const std::int32_t value = (then * gain + offset) >> 8;
-    const std::int32_t now = value < 0 ? 0 : value > 255 ? 255 : value;
-    const std::int32_t low = then < now ? then : now, high = then < now ? now : then;
-    const std::int32_t most = then >= kWhite ? 255 : high;
-    const std::int32_t told = seen < low ? low : seen > most ? most : seen;
-    out[x] = static_cast<std::uint8_t>(high >= kNearWhite ? told : now);
-  }
+  const Relit relit(light);
+  in_pieces(count, [&](int at, std::size_t bytes) {
+    std::uint8_t levels[kPiece] = {}, now_seen[kPiece] = {};
+    copy(levels, reference + at, bytes);
+    copy(now_seen, present + at, bytes);
+    for (int x = 0; x < kPiece; ++x) {
+      const std::uint8_t then = levels[x], seen = now_seen[x], now = relit(then);
+      const std::uint8_t low = then < now ? then : now, high = then < now ? now : then;
+      const std::uint8_t most = then >= kWhite ? 255 : high;
+      const std::uint8_t told = seen < low ? low : seen > most ? most : seen;
+      levels[x] = high >= kNearWhite ? told : now;
+    }
+    copy(out + at, levels, bytes);
+  });
 }
 
 LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present, const RowLight* lights,

@@ -88,8 +88,15 @@ void SceneLight::adopt(const ScenePixels& pixels, SceneSurroundings& surrounding
     const RowSpan span = shown.empty() ? RowSpan{} : shown[static_cast<std::size_t>(y)];
     std::uint16_t* row = pixels.mean.row(y);
     std::uint8_t* age = pixels.age.row(y);
+    const auto relit = [&](int then) { return std::clamp((then * gain >> 8) + offset, 0, 255 << 8); };
+    int brightest = 0;
+    for (int x = 0; x < pixels.mean.width; ++x) brightest = std::max(brightest, int{row[x]});
+    if (std::max(brightest, relit(brightest)) < kNearWhite << 8) {  // most rows
+      for (int x = 0; x < pixels.mean.width; ++x) row[x] = static_cast<std::uint16_t>(relit(row[x]));
+      continue;
+    }
     for (int x = 0; x < pixels.mean.width; ++x) {
-      const int then = row[x], now = std::clamp((then * gain >> 8) + offset, 0, 255 << 8);
+      const int then = row[x], now = relit(then);
       row[x] = static_cast<std::uint16_t>(now);
       if (!age[x]) continue;
       if (x >= span.begin && x < span.end) {
