@@ -29,29 +29,32 @@ void step_positions(std::int32_t start, std::int32_t step, int shift, int count,
 void project_positions(const float (&m)[9], int x0, int y, int count, std::int32_t right, std::int32_t low,
                        std::int32_t* x, std::int32_t* y_out) {
   const float row = static_cast<float>(y);
-  const auto run = [&](auto d, int i) {
+  const auto run = [&](auto d, int begin, int end) {
     const hn::RebindToSigned<decltype(d)> ints;
-    const auto column = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<float>(x0 + i)));
-    const auto along = [&](int k) {
-      return hn::MulAdd(column, hn::Set(d, m[k]), hn::Set(d, m[k + 1] * row + m[k + 2]));
-    };
-    const auto scale = hn::Div(hn::Set(d, 128.0f), along(6));
-    const auto place = [&](int k, std::int32_t most) {
+    const int lanes = static_cast<int>(hn::Lanes(d));
+    const auto along_x = hn::Set(d, m[0]), along_y = hn::Set(d, m[3]), along_w = hn::Set(d, m[6]);
+    const auto at_x = hn::Set(d, m[1] * row + m[2]), at_y = hn::Set(d, m[4] * row + m[5]),
+               at_w = hn::Set(d, m[7] * row + m[8]);
+    const auto most_x = hn::Set(d, static_cast<float>(right)), most_y = hn::Set(d, static_cast<float>(low));
+    const auto one = hn::Set(d, 128.0f), half = hn::Set(d, 0.5f),
+               step = hn::Set(d, static_cast<float>(lanes));
+    auto column = hn::Add(hn::Iota(d, 0), hn::Set(d, static_cast<float>(x0 + begin)));
+    for (int i = begin; i < end; i += lanes) {
+      const auto scale = hn::Div(one, hn::MulAdd(column, along_w, at_w));
       // Kept in range before the conversion: a row's end may lie beyond by rounding.
-      const auto v = hn::MulAdd(along(k), scale, hn::Set(d, 0.5f));
-      const auto kept = hn::Min(hn::Max(v, hn::Zero(d)), hn::Set(d, static_cast<float>(most)));
-      return hn::ConvertTo(ints, kept);
-    };
-    hn::StoreU(place(0, right), ints, x + i);
-    hn::StoreU(place(3, low), ints, y_out + i);
+      const auto u = hn::MulAdd(hn::MulAdd(column, along_x, at_x), scale, half);
+      const auto v = hn::MulAdd(hn::MulAdd(column, along_y, at_y), scale, half);
+      hn::StoreU(hn::ConvertTo(ints, hn::Min(hn::Max(u, hn::Zero(d)), most_x)), ints, x + i);
+      hn::StoreU(hn::ConvertTo(ints, hn::Min(hn::Max(v, hn::Zero(d)), most_y)), ints, y_out + i);
+      column = hn::Add(column, step);
+    }
   };
   const hn::ScalableTag<float> d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  int i = 0;
-  for (; i + lanes <= count; i += lanes) run(d, i);
-  if (i < count && count >= lanes) return run(d, count - lanes);  // overlaps the one before
-  const hn::CappedTag<float, 1> one;
-  for (; i < count; ++i) run(one, i);
+  const int lanes = static_cast<int>(hn::Lanes(d)), whole = count / lanes * lanes;
+  run(d, 0, whole);
+  if (whole == count) return;
+  if (whole > 0) return run(d, count - lanes, count);  // overlaps the one before
+  run(hn::CappedTag<float, 1>(), 0, count);
 }
 
 // (p00 (128 - fx) + p01 fx) (128 - fy) + (p10 (128 - fx) + p11 fx) fy, rounded: at most 255 * 2^14.
