@@ -38,46 +38,104 @@ Solution solve(System& m) {
   return p;
 }
 
+// The unknowns' factors are powers of a block's place, in half widths from the centre:
+// u = p0 + p1 x + p2 y + x (p6 x + p7 y), v = p3 + p4 x + p5 y + y (p6 x + p7 y).
+struct Power {
+  int unknown, x, y;
+};
+constexpr std::array<Power, 5> kAcross{{{0, 0, 0}, {1, 1, 0}, {2, 0, 1}, {6, 2, 0}, {7, 1, 1}}};
+constexpr std::array<Power, 5> kDown{{{3, 0, 0}, {4, 1, 0}, {5, 0, 1}, {6, 1, 1}, {7, 0, 2}}};
+
+// Weighted sums over one row of blocks, times powers of x.
+constexpr int kPowers = 5;
+struct RowMoments {
+  std::array<double, kPowers> xx{}, xy{}, yy{}, xe{}, ye{};
+
+  void add(const BlockSums& b, double x, double weight) {
+    const double quarter = 0.25 * weight, half = 0.5 * weight;  // of doubled gradients
+    add(xx, kPowers, quarter * b.xx, x);
+    add(xy, kPowers - 1, quarter * b.xy, x);
+    add(yy, 3, quarter * b.yy, x);
+    add(xe, 3, half * b.xe, x);
+    add(ye, 2, half * b.ye, x);
+  }
+
+ private:
+  static void add(std::array<double, kPowers>& sums, int powers, double value, double x) {
+    for (int i = 0; i < powers; ++i, value *= x) sums[i] += value;
+  }
+};
+
+// The same over all rows, [power of x][power of y].
+struct Moments {
+  using Sums = std::array<std::array<double, kPowers>, kPowers>;
+  Sums xx{}, xy{}, yy{}, xe{}, ye{};
+
+  void add(const RowMoments& row, double y) {
+    add(xx, row.xx, y), add(xy, row.xy, y), add(yy, row.yy, y), add(xe, row.xe, y), add(ye, row.ye, y);
+  }
+
+ private:
+  static void add(Sums& sums, const std::array<double, kPowers>& row, double y) {
+    for (int i = 0; i < kPowers; ++i) {
+      double value = row[i];
+      for (int j = 0; i + j < kPowers; ++j, value *= y) sums[i][j] += value;
+    }
+  }
+};
+
+// J^T W J and -J^T W e.
+System normal_equations(const Moments& moments) {
+  System m{};
+  for (const Power& i : kAcross) {
+    for (const Power& j : kAcross) m[i.unknown][j.unknown] += moments.xx[i.x + j.x][i.y + j.y];
+    for (const Power& j : kDown) {
+      m[i.unknown][j.unknown] += moments.xy[i.x + j.x][i.y + j.y];
+      m[j.unknown][i.unknown] += moments.xy[i.x + j.x][i.y + j.y];
+    }
+    m[i.unknown][kUnknowns] -= moments.xe[i.x][i.y];
+  }
+  for (const Power& i : kDown) {
+    for (const Power& j : kDown) m[i.unknown][j.unknown] += moments.yy[i.x + j.x][i.y + j.y];
+    m[i.unknown][kUnknowns] -= moments.ye[i.x][i.y];
+  }
+  return m;
+}
+
 }  // namespace
 
 std::optional<Transform> align_to_memory(std::span<const BlockSums> blocks, int columns, Size picture) {
-  // Positions in half widths from the centre. u = p0 + p1 x + p2 y + x (p6 x + p7 y), v = p3 + p4 x + p5 y + y (...).
   const double cx = (picture.width - 1) / 2.0, cy = (picture.height - 1) / 2.0, unit = picture.width / 2.0;
+  const double per_unit = 1 / unit;
+  const auto place = [&](std::size_t block, double centre) {
+    return (static_cast<double>(block) * kSceneBlock + (kSceneBlock - 1) / 2.0 - centre) * per_unit;
+  };
+  const std::size_t across = static_cast<std::size_t>(columns);
   Solution p{};
   for (int round = 0; round < kRounds; ++round) {
-    System m{};
-    for (std::size_t index = 0; index < blocks.size(); ++index) {
-      const BlockSums& b = blocks[index];
-      if (b.n < kLeastPixels) continue;
-      const int bx = static_cast<int>(index) % columns, by = static_cast<int>(index) / columns;
-      const double x = (bx * kSceneBlock + (kSceneBlock - 1) / 2.0 - cx) / unit;
-      const double y = (by * kSceneBlock + (kSceneBlock - 1) / 2.0 - cy) / unit;
-      const std::array<double, kUnknowns> ju{1, x, y, 0, 0, 0, x * x, x * y},
-          jv{0, 0, 0, 1, x, y, x * y, y * y};
-      double u = 0, v = 0;
-      for (int i = 0; i < kUnknowns; ++i) u += ju[i] * p[i], v += jv[i] * p[i];
-      // The sums hold doubled gradients.
-      const double xx = b.xx / 4.0, xy = b.xy / 4.0, yy = b.yy / 4.0, xe = b.xe / 2.0, ye = b.ye / 2.0;
-      const double left = b.ee + 2 * (u * xe + v * ye) + u * u * xx + 2 * u * v * xy + v * v * yy;
-      const double cauchy = 1 / (kScale + std::max(left, 0.0) / b.n), weight = cauchy * cauchy;
-      // J^T W J; the three zeros in the middle of ju and at the beginning of jv are not multiplied.
-      const auto add = [&](int from, int to, int i, const auto& term) {
-        for (int j = from; j < to; ++j) m[i][j] += term(j);
-      };
-      for (int i = 0; i < kUnknowns; ++i) {
-        const double sx = weight * (xx * ju[i] + xy * jv[i]), sy = weight * (xy * ju[i] + yy * jv[i]);
-        add(0, std::min(i + 1, 3), i, [&](int j) { return ju[j] * sx; });
-        add(3, std::min(i + 1, 6), i, [&](int j) { return jv[j] * sy; });
-        add(6, i + 1, i, [&](int j) { return ju[j] * sx + jv[j] * sy; });
-        m[i][kUnknowns] -= weight * (ju[i] * xe + jv[i] * ye);
+    Moments moments;
+    for (std::size_t first = 0; first + across <= blocks.size(); first += across) {
+      RowMoments row;
+      const double y = place(first / across, cy);
+      const double u0 = p[0] + y * p[2], u1 = p[1] + y * p[7], u2 = p[6];
+      const double v0 = p[3] + y * (p[5] + y * p[7]), v1 = p[4] + y * p[6];
+      for (std::size_t bx = 0; bx < across; ++bx) {
+        const BlockSums& b = blocks[first + bx];
+        if (b.n < kLeastPixels) continue;
+        const double x = place(bx, cx);
+        // The sums hold doubled gradients: half the displacement goes with them.
+        const double u = 0.5 * (u0 + x * (u1 + x * u2)), v = 0.5 * (v0 + x * v1);
+        const double left = b.ee + u * (2.0 * b.xe + u * b.xx + 2 * v * b.xy) + v * (2.0 * b.ye + v * b.yy);
+        const double cauchy = b.n / (kScale * b.n + std::max(left, 0.0));
+        row.add(b, x, cauchy * cauchy);
       }
+      moments.add(row, y);
     }
+    System m = normal_equations(moments);
     double strongest = 0;
     for (int i = 0; i < kUnknowns; ++i) strongest = std::max(strongest, m[i][i]);
-    for (int i = 0; i < kUnknowns; ++i) {
-      for (int j = i + 1; j < kUnknowns; ++j) m[i][j] = m[j][i];
+    for (int i = 0; i < kUnknowns; ++i)
       m[i][i] += (i < 6 ? 1e-3 : 3e-3) * strongest + 1e-9;  // what the picture does not tell stays 0
-    }
     p = solve(m);
   }
   for (const int i : {1, 2, 4, 5}) p[i] /= unit;
