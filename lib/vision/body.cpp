@@ -15,6 +15,9 @@ constexpr double kGrain = 1.0 / 320;         // of the frame's width: pixels of 
 constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's extent flickers by 15 %
 constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
 constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
+constexpr double kEndSpeed = 1.0;            // S/s: an end that goes faster shows that more of it is seen
+constexpr double kUpright = 1.3;             // times as tall as wide, at least
+constexpr double kStandsBy = 0.5;            // pixels that a standing camera may seem to move by
 constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
 constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
 constexpr double kFarthestAway = 3.0;        // and where nobody was looked for meanwhile, who else may come
@@ -122,8 +125,7 @@ void Body::magnify(double scale) {
   for (MovingValue* a : {&x, &y})
     for (double* p : {&a->pp, &a->pv, &a->vv}) *p *= scale * scale;
   for (double* e : {&w.value, &h.value, &born_width, &born_height}) *e += std::log(scale);
-  widest *= scale;
-  tallest *= scale;
+  for (double* l : {&widest, &tallest, &risen, &sunk}) *l *= scale;
 }
 
 // How far, in S, its edges have gone because it came nearer or went away. Who walks straight towards the camera grows
@@ -133,6 +135,25 @@ double Body::neared() const {
   const double wider = w.value - born_width, taller = h.value - born_height;
   if (wider * taller <= 0) return 0;
   return 0.5 * (1 - std::exp(-std::min(std::abs(wider), std::abs(taller))));
+}
+
+// How far, in S, its feet have gone down, or its head up, while the other end stayed. Who stood there when the scene
+// began is in the memory: he walks straight up or down, and his place shows for as long as he covers a part of it.
+// Before a camera that moves ends go for other reasons.
+double Body::stretched() const {
+  return height() > kUpright * width() ? std::abs(sunk - risen) / size() : 0;
+}
+
+// A walker's end goes on steadily. One that leaps shows that more of him is seen.
+void Body::follow_ends(const Box& seen, double seconds, Size frame) {
+  const double most = kEndSpeed * size() * seconds + kGrain * frame.width;
+  const auto follow = [most](double& gone, double step) {
+    gone = step > most ? 0 : std::max(0.0, gone + step);
+  };
+  follow(risen, top - seen.y);
+  follow(sunk, seen.bottom() - bottom);
+  top = seen.y;
+  bottom = seen.bottom();
 }
 
 // To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
@@ -146,6 +167,8 @@ bool Body::carry(const Transform& motion, Size frame) {
   const double det = xx * yy - xy * yx;
   if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(det) || !(det > 1e-3)) return false;
   const auto turned = [&](Point v) { return Point{xx * v.x + xy * v.y, yx * v.x + yy * v.y}; };
+  for (double* end : {&top, &bottom}) *end = motion.apply({p.x, *end - kHalfPixel}).y + kHalfPixel;
+  if (std::hypot(q.x - p.x, q.y - p.y) > kStandsBy) risen = sunk = 0;
   const Point velocity = turned({x.velocity, y.velocity});
   x.position = q.x + kHalfPixel;
   y.position = q.y + kHalfPixel;
@@ -233,6 +256,9 @@ void Body::adopt(const Box& seen) {
   x.position = centre(seen).x;
   y.position = centre(seen).y;
   misfit = fitted = 0;
+  top = seen.y;
+  bottom = seen.bottom();
+  risen = sunk = 0;
 }
 
 // One object, one region, extents that disagree: is the region right? One that is cut by the picture's edge is, as the
@@ -288,6 +314,7 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
     if (id == 0 && within_x) origin.x += x.position - was.x;
     if (id == 0 && within_y) origin.y += y.position - was.y;
     if (fits && alone) {
+      if (id == 0) follow_ends(seen, seconds, frame);
       if (!(stands && within_x)) resize(w, seen.width, cut_x, seconds);
       if (!(stands && within_y)) resize(h, seen.height, cut_y, seconds);
       misfit = 0;
@@ -312,7 +339,8 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
   unseen = 0;
   const double keep = std::exp(-seconds / 0.5);
   confidence = keep * confidence + (1 - keep) * (0.5 + 0.5 * r.confidence) * (fits ? 1 : 0.7);
-  travelled = std::max({travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s, neared()});
+  travelled = std::max(
+      {travelled, std::hypot(x.position - origin.x, y.position - origin.y) / s, neared(), stretched()});
   slow = speed() < kStandSpeed * s ? slow + seconds : 0;
   if (id != 0) top_speed = std::max(top_speed, speed());
 }

@@ -37,7 +37,10 @@ struct Body {
   Point origin;                    // where it was first seen, carried with the scene
   // Logarithms of the extent it was first seen with, carried with the scene.
   double born_width = 0, born_height = 0;
-  double travelled = 0;  // largest distance from the origin, S; of its edges, where it comes nearer
+  // Ends of the region it was last seen in, carried with the scene, and how far each has gone outwards step by step.
+  double top = 0, bottom = 0, risen = 0, sunk = 0;
+  // Largest distance from the origin, S; of its edges, where it comes nearer, or only one end goes.
+  double travelled = 0;
   double top_speed = 0;  // pixels a second, since it was confirmed
   double confidence = 0;
   double age = 0, unseen = 0;  // s since first and since last seen
@@ -125,6 +128,8 @@ struct Body {
  private:
   void magnify(double scale);
   double neared() const;
+  double stretched() const;
+  void follow_ends(const Box& seen, double seconds, Size frame);
   void adopt(const Box& seen);
   bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);

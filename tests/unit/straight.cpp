@@ -149,6 +149,35 @@ START_TEST(who_comes_nearer_is_published_though_his_middle_stays) {
 }
 END_TEST
 
+START_TEST(who_leaves_where_he_stood_is_published_though_his_place_shows_with_him) {
+  constexpr double kPace = 3, kHeight = 97;  // pixels a step of 0.1 s: half a body a second
+  for (const bool down : {true, false}) {
+    Tracker tracker;
+    std::vector<Track> tracks =
+        told(tracker, {piece(146, down ? 33 : 18, 27, 82)});  // without his head, or feet
+    double gone = 0;
+    for (; tracks.empty() && gone < kHeight; gone += kPace)
+      tracks = told(tracker, {piece(146, down ? 18 : 18 - gone, 28, kHeight + gone)});
+    ck_assert_msg(gone > 0.1 * kHeight && gone < 0.2 * kHeight, "%s: after %.0f pixels", down ? "down" : "up",
+                  gone);
+  }
+}
+END_TEST
+
+START_TEST(what_shows_more_and_less_of_itself_has_gone_nowhere) {
+  Tracker leaps, lies, stands, turns;
+  for (int k = 0; k < 16; ++k)
+    ck_assert_uint_eq(told(leaps, {piece(146, 40, 28, k % 4 < 2 ? 90 : 107)}).size(), 0);
+  for (int k = 0; k < 14; ++k) ck_assert_uint_eq(told(lies, {piece(100, 100, 80, 40 + k)}).size(), 0);
+  for (int k = 0; k < 50; ++k)  // and the camera sinks into its mount
+    ck_assert_uint_eq(told(stands, {piece(146, 40 + 0.4 * k, 28, 90)}, Transform::translation(0, 0.4)).size(),
+                      0);
+  for (int k = 0; k < 10; ++k)  // and the camera turns
+    ck_assert_uint_eq(
+        told(turns, {piece(146 + 2 * k, 40, 28, 90 + 2 * k)}, Transform::translation(2, 0)).size(), 0);
+}
+END_TEST
+
 START_TEST(what_grows_one_way_or_by_the_camera_s_zoom_is_not_nearer) {
   Tracker grows, zoomed;
   constexpr double kZoom = 1.04;
@@ -168,6 +197,8 @@ int main() {
                    {who_walks_straight_down_up_or_near_is_found_from_the_first_second_on,
                     fronts_that_become_one_region_are_one, two_upright_people_in_one_region_stay_two,
                     who_comes_nearer_is_published_though_his_middle_stays,
+                    who_leaves_where_he_stood_is_published_though_his_place_shows_with_him,
+                    what_shows_more_and_less_of_itself_has_gone_nowhere,
                     what_grows_one_way_or_by_the_camera_s_zoom_is_not_nearer},
                    60);
 }
