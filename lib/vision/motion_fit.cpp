@@ -2,10 +2,10 @@
 #include "vision/motion_fit.h"
 
 #include <algorithm>
-#include <bitset>
 #include <cmath>
 #include <span>
 
+#include "vision/motion_fit_kernels.h"
 #include "vision/motion_least_squares.h"
 
 namespace cerberus::vision {
@@ -16,55 +16,17 @@ namespace {
 // model that starts from a similarity.
 constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f}, kRicherGates{50.0f, 12.0f, 3.0f, 1.5f, 1.5f};
 
-using Distances = std::array<float, MotionSamples::kMax>;
-
-// Squared Mahalanobis distance of every sample from the transform.
-void measure(const MotionSamples& s, const Transform& t, Distances& distances) {
-  std::array<float, 9> m;
-  for (int i = 0; i < 9; ++i) m[i] = static_cast<float>(t.m[i]);
-  const auto square = [&](int i, float dx, float dy) {
-    return s.wxx[i] * dx * dx + 2 * s.wxy[i] * dx * dy + s.wyy[i] * dy * dy;
-  };
-  if (t.is_affine()) {
-    for (int i = 0; i < s.count; ++i)
-      distances[i] = square(i, s.u[i] - (m[0] * s.x[i] + m[1] * s.y[i] + m[2]),
-                            s.v[i] - (m[3] * s.x[i] + m[4] * s.y[i] + m[5]));
-  } else {
-    for (int i = 0; i < s.count; ++i) {
-      const float w = 1.0f / (m[6] * s.x[i] + m[7] * s.y[i] + m[8]);
-      distances[i] = square(i, s.u[i] - (m[0] * s.x[i] + m[1] * s.y[i] + m[2]) * w,
-                            s.v[i] - (m[3] * s.x[i] + m[4] * s.y[i] + m[5]) * w);
-    }
-  }
-}
-
-// Evidence of what lies within the gate, of each region.
-std::array<float, MotionSamples::kRegions> agreement_of(const MotionSamples& s, const Distances& distances) {
-  Distances parts;
-  for (int i = 0; i < s.count; ++i) {
-    const float part = 1.0f - distances[i] * (1.0f / kGate);
-    parts[i] = s.evidence[i] * (part > 0 ? part : 0);
-  }
-  // Neighbours are of one region: four sums each, so that one addition need not wait for the last.
-  constexpr int kLanes = 4;
-  std::array<std::array<float, MotionSamples::kRegions>, kLanes> sums{};
-  for (int i = 0; i < s.count; ++i) sums[i % kLanes][s.region[i]] += parts[i];
-  std::array<float, MotionSamples::kRegions> agreement;
-  for (int r = 0; r < MotionSamples::kRegions; ++r)
-    agreement[r] = sums[0][r] + sums[1][r] + (sums[2][r] + sums[3][r]);
-  return agreement;
-}
-
-double support_of(const MotionSamples& s, const Distances& distances) {
+double support_of(const Agreement& agreement) {
   double support = 0;
-  for (const float agreement : agreement_of(s, distances)) support += std::sqrt(agreement);
+  for (const float part : agreement.of_region) support += std::sqrt(part);
   return support;
 }
 
-double support_of(const MotionSamples& s, const Transform& t) {
-  Distances distances;
-  measure(s, t, distances);
-  return support_of(s, distances);
+// With everything within the gate.
+double greatest_support(const MotionSamples& s) {
+  Agreement agreement;
+  for (int i = 0; i < s.count; ++i) agreement.of_region[s.region[i]] += s.evidence[i];
+  return support_of(agreement);
 }
 
 // Who is near fills the middle and reaches the lower edge; what surrounds him is ground (the prior of Wei, Wen, Zhu,
@@ -75,23 +37,9 @@ constexpr std::array<double, MotionSamples::kRegions> kGround{1, 1,       1,    
                                                               1, kInside, kInside, 1,  //
                                                               1, kInside, kInside, 1};
 
-using Followers = std::bitset<MotionSamples::kMax>;
-
-Followers followers_of(const MotionSamples& s, const Distances& distances) {
-  Followers followers;
-  for (int i = 0; i < s.count; ++i) followers[i] = distances[i] <= kGate;
-  return followers;
-}
-
-Followers followers_of(const MotionSamples& s, const Transform& t) {
-  Distances distances;
-  measure(s, t, distances);
-  return followers_of(s, distances);
-}
-
 // Whether two motions mean the same: most of what follows the one that fewer follow goes along with the other.
 bool alike(const Followers& a, const Followers& b) {
-  return 2 * (a & b).count() > std::min(a.count(), b.count());
+  return 2 * a.common(b) > std::min(a.count(), b.count());
 }
 
 // The similarity that takes sample i's and j's points of frame k-1 to those of frame k; false if it is no camera
@@ -115,14 +63,13 @@ class Contenders {
     Followers followers;
   };
 
-  explicit Contenders(const MotionSamples& samples) : samples_(samples) {}
+  explicit Contenders(const SampleRows& rows) : rows_(rows) {}
 
   void add(const Transform& t) {
-    Distances distances;
-    measure(samples_, t, distances);
-    const double support = support_of(samples_, distances);
+    const Agreement agreement = agreement_with(rows_, t);
+    const double support = support_of(agreement);
     if (count_ == kMost && support <= entries_[kMost - 1].support) return;
-    const Followers followers = followers_of(samples_, distances);
+    const Followers& followers = agreement.followers;
     int place = 0;  // of the entry it takes over: its like, or the weakest
     while (place < count_ && !alike(entries_[place].followers, followers)) ++place;
     if (place < count_ && support <= entries_[place].support) return;
@@ -137,41 +84,61 @@ class Contenders {
  private:
   static constexpr int kMost = 5;
 
-  const MotionSamples& samples_;
+  const SampleRows& rows_;
   int count_ = 0;
   std::array<Entry, kMost> entries_;
 };
 
-// Least squares with Tukey's biweight, a round for each width. step(weights, next) solves.
+// Least squares with Tukey's biweight, a round for each width. step(normal, next) solves.
 template <typename Step>
-void reweight(const MotionSamples& s, std::span<const float> gates, Size picture, Transform& motion,
-              Step&& step) {
-  Distances distances, weights{};
+void reweight(const SampleRows& rows, std::span<const float> gates, const MotionScale& scale, Size picture,
+              bool perspective, Transform& motion, Step&& step) {
   for (const float gate : gates) {
-    measure(s, motion, distances);
-    const float per_gate = 1 / (gate * kGate);
-    for (int i = 0; i < s.count; ++i) {
-      const float inside = 1.0f - distances[i] * per_gate;
-      weights[i] = inside > 0 ? inside * inside : 0;
-    }
     Transform next = motion;
-    if (!step(weights, next) || !next.is_sane(picture)) break;
+    if (!step(sum_normal(rows, motion, gate * kGate, scale, perspective), next) || !next.is_sane(picture))
+      break;
     motion = next;
   }
 }
 
+struct Rated : MotionFit {
+  Followers followers;
+};
+
+Rated rate(const SampleRows& rows, const Transform& transform) {
+  const Agreement agreement = agreement_with(rows, transform);
+  Rated fit;
+  fit.transform = transform;
+  for (int r = 0; r < MotionSamples::kRegions; ++r) {
+    const double part = std::sqrt(agreement.of_region[r]);
+    fit.support += part, fit.ground += kGround[r] * part;
+  }
+  fit.cost = agreement.cost, fit.agreeing = agreement.agreeing;
+  fit.residual = fit.agreeing > 0 ? std::sqrt(agreement.squares / fit.agreeing) : 0;
+  fit.followers = agreement.followers;
+  return fit;
+}
+
+Rated refined(const SampleRows& rows, MotionModel model, Size picture, Transform motion) {
+  const MotionLeastSquares squares(picture);
+  reweight(rows, model > MotionModel::similarity ? kRicherGates : kGates, squares.scale(), picture,
+           model == MotionModel::homography, motion,
+           [&](const MotionNormal& normal, Transform& next) { return squares.step(model, normal, next); });
+  return rate(rows, motion);
+}
+
 // A turning camera's picture is bent, by what its lens alone decides; `motion` is what to begin with.
-MotionFit turned(const MotionSamples& s, Size picture, Shutter shutter, const LensBend& known,
-                 Transform motion) {
+Rated turned(const SampleRows& rows, Size picture, Shutter shutter, const LensBend& known, Transform motion) {
   const MotionLeastSquares squares(picture);
   LensBend seen;
-  reweight(s, std::span(kGates).subspan(1), picture, motion, [&](const Distances& weights, Transform& next) {
-    LensBend lens = known;
-    if (!squares.step_turned(s, weights, shutter, lens, next) || !next.is_sane(picture)) return false;
-    seen = lens;
-    return true;
-  });
-  MotionFit fit = rate_motion(s, motion);
+  reweight(rows, std::span(kGates).subspan(1), squares.scale(), picture, true, motion,
+           [&](const MotionNormal& normal, Transform& next) {
+             LensBend lens = known;
+             if (!squares.step_turned(normal, shutter, lens, next) || !next.is_sane(picture)) return false;
+             seen = lens;
+             return true;
+           });
+  Rated fit = rate(rows, motion);
   fit.lens = seen;
   return fit;
 }
@@ -209,40 +176,21 @@ bool follows(const MotionSamples& s, int i, const Transform& transform) {
 }
 
 MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
-  Distances distances;
-  measure(s, transform, distances);
-  MotionFit fit;
-  fit.transform = transform;
-  const auto agreement = agreement_of(s, distances);
-  for (int r = 0; r < MotionSamples::kRegions; ++r) {
-    const double part = std::sqrt(agreement[r]);
-    fit.support += part, fit.ground += kGround[r] * part;
-  }
-  double squares = 0;
-  for (int i = 0; i < s.count; ++i) {
-    fit.cost += s.evidence[i] * std::min(distances[i], kGate);
-    if (distances[i] > kGate) continue;
-    const Point p = transform.apply({s.x[i], s.y[i]});
-    const double dx = s.u[i] - p.x, dy = s.v[i] - p.y;
-    squares += s.evidence[i] * (dx * dx + dy * dy);
-    fit.agreeing += s.evidence[i];
-  }
-  fit.residual = fit.agreeing > 0 ? std::sqrt(squares / fit.agreeing) : 0;
-  return fit;
+  return rate(SampleRows(s), transform);
 }
 
 double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Transform& motion) {
-  const MotionLeastSquares squares(picture);
-  reweight(s, model > MotionModel::similarity ? kRicherGates : kGates, picture, motion,
-           [&](const Distances& weights, Transform& next) { return squares.step(model, s, weights, next); });
-  return support_of(s, motion);
+  const MotionFit fit = refined(SampleRows(s), model, picture, motion);
+  motion = fit.transform;
+  return fit.support;
 }
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses, int turns, const LensBend& known) {
-  Contenders contenders(s);
+  const SampleRows rows(s);
+  Contenders contenders(rows);
   for (const Transform& t : guesses) contenders.add(t);
-  if (model == MotionModel::none || s.count == 0) return rate_motion(s, contenders.best());
+  if (model == MotionModel::none || s.count == 0) return rate(rows, contenders.best());
   const double least_distance = 0.15 * picture.width;
   std::uint32_t random = 12345;  // linear congruence (Numerical Recipes), its upper bits
   const auto draw = [&] {
@@ -250,7 +198,7 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
   };
   // Chance need not be asked where the guesses explain nearly everything (honest noise costs the last tenth).
-  const double enough = 0.85 * support_of(s, Distances{});
+  const double enough = 0.85 * greatest_support(s);
   for (int h = 0; h < hypotheses && contenders.most() < enough; ++h) {
     const int i = draw(), j = draw();
     Transform t = Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]);
@@ -271,54 +219,44 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
   // A hypothesis from two samples carries their errors; only refined ones can be compared.
   constexpr double kHopeless = 0.4;
   const MotionModel simple = std::min(model, MotionModel::similarity);
-  MotionFit fit, rival;
-  Followers follow_fit;
+  Rated fit, rival;
   bool first = true;
   for (const auto& [hypothesis, support, unrefined] : contenders.all()) {
     if (support < kHopeless * contenders.most()) break;
-    MotionFit refined;
-    if (may_bend && !hypothesis.is_affine()) {
-      refined = turned(s, picture, Shutter::global, known, hypothesis);
-    } else {
-      Transform t = hypothesis;
-      refine_motion(s, simple, picture, t);
-      refined = rate_motion(s, t);
-    }
-    const Followers followers = followers_of(s, refined.transform);
+    const Rated better = may_bend && !hypothesis.is_affine()
+                             ? turned(rows, picture, Shutter::global, known, hypothesis)
+                             : refined(rows, simple, picture, hypothesis);
     if (first) {
-      fit = refined, follow_fit = followers, first = false;
-    } else if (alike(followers, follow_fit)) {
-      if (refined.support > fit.support) fit = refined, follow_fit = followers;
-    } else if (refined.ground > fit.ground) {
-      rival = fit, fit = refined, follow_fit = followers;
-    } else if (refined.ground > rival.ground) {
-      rival = refined;
+      fit = better, first = false;
+    } else if (alike(better.followers, fit.followers)) {
+      if (better.support > fit.support) fit = better;
+    } else if (better.ground > fit.ground) {
+      rival = fit, fit = better;
+    } else if (better.ground > rival.ground) {
+      rival = better;
     }
   }
   if (rival.ground > 0) fit.rival = rival.transform;
   if (model <= MotionModel::similarity) return fit;
-  Transform best = fit.transform;
-  refine_motion(s, model, picture, best);
-  MotionFit finer = rate_motion(s, best);
+  MotionFit finer = refined(rows, model, picture, fit.transform);
   finer.rival = fit.rival;
   const double earns = model == MotionModel::affine ? kAffineEarns : kHomographyEarns;
   return is_as_supported(finer, fit) && earned(finer, fit) > earns ? finer : fit;
 }
 
 MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& found, const LensBend& known) {
+  const SampleRows rows(s);
   MotionFit similarity = found, bent = found;
   if (found.transform.is_affine()) {
-    bent = turned(s, picture, Shutter::global, known, found.transform);
+    bent = turned(rows, picture, Shutter::global, known, found.transform);
   } else {
-    Transform straight = unbent(found.transform, picture);
-    refine_motion(s, MotionModel::similarity, picture, straight);
-    similarity = rate_motion(s, straight);
+    similarity = refined(rows, MotionModel::similarity, picture, unbent(found.transform, picture));
   }
   bent.lens.earned = earned(bent, similarity);
   const bool bends = is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kBendEarns;
   MotionFit fit = bends ? bent : similarity;
   // Sheared, it is bent, too: both have to be earned.
-  const MotionFit rolled = turned(s, picture, Shutter::rolling, known, bent.transform);
+  const MotionFit rolled = turned(rows, picture, Shutter::rolling, known, bent.transform);
   const double earns = kRollingEarns + (bends ? 0 : kBendEarns);
   if (is_as_supported(rolled, fit) && earned(rolled, fit) > earns) fit = rolled;
   fit.lens = bent.lens;

@@ -2,6 +2,7 @@
 #include "vision/motion_least_squares.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace cerberus::vision {
@@ -12,9 +13,16 @@ namespace {
 // shutter makes of a jerk 2 %.
 constexpr double kFree = 10, kLinear = 0.1, kPerspective = 0.03, kRolling = 0.02;
 
-using Distances = std::array<float, MotionSamples::kMax>;
-
 }  // namespace
+
+// One unknown of a model as the direction among a homography's along which it goes, and its prior's deviation.
+struct MotionLeastSquares::Unknown {
+  double sigma;
+  std::size_t first;
+  double by = 1;
+  std::size_t second = 0;
+  double by_second = 0;
+};
 
 // Normal equations of N unknowns.
 template <std::size_t N>
@@ -23,14 +31,17 @@ struct MotionLeastSquares::Normal {
   std::array<Row, N> a{};  // upper triangle
   Row b{};
 
-  void expect(std::size_t unknown, double sigma) { a[unknown][unknown] += 1 / (sigma * sigma); }
-
-  // Adds the measurement J p = d (two rows) with the 2x2 weight W.
-  void add(const Row& jx, const Row& jy, double dx, double dy, double wxx, double wxy, double wyy) {
+  Normal(std::span<const Unknown, N> unknowns, const MotionNormal& all, double scale) {
+    const auto at = [&](std::size_t i, std::size_t j) { return i < j ? all.a[i][j] : all.a[j][i]; };
     for (std::size_t i = 0; i < N; ++i) {
-      const double ex = jx[i] * wxx + jy[i] * wxy, ey = jx[i] * wxy + jy[i] * wyy;
-      for (std::size_t j = i; j < N; ++j) a[i][j] += ex * jx[j] + ey * jy[j];
-      b[i] += ex * dx + ey * dy;
+      const Unknown& p = unknowns[i];
+      for (std::size_t j = i; j < N; ++j) {
+        const Unknown& q = unknowns[j];
+        a[i][j] = p.by * (q.by * at(p.first, q.first) + q.by_second * at(p.first, q.second)) +
+                  p.by_second * (q.by * at(p.second, q.first) + q.by_second * at(p.second, q.second));
+      }
+      a[i][i] += 1 / (p.sigma * p.sigma * scale * scale);
+      b[i] = p.by * all.b[p.first] + p.by_second * all.b[p.second];
     }
   }
 
@@ -83,112 +94,84 @@ Transform MotionLeastSquares::turn(Point from, Point to, double bend) const {
 }
 
 // The unknowns come out over the half diagonal.
-template <std::size_t N, typename Design>
-bool MotionLeastSquares::solve(const MotionSamples& s, const Distances& weights, Normal<N>& normal,
-                               std::array<double, N>& p, Design&& design) const {
-  std::array<double, N> jx, jy;
-  const double per_scale = 1 / scale_;
-  for (int i = 0; i < s.count; ++i) {
-    const double w = weights[i];
-    if (!(w > 0)) continue;
-    design((s.x[i] - cx_) * per_scale, (s.y[i] - cy_) * per_scale, (s.u[i] - cx_) * per_scale,
-           (s.v[i] - cy_) * per_scale, jx, jy);
-    normal.add(jx, jy, s.u[i] - s.x[i], s.v[i] - s.y[i], w * s.wxx[i], w * s.wxy[i], w * s.wyy[i]);
+template <std::size_t N>
+Transform MotionLeastSquares::composed(std::span<const Unknown, N> unknowns,
+                                       const std::array<double, N>& values) const {
+  std::array<double, MotionNormal::kUnknowns> p{};
+  for (std::size_t i = 0; i < N; ++i) {
+    p[unknowns[i].first] += unknowns[i].by * values[i];
+    p[unknowns[i].second] += unknowns[i].by_second * values[i];
   }
+  return in_pixels({{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], p[6], p[7], 1}});
+}
+
+template <std::size_t N>
+bool MotionLeastSquares::step(std::span<const Unknown, N> unknowns, const MotionNormal& all,
+                              Transform& t) const {
+  Normal<N> normal(unknowns, all, scale_);
+  std::array<double, N> p;
   if (!normal.solve(p)) return false;
-  for (double& v : p) v *= per_scale;
+  for (double& v : p) v /= scale_;
+  t = composed(unknowns, p);
   return true;
 }
 
-bool MotionLeastSquares::step(MotionModel model, const MotionSamples& s, const Distances& weights,
-                              Transform& t) const {
-  const auto with = [&]<std::size_t N>(std::array<double, N> p, auto&& design, auto&& compose) {
-    Normal<N> normal;
-    for (std::size_t i = 0; i < N; ++i)
-      normal.expect(i, (i < 2 ? kFree : i < 6 ? kLinear : kPerspective) * scale_);
-    if (!solve(s, weights, normal, p, design)) return false;
-    t = in_pixels(compose(p));
-    return true;
-  };
-  using Row2 = std::array<double, 2>;
-  using Row4 = std::array<double, 4>;
-  using Row6 = std::array<double, 6>;
-  using Row8 = std::array<double, 8>;
+bool MotionLeastSquares::step(MotionModel model, const MotionNormal& normal, Transform& t) const {
+  static constexpr std::array<Unknown, 2> kTranslation{{{kFree, 0}, {kFree, 1}}};
+  static constexpr std::array<Unknown, 4> kSimilarity{
+      {{kFree, 0}, {kFree, 1}, {kLinear, 2, 1, 5, 1}, {kLinear, 3, -1, 4, 1}}};
+  static constexpr std::array<Unknown, 8> kHomography{{{kFree, 0},
+                                                       {kFree, 1},
+                                                       {kLinear, 2},
+                                                       {kLinear, 3},
+                                                       {kLinear, 4},
+                                                       {kLinear, 5},
+                                                       {kPerspective, 6},
+                                                       {kPerspective, 7}}};
   switch (model) {
     case MotionModel::none:
       return false;
     case MotionModel::translation:
-      return with(
-          Row2{}, [](double, double, double, double, Row2& jx, Row2& jy) { jx = {1, 0}, jy = {0, 1}; },
-          [](const Row2& p) { return Transform{{1, 0, p[0], 0, 1, p[1], 0, 0, 1}}; });
+      return step(std::span(kTranslation), normal, t);
     case MotionModel::similarity:
-      return with(
-          Row4{},
-          [](double X, double Y, double, double, Row4& jx, Row4& jy) {
-            jx = {1, 0, X, -Y}, jy = {0, 1, Y, X};
-          },
-          [](const Row4& p) { return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}; });
+      return step(std::span(kSimilarity), normal, t);
     case MotionModel::affine:
-      return with(
-          Row6{},
-          [](double X, double Y, double, double, Row6& jx, Row6& jy) {
-            jx = {1, 0, X, Y, 0, 0}, jy = {0, 1, 0, 0, X, Y};
-          },
-          [](const Row6& p) { return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], 0, 0, 1}}; });
+      return step(std::span(kHomography).first<6>(), normal, t);
     case MotionModel::homography:
-      return with(
-          Row8{},
-          [](double X, double Y, double U, double V, Row8& jx, Row8& jy) {
-            jx = {1, 0, X, Y, 0, 0, -X * U, -Y * U}, jy = {0, 1, 0, 0, X, Y, -X * V, -Y * V};
-          },
-          [](const Row8& p) {
-            return Transform{{1 + p[2], p[3], p[0], p[4], 1 + p[5], p[1], p[6], p[7], 1}};
-          });
+      return step(std::span(kHomography), normal, t);
   }
   return false;
 }
 
-bool MotionLeastSquares::step_turned(const MotionSamples& s, const Distances& weights, Shutter shutter,
+// The bend is the last unknown: what remains in its row of Cholesky's factor is what is known of it when the others are
+// not.
+template <std::size_t N>
+bool MotionLeastSquares::step_turned(std::span<const Unknown, N> unknowns, const MotionNormal& all,
                                      LensBend& lens, Transform& t) const {
-  // The bend is the last unknown: what remains in its row of Cholesky's factor is what is known of it when the others
-  // are not.
+  Normal<N> normal(unknowns, all, scale_);
+  const LensBend known = lens;
+  normal.a[N - 1][N - 1] += known.information / (scale_ * scale_);
+  normal.b[N - 1] += known.bend * known.information / scale_;
+  std::array<double, N> p;
+  if (!normal.solve(p)) return false;
+  for (double& v : p) v /= scale_;
+  const double information = normal.a[N - 1][N - 1] * normal.a[N - 1][N - 1] * scale_ * scale_;
+  lens.information = std::max(information - known.information - 1 / (kMostBend * kMostBend), 0.0);
+  if (lens.information > 0)
+    lens.bend = (information * p[N - 1] - known.information * known.bend) / lens.information;
+  p[N - 1] = std::clamp(p[N - 1], 0.0, kMostBend);
+  t = composed(unknowns, p);
+  return true;
+}
+
+bool MotionLeastSquares::step_turned(const MotionNormal& normal, Shutter shutter, LensBend& lens,
+                                     Transform& t) const {
   const Point moved = t.apply({cx_, cy_});
   const double tx = (moved.x - cx_) / scale_, ty = (moved.y - cy_) / scale_;
-  const auto with = [&]<std::size_t N>(std::array<double, N> p, auto&& design, auto&& linear) {
-    Normal<N> normal;
-    for (std::size_t i = 0; i < N - 1; ++i)
-      normal.expect(i, (i < 2 ? kFree : i < 4 ? kLinear : kRolling) * scale_);
-    normal.expect(N - 1, kMostBend * scale_);
-    const LensBend known = lens;
-    normal.a[N - 1][N - 1] += known.information / (scale_ * scale_);
-    normal.b[N - 1] = known.bend * known.information / scale_;
-    const auto bending = [&](double X, double Y, double U, double V, auto& jx, auto& jy) {
-      design(X, Y, jx, jy);
-      jx[N - 1] = (tx * X + ty * Y) * U, jy[N - 1] = (tx * X + ty * Y) * V;
-    };
-    if (!solve(s, weights, normal, p, bending)) return false;
-    const double information = normal.a[N - 1][N - 1] * normal.a[N - 1][N - 1] * scale_ * scale_;
-    lens.information = std::max(information - known.information - 1 / (kMostBend * kMostBend), 0.0);
-    if (lens.information > 0)
-      lens.bend = (information * p[N - 1] - known.information * known.bend) / lens.information;
-    const double bend = std::clamp(p[N - 1], 0.0, kMostBend);
-    Transform scaled = linear(p);
-    scaled.m[6] = -bend * tx, scaled.m[7] = -bend * ty;
-    t = in_pixels(scaled);
-    return true;
-  };
-  using Row5 = std::array<double, 5>;
-  using Row7 = std::array<double, 7>;
-  if (shutter == Shutter::global)
-    return with(
-        Row5{}, [](double X, double Y, Row5& jx, Row5& jy) { jx = {1, 0, X, -Y}, jy = {0, 1, Y, X}; },
-        [](const Row5& p) { return Transform{{1 + p[2], -p[3], p[0], p[3], 1 + p[2], p[1], 0, 0, 1}}; });
-  return with(
-      Row7{},
-      [](double X, double Y, Row7& jx, Row7& jy) { jx = {1, 0, X, -Y, Y, 0}, jy = {0, 1, Y, X, 0, Y}; },
-      [](const Row7& p) {
-        return Transform{{1 + p[2], p[4] - p[3], p[0], p[3], 1 + p[2] + p[5], p[1], 0, 0, 1}};
-      });
+  const Unknown x{kFree, 0}, y{kFree, 1}, zoom{kLinear, 2, 1, 5, 1}, roll{kLinear, 3, -1, 4, 1},
+      shear{kRolling, 3}, stretch{kRolling, 5}, bend{kMostBend, 6, -tx, 7, -ty};
+  if (shutter == Shutter::global) return step_turned<5>(std::array{x, y, zoom, roll, bend}, normal, lens, t);
+  return step_turned<7>(std::array{x, y, zoom, roll, shear, stretch, bend}, normal, lens, t);
 }
 
 }  // namespace cerberus::vision

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstddef>
+#include <span>
 
 #include "vision/motion_fit.h"
+#include "vision/motion_fit_kernels.h"
 
 namespace cerberus::vision {
 
@@ -25,9 +27,9 @@ class MotionLeastSquares {
   // The turn, through a lens of this bend, that takes `from` to `to`.
   Transform turn(Point from, Point to, double bend) const;
 
-  // The motion of least sum of weight * squared Mahalanobis distance. False where the samples do not determine it.
-  bool step(MotionModel model, const MotionSamples& samples,
-            const std::array<float, MotionSamples::kMax>& weights, Transform& motion) const;
+  // The motion of least squares, of normal equations in this scale(). False where the samples do not determine it.
+  MotionScale scale() const { return {cx_, cy_, 1 / scale_}; }
+  bool step(MotionModel model, const MotionNormal& normal, Transform& motion) const;
 
   // The same for a similarity and the bend of a camera that turns about its own centre, H = K R K^-1 (Hartley,
   // Zisserman, Multiple View Geometry, 2nd ed., 8.4): to first order in the angle it adds (t . x) x / f^2 to every
@@ -35,15 +37,19 @@ class MotionLeastSquares {
   // With a rolling shutter the lower rows see more of a turn that becomes faster: to first order a shear and a stretch
   // along the columns (Forssen, Ringaby, Rectifying rolling shutter video from hand-held devices, CVPR 2010), two
   // unknowns more. `lens`: in, what is known of it; out, what the samples by themselves say.
-  bool step_turned(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,
-                   Shutter shutter, LensBend& lens, Transform& motion) const;
+  bool step_turned(const MotionNormal& normal, Shutter shutter, LensBend& lens, Transform& motion) const;
 
  private:
+  struct Unknown;
   template <std::size_t N>
   struct Normal;
-  template <std::size_t N, typename Design>
-  bool solve(const MotionSamples& samples, const std::array<float, MotionSamples::kMax>& weights,
-             Normal<N>& normal, std::array<double, N>& unknowns, Design&& design) const;
+  template <std::size_t N>
+  bool step(std::span<const Unknown, N> unknowns, const MotionNormal& all, Transform& motion) const;
+  template <std::size_t N>
+  bool step_turned(std::span<const Unknown, N> unknowns, const MotionNormal& all, LensBend& lens,
+                   Transform& motion) const;
+  template <std::size_t N>
+  Transform composed(std::span<const Unknown, N> unknowns, const std::array<double, N>& values) const;
   Transform in_pixels(const Transform& scaled) const;
 
   double cx_, cy_, scale_;
