@@ -40,7 +40,8 @@ class Followers {
   int count() const { return common(*this); }
   int common(const Followers& other) const {
     int sum = 0;
-    for (std::size_t i = 0; i < words_.size(); ++i) sum += std::popcount(words_[i] & other.words_[i]);
+    for (std::size_t i = 0; i < words_.size(); ++i)  // few have more than three words' worth of rows
+      if (const std::uint64_t both = words_[i] & other.words_[i]) sum += std::popcount(both);
     return sum;
   }
   bool operator==(const Followers&) const = default;
