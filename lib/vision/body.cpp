@@ -16,6 +16,7 @@ constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's ext
 constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
 constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
 constexpr double kEndSpeed = 1.0;            // S/s: an end that goes faster shows that more of it is seen
+constexpr double kLeap = 0.25;               // S: by which nobody's end goes on from frame to frame
 constexpr double kUpright = 1.3;             // times as tall as wide, at least
 constexpr double kStandsBy = 0.5;            // pixels that a standing camera may seem to move by
 constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
@@ -150,10 +151,14 @@ void Body::follow_ends(const Box& seen, double seconds, Size frame) {
   const auto follow = [most](double& gone, double step) {
     gone = step > most ? 0 : std::max(0.0, gone + step);
   };
-  follow(risen, top - seen.y);
-  follow(sunk, seen.bottom() - bottom);
-  top = seen.y;
-  bottom = seen.bottom();
+  follow(risen, last.y - seen.y);
+  follow(sunk, seen.bottom() - last.bottom());
+}
+
+// What grows by as much from one frame to the next has met somebody, or shows what it had not.
+bool Body::leaps(const Box& seen) const {
+  return std::max({last.x - seen.x, seen.right() - last.right(), last.y - seen.y,
+                   seen.bottom() - last.bottom()}) > kLeap * size();
 }
 
 // To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
@@ -167,7 +172,11 @@ bool Body::carry(const Transform& motion, Size frame) {
   const double det = xx * yy - xy * yx;
   if (!std::isfinite(q.x) || !std::isfinite(q.y) || !std::isfinite(det) || !(det > 1e-3)) return false;
   const auto turned = [&](Point v) { return Point{xx * v.x + xy * v.y, yx * v.x + yy * v.y}; };
-  for (double* end : {&top, &bottom}) *end = motion.apply({p.x, *end - kHalfPixel}).y + kHalfPixel;
+  const double top = motion.apply({p.x, last.y - kHalfPixel}).y,
+               left = motion.apply({last.x - kHalfPixel, p.y}).x;
+  const double bottom = motion.apply({p.x, last.bottom() - kHalfPixel}).y,
+               end = motion.apply({last.right() - kHalfPixel, p.y}).x;
+  last = {left + kHalfPixel, top + kHalfPixel, end - left, bottom - top};
   if (std::hypot(q.x - p.x, q.y - p.y) > kStandsBy) risen = sunk = 0;
   const Point velocity = turned({x.velocity, y.velocity});
   x.position = q.x + kHalfPixel;
@@ -256,24 +265,26 @@ void Body::adopt(const Box& seen) {
   x.position = centre(seen).x;
   y.position = centre(seen).y;
   misfit = fitted = 0;
-  top = seen.y;
-  bottom = seen.bottom();
+  last = seen;
   risen = sunk = 0;
 }
 
 // One object, one region, extents that disagree: is the region right? One that is cut by the picture's edge is, as the
-// object comes or goes, and a whole one is after two looks. A larger one soon is: only a piece was seen before. A
-// smaller one is a piece of an object that stands (an arm) as long as it stays in place; it is right when the object
-// was on the way, when its extent was never well known, or when the piece walks away on its own.
+// object comes or goes, and a whole one is after two looks. A larger one soon is: only a piece was seen before, or
+// somebody runs off and stretches from where he stood, which shows until the memory knows the place. A smaller one is a
+// piece of an object that stands (an arm) as long as it stays in place; it is right when the object was on the way,
+// when its extent was never well known, or when the piece walks away on its own.
 bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
   if (misfit == 0) {
     misfit_from = centre(seen);
     stood = slow > 0 || stopped;
+    leapt = false;
   }
+  leapt = leapt || leaps(seen);
   misfit += seconds;
   if (cut || parted) return true;
   if (whole) return misfit >= 0.2;
-  if (seen.area() > box().area()) return misfit >= (fitted < 0.5 ? 0.2 : 0.6);
+  if (seen.area() > box().area()) return misfit >= (fitted < 0.5 || !leapt ? 0.2 : 0.6);
   const Point to = centre(seen);
   const double gone = std::hypot(to.x - misfit_from.x, to.y - misfit_from.y);
   return misfit >= 0.5 && (!stood || fitted < 0.5 || gone > 0.5 * size());
@@ -326,6 +337,7 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
       if (!ry.same_extent) y.velocity *= brake;
     }
   }
+  if (alone) last = seen;
   // Nobody is larger than a region that he shares, if it is all that there is of him.
   if (!alone && !hidden && !stands) {
     if (seen.width < width()) w.value = std::log(seen.width);

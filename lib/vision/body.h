@@ -37,8 +37,9 @@ struct Body {
   Point origin;                    // where it was first seen, carried with the scene
   // Logarithms of the extent it was first seen with, carried with the scene.
   double born_width = 0, born_height = 0;
-  // Ends of the region it was last seen in, carried with the scene, and how far each has gone outwards step by step.
-  double top = 0, bottom = 0, risen = 0, sunk = 0;
+  // The region it was last seen in alone, carried with the scene; how far its ends have gone outwards step by step.
+  Box last;
+  double risen = 0, sunk = 0;
   // Largest distance from the origin, S; of its edges, where it comes nearer, or only one end goes.
   double travelled = 0;
   double top_speed = 0;  // pixels a second, since it was confirmed
@@ -49,6 +50,7 @@ struct Body {
   double shared = 0;           // s it has shared a region with others
   double slow = 0;             // s it has been seen standing, or nearly, up to now
   double misfit = 0;           // s since a region had its extent
+  bool leapt = false;          // and the region has grown by a leap meanwhile
   Point misfit_from;           // where the middle of the first one was that had not, carried with the scene
   Point walk;                  // velocity, pixels a second, when last seen away from the picture's edges
   bool uncovered = false;      // first seen where the camera had just begun to look
@@ -130,6 +132,7 @@ struct Body {
   double neared() const;
   double stretched() const;
   void follow_ends(const Box& seen, double seconds, Size frame);
+  bool leaps(const Box& seen) const;
   void adopt(const Box& seen);
   bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);

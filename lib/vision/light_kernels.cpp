@@ -15,9 +15,9 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// (level * gain + offset + 128) >> 8 from its high and low bytes, so that 16 bits hold all: plain loops, compiled once per
-// target; compilers vectorise them as well as intrinsics would. A gain below 8 and an offset of a few hundred levels
-// keep them safe.
+// (level * gain + offset + 128) >> 8 from its high and low bytes, so that 16 bits hold all: plain loops, compiled once
+// per target; compilers vectorise them as well as intrinsics would. A gain below 8 and an offset of a few hundred
+// levels keep them safe.
 struct Relit {
   std::uint16_t gain_low, offset_low;
   std::int16_t gain_high, offset_high;
@@ -35,8 +35,8 @@ struct Relit {
   }
 };
 
-// Calls each(begin, count) for the pieces of a row. What a piece holds is copied, as `out` may be `reference`: compilers
-// would have to go pixel by pixel there.
+// Calls each(begin, bytes) for the pieces of a row. What a piece holds is copied, as `out` may be `reference`:
+// compilers would have to go pixel by pixel there.
 constexpr int kPiece = 32;
 template <typename Each>
 HWY_INLINE void in_pieces(int count, Each&& each) {

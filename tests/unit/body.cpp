@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the camera does to an object that nobody sees: all of its lengths go with the picture's.
+// What the camera does to an object that nobody sees: all of its lengths go with the picture's. And what a region tells
+// of the extent of one that is seen.
 #include "vision/body.h"
 
 #include <check.h>
@@ -134,10 +135,40 @@ START_TEST(it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same) 
 }
 END_TEST
 
+// One end of the region stays where he stood, as the memory does not know the place yet; or somebody is met, who is as
+// wide. The camera stands, or pans by more than he runs.
+START_TEST(who_runs_off_stretches_and_who_meets_somebody_leaps) {
+  constexpr double kSeconds = 0.04;
+  for (const double camera : {0.0, -25.0, 25.0})
+    for (const bool leaps : {false, true}) {
+      Region region{{1800, 200, 40, 80}, 3200, 0.3, 1};
+      Body body = Body::first_seen(region);
+      const auto see = [&](double width) {
+        ck_assert(body.predict(kSeconds));
+        ck_assert(body.carry(Transform::translation(camera, 0), {4000, 480}));
+        region.box = {region.box.x + camera, 200, width, 80};
+        body.correct(region, true, kSeconds, {4000, 480});
+        return body.width();
+      };
+      for (int frame = 0; frame < 15; ++frame) see(40);  // its extent is well known
+      double width = 0;
+      for (int frame = 1; frame <= 9; ++frame) width = see(leaps ? 148 : 40 + 12 * frame);
+      if (!leaps) {
+        ck_assert_double_gt(width, 110);
+        continue;
+      }
+      ck_assert_double_lt(width, 60);
+      for (int frame = 0; frame < 8; ++frame) width = see(148);
+      ck_assert_double_gt(width, 110);  // they stay together
+    }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "body", {a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_way_he_goes,
                a_piece_walks_away_on_its_own_if_it_leaves_its_place_in_the_scene,
                towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it,
-               it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same});
+               it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same,
+               who_runs_off_stretches_and_who_meets_somebody_leaps});
 }
