@@ -73,10 +73,12 @@
 #include <gst/base/gstbasesink.h>
 #include <gst/video/video.h>
 
+#include <string>
 #include <utility>
 
 #include "cerberus/private/element.hpp"
 #include "conductor.hpp"
+#include "shared/complaint.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
 #define GST_CAT_DEFAULT pantiltsink_debug
@@ -93,6 +95,7 @@ GstStaticPadTemplate sink_template =
 struct State {  // streaming thread only
   GstVideoInfo info;
   bool known = false;       // info
+  Complaint complaint;      // about the caps
   bool live_known = false;  // whether upstream is live was asked
 };
 
@@ -121,10 +124,10 @@ gboolean cerberus_pan_tilt_sink_set_caps(GstBaseSink* sink, GstCaps* caps) {
   state.known = gst_structure_get_int(structure, "width", &state.info.width) &&
                 gst_structure_get_int(structure, "height", &state.info.height);
   gst_structure_get_fraction(structure, "framerate", &state.info.fps_n, &state.info.fps_d);
-  if (state.known) return TRUE;
-  CERBERUS_ELEMENT_ERROR(sink, CORE, NEGOTIATION, ("The video has no size."),
-                         ("caps %" GST_PTR_FORMAT, caps));
-  return FALSE;
+  const std::string wrong = state.known ? "" : "The video has no size.";
+  if (state.complaint.is_new(wrong))
+    CERBERUS_ELEMENT_ERROR(sink, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, caps));
+  return state.known;
 }
 
 // The frame ends here and its pixels are not looked at: any stride will do.

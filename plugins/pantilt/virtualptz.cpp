@@ -153,7 +153,7 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
     state.settings = self.settings.snapshot();
     GstVideoInfo picture, window;
     if (!gst_video_info_from_caps(&picture, in) || !gst_video_info_from_caps(&window, out))
-      wrong = "These video caps cannot be used.";
+      wrong = kCapsIncomplete;
     else if (GST_VIDEO_INFO_IS_INTERLACED(&picture))
       wrong = "A window cannot move over interlaced video: put the element `deinterlace` in front.";
     else

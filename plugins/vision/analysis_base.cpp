@@ -10,6 +10,7 @@
 
 #include "camera_path.hpp"
 #include "cerberus/private/query.hpp"
+#include "cerberus/private/video.hpp"
 #include "history.hpp"
 #include "room.hpp"
 #include "shared/clock_times.hpp"
@@ -241,7 +242,7 @@ void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
 
 // What is wrong with these caps, for the user; empty for nothing.
 std::string what_is_wrong(const GstCaps* caps, GstVideoInfo* info) {
-  if (!gst_video_info_from_caps(info, caps)) return "These video caps cannot be used.";
+  if (!gst_video_info_from_caps(info, caps)) return kCapsIncomplete;
   if (GST_VIDEO_INFO_IS_INTERLACED(info))
     return "Interlaced video cannot be analysed: put the element `deinterlace` in front.";
   const int width = GST_VIDEO_INFO_WIDTH(info), height = GST_VIDEO_INFO_HEIGHT(info);

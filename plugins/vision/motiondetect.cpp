@@ -245,7 +245,9 @@ void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
 void add_ghost_pad(CerberusMotionDetect* self, GstElement* stage, const char* name) {
   GstPad* target = gst_element_get_static_pad(stage, name);
   GstPadTemplate* pad_template = gst_element_class_get_pad_template(GST_ELEMENT_GET_CLASS(self), name);
-  gst_element_add_pad(GST_ELEMENT(self), gst_ghost_pad_new_from_template(name, target, pad_template));
+  GstPad* pad = gst_ghost_pad_new_from_template(name, target, pad_template);
+  GST_PAD_SET_ACCEPT_INTERSECT(pad);  // as the stages: it is they who say what is wrong with caps
+  gst_element_add_pad(GST_ELEMENT(self), pad);
   gst_object_unref(target);
 }
 

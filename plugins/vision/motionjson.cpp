@@ -73,6 +73,7 @@
 #include "json_line.hpp"
 #include "room.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/complaint.hpp"
 
 namespace {
 
@@ -93,6 +94,7 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 struct State {  // streaming thread only
   int width = 0, height = 0;
   guint64 frame = 0;
+  cerberus::plugin::Complaint complaint;  // about the caps
   cerberus::JsonLine line;
 };
 
@@ -187,6 +189,7 @@ gboolean cerberus_motion_json_start(GstBaseTransform* transform) {
   State& state = cerberus_motion_json_self(transform)->priv->state;
   state.frame = 0;
   state.width = state.height = 0;
+  state.complaint.forget();
   return TRUE;
 }
 
@@ -204,12 +207,12 @@ gboolean cerberus_motion_json_set_caps(GstBaseTransform* transform, GstCaps* in,
   // By hand: GstVideoInfo does not know the formats of every memory.
   State& state = cerberus_motion_json_self(transform)->priv->state;
   const GstStructure* structure = gst_caps_get_structure(in, 0);
-  if (gst_structure_get_int(structure, "width", &state.width) &&
-      gst_structure_get_int(structure, "height", &state.height))
-    return TRUE;
-  CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video has no size."),
-                         ("caps %" GST_PTR_FORMAT, in));
-  return FALSE;
+  const bool known = gst_structure_get_int(structure, "width", &state.width) &&
+                     gst_structure_get_int(structure, "height", &state.height);
+  const std::string wrong = known ? "" : "The video has no size.";
+  if (state.complaint.is_new(wrong))
+    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
+  return known;
 }
 
 // The frame ends here and is only looked at: any stride will do.

@@ -58,6 +58,7 @@
 #include "room.hpp"
 #include "sensing/angles.h"
 #include "shared/clock_times.hpp"
+#include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "vision/trails.h"
 
@@ -118,6 +119,7 @@ struct State {  // streaming thread only
   GstClockTime running = GST_CLOCK_TIME_NONE;  // likewise
   bool fresh = true;                           // the next frame has no predecessor
   bool warned = false;                         // a frame that cannot be written
+  cerberus::plugin::Complaint complaint;       // about the caps
   cerberus::plugin::CameraFollower camera;
   cerberus::vision::Trails trails;
   draw::Painter painter;
@@ -201,6 +203,7 @@ gboolean cerberus_motion_overlay_start(GstBaseTransform* transform) {
   State& state = cerberus_motion_overlay_self(transform)->priv->state;
   forget(state);
   state.attach = state.warned = false;
+  state.complaint.forget();
   return TRUE;
 }
 
@@ -239,11 +242,11 @@ GstCaps* cerberus_motion_overlay_fixate_caps(GstBaseTransform* transform, GstPad
 
 gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
   State& state = cerberus_motion_overlay_self(transform)->priv->state;
-  if (!gst_video_info_from_caps(&state.info, in)) {
-    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, ("The video's description is incomplete."),
-                           ("caps %" GST_PTR_FORMAT, in));
-    return FALSE;
-  }
+  const bool known = gst_video_info_from_caps(&state.info, in);
+  const std::string wrong = known ? "" : cerberus::kCapsIncomplete;
+  if (state.complaint.is_new(wrong))
+    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
+  if (!known) return FALSE;
   forget(state);
   cerberus_motion_overlay_self(transform)->priv->undecided = true;
   return TRUE;

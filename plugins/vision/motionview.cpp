@@ -233,7 +233,6 @@ bool show(State& state, const Settings& settings, GstBuffer* in, const draw::Can
 
 gboolean cerberus_motion_view_start(GstBaseTransform* transform) {
   State& state = cerberus_motion_view_self(transform)->priv->state;
-  state.warned = 0;
   state.complaint.forget();
   return TRUE;
 }
@@ -264,7 +263,7 @@ gboolean cerberus_motion_view_set_caps(GstBaseTransform* transform, GstCaps* in,
     State& state = cerberus_motion_view_self(transform)->priv->state;
     std::string wrong;
     if (!gst_video_info_from_caps(&state.in, in) || !gst_video_info_from_caps(&state.out, out))
-      wrong = "The video's description is incomplete.";
+      wrong = cerberus::kCapsIncomplete;
     else if (GST_VIDEO_INFO_IS_INTERLACED(&state.in))
       wrong = "Interlaced video cannot be shown: put the element `deinterlace` in front of the stages.";
     if (state.complaint.is_new(wrong))

@@ -2,6 +2,7 @@
 // Input that nobody should send and somebody will: a clear word or a sane result, never a crash, never a wrong answer.
 #include <limits>
 
+#include "outputs.h"
 #include "scene.h"
 #include "support.h"
 
@@ -398,6 +399,24 @@ GST_START_TEST(the_warning_of_an_unusable_buffer_comes_again_with_new_caps) {
 }
 GST_END_TEST
 
+// Upstream tries refused caps again with every frame.
+GST_START_TEST(video_without_a_size_is_one_error) {
+  constexpr const char* kLines[] = {"cameramotion",  "motiondetect", "motionview",
+                                    "motionoverlay", "motionjson",   "pantiltsink"};
+  outputs::Harness harness = outputs::harness(kLines[__i__]);
+  outputs::Bus bus(harness.get());
+  for (int start = 0; start < 2; ++start) {
+    gst_harness_set_src_caps_str(harness.get(), "video/x-raw,format=GRAY8,framerate=30/1");
+    for (int k = 0; k < 3; ++k)
+      fail_unless_equals_int(gst_harness_push(harness.get(), sized(100, k * scene::kStep)),
+                             GST_FLOW_NOT_NEGOTIATED);
+    fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR), 1);
+    gst_element_set_state(harness.get()->element, GST_STATE_READY);
+    gst_element_set_state(harness.get()->element, GST_STATE_PLAYING);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(absurd_property_values_are_refused_or_harmless) {
   GstElement* element = gst_element_factory_make(kElements[__i__], nullptr);
   guint count = 0;
@@ -554,6 +573,7 @@ Suite* bad_input_suite() {
   tcase_add_loop_test(tests, a_camera_motion_that_none_can_be_is_not_believed, 0, 6);
   tcase_add_loop_test(tests, a_plane_larger_than_the_frame_is_not_ours, 0, 2);
   tcase_add_loop_test(tests, the_warning_of_an_unusable_buffer_comes_again_with_new_caps, 0, kElementCount);
+  tcase_add_loop_test(tests, video_without_a_size_is_one_error, 0, 6);
   tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
   tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
   tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 18);

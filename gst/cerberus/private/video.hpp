@@ -11,6 +11,10 @@
 
 namespace cerberus {
 
+// What is said where gst_video_info_from_caps() fails.
+constexpr char kCapsIncomplete[] =
+    "The video's caps are incomplete: they need a format, a width and a height.";
+
 // A mapped frame, unmapped at the end of its life. False where the buffer cannot be mapped or is too small
 // for its caps (truncated files).
 class VideoFrame {
