@@ -12,6 +12,11 @@ namespace cerberus::plugin {
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
                                                std::function<void()> moved, std::function<void()> refused) {
   const char* name = s.head.c_str();
+  if (!g_utf8_validate(name, -1, nullptr)) {  // no event could carry it, and nobody would hear of the head
+    CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS,
+                           ("The head's name \"%s\" is no UTF-8: give it another (head=).", name), (nullptr));
+    return nullptr;
+  }
   const drivers::HeadSetup setup = head_setup(s);
   if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
     CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));

@@ -228,10 +228,11 @@ GST_END_TEST
 
 // What the element says when it does not start; it says it once.
 // A driver on a thread of its own may say it a moment later.
-std::string refusal(const std::string& properties, const char* script = nullptr) {
+std::string refusal(const std::string& properties, const char* script = nullptr, const char* head = nullptr) {
   GstElement* element = gst_parse_launch(("pantiltsink " + properties).c_str(), nullptr);
   gst_object_ref_sink(element);
   if (script) g_object_set(element, "script", script, nullptr);
+  if (head) g_object_set(element, "head", head, nullptr);
   GstBus* bus = gst_bus_new();
   gst_element_set_bus(element, bus);
   const bool late = gst_element_set_state(element, GST_STATE_PAUSED) != GST_STATE_CHANGE_FAILURE;
@@ -281,6 +282,7 @@ GST_END_TEST
 GST_START_TEST(whatever_a_driver_says_arrives) {
   fail_unless(says(refusal(scripted("", "attic"), "open fail T\xfcr zu"), "cannot be opened: T\\xfcr zu."));
   fail_unless(says(refusal(scripted("", "attic"), "\xff"), "script: '\\xff'"));
+  fail_unless(says(refusal("", nullptr, "T\xfcr"), "name \"T\\xfcr\" is no UTF-8"));
   Rig rig(scripted(""), Source::live, false);
   gst_element_set_state(rig.element, GST_STATE_READY);
   g_object_set(rig.element, "script", "command 2 fail T\xfcr zu", nullptr);
