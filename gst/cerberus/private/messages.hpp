@@ -38,15 +38,14 @@ struct Origin {
   int line;
 };
 
-// noexcept: as where GLib has no memory left, the program ends.
 // An empty text stands for GStreamer's own, an empty detail for none. Takes `facts`, for programs; may be nullptr.
 inline void post(GstElement* element, GstMessageType type, GQuark domain, gint code, const std::string& text,
                  const std::string& detail, GstStructure* facts, const Origin& from) noexcept {
   const GstDebugLevel level = type == GST_MESSAGE_INFO ? GST_LEVEL_INFO : GST_LEVEL_WARNING;
   for (const std::string* said : {&text, &detail})
-    if (!said->empty())
-      GST_CAT_LEVEL_LOG(from.category, level, element, "%s: %s", gst_message_type_get_name(type),
-                        said->c_str());
+    if (!said->empty() && level <= gst_debug_category_get_threshold(from.category))
+      gst_debug_log(from.category, level, from.file, from.function, from.line, G_OBJECT(element), "%s: %s",
+                    gst_message_type_get_name(type), said->c_str());
   const auto copy = [](const std::string& said) { return said.empty() ? nullptr : g_strdup(said.c_str()); };
   gst_element_message_full_with_details(element, type, domain, code, copy(text), copy(detail), from.file,
                                         from.function, from.line, facts);

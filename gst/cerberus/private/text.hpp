@@ -10,8 +10,8 @@
 namespace cerberus {
 
 // A message is UTF-8 or whoever reads it fails, and ends at the first NUL: bytes that are no UTF-8, and control
-// characters but the line feed, are written as \xNN.
-inline std::string printable(std::string_view text) {
+// characters but the line feed, are written as \xNN. noexcept: as where GLib has no memory left, the program ends.
+inline std::string printable(std::string_view text) noexcept {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string result;
   while (!text.empty()) {
