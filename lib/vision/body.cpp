@@ -18,22 +18,23 @@ constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border g
 constexpr double kEndSpeed = 1.0;            // S/s: an end that goes faster shows that more of it is seen
 constexpr double kLeap = 0.25;               // S: by which nobody's end goes on from frame to frame
 constexpr double kUpright = 1.3;             // times as tall as wide, at least
-constexpr double kStandsBy = 0.5;            // pixels that a standing camera may seem to move by
-constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
-constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
-constexpr double kFarthestAway = 3.0;        // and where nobody was looked for meanwhile, who else may come
-constexpr double kPiece = 0.2;               // of its area: as little may be a piece of it,
-constexpr double kFarthestPiece = 1.5;       // and lies where it is, or very near
-constexpr double kCoastBrake = 1.0;          // s in which what is not seen is believed to slow down
-constexpr double kAwayBrake = 3.0;           // s, for who walked on when the camera turned away
-constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
-constexpr double kFade = 20.0;               // how much less a shrinking extent counts while standing
-constexpr double kLookTime = 2.0;            // s in which somebody may turn round and look different
-constexpr double kFoundNoise = 0.1;          // S: how well a look tells where in a group somebody is
-constexpr double kFoundBrake = 0.5;          // s: it does not tell how high
-constexpr int kRecent = 3;                   // frames from which on it is known what somebody looks like now,
-constexpr double kRecentTime = 0.5;          // s of which that counts
-constexpr double kDoubt = 2.0;               // s after which who is who would have been told
+constexpr double kStandsBy =
+    0.5 * kGrain;                       // of the frame's width: by which a standing camera may seem to move
+constexpr double kStandSpeed = 0.3;     // S/s: slower than this (0.5 m/s) may have stopped
+constexpr double kFarthest = 4.0;       // standard deviations of the place at which a region may be
+constexpr double kFarthestAway = 3.0;   // and where nobody was looked for meanwhile, who else may come
+constexpr double kPiece = 0.2;          // of its area: as little may be a piece of it,
+constexpr double kFarthestPiece = 1.5;  // and lies where it is, or very near
+constexpr double kCoastBrake = 1.0;     // s in which what is not seen is believed to slow down
+constexpr double kAwayBrake = 3.0;      // s, for who walked on when the camera turned away
+constexpr double kPieceBrake = 0.4;     // s, when only a piece of it moves
+constexpr double kFade = 20.0;          // how much less a shrinking extent counts while standing
+constexpr double kLookTime = 2.0;       // s in which somebody may turn round and look different
+constexpr double kFoundNoise = 0.1;     // S: how well a look tells where in a group somebody is
+constexpr double kFoundBrake = 0.5;     // s: it does not tell how high
+constexpr int kRecent = 3;              // frames from which on it is known what somebody looks like now,
+constexpr double kRecentTime = 0.5;     // s of which that counts
+constexpr double kDoubt = 2.0;          // s after which who is who would have been told
 constexpr double kFreeze = 0.5;   // s after somebody else was close in which nothing is learnt of a look
 constexpr double kChanged = 0.3;  // looks as different now may be two people's,
 constexpr double kRelearn = 4.0;  // for so long: then they are one's who has changed
@@ -177,7 +178,7 @@ bool Body::carry(const Transform& motion, Size frame) {
   const double bottom = motion.apply({p.x, last.bottom() - kHalfPixel}).y,
                end = motion.apply({last.right() - kHalfPixel, p.y}).x;
   last = {left + kHalfPixel, top + kHalfPixel, end - left, bottom - top};
-  if (std::hypot(q.x - p.x, q.y - p.y) > kStandsBy) risen = sunk = 0;
+  if (std::hypot(q.x - p.x, q.y - p.y) > kStandsBy * frame.width) risen = sunk = 0;
   const Point velocity = turned({x.velocity, y.velocity});
   x.position = q.x + kHalfPixel;
   y.position = q.y + kHalfPixel;
@@ -325,7 +326,7 @@ void Body::correct(const Region& r, bool alone, double seconds, Size frame,
     if (id == 0 && within_x) origin.x += x.position - was.x;
     if (id == 0 && within_y) origin.y += y.position - was.y;
     if (fits && alone) {
-      if (id == 0) follow_ends(seen, seconds, frame);
+      if (id == 0) follow_ends(seen, seconds + unseen, frame);
       if (!(stands && within_x)) resize(w, seen.width, cut_x, seconds);
       if (!(stands && within_y)) resize(h, seen.height, cut_y, seconds);
       misfit = 0;

@@ -164,6 +164,25 @@ START_TEST(who_leaves_where_he_stood_is_published_though_his_place_shows_with_hi
 }
 END_TEST
 
+START_TEST(he_is_however_large_the_picture_is_before_a_camera_that_seems_to_tremble) {
+  constexpr double kPace = 3, kHeight = 97;
+  for (const double scale : {1.0, 6.0}) {  // pixels a pixel of the picture that was analysed
+    const Size size{static_cast<int>(320 * scale), static_cast<int>(240 * scale)};
+    Tracker tracker;
+    double gone = 0;
+    for (int k = 0; gone < kHeight; gone += kPace, ++k) {
+      Region region = piece(146 * scale, 18 * scale, 28 * scale, (kHeight + gone) * scale);
+      if (!tracker
+               .update({&region, 1}, Transform::translation(k % 2 ? 0.3 * scale : -0.3 * scale, 0), kStep,
+                       size)
+               .empty())
+        break;
+    }
+    ck_assert_msg(gone > 0.1 * kHeight && gone < 0.25 * kHeight, "%.0f: after %.0f pixels", scale, gone);
+  }
+}
+END_TEST
+
 START_TEST(what_shows_more_and_less_of_itself_has_gone_nowhere) {
   Tracker leaps, lies, stands, turns;
   for (int k = 0; k < 16; ++k)
@@ -198,6 +217,7 @@ int main() {
                     fronts_that_become_one_region_are_one, two_upright_people_in_one_region_stay_two,
                     who_comes_nearer_is_published_though_his_middle_stays,
                     who_leaves_where_he_stood_is_published_though_his_place_shows_with_him,
+                    he_is_however_large_the_picture_is_before_a_camera_that_seems_to_tremble,
                     what_shows_more_and_less_of_itself_has_gone_nowhere,
                     what_grows_one_way_or_by_the_camera_s_zoom_is_not_nearer},
                    60);
