@@ -16,8 +16,8 @@ namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 // (level * gain + offset + 128) >> 8 from its high and low bytes, so that 16 bits hold all: plain loops, compiled once
-// per target; compilers vectorise them as well as intrinsics would. A gain below 8 and an offset of a few hundred
-// levels keep them safe.
+// per target; compilers vectorise them as well as intrinsics would. A gain below 80 and an offset of less than
+// 10000 levels keep them safe.
 struct Relit {
   std::uint16_t gain_low, offset_low;
   std::int16_t gain_high, offset_high;

@@ -67,8 +67,9 @@ HWY_INLINE void agree_with(const SampleRows& samples, const Transform& t, Agreem
     cost = hn::MulAdd(evidence, hn::Min(distance, gate), cost);
     const V within = hn::IfThenElseZero(inside, evidence);
     agreeing = hn::Add(agreeing, within);
-    squares = hn::MulAdd(within, hn::MulAdd(dx, dx, hn::Mul(dy, dy)), squares);
-    return hn::Mul(within, hn::NegMulAdd(distance, per_gate, one));
+    squares =
+        hn::Add(squares, hn::IfThenElseZero(inside, hn::Mul(evidence, hn::MulAdd(dx, dx, hn::Mul(dy, dy)))));
+    return hn::IfThenElseZero(inside, hn::Mul(evidence, hn::NegMulAdd(distance, per_gate, one)));
   };
   const int lanes = static_cast<int>(hn::Lanes(d));
   for (int lane = 0; lane < SampleRows::kLanes; lane += lanes) {

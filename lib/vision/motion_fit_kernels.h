@@ -15,8 +15,8 @@ namespace cerberus::vision {
 // goes into rows of its own. Places without a sample say nothing: their evidence and weights are 0.
 struct SampleRows {
   static constexpr int kLanes = MotionSamples::kRegions;
-  static constexpr int kDeep =
-      16;  // as many of a region as the picture's grid of patches gives, and some more
+  // Of a region: as many as the picture's grid of patches gives, and some more.
+  static constexpr int kDeep = 16;
   static constexpr int kMixed = MotionSamples::kMax / kLanes;
   static constexpr int kMost = kDeep + kMixed;
   struct Row {
@@ -52,10 +52,10 @@ class Followers {
 
 // How samples agree with a motion. MotionFit says what the sums are.
 struct Agreement {
-  alignas(64)
-      std::array<float, MotionSamples::kRegions> of_region{};  // evidence within the gate, falling towards it
-  float cost = 0, agreeing = 0,
-        squares = 0;  // squares: evidence times squared distance, of what is within the gate
+  // Evidence within the gate, falling towards it.
+  alignas(64) std::array<float, MotionSamples::kRegions> of_region{};
+  // Squares: evidence times squared distance, of what is within the gate.
+  float cost = 0, agreeing = 0, squares = 0;
   Followers followers;
 };
 Agreement agreement_with(const SampleRows& samples, const Transform& motion);

@@ -15,7 +15,7 @@ namespace cerberus::vision {
 // q + d(q), where d is the displacement of a homography to first order (8 unknowns about the centre), fitted by least
 // squares to sum (e + grad . d)^2 over the blocks. A block's weight falls with what the fit leaves unexplained in it
 // (square of a Cauchy weight, scale 2 grey levels), so that moving objects do not pull. `blocks` are in rows of
-// `columns`, side kSceneBlock. None when it is below 0.04 pixel at every corner (nothing to gain), not finite, or
+// `columns` > 0, side kSceneBlock. None when it is below 0.04 pixel at every corner (nothing to gain), not finite, or
 // above 12 pixels (not a correction any more).
 std::optional<Transform> align_to_memory(std::span<const BlockSums> blocks, int columns, Size picture);
 

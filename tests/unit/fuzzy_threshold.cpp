@@ -183,7 +183,6 @@ int main() {
       {the_example_gives_4_by_counts, the_example_gives_2_by_logarithms,
        the_second_order_finds_no_object_in_the_example, the_extremes_of_the_image_turn_the_sign_at_5,
        running_sums_agree_with_the_definition_on_random_histograms, degenerate_histograms_have_no_object,
-       one_hot_pixel_does_not_move_the_threshold,
-
-       the_threshold_is_held_between_the_floor_and_half_above_it, nothing_is_allocated});
+       one_hot_pixel_does_not_move_the_threshold, the_threshold_is_held_between_the_floor_and_half_above_it,
+       nothing_is_allocated});
 }
