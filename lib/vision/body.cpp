@@ -16,25 +16,25 @@ constexpr double kSizeNoise = 0.15;          // of the logarithm: a region's ext
 constexpr double kSizeWander = 0.15 * 0.15;  // 1/s: and truly changes by 15 % in a second
 constexpr double kBorderWander = 1.5 * 1.5;  // 1/s: what is cut by the border grows and shrinks fast
 constexpr double kEndSpeed = 1.0;            // S/s: an end that goes faster shows that more of it is seen
-constexpr double kLeap = 0.25;               // S: by which nobody's end goes on from frame to frame
+constexpr double kLeap = 0.15;               // S: an end that goes on by more from one frame to the next,
+constexpr double kRun = 2.5;                 // S/s: and faster than a runner's, has leapt
 constexpr double kUpright = 1.3;             // times as tall as wide, at least
-constexpr double kStandsBy =
-    0.5 * kGrain;                       // of the frame's width: by which a standing camera may seem to move
-constexpr double kStandSpeed = 0.3;     // S/s: slower than this (0.5 m/s) may have stopped
-constexpr double kFarthest = 4.0;       // standard deviations of the place at which a region may be
-constexpr double kFarthestAway = 3.0;   // and where nobody was looked for meanwhile, who else may come
-constexpr double kPiece = 0.2;          // of its area: as little may be a piece of it,
-constexpr double kFarthestPiece = 1.5;  // and lies where it is, or very near
-constexpr double kCoastBrake = 1.0;     // s in which what is not seen is believed to slow down
-constexpr double kAwayBrake = 3.0;      // s, for who walked on when the camera turned away
-constexpr double kPieceBrake = 0.4;     // s, when only a piece of it moves
-constexpr double kFade = 20.0;          // how much less a shrinking extent counts while standing
-constexpr double kLookTime = 2.0;       // s in which somebody may turn round and look different
-constexpr double kFoundNoise = 0.1;     // S: how well a look tells where in a group somebody is
-constexpr double kFoundBrake = 0.5;     // s: it does not tell how high
-constexpr int kRecent = 3;              // frames from which on it is known what somebody looks like now,
-constexpr double kRecentTime = 0.5;     // s of which that counts
-constexpr double kDoubt = 2.0;          // s after which who is who would have been told
+constexpr double kStandsBy = 0.5 * kGrain;   // likewise: as far may a standing camera seem to move
+constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
+constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
+constexpr double kFarthestAway = 3.0;        // and where nobody was looked for meanwhile, who else may come
+constexpr double kPiece = 0.2;               // of its area: as little may be a piece of it,
+constexpr double kFarthestPiece = 1.5;       // and lies where it is, or very near
+constexpr double kCoastBrake = 1.0;          // s in which what is not seen is believed to slow down
+constexpr double kAwayBrake = 3.0;           // s, for who walked on when the camera turned away
+constexpr double kPieceBrake = 0.4;          // s, when only a piece of it moves
+constexpr double kFade = 20.0;               // how much less a shrinking extent counts while standing
+constexpr double kLookTime = 2.0;            // s in which somebody may turn round and look different
+constexpr double kFoundNoise = 0.1;          // S: how well a look tells where in a group somebody is
+constexpr double kFoundBrake = 0.5;          // s: it does not tell how high
+constexpr int kRecent = 3;                   // frames from which on it is known what somebody looks like now,
+constexpr double kRecentTime = 0.5;          // s of which that counts
+constexpr double kDoubt = 2.0;               // s after which who is who would have been told
 constexpr double kFreeze = 0.5;   // s after somebody else was close in which nothing is learnt of a look
 constexpr double kChanged = 0.3;  // looks as different now may be two people's,
 constexpr double kRelearn = 4.0;  // for so long: then they are one's who has changed
@@ -157,9 +157,9 @@ void Body::follow_ends(const Box& seen, double seconds, Size frame) {
 }
 
 // What grows by as much from one frame to the next has met somebody, or shows what it had not.
-bool Body::leaps(const Box& seen) const {
+bool Body::leaps(const Box& seen, double seconds) const {
   return std::max({last.x - seen.x, seen.right() - last.right(), last.y - seen.y,
-                   seen.bottom() - last.bottom()}) > kLeap * size();
+                   seen.bottom() - last.bottom()}) > (kLeap + kRun * seconds) * size();
 }
 
 // To first order around the centre: J = d(motion)/d(point), velocity := J velocity, lengths scale by sqrt(det J).
@@ -281,7 +281,7 @@ bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
     stood = slow > 0 || stopped;
     leapt = false;
   }
-  leapt = leapt || leaps(seen);
+  leapt = leapt || leaps(seen, seconds + unseen);
   misfit += seconds;
   if (cut || parted) return true;
   if (whole) return misfit >= 0.2;

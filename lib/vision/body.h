@@ -132,7 +132,7 @@ struct Body {
   double neared() const;
   double stretched() const;
   void follow_ends(const Box& seen, double seconds, Size frame);
-  bool leaps(const Box& seen) const;
+  bool leaps(const Box& seen, double seconds) const;
   void adopt(const Box& seen);
   bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
