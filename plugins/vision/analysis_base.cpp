@@ -58,6 +58,7 @@ struct AnalysisPrivate {
   int breaks = 0;           // of late: scenes that end for no reason in the picture; see complain_of_breaks()
   int steps_back = 0;       // frames older than the one before
   Complaint complaint;      // about the caps
+  Complaint pixels;         // about their shape
   bool warned = false;      // about an unusable buffer, once a stream
   bool complained = false;  // about breaks, likewise
 };
@@ -110,9 +111,15 @@ bool is_first_stage(GstBuffer* buffer) {
 
 // A scene that ends every few frames blinds a stage; who does not know sees nothing at all, and no reason.
 void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, bool broken) {
-  constexpr int kMany = 48, kFew = 6;  // frames from one to the next that are no reason to complain
-  priv.breaks = std::clamp(priv.breaks + (broken ? kFew : -1), 0, kMany);
-  if (priv.breaks < kMany || priv.complained) return;
+  // What moves is confirmed after two frames and a fifth of a second: a scene with some more is no reason to complain,
+  // and eight in a row that end before are.
+  constexpr double kSeconds = 0.25;
+  const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
+  const int enough =
+      2 + static_cast<int>(kSeconds * (fps_n > 0 ? std::min(1.0 * fps_n / fps_d, 1000.0) : 25.0));
+  const int many = 8 * enough;
+  priv.breaks = std::clamp(priv.breaks + (broken ? enough : -1), 0, many);
+  if (priv.breaks < many || priv.complained) return;
   priv.complained = true;
   CERBERUS_ELEMENT_WARNING(
       trans, STREAM, FAILED,
@@ -254,6 +261,20 @@ std::string what_is_wrong(const GstCaps* caps, GstVideoInfo* info) {
          ": put `videoscale` in front.";
 }
 
+// Pixels count as squares everywhere: in boxes, in a person's proportions and in angles.
+void complain_of_pixels(GstBaseTransform* trans, AnalysisPrivate& priv) {
+  constexpr double kLittle = 1.1;
+  const int n = GST_VIDEO_INFO_PAR_N(&priv.info), d = GST_VIDEO_INFO_PAR_D(&priv.info);
+  const bool square = n < kLittle * d && d < kLittle * n;
+  const std::string wrong =
+      square ? ""
+             : "The pixels are not square (" + std::to_string(n) + " to " + std::to_string(d) +
+                   "), but count as if they were: people may be cut in two or joined, and "
+                   "distances are wrong. Put `videoscale ! "
+                   "video/x-raw,pixel-aspect-ratio=1/1` in front.";
+  if (priv.pixels.is_new(wrong)) CERBERUS_ELEMENT_WARNING(trans, STREAM, FORMAT, (wrong), (nullptr));
+}
+
 GstCaps* transform_caps(GstBaseTransform*, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
   GstCaps* others = across_single_fields(direction, gst_caps_ref(caps));
   if (!filter) return others;
@@ -271,6 +292,7 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
       CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong), ("%" GST_PTR_FORMAT, incaps));
     if (!wrong.empty()) return FALSE;
     accept(priv, info);
+    if (priv.analyser->measures_camera()) complain_of_pixels(trans, priv);
     return TRUE;
   });
 }
@@ -317,6 +339,7 @@ gboolean start(GstBaseTransform* trans) {
     priv.complained = false;
     priv.camera.forget();
     priv.complaint.forget();
+    priv.pixels.forget();
     priv.settings.refresh();
     return priv.analyser->start();
   });
