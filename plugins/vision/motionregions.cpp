@@ -112,6 +112,8 @@ struct Private final : StatefulAnalyser<Settings, RegionStage> {
   KeepPlanes keep = KEEP_PLANES_AUTO;
   vision::SizeGate gate;
   bool in_metres = false;  // they count
+  double minimum_area = 0;
+  std::string zones;  // as last read
   NothingFound nothing;
   // For what it was asked last why nothing can be found.
   vision::Size judged_size;
@@ -122,6 +124,7 @@ struct Private final : StatefulAnalyser<Settings, RegionStage> {
   Planes planes() override;
   bool analyse(Frame& frame) override;
   void apply(const Settings& s);
+  void read_zones(const std::string& text);
   void judge_settings(vision::Size frame);
   std::string why_nothing(vision::Size frame);
 };
@@ -134,6 +137,7 @@ void Private::apply(const Settings& s) {
   gate.metres_high = {s.minimum_height_metres, s.maximum_height_metres};
   state->set_gate(gate, radians(s.horizontal_fov), s.mounting_height, radians(s.tilt));
   in_metres = s.horizontal_fov > 0;
+  minimum_area = s.minimum_area;
   keep = static_cast<KeepPlanes>(s.keep_planes);
   if (answer.outdated_by(keep)) cerberus_analysis_answer_anew(base);
   judge = true;
@@ -149,11 +153,17 @@ Planes Private::planes() {
 bool Private::start() {
   StatefulAnalyser::start();
   nothing = {};
-  const std::string wrong = state->zones().parse(settings.snapshot().zones);
+  zones = settings.snapshot().zones;
+  const std::string wrong = state->zones().parse(zones);
   if (wrong.empty()) return true;
-  CERBERUS_ELEMENT_ERROR(base, RESOURCE, SETTINGS, ("The property zones cannot be used: " + wrong),
-                         (nullptr));
+  CERBERUS_ELEMENT_ERROR(base, RESOURCE, SETTINGS, (wrong), ("the property zones cannot be used"));
   return false;
+}
+
+void Private::read_zones(const std::string& text) {
+  zones = text;
+  if (const std::string wrong = state->zones().parse(text); !wrong.empty())
+    CERBERUS_ELEMENT_WARNING(base, RESOURCE, SETTINGS, (wrong), ("the zones that were there stay"));
 }
 
 std::string Private::why_nothing(vision::Size frame) {
@@ -163,6 +173,8 @@ std::string Private::why_nothing(vision::Size frame) {
            "what it excludes smaller.";
   std::string why = contradiction("width", gate.width, frame.width);
   if (why.empty()) why = contradiction("height", gate.height, frame.height);
+  const vision::Size analysed = vision::analysis_size(frame, cerberus_analysis_width(base));
+  if (why.empty()) why = contradiction("area", {minimum_area, 0}, 1.0 * analysed.width * analysed.height);
   if (why.empty() && in_metres) why = contradiction("width-metres", gate.metres_wide);
   if (why.empty() && in_metres) why = contradiction("height-metres", gate.metres_high);
   return why;
@@ -180,8 +192,7 @@ void Private::judge_settings(vision::Size frame) {
 bool Private::analyse(Frame& frame) {
   if (const auto changed = settings.changes()) {
     apply(*changed);
-    if (const std::string wrong = state->zones().parse(changed->zones); !wrong.empty())
-      CERBERUS_ELEMENT_WARNING(base, RESOURCE, SETTINGS, (wrong), ("the zones that were there stay"));
+    if (changed->zones != zones) read_zones(changed->zones);
   }
   state->luma().set_analysis_width(cerberus_analysis_width(base));
   frame.planes_wanted = keep == KEEP_PLANES_ALWAYS || (keep == KEEP_PLANES_AUTO && frame.planes_wanted);

@@ -21,7 +21,7 @@ inline std::string contradiction(const char* what, const vision::Range& range, d
            ". Make it smaller, or set one of the two to 0 (no limit).";
   if (possible > 0 && range.least > possible)
     return std::string("minimum-") + what +
-           " is larger than the frame: nothing can be found. Make it smaller, or 0 (no limit).";
+           " is larger than the picture: nothing can be found. Make it smaller, or 0.";
   return {};
 }
 

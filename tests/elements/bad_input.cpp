@@ -417,6 +417,25 @@ GST_START_TEST(video_without_a_size_is_one_error) {
 }
 GST_END_TEST
 
+// Distances and people's proportions would be wrong, and nobody would know why.
+GST_START_TEST(pixels_that_are_not_square_are_told_once) {
+  const std::pair<const char*, bool> kShapes[] = {
+      {"1/1", false}, {"12/11", false}, {"1/2", true}, {"64/45", true}};
+  const World world;
+  for (const auto& [shape, told] : kShapes) {
+    Line line("motiondetect ! identity",
+              scene::caps("GRAY8", scene::kWidth, scene::kHeight) + ",pixel-aspect-ratio=" + shape);
+    line.run(world, 0, 3);
+    line.push_caps(
+        scene::caps("GRAY8", scene::kWidth, scene::kHeight, ",framerate=50/1,pixel-aspect-ratio=") + shape);
+    line.run(world, 3, 5);
+    const auto warnings = line.messages(GST_MESSAGE_WARNING);
+    fail_unless_equals_int(warnings.size(), told);
+    if (told) fail_unless(warnings[0].find("videoscale") != std::string::npos, "%s", warnings[0].c_str());
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(absurd_property_values_are_refused_or_harmless) {
   GstElement* element = gst_element_factory_make(kElements[__i__], nullptr);
   guint count = 0;
@@ -483,8 +502,9 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
   const char* const kSettings[][2] = {
       {"minimum-width=100 maximum-width=10", "minimum-width is larger than maximum-width"},
       {"minimum-height=100 maximum-height=10", "minimum-height is larger than maximum-height"},
-      {"minimum-width=321", "minimum-width is larger than the frame"},
-      {"minimum-height=241", "minimum-height is larger than the frame"},
+      {"minimum-width=321", "minimum-width is larger than the picture"},
+      {"minimum-height=241", "minimum-height is larger than the picture"},
+      {"minimum-area=76801", "minimum-area is larger than the picture"},
       {"horizontal-fov=60 minimum-width-metres=2",
        "minimum-width-metres is larger than maximum-width-metres"},
       {"horizontal-fov=60 minimum-height-metres=2 maximum-height-metres=1", "maximum-height-metres"},
@@ -498,6 +518,7 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
       // and what is none of that
       {"minimum-width=10 maximum-width=10 minimum-height=240", nullptr},
       {"minimum-width-metres=2", nullptr},  // does not count without horizontal-fov
+      {"minimum-area=76800", nullptr},
       {"minimum-speed=10", nullptr},
       {"zones=\"include 0,0 0.01,0 0.01,0.01 0,0.01\"", nullptr},
       {"coast-time=18446744073709551615 hold-stopped=18446744073709551615", nullptr},
@@ -529,13 +550,15 @@ GST_START_TEST(a_setting_made_while_playing_is_told_and_another_one_is_not_told_
     if (k == 2 || k == 8) g_object_set(element, "maximum-width", 10.0, nullptr);
     if (k == 4) g_object_set(element, "closing", 3, nullptr);
     if (k == 6) g_object_set(element, "maximum-width", 100.0, nullptr);
+    if (k == 9) g_object_set(element, "zones", "garden", nullptr);
+    if (k == 10) g_object_set(element, "closing", 2, nullptr);
     fail_unless_equals_int(gst_harness_push(harness, scene::grey_buffer(world, k)), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(harness));
     while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
       ++told;
       gst_message_unref(message);
     }
-    fail_unless_equals_int(told, k < 2 ? 0 : k < 8 ? 1 : 2);
+    fail_unless_equals_int(told, k < 2 ? 0 : k < 8 ? 1 : k < 9 ? 2 : 3);
   }
   gst_element_set_bus(element, nullptr);
   gst_harness_teardown(harness);
@@ -574,9 +597,10 @@ Suite* bad_input_suite() {
   tcase_add_loop_test(tests, a_plane_larger_than_the_frame_is_not_ours, 0, 2);
   tcase_add_loop_test(tests, the_warning_of_an_unusable_buffer_comes_again_with_new_caps, 0, kElementCount);
   tcase_add_loop_test(tests, video_without_a_size_is_one_error, 0, 6);
+  tcase_add_test(tests, pixels_that_are_not_square_are_told_once);
   tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
   tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
-  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 18);
+  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 20);
   tcase_add_test(tests, a_setting_made_while_playing_is_told_and_another_one_is_not_told_again);
   tcase_add_test(tests, an_analysis_width_of_one_still_sees);
   return suite;
