@@ -42,7 +42,8 @@ typedef enum {
  * @height: frame pixels
  * @confidence: 0 to 1
  * @vx: speed to the right, frame pixels a second, the camera's motion taken out
- * @vy: speed downwards, frame pixels a second, the camera's motion taken out
+ * @vy: speed downwards, frame pixels a second, the camera's motion taken out; both as the video is played: backwards
+ *     they are the other way round
  * @age: time since the object was first seen
  * @state: how its place is known
  * @bearing: direction of its centre from the camera's axis (the head's

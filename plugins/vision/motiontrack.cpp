@@ -76,9 +76,10 @@ const Property<Settings> kProperties[] = {
              "flicker and answers later; 0 = every region is one in the frame in which it is first seen"),
     property("coast-time", &Settings::coast_time,
              "Nanoseconds for which a moving object is carried on without being seen; 0 = it ends at once"),
-    property(
-        "hold-stopped", &Settings::hold_stopped,
-        "Nanoseconds for which an object that stopped moving is held where it stands; 0 = it ends at once"),
+    property("hold-stopped", &Settings::hold_stopped,
+             "Nanoseconds for which an object that stopped moving is held where it stands (with "
+             "fuzzythreshold's memory, "
+             "which tells that it is still there); 0 = it ends at once"),
     property("away-time", &Settings::away_time,
              "Nanoseconds for which a moving object that the camera has turned away from keeps its identity; "
              "0 = it ends "

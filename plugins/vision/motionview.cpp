@@ -335,9 +335,9 @@ GstFlowReturn cerberus_motion_view_transform(GstBaseTransform* transform, GstBuf
     canvas.fill_black();
     if (fits)
       warn_once(transform, state, settings.stage,
-                settings.stage == STAGE_LUMA
-                    ? "the buffer does not hold the picture that its caps promise"
-                    : "no stage upstream made it, or a converter or encoder in between lost it");
+                settings.stage == STAGE_LUMA ? "the buffer does not hold the picture that its caps promise"
+                                             : "no stage upstream made it, keep-planes=never took it off, or "
+                                               "a converter or encoder in between lost it");
     return GST_FLOW_OK;
   });
 }
