@@ -124,10 +124,12 @@ gboolean cerberus_pan_tilt_sink_set_caps(GstBaseSink* sink, GstCaps* caps) {
   state.known = gst_structure_get_int(structure, "width", &state.info.width) &&
                 gst_structure_get_int(structure, "height", &state.info.height);
   gst_structure_get_fraction(structure, "framerate", &state.info.fps_n, &state.info.fps_d);
-  const std::string wrong = state.known ? "" : "The video has no size.";
-  if (state.complaint.is_new(wrong))
-    CERBERUS_ELEMENT_ERROR(sink, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, caps));
-  return state.known;
+  return guarded(sink, FALSE, [&]() -> gboolean {
+    const std::string wrong = state.known ? "" : "The video has no size.";
+    if (state.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(sink, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, caps));
+    return state.known;
+  });
 }
 
 // The frame ends here and its pixels are not looked at: any stride will do.

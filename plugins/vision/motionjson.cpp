@@ -209,10 +209,12 @@ gboolean cerberus_motion_json_set_caps(GstBaseTransform* transform, GstCaps* in,
   const GstStructure* structure = gst_caps_get_structure(in, 0);
   const bool known = gst_structure_get_int(structure, "width", &state.width) &&
                      gst_structure_get_int(structure, "height", &state.height);
-  const std::string wrong = known ? "" : "The video has no size.";
-  if (state.complaint.is_new(wrong))
-    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
-  return known;
+  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
+    const std::string wrong = known ? "" : "The video has no size.";
+    if (state.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
+    return known;
+  });
 }
 
 // The frame ends here and is only looked at: any stride will do.

@@ -242,14 +242,16 @@ GstCaps* cerberus_motion_overlay_fixate_caps(GstBaseTransform* transform, GstPad
 
 gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
   State& state = cerberus_motion_overlay_self(transform)->priv->state;
-  const bool known = gst_video_info_from_caps(&state.info, in);
-  const std::string wrong = known ? "" : cerberus::kCapsIncomplete;
-  if (state.complaint.is_new(wrong))
-    CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
-  if (!known) return FALSE;
-  forget(state);
-  cerberus_motion_overlay_self(transform)->priv->undecided = true;
-  return TRUE;
+  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
+    const bool known = gst_video_info_from_caps(&state.info, in);
+    const std::string wrong = known ? "" : cerberus::kCapsIncomplete;
+    if (state.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
+    if (!known) return FALSE;
+    forget(state);
+    cerberus_motion_overlay_self(transform)->priv->undecided = true;
+    return TRUE;
+  });
 }
 
 // Before the first frame, and whenever downstream changes (another sink was linked, a window was opened): the caps may
