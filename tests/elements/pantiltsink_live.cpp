@@ -288,12 +288,15 @@ GST_START_TEST(whatever_a_driver_says_arrives) {
   g_object_set(rig.element, "script", "command 2 fail T\xfcr zu", nullptr);
   gst_element_set_state(rig.element, GST_STATE_PLAYING);
   rig.begin();
-  for (int k = 0; k < 2; ++k) rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, k * kFrame));
   bool warned = false, told = false;
-  while (!warned || !told) {
+  for (int frames = 0; !warned || !told;) {
     const auto kinds = static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ELEMENT);
-    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(rig.bus, 60 * GST_SECOND, kinds);
-    fail_unless(message != nullptr);
+    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(rig.bus, 50 * GST_MSECOND, kinds);
+    if (!message) {  // a driver that is still at the command before gets the newest one only
+      fail_unless(frames < 200);
+      rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, frames++ * kFrame));
+      continue;
+    }
     g_autofree gchar *state = nullptr, *reason = nullptr;
     g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, &reason);
     if (pose) {
