@@ -44,6 +44,13 @@ const Property<Settings> kProperties[] = {
 
 }  // namespace
 
+// See complain_of_breaks().
+struct Scene {
+  int frames = 0;      // so far
+  double seconds = 0;  // from its third frame on
+  int broken = 0;      // scenes up to this one that ended too early, for no reason in the picture
+};
+
 struct AnalysisPrivate {
   Adjustable<Settings> settings;
   // From here on: streaming thread, and state changes while it does not run.
@@ -55,7 +62,7 @@ struct AnalysisPrivate {
   History history;
   guint64 number = 0;  // analysed frames
   CameraFollower camera;
-  int breaks = 0;           // of late: scenes that end for no reason in the picture; see complain_of_breaks()
+  Scene scene;
   int steps_back = 0;       // frames older than the one before
   Complaint complaint;      // about the caps
   Complaint pixels;         // about their shape
@@ -107,26 +114,6 @@ std::optional<bool> answer(Analyser& analyser, GstQuery* query) {
 bool is_first_stage(GstBuffer* buffer) {
   return !cerberus_buffer_get_camera_motion_meta(buffer) && !regions_known(buffer) &&
          !cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_LUMA);
-}
-
-// A scene that ends every few frames blinds a stage; who does not know sees nothing at all, and no reason.
-void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, bool broken) {
-  // What moves is confirmed after two frames and a fifth of a second: a scene with some more is no reason to complain,
-  // and eight in a row that end before are.
-  constexpr double kSeconds = 0.25;
-  const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
-  const int enough =
-      2 + static_cast<int>(kSeconds * (fps_n > 0 ? std::min(1.0 * fps_n / fps_d, 1000.0) : 25.0));
-  const int many = 8 * enough;
-  priv.breaks = std::clamp(priv.breaks + (broken ? enough : -1), 0, many);
-  if (priv.breaks < many || priv.complained) return;
-  priv.complained = true;
-  CERBERUS_ELEMENT_WARNING(
-      trans, STREAM, FAILED,
-      ("Most frames do not continue the ones before them, and nothing can be found: drop frames in front of "
-       "`cameramotion`, by `videorate drop-only=true` or a leaky queue, or behind `motiontrack`."),
-      ("the buffers are marked DISCONT, their times lie far apart, or their camera motion starts from frames "
-       "that never came"));
 }
 
 // Once a stream. Twice is nothing: a file that is played in a loop, a clock that is set.
@@ -187,6 +174,31 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   return begun;
 }
 
+// A scene that ends before anybody in it can be confirmed blinds a stage; who does not know sees nothing at all, and no
+// reason.
+void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, const Begun& begun) {
+  constexpr int kMany = 8;          // such scenes in a row
+  constexpr int kFrames = 5;        // as many it takes, the first regions are the third one's,
+  constexpr double kSeconds = .19;  // and confirm-time from there on
+  Scene& scene = priv.scene;
+  if (begun.frame.fresh) {
+    const bool enough = scene.frames >= kFrames && scene.seconds >= kSeconds;
+    scene.broken = begun.broken && !enough ? scene.broken + 1 : 0;
+    scene.frames = 1;
+    scene.seconds = 0;
+  } else if (++scene.frames > 3) {
+    scene.seconds += begun.frame.seconds;
+  }
+  if (scene.broken < kMany || priv.complained) return;
+  priv.complained = true;
+  CERBERUS_ELEMENT_WARNING(
+      trans, STREAM, FAILED,
+      ("The stream is broken so often that nobody can be confirmed: drop frames in front of "
+       "`cameramotion`, by `videorate drop-only=true` or a leaky queue, or behind `motiontrack`."),
+      ("the buffers are marked DISCONT, their times lie far apart, or their camera motion starts from frames "
+       "that never came"));
+}
+
 void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
   const std::optional<Settings> changed = priv.settings.changes();
   if (!changed || changed->analysis_width == 0 || changed->analysis_width >= kLeastAnalysisWidth) return;
@@ -208,7 +220,7 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     const CameraFollower camera = priv.camera;
     Begun begun = begin_frame(trans, priv, buffer);
     if (priv.analyser->analyse(begun.frame)) {
-      complain_of_breaks(trans, priv, begun.broken);
+      complain_of_breaks(trans, priv, begun);
       complain_of_times(trans, priv, begun.backwards);
       return GST_FLOW_OK;
     }
@@ -263,7 +275,7 @@ std::string what_is_wrong(const GstCaps* caps, GstVideoInfo* info) {
 
 // Pixels count as squares everywhere: in boxes, in a person's proportions and in angles.
 void complain_of_pixels(GstBaseTransform* trans, AnalysisPrivate& priv) {
-  constexpr double kLittle = 1.1;
+  constexpr double kLittle = 1.12;
   const int n = GST_VIDEO_INFO_PAR_N(&priv.info), d = GST_VIDEO_INFO_PAR_D(&priv.info);
   const bool square = n < kLittle * d && d < kLittle * n;
   const std::string wrong =
@@ -335,7 +347,8 @@ gboolean start(GstBaseTransform* trans) {
     priv.history.drop();
     priv.have_info = false;
     priv.warned = false;
-    priv.breaks = priv.steps_back = 0;
+    priv.scene = {};
+    priv.steps_back = 0;
     priv.complained = false;
     priv.camera.forget();
     priv.complaint.forget();
