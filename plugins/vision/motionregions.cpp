@@ -116,7 +116,7 @@ struct Private final : StatefulAnalyser<Settings, RegionStage> {
   std::string zones;  // as last read
   NothingFound nothing;
   // For what it was asked last why nothing can be found.
-  vision::Size judged_size;
+  vision::Size judged_size, judged_mask;
   bool judged_nowhere = false, judge = true;
   Answer<KeepPlanes> answer;
 
@@ -173,8 +173,8 @@ std::string Private::why_nothing(vision::Size frame) {
            "what it excludes smaller.";
   std::string why = contradiction("width", gate.width, frame.width);
   if (why.empty()) why = contradiction("height", gate.height, frame.height);
-  const vision::Size analysed = vision::analysis_size(frame, cerberus_analysis_width(base));
-  if (why.empty()) why = contradiction("area", {minimum_area, 0}, 1.0 * analysed.width * analysed.height);
+  const vision::Size mask = state->size();
+  if (why.empty()) why = contradiction("area", {minimum_area, 0}, 1.0 * mask.width * mask.height);
   if (why.empty() && in_metres) why = contradiction("width-metres", gate.metres_wide);
   if (why.empty() && in_metres) why = contradiction("height-metres", gate.metres_high);
   return why;
@@ -182,9 +182,10 @@ std::string Private::why_nothing(vision::Size frame) {
 
 void Private::judge_settings(vision::Size frame) {
   const bool nowhere = state->zones().nowhere();
-  if (!judge && frame == judged_size && nowhere == judged_nowhere) return;
+  if (!judge && frame == judged_size && state->size() == judged_mask && nowhere == judged_nowhere) return;
   judge = false;
   judged_size = frame;
+  judged_mask = state->size();
   judged_nowhere = nowhere;
   nothing.tell(GST_ELEMENT(base), why_nothing(frame));
 }

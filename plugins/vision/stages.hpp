@@ -95,6 +95,8 @@ class RegionStage {
   LumaStage& luma() { return before_.luma(); }
   void set_options(const vision::RegionOptions& options) { finder_.set_options(options); }
   vision::Zones& zones() { return zones_; }
+  // Of the mask of the last frame.
+  vision::Size size() const { return size_; }
   // field_of_view: horizontal, radians, 0 = unknown (limits in metres are not judged then); mounting_height: metres;
   // tilt: radians, of frames that bring none.
   void set_gate(const vision::SizeGate& gate, double field_of_view, double mounting_height, double tilt) {

@@ -420,7 +420,7 @@ GST_END_TEST
 // Distances and people's proportions would be wrong, and nobody would know why.
 GST_START_TEST(pixels_that_are_not_square_are_told_once) {
   const std::pair<const char*, bool> kShapes[] = {
-      {"1/1", false}, {"12/11", false}, {"1/2", true}, {"64/45", true}};
+      {"1/1", false}, {"12/11", false}, {"10/11", false}, {"1/2", true}, {"64/45", true}};
   const World world;
   for (const auto& [shape, told] : kShapes) {
     Line line("motiondetect ! identity",
@@ -519,6 +519,8 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
       {"minimum-width=10 maximum-width=10 minimum-height=240", nullptr},
       {"minimum-width-metres=2", nullptr},  // does not count without horizontal-fov
       {"minimum-area=76800", nullptr},
+      {"analysis-width=160 minimum-area=19201", "minimum-area is larger than the picture"},
+      {"analysis-width=160 minimum-area=19200", nullptr},
       {"minimum-speed=10", nullptr},
       {"zones=\"include 0,0 0.01,0 0.01,0.01 0,0.01\"", nullptr},
       {"coast-time=18446744073709551615 hold-stopped=18446744073709551615", nullptr},
@@ -600,7 +602,7 @@ Suite* bad_input_suite() {
   tcase_add_test(tests, pixels_that_are_not_square_are_told_once);
   tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
   tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
-  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 20);
+  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 22);
   tcase_add_test(tests, a_setting_made_while_playing_is_told_and_another_one_is_not_told_again);
   tcase_add_test(tests, an_analysis_width_of_one_still_sees);
   return suite;
