@@ -19,7 +19,7 @@ constexpr double kEndSpeed = 1.0;            // S/s: an end that goes faster sho
 constexpr double kLeap = 0.15;               // S: an end that goes on by more from one frame to the next,
 constexpr double kRun = 2.5;                 // S/s: and faster than a runner's, has leapt
 constexpr double kUpright = 1.3;             // times as tall as wide, at least
-constexpr double kStandsBy = 0.5 * kGrain;   // likewise: as far may a standing camera seem to move
+constexpr double kStandsBy = 0.5 * kGrain;   // of the frame's width: as far a standing camera seems to move
 constexpr double kStandSpeed = 0.3;          // S/s: slower than this (0.5 m/s) may have stopped
 constexpr double kFarthest = 4.0;            // standard deviations of the place at which a region may be
 constexpr double kFarthestAway = 3.0;        // and where nobody was looked for meanwhile, who else may come
@@ -281,7 +281,7 @@ bool Body::outgrown(const Box& seen, bool whole, bool cut, double seconds) {
     stood = slow > 0 || stopped;
     leapt = false;
   }
-  leapt = leapt || leaps(seen, seconds + unseen);
+  leapt = leapt || leaps(seen, stopped ? seconds : seconds + unseen);
   misfit += seconds;
   if (cut || parted) return true;
   if (whole) return misfit >= 0.2;

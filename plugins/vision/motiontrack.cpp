@@ -78,8 +78,7 @@ const Property<Settings> kProperties[] = {
              "Nanoseconds for which a moving object is carried on without being seen; 0 = it ends at once"),
     property("hold-stopped", &Settings::hold_stopped,
              "Nanoseconds for which an object that stopped moving is held where it stands (with "
-             "fuzzythreshold's memory, "
-             "which tells that it is still there); 0 = it ends at once"),
+             "fuzzythreshold's memory, which tells that it is still there); 0 = it ends at once"),
     property("away-time", &Settings::away_time,
              "Nanoseconds for which a moving object that the camera has turned away from keeps its identity; "
              "0 = it ends "

@@ -43,7 +43,7 @@ inline void post(GstElement* element, GstMessageType type, GQuark domain, gint c
                  const std::string& detail, GstStructure* facts, const Origin& from) noexcept {
   const GstDebugLevel level = type == GST_MESSAGE_INFO ? GST_LEVEL_INFO : GST_LEVEL_WARNING;
   for (const std::string* said : {&text, &detail})
-    if (!said->empty() && level <= gst_debug_category_get_threshold(from.category))
+    if (!said->empty() && from.category && level <= gst_debug_category_get_threshold(from.category))
       gst_debug_log(from.category, level, from.file, from.function, from.line, G_OBJECT(element), "%s: %s",
                     gst_message_type_get_name(type), said->c_str());
   const auto copy = [](const std::string& said) { return said.empty() ? nullptr : g_strdup(said.c_str()); };
