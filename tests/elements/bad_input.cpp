@@ -505,6 +505,7 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
       {"minimum-width=321", "minimum-width is larger than the picture"},
       {"minimum-height=241", "minimum-height is larger than the picture"},
       {"minimum-area=76801", "minimum-area is larger than the picture"},
+      {"analysis-width=160 minimum-area=19201", "minimum-area is larger than the picture"},
       {"horizontal-fov=60 minimum-width-metres=2",
        "minimum-width-metres is larger than maximum-width-metres"},
       {"horizontal-fov=60 minimum-height-metres=2 maximum-height-metres=1", "maximum-height-metres"},
@@ -519,7 +520,6 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
       {"minimum-width=10 maximum-width=10 minimum-height=240", nullptr},
       {"minimum-width-metres=2", nullptr},  // does not count without horizontal-fov
       {"minimum-area=76800", nullptr},
-      {"analysis-width=160 minimum-area=19201", "minimum-area is larger than the picture"},
       {"analysis-width=160 minimum-area=19200", nullptr},
       {"minimum-speed=10", nullptr},
       {"zones=\"include 0,0 0.01,0 0.01,0.01 0,0.01\"", nullptr},
