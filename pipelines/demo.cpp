@@ -15,7 +15,7 @@
 #include "job.h"
 #include "screen.h"
 #include "video_file.h"
-#include "vision/window.h"
+#include "vision/geometry/window.h"
 
 namespace cerberus::demo {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 namespace cerberus::demo {
 

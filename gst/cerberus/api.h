@@ -4,7 +4,7 @@
 /* Marks what the library exports; everything else stays inside (-fvisibility=hidden). */
 #ifndef CERBERUS_API
 #if defined(__GNUC__)
-#define CERBERUS_API __attribute__ ((visibility ("default"))) extern
+#define CERBERUS_API __attribute__((visibility("default"))) extern
 #else
 #define CERBERUS_API extern
 #endif

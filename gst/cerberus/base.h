@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -46,14 +46,14 @@ struct _CerberusBase {
   gpointer _cerberus_reserved[GST_PADDING];
 };
 
-#define CERBERUS_TYPE_BASE (cerberus_base_get_type ())
-#define CERBERUS_BASE_META_API_TYPE (cerberus_base_meta_api_get_type ())
+#define CERBERUS_TYPE_BASE (cerberus_base_get_type())
+#define CERBERUS_BASE_META_API_TYPE (cerberus_base_meta_api_get_type())
 
 CERBERUS_API
-GType cerberus_base_get_type (void) G_GNUC_CONST;
+GType cerberus_base_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_base_meta_api_get_type (void);
+GType cerberus_base_meta_api_get_type(void);
 
 /**
  * cerberus_base_init: (skip)
@@ -64,7 +64,7 @@ GType cerberus_base_meta_api_get_type (void);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_base_init (CerberusBase *base);
+void cerberus_base_init(CerberusBase* base);
 
 /**
  * cerberus_base_new: (constructor)
@@ -76,7 +76,7 @@ void cerberus_base_init (CerberusBase *base);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusBase *cerberus_base_new (void);
+CerberusBase* cerberus_base_new(void);
 
 /**
  * cerberus_base_copy:
@@ -87,7 +87,7 @@ CerberusBase *cerberus_base_new (void);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusBase *cerberus_base_copy (const CerberusBase *base);
+CerberusBase* cerberus_base_copy(const CerberusBase* base);
 
 /**
  * cerberus_base_free: (skip)
@@ -98,7 +98,7 @@ CerberusBase *cerberus_base_copy (const CerberusBase *base);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_base_free (CerberusBase *base);
+void cerberus_base_free(CerberusBase* base);
 
 /**
  * cerberus_event_new_base:
@@ -112,7 +112,7 @@ void cerberus_base_free (CerberusBase *base);
  * Since: 0.1
  */
 CERBERUS_API
-GstEvent *cerberus_event_new_base (gdouble yaw_rate, GstClockTime running_time);
+GstEvent* cerberus_event_new_base(gdouble yaw_rate, GstClockTime running_time);
 
 /**
  * cerberus_event_parse_base:
@@ -127,7 +127,7 @@ GstEvent *cerberus_event_new_base (gdouble yaw_rate, GstClockTime running_time);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_event_parse_base (GstEvent *event, gdouble *yaw_rate, GstClockTime *running_time);
+gboolean cerberus_event_parse_base(GstEvent* event, gdouble* yaw_rate, GstClockTime* running_time);
 
 /**
  * cerberus_buffer_set_base:
@@ -141,7 +141,7 @@ gboolean cerberus_event_parse_base (GstEvent *event, gdouble *yaw_rate, GstClock
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_buffer_set_base (GstBuffer *buffer, const CerberusBase *base);
+gboolean cerberus_buffer_set_base(GstBuffer* buffer, const CerberusBase* base);
 
 /**
  * cerberus_buffer_get_base:
@@ -152,7 +152,7 @@ gboolean cerberus_buffer_set_base (GstBuffer *buffer, const CerberusBase *base);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusBase *cerberus_buffer_get_base (GstBuffer *buffer);
+CerberusBase* cerberus_buffer_get_base(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_peek_base: (skip)
@@ -163,8 +163,8 @@ CerberusBase *cerberus_buffer_get_base (GstBuffer *buffer);
  * Since: 0.1
  */
 CERBERUS_API
-const CerberusBase *cerberus_buffer_peek_base (GstBuffer *buffer);
+const CerberusBase* cerberus_buffer_peek_base(GstBuffer* buffer);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusBase, cerberus_base_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusBase, cerberus_base_free)
 
 G_END_DECLS

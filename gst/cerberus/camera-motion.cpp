@@ -7,7 +7,7 @@
 #include <iterator>
 
 #include "private/meta.hpp"
-#include "vision/transform.h"
+#include "vision/geometry/transform.h"
 
 namespace {
 

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -57,15 +57,15 @@ struct _CerberusCameraMotionMeta {
   CerberusCameraMotion motion;
 };
 
-#define CERBERUS_TYPE_CAMERA_MOTION (cerberus_camera_motion_get_type ())
-#define CERBERUS_CAMERA_MOTION_META_API_TYPE (cerberus_camera_motion_meta_api_get_type ())
-#define CERBERUS_CAMERA_MOTION_META_INFO (cerberus_camera_motion_meta_get_info ())
+#define CERBERUS_TYPE_CAMERA_MOTION (cerberus_camera_motion_get_type())
+#define CERBERUS_CAMERA_MOTION_META_API_TYPE (cerberus_camera_motion_meta_api_get_type())
+#define CERBERUS_CAMERA_MOTION_META_INFO (cerberus_camera_motion_meta_get_info())
 
 CERBERUS_API
-GType cerberus_camera_motion_get_type (void) G_GNUC_CONST;
+GType cerberus_camera_motion_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_camera_motion_meta_api_get_type (void);
+GType cerberus_camera_motion_meta_api_get_type(void);
 
 /**
  * cerberus_camera_motion_meta_get_info: (skip)
@@ -75,7 +75,7 @@ GType cerberus_camera_motion_meta_api_get_type (void);
  * Since: 0.1
  */
 CERBERUS_API
-const GstMetaInfo *cerberus_camera_motion_meta_get_info (void);
+const GstMetaInfo* cerberus_camera_motion_meta_get_info(void);
 
 /**
  * cerberus_camera_motion_init: (skip)
@@ -86,7 +86,7 @@ const GstMetaInfo *cerberus_camera_motion_meta_get_info (void);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_camera_motion_init (CerberusCameraMotion *motion);
+void cerberus_camera_motion_init(CerberusCameraMotion* motion);
 
 /**
  * cerberus_camera_motion_new: (constructor)
@@ -98,7 +98,7 @@ void cerberus_camera_motion_init (CerberusCameraMotion *motion);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusCameraMotion *cerberus_camera_motion_new (void);
+CerberusCameraMotion* cerberus_camera_motion_new(void);
 
 /**
  * cerberus_camera_motion_copy:
@@ -109,7 +109,7 @@ CerberusCameraMotion *cerberus_camera_motion_new (void);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusCameraMotion *cerberus_camera_motion_copy (const CerberusCameraMotion *motion);
+CerberusCameraMotion* cerberus_camera_motion_copy(const CerberusCameraMotion* motion);
 
 /**
  * cerberus_camera_motion_free: (skip)
@@ -120,7 +120,7 @@ CerberusCameraMotion *cerberus_camera_motion_copy (const CerberusCameraMotion *m
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_camera_motion_free (CerberusCameraMotion *motion);
+void cerberus_camera_motion_free(CerberusCameraMotion* motion);
 
 /**
  * cerberus_camera_motion_set_matrix:
@@ -132,7 +132,7 @@ void cerberus_camera_motion_free (CerberusCameraMotion *motion);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_camera_motion_set_matrix (CerberusCameraMotion *motion, const gdouble *matrix);
+void cerberus_camera_motion_set_matrix(CerberusCameraMotion* motion, const gdouble* matrix);
 
 /**
  * cerberus_camera_motion_apply:
@@ -149,8 +149,8 @@ void cerberus_camera_motion_set_matrix (CerberusCameraMotion *motion, const gdou
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_camera_motion_apply (const CerberusCameraMotion *motion, gdouble x, gdouble y, gdouble *out_x,
-                                       gdouble *out_y);
+gboolean cerberus_camera_motion_apply(const CerberusCameraMotion* motion, gdouble x, gdouble y,
+                                      gdouble* out_x, gdouble* out_y);
 
 /**
  * cerberus_buffer_add_camera_motion_meta: (skip)
@@ -164,8 +164,8 @@ gboolean cerberus_camera_motion_apply (const CerberusCameraMotion *motion, gdoub
  * Since: 0.1
  */
 CERBERUS_API
-CerberusCameraMotionMeta *cerberus_buffer_add_camera_motion_meta (GstBuffer *buffer,
-                                                                  const CerberusCameraMotion *motion);
+CerberusCameraMotionMeta* cerberus_buffer_add_camera_motion_meta(GstBuffer* buffer,
+                                                                 const CerberusCameraMotion* motion);
 
 /**
  * cerberus_buffer_set_camera_motion:
@@ -179,7 +179,7 @@ CerberusCameraMotionMeta *cerberus_buffer_add_camera_motion_meta (GstBuffer *buf
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_buffer_set_camera_motion (GstBuffer *buffer, const CerberusCameraMotion *motion);
+gboolean cerberus_buffer_set_camera_motion(GstBuffer* buffer, const CerberusCameraMotion* motion);
 
 /**
  * cerberus_buffer_get_camera_motion_meta: (skip)
@@ -190,7 +190,7 @@ gboolean cerberus_buffer_set_camera_motion (GstBuffer *buffer, const CerberusCam
  * Since: 0.1
  */
 CERBERUS_API
-const CerberusCameraMotionMeta *cerberus_buffer_get_camera_motion_meta (GstBuffer *buffer);
+const CerberusCameraMotionMeta* cerberus_buffer_get_camera_motion_meta(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_get_camera_motion:
@@ -201,8 +201,8 @@ const CerberusCameraMotionMeta *cerberus_buffer_get_camera_motion_meta (GstBuffe
  * Since: 0.1
  */
 CERBERUS_API
-CerberusCameraMotion *cerberus_buffer_get_camera_motion (GstBuffer *buffer);
+CerberusCameraMotion* cerberus_buffer_get_camera_motion(GstBuffer* buffer);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusCameraMotion, cerberus_camera_motion_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusCameraMotion, cerberus_camera_motion_free)
 
 G_END_DECLS

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
+#include <cerberus/api.h>
 #include <gst/gst.h>
 #include <gst/video/video.h>
-#include <cerberus/api.h>
 
 G_BEGIN_DECLS
 
@@ -15,8 +15,8 @@ G_BEGIN_DECLS
  *
  * Since: 0.1
  */
-#define CERBERUS_VIDEO_FORMATS                                                              \
-  "{ GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, RGB, BGR, RGBx, BGRx, "   \
+#define CERBERUS_VIDEO_FORMATS                                                            \
+  "{ GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, RGB, BGR, RGBx, BGRx, " \
   "xRGB, xBGR, RGBA, BGRA, ARGB, ABGR }"
 
 /**
@@ -27,8 +27,8 @@ G_BEGIN_DECLS
  *
  * Since: 0.1
  */
-#define CERBERUS_VIDEO_CAPS                                                                 \
-  "video/x-raw, format = (string) " CERBERUS_VIDEO_FORMATS                                  \
+#define CERBERUS_VIDEO_CAPS                                \
+  "video/x-raw, format = (string) " CERBERUS_VIDEO_FORMATS \
   ", width = (int) [ 1, 2147483647 ], height = (int) [ 1, 2147483647 ]"
 
 /**
@@ -49,6 +49,6 @@ G_BEGIN_DECLS
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_video_format_is_supported (GstVideoFormat format);
+gboolean cerberus_video_format_is_supported(GstVideoFormat format);
 
 G_END_DECLS

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
 #include <cerberus/pir.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -80,7 +80,7 @@ typedef enum {
 typedef struct _CerberusFusion CerberusFusion;
 struct _CerberusFusion {
   gint rule;
-  const gchar *rule_name;
+  const gchar* rule_name;
   CerberusFusionAction action;
   guint target;
   gdouble pan;
@@ -96,18 +96,18 @@ struct _CerberusFusion {
   gpointer _cerberus_reserved[GST_PADDING];
 };
 
-#define CERBERUS_TYPE_FUSION (cerberus_fusion_get_type ())
-#define CERBERUS_TYPE_FUSION_ACTION (cerberus_fusion_action_get_type ())
-#define CERBERUS_FUSION_META_API_TYPE (cerberus_fusion_meta_api_get_type ())
+#define CERBERUS_TYPE_FUSION (cerberus_fusion_get_type())
+#define CERBERUS_TYPE_FUSION_ACTION (cerberus_fusion_action_get_type())
+#define CERBERUS_FUSION_META_API_TYPE (cerberus_fusion_meta_api_get_type())
 
 CERBERUS_API
-GType cerberus_fusion_get_type (void) G_GNUC_CONST;
+GType cerberus_fusion_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_fusion_action_get_type (void) G_GNUC_CONST;
+GType cerberus_fusion_action_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_fusion_meta_api_get_type (void);
+GType cerberus_fusion_meta_api_get_type(void);
 
 /**
  * cerberus_fusion_action_get_nick: (skip)
@@ -118,7 +118,7 @@ GType cerberus_fusion_meta_api_get_type (void);
  * Since: 0.1
  */
 CERBERUS_API
-const gchar *cerberus_fusion_action_get_nick (CerberusFusionAction action);
+const gchar* cerberus_fusion_action_get_nick(CerberusFusionAction action);
 
 /**
  * cerberus_fusion_init: (skip)
@@ -129,7 +129,7 @@ const gchar *cerberus_fusion_action_get_nick (CerberusFusionAction action);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_fusion_init (CerberusFusion *fusion);
+void cerberus_fusion_init(CerberusFusion* fusion);
 
 /**
  * cerberus_fusion_new: (constructor)
@@ -141,7 +141,7 @@ void cerberus_fusion_init (CerberusFusion *fusion);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusFusion *cerberus_fusion_new (void);
+CerberusFusion* cerberus_fusion_new(void);
 
 /**
  * cerberus_fusion_copy:
@@ -152,7 +152,7 @@ CerberusFusion *cerberus_fusion_new (void);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusFusion *cerberus_fusion_copy (const CerberusFusion *fusion);
+CerberusFusion* cerberus_fusion_copy(const CerberusFusion* fusion);
 
 /**
  * cerberus_fusion_free: (skip)
@@ -163,7 +163,7 @@ CerberusFusion *cerberus_fusion_copy (const CerberusFusion *fusion);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_fusion_free (CerberusFusion *fusion);
+void cerberus_fusion_free(CerberusFusion* fusion);
 
 /**
  * cerberus_fusion_get_sensors:
@@ -174,7 +174,7 @@ void cerberus_fusion_free (CerberusFusion *fusion);
  * Since: 0.1
  */
 CERBERUS_API
-GBytes *cerberus_fusion_get_sensors (const CerberusFusion *fusion);
+GBytes* cerberus_fusion_get_sensors(const CerberusFusion* fusion);
 
 /**
  * cerberus_buffer_set_fusion:
@@ -192,7 +192,7 @@ GBytes *cerberus_fusion_get_sensors (const CerberusFusion *fusion);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_buffer_set_fusion (GstBuffer *buffer, const CerberusFusion *fusion);
+gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fusion);
 
 /**
  * cerberus_buffer_get_fusion:
@@ -203,7 +203,7 @@ gboolean cerberus_buffer_set_fusion (GstBuffer *buffer, const CerberusFusion *fu
  * Since: 0.1
  */
 CERBERUS_API
-CerberusFusion *cerberus_buffer_get_fusion (GstBuffer *buffer);
+CerberusFusion* cerberus_buffer_get_fusion(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_peek_fusion: (skip)
@@ -214,7 +214,7 @@ CerberusFusion *cerberus_buffer_get_fusion (GstBuffer *buffer);
  * Since: 0.1
  */
 CERBERUS_API
-const CerberusFusion *cerberus_buffer_peek_fusion (GstBuffer *buffer);
+const CerberusFusion* cerberus_buffer_peek_fusion(GstBuffer* buffer);
 
 /**
  * cerberus_message_new_fusion:
@@ -229,7 +229,8 @@ const CerberusFusion *cerberus_buffer_peek_fusion (GstBuffer *buffer);
  * Since: 0.1
  */
 CERBERUS_API
-GstMessage *cerberus_message_new_fusion (GstObject *src, GstClockTime running_time, const CerberusFusion *fusion);
+GstMessage* cerberus_message_new_fusion(GstObject* src, GstClockTime running_time,
+                                        const CerberusFusion* fusion);
 
 /**
  * cerberus_message_parse_fusion:
@@ -243,7 +244,7 @@ GstMessage *cerberus_message_new_fusion (GstObject *src, GstClockTime running_ti
  * Since: 0.1
  */
 CERBERUS_API
-CerberusFusion *cerberus_message_parse_fusion (GstMessage *message, GstClockTime *running_time);
+CerberusFusion* cerberus_message_parse_fusion(GstMessage* message, GstClockTime* running_time);
 
 /**
  * cerberus_event_new_fusion:
@@ -257,7 +258,7 @@ CerberusFusion *cerberus_message_parse_fusion (GstMessage *message, GstClockTime
  * Since: 0.1
  */
 CERBERUS_API
-GstEvent *cerberus_event_new_fusion (const gchar *head, const CerberusFusion *fusion);
+GstEvent* cerberus_event_new_fusion(const gchar* head, const CerberusFusion* fusion);
 
 /**
  * cerberus_event_parse_fusion:
@@ -272,8 +273,8 @@ GstEvent *cerberus_event_new_fusion (const gchar *head, const CerberusFusion *fu
  * Since: 0.1
  */
 CERBERUS_API
-CerberusFusion *cerberus_event_parse_fusion (GstEvent *event, const gchar **head);
+CerberusFusion* cerberus_event_parse_fusion(GstEvent* event, const gchar** head);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusFusion, cerberus_fusion_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusFusion, cerberus_fusion_free)
 
 G_END_DECLS

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
 #include <cerberus/region.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -31,8 +31,8 @@ G_BEGIN_DECLS
  * Since: 0.1
  */
 CERBERUS_API
-GstMessage *cerberus_message_new_motion (GstObject *src, gboolean started, GstClockTime running_time,
-                                         GPtrArray *regions);
+GstMessage* cerberus_message_new_motion(GstObject* src, gboolean started, GstClockTime running_time,
+                                        GPtrArray* regions);
 
 /**
  * cerberus_message_is_motion:
@@ -43,7 +43,7 @@ GstMessage *cerberus_message_new_motion (GstObject *src, gboolean started, GstCl
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_message_is_motion (GstMessage *message);
+gboolean cerberus_message_is_motion(GstMessage* message);
 
 /**
  * cerberus_message_parse_motion:
@@ -60,7 +60,7 @@ gboolean cerberus_message_is_motion (GstMessage *message);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_message_parse_motion (GstMessage *message, gboolean *started, GstClockTime *running_time,
-                                        GPtrArray **regions);
+gboolean cerberus_message_parse_motion(GstMessage* message, gboolean* started, GstClockTime* running_time,
+                                       GPtrArray** regions);
 
 G_END_DECLS

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
 #include <cerberus/pose.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -33,8 +33,8 @@ G_BEGIN_DECLS
  * Since: 0.1
  */
 CERBERUS_API
-GstMessage *cerberus_message_new_pantilt (GstObject *src, GstClockTime running_time, const gchar *state,
-                                          const gchar *reason, const CerberusPose *pose);
+GstMessage* cerberus_message_new_pantilt(GstObject* src, GstClockTime running_time, const gchar* state,
+                                         const gchar* reason, const CerberusPose* pose);
 
 /**
  * cerberus_message_parse_pantilt:
@@ -51,7 +51,7 @@ GstMessage *cerberus_message_new_pantilt (GstObject *src, GstClockTime running_t
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPose *cerberus_message_parse_pantilt (GstMessage *message, GstClockTime *running_time, gchar **state,
-                                              gchar **reason);
+CerberusPose* cerberus_message_parse_pantilt(GstMessage* message, GstClockTime* running_time, gchar** state,
+                                             gchar** reason);
 
 G_END_DECLS

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -80,7 +80,7 @@ struct _CerberusPirInfo {
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_pir_info_init (CerberusPirInfo *info);
+void cerberus_pir_info_init(CerberusPirInfo* info);
 
 /**
  * cerberus_pir_info_to_caps: (skip)
@@ -92,7 +92,7 @@ void cerberus_pir_info_init (CerberusPirInfo *info);
  * Since: 0.1
  */
 CERBERUS_API
-GstCaps *cerberus_pir_info_to_caps (const CerberusPirInfo *info);
+GstCaps* cerberus_pir_info_to_caps(const CerberusPirInfo* info);
 
 /**
  * cerberus_pir_info_from_caps: (skip)
@@ -106,7 +106,7 @@ GstCaps *cerberus_pir_info_to_caps (const CerberusPirInfo *info);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_pir_info_from_caps (CerberusPirInfo *info, const GstCaps *caps, GError **error);
+gboolean cerberus_pir_info_from_caps(CerberusPirInfo* info, const GstCaps* caps, GError** error);
 
 /**
  * cerberus_pir_info_buffer_size: (skip)
@@ -117,7 +117,7 @@ gboolean cerberus_pir_info_from_caps (CerberusPirInfo *info, const GstCaps *caps
  * Since: 0.1
  */
 CERBERUS_API
-gsize cerberus_pir_info_buffer_size (const CerberusPirInfo *info);
+gsize cerberus_pir_info_buffer_size(const CerberusPirInfo* info);
 
 /**
  * cerberus_message_new_pir: (skip)
@@ -133,8 +133,8 @@ gsize cerberus_pir_info_buffer_size (const CerberusPirInfo *info);
  * Since: 0.1
  */
 CERBERUS_API
-GstMessage *cerberus_message_new_pir (GstObject *src, GstClockTime running_time, const CerberusPirInfo *info,
-                                      const guint8 *sensors);
+GstMessage* cerberus_message_new_pir(GstObject* src, GstClockTime running_time, const CerberusPirInfo* info,
+                                     const guint8* sensors);
 
 /**
  * cerberus_message_parse_pir:
@@ -149,6 +149,6 @@ GstMessage *cerberus_message_new_pir (GstObject *src, GstClockTime running_time,
  * Since: 0.1
  */
 CERBERUS_API
-GBytes *cerberus_message_parse_pir (GstMessage *message, GstClockTime *running_time);
+GBytes* cerberus_message_parse_pir(GstMessage* message, GstClockTime* running_time);
 
 G_END_DECLS

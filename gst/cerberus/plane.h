@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -49,21 +49,21 @@ typedef struct _CerberusPlaneMeta CerberusPlaneMeta;
 struct _CerberusPlaneMeta {
   GstMeta meta;
   CerberusPlaneKind kind;
-  GstBuffer *buffer;
+  GstBuffer* buffer;
   gint width;
   gint height;
   gint stride;
 };
 
-#define CERBERUS_TYPE_PLANE_KIND (cerberus_plane_kind_get_type ())
-#define CERBERUS_PLANE_META_API_TYPE (cerberus_plane_meta_api_get_type ())
-#define CERBERUS_PLANE_META_INFO (cerberus_plane_meta_get_info ())
+#define CERBERUS_TYPE_PLANE_KIND (cerberus_plane_kind_get_type())
+#define CERBERUS_PLANE_META_API_TYPE (cerberus_plane_meta_api_get_type())
+#define CERBERUS_PLANE_META_INFO (cerberus_plane_meta_get_info())
 
 CERBERUS_API
-GType cerberus_plane_kind_get_type (void) G_GNUC_CONST;
+GType cerberus_plane_kind_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_plane_meta_api_get_type (void);
+GType cerberus_plane_meta_api_get_type(void);
 
 /**
  * cerberus_plane_meta_get_info: (skip)
@@ -73,7 +73,7 @@ GType cerberus_plane_meta_api_get_type (void);
  * Since: 0.1
  */
 CERBERUS_API
-const GstMetaInfo *cerberus_plane_meta_get_info (void);
+const GstMetaInfo* cerberus_plane_meta_get_info(void);
 
 /**
  * cerberus_plane_kind_sample_size:
@@ -84,7 +84,7 @@ const GstMetaInfo *cerberus_plane_meta_get_info (void);
  * Since: 0.1
  */
 CERBERUS_API
-gint cerberus_plane_kind_sample_size (CerberusPlaneKind kind);
+gint cerberus_plane_kind_sample_size(CerberusPlaneKind kind);
 
 /**
  * cerberus_buffer_add_plane_meta: (skip)
@@ -103,8 +103,8 @@ gint cerberus_plane_kind_sample_size (CerberusPlaneKind kind);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPlaneMeta *cerberus_buffer_add_plane_meta (GstBuffer *buffer, CerberusPlaneKind kind, GstBuffer *plane,
-                                                   gint width, gint height, gint stride);
+CerberusPlaneMeta* cerberus_buffer_add_plane_meta(GstBuffer* buffer, CerberusPlaneKind kind, GstBuffer* plane,
+                                                  gint width, gint height, gint stride);
 
 /**
  * cerberus_buffer_get_plane_meta: (skip)
@@ -116,7 +116,7 @@ CerberusPlaneMeta *cerberus_buffer_add_plane_meta (GstBuffer *buffer, CerberusPl
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPlaneMeta *cerberus_buffer_get_plane_meta (GstBuffer *buffer, CerberusPlaneKind kind);
+CerberusPlaneMeta* cerberus_buffer_get_plane_meta(GstBuffer* buffer, CerberusPlaneKind kind);
 
 /**
  * cerberus_buffer_get_plane:
@@ -131,8 +131,8 @@ CerberusPlaneMeta *cerberus_buffer_get_plane_meta (GstBuffer *buffer, CerberusPl
  * Since: 0.1
  */
 CERBERUS_API
-GstBuffer *cerberus_buffer_get_plane (GstBuffer *buffer, CerberusPlaneKind kind, gint *width, gint *height,
-                                      gint *stride);
+GstBuffer* cerberus_buffer_get_plane(GstBuffer* buffer, CerberusPlaneKind kind, gint* width, gint* height,
+                                     gint* stride);
 
 /**
  * cerberus_buffer_remove_plane_metas:
@@ -143,6 +143,6 @@ GstBuffer *cerberus_buffer_get_plane (GstBuffer *buffer, CerberusPlaneKind kind,
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_buffer_remove_plane_metas (GstBuffer *buffer);
+void cerberus_buffer_remove_plane_metas(GstBuffer* buffer);
 
 G_END_DECLS

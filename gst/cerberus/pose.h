@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -51,7 +51,7 @@ typedef enum {
  */
 typedef struct _CerberusPose CerberusPose;
 struct _CerberusPose {
-  const gchar *head;
+  const gchar* head;
   gdouble pan, tilt;
   gdouble pan_speed, tilt_speed;
   gdouble pan_acceleration, tilt_acceleration;
@@ -63,18 +63,18 @@ struct _CerberusPose {
   gpointer _cerberus_reserved[GST_PADDING];
 };
 
-#define CERBERUS_TYPE_POSE (cerberus_pose_get_type ())
-#define CERBERUS_TYPE_POSE_SOURCE (cerberus_pose_source_get_type ())
-#define CERBERUS_POSE_META_API_TYPE (cerberus_pose_meta_api_get_type ())
+#define CERBERUS_TYPE_POSE (cerberus_pose_get_type())
+#define CERBERUS_TYPE_POSE_SOURCE (cerberus_pose_source_get_type())
+#define CERBERUS_POSE_META_API_TYPE (cerberus_pose_meta_api_get_type())
 
 CERBERUS_API
-GType cerberus_pose_get_type (void) G_GNUC_CONST;
+GType cerberus_pose_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_pose_source_get_type (void) G_GNUC_CONST;
+GType cerberus_pose_source_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_pose_meta_api_get_type (void);
+GType cerberus_pose_meta_api_get_type(void);
 
 /**
  * cerberus_pose_init: (skip)
@@ -85,7 +85,7 @@ GType cerberus_pose_meta_api_get_type (void);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_pose_init (CerberusPose *pose);
+void cerberus_pose_init(CerberusPose* pose);
 
 /**
  * cerberus_pose_new: (constructor)
@@ -97,7 +97,7 @@ void cerberus_pose_init (CerberusPose *pose);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPose *cerberus_pose_new (void);
+CerberusPose* cerberus_pose_new(void);
 
 /**
  * cerberus_pose_set_head:
@@ -109,7 +109,7 @@ CerberusPose *cerberus_pose_new (void);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_pose_set_head (CerberusPose *pose, const gchar *head);
+void cerberus_pose_set_head(CerberusPose* pose, const gchar* head);
 
 /**
  * cerberus_pose_copy:
@@ -120,7 +120,7 @@ void cerberus_pose_set_head (CerberusPose *pose, const gchar *head);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPose *cerberus_pose_copy (const CerberusPose *pose);
+CerberusPose* cerberus_pose_copy(const CerberusPose* pose);
 
 /**
  * cerberus_pose_free: (skip)
@@ -131,7 +131,7 @@ CerberusPose *cerberus_pose_copy (const CerberusPose *pose);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_pose_free (CerberusPose *pose);
+void cerberus_pose_free(CerberusPose* pose);
 
 /**
  * cerberus_pose_evaluate:
@@ -148,7 +148,8 @@ void cerberus_pose_free (CerberusPose *pose);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_pose_evaluate (const CerberusPose *pose, GstClockTime running_time, gdouble *pan, gdouble *tilt);
+gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_time, gdouble* pan,
+                                gdouble* tilt);
 
 /**
  * cerberus_event_new_pose:
@@ -161,7 +162,7 @@ gboolean cerberus_pose_evaluate (const CerberusPose *pose, GstClockTime running_
  * Since: 0.1
  */
 CERBERUS_API
-GstEvent *cerberus_event_new_pose (const CerberusPose *pose);
+GstEvent* cerberus_event_new_pose(const CerberusPose* pose);
 
 /**
  * cerberus_event_parse_pose:
@@ -175,7 +176,7 @@ GstEvent *cerberus_event_new_pose (const CerberusPose *pose);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPose *cerberus_event_parse_pose (GstEvent *event);
+CerberusPose* cerberus_event_parse_pose(GstEvent* event);
 
 /**
  * cerberus_buffer_set_pose:
@@ -189,7 +190,7 @@ CerberusPose *cerberus_event_parse_pose (GstEvent *event);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_buffer_set_pose (GstBuffer *buffer, const CerberusPose *pose);
+gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose);
 
 /**
  * cerberus_buffer_get_pose:
@@ -201,7 +202,7 @@ gboolean cerberus_buffer_set_pose (GstBuffer *buffer, const CerberusPose *pose);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusPose *cerberus_buffer_get_pose (GstBuffer *buffer);
+CerberusPose* cerberus_buffer_get_pose(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_peek_pose: (skip)
@@ -212,8 +213,8 @@ CerberusPose *cerberus_buffer_get_pose (GstBuffer *buffer);
  * Since: 0.1
  */
 CERBERUS_API
-const CerberusPose *cerberus_buffer_peek_pose (GstBuffer *buffer);
+const CerberusPose* cerberus_buffer_peek_pose(GstBuffer* buffer);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusPose, cerberus_pose_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusPose, cerberus_pose_free)
 
 G_END_DECLS

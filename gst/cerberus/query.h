@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -27,7 +27,7 @@ G_BEGIN_DECLS
  * Since: 0.1
  */
 CERBERUS_API
-GstQuery *cerberus_query_new_planes (void);
+GstQuery* cerberus_query_new_planes(void);
 
 /**
  * cerberus_query_is_planes:
@@ -38,7 +38,7 @@ GstQuery *cerberus_query_new_planes (void);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_query_is_planes (GstQuery *query);
+gboolean cerberus_query_is_planes(GstQuery* query);
 
 /**
  * cerberus_query_set_planes_wanted:
@@ -52,7 +52,7 @@ gboolean cerberus_query_is_planes (GstQuery *query);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_query_set_planes_wanted (GstQuery *query, gboolean wanted);
+gboolean cerberus_query_set_planes_wanted(GstQuery* query, gboolean wanted);
 
 /**
  * cerberus_query_parse_planes:
@@ -66,7 +66,7 @@ gboolean cerberus_query_set_planes_wanted (GstQuery *query, gboolean wanted);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_query_parse_planes (GstQuery *query, gboolean *wanted);
+gboolean cerberus_query_parse_planes(GstQuery* query, gboolean* wanted);
 
 /**
  * cerberus_pad_peer_wants_planes:
@@ -80,6 +80,6 @@ gboolean cerberus_query_parse_planes (GstQuery *query, gboolean *wanted);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_pad_peer_wants_planes (GstPad *pad);
+gboolean cerberus_pad_peer_wants_planes(GstPad* pad);
 
 G_END_DECLS

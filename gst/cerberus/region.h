@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -25,11 +25,7 @@ G_BEGIN_DECLS
  *
  * Since: 0.1
  */
-typedef enum {
-  CERBERUS_REGION_SEEN,
-  CERBERUS_REGION_COASTED,
-  CERBERUS_REGION_STOPPED
-} CerberusRegionState;
+typedef enum { CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_STOPPED } CerberusRegionState;
 
 /**
  * CerberusRegion:
@@ -80,14 +76,14 @@ struct _CerberusRegion {
   gpointer _cerberus_reserved[GST_PADDING];
 };
 
-#define CERBERUS_TYPE_REGION (cerberus_region_get_type ())
-#define CERBERUS_TYPE_REGION_STATE (cerberus_region_state_get_type ())
+#define CERBERUS_TYPE_REGION (cerberus_region_get_type())
+#define CERBERUS_TYPE_REGION_STATE (cerberus_region_state_get_type())
 
 CERBERUS_API
-GType cerberus_region_get_type (void) G_GNUC_CONST;
+GType cerberus_region_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_region_state_get_type (void) G_GNUC_CONST;
+GType cerberus_region_state_get_type(void) G_GNUC_CONST;
 
 /**
  * cerberus_region_init: (skip)
@@ -98,7 +94,7 @@ GType cerberus_region_state_get_type (void) G_GNUC_CONST;
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_region_init (CerberusRegion *region);
+void cerberus_region_init(CerberusRegion* region);
 
 /**
  * cerberus_region_new: (constructor)
@@ -110,7 +106,7 @@ void cerberus_region_init (CerberusRegion *region);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusRegion *cerberus_region_new (void);
+CerberusRegion* cerberus_region_new(void);
 
 /**
  * cerberus_region_copy:
@@ -121,7 +117,7 @@ CerberusRegion *cerberus_region_new (void);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusRegion *cerberus_region_copy (const CerberusRegion *region);
+CerberusRegion* cerberus_region_copy(const CerberusRegion* region);
 
 /**
  * cerberus_region_free: (skip)
@@ -132,7 +128,7 @@ CerberusRegion *cerberus_region_copy (const CerberusRegion *region);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_region_free (CerberusRegion *region);
+void cerberus_region_free(CerberusRegion* region);
 
 /**
  * cerberus_region_state_to_string:
@@ -143,7 +139,7 @@ void cerberus_region_free (CerberusRegion *region);
  * Since: 0.1
  */
 CERBERUS_API
-const gchar *cerberus_region_state_to_string (CerberusRegionState state);
+const gchar* cerberus_region_state_to_string(CerberusRegionState state);
 
 /**
  * cerberus_region_to_structure:
@@ -157,7 +153,7 @@ const gchar *cerberus_region_state_to_string (CerberusRegionState state);
  * Since: 0.1
  */
 CERBERUS_API
-GstStructure *cerberus_region_to_structure (const CerberusRegion *region);
+GstStructure* cerberus_region_to_structure(const CerberusRegion* region);
 
 /**
  * cerberus_region_from_structure:
@@ -171,7 +167,7 @@ GstStructure *cerberus_region_to_structure (const CerberusRegion *region);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusRegion *cerberus_region_from_structure (const GstStructure *structure);
+CerberusRegion* cerberus_region_from_structure(const GstStructure* structure);
 
 /**
  * cerberus_buffer_add_region:
@@ -188,7 +184,7 @@ CerberusRegion *cerberus_region_from_structure (const GstStructure *structure);
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_buffer_add_region (GstBuffer *buffer, const CerberusRegion *region);
+gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* region);
 
 /**
  * cerberus_buffer_get_regions:
@@ -203,7 +199,7 @@ gboolean cerberus_buffer_add_region (GstBuffer *buffer, const CerberusRegion *re
  * Since: 0.1
  */
 CERBERUS_API
-GPtrArray *cerberus_buffer_get_regions (GstBuffer *buffer);
+GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_remove_regions:
@@ -214,8 +210,8 @@ GPtrArray *cerberus_buffer_get_regions (GstBuffer *buffer);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_buffer_remove_regions (GstBuffer *buffer);
+void cerberus_buffer_remove_regions(GstBuffer* buffer);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusRegion, cerberus_region_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusRegion, cerberus_region_free)
 
 G_END_DECLS

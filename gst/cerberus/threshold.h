@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: LGPL-2.1-or-later */
 #pragma once
 
-#include <gst/gst.h>
 #include <cerberus/api.h>
+#include <gst/gst.h>
 
 G_BEGIN_DECLS
 
@@ -44,15 +44,15 @@ struct _CerberusThresholdMeta {
   CerberusThreshold threshold;
 };
 
-#define CERBERUS_TYPE_THRESHOLD (cerberus_threshold_get_type ())
-#define CERBERUS_THRESHOLD_META_API_TYPE (cerberus_threshold_meta_api_get_type ())
-#define CERBERUS_THRESHOLD_META_INFO (cerberus_threshold_meta_get_info ())
+#define CERBERUS_TYPE_THRESHOLD (cerberus_threshold_get_type())
+#define CERBERUS_THRESHOLD_META_API_TYPE (cerberus_threshold_meta_api_get_type())
+#define CERBERUS_THRESHOLD_META_INFO (cerberus_threshold_meta_get_info())
 
 CERBERUS_API
-GType cerberus_threshold_get_type (void) G_GNUC_CONST;
+GType cerberus_threshold_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
-GType cerberus_threshold_meta_api_get_type (void);
+GType cerberus_threshold_meta_api_get_type(void);
 
 /**
  * cerberus_threshold_meta_get_info: (skip)
@@ -62,7 +62,7 @@ GType cerberus_threshold_meta_api_get_type (void);
  * Since: 0.1
  */
 CERBERUS_API
-const GstMetaInfo *cerberus_threshold_meta_get_info (void);
+const GstMetaInfo* cerberus_threshold_meta_get_info(void);
 
 /**
  * cerberus_threshold_new: (constructor)
@@ -74,7 +74,7 @@ const GstMetaInfo *cerberus_threshold_meta_get_info (void);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusThreshold *cerberus_threshold_new (void);
+CerberusThreshold* cerberus_threshold_new(void);
 
 /**
  * cerberus_threshold_copy:
@@ -85,7 +85,7 @@ CerberusThreshold *cerberus_threshold_new (void);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusThreshold *cerberus_threshold_copy (const CerberusThreshold *threshold);
+CerberusThreshold* cerberus_threshold_copy(const CerberusThreshold* threshold);
 
 /**
  * cerberus_threshold_free: (skip)
@@ -96,7 +96,7 @@ CerberusThreshold *cerberus_threshold_copy (const CerberusThreshold *threshold);
  * Since: 0.1
  */
 CERBERUS_API
-void cerberus_threshold_free (CerberusThreshold *threshold);
+void cerberus_threshold_free(CerberusThreshold* threshold);
 
 /**
  * cerberus_buffer_add_threshold_meta: (skip)
@@ -110,7 +110,8 @@ void cerberus_threshold_free (CerberusThreshold *threshold);
  * Since: 0.1
  */
 CERBERUS_API
-CerberusThresholdMeta *cerberus_buffer_add_threshold_meta (GstBuffer *buffer, const CerberusThreshold *threshold);
+CerberusThresholdMeta* cerberus_buffer_add_threshold_meta(GstBuffer* buffer,
+                                                          const CerberusThreshold* threshold);
 
 /**
  * cerberus_buffer_set_threshold:
@@ -124,7 +125,7 @@ CerberusThresholdMeta *cerberus_buffer_add_threshold_meta (GstBuffer *buffer, co
  * Since: 0.1
  */
 CERBERUS_API
-gboolean cerberus_buffer_set_threshold (GstBuffer *buffer, const CerberusThreshold *threshold);
+gboolean cerberus_buffer_set_threshold(GstBuffer* buffer, const CerberusThreshold* threshold);
 
 /**
  * cerberus_buffer_get_threshold_meta: (skip)
@@ -135,7 +136,7 @@ gboolean cerberus_buffer_set_threshold (GstBuffer *buffer, const CerberusThresho
  * Since: 0.1
  */
 CERBERUS_API
-const CerberusThresholdMeta *cerberus_buffer_get_threshold_meta (GstBuffer *buffer);
+const CerberusThresholdMeta* cerberus_buffer_get_threshold_meta(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_get_threshold:
@@ -146,8 +147,8 @@ const CerberusThresholdMeta *cerberus_buffer_get_threshold_meta (GstBuffer *buff
  * Since: 0.1
  */
 CERBERUS_API
-CerberusThreshold *cerberus_buffer_get_threshold (GstBuffer *buffer);
+CerberusThreshold* cerberus_buffer_get_threshold(GstBuffer* buffer);
 
-G_DEFINE_AUTOPTR_CLEANUP_FUNC (CerberusThreshold, cerberus_threshold_free)
+G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusThreshold, cerberus_threshold_free)
 
 G_END_DECLS

@@ -21,7 +21,7 @@ constexpr double kAbrupt = sensing::radians(100);  // a second squared
 }  // namespace
 
 Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision::Size picture,
-               const Look& before, const Look& after) {
+               const motion::PanTilt& before, const motion::PanTilt& after) {
   constexpr int kGrid = 6;
   Turn sum;
   for (int j = 0; j < kGrid; ++j)
@@ -41,7 +41,7 @@ void BaseRate::reset() {
   *this = {};
 }
 
-void BaseRate::add(Time time, double seconds, double turn, double head_rate) {
+void BaseRate::add(motion::Time time, double seconds, double turn, double head_rate) {
   if (!(seconds > 0)) return;
   const double change = std::abs(head_rate - std::exchange(head_rate_, head_rate));
   if (change > kAbrupt * seconds) calm_from_ = time + kSettle;
@@ -52,7 +52,7 @@ void BaseRate::add(Time time, double seconds, double turn, double head_rate) {
   count_ = std::min(count_ + 1, kKept);
 }
 
-double BaseRate::at(Time time) const {
+double BaseRate::at(motion::Time time) const {
   std::array<double, kKept> rates;
   unsigned n = 0;
   for (; n < count_; ++n) {

@@ -4,16 +4,12 @@
 
 #include <array>
 
-#include "control/head_limits.h"
-#include "vision/lens.h"
-#include "vision/transform.h"
+#include "motion/head_limits.h"
+#include "motion/pan_tilt.h"
+#include "vision/geometry/lens.h"
+#include "vision/geometry/transform.h"
 
 namespace cerberus::control {
-
-// Where a head looked when a frame was taken, radians.
-struct Look {
-  double pan = 0, tilt = 0;
-};
 
 // Radians to the right and up.
 struct Turn {
@@ -26,29 +22,29 @@ struct Turn {
 // A mean over bearings, because a simple model's shift is one over pixels: at the border of a 60 degree lens a degree
 // has a third more of them than in the middle. NaN for an unknown lens or look.
 Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision::Size picture,
-               const Look& before, const Look& after);
+               const motion::PanTilt& before, const motion::PanTilt& after);
 
 // Turns of single frames as a rate: the mean of their middle half over kSpan, so that neither a frame that was
 // measured wrongly nor a camera that shakes is a robot that turns.
 class BaseRate {
  public:
-  static constexpr Time kSpan = std::chrono::milliseconds(300);
+  static constexpr motion::Time kSpan = std::chrono::milliseconds(300);
   static constexpr int kLeast = 3;  // frames, however long they take
-  static constexpr Time kStale =
+  static constexpr motion::Time kStale =
       std::chrono::milliseconds(700);  // after which what was seen last says nothing
-  static constexpr Time kSettle = std::chrono::milliseconds(150);  // a head may be that late
+  static constexpr motion::Time kSettle = std::chrono::milliseconds(150);  // a head may be that late
 
   void reset();
   // A frame taken at `time`, `seconds` after the one before. `turn`: of the base since then, radians; NaN: the picture
   // does not say. `head_rate`: the head's mean speed since then, radians a second. Where that changes abruptly, and
   // just after, a head that is a little late looks like a base that turns: such frames do not count.
-  void add(Time time, double seconds, double turn, double head_rate);
+  void add(motion::Time time, double seconds, double turn, double head_rate);
   // Radians a second, positive to the right. NaN: not known.
-  double at(Time time) const;
+  double at(motion::Time time) const;
 
  private:
   struct Entry {
-    Time time{};
+    motion::Time time{};
     double rate = 0;
   };
   static constexpr unsigned kKept = 64;
@@ -57,7 +53,7 @@ class BaseRate {
   std::array<Entry, kKept> entries_{};
   unsigned next_ = 0, count_ = 0;
   double head_rate_ = 0;
-  Time calm_from_{};
+  motion::Time calm_from_{};
 };
 
 }  // namespace cerberus::control

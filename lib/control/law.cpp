@@ -19,8 +19,8 @@ double positive(double value, double otherwise) {
   return value > 0 && std::isfinite(value) ? value : otherwise;
 }
 
-AxisCommand go(double position, double speed) {
-  return {AxisCommand::Kind::position, position, speed};
+motion::AxisCommand go(double position, double speed) {
+  return {motion::AxisCommand::Kind::position, position, speed};
 }
 
 }  // namespace
@@ -39,23 +39,24 @@ void Law::reset() {
   pan_moving_ = tilt_moving_ = sweeping_right_ = false;
 }
 
-AxisCommand Law::approach(double target, double position, bool& moving) const {
+motion::AxisCommand Law::approach(double target, double position, bool& moving) const {
   const double error = std::abs(target - position);
   moving = error > (moving ? options_.dead_band_stop : options_.dead_band_start);
-  return moving ? go(target, options_.gain * error) : AxisCommand{};
+  return moving ? go(target, options_.gain * error) : motion::AxisCommand{};
 }
 
-Order Law::track(vision::Point target, const vision::Lens& lens, const Pose& capture, const Pose& ahead) {
+Order Law::track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
+                 const motion::Pose& ahead) {
   const vision::Direction seen = lens.direction(target, capture.pan.position, capture.tilt.position);
   if (!std::isfinite(seen.bearing) || !std::isfinite(seen.elevation)) return {};
   Order order;
   order.doing = Doing::tracking;
-  const AxisLimits& pan = options_.limits.pan;
+  const motion::AxisLimits& pan = options_.limits.pan;
   const double straight = capture.pan.position + sensing::wrap(seen.bearing - capture.pan.position);
   double goal = straight;
   if (!pan.holds(straight)) {
     const double stop = pan.clamp(straight);
-    const Reach round = reach(seen.bearing, stop, pan);
+    const motion::Reach round = reach(seen.bearing, stop, pan);
     const bool worth = !round.limited && std::abs(straight - stop) > kGoRound;
     goal = worth ? round.position : stop;
     order.limited = !worth;
@@ -67,21 +68,21 @@ Order Law::track(vision::Point target, const vision::Lens& lens, const Pose& cap
   return order;
 }
 
-Order Law::turn(double direction, const Pose& ahead) const {
+Order Law::turn(double direction, const motion::Pose& ahead) const {
   Order order;
   order.doing = Doing::turning;
-  order.pan = {AxisCommand::Kind::velocity, direction * options_.turn_speed, 0};
-  const AxisLimits& pan = options_.limits.pan;
+  order.pan = {motion::AxisCommand::Kind::velocity, direction * options_.turn_speed, 0};
+  const motion::AxisLimits& pan = options_.limits.pan;
   order.limited =
       direction > 0 ? ahead.pan.position >= pan.to - kThere : ahead.pan.position <= pan.from + kThere;
   return order;
 }
 
-Order Law::search(const sensing::Interval& sector, const Pose& ahead) {
+Order Law::search(const sensing::Interval& sector, const motion::Pose& ahead) {
   if (!std::isfinite(sector.from) || !std::isfinite(sector.to)) return {};
   Order order;
   order.doing = Doing::searching;
-  const AxisLimits& pan = options_.limits.pan;
+  const motion::AxisLimits& pan = options_.limits.pan;
   const double from = pan.clamp(std::min(sector.from, sector.to));
   const double to = pan.clamp(std::max(sector.from, sector.to));
   order.limited = from != std::min(sector.from, sector.to) || to != std::max(sector.from, sector.to);
@@ -101,7 +102,8 @@ Order Law::zero() const {
   return order;
 }
 
-Order Law::update(const Wish& wish, const vision::Lens& lens, const Pose& capture, const Pose& ahead) {
+Order Law::update(const Wish& wish, const vision::Lens& lens, const motion::Pose& capture,
+                  const motion::Pose& ahead) {
   using fusion::Action;
   Order order;
   if (wish.action == Action::track && wish.target) {

@@ -13,15 +13,15 @@
 #include <cstdint>
 #include <optional>
 
-#include "control/pose.h"
 #include "fusion/rules.h"
+#include "motion/pose.h"
 #include "sensing/sectors.h"
-#include "vision/lens.h"
+#include "vision/geometry/lens.h"
 
 namespace cerberus::control {
 
 struct LawOptions {
-  Limits limits;
+  motion::Limits limits;
   double turn_speed = sensing::radians(40);       // radians a second, for turning, searching and returning
   double gain = 4;                                // radians a second for each radian of error
   double dead_band_start = sensing::radians(3);   // radians; never less than dead_band_stop
@@ -38,7 +38,7 @@ struct Wish {
 enum class Doing : std::uint8_t { holding, tracking, turning, searching, zeroing };
 
 struct Order {
-  AxisCommand pan, tilt;
+  motion::AxisCommand pan, tilt;
   Doing doing = Doing::holding;
   bool limited = false;  // what is wanted lies beyond a stop, and the head is (or goes) as near as it can
 };
@@ -52,13 +52,15 @@ class Law {
 
   // capture: where the head looked when the frame was taken. ahead: where it will be when this command reaches it.
   // Without a known lens nothing can be tracked: hold. The same calls give the same orders; nothing is allocated.
-  Order update(const Wish& wish, const vision::Lens& lens, const Pose& capture, const Pose& ahead);
+  Order update(const Wish& wish, const vision::Lens& lens, const motion::Pose& capture,
+               const motion::Pose& ahead);
 
  private:
-  AxisCommand approach(double target, double position, bool& moving) const;
-  Order track(vision::Point target, const vision::Lens& lens, const Pose& capture, const Pose& ahead);
-  Order turn(double direction, const Pose& ahead) const;
-  Order search(const sensing::Interval& sector, const Pose& ahead);
+  motion::AxisCommand approach(double target, double position, bool& moving) const;
+  Order track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
+              const motion::Pose& ahead);
+  Order turn(double direction, const motion::Pose& ahead) const;
+  Order search(const sensing::Interval& sector, const motion::Pose& ahead);
   Order zero() const;
 
   LawOptions options_;

@@ -71,10 +71,10 @@
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
 #include "inputs.hpp"
-#include "misfits.hpp"
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
+#include "settings_check.hpp"
 #include "text/numbers.h"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
@@ -97,7 +97,7 @@ struct State {  // video thread only
   double base_told = 0;      // to the PIR pads, degrees a second
   Time base_told_at{};
   int rules_sensors = 0;  // of which the rules speak; 0: any number
-  Misfits misfits;
+  SettingsCheck misfits;
 
   State() { gst_segment_init(&segment, GST_FORMAT_UNDEFINED); }
 };

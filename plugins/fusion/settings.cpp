@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "settings.hpp"
 
-#include "control/head_limits.h"
+#include "motion/head_limits.h"
 #include "sensing/angles.h"
 #include "shared/choices.hpp"
 
@@ -74,10 +74,10 @@ const Property<Settings> kTable[] = {
 const std::span<const Property<Settings>> kProperties = kTable;
 
 std::string limits_fault(const Settings& settings) {
-  control::Limits limits;
+  motion::Limits limits;
   limits.pan.from = sensing::radians(settings.pan_minimum);
   limits.pan.to = sensing::radians(settings.pan_maximum);
-  const std::string fault = control::check(limits);
+  const std::string fault = motion::check(limits);
   return fault.empty() ? fault : "No head has such limits: " + fault + ".";
 }
 

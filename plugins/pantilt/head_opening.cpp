@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "cerberus/private/messages.hpp"
+#include "deferred_notifications.hpp"
 #include "head_names.hpp"
-#include "outbox.hpp"
 
 namespace cerberus::plugin {
 
@@ -18,7 +18,7 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
     return nullptr;
   }
   const drivers::HeadSetup setup = head_setup(s);
-  if (const std::string wrong = control::check(setup.limits); !wrong.empty()) {
+  if (const std::string wrong = motion::check(setup.limits); !wrong.empty()) {
     CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
     return nullptr;
   }

@@ -7,7 +7,7 @@
 #include <functional>
 #include <memory>
 
-#include "drivers/head_runner.h"
+#include "drivers/head/head_runner.h"
 #include "head_settings.hpp"
 
 namespace cerberus::plugin {

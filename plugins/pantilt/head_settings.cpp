@@ -2,7 +2,7 @@
 #include "head_settings.hpp"
 
 #include "shared/choices.hpp"
-#include "times.hpp"
+#include "shared/times.hpp"
 
 namespace cerberus::plugin {
 
@@ -84,7 +84,7 @@ std::span<const Property<HeadSettings>> head_properties() {
   return kProperties;
 }
 
-control::Limits head_limits(const HeadSettings& s) {
+motion::Limits head_limits(const HeadSettings& s) {
   const double speed = radians(s.max_speed), acceleration = radians(s.max_acceleration);
   return {.pan = {radians(s.pan_min), radians(s.pan_max), speed, acceleration},
           .tilt = {radians(s.tilt_min), radians(s.tilt_max), speed, acceleration}};

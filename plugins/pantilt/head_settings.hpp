@@ -6,7 +6,7 @@
 #include <string>
 
 #include "control/law.h"
-#include "drivers/head.h"
+#include "drivers/head/head.h"
 #include "fusion/fuser.h"
 #include "shared/properties.hpp"
 
@@ -33,7 +33,7 @@ struct HeadSettings {
 
 std::span<const Property<HeadSettings>> head_properties();
 
-control::Limits head_limits(const HeadSettings& settings);
+motion::Limits head_limits(const HeadSettings& settings);
 control::LawOptions law_options(const HeadSettings& settings);
 // For who decides without pirfusion.
 fusion::FuserOptions fuser_options(const HeadSettings& settings);

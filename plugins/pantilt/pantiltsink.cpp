@@ -77,7 +77,7 @@
 #include <utility>
 
 #include "cerberus/private/element.hpp"
-#include "conductor.hpp"
+#include "head_session.hpp"
 #include "shared/complaint.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
@@ -86,7 +86,7 @@ GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
 namespace cerberus::plugin {
 namespace {
 
-using control::Time;
+using motion::Time;
 using sensing::radians;
 
 GstStaticPadTemplate sink_template =
@@ -100,7 +100,7 @@ struct State {  // streaming thread only
 };
 
 struct Private {
-  Conductor conductor;
+  HeadSession conductor;
   State state;
 };
 
@@ -141,26 +141,26 @@ gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query
 // Live or not decides what drives the head's time. Asked when the stream begins: then everybody upstream knows.
 void ask_whether_live(Private& self) {
   if (std::exchange(self.state.live_known, true)) return;
-  Conductor& conductor = self.conductor;
+  HeadSession& conductor = self.conductor;
   conductor.set_live(is_live(GST_BASE_SINK_PAD(conductor.sink)).value_or(false));
 }
 
 // A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts,
 // then has the lock while whoever was interrupted waits here, and goes on where it was when told to.
 template <typename Ask>
-GstFlowReturn persist(Conductor& conductor, Ask ask) {
+GstFlowReturn persist(HeadSession& conductor, Ask ask) {
   for (;;) {
-    Outbox out = conductor.outbox();
-    const Station::Answer answer = ask(out);
+    DeferredNotifications out = conductor.outbox();
+    const HeadController::Answer answer = ask(out);
     conductor.tell(out);
-    if (answer != Station::Answer::interrupted) return GST_FLOW_OK;
+    if (answer != HeadController::Answer::interrupted) return GST_FLOW_OK;
     const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink);
     if (flow != GST_FLOW_OK) return flow;
   }
 }
 
 // When a frame was taken, in running time. Without a time stamp: now, or one frame after the last.
-std::optional<Time> running_time(const Conductor& conductor, GstClockTime pts, std::optional<Time> newest,
+std::optional<Time> running_time(const HeadSession& conductor, GstClockTime pts, std::optional<Time> newest,
                                  Time length) {
   const GstSegment& segment = conductor.sink->segment;
   if (segment.format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID(pts)) {
@@ -173,7 +173,7 @@ std::optional<Time> running_time(const Conductor& conductor, GstClockTime pts, s
 }
 
 GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
-  Conductor& conductor = self.conductor;
+  HeadSession& conductor = self.conductor;
   // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
   while (!conductor.playing)
     if (const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink); flow != GST_FLOW_OK)
@@ -189,19 +189,20 @@ GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockT
                      GST_TIME_ARGS(pts));
     return GST_FLOW_OK;
   }
-  Station::Frame frame{.buffer = buffer,
-                       .running = *taken,
-                       .length = length,
-                       .now = conductor.now().value_or(*taken),
-                       .lens = vision::Lens(radians(conductor.field_of_view), {info.width, info.height}),
-                       .capture = std::nullopt};
+  HeadController::Frame frame{
+      .buffer = buffer,
+      .running = *taken,
+      .length = length,
+      .now = conductor.now().value_or(*taken),
+      .lens = vision::Lens(radians(conductor.field_of_view), {info.width, info.height}),
+      .capture = std::nullopt};
   const CerberusPose* pose = buffer ? cerberus_buffer_peek_pose(buffer) : nullptr;
   if (pose && g_strcmp0(pose->head, conductor.head) == 0) {
-    control::Pose& capture = frame.capture.emplace();
+    motion::Pose& capture = frame.capture.emplace();
     capture.pan.position = radians(pose->pan);
     capture.tilt.position = radians(pose->tilt);
   }
-  return persist(conductor, [&](Outbox& out) { return conductor.station.frame(frame, out); });
+  return persist(conductor, [&](DeferredNotifications& out) { return conductor.station.frame(frame, out); });
 }
 
 GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer) {
@@ -213,7 +214,7 @@ GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer
 
 gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
-  Conductor& conductor = self.conductor;
+  HeadSession& conductor = self.conductor;
   const GstEventType type = GST_EVENT_TYPE(event);
   GstClockTime from = GST_CLOCK_TIME_NONE, length = GST_CLOCK_TIME_NONE;
   if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
@@ -230,7 +231,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
     const Time begin = running_time(conductor, sink->segment.start, {}, {}).value_or(Time::zero());
-    persist(conductor, [&](Outbox& out) { return conductor.station.announce(begin, out); });
+    persist(conductor, [&](DeferredNotifications& out) { return conductor.station.announce(begin, out); });
   });
   return done;
 }
@@ -238,7 +239,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
 // The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes
 // under the lock too: a frame that comes in the middle waits until the change is through. The head obeys nobody before
 // the base class plays and there is a thread that watches over it, which begins when all is said.
-GstStateChangeReturn play(Conductor& conductor) {
+GstStateChangeReturn play(HeadSession& conductor) {
   GstElement* element = GST_ELEMENT(conductor.sink);
   GstElementClass* base = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class());
   conductor.station.interrupt(true);
@@ -252,7 +253,7 @@ GstStateChangeReturn play(Conductor& conductor) {
     base->change_state(element, GST_STATE_CHANGE_PLAYING_TO_PAUSED);
     done = GST_STATE_CHANGE_FAILURE;
   }
-  Outbox out = conductor.outbox();
+  DeferredNotifications out = conductor.outbox();
   GST_BASE_SINK_PREROLL_LOCK(element);
   conductor.station.interrupt(false);
   if (done != GST_STATE_CHANGE_FAILURE) {
@@ -278,7 +279,7 @@ bool open(Private& self) {
 
 GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, GstStateChange change) {
   Private& self = *cerberus_pan_tilt_sink_self(element)->priv;
-  Conductor& conductor = self.conductor;
+  HeadSession& conductor = self.conductor;
   if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(conductor);
   if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open(self)) return GST_STATE_CHANGE_FAILURE;
   if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED)
@@ -299,31 +300,37 @@ gboolean by_hand(CerberusPanTiltSink* sink, Act act) {
   return sink->priv->conductor.by_hand(act);
 }
 gboolean move_to(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
-  return by_hand(sink, [=](Station& station, std::optional<Time> at, Outbox& out) {
+  return by_hand(sink, [=](HeadController& station, std::optional<Time> at, DeferredNotifications& out) {
     return station.move(radians(pan), radians(tilt), false, at, out);
   });
 }
 gboolean move_by(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
-  return by_hand(sink, [=](Station& station, std::optional<Time> at, Outbox& out) {
+  return by_hand(sink, [=](HeadController& station, std::optional<Time> at, DeferredNotifications& out) {
     return station.move(radians(pan), radians(tilt), true, at, out);
   });
 }
 gboolean stay(CerberusPanTiltSink* sink) {
-  return by_hand(sink, [](Station& station, auto at, Outbox& out) { return station.stay(at, out); });
+  return by_hand(sink, [](HeadController& station, auto at, DeferredNotifications& out) {
+    return station.stay(at, out);
+  });
 }
 gboolean home(CerberusPanTiltSink* sink) {
   return move_to(sink, 0, 0);
 }
 gboolean automatic(CerberusPanTiltSink* sink) {
-  return by_hand(sink, [](Station& station, auto at, Outbox& out) { return station.automatic(at, out); });
+  return by_hand(sink, [](HeadController& station, auto at, DeferredNotifications& out) {
+    return station.automatic(at, out);
+  });
 }
 
 gboolean follow(CerberusPanTiltSink* sink, guint id) {
-  return by_hand(sink, [=](Station& station, auto at, Outbox& out) { return station.follow(id, at, out); });
+  return by_hand(sink, [=](HeadController& station, auto at, DeferredNotifications& out) {
+    return station.follow(id, at, out);
+  });
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  Conductor& conductor = cerberus_pan_tilt_sink_self(object)->priv->conductor;
+  HeadSession& conductor = cerberus_pan_tilt_sink_self(object)->priv->conductor;
   conductor.settings.set(head_properties(), id, value);
   guarded(conductor.sink, [&] { conductor.configure(); });
 }

@@ -8,7 +8,7 @@
 #include <bitset>
 #include <string>
 
-#include "drivers/sensor_setup.h"
+#include "drivers/sensor/sensor_setup.h"
 #include "shared/clock_times.hpp"
 #include "shared/properties.hpp"
 

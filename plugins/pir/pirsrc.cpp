@@ -55,7 +55,7 @@
 
 #include "clocks.hpp"
 #include "device_wait.hpp"
-#include "drivers/sensor_array.h"
+#include "drivers/sensor/sensor_array.h"
 #include "pir_settings.hpp"
 #include "reports.hpp"
 

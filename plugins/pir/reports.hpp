@@ -8,7 +8,7 @@
 #include <array>
 #include <string>
 
-#include "drivers/sensor_array.h"
+#include "drivers/sensor/sensor_array.h"
 
 namespace cerberus::plugin {
 

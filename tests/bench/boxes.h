@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "counts.h"
-#include "vision/regions.h"
+#include "vision/detection/regions.h"
 
 namespace cerberus::bench {
 

@@ -3,7 +3,7 @@
 // a lens shows of a camera that turns and shakes, with noise and something large that moves.
 // And real frames, where somebody else's estimate is there to compare with. Errors are
 // distances between where two transforms take a grid of 16 points, in pixels of the frame.
-#include "vision/camera_motion.h"
+#include "vision/ego_motion/camera_motion.h"
 
 #include <gst/gst.h>
 
@@ -21,7 +21,7 @@
 #include "support/data.h"
 #include "support/motions.h"
 #include "support/pictures.h"
-#include "vision/luma.h"
+#include "vision/image/luma.h"
 
 using namespace cerberus;
 using namespace cerberus::vision;

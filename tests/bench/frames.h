@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 namespace cerberus::bench {
 

@@ -12,7 +12,7 @@
 #include "asked.h"
 #include "boxes.h"
 #include "support/data.h"
-#include "vision/window.h"
+#include "vision/geometry/window.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;

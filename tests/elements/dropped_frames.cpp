@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Frames that somebody drops on the way (videorate, a leaky queue):
 // whatever stands where must go on seeing, and must say so where it cannot.
-#include "../../plugins/vision/camera_path.hpp"
+#include "../../plugins/shared/camera_path.hpp"
 
 #include "../support/motions.h"
 #include "scene.h"
 #include "support.h"
-#include "vision/lens.h"
+#include "vision/geometry/lens.h"
 
 namespace {
 

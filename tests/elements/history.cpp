@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // When a scene ends: the rule alone, and what every stage makes of it. After each kind of break nothing may be
 // published before three frames of the new scene were seen, and nothing of the old scene ever again.
-#include "../../plugins/vision/history.hpp"
+#include "../../plugins/detect/history.hpp"
 
 #include "scene.h"
 #include "support.h"

@@ -6,109 +6,100 @@
 #include <math.h>
 #include <string.h>
 
-#define CHECK(condition)                                                       \
-  do {                                                                         \
-    if (!(condition)) {                                                        \
-      g_printerr ("%s:%d: %s\n", __FILE__, __LINE__, #condition);              \
-      return 1;                                                                \
-    }                                                                          \
+#define CHECK(condition)                                         \
+  do {                                                           \
+    if (!(condition)) {                                          \
+      g_printerr("%s:%d: %s\n", __FILE__, __LINE__, #condition); \
+      return 1;                                                  \
+    }                                                            \
   } while (0)
 
-static int
-boxed_types_copy_and_compare (void)
-{
-  const GType types[] = { CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_THRESHOLD, CERBERUS_TYPE_REGION,
-    CERBERUS_TYPE_POSE, CERBERUS_TYPE_FUSION };
+static int boxed_types_copy_and_compare(void) {
+  const GType types[] = {CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_THRESHOLD, CERBERUS_TYPE_REGION,
+                         CERBERUS_TYPE_POSE, CERBERUS_TYPE_FUSION};
   guint i;
 
-  for (i = 0; i < G_N_ELEMENTS (types); ++i)
-    CHECK (G_TYPE_IS_BOXED (types[i]));
-  CHECK (G_TYPE_IS_ENUM (CERBERUS_TYPE_REGION_STATE) && G_TYPE_IS_ENUM (CERBERUS_TYPE_PLANE_KIND));
-  CHECK (G_TYPE_IS_ENUM (CERBERUS_TYPE_POSE_SOURCE) && G_TYPE_IS_ENUM (CERBERUS_TYPE_FUSION_ACTION));
+  for (i = 0; i < G_N_ELEMENTS(types); ++i) CHECK(G_TYPE_IS_BOXED(types[i]));
+  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_REGION_STATE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_PLANE_KIND));
+  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_POSE_SOURCE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_FUSION_ACTION));
   {
-    g_autoptr (CerberusRegion) region = cerberus_region_new ();
-    g_autoptr (CerberusRegion) copy = NULL;
+    g_autoptr(CerberusRegion) region = cerberus_region_new();
+    g_autoptr(CerberusRegion) copy = NULL;
 
-    CHECK (isnan (region->bearing) && isnan (region->distance) && !region->tracked);
+    CHECK(isnan(region->bearing) && isnan(region->distance) && !region->tracked);
     region->id = 3;
-    copy = (CerberusRegion *) g_boxed_copy (CERBERUS_TYPE_REGION, region);
-    CHECK (copy != region && copy->id == 3);
+    copy = (CerberusRegion*)g_boxed_copy(CERBERUS_TYPE_REGION, region);
+    CHECK(copy != region && copy->id == 3);
   }
   return 0;
 }
 
-static int
-a_buffer_carries_it_all (void)
-{
-  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
-  g_autoptr (CerberusThreshold) threshold = cerberus_threshold_new ();
-  g_autoptr (CerberusThreshold) threshold_back = NULL;
-  g_autoptr (CerberusCameraMotion) motion_back = NULL;
-  g_autoptr (GPtrArray) regions = NULL;
+static int a_buffer_carries_it_all(void) {
+  g_autoptr(GstBuffer) buffer = gst_buffer_new();
+  g_autoptr(CerberusThreshold) threshold = cerberus_threshold_new();
+  g_autoptr(CerberusThreshold) threshold_back = NULL;
+  g_autoptr(CerberusCameraMotion) motion_back = NULL;
+  g_autoptr(GPtrArray) regions = NULL;
   CerberusCameraMotion motion;
   CerberusRegion region;
 
-  cerberus_camera_motion_init (&motion);
-  CHECK (motion.matrix[0] == 1 && motion.from == GST_CLOCK_TIME_NONE);
-  CHECK (cerberus_buffer_set_camera_motion (buffer, &motion));
+  cerberus_camera_motion_init(&motion);
+  CHECK(motion.matrix[0] == 1 && motion.from == GST_CLOCK_TIME_NONE);
+  CHECK(cerberus_buffer_set_camera_motion(buffer, &motion));
   threshold->threshold = 12;
-  CHECK (cerberus_buffer_set_threshold (buffer, threshold));
-  cerberus_region_init (&region);
+  CHECK(cerberus_buffer_set_threshold(buffer, threshold));
+  cerberus_region_init(&region);
   region.width = region.height = 10;
-  CHECK (cerberus_buffer_add_region (buffer, &region));
+  CHECK(cerberus_buffer_add_region(buffer, &region));
 
-  motion_back = cerberus_buffer_get_camera_motion (buffer);
-  threshold_back = cerberus_buffer_get_threshold (buffer);
-  regions = cerberus_buffer_get_regions (buffer);
-  CHECK (motion_back != NULL && memcmp (motion_back->matrix, motion.matrix, sizeof motion.matrix) == 0);
-  CHECK (threshold_back != NULL && threshold_back->threshold == 12);
-  CHECK (regions->len == 1);
+  motion_back = cerberus_buffer_get_camera_motion(buffer);
+  threshold_back = cerberus_buffer_get_threshold(buffer);
+  regions = cerberus_buffer_get_regions(buffer);
+  CHECK(motion_back != NULL && memcmp(motion_back->matrix, motion.matrix, sizeof motion.matrix) == 0);
+  CHECK(threshold_back != NULL && threshold_back->threshold == 12);
+  CHECK(regions->len == 1);
   return 0;
 }
 
-static int
-a_head_and_its_sensors_are_told_of (void)
-{
-  g_autoptr (GstBuffer) buffer = gst_buffer_new ();
-  g_autoptr (CerberusPose) pose = cerberus_pose_new ();
-  g_autoptr (CerberusPose) heard = NULL;
-  g_autoptr (CerberusFusion) fusion = cerberus_fusion_new ();
-  g_autoptr (GstEvent) event = NULL;
-  g_autoptr (GstCaps) caps = NULL;
+static int a_head_and_its_sensors_are_told_of(void) {
+  g_autoptr(GstBuffer) buffer = gst_buffer_new();
+  g_autoptr(CerberusPose) pose = cerberus_pose_new();
+  g_autoptr(CerberusPose) heard = NULL;
+  g_autoptr(CerberusFusion) fusion = cerberus_fusion_new();
+  g_autoptr(GstEvent) event = NULL;
+  g_autoptr(GstCaps) caps = NULL;
   CerberusPirInfo info;
 
   pose->pan = 30;
-  event = cerberus_event_new_pose (pose);
-  heard = cerberus_event_parse_pose (event);
-  CHECK (heard != NULL && heard->pan == 30);
-  CHECK (cerberus_buffer_set_pose (buffer, pose) && cerberus_buffer_peek_pose (buffer)->pan == 30);
+  event = cerberus_event_new_pose(pose);
+  heard = cerberus_event_parse_pose(event);
+  CHECK(heard != NULL && heard->pan == 30);
+  CHECK(cerberus_buffer_set_pose(buffer, pose) && cerberus_buffer_peek_pose(buffer)->pan == 30);
   fusion->action = CERBERUS_FUSION_TURN_LEFT;
-  CHECK (cerberus_buffer_set_fusion (buffer, fusion));
-  CHECK (strcmp (cerberus_fusion_action_get_nick (cerberus_buffer_peek_fusion (buffer)->action), "turn-left") == 0);
-  cerberus_pir_info_init (&info);
-  caps = cerberus_pir_info_to_caps (&info);
-  CHECK (caps != NULL && cerberus_pir_info_from_caps (&info, caps, NULL) && info.sensors == 3);
+  CHECK(cerberus_buffer_set_fusion(buffer, fusion));
+  CHECK(strcmp(cerberus_fusion_action_get_nick(cerberus_buffer_peek_fusion(buffer)->action), "turn-left") ==
+        0);
+  cerberus_pir_info_init(&info);
+  caps = cerberus_pir_info_to_caps(&info);
+  CHECK(caps != NULL && cerberus_pir_info_from_caps(&info, caps, NULL) && info.sensors == 3);
   return 0;
 }
 
-static int
-versions_agree (void)
-{
+static int versions_agree(void) {
   guint major, minor, micro;
 
-  cerberus_version (&major, &minor, &micro);
-  CHECK (major == CERBERUS_VERSION_MAJOR && minor == CERBERUS_VERSION_MINOR && micro == CERBERUS_VERSION_MICRO);
-  CHECK (CERBERUS_CHECK_VERSION (CERBERUS_VERSION_MAJOR, CERBERUS_VERSION_MINOR, CERBERUS_VERSION_MICRO));
-  CHECK (!CERBERUS_CHECK_VERSION (CERBERUS_VERSION_MAJOR + 1, 0, 0));
-  CHECK (!CERBERUS_CHECK_VERSION (CERBERUS_VERSION_MAJOR, CERBERUS_VERSION_MINOR + 1, 0));
-  cerberus_version (NULL, NULL, NULL);
+  cerberus_version(&major, &minor, &micro);
+  CHECK(major == CERBERUS_VERSION_MAJOR && minor == CERBERUS_VERSION_MINOR &&
+        micro == CERBERUS_VERSION_MICRO);
+  CHECK(CERBERUS_CHECK_VERSION(CERBERUS_VERSION_MAJOR, CERBERUS_VERSION_MINOR, CERBERUS_VERSION_MICRO));
+  CHECK(!CERBERUS_CHECK_VERSION(CERBERUS_VERSION_MAJOR + 1, 0, 0));
+  CHECK(!CERBERUS_CHECK_VERSION(CERBERUS_VERSION_MAJOR, CERBERUS_VERSION_MINOR + 1, 0));
+  cerberus_version(NULL, NULL, NULL);
   return 0;
 }
 
-int
-main (int argc, char **argv)
-{
-  gst_init (&argc, &argv);
-  return boxed_types_copy_and_compare () + a_buffer_carries_it_all () + a_head_and_its_sensors_are_told_of () +
-      versions_agree ();
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  return boxed_types_copy_and_compare() + a_buffer_carries_it_all() + a_head_and_its_sensors_are_told_of() +
+         versions_agree();
 }

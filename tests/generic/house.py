@@ -68,6 +68,77 @@ def check_direction(path):
                 complain(path, f'names {word}: dependencies run lib <- gst <- plugins <- pipelines')
 
 
+# The folders of lib/ and the arrows between them, as docs/manual/architecture.md draws them. Arrows are transitive: what
+# a folder may use, it may use with all that stands below. `vision` itself is what stands above its seven folders.
+VISION = {
+    'vision/image': (),
+    'vision/geometry': ('vision/image',),
+    'vision/ego_motion': ('vision/geometry',),
+    'vision/change': ('vision/ego_motion',),
+    'vision/background': ('vision/change',),
+    'vision/detection': ('vision/geometry',),
+    'vision/tracking': ('vision/detection',),
+}
+ARROWS = VISION | {
+    'text': (),
+    'threads': (),
+    'vision': tuple(VISION),
+    'overlay': ('vision',),
+    'sensing': (),
+    'fusion': ('sensing',),
+    'motion': (),
+    'drivers': ('motion', 'sensing'),
+    'control': ('drivers', 'fusion', 'vision'),
+    'sim': ('vision', 'sensing', 'motion'),
+    'record': ('vision',),
+}
+BELOW_ALL = ('text', 'threads')
+FOR_ALL = {'sensing/angles.h'}  # degrees and radians
+MOST_FILES = 24  # a folder of lib/: what is larger has lost its walls
+
+
+def reachable(folder):
+    found, waiting = {folder, *BELOW_ALL}, [folder]
+    while waiting:
+        for below in ARROWS[waiting.pop()]:
+            if below not in found:
+                found.add(below)
+                waiting.append(below)
+    return found
+
+
+# A folder within one that is drawn belongs to it: drivers/gpio to drivers.
+def drawn_folder(path):
+    while path and path not in ARROWS:
+        path = os.path.dirname(path)
+    return path
+
+
+files_of_folder = {}
+
+
+def check_arrows(path):
+    parts = path.relative_to(TOP).parts
+    if parts[0] != 'lib' or path.suffix not in {'.h', '.cpp'}:
+        return
+    own = os.path.join(*parts[1:-1])
+    files_of_folder.setdefault(own, []).append(path)
+    folder = drawn_folder(own)
+    if not folder:
+        complain(path, 'stands in a folder of lib/ without arrows: draw them in ARROWS and in the architecture page')
+        return
+    for name in re.findall(r'^\s*#\s*include\s*"([^"]+)', path.read_text('utf-8'), re.M):
+        target = drawn_folder(os.path.dirname(name))
+        if name not in FOR_ALL and target not in reachable(folder):
+            complain(path, f'includes {name}: no arrow runs from {folder} to {target or "there"}')
+
+
+def check_folder_sizes():
+    for folder, members in files_of_folder.items():
+        if len(members) > MOST_FILES:
+            complain(TOP / 'lib' / folder, f'has {len(members)} files: more than {MOST_FILES} are no folder any more')
+
+
 # A plugin takes from no other plugin: what several need is in plugins/shared (or in lib, or in gst). And what only one
 # needs, and no header there, is not there.
 users_of_shared = {}
@@ -159,6 +230,7 @@ def check_named_pages(path):
 for each in files():
     check_licence(each)
     check_direction(each)
+    check_arrows(each)
     check_plugin(each)
     check_messages(each)
     check_installed_header(each)
@@ -168,6 +240,7 @@ for each in files():
 for each in TOP.glob('*.md'):
     check_links(each)
 check_shared()
+check_folder_sizes()
 check_commands()
 print('\n'.join(complaints))
 sys.exit(1 if complaints else 0)

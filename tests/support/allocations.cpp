@@ -29,14 +29,30 @@ void give_back(void* p) {
 }  // namespace
 
 namespace cerberus::tests {
-std::size_t allocations() { return taken; }
-std::ptrdiff_t held_bytes() { return held; }
+std::size_t allocations() {
+  return taken;
+}
+std::ptrdiff_t held_bytes() {
+  return held;
+}
 }  // namespace cerberus::tests
 
 // The array and nothrow forms of the standard library call these.
-void* operator new(std::size_t bytes) { return take(bytes, 0); }
-void* operator new(std::size_t bytes, std::align_val_t a) { return take(bytes, static_cast<std::size_t>(a)); }
-void operator delete(void* p) noexcept { give_back(p); }
-void operator delete(void* p, std::size_t) noexcept { give_back(p); }
-void operator delete(void* p, std::align_val_t) noexcept { give_back(p); }
-void operator delete(void* p, std::size_t, std::align_val_t) noexcept { give_back(p); }
+void* operator new(std::size_t bytes) {
+  return take(bytes, 0);
+}
+void* operator new(std::size_t bytes, std::align_val_t a) {
+  return take(bytes, static_cast<std::size_t>(a));
+}
+void operator delete(void* p) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::size_t) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::align_val_t) noexcept {
+  give_back(p);
+}
+void operator delete(void* p, std::size_t, std::align_val_t) noexcept {
+  give_back(p);
+}

@@ -3,16 +3,16 @@
 #pragma once
 
 #include "support/pictures.h"
-#include "vision/moving_area.h"
-#include "vision/three_frame_difference.h"
+#include "vision/background/foreground_mask.h"
+#include "vision/change/three_frame_difference.h"
 
 namespace cerberus::tests {
 
 // Both stages in a row, as the elements run them.
 struct AreaChain {
   explicit AreaChain(vision::Size size) : current(size), previous(size), mask(size) {}
-  vision::MovingAreaResult feed(vision::GrayView picture, const vision::Transform& motion = {},
-                                bool still = true) {
+  vision::ForegroundMaskResult feed(vision::GrayView picture, const vision::Transform& motion = {},
+                                    bool still = true) {
     const auto d = difference.update(picture, motion, current.view(), previous.view(), histogram);
     return area.update({.picture = picture,
                         .motion = motion,
@@ -34,7 +34,7 @@ struct AreaChain {
     return n;
   }
   vision::ThreeFrameDifference difference;
-  vision::MovingArea area;
+  vision::ForegroundMask area;
   vision::Image<std::uint8_t> current, previous, mask;
   vision::Histogram histogram{};
 };

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "vision/image.h"
-#include "vision/regions.h"
+#include "vision/detection/regions.h"
+#include "vision/image/image.h"
 
 namespace cerberus::tests {
 

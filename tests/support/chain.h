@@ -8,12 +8,12 @@
 #include <span>
 #include <vector>
 
-#include "vision/camera_motion.h"
-#include "vision/luma.h"
-#include "vision/moving_area.h"
-#include "vision/regions.h"
-#include "vision/three_frame_difference.h"
-#include "vision/tracks.h"
+#include "vision/background/foreground_mask.h"
+#include "vision/change/three_frame_difference.h"
+#include "vision/detection/regions.h"
+#include "vision/ego_motion/camera_motion.h"
+#include "vision/image/luma.h"
+#include "vision/tracking/tracker.h"
 
 namespace cerberus::tests {
 
@@ -35,7 +35,7 @@ class Chain {
   vision::Size analysis_size() const { return luma_.size(); }
   vision::GrayView mask() const { return mask_.view(); }
   const vision::CameraMotionResult& motion() const { return motion_result_; }
-  const vision::MovingAreaResult& area() const { return area_result_; }
+  const vision::ForegroundMaskResult& area() const { return area_result_; }
   std::span<const vision::Region> regions() const { return scaled_; }  // frame pixels
   std::span<const vision::Track> tracks() const { return tracks_; }
   // Bytes that all stages hold, planes included.
@@ -52,14 +52,14 @@ class Chain {
   vision::LumaScaler scaler_;
   vision::CameraMotion motion_;
   vision::ThreeFrameDifference difference_;
-  vision::MovingArea area_;
+  vision::ForegroundMask area_;
   vision::RegionFinder regions_;
   vision::Tracker tracker_;
   vision::Image<std::uint8_t> luma_, current_, mask_;
   vision::Histogram histogram_{};
   vision::CameraMotionResult motion_result_;
   vision::DifferenceResult difference_result_;
-  vision::MovingAreaResult area_result_;
+  vision::ForegroundMaskResult area_result_;
   std::vector<vision::Region> scaled_;
   std::span<const vision::Region> found_;
   std::span<const vision::Track> tracks_;

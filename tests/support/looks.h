@@ -9,7 +9,7 @@
 
 #include "support/motions.h"
 #include "support/pictures.h"
-#include "vision/camera_motion.h"
+#include "vision/ego_motion/camera_motion.h"
 
 namespace cerberus::tests {
 

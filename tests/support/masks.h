@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "vision/image.h"
-#include "vision/mask.h"
+#include "vision/image/image.h"
+#include "vision/image/mask.h"
 
 namespace cerberus::tests {
 

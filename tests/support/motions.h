@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "vision/transform.h"
+#include "vision/geometry/transform.h"
 
 namespace cerberus::tests {
 

@@ -12,8 +12,8 @@
 #include <cstdlib>
 #include <random>
 
-#include "vision/image.h"
-#include "vision/transform.h"
+#include "vision/geometry/transform.h"
+#include "vision/image/image.h"
 
 namespace cerberus::tests {
 

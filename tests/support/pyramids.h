@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "vision/pyramid.h"
+#include "vision/image/pyramid.h"
 
 namespace cerberus::tests {
 

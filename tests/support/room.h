@@ -8,7 +8,7 @@
 
 #include "support/chain.h"
 #include "support/sensor.h"
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 namespace cerberus::tests {
 

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 namespace cerberus::tests {
 

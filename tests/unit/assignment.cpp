@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The assignment against trying every possibility.
-#include "vision/assignment.h"
+#include "vision/tracking/assignment.h"
 
 #include <check.h>
 

@@ -11,6 +11,7 @@
 
 using namespace cerberus;
 using namespace cerberus::control;
+using namespace cerberus::motion;
 using sensing::degrees;
 using sensing::radians;
 using vision::Lens;
@@ -23,7 +24,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr Size kSize{320, 240};
 const Lens kLens(radians(60), kSize);
 
-Look look(double pan, double tilt = 0) {
+PanTilt look(double pan, double tilt = 0) {
   return {radians(pan), radians(tilt)};
 }
 

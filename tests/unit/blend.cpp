@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/blend.h"
+#include "overlay/blend.h"
 
 #include <check.h>
 
@@ -12,6 +12,7 @@
 #include "support/suite.h"
 #include "support/wrong.h"
 
+using namespace cerberus::overlay;
 using namespace cerberus::vision;
 using cerberus::tests::Wrong;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How right the camera motion is, on a synthetic scene whose true motion is known exactly.
-#include "vision/camera_motion.h"
+#include "vision/ego_motion/camera_motion.h"
 
 #include <check.h>
 
@@ -13,7 +13,7 @@
 #include "support/allocations.h"
 #include "support/looks.h"
 #include "support/suite.h"
-#include "vision/lens.h"
+#include "vision/geometry/lens.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // When the camera stands, and when a scene begins.
-#include "vision/camera_motion.h"
+#include "vision/ego_motion/camera_motion.h"
 
 #include <check.h>
 

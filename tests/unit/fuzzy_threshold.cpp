@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The threshold by indices of fuzziness against an example computed by hand (fractions), and against the definition
 // written out as sums.
-#include "vision/fuzzy_threshold.h"
+#include "vision/change/fuzzy_threshold.h"
 
 #include <check.h>
 

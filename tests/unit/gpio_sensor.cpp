@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // GPIO sensors on a chip that does what it is told, also what no simulated one of the kernel's does: refuses a line
 // without a reason, loses edges, goes away between two calls. (tests/hardware has the kernel's own, with libgpiod.)
-#include "drivers/gpio_sensor.h"
+#include "drivers/gpio/gpio_sensor.h"
 
 #include <algorithm>
 #include <cerrno>

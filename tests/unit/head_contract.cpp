@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What every head driver promises, whatever it drives. A new driver adds a line to kDrivers.
-#include "drivers/head.h"
+#include "drivers/head/head.h"
 
 #include <check.h>
 
@@ -12,7 +12,7 @@
 
 #include "support/text.h"
 
-using namespace cerberus::control;
+using namespace cerberus::motion;
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
 using cerberus::sensing::radians;

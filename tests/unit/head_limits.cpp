@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "control/head_limits.h"
+#include "motion/head_limits.h"
 
 #include <check.h>
 
@@ -11,7 +11,7 @@
 #include "support/suite.h"
 #include "support/text.h"
 
-using namespace cerberus::control;
+using namespace cerberus::motion;
 using cerberus::sensing::degrees;
 using cerberus::sensing::radians;
 using cerberus::tests::assert_text;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A head that blocks must block nobody else. The scripted head blocks on
 // pipes, so nothing here waits for a clock but the patience that is tested.
-#include "drivers/head_runner.h"
+#include "drivers/head/head_runner.h"
 
 #include <check.h>
 #include <poll.h>
@@ -15,7 +15,7 @@
 #include "support/suite.h"
 #include "support/text.h"
 
-using namespace cerberus::control;
+using namespace cerberus::motion;
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
 using cerberus::tests::assert_text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/height_prior.h"
+#include "vision/detection/height_prior.h"
 
 #include <check.h>
 

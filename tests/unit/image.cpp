@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 #include <check.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Sizes and shares of pixels worked out by hand.
-#include "vision/inset.h"
+#include "overlay/inset.h"
 
 #include <check.h>
 
@@ -8,6 +8,7 @@
 
 #include "support/suite.h"
 
+using namespace cerberus::overlay;
 using namespace cerberus::vision;
 
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Labelling against a flood fill that shares no line with it, and against pictures small enough to count by
 // hand.
-#include "vision/labelling.h"
+#include "vision/image/labelling.h"
 
 #include <algorithm>
 #include <random>

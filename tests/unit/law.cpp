@@ -8,12 +8,13 @@
 #include <limits>
 #include <random>
 
-#include "drivers/simulated_head.h"
+#include "drivers/simulated/simulated_head.h"
 #include "support/allocations.h"
 #include "support/suite.h"
 #include "support/text.h"
 
 using namespace cerberus::control;
+using namespace cerberus::motion;
 using namespace std::chrono_literals;
 using cerberus::fusion::Action;
 using cerberus::sensing::degrees;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The lens against angles and distances worked out by hand: 640x480 behind 90 degrees, so f = 320 pixels, tan
 // = 1 at the picture's edge.
-#include "vision/lens.h"
+#include "vision/geometry/lens.h"
 
 #include <check.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A change of light between two pictures, against changes that were made by hand.
-#include "vision/light.h"
+#include "vision/change/light.h"
 
 #include <check.h>
 
@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "support/suite.h"
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The kernels of light against their scalar references, on every vector target of this processor, and the references
 // against values computed by hand.
-#include "vision/light_kernels.h"
+#include "vision/change/light_kernels.h"
 
 #include <check.h>
 

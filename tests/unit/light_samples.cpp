@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Which pixels are samples, said a second time.
-#include "vision/light_samples.h"
+#include "vision/change/light_samples.h"
 
 #include <check.h>
 

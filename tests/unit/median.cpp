@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Medians by hand, and noise of known strength.
-#include "vision/median.h"
+#include "vision/image/median.h"
 
 #include <array>
 #include <cmath>

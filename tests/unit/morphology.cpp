@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Masks of bits and their morphology against the definitions and hand-made pictures.
-#include "vision/morphology.h"
+#include "vision/image/morphology.h"
 
 #include <check.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Edges that blur has drawn out are nothing that moves, and what moves in a blurred frame is.
-#include "vision/motion_blur.h"
+#include "vision/background/motion_blur.h"
 
 #include <check.h>
 
@@ -74,7 +74,7 @@ struct Blur {
   Image<std::uint8_t> age{kSize};
   std::vector<RowSpan> spans{static_cast<std::size_t>(kSize.height), RowSpan{0, kSize.width}};
   Blur() {
-    blur.make_room(kSize);
+    blur.preallocate(kSize);
     age.fill_bytes(10);
   }
   double sharpness(const Image<std::uint8_t>& frame, const Image<std::uint8_t>& memory) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The robust fit on correspondences made from a known motion.
-#include "vision/motion_fit.h"
+#include "vision/ego_motion/motion_fit.h"
 
 #include <check.h>
 
@@ -10,8 +10,8 @@
 #include "support/allocations.h"
 #include "support/motions.h"
 #include "support/suite.h"
-#include "vision/lens.h"
-#include "vision/motion_least_squares.h"
+#include "vision/ego_motion/motion_least_squares.h"
+#include "vision/geometry/lens.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;

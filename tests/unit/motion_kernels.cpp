@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The vector kernels of the camera motion estimate against plain loops, on memory that ends at an unreadable page.
-#include "vision/motion_kernels.h"
+#include "vision/ego_motion/motion_kernels.h"
+#include "vision/image/filter_kernels.h"
 
 #include <check.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Patches found again: where, which guess they like, how many follow a motion, what noise they leave.
-#include "vision/patch_matches.h"
+#include "vision/ego_motion/patch_matches.h"
 
 #include <check.h>
 

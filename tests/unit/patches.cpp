@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Pyramid, choice of patches, and following one.
-#include "vision/patches.h"
+#include "vision/ego_motion/patches.h"
 
 #include <check.h>
 
@@ -9,7 +9,7 @@
 #include "support/pictures.h"
 #include "support/pyramids.h"
 #include "support/targets.h"
-#include "vision/global_shift.h"
+#include "vision/ego_motion/global_shift.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;

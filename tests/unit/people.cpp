@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Drawn people, so that the right boxes are known.
-#include "vision/people.h"
+#include "vision/detection/people.h"
 
 #include <check.h>
 
@@ -48,7 +48,7 @@ struct Scene {
         }
     if (window.width() <= 0) window = {0, 0, 10, 10};
     pack(mask.view(), bits.view());
-    finder.make_room(size);
+    finder.preallocate(size);
     return finder.find(bits.view(), window, prior);
   }
 };

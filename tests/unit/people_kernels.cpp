@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Scoring places for people: by hand, against the obvious loop for every processor's code, and to the last byte.
-#include "vision/people_kernels.h"
+#include "vision/detection/people_kernels.h"
 
 #include <climits>
 #include <random>

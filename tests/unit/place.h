@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "vision/tracks.h"
+#include "vision/tracking/tracker.h"
 
 namespace cerberus::tests {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Poses, their history, and the watchdog.
-#include "control/pose.h"
+#include "motion/pose.h"
 
 #include <check.h>
 
@@ -8,6 +8,7 @@
 #include "control/watchdog.h"
 
 using namespace cerberus::control;
+using namespace cerberus::motion;
 using namespace std::chrono_literals;
 
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The way of an axis against times and places worked out by hand, with limits that give round numbers: 2 a second and 4
 // a second squared, so 0.5 s and 0.5 of way to full speed.
-#include "control/profile.h"
+#include "motion/profile.h"
 
 #include <check.h>
 
@@ -12,7 +12,7 @@
 
 #include "../support/suite.h"
 
-using namespace cerberus::control;
+using namespace cerberus::motion;
 using namespace std::chrono_literals;
 using Kind = AxisCommand::Kind;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Recorded sensors: what their files and scripts say, and what is wrong with those that say nothing.
-#include "drivers/recording.h"
+#include "drivers/recorded/recording.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "drivers/sensor.h"
+#include "drivers/sensor/sensor.h"
 #include "support/says.h"
 #include "support/suite.h"
 #include "support/temporary_file.h"

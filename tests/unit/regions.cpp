@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/regions.h"
+#include "vision/detection/regions.h"
 
 #include <algorithm>
 #include <cmath>

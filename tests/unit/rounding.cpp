@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Rounding against the library's.
-#include "vision/rounding.h"
+#include "vision/image/rounding.h"
 
 #include <check.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // All sensors of a driver together: what is told when.
-#include "drivers/sensor_array.h"
+#include "drivers/sensor/sensor_array.h"
 
 #include <poll.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Sensors that block must block nobody else.
-#include "drivers/sensor_runner.h"
+#include "drivers/sensor/sensor_runner.h"
 
 #include <poll.h>
 #include <sys/eventfd.h>

@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "drivers/sensor.h"
+#include "drivers/sensor/sensor.h"
 
 #include "support/says.h"
 #include "support/suite.h"

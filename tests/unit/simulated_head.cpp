@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What only a simulated head does: latency, steps, play, noise. 1 a
 // second and 2 a second squared: 0.5 s and 0.25 of way to full speed.
-#include "drivers/simulated_head.h"
+#include "drivers/simulated/simulated_head.h"
 
 #include <check.h>
 
@@ -12,7 +12,7 @@
 #include "../support/allocations.h"
 #include "../support/suite.h"
 
-using namespace cerberus::control;
+using namespace cerberus::motion;
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
 using Kind = AxisCommand::Kind;

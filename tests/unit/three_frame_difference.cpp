@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Differences of three registered frames (Eq. 1, 2) against hand-computed pictures, and the light that is taken out.
-#include "vision/three_frame_difference.h"
+#include "vision/change/three_frame_difference.h"
 
 #include <check.h>
 
@@ -11,9 +11,9 @@
 #include "support/allocations.h"
 #include "support/pictures.h"
 #include "support/suite.h"
-#include "vision/blur.h"
-#include "vision/difference_kernels.h"
-#include "vision/light.h"
+#include "vision/change/difference_kernels.h"
+#include "vision/change/light.h"
+#include "vision/image/blur.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/trails.h"
+#include "overlay/trails.h"
 
 #include <check.h>
 
@@ -8,6 +8,7 @@
 #include "support/motions.h"
 #include "support/suite.h"
 
+using namespace cerberus::overlay;
 using namespace cerberus::vision;
 
 static const Size kFrame{320, 240};

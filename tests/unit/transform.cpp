@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "vision/transform.h"
+#include "vision/geometry/transform.h"
 
 #include <check.h>
 

@@ -41,8 +41,9 @@ struct Turning {
     }
     const Transform motion = to == pan ? Transform{} : lens.turn(pan * kDegree, 0, to * kDegree, 0);
     pan = to;
-    const auto found = tracker.update(regions, motion, 0.1, kFrame,
-                                      head ? std::optional(Gaze{lens, to * kDegree, 0}) : std::nullopt);
+    const auto found =
+        tracker.update(regions, motion, 0.1, kFrame,
+                       head ? std::optional(CameraOrientation{lens, to * kDegree, 0}) : std::nullopt);
     tracks.assign(found.begin(), found.end());
   }
   void watch(double from, double speed, int frames) {

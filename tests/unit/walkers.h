@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-#include "vision/tracks.h"
+#include "vision/tracking/tracker.h"
 
 namespace cerberus::tests {
 

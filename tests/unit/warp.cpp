@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The warp against its floating point reference and against hand-made cases.
-#include "vision/warp.h"
+#include "vision/geometry/warp.h"
 
 #include <check.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Where a window lies, against angles worked out by hand and against the lens; its pixels, against the definition in
 // floating point.
-#include "vision/window.h"
+#include "vision/geometry/window.h"
 
 #include <check.h>
 
@@ -11,7 +11,7 @@
 
 #include "support/pictures.h"
 #include "support/suite.h"
-#include "vision/lens.h"
+#include "vision/geometry/lens.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;

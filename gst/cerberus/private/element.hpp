@@ -104,22 +104,23 @@ inline void post_current_exception(GstElement* element) noexcept {
 // Runs `body` and returns its result; whatever it throws becomes one error message on `element`, and
 // `fallback`.
 //   return guarded(self, GST_FLOW_ERROR, [&] { ...; return GST_FLOW_OK; });
-template <typename Element, typename Fallback, typename Body>
-auto guarded(Element* element, Fallback fallback, Body&& body) noexcept -> std::invoke_result_t<Body> {
+template <typename Element, typename Fallback, typename TrackHypothesis>
+auto guarded(Element* element, Fallback fallback, TrackHypothesis&& body) noexcept
+    -> std::invoke_result_t<TrackHypothesis> {
   try {
-    return std::forward<Body>(body)();
+    return std::forward<TrackHypothesis>(body)();
   } catch (...) {
     detail::post_current_exception(reinterpret_cast<GstElement*>(element));
   }
-  return static_cast<std::invoke_result_t<Body>>(fallback);
+  return static_cast<std::invoke_result_t<TrackHypothesis>>(fallback);
 }
 
 // The same for bodies without a result.
-template <typename Element, typename Body>
-  requires std::is_void_v<std::invoke_result_t<Body>>
-void guarded(Element* element, Body&& body) noexcept {
+template <typename Element, typename TrackHypothesis>
+  requires std::is_void_v<std::invoke_result_t<TrackHypothesis>>
+void guarded(Element* element, TrackHypothesis&& body) noexcept {
   try {
-    std::forward<Body>(body)();
+    std::forward<TrackHypothesis>(body)();
   } catch (...) {
     detail::post_current_exception(reinterpret_cast<GstElement*>(element));
   }

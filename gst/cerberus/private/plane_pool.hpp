@@ -9,7 +9,7 @@
 #include <memory>
 #include <utility>
 
-#include "vision/image.h"
+#include "vision/image/image.h"
 
 namespace cerberus {
 

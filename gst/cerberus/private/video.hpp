@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "vision/luma.h"
+#include "vision/image/luma.h"
 
 namespace cerberus {
 

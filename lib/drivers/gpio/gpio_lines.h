@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Lines of one GPIO chip: the part of libgpiod that the sensors need, alike for libgpiod 1.6 (gpio_lines_v1.cpp) and
+// 2.x (gpio_lines_v2.cpp), which differ in every call. The build takes one of the two by the library's version.
+// Functions that can fail return errno, 0 = good.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/sensor/sensor_setup.h"
+
+namespace cerberus::drivers {
+
+struct GpioEdge {
+  Time time{};         // CLOCK_MONOTONIC, the kernel's stamp
+  std::size_t line{};  // its place in what was requested
+  bool level = false;
+};
+
+class GpioLines {
+ public:
+  GpioLines();
+  ~GpioLines();
+
+  int open(const std::string& path);
+  void close() noexcept;  // everything free again; safe at any time and any number of times
+
+  // Of the open chip.
+  std::string name() const;   // "gpiochip0"
+  std::string label() const;  // what the kernel's driver calls it
+  unsigned count() const;
+  int find(const std::string& line) const;  // offset of a line by its name; -1: no such
+  std::string user(unsigned offset) const;  // who has the line; empty: nobody, or nobody knows
+
+  // Once each. Inputs report both edges, outputs begin low.
+  int request_inputs(std::span<const unsigned> offsets, LineBias bias);
+  int request_outputs(std::span<const unsigned> offsets);
+
+  int fd() const;  // readable when an input line had an edge; -1: nothing requested
+  // Appends the edges that wait, oldest first of each line, never blocks.
+  int read(std::vector<GpioEdge>& edges);
+  int levels(std::vector<bool>& levels);     // of the input lines
+  int set(const std::vector<bool>& levels);  // of the output lines
+
+ private:
+  struct Handles;
+  std::unique_ptr<Handles> handles_;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sensors on lines of a GPIO chip, with the kernel's time stamps; nothing is polled for edges. LEDs on output lines of
+// the same chip. read() also asks for the lines' levels: an edge that the kernel had to drop does not leave a
+// sensor wrong for ever, and a chip that went away is noticed although kernels before 6.5 do not wake who waits for it.
+#pragma once
+
+#include "drivers/gpio/gpio_lines.h"
+#include "drivers/sensor/sensor.h"
+
+namespace cerberus::drivers {
+
+class GpioSensor final : public Sensor {
+ public:
+  ~GpioSensor() override { close(); }
+  SensorError open(const SensorSetup& setup) override;
+  void close() noexcept override;
+  void stop() noexcept override;
+  int fd() const override { return lines_.fd(); }
+  SensorError read(Time now, std::vector<SensorEdge>& edges) override;
+  SensorError show(std::span<const sensing::Presence> readings) override;
+  std::string place(int sensor) const override;
+
+ private:
+  SensorError open_chip(const std::string& wanted);
+  SensorError offsets_of(const std::vector<std::string>& names, std::vector<unsigned>& offsets) const;
+  SensorError request(const SensorSetup& setup);
+  SensorError refused(int error, std::span<const unsigned> offsets);
+  SensorError gone(int error) const;
+  void begin(Time now, std::vector<SensorEdge>& edges);
+  SensorError take(std::vector<SensorEdge>& edges, Time now);
+
+  GpioLines lines_;
+  std::string chip_;  // as named in messages
+  std::vector<unsigned> inputs_, outputs_;
+  std::size_t reds_ = 0, blues_ = 0;
+  std::vector<GpioEdge> waiting_;
+  std::vector<bool> levels_, asked_, leds_;  // as told, as the chip says, as lit
+  bool open_ = false, begun_ = false;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Sensors that a file remembers (recording.h says how it looks). The whole file is read and checked when it is opened.
+#pragma once
+
+#include "drivers/recorded/recorded_sensor.h"
+
+namespace cerberus::drivers {
+
+class ReplaySensor final : public RecordedSensor {
+ public:
+  SensorError open(const SensorSetup& setup) override;
+};
+
+}  // namespace cerberus::drivers

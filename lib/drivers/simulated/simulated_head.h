@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A head made of numbers: speed, acceleration, steps, play, latency, a noisy position sensor. Deterministic: the same
+// commands with the same times give the same way, and the noise is a function of seed and time alone.
+//
+//   command at t -> from t + latency on the motors follow motion::Plan -> the camera follows the motor with play:
+//   while the motor turns to the right, camera = max(camera, motor - backlash / 2),
+//   to the left min(camera, motor + backlash / 2)
+#pragma once
+
+#include <array>
+
+#include "drivers/head/head.h"
+
+namespace cerberus::drivers {
+
+class SimulatedHead final : public Head {
+ public:
+  std::string open(const HeadSetup& setup) override;
+  void close() noexcept override;
+  void stop(Time now) noexcept override;
+  std::string command(const HeadCommand& command) override;
+  std::string limit(Time now, const motion::Limits& limits) override;
+  std::string state(Time time, motion::Pose& pose) override;
+  bool simulated() const override { return true; }
+  bool blocks() const override { return false; }
+
+ private:
+  // One axis from a moment on: what the motor does, and where the camera was then.
+  struct Leg {
+    motion::Plan plan;
+    double camera = 0;
+  };
+  struct Chapter {
+    Time from{};
+    Leg pan, tilt;
+    HeadCommand command;
+  };
+  // As many commands as may be on their way: 5 s of latency at 50 a second.
+  static constexpr unsigned kKept = 256;
+
+  Chapter& nth_last(unsigned n) { return chapters_[(next_ + kKept - 1 - n) % kKept]; }
+  const Chapter& chapter_at(Time time, Time& end) const;
+  std::string obey(const HeadCommand& command);
+  std::string begin(const HeadCommand& command);
+  Leg follow(const Leg& leg, Time from, const motion::AxisCommand& command,
+             const motion::AxisLimits& limits) const;
+  motion::AxisState camera(const Leg& leg, Time time, Time& until) const;
+  double noise(Time time, unsigned axis) const;
+
+  HeadSetup setup_;
+  std::array<Chapter, kKept> chapters_{};
+  unsigned next_ = 0, count_ = 0;  // count 0: closed
+  Time told_{};                    // time of the last command
+};
+
+}  // namespace cerberus::drivers

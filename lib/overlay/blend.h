@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Small drawings onto a picture of any 8-bit layout: cost follows the drawing, not the picture.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "vision/image/image.h"
+
+namespace cerberus::overlay {
+
+// One component (Y, Cb, Cr, R, G, B or A) of a picture, and what it is for an opaque colour of 0..255:
+// red * R + green * G + blue * B + offset.
+struct BlendComponent {
+  std::uint8_t* data = nullptr;  // of pixel (0, 0)
+  std::ptrdiff_t stride = 0;     // bytes between rows of samples
+  int step = 1;                  // bytes between samples
+  int shift_x = 0, shift_y = 0;  // a sample stands for 2^shift pixels
+  double red = 0, green = 0, blue = 0, offset = 0;
+};
+
+// A drawing in words of alpha, red, green, blue from the highest byte down, colours multiplied by alpha (Porter and
+// Duff, SIGGRAPH 1984), over the picture with its top left corner at pixel (x, y): c := c_drawing + c (1 - alpha). A
+// sample that stands for several pixels takes their mean. The drawing lies inside the picture.
+void blend(vision::View<const std::uint32_t> drawing, int x, int y, std::span<const BlendComponent> picture);
+
+}  // namespace cerberus::overlay

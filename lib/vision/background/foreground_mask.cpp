@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/background/foreground_mask.h"
+
+#include <algorithm>
+
+#include "vision/background/background_model.h"
+#include "vision/image/mask.h"
+#include "vision/image/median.h"
+#include "vision/image/morphology.h"
+
+namespace cerberus::vision {
+
+struct ForegroundMask::State {
+  ForegroundMaskOptions options;
+  BitMask now, before;
+  Morphology morphology;
+  BackgroundModel memory;
+};
+
+namespace {
+
+// What differs from the scene is where the object is now: it has no leading and no common part. Who asks for one asks
+// for the sets of the two differences.
+bool uses_memory(const ForegroundMaskOptions& options) {
+  return options.memory && options.area == Area::all;
+}
+
+}  // namespace
+
+ForegroundMask::ForegroundMask() : state_(std::make_unique<State>()) {}
+ForegroundMask::~ForegroundMask() = default;
+ForegroundMask::ForegroundMask(ForegroundMask&&) noexcept = default;
+ForegroundMask& ForegroundMask::operator=(ForegroundMask&&) noexcept = default;
+
+void ForegroundMask::set_options(const ForegroundMaskOptions& options) {
+  // A memory that was switched off has not seen where the camera went since.
+  if (uses_memory(options) != uses_memory(state_->options)) state_->memory.reset();
+  state_->options = options;
+}
+void ForegroundMask::reset() {
+  state_->memory.reset();
+}
+
+ForegroundMaskResult ForegroundMask::update(const ForegroundMaskInput& input, MutableGrayView mask) {
+  State& s = *state_;
+  const Size size = mask.size();
+  ForegroundMaskResult result;
+  result.sigma = noise_sigma(*input.histogram);
+  result.fuzzy_threshold = fuzzy_threshold(*input.histogram, s.options.threshold);
+  result.threshold =
+      s.options.noise_floor ? clamp_to_noise(result.fuzzy_threshold, result.sigma) : result.fuzzy_threshold;
+  result.ready = input.frames >= 3 && (s.options.area == Area::all || !input.previous.empty());
+  if (uses_memory(s.options)) {
+    if (input.frames <= 1) s.memory.reset();
+    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still,
+                     input.seconds},
+                    mask);
+    if (result.ready) return result;
+  }
+  if (!result.ready) {
+    for (int y = 0; y < mask.height; ++y) std::fill_n(mask.row(y), mask.width, std::uint8_t{0});
+    return result;
+  }
+  s.now.resize(bit_mask_size(size));
+  // Eq. 3 with one Th for both differences, then M(k-1) and M(k).
+  binarise(input.current, result.threshold, s.now.view());
+  if (s.options.area != Area::all) {
+    s.before.resize(bit_mask_size(size));
+    binarise(input.previous, result.threshold, s.before.view());
+    if (s.options.area == Area::common)
+      intersect(s.now.view(), s.before.view(), s.now.view());
+    else
+      subtract(s.now.view(), s.before.view(), s.now.view());
+  }
+  if (s.options.noise_floor) s.morphology.vote(s.now.view(), size.width, 5);
+  unpack(s.now.view(), mask);
+  return result;
+}
+
+std::size_t ForegroundMask::bytes() const {
+  const State& s = *state_;
+  return s.memory.bytes() + s.now.bytes() + s.before.bytes() + s.morphology.bytes() + sizeof(State);
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From differences to the moving area: threshold, set algebra (paper Eq. 3, M(k-1), M(k)) and, in preset
+// `default`, a registered memory of the scene chosen by confidence.
+#pragma once
+
+#include <memory>
+
+#include "vision/change/fuzzy_threshold.h"
+#include "vision/geometry/transform.h"
+#include "vision/image/image.h"
+
+namespace cerberus::vision {
+
+enum class Area { leading, common, all };  // M(k), M(k-1), D(k)
+
+struct ForegroundMaskOptions {
+  FuzzyThresholdOptions threshold;
+  Area area = Area::all;
+  bool noise_floor = true;  // clamp Th to the measured noise
+  bool memory = true;       // use the registered memory, where area is all
+};
+
+struct ForegroundMaskInput {
+  GrayView picture;     // F(k), analysis pixels
+  Transform motion;     // frame k-1 to k
+  bool still = false;   // the camera stands
+  GrayView current{};   // D(k)
+  GrayView previous{};  // D(k-1); empty where it is not known: only area=all goes without
+  const Histogram* histogram = nullptr;
+  int frames = 0;      // DifferenceResult::frames
+  double seconds = 0;  // since frame k-1; 0: unknown
+};
+
+struct ForegroundMaskResult {
+  int threshold = 0;        // Th used
+  int fuzzy_threshold = 0;  // Th as fuzziness alone chose it
+  double sigma = 0;         // noise of the plain difference
+  bool ready = false;       // false until all is known that three frames of the scene say: the mask is empty
+};
+
+class ForegroundMask {
+ public:
+  ForegroundMask();
+  ~ForegroundMask();
+  ForegroundMask(ForegroundMask&&) noexcept;
+  ForegroundMask& operator=(ForegroundMask&&) noexcept;
+
+  void set_options(const ForegroundMaskOptions& options);
+  void reset();
+  // mask := 0 or 255 a pixel. Not closed: RegionFinder closes it, once it has seen the gaps between people.
+  ForegroundMaskResult update(const ForegroundMaskInput& input, MutableGrayView mask);
+  std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cerberus::vision

@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/change/light.h"
+
+#include <algorithm>
+#include <array>
+#include <bitset>
+#include <cmath>
+
+#include "vision/image/median.h"
+#include "vision/image/rounding.h"
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr int kBand = LightSamples::kBandRows *
+                      LightSamples::kRowStep;  // rows; flicker at 100 Hz has a period of 70 rows and more
+constexpr int kMaximumBands = 512;             // more are not looked for
+constexpr int kBandReach = 64;                 // a band may be this much brighter or darker, 1/256
+constexpr int kFullWeight = 64;                // grey levels from which a sample says all it can of a gain
+constexpr int kLeastOfThird = 8;               // of a third of a band that tells of an object
+constexpr int kLeastSamples = 12;              // of a band that tells of its light
+constexpr double kLeastBand = 1.0;             // grey levels: weaker bands are left alone
+constexpr double kLeastGlobal = 0.7;           // the same for the picture as a whole
+
+// 1/256 of a gain that half a grey level is, 8 bits of fraction, by the level it is added to.
+constexpr auto kInverse = [] {
+  std::array<int, 256> inverse{};
+  for (int level = 0; level < 256; ++level) inverse[level] = 128 * 256 / (level ? level : 1);
+  return inverse;
+}();
+
+// A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter,
+// or mostly darker. No median is as far from 0 as kLeastBand otherwise.
+bool has_one_direction(const LightSums& sums) {
+  int thirds = 0, up = 0, down = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (sums.number[i] < kLeastOfThird) continue;  // white
+    ++thirds;
+    up += 2 * sums.brighter[i] > sums.number[i];
+    down += 2 * sums.darker[i] > sums.number[i];
+  }
+  return thirds > 0 && std::max(up, down) >= std::min(thirds, 2);
+}
+
+int number_of(const LightSums& sums) {
+  return sums.number[0] + sums.number[1] + sums.number[2];
+}
+
+}  // namespace
+
+void LightChange::clear() {
+  none_ = true;
+  gain_ = 1;
+  offset_ = 0;
+  agreement_ = 1;
+  std::fill(rows_.begin(), rows_.end(), RowLight{});
+  std::fill(doubt_.begin(), doubt_.end(), std::uint8_t{0});
+}
+
+void LightChange::relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
+                          std::uint8_t* out) const {
+  relight_row_with_white(reference, present, row(y), count, out);
+  const int doubt = y < static_cast<int>(doubt_.size()) ? doubt_[y] : 0;
+  if (!doubt) return;
+  for (int x = 0; x < count; ++x) {
+    const int reach = (out[x] * doubt + 255) >> 8;
+    out[x] = static_cast<std::uint8_t>(
+        std::clamp<int>(present[x], std::max(out[x] - reach, 0), std::min(out[x] + reach, 255)));
+  }
+}
+
+RowLight LightChange::light_of(int row) const {
+  return rows_[static_cast<std::size_t>(LightSamples::picture_row(row))];
+}
+
+void LightChange::estimate(const LightSamples& samples, bool still) {
+  rows_.resize(static_cast<std::size_t>(samples.height()));
+  doubt_.resize(rows_.size());
+  clear();
+  if (rows_.empty()) return;
+  const bool line = estimate_global(samples);
+  const bool bands = estimate_bands(samples);
+  if (still && line && bands) {
+    // Where bright and dark things lie in different bands, the line through all of the picture takes the bands for
+    // something that brightness does. Then the bands come first. Which is right shows in what remains.
+    const double remains = misfit(samples), agreement = agreement_;
+    std::array<RowLight, kMaximumBands * kBand> line_first;
+    std::ranges::copy(rows_, line_first.begin());
+    std::ranges::fill(rows_, RowLight{});
+    estimate_bands(samples);
+    estimate_global(samples);
+    estimate_bands(samples);
+    if (misfit(samples) > remains) {
+      std::copy_n(line_first.begin(), rows_.size(), rows_.begin());
+      agreement_ = agreement;
+    }
+  }
+  double gain = 0, offset = 0;
+  for (const RowLight& r : rows_) gain += r.gain, offset += r.offset;
+  gain_ = gain / (256.0 * samples.height());
+  offset_ = offset / (256.0 * samples.height());
+  none_ = std::ranges::all_of(rows_, [](const RowLight& r) { return r == RowLight{}; });
+}
+
+// Samples by brightness of the reference under the light so far (16 levels a class) and by what the present differs by.
+LightChange::Counts LightChange::count_differences(const LightSamples& samples) const {
+  Counts counts{};
+  for (int row = 0; row < samples.rows(); ++row)
+    samples.for_each(row, light_of(row), [&](int, int now, int value) {
+      const int difference = std::clamp(value - now, -kReach, kReach);
+      counts[now >> 4][difference + kReach] += 1 | static_cast<std::uint64_t>(now & 15) << 32;
+    });
+  return counts;
+}
+
+// True if there was any.
+bool LightChange::estimate_global(const LightSamples& samples) {
+  const auto counts = count_differences(samples);
+  std::array<int, kClasses> number{};
+  std::array<std::int64_t, kClasses> sum{};
+  for (int k = 0; k < kClasses; ++k) {
+    std::uint64_t all = 0;
+    for (const std::uint64_t count : counts[k]) all += count;
+    number[k] = static_cast<int>(all & 0xffffffffu);
+    sum[k] = std::int64_t{16} * k * number[k] + static_cast<std::int64_t>(all >> 32);
+  }
+  int total = 0;
+  for (const int n : number) total += n;
+  if (total < 64) return false;
+
+  struct Entry {
+    double a, e, weight;
+  };
+  std::array<Entry, kClasses> points;
+  int used = 0;
+  for (int k = 0; k < kClasses; ++k) {
+    if (number[k] * 100 < total) continue;
+    const double a = static_cast<double>(sum[k]) / number[k],
+                 e = median_of_levels(counts[k], number[k], -kReach);
+    if (a + e > kNearWhite || a + e < 4 || a > kNearWhite) continue;  // clipped: says nothing about gain
+    points[used++] = {a, e, static_cast<double>(number[k])};
+  }
+  // e = offset + slope (a - mean), by least squares whose weights fall with the distance from the line
+  // (Cauchy, scale one grey level). With a narrow range of brightness only a gain can be told, which
+  // is what exposures and lamps make.
+  // Where all is clipped, nothing can be told, and none is what either agrees with or not.
+  double slope = 0, offset = 0, mean = 0;
+  std::array<double, kClasses> w;
+  for (int i = 0; i < used; ++i) w[i] = points[i].weight;
+  for (int round = 0; round < 6 && used; ++round) {
+    double sw = 0, sa = 0, se = 0, saa = 0, sae = 0;
+    for (int i = 0; i < used; ++i) sw += w[i], sa += w[i] * points[i].a, se += w[i] * points[i].e;
+    mean = sa / sw;
+    offset = se / sw;
+    for (int i = 0; i < used; ++i) {
+      const double da = points[i].a - mean;
+      saa += w[i] * da * da;
+      sae += w[i] * da * (points[i].e - offset);
+    }
+    // As if black were known to stay black to within the noise: a ridge of 10 levels.
+    slope = (sae + 100 * sw * offset / std::max(mean, 16.0)) / (saa + 100 * sw);
+    for (int i = 0; i < used; ++i) {
+      const double r = points[i].e - offset - slope * (points[i].a - mean);
+      w[i] = points[i].weight / (1 + r * r);
+    }
+  }
+  const double at_zero = offset - slope * mean;
+  int agree = 0;
+  for (int k = 0; k < kClasses; ++k) {
+    if (!number[k]) continue;
+    const double a = static_cast<double>(sum[k]) / number[k];
+    const int e = static_cast<int>(std::lround(std::clamp(a + at_zero + slope * a, 0.0, 255.0) - a));
+    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d)
+      agree += static_cast<int>(counts[k][d + kReach]);
+  }
+  agreement_ = static_cast<double>(agree) / total;
+  // What is hardly visible between dark grey and light grey is not worth a correction.
+  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return false;
+  const double gain = std::clamp(1 + slope, 0.25, 4.0);
+  const auto relit = [&](RowLight row) {
+    return RowLight{round_to_int(row.gain * gain), round_to_int(row.offset * gain + 256 * at_zero)};
+  };
+  RowLight before, after = relit(before);  // most rows are alike
+  for (RowLight& row : rows_) {
+    if (row != before) before = row, after = relit(row);
+    row = after;
+  }
+  return true;
+}
+
+// What remains of the difference, grey levels a sample; objects count little.
+double LightChange::misfit(const LightSamples& samples) const {
+  std::int64_t sum = 0, number = 0;
+  for (int band = 0; band < samples.bands(); ++band) {
+    const LightSums sums = samples.sums_of_band(band, rows_);
+    sum += sums.misfit;
+    number += number_of(sums);
+  }
+  return number ? static_cast<double>(sum) / number : 0;
+}
+
+// The median of what a band's samples say of its gain, less 1. In the dark they say little; and whole levels make steps
+// there, so half of each is counted half a level either way.
+double LightChange::excess_of_band(const LightSamples& samples, int band) const {
+  std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
+  std::int64_t weights = 0;
+  for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row)
+    samples.for_each(row, light_of(row), [&](int level, int now, int value) {
+      if (level >= kWhite || now >= kNearWhite) return;
+      const int weight = std::min(now, kFullWeight), inverse = kInverse[now];
+      for (const int half : {-1, 1}) {
+        const int excess = ((2 * (value - now) + half) * inverse) >> 8;
+        counts[std::clamp(excess, -kBandReach, kBandReach) + kBandReach] += weight;
+      }
+      weights += 2 * weight;
+    });
+  return median_of_levels(counts, weights, -kBandReach) / 256;
+}
+
+// True if there were any.
+bool LightChange::estimate_bands(const LightSamples& samples) {
+  const int bands = samples.bands();
+  if (bands < 4 || bands > kMaximumBands) return false;
+  std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
+  std::bitset<kMaximumBands> known;
+  double strongest = 0;
+  for (int band = 0; band < bands; ++band) {
+    const LightSums sums = samples.sums_of_band(band, rows_);
+    const int number = number_of(sums);
+    known[band] = number >= kLeastSamples && sums.level > 0 && std::ranges::max(sums.number) >= kLeastOfThird;
+    if (!known[band]) continue;
+    excess[band] = has_one_direction(sums) ? excess_of_band(samples, band) : 0;
+    strongest = std::max(strongest, std::abs(excess[band]) * sums.level / number);
+  }
+  if (strongest < kLeastBand) return false;
+  // Where all is white or hidden, the bands next to it tell, but no more than that it is light like theirs.
+  double least = 1, most = -1;
+  for (int band = 0; band < bands; ++band)
+    if (known[band]) least = std::min(least, excess[band]), most = std::max(most, excess[band]);
+  for (int band = 0; band < bands; ++band) {
+    if (known[band]) continue;
+    int low = band, high = band;
+    while (low >= 0 && !known[low]) --low;
+    while (high < bands && !known[high]) ++high;
+    if (low < 0) low = high;
+    if (high == bands) high = low;
+    excess[band] =
+        excess[low] + (high > low ? (excess[high] - excess[low]) * (band - low) / (high - low) : 0);
+  }
+  for (int y = 0; y < static_cast<int>(rows_.size());
+       ++y) {  // linear between the middles of bands, and beyond the outermost
+    const double position = (y + 0.5) / kBand - 0.5;
+    const int low = std::clamp(static_cast<int>(position), 0, bands - 2);
+    const double k = 1 + excess[low] + (position - low) * (excess[low + 1] - excess[low]);
+    rows_[y].gain = round_to_int(rows_[y].gain * k);
+    rows_[y].offset = round_to_int(rows_[y].offset * k);
+    const double doubt = known[y / kBand] ? 0 : std::max(most - (k - 1), k - 1 - least);
+    doubt_[y] =
+        std::max(doubt_[y], static_cast<std::uint8_t>(std::clamp(std::lround(256 * doubt), 0L, 255L)));
+  }
+  return true;
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,341 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/detection/regions.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "vision/detection/height_prior.h"
+#include "vision/detection/people.h"
+#include "vision/detection/two_frame_confirmation.h"
+#include "vision/image/labelling.h"
+#include "vision/image/mask.h"
+#include "vision/image/morphology.h"
+#include "vision/image/preallocate.h"
+
+namespace cerberus::vision {
+namespace {
+
+constexpr double kLeastShare = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
+constexpr double kTallest = 2.2;      // heights of a person: what is taller is something else
+constexpr double kSameBlock = 0.5;    // of what two blocks cover: they are one, a frame apart
+constexpr double kSkirt = 0.3;        // columns lower than this share of the highest are a shadow
+constexpr int kYoung = 60;  // frames of a scene in which nobody knows yet what stood there when it began
+constexpr double kRim = 2;  // pixels at 320 columns by which a box goes beyond what moves in them
+constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
+constexpr std::size_t kMostWalkers = 32;  // who walk alone, at a time
+constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
+constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
+
+// One person seen alone is upright and reasonably filled.
+bool looks_like_one_person(const Component& c, const Bounds& body, Size picture) {
+  const double aspect = static_cast<double>(body.height()) / body.width();
+  return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * body.width() * body.height() &&
+         c.left > 0 && c.top > 0 && c.right < picture.width && c.bottom < picture.height;
+}
+
+Box box_of(const Bounds& w) {
+  return {static_cast<double>(w.left), static_cast<double>(w.top), static_cast<double>(w.width()),
+          static_cast<double>(w.height())};
+}
+
+}  // namespace
+
+struct RegionFinder::State {
+  RegionOptions options;
+  Size size;
+  BitMask moving, closed;
+  Morphology morphology;
+  Labeller labeller;
+  HeightPrior prior;
+  PeopleFinder people;
+  TwoFrameConfirmation newcomers;
+  struct Walker {      // a blob that looks like one person
+    Point foot, from;  // now, and where it was first seen, in today's pixels
+    double height;
+    int looks;
+  };
+  std::vector<Walker> walkers, walkers_before;
+  std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
+  std::vector<int> group;                  // of each component
+  std::vector<Bounds> bodies;              // of each component: its box without the shadow it casts
+  std::vector<int> columns;                // scratch: moving pixels of a component in each of its columns
+  std::vector<Region> regions;
+  int seen = 0;  // frames of this scene
+
+  std::uint32_t least() const {
+    return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
+                                                               : kLeastShare * size.area());
+  }
+  void preallocate(Size picture);
+  void trim();
+  void learn(const Transform& motion);
+  void group_components();
+  void explain(int group);
+  void add_plain(std::size_t component, bool person = false);
+  Box fit(const Box& expected, const Bounds& window, std::size_t self, std::span<const Person> all) const;
+  long moving_in(const Box& box) const;
+};
+
+void RegionFinder::State::preallocate(Size picture) {
+  for (BitMask* bits : {&moving, &closed}) bits->resize(bit_mask_size(picture));
+  labeller.preallocate(picture);
+  people.preallocate(picture);
+  newcomers.preallocate();
+  const std::size_t parts = labeller.limits().components;
+  vision::preallocate(walkers, kMostWalkers);
+  vision::preallocate(walkers_before, kMostWalkers);
+  vision::preallocate(blocks, kMostBlocks);
+  vision::preallocate(blocks_before, kMostBlocks);
+  vision::preallocate(group, std::min(parts, kMostParts));
+  vision::preallocate(bodies, parts);
+  vision::preallocate(columns, static_cast<std::size_t>(picture.width) + 1);
+  vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
+  size = picture;  // last: what threw is tried again
+}
+
+// A shadow on the floor is wide and low: a component's box ends where its columns become low.
+void RegionFinder::State::trim() {
+  const auto runs = labeller.runs();
+  bodies.clear();
+  for (std::size_t i = 0; const Component& c : labeller.components()) {
+    // Each run adds one to its columns: steps up and down first, summed up afterwards.
+    const int width = c.width();
+    columns.assign(static_cast<std::size_t>(width) + 1, 0);
+    auto run = std::ranges::lower_bound(runs, c.top, {}, &Run::row);
+    for (; run != runs.end() && run->row < c.bottom; ++run) {
+      if (run->component != i) continue;
+      ++columns[run->first - c.left];
+      --columns[run->end - c.left];
+    }
+    int highest = columns[0];
+    for (int x = 1; x < width; ++x) highest = std::max(highest, columns[x] += columns[x - 1]);
+    int left = 0, right = width;
+    while (columns[left] < kSkirt * highest) ++left;
+    while (columns[right - 1] < kSkirt * highest) --right;
+    bodies.push_back({c.left + left, c.top, c.left + right, c.bottom});
+    ++i;
+  }
+}
+
+// Only walkers teach: blobs that look like one person, with nobody and nothing near, of the same height for three
+// looks, and on the way. Pieces of somebody close by come in crowds, flicker and stay in place.
+void RegionFinder::State::learn(const Transform& motion) {
+  const auto parts = labeller.components();
+  std::swap(walkers, walkers_before);
+  walkers.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const Component& c = parts[i];
+    const Bounds& body = bodies[i];
+    if (!looks_like_one_person(c, body, size)) continue;
+    const double reach = 0.4 * c.height();
+    const bool alone = std::none_of(parts.begin(), parts.end(),
+                                    [&](const Component& o) { return &o != &c && are_within(reach, c, o); });
+    if (!alone || walkers.size() == kMostWalkers) continue;
+    const double h = c.height();
+    Walker walker{{(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};
+    walker.from = walker.foot;
+    for (const Walker& w : walkers_before) {
+      const Point foot = motion.apply(w.foot);
+      if (std::abs(foot.x - walker.foot.x) > 0.5 * h || std::abs(foot.y - walker.foot.y) > 0.3 * h ||
+          w.height < 0.85 * h || w.height > 1.18 * h)
+        continue;
+      walker.from = motion.apply(w.from);
+      walker.looks = w.looks + 1;
+      break;
+    }
+    const double walked = std::hypot(walker.foot.x - walker.from.x, walker.foot.y - walker.from.y);
+    if (walker.looks >= 3 && walked > 0.15 * h) prior.learn(c.bottom, h, h);
+    walkers.push_back(walker);
+  }
+}
+
+// Components that may be pieces of one person: one above the other within half a body height, or almost touching.
+void RegionFinder::State::group_components() {
+  const auto parts = labeller.components();
+  group.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    group[i] = static_cast<int>(i);
+    for (std::size_t j = 0; j < i; ++j) {
+      const Component &a = parts[i], &b = parts[j];
+      const double height = prior.height(std::max(a.bottom, b.bottom));
+      if (height <= 0) continue;
+      const int across = gap(a.left, a.right, b.left, b.right), down = gap(a.top, a.bottom, b.top, b.bottom);
+      if (across > 0.1 * height || down > 0.4 * height ||
+          std::max(a.bottom, b.bottom) - std::min(a.top, b.top) > 1.6 * height)
+        continue;
+      const int from = group[i], to = group[j];
+      for (std::size_t k = 0; k <= i; ++k)
+        if (group[k] == from || group[k] == to) group[k] = std::min(from, to);
+    }
+  }
+}
+
+void RegionFinder::State::add_plain(std::size_t i, bool person) {
+  const Component& c = labeller.components()[i];
+  if (regions.size() == regions.capacity()) return;
+  Box box = box_of(bodies[i]);
+  const double filled = c.area / box.area();
+  // What somebody leaves who stood there when the scene began differs from the memory as he does: the edge that moves
+  // has him on one side and the place he left on the other, and nobody can tell which is which yet. The box takes in
+  // both.
+  if (options.people && !person && seen <= kYoung) {
+    const double rim = std::max(1.0, std::round(kRim * size.width / 320));
+    const double left = std::max(box.x - rim, 0.0), top = std::max(box.y - rim, 0.0);
+    box = {left, top, std::min(box.right() + rim, static_cast<double>(size.width)) - left,
+           std::min(box.bottom() + rim, static_cast<double>(size.height)) - top};
+  }
+  regions.push_back({box, 0, person ? std::min(1.0, 0.5 + 0.5 * filled) : std::min(1.0, 0.45 * filled),
+                     static_cast<int>(i) + 1});
+}
+
+// Pulls the edges of an expected box to the moving pixels around it that no other person explains better, a quarter
+// of the body either way at most.
+Box RegionFinder::State::fit(const Box& expected, const Bounds& window, std::size_t self,
+                             std::span<const Person> all) const {
+  const double reach_x = 0.3 * expected.width, reach_y = 0.15 * expected.height;
+  const int left = std::max(window.left, static_cast<int>(expected.x - reach_x));
+  const int right = std::min(window.right, static_cast<int>(std::ceil(expected.right() + reach_x)));
+  const int top = std::max(window.top, static_cast<int>(expected.y - reach_y));
+  const int bottom = std::min(window.bottom, static_cast<int>(std::ceil(expected.bottom() + reach_y)));
+  Bounds seen{right, bottom, left, top};
+  for (int y = top; y < bottom; ++y) {
+    const std::uint64_t* bits = moving.view().row(y);
+    for_bits(bits, left, right, [&](int x) {
+      const bool inside = x >= expected.x && x < expected.right() && y >= expected.y && y < expected.bottom();
+      bool others = false;
+      for (std::size_t k = 0; k < all.size() && !inside && !others; ++k)
+        others = k != self && x >= all[k].box.x && x < all[k].box.right() && y >= all[k].box.y &&
+                 y < all[k].box.bottom();
+      if (others) return;
+      seen.left = std::min(seen.left, x);
+      seen.right = std::max(seen.right, x + 1);
+      seen.top = std::min(seen.top, y);
+      seen.bottom = std::max(seen.bottom, y + 1);
+    });
+  }
+  if (seen.width() <= 0 || seen.height() <= 0) return expected;
+  const auto blend = [](double a, double b) { return (a + b) / 2; };
+  const double x0 = blend(seen.left, expected.x), x1 = blend(seen.right, expected.right());
+  const double y0 = blend(seen.top, expected.y), y1 = blend(seen.bottom, expected.bottom());
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
+// Pixels of the cleaned mask whose centres lie in the box.
+long RegionFinder::State::moving_in(const Box& box) const {
+  const auto side = [](double at, int most) {
+    return std::clamp(static_cast<int>(std::ceil(at - 0.5)), 0, most);
+  };
+  const int left = side(box.x, size.width), right = side(box.right(), size.width);
+  long pixels = 0;
+  for (int y = side(box.y, size.height); y < side(box.bottom(), size.height); ++y) {
+    const std::uint64_t* row = closed.view().row(y);
+    for_words(left, right, [&](int word, std::uint64_t ones) { pixels += std::popcount(row[word] & ones); });
+  }
+  return pixels;
+}
+
+void RegionFinder::State::explain(int g) {
+  const auto parts = labeller.components();
+  Bounds window{size.width, size.height, 0, 0};
+  Bounds body = window;
+  int members = 0;
+  std::size_t first = 0;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (group[i] != g) continue;
+    if (members++ == 0) first = i, body = bodies[i];
+    window = {std::min(window.left, parts[i].left), std::min(window.top, parts[i].top),
+              std::max(window.right, parts[i].right), std::max(window.bottom, parts[i].bottom)};
+  }
+  const double expected = prior.height(window.bottom);
+  const double aspect = static_cast<double>(body.height()) / body.width();
+  const bool usual =
+      expected > 0 && window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
+  if (expected <= 0 || window.height() > kTallest * expected || (members == 1 && usual)) {
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (group[i] == g) add_plain(i, usual);
+    return;
+  }
+  const Box whole = box_of(window);
+  const bool was_block = std::any_of(blocks_before.begin(), blocks_before.end(), [&](const Box& b) {
+    return intersection_over_union(b, whole) > kSameBlock;
+  });
+  const auto found = people.find(moving.view(), window, prior, was_block);
+  if (people.found_wide_block() && blocks.size() < kMostBlocks) blocks.push_back(whole);
+  for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
+    regions.push_back({fit(found[k].box, window, k, found), 0,
+                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1});
+  // What no person explains stays what it is.
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (group[i] != g) continue;
+    const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});
+    double covered = 0;
+    for (const Person& p : found) covered += overlap_area(p.box, box);
+    if (covered < 0.4 * box.area()) add_plain(i);
+  }
+}
+
+RegionFinder::RegionFinder() : state_(std::make_unique<State>()) {}
+RegionFinder::~RegionFinder() = default;
+RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
+RegionFinder& RegionFinder::operator=(RegionFinder&&) noexcept = default;
+
+void RegionFinder::set_options(const RegionOptions& options) {
+  state_->options = options;
+}
+
+void RegionFinder::reset() {
+  state_->prior.reset();
+  state_->walkers.clear();
+  state_->blocks.clear();
+  state_->blocks_before.clear();
+  state_->regions.clear();
+  state_->newcomers.reset();
+  state_->seen = 0;
+}
+
+std::size_t RegionFinder::bytes() const {
+  const State& s = *state_;
+  return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
+         s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
+         bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.bodies) +
+         bytes_of(s.columns) + bytes_of(s.regions);
+}
+
+std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
+                                             const Transform& motion) {
+  State& s = *state_;
+  s.regions.clear();
+  std::swap(s.blocks, s.blocks_before);
+  s.blocks.clear();
+  if (mask.size() != s.size) {
+    s.preallocate(mask.size());
+    reset();
+  }
+  ++s.seen;
+  s.prior.advance(motion, s.size);
+  pack(mask, s.moving.view());
+  std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());
+  const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));
+  s.morphology.close(s.closed.view(), mask.width, side);
+  const auto parts = s.labeller.find(s.closed.view(), mask.width, s.least());
+  unpack(s.closed.view(), mask);
+  if (!labels.empty()) s.labeller.write(labels);  // empty: nobody wants them
+  s.trim();
+  if (!s.options.people || parts.size() > kMostParts) {
+    for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
+  } else {
+    s.learn(motion);
+    s.group_components();
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
+  }
+  for (Region& r : s.regions) r.area = static_cast<double>(s.moving_in(r.box));
+  if (s.options.people) s.newcomers.hold_back(s.regions, s.seen, s.options.minimum_area, motion, s.size);
+  return s.regions;
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From the moving area to regions of interest: clean-up, labelling, merging of one person's fragments,
+// splitting of two people side by side ("post treatment" of the paper).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "vision/geometry/box.h"
+#include "vision/geometry/transform.h"
+#include "vision/image/image.h"
+
+namespace cerberus::vision {
+
+struct RegionOptions {
+  int closing = 9;     // side of the closing, analysis pixels at 320 wide; scaled with the picture
+  bool people = true;  // merge and split by a person's learnt height; off: plain components, to the pixel
+  double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
+};
+
+struct Region {
+  // Analysis pixels. In the first 60 frames of a scene what nobody knows as a person is given two more (of 320) on
+  // every side: the edge that moves is between the object and the place it leaves.
+  Box box;
+  double area = 0;  // moving pixels inside, of the cleaned mask
+  // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below:
+  // moving pixels that hang together and may be a piece of an object or several objects.
+  double confidence = 0;
+  int label = 0;  // value in the label picture (several regions may share one after a split)
+};
+
+class RegionFinder {
+ public:
+  RegionFinder();
+  ~RegionFinder();
+  RegionFinder(RegionFinder&&) noexcept;
+  RegionFinder& operator=(RegionFinder&&) noexcept;
+
+  void set_options(const RegionOptions& options);
+  // Forget what was learnt of the scene (heights); a cut does that.
+  void reset();
+  // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
+  // may be empty where nobody wants them. What is small in a young scene is no region before it was seen twice, see
+  // TwoFrameConfirmation. motion: frame k-1 to k, so that what was learnt moves with the camera. The
+  // span lives until the next call. Memory is bounded, and taken at the first picture of a size; what is beyond it is
+  // clutter, see Labeller.
+  std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
+  std::size_t bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cerberus::vision

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/ego_motion/motion_fit.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "vision/ego_motion/motion_fit_kernels.h"
+#include "vision/ego_motion/motion_least_squares.h"
+
+namespace cerberus::vision {
+
+namespace {
+
+// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, as the start is a guess, and wider for a
+// model that starts from a similarity.
+constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f}, kRicherGates{50.0f, 12.0f, 3.0f, 1.5f, 1.5f};
+
+double support_of(const Agreement& agreement) {
+  double support = 0;
+  for (const float part : agreement.of_region) support += std::sqrt(part);
+  return support;
+}
+
+// With everything within the gate.
+double greatest_support(const MotionSamples& s) {
+  Agreement agreement;
+  for (int i = 0; i < s.count; ++i) agreement.of_region[s.region[i]] += s.evidence[i];
+  return support_of(agreement);
+}
+
+// Who is near fills the middle and reaches the lower edge; what surrounds him is ground (the prior of Wei, Wen, Zhu,
+// Sun, Geodesic saliency using background priors, ECCV 2012). What the six parts in the middle say counts a quarter.
+constexpr double kInside = 0.25;
+constexpr std::array<double, MotionSamples::kRegions> kGround{1, 1,       1,       1,  //
+                                                              1, kInside, kInside, 1,  //
+                                                              1, kInside, kInside, 1,  //
+                                                              1, kInside, kInside, 1};
+
+// Whether two motions mean the same: most of what follows the one that fewer follow goes along with the other.
+bool alike(const Followers& a, const Followers& b) {
+  return 2 * a.common(b) > std::min(a.count(), b.count());
+}
+
+// The similarity that takes sample i's and j's points of frame k-1 to those of frame k; false if it is no camera
+// motion.
+bool similarity_through(const MotionSamples& s, int i, int j, double least_distance, Transform& t) {
+  const double px = s.x[j] - s.x[i], py = s.y[j] - s.y[i], qx = s.u[j] - s.u[i], qy = s.v[j] - s.v[i];
+  const double square = px * px + py * py;
+  if (square < least_distance * least_distance) return false;
+  const double a = (px * qx + py * qy) / square, b = (px * qy - py * qx) / square;
+  if (a < 0.6 || a > 1.6 || std::abs(b) > 0.5) return false;
+  t = {{a, -b, s.u[i] - a * s.x[i] + b * s.y[i], b, a, s.v[i] - b * s.x[i] - a * s.y[i], 0, 0, 1}};
+  return true;
+}
+
+// The few best hypotheses that mean different motions.
+class Contenders {
+ public:
+  struct Entry {
+    Transform transform;
+    double support = 0;
+    Followers followers;
+  };
+
+  explicit Contenders(const SampleRows& rows) : rows_(rows) {}
+
+  void add(const Transform& t) {
+    const Agreement agreement = agreement_with(rows_, t);
+    const double support = support_of(agreement);
+    if (count_ == kMost && support <= entries_[kMost - 1].support) return;
+    const Followers& followers = agreement.followers;
+    int place = 0;  // of the entry it takes over: its like, or the weakest
+    while (place < count_ && !alike(entries_[place].followers, followers)) ++place;
+    if (place < count_ && support <= entries_[place].support) return;
+    if (place == count_) place = count_ < kMost ? count_++ : kMost - 1;
+    for (; place > 0 && entries_[place - 1].support < support; --place) entries_[place] = entries_[place - 1];
+    entries_[place] = {t, support, followers};
+  }
+  Transform best() const { return entries_[0].transform; }
+  double most() const { return entries_[0].support; }
+  std::span<const Entry> all() const { return {entries_.data(), static_cast<std::size_t>(count_)}; }
+
+ private:
+  static constexpr int kMost = 5;
+
+  const SampleRows& rows_;
+  int count_ = 0;
+  std::array<Entry, kMost> entries_;
+};
+
+// Least squares with Tukey's biweight, a round for each width. step(normal, next) solves.
+template <typename Step>
+void reweight(const SampleRows& rows, std::span<const float> gates, const MotionScale& scale, Size picture,
+              bool perspective, Transform& motion, Step&& step) {
+  for (const float gate : gates) {
+    Transform next = motion;
+    if (!step(sum_normal(rows, motion, gate * kGate, scale, perspective), next) || !next.is_sane(picture))
+      break;
+    motion = next;
+  }
+}
+
+struct Rated : MotionFit {
+  Followers followers;
+};
+
+Rated rate(const SampleRows& rows, const Transform& transform) {
+  const Agreement agreement = agreement_with(rows, transform);
+  Rated fit;
+  fit.transform = transform;
+  for (int r = 0; r < MotionSamples::kRegions; ++r) {
+    const double part = std::sqrt(agreement.of_region[r]);
+    fit.support += part, fit.ground += kGround[r] * part;
+  }
+  fit.cost = agreement.cost, fit.agreeing = agreement.agreeing;
+  fit.residual = fit.agreeing > 0 ? std::sqrt(agreement.squares / fit.agreeing) : 0;
+  fit.followers = agreement.followers;
+  return fit;
+}
+
+Rated refined(const SampleRows& rows, MotionModel model, Size picture, Transform motion) {
+  const MotionLeastSquares squares(picture);
+  reweight(rows, model > MotionModel::similarity ? kRicherGates : kGates, squares.scale(), picture,
+           model == MotionModel::homography, motion,
+           [&](const MotionNormal& normal, Transform& next) { return squares.step(model, normal, next); });
+  return rate(rows, motion);
+}
+
+// A turning camera's picture is bent, by what its lens alone decides; `motion` is what to begin with.
+Rated turned(const SampleRows& rows, Size picture, Shutter shutter, const LensBend& known, Transform motion) {
+  const MotionLeastSquares squares(picture);
+  LensBend seen;
+  reweight(rows, std::span(kGates).subspan(1), squares.scale(), picture, true, motion,
+           [&](const MotionNormal& normal, Transform& next) {
+             LensBend lens = known;
+             if (!squares.step_turned(normal, shutter, lens, next) || !next.is_sane(picture)) return false;
+             seen = lens;
+             return true;
+           });
+  Rated fit = rate(rows, motion);
+  fit.lens = seen;
+  return fit;
+}
+
+// A turn without its bend, which is nothing in the middle of the picture.
+Transform unbent(const Transform& turn, Size picture) {
+  const double x = 0.5 * (picture.width - 1), y = 0.5 * (picture.height - 1);
+  Transform centred = Transform::translation(-x, -y) * turn * Transform::translation(x, y);
+  for (double& m : centred.m) m /= centred.m[8];
+  centred.m[6] = centred.m[7] = 0;
+  return Transform::translation(x, y) * centred * Transform::translation(-x, -y);
+}
+
+// Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at
+// about one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
+constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 6.9,
+                 kHomographyEarns = 4 * 4.6;  // F(1), F(2), F(4), many
+// What honest samples leave of the cost, each direction.
+double unexplained(const MotionFit& fit) {
+  return std::max(fit.agreeing > 1 ? fit.cost / (2 * fit.agreeing) : 1, 0.2);
+}
+double earned(const MotionFit& finer, const MotionFit& fit) {
+  return (fit.cost - finer.cost) / unexplained(finer);
+}
+bool is_as_supported(const MotionFit& finer, const MotionFit& fit) {
+  return finer.support > 0.95 * fit.support;
+}
+
+}  // namespace
+
+bool follows(const MotionSamples& s, int i, const Transform& transform) {
+  const Point p = transform.apply({s.x[i], s.y[i]});
+  const double dx = s.u[i] - p.x, dy = s.v[i] - p.y;
+  return s.wxx[i] * dx * dx + 2 * s.wxy[i] * dx * dy + s.wyy[i] * dy * dy <= kGate;
+}
+
+MotionFit rate_motion(const MotionSamples& s, const Transform& transform) {
+  return rate(SampleRows(s), transform);
+}
+
+double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Transform& motion) {
+  const MotionFit fit = refined(SampleRows(s), model, picture, motion);
+  motion = fit.transform;
+  return fit.support;
+}
+
+MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
+                     std::span<const Transform> guesses, int hypotheses, int turns, const LensBend& known) {
+  const SampleRows rows(s);
+  Contenders contenders(rows);
+  for (const Transform& t : guesses) contenders.add(t);
+  if (model == MotionModel::none || s.count == 0) return rate(rows, contenders.best());
+  const double least_distance = 0.15 * picture.width;
+  std::uint32_t random = 12345;  // linear congruence (Numerical Recipes), its upper bits
+  const auto draw = [&] {
+    random = random * 1664525u + 1013904223u;
+    return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
+  };
+  // Chance need not be asked where the guesses explain nearly everything (honest noise costs the last tenth).
+  const double enough = 0.85 * greatest_support(s);
+  for (int h = 0; h < hypotheses && contenders.most() < enough; ++h) {
+    const int i = draw(), j = draw();
+    Transform t = Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]);
+    const bool shift = model == MotionModel::translation || h % 4 == 0;
+    if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t);
+  }
+  // What a wide lens bends is too far from any similarity to be found from one: turns through the lens that is known,
+  // or of 50, 65, 80 and 100 degrees, each of one sample.
+  constexpr std::array kLenses{0.3, 0.6, 1.2, 2.4};
+  const bool may_bend = model == MotionModel::similarity || model == MotionModel::homography;
+  const MotionLeastSquares squares(picture);
+  for (int h = 0; h < turns && may_bend && contenders.most() < enough; ++h) {
+    const int i = draw();
+    const double bend = known.earned > kBendEarns ? known.bend : kLenses[h % kLenses.size()];
+    const Transform t = squares.turn({s.x[i], s.y[i]}, {s.u[i], s.v[i]}, bend);
+    if (t.is_sane(picture)) contenders.add(t);
+  }
+  // A hypothesis from two samples carries their errors; only refined ones can be compared.
+  constexpr double kHopeless = 0.4;
+  const MotionModel simple = std::min(model, MotionModel::similarity);
+  Rated fit, rival;
+  bool first = true;
+  for (const auto& [hypothesis, support, unrefined] : contenders.all()) {
+    if (support < kHopeless * contenders.most()) break;
+    const Rated better = may_bend && !hypothesis.is_affine()
+                             ? turned(rows, picture, Shutter::global, known, hypothesis)
+                             : refined(rows, simple, picture, hypothesis);
+    if (first) {
+      fit = better, first = false;
+    } else if (alike(better.followers, fit.followers)) {
+      if (better.support > fit.support) fit = better;
+    } else if (better.ground > fit.ground) {
+      rival = fit, fit = better;
+    } else if (better.ground > rival.ground) {
+      rival = better;
+    }
+  }
+  if (rival.ground > 0) fit.rival = rival.transform;
+  if (model <= MotionModel::similarity) return fit;
+  MotionFit finer = refined(rows, model, picture, fit.transform);
+  finer.rival = fit.rival;
+  const double earns = model == MotionModel::affine ? kAffineEarns : kHomographyEarns;
+  return is_as_supported(finer, fit) && earned(finer, fit) > earns ? finer : fit;
+}
+
+MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& found, const LensBend& known) {
+  const SampleRows rows(s);
+  MotionFit similarity = found, bent = found;
+  if (found.transform.is_affine()) {
+    bent = turned(rows, picture, Shutter::global, known, found.transform);
+  } else {
+    similarity = refined(rows, MotionModel::similarity, picture, unbent(found.transform, picture));
+  }
+  bent.lens.earned = earned(bent, similarity);
+  const bool bends = is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kBendEarns;
+  MotionFit fit = bends ? bent : similarity;
+  // Sheared, it is bent, too: both have to be earned.
+  const MotionFit rolled = turned(rows, picture, Shutter::rolling, known, bent.transform);
+  const double earns = kRollingEarns + (bends ? 0 : kBendEarns);
+  if (is_as_supported(rolled, fit) && earned(rolled, fit) > earns) fit = rolled;
+  fit.lens = bent.lens;
+  return fit;
+}
+
+void LensBend::learn(const LensBend& seen) {
+  constexpr double kRemembered = 0.97, kMostEarned = 10 * kBendEarns, kContradicts = kGate;
+  information *= kRemembered;
+  earned = std::clamp(kRemembered * earned + seen.earned, 0.0, kMostEarned);
+  if (!(seen.information > 0)) return;
+  const double apart = seen.bend - bend;
+  if (information > 0 && apart * apart > kContradicts * (1 / information + 1 / seen.information))
+    information = 0, earned = std::max(seen.earned, 0.0);
+  bend += (seen.bend - bend) * seen.information / (information + seen.information);
+  information += seen.information;
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/ego_motion/patch_matches.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr float kFound = 0.7f;  // correlation of a patch that was found again
+constexpr float kFoundWell = 0.95f;
+
+// Looks for one patch where `guess` says it went.
+PatchMatch look(const PatchFollower& patch, const Pyramid& current, int level, const PatchSite& site,
+                const Transform& guess, int rounds) {
+  const float scale = 1.0f / static_cast<float>(1 << level);
+  const Point p = guess.apply({site.x, site.y});
+  return patch.follow(current.level(level), static_cast<float>(p.x - site.x) * scale,
+                      static_cast<float>(p.y - site.y) * scale, rounds);
+}
+
+}  // namespace
+
+PatchFollower PatchMatches::follower(const Pyramid& reference, int level, int i) const {
+  return level > 0 ? PatchFollower(reference.level(level), level, sites_.site[i]) : sites_.follower(i);
+}
+
+void PatchMatches::follow(const Pyramid& reference, const Pyramid& current, int level,
+                          const Transform& guess) {
+  looked_for_ = 0;
+  for (int i = 0; i < sites_.count; ++i) {
+    const PatchSite& site = sites_.site[i];
+    matches_[i] = look(follower(reference, level, i), current, level, site, guess, 3);
+    looked_for_ += matches_[i].inside;
+  }
+  collect(reference.size(), level);
+}
+
+Transform PatchMatches::follow(const Pyramid& reference, const Pyramid& current, int level,
+                               std::span<const Transform> guesses) {
+  constexpr float kClearly = 0.15f;
+  const std::size_t count = std::min(guesses.size(), kMostGuesses);
+  std::array<std::array<float, kMostGuesses>, MotionSamples::kMax> fits;
+  std::array<float, kMostGuesses> ratings{};
+  for (int i = 0; i < sites_.count; ++i) {
+    const PatchFollower patch = follower(reference, level, i);
+    for (std::size_t g = 0; g < count; ++g) {
+      fits[i][g] = look(patch, current, level, sites_.site[i], guesses[g], 0).correlation;
+      ratings[g] += std::max(0.0f, fits[i][g] - 0.3f);
+    }
+  }
+  ratings[0] *= 1.05f;
+  const auto best = std::max_element(ratings.begin(), ratings.begin() + count) - ratings.begin();
+  looked_for_ = 0;
+  for (int i = 0; i < sites_.count; ++i) {
+    const auto own = std::max_element(fits[i].begin(), fits[i].begin() + count) - fits[i].begin();
+    const auto from = fits[i][own] > fits[i][best] + kClearly ? own : best;
+    const PatchFollower patch = follower(reference, level, i);
+    matches_[i] = look(patch, current, level, sites_.site[i], guesses[from], 6);
+    looked_for_ += matches_[i].inside;
+  }
+  collect(reference.size(), level);
+  return guesses[best];
+}
+
+// Turns the matches of one level into samples in level 0 pixels.
+void PatchMatches::collect(Size picture, int level) {
+  const float scale = static_cast<float>(1 << level), shift = 0.5f * (scale - 1);
+  // What a good match is off even without noise: a sixteenth of a pixel of a picture 320 wide.
+  const float placement = 0.06f * scale * std::max(1.0f, static_cast<float>(picture.width) / 320);
+  samples_.count = 0;
+  for (int i = 0; i < sites_.count; ++i) {
+    const PatchMatch& m = matches_[i];
+    if (m.correlation < kFound) continue;
+    const int n = samples_.count++;
+    samples_.x[n] = m.x * scale + shift, samples_.y[n] = m.y * scale + shift;
+    samples_.u[n] = (m.x + m.dx) * scale + shift, samples_.v[n] = (m.y + m.dy) * scale + shift;
+    correlations_[n] = m.correlation;
+    samples_.region[n] = sites_.site[i].region;
+    // Covariance of the match: noise over gradient information, plus placement, plus what a simple model of the
+    // picture's motion cannot follow (it grows with the motion).
+    const float dx = samples_.u[n] - samples_.x[n], dy = samples_.v[n] - samples_.y[n];
+    const float floor = placement * placement + 0.02f * 0.02f * (dx * dx + dy * dy);
+    const float ridge = 0.01f * (m.hxx + m.hyy) + 1;
+    const float a = m.hxx + ridge, b = m.hxy, c = m.hyy + ridge;
+    const float k = std::max(m.noise2, 0.5f) * scale * scale / (a * c - b * b);
+    const float vxx = c * k + floor, vxy = -b * k, vyy = a * k + floor;
+    const float per_determinant = 1 / (vxx * vyy - vxy * vxy);
+    samples_.wxx[n] = vyy * per_determinant;
+    samples_.wxy[n] = -vxy * per_determinant;
+    samples_.wyy[n] = vxx * per_determinant;
+    const float spread = std::sqrt(0.25f * (vxx - vyy) * (vxx - vyy) + vxy * vxy);
+    const float largest = 0.5f * (vxx + vyy) + spread;
+    samples_.evidence[n] = 1 / (1 + largest / (0.25f * scale * scale));
+  }
+}
+
+PatchMatches::Share PatchMatches::share_of(const MotionFit& fit) const {
+  if (looked_for_ == 0) return {};
+  float evidence = 0, well = 0;
+  for (int i = 0; i < samples_.count; ++i) {
+    evidence += samples_.evidence[i];
+    if (follows(samples_, i, fit.transform))
+      well += std::clamp((correlations_[i] - kFound) / (kFoundWell - kFound), 0.0f, 1.0f);
+  }
+  if (evidence <= 0) return {};
+  return {fit.agreeing / evidence * samples_.count / looked_for_, double{well} / looked_for_};
+}
+
+std::optional<double> PatchMatches::noise() const {
+  std::array<float, MotionSamples::kMax> variances;
+  int count = 0;
+  for (int i = 0; i < sites_.count; ++i)
+    if (matches_[i].correlation >= kFound) variances[count++] = matches_[i].noise2;
+  if (count < kLeast) return std::nullopt;
+  std::nth_element(variances.begin(), variances.begin() + count / 3, variances.begin() + count);
+  return std::sqrt(0.5 * variances[count / 3]);  // both pictures have it
+}
+
+}  // namespace cerberus::vision

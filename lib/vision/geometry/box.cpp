@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/geometry/box.h"
+
+#include <algorithm>
+
+namespace cerberus::vision {
+
+double overlap_area(const Box& a, const Box& b) {
+  const double w = std::min(a.right(), b.right()) - std::max(a.x, b.x);
+  const double h = std::min(a.bottom(), b.bottom()) - std::max(a.y, b.y);
+  return w > 0 && h > 0 ? w * h : 0;
+}
+
+double intersection_over_union(const Box& a, const Box& b) {
+  const double both = overlap_area(a, b);
+  return both > 0 ? both / (a.area() + b.area() - both) : 0;
+}
+
+}  // namespace cerberus::vision

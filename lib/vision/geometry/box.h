@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An upright rectangle around an object.
+#pragma once
+
+namespace cerberus::vision {
+
+struct Box {
+  double x = 0, y = 0, width = 0, height = 0;  // top left corner and extent, pixels
+  double right() const { return x + width; }
+  double bottom() const { return y + height; }
+  double area() const { return width * height; }
+};
+double overlap_area(const Box& a, const Box& b);
+double intersection_over_union(const Box& a, const Box& b);
+
+}  // namespace cerberus::vision

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// From a mapped video frame to the small grey picture that is analysed: no copy of the frame, one pass over
+// it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "vision/image/image.h"
+
+namespace cerberus::vision {
+
+// Where the brightness of a frame is. Either one luma sample every `pixel_stride` bytes (planar 1, YUY2 and
+// UYVY 2), or packed RGB of 3 or 4 bytes a pixel, whose luma is computed: (77 R + 150 G + 29 B) / 256, the
+// BT.601 weights.
+struct LumaSource {
+  const std::uint8_t* data = nullptr;  // first luma sample, or first byte of the first RGB pixel
+  int width = 0;                       // pixels
+  int height = 0;
+  std::ptrdiff_t stride = 0;  // bytes between rows; may be far above the width, or negative
+  int pixel_stride = 1;       // bytes between pixels
+  bool rgb = false;
+  int r = 0, g = 0, b = 0;  // byte offsets inside an RGB pixel
+};
+
+// The analysis size for a frame: `analysis_width` wide with the frame's aspect, at least 16 rows; never
+// larger than the frame (a small frame is analysed as it is). analysis_width 0: the frame's own size.
+Size analysis_size(Size frame, int analysis_width);
+
+// Area averaging reduction: every source pixel counts with the share of it that lies in the target pixel.
+// Never reads a byte behind the last sample of a row. Tables are kept: no allocation while the source's
+// layout and the target's size stay the same. The target must not be larger than the source; equal sizes copy
+// (or convert RGB).
+//
+// Fixed point (16 bits vertically, 32 horizontally): the result is within one grey level of the exact
+// average; equal sizes and a constant picture are exact.
+class LumaScaler {
+ public:
+  void scale(const LumaSource& source, MutableGrayView target);
+  std::size_t bytes() const {
+    return rows_.bytes() + first_.bytes() + weights_.bytes() + column_sums_.bytes();
+  }
+
+ private:
+  struct Rows {  // the source rows under one target row
+    std::int32_t first, count;
+    std::uint16_t first_weight, last_weight;  // of the first and last row; those between weigh 1 << shift_
+    std::uint16_t reciprocal;                 // 65536 * 128 / sum of the weights
+  };
+  void prepare(const LumaSource& source, Size target);
+  void prepare_rows(int source_height, int target_height);
+  void prepare_columns(const LumaSource& source, int target_width);
+
+  Image<Rows> rows_;                  // one a target row
+  Image<std::int32_t> first_;         // first source byte of every target column
+  Image<std::int16_t> weights_;       // blocks_ * 8 weights a target column, one a byte
+  Image<std::uint16_t> column_sums_;  // one target row's vertical averages, a 128th grey level
+  int shift_ = 0;
+  int blocks_ = 0;  // weights of a target column in groups of 8
+  int used_ = 0;    // bytes of a source row up to its last sample
+  LumaSource source_;
+  Size target_;
+};
+
+// The exact area average rounded to nearest, in integers, sample by sample: what the tests hold LumaScaler
+// against.
+void scale_luma_reference(const LumaSource& source, MutableGrayView target);
+
+}  // namespace cerberus::vision

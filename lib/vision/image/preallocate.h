@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Vectors whose memory is taken once, for the most they may ever hold at one size of picture.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace cerberus::vision {
+
+// Empties `v` and makes room for `most`, no more: what an earlier, larger picture needed is given back.
+template <typename T>
+void preallocate(std::vector<T>& v, std::size_t most) {
+  std::vector<T> fresh;
+  fresh.reserve(most);
+  v.swap(fresh);
+}
+
+template <typename T>
+std::size_t bytes_of(const std::vector<T>& v) {
+  return v.capacity() * sizeof(T);
+}
+
+}  // namespace cerberus::vision

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/tracking/motion_events.h"
+
+#include <utility>
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr MotionEvents::Time kUsual = std::chrono::milliseconds(40);
+constexpr MotionEvents::Time kLeast = std::chrono::microseconds(100);  // no camera is faster
+
+}  // namespace
+
+MotionEvents::Change MotionEvents::update(bool present, std::optional<Time> time, Time step, Time hold) {
+  const Time gap = time && last_ ? *time - *last_ : Time::zero();
+  const Time passed = step > Time::zero() ? step : gap >= kLeast ? gap : kUsual;
+  last_ = time;
+  if (present) {
+    quiet_ = Time::zero();
+    return std::exchange(active_, true) ? Change::none : Change::started;
+  }
+  if (!active_) return Change::none;
+  quiet_ += passed;
+  return quiet_ >= hold ? end() : Change::none;
+}
+
+MotionEvents::Change MotionEvents::end() {
+  return std::exchange(active_, false) ? Change::ended : Change::none;
+}
+
+}  // namespace cerberus::vision

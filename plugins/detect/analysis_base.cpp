@@ -1,0 +1,433 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "analysis_base.hpp"
+
+#include <cerberus/cerberus.h>
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+#include <string>
+
+#include "cerberus/private/query.hpp"
+#include "cerberus/private/video.hpp"
+#include "history.hpp"
+#include "shared/camera_mount.hpp"
+#include "shared/camera_path.hpp"
+#include "shared/clock_times.hpp"
+#include "shared/complaint.hpp"
+#include "shared/properties.hpp"
+#include "shared/single_fields.hpp"
+#include "shared/stages.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
+#define GST_CAT_DEFAULT cerberus_analysis_debug
+
+namespace cerberus::plugin {
+namespace {
+
+constexpr int kMinimumSide = 32;
+constexpr int kMaximumWidth = 3840, kMaximumHeight = 2160;
+constexpr int kLeastAnalysisWidth = 48;  // of less, people are a pixel or none
+
+struct Settings {
+  int analysis_width = kDefaultAnalysisWidth;
+};
+
+const Property<Settings> kProperties[] = {
+    property("analysis-width", &Settings::analysis_width, 0, kMaximumWidth,
+             "Width in pixels of the small picture that is analysed, where none comes from upstream: larger "
+             "sees smaller "
+             "objects and costs more; frames that are not wider are analysed as they are, 1 to 47 counts as "
+             "48; 0 = always the "
+             "frame's own width"),
+};
+
+}  // namespace
+
+// See complain_of_breaks().
+struct Scene {
+  int frames = 0;      // so far
+  double seconds = 0;  // from its third frame on
+  int broken = 0;      // scenes up to this one that ended too early, for no reason in the picture
+};
+
+struct AnalysisPrivate {
+  Adjustable<Settings> settings;
+  // From here on: streaming thread, and state changes while it does not run.
+  Analyser* analyser = nullptr;
+  GstVideoInfo info{};
+  bool have_info = false;
+  bool planes_wanted = false, previous_wanted = true, sight_wanted = false;
+  std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
+  History history;
+  guint64 number = 0;  // analysed frames
+  CameraFollower camera;
+  Scene scene;
+  int steps_back = 0;       // frames older than the one before
+  Complaint complaint;      // about the caps
+  Complaint pixels;         // about their shape
+  bool warned = false;      // about an unusable buffer, once a stream
+  bool complained = false;  // about breaks, likewise
+};
+
+namespace {
+
+AnalysisPrivate& priv_of(gpointer instance) {
+  return *static_cast<CerberusAnalysis*>(instance)->priv;
+}
+
+GstBaseTransformClass* parent_class();
+
+// Among ourselves only, queries to which an element answers yes by answering at all; others let them pass. Is there a
+// motiontrack downstream? And is who takes the differences content without D(k-1)?
+constexpr char kSightQuery[] = "cerberus-sight", kNoPreviousQuery[] = "cerberus-no-previous";
+
+bool peer_says_yes(GstPad* pad, const char* question) {
+  g_autoptr(GstQuery) query = gst_query_new_custom(GST_QUERY_CUSTOM, gst_structure_new_empty(question));
+  return gst_pad_peer_query(pad, query);
+}
+
+// By the first frame after caps or RECONFIGURE everybody downstream knows the caps.
+void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
+  if (!priv.ask.exchange(false)) return;
+  GstPad* pad = GST_BASE_TRANSFORM_SRC_PAD(trans);
+  priv.planes_wanted = cerberus_pad_peer_wants_planes(pad);
+  priv.previous_wanted = priv.planes_wanted || !peer_says_yes(pad, kNoPreviousQuery);
+  priv.sight_wanted = peer_says_yes(pad, kSightQuery);
+}
+
+// Whether the query is answered; nothing: by those downstream, if at all. A no is no answer to it: a tee upstream goes
+// on to its other branches, and an answer would speak for them.
+std::optional<bool> answer(Analyser& analyser, GstQuery* query) {
+  if (cerberus_query_is_planes(query)) {
+    const Planes planes = analyser.planes();
+    if (planes == Planes::as_asked) return std::nullopt;
+    return planes == Planes::wanted && cerberus_query_set_planes_wanted(query, TRUE);
+  }
+  if ((is_custom_query(query, kSightQuery) && analyser.reads_sight()) ||
+      (is_custom_query(query, kNoPreviousQuery) && analyser.spares_previous()))
+    return true;
+  return std::nullopt;
+}
+
+// Nobody upstream has analysed this frame.
+bool is_first_stage(GstBuffer* buffer) {
+  return !cerberus_buffer_get_camera_motion_meta(buffer) && !regions_known(buffer) &&
+         !cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_LUMA);
+}
+
+// Once a stream. Twice is nothing: a file that is played in a loop, a clock that is set.
+void complain_of_times(GstBaseTransform* trans, AnalysisPrivate& priv, bool backwards) {
+  constexpr int kMany = 3;
+  if (!backwards || ++priv.steps_back != kMany) return;
+  CERBERUS_ELEMENT_WARNING(
+      trans, STREAM, FAILED,
+      ("Timestamps run backwards, so that speeds and times are guessed: let the source stamp the frames "
+       "(`do-timestamp=true`), or put the parser of the format (`h264parse`) in front of its decoder."),
+      ("a buffer that is a little older than the one before it is taken to follow at the usual distance, a "
+       "much older one begins a new scene"));
+}
+
+// A frame, and what is wrong with its place in the stream.
+struct Begun {
+  Frame frame;
+  bool cut = false;        // it says itself that it does not continue the stream
+  bool broken = false;     // this stage, and none before, must begin anew though no picture says so
+  bool backwards = false;  // so do the timestamps; likewise
+};
+
+Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  using Link = CameraFollower::Link;
+  Begun begun;
+  Frame& frame = begun.frame;
+  frame.buffer = buffer;
+  frame.info = &priv.info;
+  frame.running_time = running_time_of(trans->segment, buffer);
+  const bool measures = priv.analyser->measures_camera();
+  const CerberusCameraMotionMeta* meta = measures ? nullptr : cerberus_buffer_get_camera_motion_meta(buffer);
+  const CameraFollower::Step camera =
+      priv.camera.next(meta ? &meta->motion : nullptr, priv.history.previous(), frame.size());
+
+  const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
+  const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
+  // A mark of DISCONT may be a cut or dropped frames. Who measures
+  // the camera sees a cut among dropped frames, and tells the others.
+  const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
+                      !(measures && priv.history.misses_frames(frame.running_time, nominal));
+  if (marked) priv.history.drop();
+  const History::Step step = priv.history.next(frame.running_time, nominal);
+  frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
+  frame.number = ++priv.number;
+  frame.planes_wanted = priv.planes_wanted;
+  frame.previous_wanted = priv.previous_wanted;
+  frame.sight_wanted = priv.sight_wanted;
+  frame.look = look_of(buffer, frame.running_time);
+  if (!frame.fresh) {
+    frame.seconds = step.seconds;
+    frame.previous = step.previous;
+    frame.motion = camera.motion;
+  }
+  const bool first = is_first_stage(buffer);
+  begun.cut = marked && camera.link != Link::lost;
+  begun.broken = camera.link == Link::lost || (first && (marked || step.broken));
+  begun.backwards = first && step.backwards;
+  return begun;
+}
+
+// A scene that ends before anybody in it can be confirmed blinds a stage; who does not know sees nothing at all, and no
+// reason.
+void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, const Begun& begun) {
+  constexpr int kMany = 8;          // such scenes in a row
+  constexpr int kFrames = 5;        // as many it takes, the first regions are the third one's,
+  constexpr double kSeconds = .19;  // and confirm-time from there on
+  Scene& scene = priv.scene;
+  if (begun.frame.fresh) {
+    const bool enough = scene.frames >= kFrames && scene.seconds >= kSeconds;
+    scene.broken = begun.broken && !enough ? scene.broken + 1 : 0;
+    scene.frames = 1;
+    scene.seconds = 0;
+  } else if (++scene.frames > 3) {
+    scene.seconds += begun.frame.seconds;
+  }
+  if (scene.broken < kMany || priv.complained) return;
+  priv.complained = true;
+  CERBERUS_ELEMENT_WARNING(
+      trans, STREAM, FAILED,
+      ("The stream is broken so often that nobody can be confirmed: drop frames in front of "
+       "`cameramotion`, by `videorate drop-only=true` or a leaky queue, or behind `motiontrack`."),
+      ("the buffers are marked DISCONT, their times lie far apart, or their camera motion starts from frames "
+       "that never came"));
+}
+
+void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
+  const std::optional<Settings> changed = priv.settings.changes();
+  if (!changed || changed->analysis_width == 0 || changed->analysis_width >= kLeastAnalysisWidth) return;
+  CERBERUS_ELEMENT_WARNING(
+      trans, RESOURCE, SETTINGS,
+      ("analysis-width=%d is too small to see anything: %d counts instead. Set that, or more.",
+       changed->analysis_width, kLeastAnalysisWidth),
+      (nullptr));
+}
+
+GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
+  AnalysisPrivate& priv = priv_of(trans);
+  return guarded(trans, GST_FLOW_ERROR, [&] {
+    // A buffer that says itself that it is a placeholder: nothing to see, and no scene ends with it.
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
+    ask_downstream(trans, priv);
+    check_settings(trans, priv);
+    const History history = priv.history;
+    const CameraFollower camera = priv.camera;
+    Begun begun = begin_frame(trans, priv, buffer);
+    if (priv.analyser->analyse(begun.frame)) {
+      complain_of_breaks(trans, priv, begun);
+      complain_of_times(trans, priv, begun.backwards);
+      return GST_FLOW_OK;
+    }
+
+    // The picture is not there: the frame goes on as it came, and whoever follows is told by the flag. The next frame
+    // is compared with the last one that was seen.
+    priv.history = history;
+    priv.camera = camera;
+    --priv.number;
+    if (begun.cut)
+      priv.history.drop();
+    else
+      priv.history.lose();
+    const bool told = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_CORRUPTED) || priv.warned;
+    GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_CORRUPTED);
+    if (!told) {
+      priv.warned = true;
+      CERBERUS_ELEMENT_WARNING(
+          trans, STREAM, DECODE,
+          ("A buffer does not hold the picture that its caps promise; it is passed on, not analysed."),
+          ("%" G_GSIZE_FORMAT " bytes at %" GST_TIME_FORMAT " for %d x %d %s need %" G_GSIZE_FORMAT,
+           gst_buffer_get_size(buffer), GST_TIME_ARGS(GST_BUFFER_PTS(buffer)),
+           GST_VIDEO_INFO_WIDTH(&priv.info), GST_VIDEO_INFO_HEIGHT(&priv.info),
+           GST_VIDEO_INFO_NAME(&priv.info), GST_VIDEO_INFO_SIZE(&priv.info)));
+    }
+    return GST_FLOW_OK;
+  });
+}
+
+void accept(AnalysisPrivate& priv, const GstVideoInfo& info) {
+  if (!priv.have_info || !gst_video_info_is_equal(&priv.info, &info)) priv.history.drop();
+  priv.info = info;
+  priv.have_info = true;
+  priv.warned = false;
+  priv.complained = false;
+  priv.ask = true;
+}
+
+// What is wrong with these caps, for the user; empty for nothing.
+std::string what_is_wrong(const GstCaps* caps, GstVideoInfo* info) {
+  if (!gst_video_info_from_caps(info, caps)) return kCapsIncomplete;
+  if (GST_VIDEO_INFO_IS_INTERLACED(info))
+    return "Interlaced video cannot be analysed: put the element `deinterlace` in front.";
+  const int width = GST_VIDEO_INFO_WIDTH(info), height = GST_VIDEO_INFO_HEIGHT(info);
+  if (width >= kMinimumSide && height >= kMinimumSide && width <= kMaximumWidth && height <= kMaximumHeight)
+    return {};
+  const auto size = [](int w, int h) { return std::to_string(w) + " x " + std::to_string(h); };
+  return "Frames of " + size(width, height) + " pixels cannot be analysed, only " +
+         size(kMinimumSide, kMinimumSide) + " to " + size(kMaximumWidth, kMaximumHeight) +
+         ": put `videoscale` in front.";
+}
+
+// Pixels count as squares everywhere: in boxes, in a person's proportions and in angles.
+void complain_of_pixels(GstBaseTransform* trans, AnalysisPrivate& priv) {
+  constexpr double kLittle = 1.12;
+  const int n = GST_VIDEO_INFO_PAR_N(&priv.info), d = GST_VIDEO_INFO_PAR_D(&priv.info);
+  const bool square = n < kLittle * d && d < kLittle * n;
+  const std::string wrong =
+      square ? ""
+             : "The pixels are not square (" + std::to_string(n) + " to " + std::to_string(d) +
+                   "), but count as if they were: people may be cut in two or joined, and "
+                   "distances are wrong. Put `videoscale ! "
+                   "video/x-raw,pixel-aspect-ratio=1/1` in front.";
+  if (priv.pixels.is_new(wrong)) CERBERUS_ELEMENT_WARNING(trans, STREAM, FORMAT, (wrong), (nullptr));
+}
+
+GstCaps* transform_caps(GstBaseTransform*, GstPadDirection direction, GstCaps* caps, GstCaps* filter) {
+  GstCaps* others = across_single_fields(direction, gst_caps_ref(caps));
+  if (!filter) return others;
+  GstCaps* common = gst_caps_intersect_full(filter, others, GST_CAPS_INTERSECT_FIRST);
+  gst_caps_unref(others);
+  return common;
+}
+
+gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
+  AnalysisPrivate& priv = priv_of(trans);
+  GstVideoInfo info;
+  return guarded(trans, FALSE, [&]() -> gboolean {
+    const std::string wrong = what_is_wrong(incaps, &info);
+    if (priv.complaint.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(trans, CORE, NEGOTIATION, (wrong), ("%" GST_PTR_FORMAT, incaps));
+    if (!wrong.empty()) return FALSE;
+    accept(priv, info);
+    if (priv.analyser->measures_camera()) complain_of_pixels(trans, priv);
+    return TRUE;
+  });
+}
+
+gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* query) {
+  if (direction == GST_PAD_SINK) {
+    const auto ask = [&] { return answer(*priv_of(trans).analyser, query); };
+    if (const std::optional<bool> answered = guarded(trans, std::nullopt, ask)) return *answered;
+  }
+  return parent_class()->query(trans, direction, query);
+}
+
+gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
+  // Sent, among others, when somebody is linked downstream.
+  if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask = true;
+  guarded(trans, [&] { priv_of(trans).analyser->upstream_event(event); });
+  return parent_class()->src_event(trans, event);
+}
+
+gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
+  AnalysisPrivate& priv = priv_of(trans);
+  switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_SEGMENT:
+    case GST_EVENT_FLUSH_STOP:
+    case GST_EVENT_STREAM_START:
+      priv.history.drop();
+      break;
+    case GST_EVENT_EOS:
+      guarded(trans, [&] { priv.analyser->end_of_stream(); });
+      break;
+    default:
+      break;
+  }
+  return parent_class()->sink_event(trans, event);
+}
+
+gboolean start(GstBaseTransform* trans) {
+  AnalysisPrivate& priv = priv_of(trans);
+  return guarded(trans, FALSE, [&]() -> gboolean {
+    priv.history.drop();
+    priv.have_info = false;
+    priv.warned = false;
+    priv.scene = {};
+    priv.steps_back = 0;
+    priv.complained = false;
+    priv.camera.forget();
+    priv.complaint.forget();
+    priv.pixels.forget();
+    priv.settings.refresh();
+    return priv.analyser->start();
+  });
+}
+
+gboolean stop(GstBaseTransform* trans) {
+  guarded(trans, [&] { priv_of(trans).analyser->stop(); });
+  return TRUE;
+}
+
+void class_init(CerberusAnalysisClass* klass) {
+  GST_DEBUG_CATEGORY_INIT(cerberus_analysis_debug, "cerberusanalysis", 0,
+                          "what all analysing elements share");
+  install_properties<CerberusAnalysis, kProperties>(G_OBJECT_CLASS(klass));
+
+  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS,
+                                                             GST_STATIC_CAPS(VIDEO_AND_SINGLE_FIELDS_CAPS));
+  static GstStaticPadTemplate src =
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink);
+  gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src);
+
+  GstBaseTransformClass* trans = GST_BASE_TRANSFORM_CLASS(klass);
+  trans->start = start;
+  trans->stop = stop;
+  trans->transform_caps = transform_caps;
+  trans->set_caps = set_caps;
+  trans->query = query;
+  trans->sink_event = sink_event;
+  trans->src_event = src_event;
+  trans->transform_ip = transform_ip;
+}
+
+void init(CerberusAnalysis* self) {
+  auto* trans = GST_BASE_TRANSFORM(self);
+  gst_base_transform_set_in_place(trans, TRUE);
+  // Not passthrough: that is what makes the buffer writable for metas (its memory stays shared).
+  gst_base_transform_set_passthrough(trans, FALSE);
+  gst_base_transform_set_gap_aware(trans, TRUE);
+  // A detector that skips late frames sees a gap instead of motion.
+  gst_base_transform_set_qos_enabled(trans, FALSE);
+}
+
+struct Traits {
+  using Self = CerberusAnalysis;
+  using Class = CerberusAnalysisClass;
+  using Object = AnalysisPrivate;
+  static const char* name() { return "CerberusAnalysis"; }
+  static GType parent() { return GST_TYPE_BASE_TRANSFORM; }
+  static void init(Self* self) { plugin::init(self); }
+  static void class_init(Class* klass) { plugin::class_init(klass); }
+  static void interfaces(GType) {}
+};
+
+GstBaseTransformClass* parent_class() {
+  return static_cast<GstBaseTransformClass*>(detail::TypeBuilder<Traits>::parent_class);
+}
+
+}  // namespace
+
+GType cerberus_analysis_get_type() {
+  return detail::TypeBuilder<Traits>::get();
+}
+
+void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser) {
+  self->priv->analyser = analyser;
+}
+
+void cerberus_analysis_answer_anew(CerberusAnalysis* self) {
+  gst_base_transform_reconfigure_sink(GST_BASE_TRANSFORM(self));
+}
+
+int cerberus_analysis_width(const CerberusAnalysis* self) {
+  const int width = self->priv->settings.snapshot().analysis_width;
+  return width == 0 ? 0 : std::max(width, kLeastAnalysisWidth);
+}
+
+}  // namespace cerberus::plugin

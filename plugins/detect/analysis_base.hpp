@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What every analysing element shares: frames go through untouched, in place and never copied; one of them at a time is
+// handed to the element's Analyser with all that is known about it.
+//
+// The base decides what is not thinking: caps (progressive, 32 x 32 to 3840 x 2160), when history ends (see History and
+// below), the camera's motion as found on the buffer, buffers that hold no picture, the property analysis-width, and
+// that no exception leaves.
+//
+// A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new
+// segment, DISCONT, a gap in time, a step back as wide as one, several buffers in a row without a
+// usable picture, a cut seen by `cameramotion`, and when it is not known how the camera moved since
+// the last frame seen here. Frames dropped between the stages, or in front of all, end nothing: see
+// camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only.
+#pragma once
+
+#include <gst/base/gstbasetransform.h>
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "cerberus/private/element.hpp"
+#include "shared/frame.hpp"
+
+namespace cerberus::plugin {
+
+// What was answered to those upstream, and whether it is so no more: then cerberus_analysis_answer_anew().
+template <typename T>
+class Answer {
+ public:
+  T give(T answer) {
+    given_ = answer;
+    return answer;
+  }
+  bool outdated_by(T answer) const { return given_.load().value_or(answer) != answer; }
+
+ private:
+  std::atomic<std::optional<T>> given_{std::nullopt};
+};
+
+// The stages' planes, which somebody upstream makes.
+enum class Planes : std::uint8_t {
+  as_asked,  // downstream
+  wanted,    // here, or they stay on the frame for others
+  unwanted,  // whoever asks for them downstream: they end here
+};
+
+// An element's private struct implements this; all calls come from the streaming thread or a state change, never two
+// at once, and no lock is held.
+class Analyser {
+ public:
+  virtual ~Analyser() = default;
+  // READY to PAUSED: begin with a clean slate; false after posting an error. stop(): give back memory.
+  virtual bool start() { return true; }
+  virtual void stop() {}
+  // Looks at one frame and attaches what it found. False: the buffer does not hold the picture its caps promise.
+  virtual bool analyse(Frame& frame) = 0;
+  // The last frame of the stream was seen.
+  virtual void end_of_stream() {}
+  // An event on its way upstream, which goes on whatever is done here. From any thread.
+  virtual void upstream_event(GstEvent*) {}
+  // True for the one element that looks at the people: see Frame::sight_wanted.
+  virtual bool reads_sight() const { return false; }
+  // Answers to those upstream, from any thread.
+  virtual Planes planes() { return Planes::as_asked; }
+  // True: the differences end here, and D(k-1) is of no use.
+  virtual bool spares_previous() { return false; }
+  // True for the one element that measures the camera itself.
+  virtual bool measures_camera() const { return false; }
+};
+
+struct AnalysisPrivate;
+struct CerberusAnalysis : detail::Instance<GstBaseTransform, AnalysisPrivate> {};
+struct CerberusAnalysisClass {
+  GstBaseTransformClass parent_class;
+};
+
+// The parent type; its pad templates, caps and the property analysis-width are inherited.
+GType cerberus_analysis_get_type();
+// In type_init: `analyser` lives as long as the element.
+void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser);
+// Those upstream are to ask again.
+void cerberus_analysis_answer_anew(CerberusAnalysis* self);
+// The property analysis-width.
+int cerberus_analysis_width(const CerberusAnalysis* self);
+
+}  // namespace cerberus::plugin

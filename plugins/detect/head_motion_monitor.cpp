@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "head_motion_monitor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "cerberus/private/messages.hpp"
+#include "shared/camera_mount.hpp"
+#include "shared/clock_times.hpp"
+
+namespace cerberus::plugin {
+
+namespace {
+
+using control::SlipFault;
+using motion::PanTilt;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+// Numbers that are none, or another head's: there is a head, and where it looks is not known.
+constexpr PanTilt kStrange{kUnknown, kUnknown};
+// Share of the picture that must agree before it is compared with the head.
+constexpr double kConfident = 0.5;
+
+struct Words {
+  const char* fault;
+  std::string text;
+};
+
+Words in_words(const control::SlipFinding& finding, const char* head, const char* axis) {
+  const std::string name = std::string("The head \"") + head + "\" ";
+  const std::string told = std::to_string(std::lround(degrees(finding.travel))) + " degrees of " + axis;
+  switch (finding.fault) {
+    case SlipFault::slips:
+      return {"slips", name + "does not turn: it was told " + told +
+                           ", and the picture did not move. Check its power and cables, and what slips or "
+                           "blocks (belt, gear, grub screw)."};
+    case SlipFault::reversed:
+      return {"reversed", name + "turns the wrong way: it was told " + told +
+                              ", and the picture shows the opposite. Swap the motor's wires or the driver's "
+                              "direction; a mirrored picture looks the same."};
+    case SlipFault::scale:
+    case SlipFault::none:
+      break;
+  }
+  return {"scale",
+          name + "turns by another angle than it is told: of " + told + " the picture shows " +
+              std::to_string(std::lround(100 * finding.gain)) +
+              " %. Check horizontal-fov (of the whole frame's width) and the driver's steps a turn."};
+}
+
+void warn(GstElement* element, const control::SlipFinding& finding, const char* head, const char* axis) {
+  const Words words = in_words(finding, head, axis);
+  const double travel = degrees(finding.travel);
+  CERBERUS_ELEMENT_MESSAGE(element, WARNING, RESOURCE, FAILED, (words.text), (nullptr),
+                           gst_structure_new("details", "head", G_TYPE_STRING, head, "axis", G_TYPE_STRING,
+                                             axis, "fault", G_TYPE_STRING, words.fault, "gain", G_TYPE_DOUBLE,
+                                             finding.gain, "travel", G_TYPE_DOUBLE, travel, nullptr));
+}
+
+}  // namespace
+
+void HeadMotionMonitor::forget() {
+  before_ = now_ = {};
+  base_.reset();
+  begin_comparison();
+  const std::lock_guard guard(lock_);
+  poses_.clear();
+  told_base_.clear();
+}
+
+void HeadMotionMonitor::begin_comparison() {
+  pan_.reset();
+  tilt_.reset();
+}
+
+void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
+  double rate = 0;
+  GstClockTime from = 0;
+  g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
+  const std::lock_guard guard(lock_);
+  if (pose && (head.empty() || head == pose->head))
+    poses_.insert(time_of(pose->valid_from), *pose);
+  else if (cerberus_event_parse_base(event, &rate, &from))
+    told_base_.hear(time_of(from), rate);
+}
+
+HeadMotionMonitor::Head HeadMotionMonitor::head_of(Frame& frame, const std::string& head) {
+  if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
+    if (!head.empty() && head != carried->head) return {.look = kStrange, .name = carried->head};
+    return {frame.look.value_or(kStrange), carried->head};
+  }
+  if (!GST_CLOCK_TIME_IS_VALID(frame.running_time)) return {};
+  const Time time = time_of(frame.running_time);
+  const std::lock_guard guard(lock_);
+  const CerberusPose* heard = poses_.at(time);
+  if (!heard) return {};
+  CerberusPose pose = *heard;
+  cerberus_pose_evaluate(heard, frame.running_time, &pose.pan, &pose.tilt);
+  pose.valid_from = frame.running_time;
+  if (pose.valid_until < pose.valid_from) pose.valid_until = pose.valid_from;
+  cerberus_buffer_set_pose(frame.buffer, &pose);
+  poses_.forget_before(time);
+  return {look_of(pose, frame.running_time).value_or(kStrange), pose.head, true};
+}
+
+std::optional<vision::Transform> HeadMotionMonitor::look(Frame& frame, const std::string& head,
+                                                         const vision::Lens& lens) {
+  before_ = std::exchange(now_, head_of(frame, head));
+  if (!before_.look || !now_.look || !lens.known()) return std::nullopt;
+  return lens.turn(before_.look->pan, before_.look->tilt, now_.look->pan, now_.look->tilt);
+}
+
+// What the frame carries goes before what was heard, that before what is seen.
+void HeadMotionMonitor::tell_base(Frame& frame, double seen) {
+  if (cerberus_buffer_peek_base(frame.buffer)) return;
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = seen;
+  if (GST_CLOCK_TIME_IS_VALID(frame.running_time)) {
+    const Time time = time_of(frame.running_time);
+    const std::lock_guard guard(lock_);
+    if (const auto told = told_base_.at(time)) {
+      base.yaw_rate = *told;
+      base.told = TRUE;
+    }
+    told_base_.forget_before(time);
+  }
+  if (std::isfinite(base.yaw_rate)) cerberus_buffer_set_base(frame.buffer, &base);
+}
+
+void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision::Lens& lens,
+                                const vision::Transform& motion, double confidence) {
+  if (frame.fresh) base_.reset();
+  if (!lens.known()) return tell_base(frame, kUnknown);
+  // A camera without a head, and one whose head has not told yet, is as one on a head that stands.
+  const bool known = before_.look.has_value() == now_.look.has_value();
+  const PanTilt from = known ? before_.look.value_or(PanTilt{}) : kStrange;
+  const PanTilt to = known ? now_.look.value_or(PanTilt{}) : kStrange;
+  control::Turn turn{kUnknown, kUnknown};
+  if (confidence >= kConfident && motion.is_sane(frame.size()))
+    turn = control::base_turn(motion, lens, frame.size(), from, to);
+  const double pan = to.pan - from.pan, tilt = to.tilt - from.tilt;
+
+  // What a faulty head really did is not known.
+  const double base_turn = pan_.fault() != SlipFault::none && pan != 0 ? kUnknown : turn.yaw;
+  const Time time = GST_CLOCK_TIME_IS_VALID(frame.running_time) ? time_of(frame.running_time) : Time::zero();
+  base_.add(time, frame.seconds, base_turn, pan / frame.seconds);
+  tell_base(frame, degrees(base_.at(time)));
+
+  if (!now_.commanded || !before_.commanded || now_.name != before_.name) return;
+  const CerberusBase* base = cerberus_buffer_peek_base(frame.buffer);
+  const double told = base && base->told ? radians(base->yaw_rate) * frame.seconds : 0;
+  const char* head = now_.name;
+  if (const auto found = pan_.add(frame.seconds, turn.yaw + pan - told, pan))
+    warn(element, *found, head, "pan");
+  if (const auto found = tilt_.add(frame.seconds, turn.pitch + tilt, tilt))
+    warn(element, *found, head, "tilt");
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-threeframediff
+ *
+ * Attaches what changed between three consecutive frames once the camera's own motion is taken out: the planes
+ * `difference` and `previous-difference` and the histogram of the first. The frame goes through untouched. The plane
+ * `previous-difference` is left out where a `fuzzythreshold` with
+ * `area=all` follows and nobody asks for planes: it is not read then.
+ * Without `cameramotion` upstream the camera stands still and the luma plane is made here. `difference` is zero in
+ * the first frame of a scene, `previous-difference` in the first two.
+ *
+ * ## Example
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! threeframediff ! fuzzythreshold ! fakesink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// Paper Eq. 1 and 2: D(k) = |F(k) - F(k-1)|, D(k-1) = |F(k-1) - F(k-2)|. The printed elements of Eq. 2 are one index
+// late; Eq. 3 has it right. Deviations: both differences stand in frame k's coordinates (F(k-1) and F(k-2) are warped
+// there, never an old difference), a 3x3 blur goes before (`blur`), a change of light of the whole picture is taken out
+// (`compensate-light`), and what is not visible in all three frames does not move. See
+// lib/vision/change/three_frame_difference.h.
+
+#include "analysis_element.hpp"
+#include "elements.hpp"
+#include "shared/stages.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(threeframediff_debug);
+#define GST_CAT_DEFAULT threeframediff_debug
+
+namespace cerberus::plugin {
+namespace {
+
+struct Settings {
+  bool blur = vision::DifferenceOptions{}.blur > 1;
+  bool compensate_light = vision::DifferenceOptions{}.compensate_light;
+};
+
+const Property<Settings> kProperties[] = {
+    property("blur", &Settings::blur,
+             "Average 3 x 3 pixels before the difference is taken: quieter, and blind to single pixels"),
+    property(
+        "compensate-light", &Settings::compensate_light,
+        "Take a change of brightness and contrast of the whole picture out before the difference is taken"),
+};
+
+struct Private final : StatefulAnalyser<Settings, DifferenceStage> {
+  bool analyse(Frame& frame) override {
+    if (const auto s = settings.changes()) state->set_options({s->blur ? 3 : 1, s->compensate_light});
+    state->luma().set_analysis_width(cerberus_analysis_width(base));
+    return state->run(frame, frame.previous_wanted);
+  }
+};
+
+constexpr AnalysisInfo kInfo{"CerberusThreeFrameDiff", "Three-frame difference",
+                             "Differences of three consecutive frames with the camera's motion taken out"};
+
+}  // namespace
+
+GType threeframediff_get_type() {
+  return analysis_type<Private, kProperties, kInfo>();
+}
+
+}  // namespace cerberus::plugin
+
+CERBERUS_REGISTER_ELEMENT(threeframediff, GST_RANK_NONE, cerberus::plugin::threeframediff,
+                          threeframediff_debug, "registered differences of three frames")

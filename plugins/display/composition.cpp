@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "composition.hpp"
+
+#include "overlay/blend.h"
+
+namespace cerberus::draw {
+
+namespace {
+
+// The components of a mapped frame with their part in a colour: Y'CbCr after the caps' matrix and range, RGB as it is.
+int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MAX_COMPONENTS]) {
+  const GstVideoFormatInfo* format = frame->info.finfo;
+  gint offset[GST_VIDEO_MAX_COMPONENTS], scale[GST_VIDEO_MAX_COMPONENTS];
+  gst_video_color_range_offsets(frame->info.colorimetry.range, format, offset, scale);
+  double kr = 0.299, kb = 0.114;
+  if (!gst_video_color_matrix_get_Kr_Kb(frame->info.colorimetry.matrix, &kr, &kb)) kr = 0.299, kb = 0.114;
+  const double luma[3] = {kr, 1 - kr - kb, kb};
+  const int n = static_cast<int>(GST_VIDEO_FORMAT_INFO_N_COMPONENTS(format));
+  for (int i = 0; i < n; ++i) {
+    double weights[3] = {0, 0, 0};
+    const bool alpha = i == GST_VIDEO_COMP_A;
+    if (!alpha && GST_VIDEO_FORMAT_INFO_IS_RGB(format)) {
+      weights[i] = 1;
+    } else if (!alpha) {
+      // Cb = (B - Y) / (2 (1 - Kb)), Cr likewise.
+      const int own = i == GST_VIDEO_COMP_U ? 2 : 0;
+      for (int j = 0; j < 3; ++j)
+        weights[j] = i == GST_VIDEO_COMP_Y ? luma[j] : ((j == own) - luma[j]) / (2 * (1 - luma[own]));
+    }
+    auto& c = all[i];
+    c.data = GST_VIDEO_FRAME_COMP_DATA(frame, i);
+    c.stride = GST_VIDEO_FRAME_COMP_STRIDE(frame, i);
+    c.step = GST_VIDEO_FRAME_COMP_PSTRIDE(frame, i);
+    c.shift_x = GST_VIDEO_FORMAT_INFO_W_SUB(format, i);
+    c.shift_y = GST_VIDEO_FORMAT_INFO_H_SUB(format, i);
+    c.red = weights[0] * scale[i] / 255, c.green = weights[1] * scale[i] / 255,
+    c.blue = weights[2] * scale[i] / 255;
+    c.offset = alpha ? 255 : offset[i];
+  }
+  return n;
+}
+
+}  // namespace
+
+CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComposition* before) {
+  CompositionPtr composition(gst_video_overlay_composition_new(nullptr));
+  for (const Patch& patch : patches) {
+    // The buffer holds the surface: no copy, and labels that stay the same are shared from frame to frame.
+    cairo_surface_t* surface = cairo_surface_reference(patch.pixels.get());
+    const gsize size = static_cast<gsize>(cairo_image_surface_get_stride(surface)) * patch.area.height;
+    GstBuffer* pixels = gst_buffer_new_wrapped_full(
+        GST_MEMORY_FLAG_READONLY, cairo_image_surface_get_data(surface), size, 0, size, surface,
+        [](gpointer data) { cairo_surface_destroy(static_cast<cairo_surface_t*>(data)); });
+    gsize offsets[GST_VIDEO_MAX_PLANES] = {};
+    gint strides[GST_VIDEO_MAX_PLANES] = {cairo_image_surface_get_stride(surface)};
+    gst_buffer_add_video_meta_full(pixels, GST_VIDEO_FRAME_FLAG_NONE,
+                                   GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB, patch.area.width,
+                                   patch.area.height, 1, offsets, strides);
+    GstVideoOverlayRectangle* rectangle = gst_video_overlay_rectangle_new_raw(
+        pixels, patch.area.x, patch.area.y, patch.area.width, patch.area.height,
+        GST_VIDEO_OVERLAY_FORMAT_FLAG_PREMULTIPLIED_ALPHA);
+    gst_buffer_unref(pixels);
+    gst_video_overlay_composition_add_rectangle(composition.get(), rectangle);
+    gst_video_overlay_rectangle_unref(rectangle);
+  }
+  auto* others = const_cast<GstVideoOverlayComposition*>(before);
+  for (guint i = 0; others && i < gst_video_overlay_composition_n_rectangles(others); ++i)
+    gst_video_overlay_composition_add_rectangle(composition.get(),
+                                                gst_video_overlay_composition_get_rectangle(others, i));
+  return composition;
+}
+
+void blend(std::span<const Patch> patches, GstVideoFrame* frame) {
+  overlay::BlendComponent all[GST_VIDEO_MAX_COMPONENTS];
+  const auto n = static_cast<std::size_t>(components(frame, all));
+  for (const Patch& patch : patches) {
+    cairo_surface_t* surface = patch.pixels.get();
+    const vision::View<const std::uint32_t> drawing{
+        reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface)), patch.area.width,
+        patch.area.height, cairo_image_surface_get_stride(surface) / 4};
+    overlay::blend(drawing, patch.area.x, patch.area.y, {all, n});
+  }
+}
+
+}  // namespace cerberus::draw

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "plane_view.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "drawing.hpp"
+
+namespace cerberus::draw {
+
+namespace {
+
+int nearest(int to_index, int to, int from) {
+  return static_cast<int>((2 * static_cast<std::int64_t>(to_index) + 1) * from /
+                          (2 * static_cast<std::int64_t>(to)));
+}
+
+std::uint32_t word(Color c) {
+  const auto byte = [](double share) { return static_cast<std::uint32_t>(std::lround(255 * share)); };
+  return byte(c.r) << 16 | byte(c.g) << 8 | byte(c.b);
+}
+
+}  // namespace
+
+void Canvas::fill_black() const {
+  for (int y = 0; y < height; ++y) std::memset(row(y), 0, row_bytes());
+}
+
+void Canvas::clear_padding(std::size_t bytes) const {
+  if (stride <= static_cast<std::ptrdiff_t>(row_bytes())) return;
+  for (int y = 0; y < height; ++y) {
+    const std::size_t begin = static_cast<std::size_t>(y) * static_cast<std::size_t>(stride) + row_bytes();
+    const std::size_t end =
+        std::min(bytes, static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(stride));
+    if (begin < end) std::memset(data + begin, 0, end - begin);
+  }
+}
+
+const std::vector<int>& Enlarger::columns(int from, int to) {
+  if (columns_from_ != from || columns_.size() != static_cast<std::size_t>(to)) {
+    columns_.resize(static_cast<std::size_t>(to));
+    for (int x = 0; x < to; ++x) columns_[static_cast<std::size_t>(x)] = nearest(x, to, from);
+    columns_from_ = from;
+  }
+  return columns_;
+}
+
+// write(row of the plane, columns, row of the canvas) for every new row; those that repeat are copied.
+template <typename T, typename Write>
+void Enlarger::walk(vision::View<const T> plane, const Canvas& canvas, Write write) {
+  const std::vector<int>& column = columns(plane.width, canvas.width);
+  int last = -1;
+  for (int y = 0; y < canvas.height; ++y) {
+    const int from = nearest(y, canvas.height, plane.height);
+    if (from == last)
+      std::memcpy(canvas.row(y), canvas.row(y - 1), canvas.row_bytes());
+    else
+      write(plane.row(from), column.data(), canvas.row(y));
+    last = from;
+  }
+}
+
+void Enlarger::show(vision::GrayView plane, double gain, const Canvas& canvas) {
+  std::array<std::uint8_t, 256> level;
+  for (int i = 0; i < 256; ++i) level[i] = static_cast<std::uint8_t>(std::min(std::lround(i * gain), 255L));
+  walk(plane, canvas, [&](const std::uint8_t* from, const int* column, std::uint8_t* to) {
+    if (canvas.gray) {
+      for (int x = 0; x < canvas.width; ++x) to[x] = level[from[column[x]]];
+    } else {
+      auto* words = reinterpret_cast<std::uint32_t*>(to);
+      for (int x = 0; x < canvas.width; ++x) words[x] = level[from[column[x]]] * 0x010101u;
+    }
+  });
+}
+
+void Enlarger::show_labels(vision::View<const std::uint16_t> plane, const Canvas& canvas) {
+  constexpr unsigned kColors = 7;  // the palette's period
+  std::array<std::uint32_t, kColors> colors;
+  for (unsigned i = 0; i < kColors; ++i) colors[i] = word(identity_color(i + 1));
+  walk(plane, canvas, [&](const std::uint16_t* from, const int* column, std::uint8_t* to) {
+    auto* words = reinterpret_cast<std::uint32_t*>(to);
+    for (int x = 0; x < canvas.width; ++x) {
+      const unsigned label = from[column[x]];
+      words[x] = label ? colors[(label - 1) % kColors] : 0;
+    }
+  });
+}
+
+}  // namespace cerberus::draw

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The loadable module that shows what was found.
+#include <gst/gst.h>
+
+GST_ELEMENT_REGISTER_DECLARE(motionjson)
+GST_ELEMENT_REGISTER_DECLARE(motionoverlay)
+GST_ELEMENT_REGISTER_DECLARE(motionview)
+
+static gboolean plugin_init(GstPlugin* plugin) {
+  return GST_ELEMENT_REGISTER(motionjson, plugin) &&
+         GST_ELEMENT_REGISTER(motionoverlay, plugin) &&
+         GST_ELEMENT_REGISTER(motionview, plugin);
+}
+
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberusdisplay,
+                  "Shows what the detection found: drawings, stage views and JSON lines", plugin_init,
+                  PLUGIN_VERSION, "LGPL", PACKAGE, "Unknown package origin")

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Settings that fit neither the sensors nor the head that there are: nothing fails, and nothing does what was meant.
+// Each is told once, in words for a user; empty: it fits, or was told.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "inputs.hpp"
+
+namespace cerberus::plugin {
+
+class SettingsCheck {
+ public:
+  // `rules` that speak of `wanted` sensors (0: of any number).
+  std::string sensors(const std::string& rules, int wanted, const Moment& moment) {
+    const auto there = static_cast<int>(moment.count);
+    if (wanted == 0 || there == 0 || there == wanted || !moment.told) return {};
+    if (std::exchange(told_, std::pair(wanted, there)) == std::pair(wanted, there)) return {};
+    return rules + " speaks of " + std::to_string(wanted) + " PIR sensors, and there are " +
+           std::to_string(there) + ": " +
+           (there < wanted ? "the others never detect anything." : "what the others say does not count.");
+  }
+
+  // Only another head than `head` tells its pose.
+  std::string head(const std::string& head, Time time, const Moment& moment) {
+    constexpr Time kPatience = std::chrono::seconds(2);
+    if (!moment.stranger || !std::isnan(moment.pan_degrees)) {
+      since_.reset();
+      return {};
+    }
+    if (!since_ || time < *since_) since_ = time;
+    if (time - *since_ < kPatience || std::exchange(head_told_, true)) return {};
+    return "The head \"" + std::string(moment.stranger) +
+           "\" tells where it looks, but the one that counts is \"" + head +
+           "\" (property head), which says nothing: pan is not known, and no turn is ordered.";
+  }
+
+ private:
+  std::pair<int, int> told_{0, 0};
+  std::optional<Time> since_;
+  bool head_told_ = false;
+};
+
+}  // namespace cerberus::plugin

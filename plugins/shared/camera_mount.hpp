@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How the camera stands in the room: the properties that motionregions and motiontrack share.
+#pragma once
+
+#include <cerberus/cerberus.h>
+
+#include <cmath>
+#include <optional>
+
+#include "control/base_rate.h"
+#include "sensing/angles.h"
+
+namespace cerberus::plugin {
+
+inline constexpr double kDefaultMountingHeight = 0.8;  // metres, as on the paper's robot (III)
+inline constexpr double kMaximumFieldOfView = 179, kMaximumMountingHeight = 100, kMaximumTilt = 90;
+
+inline constexpr char kFieldOfViewBlurb[] =
+    "Angle in degrees that the lens sees over the frame's whole width: with it, limits in metres are judged "
+    "and bearing "
+    "and distance of objects are known; 0 = unknown";
+inline constexpr char kMountingHeightBlurb[] =
+    "Height in metres of the lens above the floor on which people walk; the camera looks level unless "
+    "tilt or a head's pose on the frame says otherwise";
+inline constexpr char kTiltBlurb[] =
+    "Angle in degrees by which the camera looks up, negative: down; where a head's pose is on the frame, "
+    "that counts instead";
+
+using sensing::degrees;
+using sensing::radians;
+
+// Where `pose` says that the head looked at `running_time`; nothing where
+// its numbers are none of a camera's: a stranger's may be anything.
+inline std::optional<motion::PanTilt> look_of(const CerberusPose& pose, GstClockTime running_time) {
+  double pan = 0, tilt = 0;
+  cerberus_pose_evaluate(&pose, running_time, &pan, &tilt);
+  if (!std::isfinite(pan) || !(std::abs(tilt) <= kMaximumTilt)) return std::nullopt;
+  return motion::PanTilt{radians(pan), radians(tilt)};
+}
+// The same of the pose on a frame; nothing where it has none.
+inline std::optional<motion::PanTilt> look_of(GstBuffer* frame, GstClockTime running_time) {
+  const CerberusPose* pose = cerberus_buffer_peek_pose(frame);
+  return pose ? look_of(*pose, running_time) : std::nullopt;
+}
+
+}  // namespace cerberus::plugin

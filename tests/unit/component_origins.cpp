@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/background/component_origins.h"
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr Size kSize{100, 4};
+using Origin = ComponentOrigins::Origin;
+
+Run run(int first, int end) {
+  Run r;
+  r.row = 2, r.first = static_cast<std::uint16_t>(first), r.end = static_cast<std::uint16_t>(end);
+  return r;
+}
+
+struct Frames {
+  ComponentOrigins origins;
+  BitMask differs, gone;
+  Frames() {
+    origins.preallocate(kSize);
+    for (auto* bits : {&differs, &gone}) bits->resize(bit_mask_size(kSize));
+  }
+  void see(const Run& r, Origin origin, const Run& taken = {}) {
+    for (auto* bits : {&differs, &gone}) bits->fill_bytes(0);
+    set_bits(differs.view().row(r.row), r.first, r.end);
+    set_bits(gone.view().row(taken.row), taken.first, taken.end);
+    origins.note(r, origin);
+    origins.step(differs.view(), gone.view());
+  }
+  void expect(const Run& r, int any, int here) const {
+    ComponentOrigins::Before before;
+    origins.add(r, before);
+    ck_assert_int_eq(before.any, any);
+    ck_assert_int_eq(before.here, here);
+  }
+};
+
+}  // namespace
+
+START_TEST(nothing_has_differed_at_the_start) {
+  Frames f;
+  f.expect(run(0, 100), 0, 0);
+  f.see(run(10, 80), Origin::here);
+  f.expect(run(0, 100), 70, 70);
+  f.origins.begin();
+  f.expect(run(0, 100), 0, 0);
+}
+END_TEST
+
+START_TEST(what_moves_on_is_found_two_pixels_beside_it) {
+  Frames f;
+  f.see(run(10, 20), Origin::here);
+  f.expect(run(21, 40), 1, 1);
+  f.expect(run(22, 40), 0, 0);
+  f.expect(run(4, 8), 0, 0);
+  f.expect(run(4, 9), 1, 1);
+  f.see(run(90, 100), Origin::here);
+  f.expect(run(95, 100), 7, 7);  // at the picture's edge
+}
+END_TEST
+
+START_TEST(each_pixel_keeps_its_origin_and_new_ones_are_as_most_of_the_part) {
+  Frames f;
+  f.see(run(10, 20), Origin::here);
+  f.see(run(10, 40), Origin::elsewhere);  // somebody from outside has come to it
+  f.expect(run(12, 38), 30, 10);
+  f.see(run(10, 50), Origin::here);
+  f.expect(run(12, 48), 40, 20);
+  f.see(run(10, 50), Origin::found);
+  f.expect(run(12, 48), 40, 0);
+}
+END_TEST
+
+START_TEST(what_is_taken_over_or_differs_no_more_begins_anew) {
+  Frames f;
+  f.see(run(10, 40), Origin::here, run(10, 20));
+  f.expect(run(10, 40), 20, 20);
+  f.see(run(30, 40), Origin::elsewhere);
+  f.expect(run(10, 40), 10, 10);
+  f.see(run(10, 40), Origin::elsewhere);
+  f.expect(run(10, 40), 30, 10);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "scene_origins", {nothing_has_differed_at_the_start, what_moves_on_is_found_two_pixels_beside_it,
+                        each_pixel_keeps_its_origin_and_new_ones_are_as_most_of_the_part,
+                        what_is_taken_over_or_differs_no_more_begins_anew});
+}
