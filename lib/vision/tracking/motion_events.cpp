@@ -12,9 +12,16 @@ constexpr MotionEvents::Time kLeast = std::chrono::microseconds(100);  // no cam
 
 }  // namespace
 
+std::chrono::nanoseconds frame_step(std::chrono::nanoseconds step,
+                                    std::optional<std::chrono::nanoseconds> time,
+                                    std::optional<std::chrono::nanoseconds> last) {
+  if (step > step.zero()) return step;
+  const auto gap = time && last ? *time - *last : step.zero();
+  return gap >= kLeast ? gap : kUsual;
+}
+
 MotionEvents::Change MotionEvents::update(bool present, std::optional<Time> time, Time step, Time hold) {
-  const Time gap = time && last_ ? *time - *last_ : Time::zero();
-  const Time passed = step > Time::zero() ? step : gap >= kLeast ? gap : kUsual;
+  const Time passed = frame_step(step, time, last_);
   last_ = time;
   if (present) {
     quiet_ = Time::zero();

@@ -8,6 +8,12 @@
 
 namespace cerberus::vision {
 
+// The duration that a frame counts for: `step` where it is known (above 0), else the distance of its time from the
+// last frame's where that is positive, else that of 25 frames a second.
+std::chrono::nanoseconds frame_step(std::chrono::nanoseconds step,
+                                    std::optional<std::chrono::nanoseconds> time,
+                                    std::optional<std::chrono::nanoseconds> last);
+
 class MotionEvents {
  public:
   using Time = std::chrono::nanoseconds;
