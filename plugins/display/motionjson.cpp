@@ -50,7 +50,7 @@
  *
  * ## Example launch lines
  * |[
- * gst-launch-1.0 videotestsrc num-buffers=60 ! motionjson ! filesink location=/dev/stdout
+ * gst-launch-1.0 videotestsrc num-buffers=60 ! motiondetect ! motionjson ! fdsink
  * gst-launch-1.0 -q filesrc location=vtest.avi ! decodebin ! motiondetect ! motionjson ! \
  *     filesink location=objects.jsonl
  * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! tee name=t \

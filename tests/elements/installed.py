@@ -1,6 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""Installs into a folder and uses it as others would: pkg-config, a C program, Python, nothing of the build folder."""
+"""The library as other programs use it: installed into a folder, and uninstalled, straight from the build folder.
+
+Both by pkg-config from a C program, and from Python; the installed one needs nothing of the build folder.
+"""
 import os
 import pathlib
 import shlex
@@ -27,6 +30,17 @@ def only(root, pattern):
     return found[0]
 
 
+def use(description, library, program, typelib):
+    """A C program and a Python one, by the pkg-config file, the library and the typelib of these folders."""
+    flags = run("pkg-config", "--cflags", "--libs", "cerberus-1.0", **description).split()
+    run("cc", "-o", program, source, *flags)
+    here = {"LD_LIBRARY_PATH": str(library)}
+    run(program, **here)
+    if typelib and pathlib.Path(PYTHON).exists():
+        run(PYTHON, "-c", "import gi; gi.require_version('Cerberus', '1.0'); from gi.repository import Cerberus, Gst; "
+            "Gst.init(None); assert not Cerberus.buffer_get_regions(Gst.Buffer())", GI_TYPELIB_PATH=str(typelib), **here)
+
+
 for tool in ("pkg-config", "cc", shlex.split(meson)[0]):
     if not shutil.which(tool):
         print(f"skipped: no {tool}")
@@ -45,12 +59,10 @@ with tempfile.TemporaryDirectory() as folder:
     needed = run("pkg-config", "--print-requires", "--print-requires-private", "cerberus-1.0", **found).split()
     if {word for word in needed if word[0].isalpha()} != {"gstreamer-1.0", "gstreamer-video-1.0"}:
         sys.exit(f"the package needs {needed}")
-    program = root / "program"
-    run("cc", "-o", program, source, *run("pkg-config", "--cflags", "--libs", "cerberus-1.0", **found).split())
-    here = {"LD_LIBRARY_PATH": str(library.parent)}
-    run(program, **here)
-    if introspection == "introspection" and pathlib.Path(PYTHON).exists():
-        here["GI_TYPELIB_PATH"] = str(only(root, "Cerberus-1.0.typelib").parent)
-        run(PYTHON, "-c", "import gi; gi.require_version('Cerberus', '1.0'); from gi.repository import Cerberus, Gst; "
-            "Gst.init(None); assert not Cerberus.buffer_get_regions(Gst.Buffer())", **here)
+    use(found, library.parent, root / "program",
+        only(root, "Cerberus-1.0.typelib").parent if introspection == "introspection" else None)
+    if introspection == "introspection":
         only(root, "Cerberus-1.0.gir")
+    here = pathlib.Path(build)
+    use({"PKG_CONFIG_PATH": str(here / "meson-uninstalled")}, here / "gst", root / "uninstalled",
+        here / "gst" if introspection == "introspection" else None)
