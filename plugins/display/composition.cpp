@@ -3,7 +3,7 @@
 
 #include "overlay/blend.h"
 
-namespace cerberus::draw {
+namespace cerberus::plugin {
 
 namespace {
 
@@ -42,9 +42,9 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
 
 }  // namespace
 
-CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComposition* before) {
+CompositionPtr compose(std::span<const overlay::Patch> patches, const GstVideoOverlayComposition* before) {
   CompositionPtr composition(gst_video_overlay_composition_new(nullptr));
-  for (const Patch& patch : patches) {
+  for (const overlay::Patch& patch : patches) {
     // The buffer holds the surface: no copy, and labels that stay the same are shared from frame to frame.
     cairo_surface_t* surface = cairo_surface_reference(patch.pixels.get());
     const gsize size = static_cast<gsize>(cairo_image_surface_get_stride(surface)) * patch.area.height;
@@ -70,10 +70,10 @@ CompositionPtr compose(std::span<const Patch> patches, const GstVideoOverlayComp
   return composition;
 }
 
-void blend(std::span<const Patch> patches, GstVideoFrame* frame) {
+void blend(std::span<const overlay::Patch> patches, GstVideoFrame* frame) {
   overlay::BlendComponent all[GST_VIDEO_MAX_COMPONENTS];
   const auto n = static_cast<std::size_t>(components(frame, all));
-  for (const Patch& patch : patches) {
+  for (const overlay::Patch& patch : patches) {
     cairo_surface_t* surface = patch.pixels.get();
     const vision::View<const std::uint32_t> drawing{
         reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface)), patch.area.width,
@@ -82,4 +82,4 @@ void blend(std::span<const Patch> patches, GstVideoFrame* frame) {
   }
 }
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::plugin

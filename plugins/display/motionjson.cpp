@@ -70,10 +70,10 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
-#include "json_line.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
+#include "text/json_line.h"
 
 namespace {
 
@@ -95,7 +95,7 @@ struct State {  // streaming thread only
   int width = 0, height = 0;
   guint64 frame = 0;
   cerberus::plugin::Complaint complaint;  // about the caps
-  cerberus::JsonLine line;
+  cerberus::text::JsonLine line;
 };
 
 struct Private {
@@ -105,7 +105,7 @@ struct Private {
 CERBERUS_DEFINE_TYPE(CerberusMotionJson, cerberus_motion_json, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
 
-void write_object(cerberus::JsonLine& line, const CerberusRegion& region) {
+void write_object(cerberus::text::JsonLine& line, const CerberusRegion& region) {
   line.open('{').key("id");
   if (region.tracked)
     line.integer(region.id);
@@ -122,7 +122,7 @@ void write_object(cerberus::JsonLine& line, const CerberusRegion& region) {
 }
 
 // Facts that only a system with a head and sensors knows.
-void write_system(cerberus::JsonLine& line, GstBuffer* buffer, GstClockTime time) {
+void write_system(cerberus::text::JsonLine& line, GstBuffer* buffer, GstClockTime time) {
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
     const auto look =
         cerberus::plugin::look_of(*pose, time).value_or(cerberus::motion::PanTilt{kUnknown, kUnknown});
@@ -148,7 +148,7 @@ void write_system(cerberus::JsonLine& line, GstBuffer* buffer, GstClockTime time
 }
 
 std::string_view write_line(State& state, GstBuffer* buffer, GstClockTime time) {
-  cerberus::JsonLine& line = state.line;
+  cerberus::text::JsonLine& line = state.line;
   line.clear();
   line.open('{').key("pts");
   if (GST_BUFFER_PTS_IS_VALID(buffer))

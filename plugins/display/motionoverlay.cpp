@@ -53,7 +53,7 @@
 #include "cerberus/private/text.hpp"
 #include "cerberus/private/video.hpp"
 #include "composition.hpp"
-#include "drawing.hpp"
+#include "overlay/painter.h"
 #include "overlay/trails.h"
 #include "sensing/angles.h"
 #include "shared/camera_mount.hpp"
@@ -68,7 +68,7 @@ using cerberus::plugin::Adjustable;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
 using cerberus::plugin::running_time_of;
-namespace draw = cerberus::draw;
+namespace overlay = cerberus::overlay;
 
 GST_DEBUG_CATEGORY_STATIC(motionoverlay_debug);
 #define GST_CAT_DEFAULT motionoverlay_debug
@@ -121,12 +121,12 @@ struct State {  // streaming thread only
   bool warned = false;                         // a frame that cannot be written
   cerberus::plugin::Complaint complaint;       // about the caps
   cerberus::plugin::CameraFollower camera;
-  cerberus::overlay::Trails trails;
-  draw::Painter painter;
-  std::vector<draw::Object> objects;
-  std::vector<draw::Area> covered;
-  std::vector<cerberus::overlay::TrailMark> marks;
-  std::vector<draw::Patch> patches;
+  overlay::Trails trails;
+  overlay::Painter painter;
+  std::vector<overlay::Object> objects;
+  std::vector<overlay::Area> covered;
+  std::vector<overlay::TrailMark> marks;
+  std::vector<overlay::Patch> patches;
 };
 
 struct Private {
@@ -138,7 +138,7 @@ struct Private {
 CERBERUS_DEFINE_TYPE(CerberusMotionOverlay, cerberus_motion_overlay, GstBaseTransform,
                      GST_TYPE_BASE_TRANSFORM, Private)
 
-using draw::CompositionPtr;
+using cerberus::plugin::CompositionPtr;
 using CapsPtr = std::unique_ptr<GstCaps, decltype(&gst_caps_unref)>;
 
 bool has_composition_feature(const GstCaps* caps, guint index = 0) {
@@ -178,7 +178,7 @@ bool draw_into(State& state, GstBuffer* buffer, GstVideoOverlayComposition* befo
   // Mapping for writing copies memory that others (a tee's other branch) hold too.
   cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READWRITE);
   if (!frame) return false;
-  draw::blend(state.patches, frame.get());
+  cerberus::plugin::blend(state.patches, frame.get());
   return !before || gst_video_overlay_composition_blend(before, frame.get());
 }
 
@@ -295,16 +295,16 @@ void read_objects(State& state, GstBuffer* buffer) {
   g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   for (guint i = 0; i < regions->len; ++i) {
     const auto& region = *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
-    draw::Object object;
+    overlay::Object object;
     object.id = region.tracked ? region.id : 0;
     object.target = follows && object.id && object.id == fusion->target;
     object.x = region.x, object.y = region.y;
     object.width = region.width, object.height = region.height;
     object.speed = region.tracked ? std::hypot(region.vx, region.vy) : NAN;
     object.distance = region.distance;
-    object.state = region.state == CERBERUS_REGION_STOPPED   ? draw::ObjectState::stopped
-                   : region.state == CERBERUS_REGION_COASTED ? draw::ObjectState::coasted
-                                                             : draw::ObjectState::seen;
+    object.state = region.state == CERBERUS_REGION_STOPPED   ? overlay::ObjectState::stopped
+                   : region.state == CERBERUS_REGION_COASTED ? overlay::ObjectState::coasted
+                                                             : overlay::ObjectState::seen;
     state.objects.push_back(object);
     // People and cars stand on the ground: the trail is where their feet were, as long as those are in the picture.
     const bool cut = region.x < 1 || region.x + region.width > GST_VIDEO_INFO_WIDTH(&state.info) - 1 ||
@@ -351,17 +351,17 @@ std::string rule_text(const CerberusFusion& fusion) {
 }
 
 // From the left behind to the right behind, as somebody in the robot's place would point at them.
-std::vector<draw::Light> lights_of(const CerberusFusion& fusion) {
-  std::vector<draw::Light> lights;
+std::vector<overlay::Light> lights_of(const CerberusFusion& fusion) {
+  std::vector<overlay::Light> lights;
   for (guint i = 0; i < fusion.n_sensors; ++i) lights.push_back({static_cast<int>(i) + 1, fusion.sensors[i]});
-  std::ranges::stable_sort(lights, {}, [&](const draw::Light& light) {
+  std::ranges::stable_sort(lights, {}, [&](const overlay::Light& light) {
     return cerberus::sensing::wrap(cerberus::sensing::radians(fusion.bearings[light.sensor - 1]));
   });
   return lights;
 }
 
-draw::System read_system(GstBuffer* buffer, GstClockTime time) {
-  draw::System system;
+overlay::System read_system(GstBuffer* buffer, GstClockTime time) {
+  overlay::System system;
   if (const auto look = cerberus::plugin::look_of(buffer, time)) {
     system.pose = true;
     system.pan = cerberus::sensing::degrees(look->pan);
@@ -388,7 +388,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     GstVideoOverlayCompositionMeta* meta = gst_buffer_get_video_overlay_composition_meta(buffer);
     read_covered(state, meta);
 
-    draw::Scene scene;
+    overlay::Scene scene;
     scene.frame = {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
     scene.objects = state.objects;
     scene.trails = state.trails.trails();
@@ -408,7 +408,8 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     const CompositionPtr before(meta ? gst_video_overlay_composition_ref(meta->overlay) : nullptr);
     if (meta) gst_buffer_remove_video_overlay_composition_meta(buffer, meta);
     if (state.attach) {
-      gst_buffer_add_video_overlay_composition_meta(buffer, draw::compose(state.patches, before.get()).get());
+      gst_buffer_add_video_overlay_composition_meta(
+          buffer, cerberus::plugin::compose(state.patches, before.get()).get());
     } else if (!draw_into(state, buffer, before.get()) && !state.warned) {
       state.warned = true;
       CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, ("A frame could not be drawn on."),

@@ -46,9 +46,9 @@
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/plane_pool.hpp"
 #include "cerberus/private/video.hpp"
-#include "drawing.hpp"
-#include "figures.hpp"
-#include "plane_view.hpp"
+#include "overlay/painter.h"
+#include "overlay/plane_view.h"
+#include "overlay/threshold_figure.h"
 #include "shared/complaint.hpp"
 #include "shared/enums.hpp"
 #include "shared/properties.hpp"
@@ -64,7 +64,7 @@ using cerberus::plugin::Complaint;
 using cerberus::plugin::HistogramRecord;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
-namespace draw = cerberus::draw;
+namespace overlay = cerberus::overlay;
 namespace vision = cerberus::vision;
 
 GST_DEBUG_CATEGORY_STATIC(motionview_debug);
@@ -123,7 +123,7 @@ struct State {  // streaming thread only
   Complaint complaint;  // about the caps
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> luma;
-  draw::Enlarger enlarger;
+  overlay::Enlarger enlarger;
 };
 
 struct Private {
@@ -159,7 +159,7 @@ void warn_once(GstBaseTransform* transform, State& state, int stage, const char*
       ("There is nothing to show for stage=%s: the picture is black.", stage_nick(stage)), ("%s", why));
 }
 
-draw::Canvas canvas_of(GstVideoFrame* frame) {
+overlay::Canvas canvas_of(GstVideoFrame* frame) {
   return {static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(frame, 0)),
           GST_VIDEO_FRAME_PLANE_STRIDE(frame, 0), GST_VIDEO_FRAME_WIDTH(frame), GST_VIDEO_FRAME_HEIGHT(frame),
           GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8};
@@ -176,14 +176,14 @@ vision::FuzzyThresholdOptions options_of(const HistogramRecord& record) {
   return options;
 }
 
-bool show_histogram(const MappedPlane& plane, GstBuffer* buffer, const draw::Canvas& canvas) {
+bool show_histogram(const MappedPlane& plane, GstBuffer* buffer, const overlay::Canvas& canvas) {
   HistogramRecord record{};
   vision::Histogram histogram;
   if (plane.width() < static_cast<int>(histogram.size())) return false;
   std::memcpy(&record, plane.view<std::uint32_t>().row(0),
               std::min(sizeof record, plane.width() * sizeof(std::uint32_t)));
   std::copy_n(record.count, histogram.size(), histogram.begin());
-  draw::ThresholdFigure figure;
+  overlay::ThresholdFigure figure;
   figure.histogram = &histogram;
   figure.fuzzy_threshold = vision::fuzzy_threshold(histogram, options_of(record), &figure.curves);
   if (const auto* meta = cerberus_buffer_get_threshold_meta(buffer); meta && meta->threshold.ready) {
@@ -191,16 +191,16 @@ bool show_histogram(const MappedPlane& plane, GstBuffer* buffer, const draw::Can
     figure.fuzzy_threshold = static_cast<int>(std::min(meta->threshold.fuzzy_threshold, 255u));
     figure.noise = meta->threshold.noise;
   }
-  const draw::SurfacePtr surface(cairo_image_surface_create_for_data(
+  const overlay::SurfacePtr surface(cairo_image_surface_create_for_data(
       canvas.data, CAIRO_FORMAT_RGB24, canvas.width, canvas.height, static_cast<int>(canvas.stride)));
-  const draw::ContextPtr cairo(cairo_create(surface.get()));
-  draw::draw_threshold_figure(cairo.get(), canvas.width, canvas.height, figure);
+  const overlay::ContextPtr cairo(cairo_create(surface.get()));
+  overlay::draw_threshold_figure(cairo.get(), canvas.width, canvas.height, figure);
   cairo_surface_flush(surface.get());
   return cairo_status(cairo.get()) == CAIRO_STATUS_SUCCESS;
 }
 
 // The analysis picture, made here as cameramotion makes it.
-bool show_own_luma(State& state, GstBuffer* in, const draw::Canvas& canvas) {
+bool show_own_luma(State& state, GstBuffer* in, const overlay::Canvas& canvas) {
   cerberus::VideoFrame frame(state.in, in, GST_MAP_READ);
   if (!frame) return false;
   const vision::LumaSource source = cerberus::luma_source(*frame.get());
@@ -212,7 +212,7 @@ bool show_own_luma(State& state, GstBuffer* in, const draw::Canvas& canvas) {
 }
 
 // False where there is nothing to show.
-bool show(State& state, const Settings& settings, GstBuffer* in, const draw::Canvas& canvas) {
+bool show(State& state, const Settings& settings, GstBuffer* in, const overlay::Canvas& canvas) {
   const MappedPlane plane = MappedPlane::read(in, plane_kind(settings.stage));
   if (!plane) return settings.stage == STAGE_LUMA && show_own_luma(state, in, canvas);
   switch (settings.stage) {
@@ -326,7 +326,7 @@ GstFlowReturn cerberus_motion_view_transform(GstBaseTransform* transform, GstBuf
                              ("%" GST_PTR_FORMAT, out));
       return GST_FLOW_ERROR;
     }
-    const draw::Canvas canvas = canvas_of(frame.get());
+    const overlay::Canvas canvas = canvas_of(frame.get());
     const GstMapInfo& map = frame.get()->map[0];
     canvas.clear_padding(static_cast<std::size_t>(map.data + map.size - canvas.data));
     // A stage changed just now: this frame still has the old format.

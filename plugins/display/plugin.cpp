@@ -7,8 +7,7 @@ GST_ELEMENT_REGISTER_DECLARE(motionoverlay)
 GST_ELEMENT_REGISTER_DECLARE(motionview)
 
 static gboolean plugin_init(GstPlugin* plugin) {
-  return GST_ELEMENT_REGISTER(motionjson, plugin) &&
-         GST_ELEMENT_REGISTER(motionoverlay, plugin) &&
+  return GST_ELEMENT_REGISTER(motionjson, plugin) && GST_ELEMENT_REGISTER(motionoverlay, plugin) &&
          GST_ELEMENT_REGISTER(motionview, plugin);
 }
 

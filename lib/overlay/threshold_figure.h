@@ -6,7 +6,7 @@
 
 #include "vision/change/fuzzy_threshold.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 struct ThresholdFigure {
   const vision::Histogram* histogram = nullptr;  // of the registered difference
@@ -22,4 +22,4 @@ struct ThresholdFigure {
 // pictures keep what is readable.
 void draw_threshold_figure(cairo_t* cairo, int width, int height, const ThresholdFigure& figure);
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

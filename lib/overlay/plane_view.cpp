@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "plane_view.hpp"
+#include "overlay/plane_view.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
 
-#include "drawing.hpp"
+#include "overlay/painter.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 namespace {
 
@@ -88,4 +88,4 @@ void Enlarger::show_labels(vision::View<const std::uint16_t> plane, const Canvas
   });
 }
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

@@ -12,7 +12,7 @@
 
 #include "text/numbers.h"
 
-namespace cerberus {
+namespace cerberus::text {
 
 class JsonLine {
  public:
@@ -55,11 +55,11 @@ class JsonLine {
   }
   // Rounded to `decimals` places, then the shortest form that reads back as that number. NaN, infinity: null.
   JsonLine& fixed(double value, int decimals) {
-    return std::isfinite(value) ? raw(text::rounded(value, decimals)) : null();
+    return std::isfinite(value) ? raw(rounded(value, decimals)) : null();
   }
   // Up to `digits` significant digits. NaN, infinity: null.
   JsonLine& significant(double value, int digits) {
-    return std::isfinite(value) ? raw(text::significant(value, digits)) : null();
+    return std::isfinite(value) ? raw(cerberus::text::significant(value, digits)) : null();
   }
   // A literal of ours, too.
   JsonLine& string(std::string_view literal) {
@@ -105,4 +105,4 @@ class JsonLine {
   bool comma_ = false;  // a separator is due before the next token
 };
 
-}  // namespace cerberus
+}  // namespace cerberus::text

@@ -8,7 +8,7 @@
 
 #include "vision/image/image.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 // The picture to fill: grey bytes, or words of red, green and blue from the second highest byte down (cairo's RGB24).
 struct Canvas {
@@ -43,4 +43,4 @@ class Enlarger {
   int columns_from_ = 0;
 };
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

@@ -14,7 +14,7 @@
 
 #include "overlay/trails.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 struct Color {
   double r = 0, g = 0, b = 0;
@@ -78,7 +78,7 @@ struct Scene {
   vision::Size frame;
   System system;
   std::span<const Object> objects;
-  std::span<const overlay::Trails::Trail> trails;
+  std::span<const Trails::Trail> trails;
   std::span<const Area> covered;  // by what others drew, which lies on top: labels keep clear of it
   double time = 0;                // s, of this frame
   double trail_time = 2;          // s, after which a trail has faded
@@ -104,7 +104,7 @@ class Painter {
   const Label& label(const Object& object, bool detailed);
   void draw_label(Label& label, Color color, ObjectState look, const std::string& id,
                   const std::string& more);
-  void paint_trail(const overlay::Trails::Trail& trail, std::vector<Patch>& patches);
+  void paint_trail(const Trails::Trail& trail, std::vector<Patch>& patches);
   void stroke_trail(cairo_t* cairo, Color color, std::size_t first, std::size_t last);
   void paint_box(const Object& object, std::vector<Patch>& patches);
   void paint_target(const Object& object, std::vector<Patch>& patches);
@@ -117,8 +117,8 @@ class Painter {
   double line_ = 1, font_ = 10;
   std::map<std::string, Label> labels_;  // drawn once, kept while in use
   std::vector<Area> taken_;              // labels of this frame
-  std::vector<overlay::TrailPoint> smooth_;
+  std::vector<TrailPoint> smooth_;
   std::vector<Object> objects_;  // clipped to the frame
 };
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

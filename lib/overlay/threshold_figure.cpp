@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "figures.hpp"
+#include "overlay/threshold_figure.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <string>
 
-#include "drawing.hpp"
+#include "overlay/painter.h"
 #include "text/numbers.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 namespace {
 
@@ -234,4 +234,4 @@ void draw_threshold_figure(cairo_t* cr, int width, int height, const ThresholdFi
               {{"omega", kObject}, {"beta (normalised)", kBackground}});
 }
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

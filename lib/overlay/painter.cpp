@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "drawing.hpp"
+#include "overlay/painter.h"
 
 #include <algorithm>
 #include <array>
@@ -8,9 +8,9 @@
 #include <optional>
 #include <utility>
 
-#include "cairo_helpers.hpp"
+#include "overlay/cairo_helpers.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 namespace {
 
@@ -80,14 +80,14 @@ void Painter::paint(const Scene& scene, std::vector<Patch>& patches) {
 // A line that thins out and fades with age in steps, cut into patches of bounded size. The box's foot trembles by
 // pixels from frame to frame: the line follows a short centred mean (ends kept), and leaves out points closer together
 // than it is wide.
-void Painter::paint_trail(const overlay::Trails::Trail& trail, std::vector<Patch>& patches) {
+void Painter::paint_trail(const Trails::Trail& trail, std::vector<Patch>& patches) {
   constexpr std::ptrdiff_t kReach = 3;
   const auto& points = trail.points;
   const auto n = static_cast<std::ptrdiff_t>(points.size());
   smooth_.clear();
   for (std::ptrdiff_t i = 0; i < n; ++i) {
     const std::ptrdiff_t reach = std::min({kReach, i, n - 1 - i});
-    overlay::TrailPoint mean{{0, 0}, points[i].time};
+    TrailPoint mean{{0, 0}, points[i].time};
     for (std::ptrdiff_t j = i - reach; j <= i + reach; ++j) {
       mean.position.x += points[j].position.x / (2.0 * reach + 1);
       mean.position.y += points[j].position.y / (2.0 * reach + 1);
@@ -244,4 +244,4 @@ void Painter::paint_crosshair(std::vector<Patch>& patches) {
   add_patch(patches, frame_, around(cx - arm, cy - arm, cx + arm, cy + arm, reach), draw);
 }
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "drawing.hpp"
+#include "overlay/painter.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 inline constexpr double kCasing = 0.6;  // opacity of the dark casing under lines
 // How far the target's corners lie outside its box, in widths of a line.
@@ -55,4 +55,4 @@ inline void rounded_rectangle(cairo_t* cr, double x, double y, double w, double 
   cairo_close_path(cr);
 }
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay

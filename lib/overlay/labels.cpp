@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-#include "cairo_helpers.hpp"
-#include "drawing.hpp"
+#include "overlay/cairo_helpers.h"
+#include "overlay/painter.h"
 #include "text/numbers.h"
 
-namespace cerberus::draw {
+namespace cerberus::overlay {
 
 namespace {
 
@@ -195,4 +195,4 @@ void Painter::paint_system(std::vector<Patch>& patches) {
   });
 }
 
-}  // namespace cerberus::draw
+}  // namespace cerberus::overlay
