@@ -1,91 +1,218 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One reading of the paper's Eq. 4-10. Its slips, and what is done instead: Eq. 8 and 9 both carry 2 /
-// n^(1/k), which belongs once; Eq. 8 lacks the absolute value (odd k would cancel). Whether S or 1 - S is
-// taken does not matter: a set and its complement have the same index of fuzziness.
+// One reading of the paper's Eq. 4-10. Two corrections: the factor 2 / n^(1/k), which Eq. 8 and 9 both carry, is applied
+// once; Eq. 8 takes the absolute value that it lacks, since terms of odd k would cancel. Whether S or 1 - S is the
+// membership function does not matter: a set and its complement have the same index of fuzziness.
+//
+// The choice compares indices that are often exactly equal: a set of one level has index 1 with any empty level added.
+// Rounding must not decide there. Doubles decide only outside their error bound. Inside it, linear weighting of order 1
+// compares the indices as fractions of integers; the other settings, whose indices are irrational, call it a tie.
 #include "vision/change/fuzzy_threshold.h"
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
+
+#include "vision/change/wide_integer.h"
 
 namespace cerberus::vision {
 
 namespace {
 
-// The weighted histogram g with running sums, so that the index of any span of levels takes constant time
-// (order 1).
-struct Weights {
-  std::array<double, 256> g{};
-  std::array<double, 257> s0{}, s1{}, s2{};  // sums of g, x g, x^2 g over the levels below the index
+using Weights = std::array<double, 256>;  // g
 
-  void accumulate() {
-    for (int x = 0; x < 256; ++x) {
-      s0[x + 1] = s0[x] + g[x];
-      s1[x + 1] = s1[x] + g[x] * x;
-      s2[x + 1] = s2[x] + g[x] * x * x;
+// Rounding of an index of fuzziness. Derived: at most 256 terms, none above 9, each wrong by at most 8 units of 2^-53,
+// make 2e-12. Guard of all four: the unit test against exact fractions.
+constexpr double kIndexError = 1e-11;
+// Relative rounding of an index p computed term by term, times sqrt(p). Derived: 1 - |x - b| / w is wrong by 1e-13.
+constexpr double kTermError = 1e-12;
+// A smaller index is 0. Derived: where two levels of equal weight make 0 rounding leaves 1e-26 at most; the smallest
+// other index is 1e-19 (two levels of 2^32 and 2^32 - 1 pixels).
+constexpr double kZeroIndex = 1e-22;
+// Relative rounding of a sum of 256 weights and of its product with P1. Derived: 2^-53 a term.
+constexpr double kSumError = 1e-13;
+
+double sum(const Weights& g, int first, int last) {
+  double total = 0;
+  for (int x = first; x <= last; ++x) total += g[x];
+  return total;
+}
+
+struct Fraction {
+  WideInteger numerator, denominator;
+
+  double to_double() const { return numerator.to_double() / denominator.to_double(); }
+};
+
+// The levels of one seed and the index of fuzziness of this set, alone and with one more level.
+class SeedSet {
+ public:
+  // extra: a level outside the seed that is added to it.
+  static constexpr int kNoExtra = -1;
+
+  SeedSet(const Weights& weights, const FuzzyThresholdOptions& options, const FuzzyThresholdCurves& curves,
+          int first, int last)
+      : g_(weights),
+        options_(options),
+        lowest_(curves.lowest),
+        highest_(curves.highest),
+        first_(first),
+        last_(last) {
+    for (int x = first; x <= last; ++x) {
+      const int k = x - first;
+      s0_[k + 1] = s0_[k] + g_[x];
+      s1_[k + 1] = s1_[k] + g_[x] * k;
+      s2_[k + 1] = s2_[k] + g_[x] * k * k;
     }
   }
-  double sum(int first, int last) const { return last < first ? 0 : s0[last + 1] - s0[first]; }
-};
-
-// The levels first..last plus one single level (-1: none).
-struct Subset {
-  int first, last, extra;
-};
-
-class Indices {
- public:
-  Indices(const Weights& weights, const FuzzyThresholdOptions& options, int lowest, int highest)
-      : w_(weights), options_(options), lowest_(lowest), highest_(highest) {}
 
   // psi_k(A) = 2 (sum g delta^k / sum g)^(1/k), delta(x) = |mu(x) - crisp mu(x)| = (1 - |x - b| / (c - b))^2
-  // / 2 (Eq. 4, 6, 7, 8 and 9; b = mean of A, c - b = distance from b to the farther extreme).
-  double psi(const Subset& set) const {
-    const double extra = set.extra >= 0 ? w_.g[set.extra] : 0;
-    const double sum = w_.sum(set.first, set.last) + extra;
-    if (sum <= 0) return 0;
-    const double b = (w_.s1[set.last + 1] - w_.s1[set.first] + extra * set.extra) / sum;
-    int low = lowest_, high = highest_;
-    if (options_.extremes == Extremes::subset) {
-      low = set.extra >= 0 ? std::min(set.first, set.extra) : set.first;
-      high = std::max(set.last, set.extra);
-    }
-    const double width = std::max(std::abs(b - high), std::abs(b - low));
-    // Two levels apart have their mean at least half a level from the farther one; less is one level and rounding.
-    if (width < 0.25) return 0;
-    if (options_.order == 1) {
-      double total = span(set.first, set.last, b, width);
-      if (set.extra >= 0) total += extra * delta(set.extra, b, width);
-      return 2 * total / sum;
-    }
-    const double k = std::max(options_.order, 1);
-    double total = set.extra >= 0 ? extra * std::pow(delta(set.extra, b, width), k) : 0;
-    for (int x = set.first; x <= set.last; ++x)
-      if (w_.g[x] > 0) total += w_.g[x] * std::pow(delta(x, b, width), k);
-    return 2 * std::pow(total / sum, 1 / k);
+  // / 2 (Eq. 4, 6, 7, 8 and 9; b = mean of A, c - b = distance from b to the farther extreme). Order 1 takes constant
+  // time by running sums; they count the levels from the seed's first one, so that nothing cancels.
+  double psi(int extra) const {
+    return options_.order == 1 ? index(extra, [&](double b, double width) { return span(b, width); })
+                               : psi_by_terms(extra);
+  }
+
+  // The same as a sum over all levels. Relative error: kTermError / sqrt(psi).
+  double psi_by_terms(int extra = kNoExtra) const {
+    return index(extra, [&](double b, double width) {
+      double total = 0;
+      for (int x = first_; x <= last_; ++x)
+        if (g_[x] > 0) total += g_[x] * power(delta(x - first_, b, width));
+      return total;
+    });
+  }
+
+  // psi_1 of linear weighting as a fraction of integers. With s = sum g, t = sum x g, W = s (c - b):
+  // psi = sum g (W - |x s - t|)^2 / (s W^2). s < 2^40 and W < 2^48, so both parts stay below 2^136.
+  Fraction exact_psi(int extra = kNoExtra) const {
+    std::uint64_t s = 0, t = 0;
+    for_each(extra, [&](std::uint64_t x, std::uint64_t g) { s += g, t += x * g; });
+    const auto distance = [&](std::uint64_t x) { return x * s > t ? x * s - t : t - x * s; };
+    const Extent e = extent(extra);
+    const std::uint64_t width = std::max(distance(e.low), distance(e.high));
+    if (width == 0) return {0, 1};
+    WideInteger total;
+    for_each(extra, [&](std::uint64_t x, std::uint64_t g) {
+      const WideInteger d = width - distance(x);
+      total += d * d * g;
+    });
+    return {total, WideInteger(width) * width * s};
   }
 
  private:
-  static double delta(int x, double b, double width) {
+  struct Extent {
+    int low, high;
+  };
+
+  // The levels whose distance from the mean is the width of the S-function.
+  Extent extent(int extra) const {
+    if (options_.extremes == Extremes::image) return {lowest_, highest_};
+    if (extra == kNoExtra) return {first_, last_};
+    return {std::min(first_, extra), std::max(last_, extra)};
+  }
+
+  // total(b, width) = sum of g delta^k over the seed, b counted from its first level.
+  template <typename Total>
+  double index(int extra, Total&& total) const {
+    const double x = extra - first_, weight = extra == kNoExtra ? 0 : g_[extra];
+    const double s = s0_[last_ - first_ + 1] + weight;
+    if (s <= 0) return 0;
+    const double b = (s1_[last_ - first_ + 1] + weight * x) / s;
+    const Extent e = extent(extra);
+    const double width = std::max(std::abs(b - (e.high - first_)), std::abs(b - (e.low - first_)));
+    // Two levels apart have their mean at least half a level from the farther one; less is one level and rounding.
+    if (width < 0.25) return 0;
+    const double mean = (total(b, width) + weight * power(delta(x, b, width))) / s;
+    return 2 * (options_.order == 1 ? mean : std::pow(mean, 1.0 / std::max(options_.order, 1)));
+  }
+
+  static double delta(double x, double b, double width) {
     const double d = 1 - std::abs(x - b) / width;
     return d * d / 2;
   }
-
-  // sum of g delta over first..last by the running sums, levels below and above b apart.
-  double span(int first, int last, double b, double width) const {
-    const int split = std::clamp(static_cast<int>(std::floor(b)), first - 1, last);
-    const auto part = [&](int from, int to, double side) {  // delta = (1 + side (x - b) / width)^2 / 2
-      if (to < from) return 0.0;
-      const double p = 1 - side * b / width, q = side / width;
-      return (p * p * (w_.s0[to + 1] - w_.s0[from]) + 2 * p * q * (w_.s1[to + 1] - w_.s1[from]) +
-              q * q * (w_.s2[to + 1] - w_.s2[from])) /
-             2;
-    };
-    return part(first, split, 1) + part(split + 1, last, -1);
+  double power(double delta) const {
+    return options_.order == 1 ? delta : std::pow(delta, std::max(options_.order, 1));
   }
 
-  const Weights& w_;
+  // sum of g delta over the seed by the running sums, levels below and above b apart.
+  double span(double b, double width) const {
+    const int count = last_ - first_ + 1;
+    const int split = std::clamp(static_cast<int>(std::floor(b)) + 1, 0, count);
+    const auto part = [&](int from, int to, double side) {  // delta = (1 + side (x - b) / width)^2 / 2
+      if (to <= from) return 0.0;
+      const double p = 1 - side * b / width, q = side / width;
+      return (p * p * (s0_[to] - s0_[from]) + 2 * p * q * (s1_[to] - s1_[from]) +
+              q * q * (s2_[to] - s2_[from])) /
+             2;
+    };
+    return part(0, split, 1) + part(split, count, -1);
+  }
+
+  template <typename Function>
+  void for_each(int extra, Function&& function) const {
+    const auto call = [&](int x) {
+      if (g_[x] > 0) function(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(g_[x]));
+    };
+    for (int x = first_; x <= last_; ++x) call(x);
+    if (extra != kNoExtra) call(extra);
+  }
+
+  const Weights& g_;
   const FuzzyThresholdOptions& options_;
-  int lowest_, highest_;
+  int lowest_, highest_;  // of the histogram
+  int first_, last_;      // of the seed
+  // Sums of g, k g, k^2 g over the seed's first levels, k = x - first.
+  std::array<double, 257> s0_{}, s1_{}, s2_{};
+};
+
+// The indices of the two seeds, their ratio, and which of two widened sets is the less fuzzy.
+class Comparison {
+ public:
+  Comparison(const SeedSet& background, const SeedSet& object, const FuzzyThresholdOptions& options,
+             FuzzyThresholdCurves& curves)
+      : background_(background),
+        object_(object),
+        exact_(options.weighting == Weighting::linear && options.order == 1),
+        curves_(curves) {
+    if (exact_) {
+      exact_background_ = background.exact_psi(), exact_object_ = object.exact_psi();
+      curves.psi_background = exact_background_.to_double(), curves.psi_object = exact_object_.to_double();
+    } else {
+      curves.psi_background = index(background), curves.psi_object = index(object);
+    }
+    if (curves.psi_background > 0 && curves.psi_object > 0) {
+      curves.alpha = curves.psi_object / curves.psi_background;  // Eq. 10
+      relative_error_ =
+          kTermError / std::sqrt(curves.psi_background) + kTermError / std::sqrt(curves.psi_object);
+    } else {
+      exact_background_ = exact_object_ = {1, 1};
+    }
+  }
+
+  // The order of omega and beta at level x. Equal: a tie.
+  std::partial_ordering operator()(int x) const {
+    const double omega = curves_.omega[x], beta = curves_.beta[x];
+    const double error = kIndexError * (1 + curves_.alpha) + relative_error_ * beta;
+    if (std::abs(omega - beta) > error) return omega <=> beta;
+    if (!exact_) return std::partial_ordering::equivalent;
+    // omega <=> (object / background) beta', in fractions
+    const Fraction o = object_.exact_psi(x), b = background_.exact_psi(x);
+    return o.numerator * exact_background_.numerator * exact_object_.denominator * b.denominator <=>
+           b.numerator * exact_object_.numerator * exact_background_.denominator * o.denominator;
+  }
+
+ private:
+  static double index(const SeedSet& seed) {
+    const double psi = seed.psi_by_terms();
+    return psi < kZeroIndex ? 0 : psi;
+  }
+
+  const SeedSet &background_, &object_;
+  bool exact_;
+  const FuzzyThresholdCurves& curves_;
+  Fraction exact_background_, exact_object_;  // 1 where alpha is 1 for want of an index
+  double relative_error_ = 0;                 // of alpha
 };
 
 // Step 0: the level above which so few pixels lie that one hot pixel would stretch the whole scale.
@@ -108,16 +235,15 @@ double s_function(double x, double a, double b, double c) {  // Eq. 4
   return x <= b ? 2 * p * p : 1 - 2 * q * q;
 }
 
-int choose(const FuzzyThresholdOptions& options, const FuzzyThresholdCurves& c) {
+int choose(const FuzzyThresholdOptions& options, const FuzzyThresholdCurves& c, const Comparison& compare) {
   if (c.seed_high - c.seed_low < 2) return c.seed_low;  // no level between the seeds
   if (options.extremes == Extremes::subset) {
     for (int x = c.seed_low + 1; x < c.seed_high; ++x)
-      if (c.omega[x] < c.beta[x]) return x - 1;
+      if (compare(x) < 0) return x - 1;
   } else {
-    const auto sign = [&](int x) { return (c.omega[x] > c.beta[x]) - (c.omega[x] < c.beta[x]); };
-    const int start = sign(c.seed_low + 1);
+    const auto start = compare(c.seed_low + 1);
     for (int x = c.seed_low + 2; x < c.seed_high; ++x)
-      if (sign(x) != start) return x - 1;
+      if (compare(x) != start) return x - 1;
   }
   return c.seed_high - 1;
 }
@@ -132,44 +258,44 @@ int fuzzy_threshold(const Histogram& histogram, const FuzzyThresholdOptions& opt
 
   const bool log = options.weighting == Weighting::log;
   const int top = log && options.clip ? highest_kept(histogram) : 255;
-  Weights w;
+  Weights g{};
   int lowest = -1, highest = -1;
   for (int x = 0; x <= top; ++x) {
     if (!histogram[x]) continue;
     if (lowest < 0) lowest = x;
     highest = x;
-    w.g[x] = log ? std::log1p(static_cast<double>(histogram[x])) : static_cast<double>(histogram[x]);
+    g[x] = log ? std::log1p(static_cast<double>(histogram[x])) : static_cast<double>(histogram[x]);
   }
   if (lowest < 0) return 0;
-  w.accumulate();
   c.lowest = c.seed_low = lowest;
   c.highest = c.seed_high = highest;
   c.middle = (lowest + highest) / 2;
   if (curves) {
-    const double b = (w.s1[256]) / w.s0[256];
+    double total = 0, moment = 0;
+    for (int x = lowest; x <= highest; ++x) total += g[x], moment += x * g[x];
+    const double b = moment / total;
     const double reach = std::max(std::abs(b - highest), std::abs(b - lowest));
     for (int x = 0; x < 256; ++x) c.membership[x] = s_function(x, b - reach, b, b + reach);  // Eq. 4 and 6
   }
   if (highest - lowest < 3) return highest;  // no object
 
-  // Seeds: the share P1 of each half's weight, from the ends inwards.
-  const double low_share = options.seed_share * w.sum(lowest, c.middle);
-  const double high_share = options.seed_share * w.sum(c.middle + 1, highest);
+  // Seeds: the share P1 of each half's weight, from the ends inwards; a weight equal to the share reaches it.
+  const double share = options.seed_share - kSumError;
+  const double low_share = share * sum(g, lowest, c.middle),
+               high_share = share * sum(g, c.middle + 1, highest);
   int j = lowest, r = highest;
-  while (j < c.middle && w.sum(lowest, j) < low_share) ++j;
-  while (r > c.middle + 1 && w.sum(r, highest) < high_share) --r;
+  for (double weight = g[j]; j < c.middle && weight < low_share; weight += g[j]) ++j;
+  for (double weight = g[r]; r > c.middle + 1 && weight < high_share; weight += g[r]) --r;
   c.seed_low = j;
   c.seed_high = r;
 
-  const Indices indices(w, options, lowest, highest);
-  c.psi_background = indices.psi({lowest, j, -1});
-  c.psi_object = indices.psi({r, highest, -1});
-  if (c.psi_background > 0 && c.psi_object > 0) c.alpha = c.psi_object / c.psi_background;  // Eq. 10
+  const SeedSet background(g, options, c, lowest, j), object(g, options, c, r, highest);
+  const Comparison compare(background, object, options, c);
   for (int x = j + 1; x < r; ++x) {
-    c.beta[x] = c.alpha * indices.psi({lowest, j, x});
-    c.omega[x] = indices.psi({r, highest, x});
+    c.beta[x] = c.alpha * background.psi(x);
+    c.omega[x] = object.psi(x);
   }
-  return choose(options, c);
+  return choose(options, c, compare);
 }
 
 int clamp_to_noise(int threshold, double sigma) {
