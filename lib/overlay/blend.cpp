@@ -2,80 +2,121 @@
 #include "overlay/blend.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <optional>
+
+#include "overlay/blend_kernels.h"
 
 namespace cerberus::overlay {
 
 namespace {
 
-// 16.16 weights of a component: of red, green and blue times alpha, and of alpha itself.
-struct Weights {
-  std::int32_t red, green, blue, alpha;
+constexpr int kTile = 64;  // samples that are weighed, and skipped where they are transparent, at once
 
-  explicit Weights(const BlendComponent& c)
-      : red(fixed(c.red)), green(fixed(c.green)), blue(fixed(c.blue)), alpha(fixed(c.offset / 255)) {}
-  static std::int32_t fixed(double weight) { return static_cast<std::int32_t>(std::lround(weight * 65536)); }
+std::int32_t fixed(double weight) {
+  return static_cast<std::int32_t>(std::lround(weight * 65536));
+}
 
-  // Sums of bytes over n pixels to n x 65536 times the component; 64 bits hold any weights and 16 pixels.
-  std::int64_t operator()(std::int64_t r, std::int64_t g, std::int64_t b, std::int64_t a) const {
-    return red * r + green * g + blue * b + alpha * a;
+// The rows `top` and, where a sample stands for two, `bottom` of the drawing on one row of samples. `left`: the column of
+// the sample at `to` at which the drawing begins, of the pixels that it stands for.
+struct SampleRow {
+  WeightedRow weights;
+  int count = 1, left = 0, width = 0;  // pixels side by side a sample stands for; of the drawing
+  int shift = 0;                       // 2^shift pixels a sample
+  std::uint8_t* to = nullptr;
+  int step = 1;
+
+  void blend_one(int first, int last) {
+    std::int32_t value, rest;
+    weigh_sample(weights, weights.top + first, weights.bottom ? weights.bottom + first : nullptr,
+                 last - first, value, rest);
+    if (rest != weights.full) *to = mix_sample(value, rest, shift, *to);
+    to += step;
+  }
+
+  void blend() {
+    int x = 0;
+    if (left > 0)
+      blend_one(0, x = std::min(count - left, width));  // a sample that the drawing covers in part
+    if (count > 2) {
+      for (; x + count <= width; x += count) blend_one(x, x + count);
+    } else {
+      const WeightedRow all = weights;
+      for (int samples; (samples = std::min(kTile, (width - x) / count)) > 0; x += samples * count) {
+        weights.top = all.top + x;
+        weights.bottom = all.bottom ? all.bottom + x : nullptr;
+        weights.samples = samples;
+        blend_tile();
+      }
+      weights = all;
+    }
+    if (x < width) blend_one(x, width);
+  }
+
+  void blend_tile() {
+    std::int32_t value[kTile], rest[kTile];
+    if (weigh(weights, value, rest)) {
+      if (step == 1)
+        mix(value, rest, shift, weights.samples, to);
+      else
+        for (int i = 0; i < weights.samples; ++i)
+          if (rest[i] != weights.full) to[i * step] = mix_sample(value[i], rest[i], shift, to[i * step]);
+    }
+    to += static_cast<std::ptrdiff_t>(weights.samples) * step;
   }
 };
 
-std::uint8_t byte(std::int64_t value) {
-  return static_cast<std::uint8_t>(std::clamp<std::int64_t>(value, 0, 255));
-}
-
-void blend_full(vision::View<const std::uint32_t> drawing, int x, int y, const BlendComponent& c) {
-  const Weights weights(c);
-  for (int row = 0; row < drawing.height; ++row) {
-    const std::uint32_t* from = drawing.row(row);
-    std::uint8_t* to = c.data + (y + row) * c.stride + static_cast<std::ptrdiff_t>(x) * c.step;
-    for (int i = 0; i < drawing.width; ++i, to += c.step) {
-      const std::uint32_t p = from[i];
-      if (p == 0) continue;  // most of a drawing
-      const std::int64_t value = weights(p >> 16 & 255, p >> 8 & 255, p & 255, p >> 24);
-      const std::int64_t rest = *to * static_cast<std::int64_t>(255 - (p >> 24)) * 65536 / 255;
-      *to = byte((value + rest + 32768) >> 16);
-    }
-  }
-}
-
-void blend_subsampled(vision::View<const std::uint32_t> drawing, int x, int y, const BlendComponent& c) {
-  const Weights weights(c);
-  const int pixels = 1 << (c.shift_x + c.shift_y);
-  const int right = x + drawing.width, bottom = y + drawing.height;
+void blend_component(vision::View<const std::uint32_t> drawing, int x, int y, const BlendComponent& c) {
+  SampleRow row;
+  row.count = 1 << c.shift_x;
+  row.left = x & (row.count - 1);
+  row.width = drawing.width;
+  row.shift = c.shift_x + c.shift_y;
+  row.step = c.step;
+  row.weights.pairs = row.count == 2;
+  row.weights.full = 255 << row.shift;
+  row.weights.red = fixed(c.red), row.weights.green = fixed(c.green), row.weights.blue = fixed(c.blue);
+  row.weights.alpha = fixed(c.offset / 255);
+  const int bottom = y + drawing.height;
   for (int v = y >> c.shift_y; v << c.shift_y < bottom; ++v) {
-    const int top = std::max(v << c.shift_y, y), end = std::min((v + 1) << c.shift_y, bottom);
-    std::uint8_t* to = c.data + v * c.stride + static_cast<std::ptrdiff_t>(x >> c.shift_x) * c.step;
-    for (int u = x >> c.shift_x; u << c.shift_x < right; ++u, to += c.step) {
-      const int left = std::max(u << c.shift_x, x) - x, stop = std::min((u + 1) << c.shift_x, right) - x;
-      std::uint32_t r = 0, g = 0, b = 0, a = 0;
-      for (int row = top; row < end; ++row) {
-        const std::uint32_t* from = drawing.row(row - y);
-        for (int i = left; i < stop; ++i) {
-          const std::uint32_t p = from[i];
-          r += p >> 16 & 255, g += p >> 8 & 255, b += p & 255, a += p >> 24;
-        }
-      }
-      if (a == 0) continue;
-      const std::int64_t value = weights(r, g, b, a);
-      const std::int64_t rest =
-          *to * static_cast<std::int64_t>(255 * pixels - static_cast<int>(a)) * 65536 / 255;
-      *to = byte(((value + rest) / pixels + 32768) >> 16);
-    }
+    const int first = std::max(v << c.shift_y, y) - y, end = std::min((v + 1) << c.shift_y, bottom) - y;
+    row.weights.top = drawing.row(first);
+    row.weights.bottom = end - first > 1 ? drawing.row(first + 1) : nullptr;
+    row.to = c.data + v * c.stride + static_cast<std::ptrdiff_t>(x >> c.shift_x) * c.step;
+    row.blend();
   }
+}
+
+// Which byte of a pixel each component is, where all are bytes of pixels of four that take one colour each.
+std::optional<PackedLayout> packed_layout(std::span<const BlendComponent> picture) {
+  if (picture.empty() || !picture[0].pixel) return std::nullopt;
+  PackedLayout layout;
+  for (const BlendComponent& c : picture) {
+    const std::ptrdiff_t at = c.data - picture[0].pixel;
+    if (c.step != 4 || c.shift_x || c.shift_y || c.pixel != picture[0].pixel || c.stride != picture[0].stride)
+      return std::nullopt;
+    const double parts[4] = {c.blue, c.green, c.red, c.offset / 255};  // as the bytes of a word rise
+    if (std::count(parts, parts + 4, 0.0) != 3) return std::nullopt;
+    const auto one = std::find(parts, parts + 4, 1.0);
+    if (one == parts + 4) return std::nullopt;
+    const auto place = static_cast<std::uint8_t>(one - parts);
+    layout.color[at] =
+        std::endian::native == std::endian::little ? place : static_cast<std::uint8_t>(3 - place);
+  }
+  return layout;
 }
 
 }  // namespace
 
 void blend(vision::View<const std::uint32_t> drawing, int x, int y, std::span<const BlendComponent> picture) {
-  for (const BlendComponent& component : picture) {
-    if (component.shift_x == 0 && component.shift_y == 0)
-      blend_full(drawing, x, y, component);
-    else
-      blend_subsampled(drawing, x, y, component);
+  if (const auto layout = packed_layout(picture)) {
+    for (int row = 0; row < drawing.height; ++row)
+      blend_packed(drawing.row(row), *layout, drawing.width,
+                   picture[0].pixel + (y + row) * picture[0].stride + 4 * static_cast<std::ptrdiff_t>(x));
+    return;
   }
+  for (const BlendComponent& component : picture) blend_component(drawing, x, y, component);
 }
 
 }  // namespace cerberus::overlay

@@ -14,9 +14,11 @@ namespace cerberus::overlay {
 // red * R + green * G + blue * B + offset.
 struct BlendComponent {
   std::uint8_t* data = nullptr;  // of pixel (0, 0)
-  std::ptrdiff_t stride = 0;     // bytes between rows of samples
-  int step = 1;                  // bytes between samples
-  int shift_x = 0, shift_y = 0;  // a sample stands for 2^shift pixels
+  std::uint8_t* pixel =
+      nullptr;                // first byte of pixel (0, 0) where several components share its bytes; or null
+  std::ptrdiff_t stride = 0;  // bytes between rows of samples
+  int step = 1;               // bytes between samples
+  int shift_x = 0, shift_y = 0;  // a sample stands for 2^shift pixels; shift_y at most 1
   double red = 0, green = 0, blue = 0, offset = 0;
 };
 

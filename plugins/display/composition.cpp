@@ -29,6 +29,8 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
     }
     auto& c = all[i];
     c.data = GST_VIDEO_FRAME_COMP_DATA(frame, i);
+    c.pixel =
+        static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(frame, GST_VIDEO_FORMAT_INFO_PLANE(format, i)));
     c.stride = GST_VIDEO_FRAME_COMP_STRIDE(frame, i);
     c.step = GST_VIDEO_FRAME_COMP_PSTRIDE(frame, i);
     c.shift_x = GST_VIDEO_FORMAT_INFO_W_SUB(format, i);

@@ -36,10 +36,10 @@ static double expected(const std::vector<std::uint32_t>& drawing, int dw, int dh
 }
 
 static const BlendComponent kMatrices[] = {
-    {nullptr, 0, 1, 0, 0, 0.257, 0.504, 0.098, 16},     // Y of BT.601, limited range
-    {nullptr, 0, 1, 0, 0, -0.148, -0.291, 0.439, 128},  // its Cb
-    {nullptr, 0, 1, 0, 0, 1, 0, 0, 0},                  // R
-    {nullptr, 0, 1, 0, 0, 0, 0, 0, 255},                // A
+    {nullptr, nullptr, 0, 1, 0, 0, 0.257, 0.504, 0.098, 16},     // Y of BT.601, limited range
+    {nullptr, nullptr, 0, 1, 0, 0, -0.148, -0.291, 0.439, 128},  // its Cb
+    {nullptr, nullptr, 0, 1, 0, 0, 1, 0, 0, 0},                  // R
+    {nullptr, nullptr, 0, 1, 0, 0, 0, 0, 0, 255},                // A
 };
 
 START_TEST(every_layout_agrees_with_the_definition) {
@@ -99,7 +99,45 @@ START_TEST(opaque_white_is_white_and_nothing_is_nothing) {
 }
 END_TEST
 
+// Every order of four bytes of which one may be none of the picture's: as the components one by one.
+START_TEST(pixels_of_four_bytes_are_blended_as_their_components_are) {
+  std::mt19937 random(3);
+  const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  const double colors[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 255}};
+  for (int round = 0; round < 300; ++round) {
+    int order[4] = {0, 1, 2, 3};
+    std::shuffle(order, order + 4, random);
+    const int width = 1 + upto(70), height = 1 + upto(4), stride = 4 * width;
+    std::vector<std::uint8_t> before(static_cast<std::size_t>(stride) * height + 1);
+    for (auto& b : before) b = static_cast<std::uint8_t>(upto(256));
+    std::vector<std::uint8_t> together = before, apart = before;
+    std::vector<std::uint32_t> drawing(static_cast<std::size_t>(width) * height);
+    for (auto& p : drawing) {
+      const unsigned a = upto(3) == 0 ? 0 : upto(3) == 0 ? 255 : upto(256);
+      p = a << 24;
+      for (const int shift : {0, 8, 16}) p |= static_cast<unsigned>(upto(static_cast<int>(a) + 1)) << shift;
+    }
+    const std::size_t n = 3 + static_cast<std::size_t>(upto(2));
+    for (const bool one_by_one : {false, true}) {
+      std::vector<BlendComponent> all;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double* c = colors[i];
+        // Not aligned, as memory of others may be.
+        std::uint8_t* pixel = (one_by_one ? apart : together).data() + 1;
+        all.push_back(
+            {pixel + order[i], one_by_one ? nullptr : pixel, stride, 4, 0, 0, c[0], c[1], c[2], c[3]});
+      }
+      blend({drawing.data(), width, height, width}, 0, 0, all);
+    }
+    for (std::size_t i = 0; i < before.size(); ++i)
+      ck_assert_msg(std::abs(together[i] - apart[i]) <= 0, "byte %zu of %d: %d, not %d", i, width,
+                    together[i], apart[i]);
+  }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "blend", {every_layout_agrees_with_the_definition, opaque_white_is_white_and_nothing_is_nothing});
+      "blend", {every_layout_agrees_with_the_definition, opaque_white_is_white_and_nothing_is_nothing,
+                pixels_of_four_bytes_are_blended_as_their_components_are});
 }
