@@ -25,7 +25,7 @@ AppearanceModel looks(int bin) {
 // Somebody 100 pixels tall who has long been known by that look.
 TrackHypothesis person(std::uint32_t id, double x, int bin) {
   TrackHypothesis b = TrackHypothesis::first_seen({{x - 20, 100, 40, 100}, 2000, 0.9, 1});
-  b.id = id;
+  b.confirm(id);
   for (int k = 0; k < 50; ++k) {
     b.predict(kFrame);
     b.remember(looks(bin), kFrame, true);
@@ -44,7 +44,7 @@ void seen_alone(TrackHypothesis& b, int bin, int frames) {
 // Two who were mixed up and look like each other for `frames` since.
 std::vector<TrackHypothesis> swapped(double apart = 60, int frames = 3) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 200 + apart, 6)};
-  for (TrackHypothesis& b : two) b.mix();
+  for (TrackHypothesis& b : two) b.touch();
   seen_alone(two[0], 6, frames);
   seen_alone(two[1], 1, frames);
   return two;
@@ -61,26 +61,26 @@ START_TEST(two_who_look_like_each_other_since_they_were_close_get_their_identiti
   two[0].top_speed = 7;
   const double place = two[0].x.position, age = two[0].age, other = two[1].age;
   two[0].age += 3;
-  swap_mistaken_identities(two);
+  undo_identity_swaps(two);
   ck_assert(exchanged(two));
   // What is known of the person goes with the identity, where he is stays with the body.
   ck_assert_double_eq(two[0].x.position, place);
   ck_assert_double_eq(two[0].age, other);
   ck_assert_double_eq(two[1].age, age + 3);
   ck_assert_double_eq(two[1].top_speed, 7);
-  ck_assert_double_eq(appearance_distance(two[0].look, looks(6)), 0);
-  ck_assert_double_eq(appearance_distance(two[1].look, looks(1)), 0);
-  swap_mistaken_identities(two);
+  ck_assert_double_eq(appearance_distance(two[0].appearance.model, looks(6)), 0);
+  ck_assert_double_eq(appearance_distance(two[1].appearance.model, looks(1)), 0);
+  undo_identity_swaps(two);
   ck_assert(exchanged(two));  // once
 }
 END_TEST
 
 START_TEST(who_looks_as_before_stays_who_he_is) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 260, 6)};
-  for (TrackHypothesis& b : two) b.mix();
+  for (TrackHypothesis& b : two) b.touch();
   seen_alone(two[0], 1, 3);
   seen_alone(two[1], 6, 3);
-  swap_mistaken_identities(two);
+  undo_identity_swaps(two);
   ck_assert_uint_eq(two[0].id, 1);
   ck_assert_uint_eq(two[1].id, 2);
 }
@@ -88,7 +88,7 @@ END_TEST
 
 START_TEST(two_frames_tell_nothing_yet) {
   auto two = swapped(60, 2);
-  swap_mistaken_identities(two);
+  undo_identity_swaps(two);
   ck_assert(!exchanged(two));
 }
 END_TEST
@@ -96,8 +96,8 @@ END_TEST
 // After 0.3 s apart: 0.6 S and 0.45 S.
 START_TEST(who_is_too_far_away_was_not_mixed_up_with_anybody) {
   auto near = swapped(100), far = swapped(110);
-  swap_mistaken_identities(near);
-  swap_mistaken_identities(far);
+  undo_identity_swaps(near);
+  undo_identity_swaps(far);
   ck_assert(exchanged(near));
   ck_assert(!exchanged(far));
 }
@@ -105,19 +105,19 @@ END_TEST
 
 START_TEST(one_of_them_may_be_hidden_still) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 260, 6)};
-  for (TrackHypothesis& b : two) b.mix();
+  for (TrackHypothesis& b : two) b.touch();
   seen_alone(two[0], 6, 3);
-  swap_mistaken_identities(two);
+  undo_identity_swaps(two);
   ck_assert(exchanged(two));
 }
 END_TEST
 
 START_TEST(who_is_unconfirmed_or_away_takes_part_in_nothing) {
   auto one = swapped(), two = swapped();
-  one[1].id = 0;
-  two[1].away = true;
-  swap_mistaken_identities(one);
-  swap_mistaken_identities(two);
+  one[1].state = TrackHypothesis::State::tentative;
+  two[1].state = TrackHypothesis::State::off_screen;
+  undo_identity_swaps(one);
+  undo_identity_swaps(two);
   ck_assert_uint_eq(one[0].id, 1);
   ck_assert_uint_eq(two[0].id, 1);
 }
@@ -128,8 +128,8 @@ START_TEST(who_was_never_close_to_anybody_keeps_the_identity) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 260, 6)};
   seen_alone(two[0], 6, 4);
   seen_alone(two[1], 1, 4);
-  ck_assert(two[0].doubted() && two[1].doubted());
-  swap_mistaken_identities(two);
+  ck_assert(two[0].is_ambiguous() && two[1].is_ambiguous());
+  undo_identity_swaps(two);
   ck_assert_uint_eq(two[0].id, 1);
 }
 END_TEST
@@ -143,25 +143,25 @@ START_TEST(a_look_is_not_learnt_while_it_may_be_somebody_else) {
     band[1] -= AppearanceModel::kAll / 5;
     band[2] += AppearanceModel::kAll / 5;
   }
-  b.mix();
+  b.touch();
   for (int k = 0; k < 20; ++k) {
     b.predict(kFrame);
     b.remember(a_little, kFrame, true);
-    if (k < 4) ck_assert_double_eq(appearance_distance(b.look, looks(1)), 0);
+    if (k < 4) ck_assert_double_eq(appearance_distance(b.appearance.model, looks(1)), 0);
   }
-  ck_assert_double_gt(appearance_distance(b.look, looks(1)), 0.07);
-  suddenly.mix();
+  ck_assert_double_gt(appearance_distance(b.appearance.model, looks(1)), 0.07);
+  suddenly.touch();
   seen_alone(suddenly, 6, 39);
-  ck_assert_double_eq(appearance_distance(suddenly.look, looks(1)), 0);
+  ck_assert_double_eq(appearance_distance(suddenly.appearance.model, looks(1)), 0);
   seen_alone(suddenly, 6, 60);
-  ck_assert_double_lt(appearance_distance(suddenly.look, looks(6)), 0.3);
+  ck_assert_double_lt(appearance_distance(suddenly.appearance.model, looks(6)), 0.3);
 }
 END_TEST
 
 START_TEST(settling_allocates_nothing) {
   auto two = swapped();
   const std::size_t before = cerberus::tests::allocations();
-  swap_mistaken_identities(two);
+  undo_identity_swaps(two);
   ck_assert_uint_eq(cerberus::tests::allocations(), before);
 }
 END_TEST

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the camera does to an object that nobody sees: all of its lengths go with the picture's. And what a region tells
+// What the camera does to an object that notrack sees: all of its lengths go with the picture's. And what a region tells
 // of the extent of one that is seen.
 #include "vision/tracking/track_hypothesis.h"
 
@@ -19,13 +19,13 @@ constexpr Size kFrame{640, 480};
 constexpr double kDegree = std::numbers::pi / 180;
 
 TrackHypothesis walker(double x, double y) {
-  TrackHypothesis body = TrackHypothesis::first_seen({{x - 20, y - 50, 40, 100}, 2000, 0.9, 1});
-  body.widest = 44;
-  body.tallest = 110;
-  body.x.velocity = body.walk.x = 30;
-  body.y.velocity = body.walk.y = -12;
-  body.x.pv = 7;
-  return body;
+  TrackHypothesis track = TrackHypothesis::first_seen({{x - 20, y - 50, 40, 100}, 2000, 0.9, 1});
+  track.widest = 44;
+  track.tallest = 110;
+  track.x.velocity = track.free_velocity.x = 30;
+  track.y.velocity = track.free_velocity.y = -12;
+  track.x.pv = 7;
+  return track;
 }
 
 // `before`, `scale` times as large; `more`: by which its place is less sure.
@@ -40,8 +40,8 @@ void check_scaled(const TrackHypothesis& before, const TrackHypothesis& after, d
   equal(after.tallest, scale * before.tallest);
   equal(after.x.velocity, scale * before.x.velocity);
   equal(after.y.velocity, scale * before.y.velocity);
-  equal(after.walk.x, scale * before.walk.x);
-  equal(after.walk.y, scale * before.walk.y);
+  equal(after.free_velocity.x, scale * before.free_velocity.x);
+  equal(after.free_velocity.y, scale * before.free_velocity.y);
   equal(after.x.pp, scale * scale * (before.x.pp + more));
   equal(after.x.pv, scale * scale * before.x.pv);
   equal(after.x.vv, scale * scale * before.x.vv);
@@ -60,39 +60,39 @@ START_TEST(a_zoom_scales_all_of_its_lengths) {
 }
 END_TEST
 
-START_TEST(a_camera_that_rolls_turns_the_way_he_goes) {
-  TrackHypothesis body = walker(200, 240);
-  ck_assert(body.carry({{0, -1, 400, 1, 0, 0, 0, 0, 1}}, kFrame));  // a quarter: x becomes y
-  ck_assert_double_eq_tol(body.x.velocity, 12, 1e-9);
-  ck_assert_double_eq_tol(body.y.velocity, 30, 1e-9);
-  ck_assert_double_eq_tol(body.walk.x, 12, 1e-9);
-  ck_assert_double_eq_tol(body.walk.y, 30, 1e-9);
+START_TEST(a_camera_that_rolls_turns_the_velocity) {
+  TrackHypothesis track = walker(200, 240);
+  ck_assert(track.carry({{0, -1, 400, 1, 0, 0, 0, 0, 1}}, kFrame));  // a quarter: x becomes y
+  ck_assert_double_eq_tol(track.x.velocity, 12, 1e-9);
+  ck_assert_double_eq_tol(track.y.velocity, 30, 1e-9);
+  ck_assert_double_eq_tol(track.free_velocity.x, 12, 1e-9);
+  ck_assert_double_eq_tol(track.free_velocity.y, 30, 1e-9);
 }
 END_TEST
 
-// He stands, and a piece of him is seen. The camera follows the piece, or does not.
-START_TEST(a_piece_walks_away_on_its_own_if_it_leaves_its_place_in_the_scene) {
+// A standing person of whom a fragment is seen. The camera follows the fragment, or stands.
+START_TEST(a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene) {
   for (const bool walks : {false, true})
     for (const bool turns : {false, true}) {
-      TrackHypothesis body = walker(200, 240);
-      body.x.velocity = body.y.velocity = 0;
-      body.fitted = body.slow = 2;
+      TrackHypothesis track = walker(200, 240);
+      track.x.velocity = track.y.velocity = 0;
+      track.fitted = track.slow = 2;
       const double step = 8, scene = turns ? -step : 0, piece = walks ? scene + step : scene;
       for (int k = 0; k < 9; ++k) {
-        body.predict(0.1);
-        if (k > 0 && turns) body.carry(Transform::translation(scene, 0), kFrame);
+        track.predict(0.1);
+        if (k > 0 && turns) track.carry(Transform::translation(scene, 0), kFrame);
         const Region seen{{210 + piece * k, 220, 14, 20}, 200, 0.2, 1};
-        body.correct(seen, true, 0.1, kFrame);
+        track.correct(seen, true, 0.1, kFrame);
       }
       if (walks)
-        ck_assert_double_lt(body.height(), 40);
+        ck_assert_double_lt(track.height(), 40);
       else
-        ck_assert_double_gt(body.height(), 90);
+        ck_assert_double_gt(track.height(), 90);
     }
 }
 END_TEST
 
-START_TEST(towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it) {
+START_TEST(towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it) {
   // 40 degrees off the axis, then on it, then 40 degrees off again. The oracle: a square of a thousandth of a radian,
   // projected.
   const Lens lens(90 * kDegree, kFrame);
@@ -106,71 +106,71 @@ START_TEST(towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it)
   const double scale = side(40 * kDegree) / side(0);
   ck_assert_double_lt(scale, 0.7);
   const TrackHypothesis before = walker(320 + 320 * std::tan(40 * kDegree), 240);
-  TrackHypothesis body = before;
-  body.leave({lens, 0, 0});
-  body.predict_away(0, {lens, 40 * kDegree, 0});
-  ck_assert_double_eq_tol(body.x.position, 320, 1);
-  check_scaled(before, body, scale, 0, 1e-4);
-  body.predict_away(0, {lens, 0, 0});
-  check_scaled(before, body, 1, 0, 1e-9);
+  TrackHypothesis track = before;
+  track.leave({lens, 0, 0});
+  track.predict_off_screen(0, {lens, 40 * kDegree, 0});
+  ck_assert_double_eq_tol(track.x.position, 320, 1);
+  check_scaled(before, track, scale, 0, 1e-4);
+  track.predict_off_screen(0, {lens, 0, 0});
+  check_scaled(before, track, 1, 0, 1e-9);
 }
 END_TEST
 
-START_TEST(it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same) {
+START_TEST(it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same) {
   AppearanceModel all, other;
   all.share[0][1] = other.share[0][6] = AppearanceModel::kAll;
-  TrackHypothesis body = walker(200, 240);
-  body.slow = 0.9;
-  body.settle(all, 0.1);
-  body.changed = appearance_distance(body.place, all);
-  ck_assert(!body.stays());
-  body.slow = 1;
-  ck_assert(body.stays());
-  body.changed = appearance_distance(body.place, other);
-  ck_assert(!body.stays());
-  body.changed = -1;  // nobody can tell
-  ck_assert(!body.stays());
-  body.slow = 0;
-  body.settle(other, 0.1);  // it walks, there is no place of its own
-  ck_assert(!body.place.known());
+  TrackHypothesis track = walker(200, 240);
+  track.slow = 0.9;
+  track.learn_place(all, 0.1);
+  track.appearance.place_change = appearance_distance(track.appearance.place, all);
+  ck_assert(!track.stays());
+  track.slow = 1;
+  ck_assert(track.stays());
+  track.appearance.place_change = appearance_distance(track.appearance.place, other);
+  ck_assert(!track.stays());
+  track.appearance.place_change = -1;  // notrack can tell
+  ck_assert(!track.stays());
+  track.slow = 0;
+  track.learn_place(other, 0.1);  // it walks: its place is not learnt
+  ck_assert(!track.appearance.place.known());
 }
 END_TEST
 
-// One end of the region stays where he stood, as the memory does not know the place yet; or somebody is met, who is as
+// One end of the region stays where he stood, as the memory does not know the place yet; or sometrack is met, who is as
 // wide. The camera stands, or pans by more than he runs.
-START_TEST(who_runs_off_stretches_and_who_meets_somebody_leaps) {
+START_TEST(who_runs_off_stretches_and_who_meets_sometrack_jumps) {
   constexpr double kRuns = 300;  // pixels a second
   for (const double seconds : {0.04, 0.1})
     for (const double camera : {0.0, -25.0, 25.0})
-      for (const bool leaps : {false, true}) {
+      for (const bool jumps : {false, true}) {
         Region region{{1800, 200, 40, 80}, 3200, 0.3, 1};
-        TrackHypothesis body = TrackHypothesis::first_seen(region);
+        TrackHypothesis track = TrackHypothesis::first_seen(region);
         const auto see = [&](double width) {
-          ck_assert(body.predict(seconds));
-          ck_assert(body.carry(Transform::translation(camera, 0), {4000, 480}));
+          ck_assert(track.predict(seconds));
+          ck_assert(track.carry(Transform::translation(camera, 0), {4000, 480}));
           region.box = {region.box.x + camera, 200, width, 80};
-          body.correct(region, true, seconds, {4000, 480});
-          return body.width();
+          track.correct(region, true, seconds, {4000, 480});
+          return track.width();
         };
         double width = 0, time = 0;
         for (; time < 0.6; time += seconds) see(40);  // its extent is well known
-        for (time = seconds; time < 0.42; time += seconds) width = see(leaps ? 148 : 40 + kRuns * time);
-        if (!leaps) {
+        for (time = seconds; time < 0.42; time += seconds) width = see(jumps ? 148 : 40 + kRuns * time);
+        if (!jumps) {
           ck_assert_double_gt(width, 110);
           continue;
         }
         ck_assert_double_lt(width, 60);
         for (; time < 0.75; time += seconds) width = see(148);
-        ck_assert_double_gt(width, 110);  // they stay together
+        ck_assert_double_gt(width, 110);  // it lasts: a group
       }
 }
 END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "body", {a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_way_he_goes,
-               a_piece_walks_away_on_its_own_if_it_leaves_its_place_in_the_scene,
-               towards_the_picture_s_middle_it_becomes_smaller_as_a_pinhole_sees_it,
-               it_stays_where_it_stood_for_a_second_while_its_place_looks_the_same,
-               who_runs_off_stretches_and_who_meets_somebody_leaps});
+      "track_hypothesis", {a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_velocity,
+                           a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
+                           towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
+                           it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,
+                           who_runs_off_stretches_and_who_meets_sometrack_jumps});
 }

@@ -8,41 +8,37 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr double kApart = 0.3;  // S: how far two must have come apart to be two
-constexpr double kStranger =
-    0.25;  // as different as that, two well-known looks are two people's: see AppearanceModel
-constexpr double kGain = 0.2;  // by so much less appearance_distance two must be with each other's identities
-constexpr double kClose = 0.6;   // S: as near two are who may have been mixed up just now: they touch,
-constexpr double kParted = 1.5;  // S/s: and so much farther apart they may be with every second since
-constexpr double kLongest = 4;   // s since somebody was close, after which nobody was mixed up
-
-bool may_be_each_other(const TrackHypothesis& a, const TrackHypothesis& b) {
-  const double since = std::min(a.clear, b.clear) + std::max(a.unseen, b.unseen);
-  return since < kLongest && std::hypot(a.x.position - b.x.position, a.y.position - b.y.position) <
-                                 std::max(a.size(), b.size()) * (kClose + kParted * since);
+// Could the one have become the other since their last contact?
+bool within_reach(const TrackHypothesis& a, const TrackHypothesis& b, const IdentitySwapParameters& q) {
+  const double since =
+      std::min(a.appearance.since_contact, b.appearance.since_contact) + std::max(a.unseen, b.unseen);
+  return since < q.longest && std::hypot(a.x.position - b.x.position, a.y.position - b.y.position) <
+                                  std::max(a.size(), b.size()) * (q.contact + q.parting * since);
 }
 
-// Where each is and how large stays with the body; who it is, and what is known of him, changes place.
+// Position and extent stay with the hypothesis; identity, appearance and history are exchanged.
 void exchange(TrackHypothesis& a, TrackHypothesis& b) {
   std::swap(a.id, b.id);
-  std::swap(a.look, b.look);
-  std::swap(a.looked, b.looked);
+  std::swap(a.appearance.model, b.appearance.model);
+  std::swap(a.appearance.frames, b.appearance.frames);
   std::swap(a.age, b.age);
   std::swap(a.top_speed, b.top_speed);
   std::swap(a.origin, b.origin);
   std::swap(a.travelled, b.travelled);
   for (TrackHypothesis* p : {&a, &b}) {
-    p->unlikeness = p->knows_recent() ? std::max(0.0, appearance_distance(p->look, p->recent)) : 0;
+    TrackHypothesis::Appearance& look = p->appearance;
+    look.change =
+        p->has_recent_appearance() ? std::max(0.0, appearance_distance(look.model, look.recent)) : 0;
     p->age = std::max(p->age, p->unseen);
   }
 }
 
-// How much less appearance_distance themselves both are with each other's identities. Of somebody who is not seen alone nothing is
-// said.
-double gain(const TrackHypothesis& a, const TrackHypothesis& b) {
+// What an exchange saves in appearance distance, both together. A track without recent appearance adds nothing.
+double saved(const TrackHypothesis& a, const TrackHypothesis& b) {
   const auto of = [](const TrackHypothesis& seen, const TrackHypothesis& other) {
-    return seen.knows_recent()
-               ? appearance_distance(seen.look, seen.recent) - appearance_distance(other.look, seen.recent)
+    return seen.has_recent_appearance()
+               ? appearance_distance(seen.appearance.model, seen.appearance.recent) -
+                     appearance_distance(other.appearance.model, seen.appearance.recent)
                : 0;
   };
   return of(a, b) + of(b, a);
@@ -50,29 +46,34 @@ double gain(const TrackHypothesis& a, const TrackHypothesis& b) {
 
 }  // namespace
 
-bool apart(const TrackHypothesis& a, const TrackHypothesis& b) {
+bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b,
+                const IdentitySwapParameters& parameters) {
   const double both = std::min(a.age, b.age);
   if (!(both > 0)) return false;
   const double x = (a.x.position - a.origin.x) / a.age - (b.x.position - b.origin.x) / b.age;
   const double y = (a.y.position - a.origin.y) / a.age - (b.y.position - b.origin.y) / b.age;
-  return std::hypot(x, y) * both > kApart * std::max(a.size(), b.size());
+  return std::hypot(x, y) * both > parameters.apart * std::max(a.size(), b.size());
 }
 
-bool strangers(const TrackHypothesis& a, const TrackHypothesis& b) {
-  return a.well_known() && b.well_known() && appearance_distance(a.look, b.look) > kStranger;
+bool look_different(const TrackHypothesis& a, const TrackHypothesis& b,
+                    const IdentitySwapParameters& parameters) {
+  return a.has_appearance() && b.has_appearance() &&
+         appearance_distance(a.appearance.model, b.appearance.model) > parameters.different;
 }
 
-void swap_mistaken_identities(std::span<TrackHypothesis> bodies) {
-  const auto known = [](const TrackHypothesis& b) { return b.id != 0 && !b.away && b.well_known(); };
-  for (TrackHypothesis& a : bodies) {
-    if (!known(a) || !a.knows_recent() || !a.doubted()) continue;
+void undo_identity_swaps(std::span<TrackHypothesis> tracks, const IdentitySwapParameters& parameters) {
+  const auto known = [](const TrackHypothesis& t) { return t.in_view() && t.has_appearance(); };
+  for (TrackHypothesis& a : tracks) {
+    if (!known(a) || !a.has_recent_appearance() || !a.is_ambiguous()) continue;
     TrackHypothesis* best = nullptr;
-    double most = kGain;
-    for (TrackHypothesis& b : bodies) {
-      if (&a == &b || !known(b) || !may_be_each_other(a, b) || (b.knows_recent() && !b.doubted())) continue;
-      const double more = gain(a, b);
-      if (more <= most) continue;
-      most = more;
+    double most = parameters.gain;
+    for (TrackHypothesis& b : tracks) {
+      if (&a == &b || !known(b) || !within_reach(a, b, parameters) ||
+          (b.has_recent_appearance() && !b.is_ambiguous()))
+        continue;
+      const double gain = saved(a, b);
+      if (gain <= most) continue;
+      most = gain;
       best = &b;
     }
     if (best) exchange(a, *best);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who is who once people have parted: where they were close together places alone may have swapped their identities,
-// and what each looks like afterwards tells.
+// Identity swaps: where two tracks were close together their positions alone may have exchanged their identities; the
+// appearance afterwards shows it.
 #pragma once
 
 #include <span>
@@ -9,13 +9,30 @@
 
 namespace cerberus::vision {
 
-// Have they gone different ways for as long as both are known? Pieces of one object never do.
-bool apart(const TrackHypothesis& a, const TrackHypothesis& b);
-// Do they look so different that they are two?
-bool strangers(const TrackHypothesis& a, const TrackHypothesis& b);
+// Where no origin stands the value was chosen by hand. Guard: switches of PETS09-S2L1 and tests/unit (identity_swap,
+// coats).
+struct IdentitySwapParameters {
+  double apart = 0.3;  // S that two objects have come apart at least
+  double different =
+      0.25;  // appearance distance of two objects. measured: between .28 (the same person, one of ten)
+             // and .36 (two persons, median), lower as both are averages
+  double gain = 0.2;     // sum of appearance distances that an exchange must save
+  double contact = 0.6;  // S: centres of two objects that touch,
+  double parting = 1.5;  // S/s: and how fast they come apart. derived: two walkers in opposite directions
+  double longest = 4;    // s since contact after which no exchange is considered
+};
+inline constexpr IdentitySwapParameters kIdentitySwapParameters;
 
-// Gives identities back: of two bodies near each other that look, since they were last mixed up with anybody, so much
-// more like each other did before than like themselves, the identities are exchanged.
-void swap_mistaken_identities(std::span<TrackHypothesis> bodies);
+// The two have gone different ways for as long as both exist. Fragments of one object never do.
+bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b,
+                const IdentitySwapParameters& parameters = kIdentitySwapParameters);
+// Both appearances are known and so different that they are two objects.
+bool look_different(const TrackHypothesis& a, const TrackHypothesis& b,
+                    const IdentitySwapParameters& parameters = kIdentitySwapParameters);
+
+// Exchanges the identities of two tracks near each other where each has looked, since the last contact, so much more
+// like the other did before than like itself.
+void undo_identity_swaps(std::span<TrackHypothesis> tracks,
+                         const IdentitySwapParameters& parameters = kIdentitySwapParameters);
 
 }  // namespace cerberus::vision

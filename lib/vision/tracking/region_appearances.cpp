@@ -5,67 +5,58 @@
 #include <cmath>
 
 namespace cerberus::vision {
-namespace {
 
-// Pixels that are looked at: of a region, and of each of the places in a group.
-constexpr int kSamples = 500, kRoughSamples = 120;
-constexpr double kFamiliar =
-    0.35;  // what looks as much appearance_distance somebody, and is as far from his place, is not he
-constexpr double kReach = 0.5;     // S: as far to the side somebody is looked for;
-constexpr double kReachUp = 0.05;  // up and down a look tells little: coats and legs are of one colour each
-constexpr int kMostColumns = 24;   // to either side
-constexpr double kFar = 0.05;      // what the farthest place costs
-
-}  // namespace
-
-AppearanceModel RegionAppearances::appearance_of(const Sight& sight, const Box& box, int samples) const {
-  const double sx = static_cast<double>(sight.luma.width) / frame_.width;
-  const double sy = static_cast<double>(sight.luma.height) / frame_.height;
-  return vision::appearance_of(sight, level_, {box.x * sx, box.y * sy, box.width * sx, box.height * sy},
+AppearanceModel RegionAppearances::appearance_of(const Sight& input, const Box& box, int samples) const {
+  const double sx = static_cast<double>(input.luma.width) / frame_.width;
+  const double sy = static_cast<double>(input.luma.height) / frame_.height;
+  return vision::appearance_of(input, level_, {box.x * sx, box.y * sy, box.width * sx, box.height * sy},
                                samples);
 }
 
 AppearanceModel RegionAppearances::place(const Box& box) const {
-  return sight_.known() ? appearance_of({sight_.luma, {}}, box, kRoughSamples) : AppearanceModel{};
+  return input_.known() ? appearance_of({input_.luma, {}}, box, parameters_.rough_samples)
+                        : AppearanceModel{};
 }
 
-void RegionAppearances::update(const Sight& sight, std::span<const Region> regions, const Transform& motion,
+void RegionAppearances::update(const Sight& input, std::span<const Region> regions, const Transform& motion,
                                Size frame) {
-  sight_ = sight;
+  input_ = input;
   frame_ = frame;
-  looks_.assign(regions.size(), {});
-  if (!sight_.known() || frame.area() <= 0) {
+  appearances_.assign(regions.size(), {});
+  if (!input_.known() || frame.area() <= 0) {
     level_.skip();
     return;
   }
-  level_.update(sight_.luma, motion.rescaled(frame, sight_.luma.size()));
+  level_.update(input_.luma, motion.rescaled(frame, input_.luma.size()));
   for (std::size_t j = 0; j < regions.size(); ++j)
-    looks_[j] = appearance_of(sight_, regions[j].box, kSamples);
+    appearances_[j] = appearance_of(input_, regions[j].box, parameters_.samples);
 }
 
-void RegionAppearances::look_again(std::size_t region, const Box& box) {
-  if (sight_.known()) looks_[region] = appearance_of(sight_, box, kSamples);
+void RegionAppearances::recompute(std::size_t region, const Box& box) {
+  if (input_.known()) appearances_[region] = appearance_of(input_, box, parameters_.samples);
 }
 
-std::optional<Point> RegionAppearances::find(const TrackHypothesis& body, const Box& region) const {
-  if (!sight_.known() || !body.well_known()) return std::nullopt;
-  const Box box = body.box();
-  const double s = body.size(), reach_up = kReachUp * s;
-  const double reach = std::min(kReach * s, 2 * std::sqrt(body.x.pp) + 0.1 * s);
-  const double pixel = static_cast<double>(frame_.width) / sight_.luma.width;
-  const double step = std::max(box.width / 6, pixel), step_up = std::max(reach_up, pixel);
-  const int columns = std::min(static_cast<int>(reach / step), kMostColumns),
+std::optional<Point> RegionAppearances::find(const TrackHypothesis& track, const Box& region) const {
+  if (!input_.known() || !track.has_appearance()) return std::nullopt;
+  const Parameters& q = parameters_;
+  const Box box = track.box();
+  const double s = track.size(), reach_up = q.reach_up * s;
+  const double reach = std::min(q.reach * s, 2 * std::sqrt(track.x.pp) + q.least_reach * s);
+  const double pixel = static_cast<double>(frame_.width) / input_.luma.width;
+  const double step = std::max(box.width / q.steps, pixel), step_up = std::max(reach_up, pixel);
+  const int columns = std::min(static_cast<int>(reach / step), q.columns),
             rows = static_cast<int>(reach_up / step_up);
   std::optional<Point> found;
-  double least = kFamiliar;
+  double least = q.familiar;
   for (int j = -rows; j <= rows; ++j)
     for (int i = -columns; i <= columns; ++i) {
       const Box there{box.x + i * step, box.y + j * step_up, box.width, box.height};
-      if (overlap_area(there, region) < 0.8 * there.area()) continue;
-      const double difference = appearance_distance(body.look, appearance_of(sight_, there, kRoughSamples));
+      if (overlap_area(there, region) < q.inside * there.area()) continue;
+      const double difference =
+          appearance_distance(track.appearance.model, appearance_of(input_, there, q.rough_samples));
       if (difference < 0) continue;
       const double x = i * step / reach, y = j * step_up / reach_up;
-      const double cost = difference + kFar * (x * x + 2 * y * y);
+      const double cost = difference + q.displacement * (x * x + 2 * y * y);
       if (cost >= least) continue;
       least = cost;
       found = Point{i * step, j * step_up};

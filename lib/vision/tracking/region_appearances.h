@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the regions of a frame look like, and where in a region of several somebody who is known by his look stands.
+// Appearance of the regions of a frame, and the position of a known appearance within a region of several objects.
 #pragma once
 
 #include <cstddef>
@@ -14,29 +14,44 @@ namespace cerberus::vision {
 
 class RegionAppearances {
  public:
-  void reserve(std::size_t regions) { looks_.reserve(regions); }
+  // Where no origin stands the value was chosen by hand. Guard: tests/unit/coats and MOTA 56 on PETS09-S2L1.
+  struct Parameters {
+    int samples = 500;           // pixels that are read of a region
+    int rough_samples = 120;     // and of each candidate position in a group
+    double familiar = 0.35;      // the most that appearance distance and displacement cost together
+    double reach = 0.5;          // S to either side that is searched
+    double reach_up = 0.05;      // S up and down; small, as coats and legs are of one colour each
+    int columns = 24;            // candidate positions to either side, at most
+    double displacement = 0.05;  // cost of the farthest position to the side; twice as much up or down
+    double least_reach = 0.1;    // S, added to two standard deviations of the position
+    double steps = 6;            // candidate positions in the width of a box
+    double inside = 0.8;         // of a candidate box that lies in the region
+  };
+
+  void reserve(std::size_t regions) { appearances_.reserve(regions); }
   void reset() { level_.reset(); }
-  // A frame. regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. sight lives until done(). Without
-  // it nobody looks like anything.
-  void update(const Sight& sight, std::span<const Region> regions, const Transform& motion, Size frame);
-  const AppearanceModel& of(std::size_t region) const { return looks_[region]; }
-  // The region's box is another one now.
-  void look_again(std::size_t region, const Box& box);
-  // What all of the box looks like, whether it moves or not.
+  // A frame. regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. input lives until done(). Without
+  // it no appearance is known.
+  void update(const Sight& input, std::span<const Region> regions, const Transform& motion, Size frame);
+  const AppearanceModel& of(std::size_t region) const { return appearances_[region]; }
+  // After the region's box has changed.
+  void recompute(std::size_t region, const Box& box);
+  // Of the whole box, foreground or not.
   AppearanceModel place(const Box& box) const;
-  // The frame is done: what was handed to update() may go.
-  void done() { sight_ = {}; }
-  // How far, in frame pixels, from where the body is expected what looks like it is in the region. Nothing: nothing
-  // does.
-  std::optional<Point> find(const TrackHypothesis& body, const Box& region) const;
-  std::size_t bytes() const { return looks_.capacity() * sizeof(AppearanceModel); }
+  // The input of update() is not used any more.
+  void done() { input_ = {}; }
+  // Offset in frame pixels from the track's expected position to the best one by appearance in the region. Nothing:
+  // no position looks like the track.
+  std::optional<Point> find(const TrackHypothesis& track, const Box& region) const;
+  std::size_t bytes() const { return appearances_.capacity() * sizeof(AppearanceModel); }
 
  private:
-  AppearanceModel appearance_of(const Sight& sight, const Box& box, int samples) const;
+  AppearanceModel appearance_of(const Sight& input, const Box& box, int samples) const;
 
-  Sight sight_;
+  Parameters parameters_;
+  Sight input_;
   BrightnessLevel level_;
-  std::vector<AppearanceModel> looks_;  // of each region
+  std::vector<AppearanceModel> appearances_;  // of each region
   Size frame_;
 };
 

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One object as the tracker believes it to be: two filters for where it is, two for how large it is.
+// One object as the tracker believes it to be: its life cycle, two filters for its position, two for its extent, and
+// what it looks like.
 //
-// Lengths are measured in body lengths S = max(width, height) of the object itself: a standing person is about
-// 1.7 m, so a walk of 1.4 m/s is 0.8 S a second at any distance and any picture size. All noises follow from that.
+//            confirm            miss              stop
+//  tentative -------> confirmed ----> coasted ----------> stopped
+//                         ^  <--------- correct ------------'
+//                         |  come_back              ^
+//                         '----------- off_screen --' come_back, resume_stop
+//                           leave: from confirmed, coasted or stopped to off_screen
+//                           lose: from every state to lost; the tracker removes lost tracks
+//
+// Lengths are in S = max(width, height) of the object, see TrackParameters.
 #pragma once
 
 #include <algorithm>
@@ -15,127 +23,178 @@
 #include "vision/geometry/transform.h"
 #include "vision/tracking/appearance_model.h"
 #include "vision/tracking/kalman.h"
+#include "vision/tracking/track_parameters.h"
 
 namespace cerberus::vision {
 
-// Regions from this confidence on are one whole object with its true extent.
-constexpr double kWhole = 0.5;
+inline constexpr TrackParameters kTrackParameters;
+
+// A region of this confidence or a higher one is one person with the true extent.
+constexpr double kPersonConfidence = 0.5;
+inline bool is_person_like(const Region& region) {
+  return region.confidence >= kPersonConfidence;
+}
 
 // One axis of a region against one axis of a track. Where the extents agree the centres are compared. Where they do
-// not (a fragment of the object, or a blob of several) only this much is known: the smaller lies inside the larger.
+// not (a fragment of the object, or a blob of several) the smaller extent lies inside the larger, no more is known.
 struct Residual {
   double distance = 0;
   bool same_extent = true;
 };
-Residual compare_extents(double expected_from, double expected_to, double from, double to);
+Residual compare_extents(double expected_from, double expected_to, double from, double to,
+                         const TrackParameters& parameters = kTrackParameters);
+
+// The region of a track in this frame.
+struct Match {
+  int region = -1;        // -1: none
+  bool occluded = false;  // behind the track that owns the region
+  bool reshaped = false;  // the track's extent was that of a group or a fragment: the region's replaces it
+  bool merged = false;    // the track is a fragment of an older one in the same region
+  int sharers = 0;        // tracks in the region that are neither occluded nor merged
+};
 
 struct TrackHypothesis {
-  std::uint32_t id = 0;            // 0: not confirmed yet
-  MovingValue x, y;                // centre
+  enum class State {
+    tentative,   // not confirmed yet: no identity
+    confirmed,   // with a region in the last frame
+    coasted,     // without one, carried on along its velocity
+    stopped,     // without one, at the place where it ceased to move
+    off_screen,  // the camera turned away from it: kept by bearing and elevation
+    lost         // ended
+  };
+
+  // Data of states.
+  struct Stopped {
+    double absent = 0;  // s that the place has looked otherwise
+  };
+  struct OffScreen {
+    Direction direction;
+    double magnification = 1;  // CameraOrientation::magnification() there
+    bool in_front = true;      // of the camera: the position in pixels is valid
+    bool stopped = false;      // it was when the camera turned away
+    double absent = 0;         // s that it was expected in the picture and not found
+  };
+  // A region of another extent, since when and how.
+  struct Misfit {
+    double time = 0;         // s since a region had the track's extent
+    Point from;              // centre of the first region that had not, carried with the scene
+    bool jumped = false;     // the region has grown by a jump meanwhile
+    bool was_still = false;  // the object stood, or nearly, when it began
+  };
+  struct Appearance {
+    AppearanceModel model;       // learnt while the object is alone
+    int frames = 0;              // in which it was learnt
+    double change = 0;           // appearance distance of the last region to the model
+    AppearanceModel recent;      // since the last contact with another track
+    int recent_frames = 0;       // in which that was learnt
+    double since_contact = 1e9;  // s
+    AppearanceModel place;       // of the whole box since the object stands, moving pixels or not
+    double place_change = -1;    // appearance distance of the box to `place` in this frame; negative: unknown
+  };
+
+  const TrackParameters* parameters = &kTrackParameters;
+  State state = State::tentative;
+  std::uint32_t id = 0;  // 0: tentative
+  Stopped stop_data;
+  OffScreen off_screen;
+
+  MovingValue x, y;                // centre, frame pixels
   SlowValue w, h;                  // logarithms of the extent
-  double widest = 0, tallest = 0;  // the largest extent it has had
-  Point origin;                    // where it was first seen, carried with the scene
-  // Logarithms of the extent it was first seen with, carried with the scene.
-  double born_width = 0, born_height = 0;
-  // The region it was last seen in alone, carried with the scene; how far its ends have gone outwards step by step.
-  Box last;
-  double risen = 0, sunk = 0;
-  // Largest distance from the origin, S; of its edges, where it comes nearer, or only one end goes.
-  double travelled = 0;
-  double top_speed = 0;  // pixels a second, since it was confirmed
+  double widest = 0, tallest = 0;  // the largest extent so far, frame pixels
+  Point origin;                    // first position, carried with the scene
+  // Logarithms of the first extent, carried with the scene.
+  double first_log_width = 0, first_log_height = 0;
+  bool newly_visible = false;            // first seen where the camera had just begun to look
+  Box last;                              // the last region that the track had alone, carried with the scene
+  double top_rise = 0, bottom_drop = 0;  // frame pixels that its ends have gone outwards step by step
+  double travelled = 0;  // S: largest distance from the origin, or of its ends (approach(), stretch())
+  double top_speed = 0;  // frame pixels a second, since it was confirmed
+  Point free_velocity;   // frame pixels a second, when last seen away from the picture's edges
+  bool leaving = false;  // the picture's edge cut it when last seen
+  Misfit misfit;
   double confidence = 0;
   double age = 0, unseen = 0;  // s since first and since last seen
-  double fitted = 0;           // s during which a region had its extent: how well the extent is known
-  double proven = 0;           // the longest that ever was
-  double shared = 0;           // s it has shared a region with others
-  double slow = 0;             // s it has been seen standing, or nearly, up to now
-  double misfit = 0;           // s since a region had its extent
-  bool leapt = false;          // and the region has grown by a leap meanwhile
-  Point misfit_from;           // where the middle of the first one was that had not, carried with the scene
-  Point walk;                  // velocity, pixels a second, when last seen away from the picture's edges
-  bool uncovered = false;      // first seen where the camera had just begun to look
-  bool stood = false;          // it stood, or nearly, when the misfit began
-  bool parted = false;         // its box was that of two who have come apart, or of a piece
-  bool hidden = false;         // behind somebody else whose region this is
-  double lost = 0;             // s in regions of several without being found there
-  AppearanceModel look;
-  double unlikeness = 0;   // of what was last seen of it and its look
-  int looked = 0;          // frames in which that was learnt
-  AppearanceModel recent;  // since it was last close to anybody else
-  int recently = 0;        // frames in which that was learnt
-  double clear = 1e9;      // s since then
-  AppearanceModel place;   // all of its box, since it stands, whether that moves or not
-  double changed = -1;     // how appearance_distance that its box is now; negative: nobody can tell
-  int hits = 0, frames = 0;
-  int region = -1;  // of this frame, -1 none
-  bool stopped = false, dead = false;
-  bool leaving = false;  // when last seen the picture's edge had cut it to less than it was
-  // The camera turned away from it: kept by angle, and as pixels only while that is ahead of the camera.
-  bool away = false, ahead = true;
-  Direction where;
-  double magnification = 1;  // CameraOrientation::magnification() there
-  double absent = 0;         // s that it was expected, away or stopped, and not there
+  int hits = 0, frames = 0;    // frames with a region, frames in all
+  double fitted = 0;           // s of regions of its extent since that was last replaced
+  double longest_fit = 0;      // s, the largest `fitted` so far
+  double shared = 0;           // s that it has shared a region
+  double unlocated = 0;        // s in shared regions without being located there
+  double slow = 0;             // s that it has been seen standing, or nearly, up to now
+  Appearance appearance;
+  Match match;  // of this frame
 
-  static TrackHypothesis first_seen(const Region& region);
+  static TrackHypothesis first_seen(const Region& region,
+                                    const TrackParameters& parameters = kTrackParameters);
+
+  // Transitions; each says in which state it may be called.
+  void confirm(std::uint32_t identity);         // tentative
+  void stop();                                  // coasted
+  void leave(const CameraOrientation& camera);  // any but tentative: the camera has turned away from it
+  void come_back(const Box& seen);              // off_screen: matched with a region
+  void resume_stop();                           // off_screen and stopped: its place is in the picture again
+  void lose() { state = State::lost; }
+  // correct() leads from coasted and stopped to confirmed, miss() from confirmed to coasted.
+
+  bool in_view() const {
+    return state == State::confirmed || state == State::coasted || state == State::stopped;
+  }
+  bool stands() const {
+    return state == State::stopped || (state == State::off_screen && off_screen.stopped);
+  }
 
   double width() const { return std::exp(w.value); }
   double height() const { return std::exp(h.value); }
-  double size() const { return std::max(width(), height()); }
+  double size() const { return std::max(width(), height()); }  // S in frame pixels
   double speed() const { return std::hypot(x.velocity, y.velocity); }
   Box box() const;
-  // What of the box the picture shows; all of it where that is next to nothing.
+  // The part of the box inside the frame; all of it where that part is next to nothing.
   Box visible(Size frame) const;
-
-  // Less than a tenth of S from the picture's edge.
   bool at_border(Size frame) const;
 
-  // Along its own velocity from frame k-1's time to frame k's, then with the camera into frame k's pixels. False: it
-  // has no place there.
+  // Along its own velocity from frame k-1's time to frame k's. False: the position is not finite.
   bool predict(double seconds);
+  // With the camera into frame k's pixels. False: it has no position there.
   bool carry(const Transform& motion, Size frame);
-
-  // The camera has turned away from it; along its own velocity and with the camera, by angles; it is in the picture
-  // again.
-  void leave(const CameraOrientation& gaze);
-  void predict_away(double seconds, const CameraOrientation& gaze);
-  void come_back(const Box& seen);
-  // An away one should be seen, all of it.
+  // Both for an off-screen track, by angles.
+  void predict_off_screen(double seconds, const CameraOrientation& camera);
+  // All of an off-screen track should be in the picture.
   bool expected_in(Size frame) const;
 
-  // How badly a region fits: 0 perfectly; negative: it cannot be this object.
+  // Cost of a region: 0 fits perfectly; negative: outside the validation gate.
   double distance(const Box& seen, Size frame) const;
 
-  // It stood, and its place looks as it did: whoever was there is there, whatever moves.
+  // The object stood and its place looks as it did: it is still there, whatever moves.
   bool stays() const;
-  // Seen in this region; `alone`: by no other track. `found`: so far from its expected place what looks like it is, in
-  // a region of several.
+  // Seen in this region. alone: no other track has it. found: offset of the best position by appearance from the
+  // expected one, in a region of several.
   void correct(const Region& region, bool alone, double seconds, Size frame,
                const std::optional<Point>& found = {});
-  // Seen alone, in a region of its own extent, and so it looks. `nobody_near`: nobody else stands in a part of the
-  // region, this is what it looks like.
-  void remember(const AppearanceModel& seen, double seconds, bool nobody_near);
-  // Its look is known well enough to tell it from others.
-  bool well_known() const;
-  // What it looks like now is known as well, and who it is in doubt: somebody else was close a moment ago, or it looks
-  // so different.
-  bool knows_recent() const;
-  bool doubted() const;
-  // After correct(): what all of its box looks like, if it is alone there.
-  void settle(const AppearanceModel& all, double seconds);
-  // Somebody else shares the region, or stands in a part of it.
-  void mix();
   // Not seen.
   void miss(double seconds);
 
+  // Learns the appearance of a region of its own extent. isolated: no other track covers a part of the region.
+  void remember(const AppearanceModel& seen, double seconds, bool isolated);
+  // Learns what the whole box looks like; after correct(), for a track that is alone there.
+  void learn_place(const AppearanceModel& all, double seconds);
+  // Contact: another track shares the region, or covers a part of it.
+  void touch();
+  // The appearance model tells the object from others.
+  bool has_appearance() const;
+  // The same for the appearance since the last contact.
+  bool has_recent_appearance() const;
+  // The identity is in doubt: contact a moment ago, or a changed appearance.
+  bool is_ambiguous() const;
+
  private:
   void magnify(double scale);
-  double neared() const;
-  double stretched() const;
+  double approach() const;
+  double stretch() const;
   void follow_ends(const Box& seen, double seconds, Size frame);
-  bool leaps(const Box& seen, double seconds) const;
+  bool jumps(const Box& seen, double seconds) const;
   void adopt(const Box& seen);
   bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
   void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
+  bool is_cut(double from, double to, double largest, int side) const;
 };
 
 }  // namespace cerberus::vision

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Multi-object tracks: stable identities and velocities with the camera's motion taken out.
+// Multi-object tracks: stable identities, and velocities relative to the scene.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +18,10 @@ namespace cerberus::vision {
 enum class TrackState { seen, coasted, stopped };
 
 struct TrackOptions {
-  double confirm_time = 0.2;   // s of evidence before a track is published; 0: every region is one at once
-  double coast_time = 1.0;     // s a moving track is carried without evidence
-  double hold_stopped = 30.0;  // s a confirmed track that stopped is held
-  double away_time = 5.0;      // s a moving track is kept in mind while the camera looks elsewhere
+  double confirm_time = 0.2;   // s with regions before a track is published; 0: every region is one at once
+  double coast_time = 1.0;     // s that a moving track is kept without region
+  double hold_stopped = 30.0;  // s that a stopped track is kept
+  double away_time = 5.0;      // s that a moving track is kept off-screen
   double maximum_speed = 0;    // frame pixels a second; faster jumps are not the same object (0: no limit)
 };
 
@@ -30,7 +30,7 @@ struct Track {
   Box box;                // frame pixels, clamped to the frame
   double vx = 0, vy = 0;  // frame pixels a second relative to the scene, camera motion taken out
   double top_speed =
-      0;           // highest speed since confirmed, frame pixels a second: what a lower limit asks about
+      0;           // frame pixels a second, the highest since confirmed: a lower limit is compared with it
   double age = 0;  // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
@@ -44,21 +44,19 @@ class Tracker {
   Tracker& operator=(Tracker&&) noexcept;
 
   void set_options(const TrackOptions& options);
-  // Forget all tracks (identities go on counting).
+  // Drops all tracks (identities go on counting).
   void reset();
   // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous frame
-  // (<= 0: unknown, taken as the last known distance). gaze: lens and where the head looks, if both are known. Returns
-  // confirmed tracks, by id; lives until the next call.
+  // (<= 0: unknown, the last known distance is used). camera: lens and head position, if both are known. input: the
+  // analysed picture and its foreground mask, if they are there: then the appearance of each track is learnt while it
+  // is alone, and decides in groups, when groups part, behind occlusions and after a track was off-screen.
   //
-  // sight: the analysed picture and what moves in it, if they are there. Then everybody's look is learnt where he is
-  // seen alone, and tells who is who where places do not: in a group and when it parts, behind somebody else, and after
-  // being away.
-  //
-  // Who leaves the picture because the camera turns is kept by bearing and elevation, unpublished, and is the same when
-  // the camera comes back; without it angles are summed up from the camera's motion.
+  // Returns the confirmed tracks in view, by identity; the span lives until the next call. A track that leaves the
+  // picture because the camera turns is kept by bearing and elevation, unpublished, and has the same identity when the
+  // camera comes back; without `camera` the angles are summed up from the camera's motion.
   std::span<const Track> update(std::span<const Region> regions, const Transform& motion, double seconds,
-                                Size frame, const std::optional<CameraOrientation>& gaze = {},
-                                const Sight& sight = {});
+                                Size frame, const std::optional<CameraOrientation>& camera = {},
+                                const Sight& input = {});
   std::size_t bytes() const;
 
  private:

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Data association: which track has which region of a frame. A region is one object's, a fragment of one, or a blob of
+// several.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "vision/detection/regions.h"
+#include "vision/tracking/assignment.h"
+#include "vision/tracking/region_appearances.h"
+#include "vision/tracking/track_hypothesis.h"
+
+namespace cerberus::vision {
+
+class DataAssociation {
+ public:
+  // Where no origin stands the value was chosen by hand on vtest.avi and davis_tennis. Guard: MOTA 56 on PETS09-S2L1
+  // and tests/unit (meeting, coats, tracker).
+  struct Parameters {
+    // Cost of a pair; TrackHypothesis::distance() is about 0 to 2.
+    double unmatched = 2;  // cost of a track without region
+    double worst = 1.99;   // the most that a pair costs: below `unmatched`, or two tracks would rather share
+                           // two regions that fit neither of them
+    double shared = 1;     // cost of a track that stays in a blob of several
+    double returned_area = 2;  // times the area when it left that a returning object has at most
+    double speed_slack = 0.5;  // S beyond maximum-speed. derived: a region's centre jumps by half an object
+
+    // Appearance distance. measured on vtest.avi: the same person again .16 in the median and .28 in one of ten; two
+    // persons .36 in the median.
+    double usual_change = 0.15;    // costs nothing
+    double appearance_cost = 3.0;  // per unit beyond it
+    double sudden_change = 0.45;  // more than the last one by this: another object (shade comes step by step)
+    double off_screen_change = 0.35;  // the most for a track that comes back into the picture
+
+    // Blobs of several.
+    double larger = 1.3;            // times the area of a track: a region that may hold others
+    double inside = 0.5;            // of a track's area that lies in the blob
+    double crowd = 0.2;             // of a region's area that another track covers: not isolated
+    double occluded_overlap = 0.3;  // intersection over union of an occluded track with the region
+    double crossing = 3;            // s that two tracks may overlap while they cross
+
+    // Fragments.
+    double fragment_inside = 0.6;  // of the fragment's area that lies in the track's box
+    double fragment_most = 0.7;    // of the track's area
+    double completed = 1.25;       // times the track's extent that a completed region has at most
+    double merge_time = 0.3;       // s in one region before tracks are merged
+    double filled = 0.4;     // of the region that its tracks fill: below it they are fragments of one object
+    double part_area = 0.2;  // of the other's area: a smaller track is a part of it,
+    double part_inside = 0.6;  // if so much of it lies inside
+
+    // Two persons side by side, not two fragments of one.
+    double upright = 1.3;        // height / width
+    double alike = 0.6;          // ratio of their widths and of their heights
+    double common_height = 0.6;  // rows in common, of the track's height
+    double gap = 0.3;            // columns between them, of the narrower one's width
+
+    // Two fragments of one person, one above the other.
+    double common_rows = 0.3;     // of the lower one's height, at most
+    double common_columns = 0.8;  // of the narrower one's width, at least
+    double slender = 5;           // height / width of their region, at most
+  };
+
+  struct Frame {
+    Size size;                 // frame pixels
+    double seconds = 0;        // since the previous frame
+    double maximum_speed = 0;  // frame pixels a second; 0: no limit
+  };
+
+  // Memory for so many: problems up to this size allocate nothing.
+  void reserve(std::size_t tracks, std::size_t regions);
+
+  // tracks: predicted to this frame. regions: frame pixels; the box of a region that fragments complete is enlarged in
+  // place, and its appearance computed again. Tracks in view come first, then off-screen, then tentative ones. The
+  // result lives until the next call.
+  void associate(std::span<const TrackHypothesis> tracks, std::span<Region> regions,
+                 RegionAppearances& appearances, const Frame& frame);
+
+  // Of each track.
+  std::span<const Match> matches() const { return matches_; }
+  // No track has the region and it completes no other: it may be a new object.
+  bool is_new(std::size_t region) const { return owner_[region] < 0 && !fragment_[region]; }
+
+  // Questions about a region that a track has, when tracks before it in the list have been corrected already.
+  // A track other than `self` is expected in the region, which is larger than `self`.
+  bool others_expected(std::span<const TrackHypothesis> tracks, const TrackHypothesis& self,
+                       const Box& region, Size frame) const;
+  // A track other than `self` covers a part of the region.
+  bool crowded(std::span<const TrackHypothesis> tracks, const TrackHypothesis& self, const Box& region) const;
+  // The region is so much larger than the track that it may hold others.
+  bool is_larger(const Box& region, const Box& track) const {
+    return region.area() > parameters_.larger * track.area();
+  }
+
+  std::size_t bytes() const;
+
+ private:
+  enum class Turn { in_view, off_screen, tentative };
+  static Turn turn_of(const TrackHypothesis& track);
+
+  void assign(Turn turn);
+  double pair_cost(const TrackHypothesis& track, std::size_t region) const;
+  double appearance_cost(const TrackHypothesis& track, std::size_t region) const;
+  bool may_hold(const Region& region, const TrackHypothesis& track) const;
+  void gather_fragments();
+  void share_regions();
+  bool occludes(const TrackHypothesis& front, const TrackHypothesis& track, const Box& region) const;
+  void merge_fragments();
+  bool merges(const TrackHypothesis& track, const TrackHypothesis& oldest, const Box& region, double filled,
+              bool& above) const;
+  bool side_by_side(const Box& a, const Box& b, const Box& expected) const;
+  bool one_above_another(const Box& a, const Box& b, const Box& region) const;
+  bool is_part(const Box& part, const Box& whole) const;
+  bool is_upright(const Box& box) const { return box.height > parameters_.upright * box.width; }
+
+  Parameters parameters_;
+  // Of the call in progress.
+  std::span<const TrackHypothesis> tracks_;
+  std::span<Region> regions_;
+  RegionAppearances* appearances_ = nullptr;
+  Frame frame_;
+
+  std::vector<Match> matches_;
+  std::vector<int> owner_;      // track of each region, -1 none
+  std::vector<char> fragment_;  // of each region: it completes another one
+  std::vector<double> cost_, unmatched_;
+  std::vector<int> rows_;  // tracks that take part in an assignment
+  Assignment assignment_;
+};
+
+}  // namespace cerberus::vision

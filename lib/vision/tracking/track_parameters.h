@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Tuned numbers of one track: motion and size filters, validation gate, growth and appearance.
+//
+// S is the object's own length, max(width, height): a standing person is about 1.7 m, so that a walk of 1.4 m/s is
+// 0.8 S a second at any distance and any picture size. Where no origin stands the value was chosen by hand on vtest.avi
+// and davis_tennis. Guard of all of them, where no other stands: the boxes on vtest.avi (precision .84, recall .83) and
+// MOTA 56 on PETS09-S2L1.
+#pragma once
+
+namespace cerberus::vision {
+
+struct TrackParameters {
+  // Motion and size filters.
+  double acceleration = 0.5 * 0.5;  // S^2/s^3. derived: people start, stop and turn within a second, 0.8 S/s
+  double birth_speed = 3.0;         // S/s, standard deviation of the unknown first velocity
+  double position_noise = 0.05;     // S, standard deviation of a region's centre
+  double grain = 1.0 / 320;  // of the frame's width. derived: a pixel of the analysed picture, 320 wide
+  double blob_noise = 6;     // times: variance of a position that a blob of another extent tells
+  double size_noise = 0.15;  // of the logarithm, standard deviation of a region's extent
+  double size_wander = 0.15 * 0.15;  // 1/s. derived: a person's extent changes by 15 % in a second
+  double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
+  double fade = 20.0;                // times less that a shrinking extent counts for a standing object
+  double stopped_wander = 0.1;       // S/sqrt(s) by which the place of a stopped track becomes uncertain
+  double stopped_uncertainty = 0.5;  // S, the most that this may add up to
+  double coast_brake = 1.0;          // s, time constant in which a coasted track slows down
+  double off_screen_brake = 3.0;     // s, the same while the track is off-screen
+  double fragment_brake = 0.4;       // s, the same when only a fragment of the object moves
+  double confidence_time = 0.5;      // s, time constant of the confidence
+  double misfit_confidence = 0.7;    // factor on the confidence of a region of another extent
+
+  // Extents that agree, seen / expected.
+  double same_extent_least = 0.65, same_extent_most = 1.5;
+
+  // Validation gate and pair cost.
+  double gate_noise = 0.15;      // S that a place may be wrong by, beyond the filter's own variance
+  double gate = 4.0;             // standard deviations
+  double off_screen_gate = 3.0;  // standard deviations; narrower, as other objects may have come meanwhile
+  double fragment_area = 0.2;    // of the track's area: a smaller region may be a fragment of it,
+  double fragment_gate = 1.5;    // standard deviations, and lies where the track is expected
+  double largest_ratio = 10.0;   // of the extents, both axes together: beyond it another object
+  double size_cost = 0.5;        // per unit of the logarithm
+  double gate_cost = 0.1;        // per standard deviation
+
+  // Picture's edge.
+  double border = 0.1;         // S, distance that still counts as at the edge
+  double least_visible = 0.1;  // of each extent; a smaller rest of the box is not worth cutting to
+  double cut_margin = 0.01;    // of the picture's side: a region this close to the edge is cut by it,
+  double cut_most = 0.7;       // of the side: unless the object fills the picture from edge to edge
+  double leaving = 0.7;        // of the largest extent so far: a cut region below it is leaving the picture
+
+  // Growth: what shows that an object moves although its centre does not.
+  double end_speed = 1.0;  // S/s of an end of the box; a faster one reveals more of a partly seen object
+  double upright = 1.3;    // height / width, at least, of an object whose ends are followed
+  double camera_still =
+      0.5 / 320;            // of the frame's width. derived: half an analysed pixel of registration error
+  double jump = 0.15;       // S by which an end that jumps goes at least from one frame to the next,
+  double jump_speed = 2.5;  // S/s, beside a runner's speed
+
+  // A region of another extent replaces the track's: after so many seconds ...
+  double whole_misfit = 0.2;      // s, of a person-like region
+  double growing_misfit = 0.2;    // s, of a larger region that was reached in steps
+  double jumped_misfit = 0.6;     // s, of a larger region that was reached by a jump
+  double shrinking_misfit = 0.5;  // s, of a smaller region
+  double extent_known = 0.5;      // s of fitting regions from which on the extent is well known
+  double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
+
+  // Standing.
+  double stand_speed = 0.3;  // S/s. derived: 0.5 m/s
+  double settled = 1.0;      // s of standing from which on the place is compared
+  double same_place = 0.15;  // appearance distance. derived: noise, folds and arms change as many pixels
+
+  // Appearance model.
+  double appearance_time = 2.0;  // s, time constant. derived: a person turns round within it
+  int appearance_frames = 3;     // frames from which on the model counts
+  double recent_time = 0.5;      // s, time constant of the recent appearance
+  int recent_frames = 3;         // frames from which on it counts
+  double ambiguous_time = 2.0;   // s after contact with another track in which an identity swap is considered
+  double freeze = 0.5;           // s after contact in which the model learns nothing
+  double relearn = 4.0;          // s after contact after which a changed appearance is learnt all the same
+  double changed = 0.3;  // appearance distance beyond which the recent appearance may be another object's
+
+  // Position of a track within a group by its appearance.
+  double found_noise = 0.1;  // S, standard deviation of that position
+  double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance says little about height
+};
+
+}  // namespace cerberus::vision
