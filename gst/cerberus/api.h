@@ -9,3 +9,19 @@
 #define CERBERUS_API extern
 #endif
 #endif
+
+/* What every structure of the library has. prefix_init() fills one on the stack with the defaults of prefix_new(); such
+ * a one owns nothing unless its members say so. prefix_copy() returns NULL only for NULL. prefix_free() takes what
+ * prefix_new(), _copy(), a cerberus_buffer_get_() or a _parse_() function returned, or NULL. All have g_autoptr(). */
+#define CERBERUS_DECLARE_BOXED(Type, prefix)               \
+  CERBERUS_API GType prefix##_get_type(void) G_GNUC_CONST; \
+  CERBERUS_API void prefix##_init(Type* value);            \
+  CERBERUS_API Type* prefix##_new(void);                   \
+  CERBERUS_API Type* prefix##_copy(const Type* value);     \
+  CERBERUS_API void prefix##_free(Type* value);            \
+  G_DEFINE_AUTOPTR_CLEANUP_FUNC(Type, prefix##_free)
+
+/* What every enumeration has: its type, and the words that stand for its values in messages, JSON and properties. */
+#define CERBERUS_DECLARE_ENUM(Type, prefix)                \
+  CERBERUS_API GType prefix##_get_type(void) G_GNUC_CONST; \
+  CERBERUS_API const gchar* prefix##_get_nick(Type value);

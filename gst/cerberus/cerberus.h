@@ -14,5 +14,6 @@
 #include <cerberus/pose.h>
 #include <cerberus/query.h>
 #include <cerberus/region.h>
+#include <cerberus/stamp.h>
 #include <cerberus/threshold.h>
 #include <cerberus/version.h>

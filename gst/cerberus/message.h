@@ -3,6 +3,7 @@
 
 #include <cerberus/api.h>
 #include <cerberus/region.h>
+#include <cerberus/stamp.h>
 #include <gst/gst.h>
 
 G_BEGIN_DECLS
@@ -10,37 +11,134 @@ G_BEGIN_DECLS
 /**
  * CERBERUS_MESSAGE_MOTION:
  *
- * Name of the structure of the element message that tells that motion started or ended. Fields: `state` (string,
- * `started` or `ended`), `running-time` (uint64, nanoseconds), `objects` (list of structures `cerberus-object`).
- *
- * Since: 0.1
+ * Name of the element message that reports that motion started or ended. Fields: those of #CerberusStamp, `state`
+ * (string, a nick of #CerberusMotionState), `objects` (list of structures `cerberus-object`).
  */
 #define CERBERUS_MESSAGE_MOTION "cerberus-motion"
 
 /**
- * cerberus_message_new_motion:
- * @src: (transfer none) (nullable): the object that posts it
- * @started: %TRUE: motion started; %FALSE: it ended
- * @running_time: running time of the frame in which it did
- * @regions: (nullable) (element-type CerberusRegion): what moves, or moved last; %NULL for none
+ * CERBERUS_MESSAGE_TRACK:
  *
- * Makes the element message %CERBERUS_MESSAGE_MOTION.
+ * Name of the element message that reports what happens to one track. Fields: those of #CerberusStamp, `state` (string,
+ * a nick of #CerberusTrackState), `object` (structure `cerberus-object`: identity, box, velocity and so on), `first`,
+ * `last` (uint64, running times of the first and the last frame that it was published on).
+ */
+#define CERBERUS_MESSAGE_TRACK "cerberus-track"
+
+/**
+ * CerberusMotionState:
+ * @CERBERUS_MOTION_STARTED: the first object appeared
+ * @CERBERUS_MOTION_ENDED: no object was there for `hold-time`, or the stream ended
  *
- * Returns: (transfer full): a new message, for gst_element_post_message().
+ * What happened to motion as a whole.
+ */
+typedef enum { CERBERUS_MOTION_STARTED, CERBERUS_MOTION_ENDED } CerberusMotionState;
+
+/**
+ * CerberusTrackState:
+ * @CERBERUS_TRACK_APPEARED: it was published for the first time
+ * @CERBERUS_TRACK_UPDATED: it is still there; at most once a second for each track
+ * @CERBERUS_TRACK_LEFT: it was not published for `hold-time`, or the stream ended
  *
- * Since: 0.1
+ * What happened to a track.
+ */
+typedef enum { CERBERUS_TRACK_APPEARED, CERBERUS_TRACK_UPDATED, CERBERUS_TRACK_LEFT } CerberusTrackState;
+
+/**
+ * CerberusMotion:
+ * @state: started or ended
+ * @regions: (nullable) (element-type CerberusRegion): the moving objects, or those of the last frame with any; owned by
+ *     a boxed structure, borrowed in one on the stack; %NULL counts as empty
+ *
+ * The start or the end of motion.
+ */
+typedef struct _CerberusMotion CerberusMotion;
+struct _CerberusMotion {
+  CerberusMotionState state;
+  GPtrArray* regions;
+
+  /*< private >*/
+  gpointer _cerberus_reserved[GST_PADDING];
+};
+
+/**
+ * CerberusTrack:
+ * @state: what happened to it
+ * @region: the track as it was last published
+ * @first: running time of the first frame that it was published on, %GST_CLOCK_TIME_NONE if it is not known
+ * @last: running time of the last frame that it was published on, %GST_CLOCK_TIME_NONE if it is not known
+ *
+ * What happened to one track.
+ */
+typedef struct _CerberusTrack CerberusTrack;
+struct _CerberusTrack {
+  CerberusTrackState state;
+  CerberusRegion region;
+  GstClockTime first, last;
+
+  /*< private >*/
+  gpointer _cerberus_reserved[GST_PADDING];
+};
+
+#define CERBERUS_TYPE_MOTION (cerberus_motion_get_type())
+#define CERBERUS_TYPE_MOTION_STATE (cerberus_motion_state_get_type())
+#define CERBERUS_TYPE_TRACK (cerberus_track_get_type())
+#define CERBERUS_TYPE_TRACK_STATE (cerberus_track_state_get_type())
+
+/**
+ * cerberus_motion_init: (skip)
+ */
+/**
+ * cerberus_motion_free: (skip)
+ */
+CERBERUS_DECLARE_BOXED(CerberusMotion, cerberus_motion)
+CERBERUS_DECLARE_ENUM(CerberusMotionState, cerberus_motion_state)
+
+/**
+ * cerberus_track_init: (skip)
+ */
+/**
+ * cerberus_track_free: (skip)
+ */
+CERBERUS_DECLARE_BOXED(CerberusTrack, cerberus_track)
+CERBERUS_DECLARE_ENUM(CerberusTrackState, cerberus_track_state)
+
+/**
+ * cerberus_motion_add_region:
+ * @motion: a boxed motion
+ * @region: an object, copied
+ *
+ * Appends @region to those of @motion.
  */
 CERBERUS_API
-GstMessage* cerberus_message_new_motion(GstObject* src, gboolean started, GstClockTime running_time,
-                                        GPtrArray* regions);
+void cerberus_motion_add_region(CerberusMotion* motion, const CerberusRegion* region);
+
+/**
+ * cerberus_motion_get_regions:
+ * @motion: a motion
+ *
+ * Returns: (transfer container) (element-type CerberusRegion): copies of its objects, possibly none.
+ */
+CERBERUS_API
+GPtrArray* cerberus_motion_get_regions(const CerberusMotion* motion);
+
+/**
+ * cerberus_message_new_motion:
+ * @src: (nullable): the object that posts it
+ * @stamp: (nullable): when, and by which camera
+ * @motion: the start or the end of motion
+ *
+ * Returns: (transfer full): a new %CERBERUS_MESSAGE_MOTION.
+ */
+CERBERUS_API
+GstMessage* cerberus_message_new_motion(GstObject* src, const CerberusStamp* stamp,
+                                        const CerberusMotion* motion);
 
 /**
  * cerberus_message_is_motion:
  * @message: a message
  *
  * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_MOTION.
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_message_is_motion(GstMessage* message);
@@ -48,19 +146,42 @@ gboolean cerberus_message_is_motion(GstMessage* message);
 /**
  * cerberus_message_parse_motion:
  * @message: a message
- * @started: (out) (optional): whether motion started (or ended)
- * @running_time: (out) (optional): running time of the frame in which it did
- * @regions: (out) (optional) (transfer container) (element-type CerberusRegion): what moves; release with
- *     g_ptr_array_unref(), which frees the regions too
  *
- * Reads a %CERBERUS_MESSAGE_MOTION.
- *
- * Returns: %FALSE (and nothing is written) if @message is not a well-formed one.
- *
- * Since: 0.1
+ * Returns: (transfer full) (nullable): the start or the end of motion; %NULL if @message is no well-formed
+ *     %CERBERUS_MESSAGE_MOTION.
  */
 CERBERUS_API
-gboolean cerberus_message_parse_motion(GstMessage* message, gboolean* started, GstClockTime* running_time,
-                                       GPtrArray** regions);
+CerberusMotion* cerberus_message_parse_motion(GstMessage* message);
+
+/**
+ * cerberus_message_new_track:
+ * @src: (nullable): the object that posts it
+ * @stamp: (nullable): when, and by which camera
+ * @track: what happened to a track
+ *
+ * Returns: (transfer full): a new %CERBERUS_MESSAGE_TRACK.
+ */
+CERBERUS_API
+GstMessage* cerberus_message_new_track(GstObject* src, const CerberusStamp* stamp,
+                                       const CerberusTrack* track);
+
+/**
+ * cerberus_message_is_track:
+ * @message: a message
+ *
+ * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_TRACK.
+ */
+CERBERUS_API
+gboolean cerberus_message_is_track(GstMessage* message);
+
+/**
+ * cerberus_message_parse_track:
+ * @message: a message
+ *
+ * Returns: (transfer full) (nullable): what happened to a track; %NULL if @message is no well-formed
+ *     %CERBERUS_MESSAGE_TRACK.
+ */
+CERBERUS_API
+CerberusTrack* cerberus_message_parse_track(GstMessage* message);
 
 G_END_DECLS

@@ -3,6 +3,7 @@
 
 #include <cerberus/api.h>
 #include <cerberus/pose.h>
+#include <cerberus/stamp.h>
 #include <gst/gst.h>
 
 G_BEGIN_DECLS
@@ -10,48 +11,97 @@ G_BEGIN_DECLS
 /**
  * CERBERUS_MESSAGE_PANTILT:
  *
- * Name of the structure of the element message that a head posts when what it does changes. Fields: `state` (string:
- * `stopped`, `tracking`, `turning`, `searching`, `zeroing`, `holding`, `manual`, `limited` or `fault`), `reason`
- * (string, for a user), `head` (string), `pan`, `tilt` (double, degrees), `running-time` (uint64, nanoseconds).
- *
- * Since: 0.1
+ * Name of the element message that a head posts when its state changes. Fields: those of #CerberusStamp, `state`
+ * (string, a nick of #CerberusPantiltState), `reason` (string, for a user), `head` (string), `pan`, `tilt` (double,
+ * degrees).
  */
 #define CERBERUS_MESSAGE_PANTILT "cerberus-pantilt"
 
 /**
+ * CerberusPantiltState:
+ * @CERBERUS_PANTILT_STOPPED: it stands, and follows nothing
+ * @CERBERUS_PANTILT_TRACKING: it follows a target
+ * @CERBERUS_PANTILT_TURNING: it turns at the defined speed
+ * @CERBERUS_PANTILT_SEARCHING: it sweeps a sector
+ * @CERBERUS_PANTILT_ZEROING: it returns to straight ahead
+ * @CERBERUS_PANTILT_HOLDING: it stays where it is
+ * @CERBERUS_PANTILT_MANUAL: the application drives it
+ * @CERBERUS_PANTILT_LIMITED: it stands at a limit that the target is beyond
+ * @CERBERUS_PANTILT_FAULT: its driver fails
+ *
+ * What a head does.
+ */
+typedef enum {
+  CERBERUS_PANTILT_STOPPED,
+  CERBERUS_PANTILT_TRACKING,
+  CERBERUS_PANTILT_TURNING,
+  CERBERUS_PANTILT_SEARCHING,
+  CERBERUS_PANTILT_ZEROING,
+  CERBERUS_PANTILT_HOLDING,
+  CERBERUS_PANTILT_MANUAL,
+  CERBERUS_PANTILT_LIMITED,
+  CERBERUS_PANTILT_FAULT,
+} CerberusPantiltState;
+
+/**
+ * CerberusPantilt:
+ * @state: what the head does
+ * @reason: (nullable): why, in words for a user; owned by a boxed structure, borrowed in one on the stack
+ * @pose: where it looks; of a message its name, pan, tilt and the time from which it is valid are known
+ *
+ * The state of a pan-tilt head.
+ */
+typedef struct _CerberusPantilt CerberusPantilt;
+struct _CerberusPantilt {
+  CerberusPantiltState state;
+  gchar* reason;
+  CerberusPose pose;
+
+  /*< private >*/
+  gpointer _cerberus_reserved[GST_PADDING];
+};
+
+#define CERBERUS_TYPE_PANTILT (cerberus_pantilt_get_type())
+#define CERBERUS_TYPE_PANTILT_STATE (cerberus_pantilt_state_get_type())
+
+/**
+ * cerberus_pantilt_init: (skip)
+ */
+/**
+ * cerberus_pantilt_free: (skip)
+ */
+CERBERUS_DECLARE_BOXED(CerberusPantilt, cerberus_pantilt)
+CERBERUS_DECLARE_ENUM(CerberusPantiltState, cerberus_pantilt_state)
+
+/**
  * cerberus_message_new_pantilt:
- * @src: (transfer none) (nullable): the object that posts it
- * @running_time: when
- * @state: what the head does now, one of the words of %CERBERUS_MESSAGE_PANTILT
- * @reason: (nullable): why, in words for a user
- * @pose: where it looks
+ * @src: (nullable): the object that posts it
+ * @stamp: (nullable): when, and by which camera
+ * @pantilt: the state of the head
  *
- * Makes the element message %CERBERUS_MESSAGE_PANTILT.
- *
- * Returns: (transfer full): a new message.
- *
- * Since: 0.1
+ * Returns: (transfer full): a new %CERBERUS_MESSAGE_PANTILT.
  */
 CERBERUS_API
-GstMessage* cerberus_message_new_pantilt(GstObject* src, GstClockTime running_time, const gchar* state,
-                                         const gchar* reason, const CerberusPose* pose);
+GstMessage* cerberus_message_new_pantilt(GstObject* src, const CerberusStamp* stamp,
+                                         const CerberusPantilt* pantilt);
+
+/**
+ * cerberus_message_is_pantilt:
+ * @message: a message
+ *
+ * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_PANTILT.
+ */
+CERBERUS_API
+gboolean cerberus_message_is_pantilt(GstMessage* message);
 
 /**
  * cerberus_message_parse_pantilt:
  * @message: a message
- * @running_time: (out) (optional): when
- * @state: (out) (optional) (transfer full): what the head does, one of the words of %CERBERUS_MESSAGE_PANTILT
- * @reason: (out) (optional) (transfer full): why, in words for a user; may be empty
  *
- * Reads a %CERBERUS_MESSAGE_PANTILT.
- *
- * Returns: (transfer full) (nullable): where the head looked at @running_time: its name, pan and tilt, and nothing
- *     more; %NULL (and nothing is written) if @message is no well-formed one.
- *
- * Since: 0.1
+ * Returns: (transfer full) (nullable): the state of the head; %NULL if @message is no well-formed
+ *     %CERBERUS_MESSAGE_PANTILT.
  */
 CERBERUS_API
-CerberusPose* cerberus_message_parse_pantilt(GstMessage* message, GstClockTime* running_time, gchar** state,
-                                             gchar** reason);
+CerberusPantilt* cerberus_message_parse_pantilt(GstMessage* message);
 
 G_END_DECLS

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include <cerberus/pir.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "private/structure.hpp"
+#include "cerberus/private/define.hpp"
 
 namespace {
 
-constexpr char kRunningTime[] = "running-time";
 constexpr char kSensors[] = "sensors";
 constexpr char kBearings[] = "bearings";
 constexpr char kFieldOfView[] = "field-of-view";
@@ -26,10 +26,6 @@ const char* fault(const CerberusPirInfo& info) {
   return nullptr;
 }
 
-void set_bearings(GstStructure* structure, const CerberusPirInfo& info) {
-  cerberus::set_array(structure, kBearings, G_TYPE_DOUBLE, g_value_set_double, info.sensors, info.bearings);
-}
-
 gboolean refuse(GError** error, const GstCaps* caps, const char* why) {
   gchar* text = gst_caps_to_string(caps);
   g_set_error(error, GST_CORE_ERROR, GST_CORE_ERROR_NEGOTIATION, "PIR caps \"%s\" cannot be used: %s.", text,
@@ -38,7 +34,24 @@ gboolean refuse(GError** error, const GstCaps* caps, const char* why) {
   return FALSE;
 }
 
+void none(CerberusPir&) {}
+
+void write(GstStructure* to, const CerberusPir& pir) {
+  CerberusPir written = pir;
+  cerberus::tidy_sensors(written.n_sensors, written.sensors, written.bearings);
+  cerberus::write_sensors(to, written.n_sensors, written.sensors, written.bearings);
+  gst_structure_set(to, "doubtful", G_TYPE_UINT, pir.doubtful, nullptr);
+}
+
+bool read(const GstStructure* from, CerberusPir& pir) {
+  return cerberus::read_sensors(from, pir.n_sensors, pir.sensors, pir.bearings) && pir.n_sensors > 0 &&
+         gst_structure_get_uint(from, "doubtful", &pir.doubtful);
+}
+
 }  // namespace
+
+CERBERUS_DEFINE_BOXED(CerberusPir, cerberus_pir, none)
+CERBERUS_DEFINE_MESSAGE(CerberusPir, pir, CERBERUS_MESSAGE_PIR)
 
 void cerberus_pir_info_init(CerberusPirInfo* info) {
   g_return_if_fail(info);
@@ -57,7 +70,7 @@ GstCaps* cerberus_pir_info_to_caps(const CerberusPirInfo* info) {
   GstStructure* structure = gst_structure_new(
       "application/x-pir", "format", G_TYPE_STRING, format_name(info->format), kSensors, G_TYPE_INT,
       static_cast<gint>(info->sensors), kFieldOfView, G_TYPE_DOUBLE, info->field_of_view, nullptr);
-  set_bearings(structure, *info);
+  cerberus::set_numbers(structure, kBearings, info->sensors, info->bearings);
   GstCaps* caps = gst_caps_new_empty();
   gst_caps_append_structure(caps, structure);
   return caps;
@@ -100,33 +113,7 @@ gsize cerberus_pir_info_buffer_size(const CerberusPirInfo* info) {
   return info->sensors * (info->format == CERBERUS_PIR_LEVEL ? sizeof(gfloat) : 1);
 }
 
-GstMessage* cerberus_message_new_pir(GstObject* src, GstClockTime running_time, const CerberusPirInfo* info,
-                                     const guint8* sensors) {
-  g_return_val_if_fail(!src || GST_IS_OBJECT(src), nullptr);
-  g_return_val_if_fail(info && info->sensors <= CERBERUS_PIR_MAX_SENSORS && sensors, nullptr);
-  GstStructure* structure = gst_structure_new(CERBERUS_MESSAGE_PIR, kRunningTime, G_TYPE_UINT64,
-                                              static_cast<guint64>(running_time), nullptr);
-  cerberus::set_array(structure, kSensors, G_TYPE_INT, g_value_set_int, info->sensors, sensors);
-  set_bearings(structure, *info);
-  return gst_message_new_element(src, structure);
-}
-
-GBytes* cerberus_message_parse_pir(GstMessage* message, GstClockTime* running_time) {
-  g_return_val_if_fail(GST_IS_MESSAGE(message), nullptr);
-  const GstStructure* structure = cerberus::element_structure(message, CERBERUS_MESSAGE_PIR);
-  if (!structure) return nullptr;
-  const GValue* array = gst_structure_get_value(structure, kSensors);
-  guint64 time = 0;
-  if (!gst_structure_get_uint64(structure, kRunningTime, &time) || !array || !GST_VALUE_HOLDS_ARRAY(array))
-    return nullptr;
-  guint8 sensors[CERBERUS_PIR_MAX_SENSORS];
-  const guint count = gst_value_array_get_size(array);
-  if (count < 1 || count > CERBERUS_PIR_MAX_SENSORS) return nullptr;
-  for (guint i = 0; i < count; ++i) {
-    const GValue* value = gst_value_array_get_value(array, i);
-    if (!G_VALUE_HOLDS_INT(value) || g_value_get_int(value) < 0 || g_value_get_int(value) > 2) return nullptr;
-    sensors[i] = static_cast<guint8>(g_value_get_int(value));
-  }
-  if (running_time) *running_time = time;
-  return g_bytes_new(sensors, count);
+GBytes* cerberus_pir_get_sensors(const CerberusPir* pir) {
+  g_return_val_if_fail(pir, nullptr);
+  return g_bytes_new(pir->sensors, std::min<guint>(pir->n_sensors, CERBERUS_PIR_MAX_SENSORS));
 }

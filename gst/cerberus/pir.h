@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cerberus/api.h>
+#include <cerberus/stamp.h>
 #include <gst/gst.h>
 
 G_BEGIN_DECLS
@@ -12,8 +13,6 @@ G_BEGIN_DECLS
  * Caps string of every stream of PIR readings. Complete caps name `format`, `sensors`
  * (int), `bearings` (array of double, degrees, one a sensor, positive to the right of
  * straight ahead) and `field-of-view` (double, degrees, of each sensor).
- *
- * Since: 0.1
  */
 #define CERBERUS_PIR_CAPS "application/x-pir, format = (string) { presence, level }"
 
@@ -21,30 +20,24 @@ G_BEGIN_DECLS
  * CERBERUS_PIR_MAX_SENSORS:
  *
  * As many sensors as one stream can carry.
- *
- * Since: 0.1
  */
 #define CERBERUS_PIR_MAX_SENSORS 16
 
 /**
  * CERBERUS_MESSAGE_PIR:
  *
- * Name of the structure of the element message that a PIR source posts at every change. Fields: `running-time` (uint64,
- * nanoseconds), `sensors` (array of int, one a sensor: 0 nothing, 1 somebody, 2 invalid), `bearings` (array of double,
- * degrees).
- *
- * Since: 0.1
+ * Name of the element message that a PIR source posts at every change. Fields: those of #CerberusStamp, `sensors`
+ * (array of int, one a sensor: 0 nothing, 1 motion, 2 invalid), `bearings` (array of double, degrees), `doubtful`
+ * (uint, one bit a sensor).
  */
 #define CERBERUS_MESSAGE_PIR "cerberus-pir"
 
 /**
  * CerberusPirFormat:
- * @CERBERUS_PIR_PRESENCE: one byte a sensor: 0 nothing, 1 somebody, 2 invalid (as in warm-up)
+ * @CERBERUS_PIR_PRESENCE: one byte a sensor: 0 nothing, 1 motion, 2 invalid (as in warm-up)
  * @CERBERUS_PIR_LEVEL: one 32-bit float a sensor, in volts, in this machine's byte order; NaN: nothing was measured
  *
  * What a buffer of PIR readings holds.
- *
- * Since: 0.1
  */
 typedef enum {
   CERBERUS_PIR_PRESENCE,
@@ -59,8 +52,6 @@ typedef enum {
  * @field_of_view: how wide each sensor sees, degrees
  *
  * What the caps of a stream of PIR readings say.
- *
- * Since: 0.1
  */
 typedef struct _CerberusPirInfo CerberusPirInfo;
 struct _CerberusPirInfo {
@@ -76,8 +67,6 @@ struct _CerberusPirInfo {
  *
  * Fills @info with the paper's arrangement: presence of three sensors ahead, left and right (0, -120 and 120 degrees),
  * 120 degrees each.
- *
- * Since: 0.1
  */
 CERBERUS_API
 void cerberus_pir_info_init(CerberusPirInfo* info);
@@ -88,8 +77,6 @@ void cerberus_pir_info_init(CerberusPirInfo* info);
  *
  * Returns: (transfer full) (nullable): fixed caps, or %NULL if @info is not one that
  *     cerberus_pir_info_from_caps() would accept.
- *
- * Since: 0.1
  */
 CERBERUS_API
 GstCaps* cerberus_pir_info_to_caps(const CerberusPirInfo* info);
@@ -102,8 +89,6 @@ GstCaps* cerberus_pir_info_to_caps(const CerberusPirInfo* info);
  *
  * Returns: %FALSE (with @error set) if @caps are not complete caps of PIR readings: an unknown format, no sensor or too
  *     many, a bearing a sensor missing or not finite, a field of view outside 0 to 360 degrees.
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_pir_info_from_caps(CerberusPirInfo* info, const GstCaps* caps, GError** error);
@@ -113,42 +98,76 @@ gboolean cerberus_pir_info_from_caps(CerberusPirInfo* info, const GstCaps* caps,
  * @info: what the caps say
  *
  * Returns: bytes of one buffer.
- *
- * Since: 0.1
  */
 CERBERUS_API
 gsize cerberus_pir_info_buffer_size(const CerberusPirInfo* info);
 
 /**
- * cerberus_message_new_pir: (skip)
- * @src: (transfer none) (nullable): the object that posts it
- * @running_time: running time of the change
- * @info: what the stream's caps say
- * @sensors: the readings, a byte a sensor: 0, 1, or 2 for invalid
+ * CerberusPir:
+ * @n_sensors: number of sensors
+ * @sensors: their readings: 0 nothing, 1 motion, 2 invalid
+ * @bearings: direction of each sensor, degrees, positive to the right of straight ahead
+ * @doubtful: one bit a sensor: it detects while the robot itself turns
  *
- * Makes the element message %CERBERUS_MESSAGE_PIR.
+ * The readings of all sensors of a stream.
+ */
+typedef struct _CerberusPir CerberusPir;
+struct _CerberusPir {
+  guint n_sensors;
+  guint8 sensors[CERBERUS_PIR_MAX_SENSORS];
+  gdouble bearings[CERBERUS_PIR_MAX_SENSORS];
+  guint doubtful;
+
+  /*< private >*/
+  gpointer _cerberus_reserved[GST_PADDING];
+};
+
+#define CERBERUS_TYPE_PIR (cerberus_pir_get_type())
+
+/**
+ * cerberus_pir_init: (skip)
+ */
+/**
+ * cerberus_pir_free: (skip)
+ */
+CERBERUS_DECLARE_BOXED(CerberusPir, cerberus_pir)
+
+/**
+ * cerberus_pir_get_sensors:
+ * @pir: readings
  *
- * Returns: (transfer full): a new message.
- *
- * Since: 0.1
+ * Returns: (transfer full): a byte a sensor: 0 nothing, 1 motion, 2 invalid.
  */
 CERBERUS_API
-GstMessage* cerberus_message_new_pir(GstObject* src, GstClockTime running_time, const CerberusPirInfo* info,
-                                     const guint8* sensors);
+GBytes* cerberus_pir_get_sensors(const CerberusPir* pir);
+
+/**
+ * cerberus_message_new_pir:
+ * @src: (nullable): the object that posts it
+ * @stamp: (nullable): when, and by which camera
+ * @pir: the readings
+ *
+ * Returns: (transfer full): a new %CERBERUS_MESSAGE_PIR.
+ */
+CERBERUS_API
+GstMessage* cerberus_message_new_pir(GstObject* src, const CerberusStamp* stamp, const CerberusPir* pir);
+
+/**
+ * cerberus_message_is_pir:
+ * @message: a message
+ *
+ * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_PIR.
+ */
+CERBERUS_API
+gboolean cerberus_message_is_pir(GstMessage* message);
 
 /**
  * cerberus_message_parse_pir:
  * @message: a message
- * @running_time: (out) (optional): running time of the change
  *
- * Reads a %CERBERUS_MESSAGE_PIR.
- *
- * Returns: (transfer full) (nullable): the readings, a byte a sensor: 0 nothing, 1 somebody, 2 invalid; %NULL if
- *     @message is no well-formed one.
- *
- * Since: 0.1
+ * Returns: (transfer full) (nullable): the readings; %NULL if @message is no well-formed %CERBERUS_MESSAGE_PIR.
  */
 CERBERUS_API
-GBytes* cerberus_message_parse_pir(GstMessage* message, GstClockTime* running_time);
+CerberusPir* cerberus_message_parse_pir(GstMessage* message);
 
 G_END_DECLS

@@ -9,30 +9,23 @@ G_BEGIN_DECLS
 /**
  * CERBERUS_EVENT_POSE:
  *
- * Name of the structure of the custom upstream event by which a head tells where it looks. Listeners evaluate it and
- * forward it; only a source ends it. Another head's event is ignored.
- *
- * Since: 0.1
+ * Name of the custom upstream event by which a head publishes its pose. Elements evaluate it and forward it; only a
+ * source ends it. Another head's event is ignored.
  */
 #define CERBERUS_EVENT_POSE "cerberus-pose"
 
 /**
  * CerberusPoseSource:
- * @CERBERUS_POSE_COMMANDED: what the head was told
- * @CERBERUS_POSE_MEASURED: what the head said of itself
+ * @CERBERUS_POSE_COMMANDED: from the commands sent to the head
+ * @CERBERUS_POSE_MEASURED: from the head's own feedback
  *
  * Where a pose comes from.
- *
- * Since: 0.1
  */
-typedef enum {
-  CERBERUS_POSE_COMMANDED,
-  CERBERUS_POSE_MEASURED,
-} CerberusPoseSource;
+typedef enum { CERBERUS_POSE_COMMANDED, CERBERUS_POSE_MEASURED } CerberusPoseSource;
 
 /**
  * CerberusPose:
- * @head: the head's name; interned, owned by nobody. %NULL counts as "head" wherever a pose is attached or told
+ * @head: the head's name; interned, not to be freed. %NULL counts as "head" wherever a pose is attached or sent
  * @pan: pan angle at @valid_from, degrees, positive to the right; does not wrap
  * @tilt: tilt angle at @valid_from, degrees, positive up
  * @pan_speed: degrees a second at @valid_from
@@ -46,8 +39,6 @@ typedef enum {
  * @settled: the head stands where it was sent
  *
  * Where a pan-tilt head looks: one piece of its plan, of constant acceleration.
- *
- * Since: 0.1
  */
 typedef struct _CerberusPose CerberusPose;
 struct _CerberusPose {
@@ -67,71 +58,24 @@ struct _CerberusPose {
 #define CERBERUS_TYPE_POSE_SOURCE (cerberus_pose_source_get_type())
 #define CERBERUS_POSE_META_API_TYPE (cerberus_pose_meta_api_get_type())
 
-CERBERUS_API
-GType cerberus_pose_get_type(void) G_GNUC_CONST;
-
-CERBERUS_API
-GType cerberus_pose_source_get_type(void) G_GNUC_CONST;
-
-CERBERUS_API
-GType cerberus_pose_meta_api_get_type(void);
-
 /**
  * cerberus_pose_init: (skip)
- * @pose: (out caller-allocates): memory to fill
- *
- * Fills @pose with the defaults of cerberus_pose_new(), for structures on the stack.
- *
- * Since: 0.1
  */
-CERBERUS_API
-void cerberus_pose_init(CerberusPose* pose);
-
 /**
- * cerberus_pose_new: (constructor)
- *
- * Makes a commanded pose straight ahead, at rest and settled, of the head "head", valid from 0 on.
- *
- * Returns: (transfer full): a new pose; free with cerberus_pose_free().
- *
- * Since: 0.1
+ * cerberus_pose_free: (skip)
  */
-CERBERUS_API
-CerberusPose* cerberus_pose_new(void);
+CERBERUS_DECLARE_BOXED(CerberusPose, cerberus_pose)
+CERBERUS_DECLARE_ENUM(CerberusPoseSource, cerberus_pose_source)
 
 /**
  * cerberus_pose_set_head:
  * @pose: a pose
  * @head: the head's name
  *
- * Names the head (bindings cannot intern strings themselves).
- *
- * Since: 0.1
+ * Names the head (bindings cannot intern strings).
  */
 CERBERUS_API
 void cerberus_pose_set_head(CerberusPose* pose, const gchar* head);
-
-/**
- * cerberus_pose_copy:
- * @pose: a pose
- *
- * Returns: (transfer full) (nullable): a copy; %NULL only for a %NULL @pose.
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusPose* cerberus_pose_copy(const CerberusPose* pose);
-
-/**
- * cerberus_pose_free: (skip)
- * @pose: (transfer full) (nullable): a pose
- *
- * Frees @pose.
- *
- * Since: 0.1
- */
-CERBERUS_API
-void cerberus_pose_free(CerberusPose* pose);
 
 /**
  * cerberus_pose_evaluate:
@@ -140,12 +84,10 @@ void cerberus_pose_free(CerberusPose* pose);
  * @pan: (out) (optional): pan angle then, degrees
  * @tilt: (out) (optional): tilt angle then, degrees
  *
- * Tells where the head looks at @running_time: angle + speed dt + acceleration dt^2 / 2, held at the ends of the span
- * in which the pose is valid.
+ * Computes where the head looks at @running_time: angle + speed dt + acceleration dt^2 / 2, held at the ends of the
+ * span in which the pose is valid.
  *
  * Returns: %TRUE if @running_time lies within that span.
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_time, gdouble* pan,
@@ -155,25 +97,26 @@ gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_t
  * cerberus_event_new_pose:
  * @pose: a pose
  *
- * Makes the custom upstream event %CERBERUS_EVENT_POSE.
- *
- * Returns: (transfer full): a new event.
- *
- * Since: 0.1
+ * Returns: (transfer full): a new %CERBERUS_EVENT_POSE.
  */
 CERBERUS_API
 GstEvent* cerberus_event_new_pose(const CerberusPose* pose);
 
 /**
+ * cerberus_event_is_pose:
+ * @event: an event
+ *
+ * Returns: %TRUE if @event is a %CERBERUS_EVENT_POSE.
+ */
+CERBERUS_API
+gboolean cerberus_event_is_pose(GstEvent* event);
+
+/**
  * cerberus_event_parse_pose:
  * @event: an event
  *
- * Reads a %CERBERUS_EVENT_POSE.
- *
- * Returns: (transfer full) (nullable): the pose; %NULL if @event is no well-formed one (a number missing, not finite or
- *     beyond any head, a span that ends before it begins).
- *
- * Since: 0.1
+ * Returns: (transfer full) (nullable): the pose; %NULL if @event is no well-formed %CERBERUS_EVENT_POSE (a number
+ *     missing, not finite or beyond any head, a span that ends before it begins).
  */
 CERBERUS_API
 CerberusPose* cerberus_event_parse_pose(GstEvent* event);
@@ -183,11 +126,9 @@ CerberusPose* cerberus_event_parse_pose(GstEvent* event);
  * @buffer: a writable buffer
  * @pose: (nullable): where the head looked when the frame was taken, copied; %NULL removes
  *
- * Attaches @pose, replacing one that is there already. A fact about the moment: it survives scaling and cropping.
+ * Attaches a fact about the moment: it survives scaling and cropping.
  *
- * Returns: %TRUE if @buffer now carries @pose (or none, for %NULL); %FALSE if @buffer is not writable.
- *
- * Since: 0.1
+ * Returns: %FALSE if @buffer is not writable.
  */
 CERBERUS_API
 gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose);
@@ -196,25 +137,17 @@ gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose);
  * cerberus_buffer_get_pose:
  * @buffer: a buffer
  *
- * Returns: (transfer full) (nullable): a copy of the pose at the time when the frame was taken, or %NULL if nobody
- *     attached one.
- *
- * Since: 0.1
+ * Returns: (transfer full) (nullable): a copy of the pose at the time when the frame was taken; %NULL if there is none.
  */
 CERBERUS_API
 CerberusPose* cerberus_buffer_get_pose(GstBuffer* buffer);
 
 /**
  * cerberus_buffer_peek_pose: (skip)
- * @buffer: a buffer
- *
- * Returns: (transfer none) (nullable): the pose on @buffer, without a copy.
- *
- * Since: 0.1
  */
 CERBERUS_API
 const CerberusPose* cerberus_buffer_peek_pose(GstBuffer* buffer);
-
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusPose, cerberus_pose_free)
+CERBERUS_API
+GType cerberus_pose_meta_api_get_type(void);
 
 G_END_DECLS

@@ -76,14 +76,12 @@ void HeadMotionMonitor::begin_comparison() {
 }
 
 void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
-  double rate = 0;
-  GstClockTime from = 0;
   g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
   const std::lock_guard guard(lock_);
   if (pose && (head.empty() || head == pose->head))
     poses_.insert(time_of(pose->valid_from), *pose);
-  else if (cerberus_event_parse_base(event, &rate, &from))
-    told_base_.hear(time_of(from), rate);
+  else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
+    told_base_.hear(time_of(base->valid_from), base->yaw_rate);
 }
 
 HeadMotionMonitor::Head HeadMotionMonitor::head_of(Frame& frame, const std::string& head) {
@@ -123,7 +121,7 @@ void HeadMotionMonitor::tell_base(Frame& frame, double seen) {
     const std::lock_guard guard(lock_);
     if (const auto told = told_base_.at(time)) {
       base.yaw_rate = *told;
-      base.told = TRUE;
+      base.source = CERBERUS_BASE_REPORTED;
     }
     told_base_.forget_before(time);
   }
@@ -151,7 +149,8 @@ void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision:
 
   if (!now_.commanded || !before_.commanded || now_.name != before_.name) return;
   const CerberusBase* base = cerberus_buffer_peek_base(frame.buffer);
-  const double told = base && base->told ? radians(base->yaw_rate) * frame.seconds : 0;
+  const double told =
+      base && base->source == CERBERUS_BASE_REPORTED ? radians(base->yaw_rate) * frame.seconds : 0;
   const char* head = now_.name;
   if (const auto found = pan_.add(frame.seconds, turn.yaw + pan - told, pan))
     warn(element, *found, head, "pan");

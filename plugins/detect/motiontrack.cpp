@@ -253,12 +253,13 @@ void Private::publish(const Frame& frame, const vision::Lens& lens, std::span<co
 
 void Private::announce(MotionEvents::Change change, GstClockTime running_time) {
   if (change == MotionEvents::Change::none) return;
-  const bool started = change == MotionEvents::Change::started;
-  GPtrArray* objects = g_ptr_array_new();
-  for (CerberusRegion& region : state->last) g_ptr_array_add(objects, &region);
-  gst_element_post_message(GST_ELEMENT(base),
-                           cerberus_message_new_motion(GST_OBJECT(base), started, running_time, objects));
-  g_ptr_array_unref(objects);
+  CerberusStamp stamp;
+  cerberus_stamp_init(&stamp);
+  stamp.running_time = running_time;
+  g_autoptr(CerberusMotion) motion = cerberus_motion_new();
+  motion->state = change == MotionEvents::Change::started ? CERBERUS_MOTION_STARTED : CERBERUS_MOTION_ENDED;
+  for (const CerberusRegion& region : state->last) cerberus_motion_add_region(motion, &region);
+  gst_element_post_message(GST_ELEMENT(base), cerberus_message_new_motion(GST_OBJECT(base), &stamp, motion));
 }
 
 constexpr AnalysisInfo kInfo{"CerberusMotionTrack", "Motion tracks",

@@ -185,8 +185,11 @@ void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guin
 
 void tell_changes(CerberusPirFusion* self) {
   self->priv->decisions.tell([self](Time time, const CerberusFusion& fusion) {
+    CerberusStamp stamp;
+    cerberus_stamp_init(&stamp);
+    stamp.running_time = clock_time(time);
     gst_element_post_message(GST_ELEMENT(self),
-                             cerberus_message_new_fusion(GST_OBJECT(self), clock_time(time), &fusion));
+                             cerberus_message_new_fusion(GST_OBJECT(self), &stamp, &fusion));
   });
 }
 
@@ -197,9 +200,10 @@ void decide_between_frames(CerberusPirFusion* self) {
   if (!now) return;
   Private& priv = *self->priv;
   const std::string head = priv.settings.snapshot().head;
-  const auto told = priv.decisions.between(*now, head);
+  auto told = priv.decisions.between(*now, head);
   if (!told) return;
-  gst_pad_push_event(priv.src, cerberus_event_new_fusion(head.c_str(), &told->fusion));
+  cerberus_fusion_set_head(&told->fusion, head.c_str());
+  gst_pad_push_event(priv.src, cerberus_event_new_fusion(&told->fusion));
   tell_changes(self);
 }
 
@@ -234,7 +238,11 @@ void pass_base_on(CerberusPirFusion* self, Time time, const Moment& moment) {
   if (same && (fresh || rate == 0)) return;
   state.base_told = rate;
   state.base_told_at = time;
-  g_autoptr(GstEvent) event = cerberus_event_new_base(rate, clock_time(time));
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = rate;
+  base.valid_from = clock_time(time);
+  g_autoptr(GstEvent) event = cerberus_event_new_base(&base);
   push_to_pirs(self, event);
 }
 
@@ -328,14 +336,12 @@ GstIterator* internal_links(GstPad* pad, GstObject* parent) {
 void listen(Private& priv, GstEvent* event) {
   g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
   const std::string head = priv.settings.snapshot().head;
-  double rate = 0;
-  GstClockTime from = 0;
   if (pose && (head.empty() || head == pose->head))
     priv.inputs.hear(*pose);
   else if (pose)
     priv.inputs.hear_stranger(*pose);
-  else if (cerberus_event_parse_base(event, &rate, &from))
-    priv.inputs.hear_base(rate, time_of(from));
+  else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
+    priv.inputs.hear_base(base->yaw_rate, time_of(base->valid_from));
 }
 
 gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {

@@ -20,16 +20,29 @@ CerberusPose told(const motion::Pose& pose, const char* head) {
   return out;
 }
 
+CerberusPantiltState state_of(const char* nick) {
+  static gpointer const states = g_type_class_ref(CERBERUS_TYPE_PANTILT_STATE);
+  const GEnumValue* value = g_enum_get_value_by_nick(G_ENUM_CLASS(states), nick);
+  return static_cast<CerberusPantiltState>(value->value);
+}
+
 // Posts each kind of notice.
 struct Posting {
   GstBaseSink* sink;
   const char* head;
 
   void operator()(const Status& status) const {
-    const CerberusPose pose = told(status.pose, head);
+    CerberusPantilt pantilt;
+    cerberus_pantilt_init(&pantilt);
+    pantilt.state = state_of(status.state);
+    pantilt.pose = told(status.pose, head);
+    std::string reason = status.reason;
+    pantilt.reason = reason.data();
+    CerberusStamp stamp;
+    cerberus_stamp_init(&stamp);
+    stamp.running_time = clock_time(status.time);
     gst_element_post_message(GST_ELEMENT(sink),
-                             cerberus_message_new_pantilt(GST_OBJECT(sink), clock_time(status.time),
-                                                          status.state, status.reason.c_str(), &pose));
+                             cerberus_message_new_pantilt(GST_OBJECT(sink), &stamp, &pantilt));
   }
   void operator()(const Refusal& refusal) const { refuse(GST_ELEMENT(sink), head, refusal.why); }
   void operator()(const Fault& fault) const {

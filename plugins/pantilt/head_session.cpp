@@ -92,9 +92,8 @@ void HeadSession::set_live(bool live) {
 }
 
 void HeadSession::heed(GstEvent* event) {
-  const gchar* whose = nullptr;
-  g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event, &whose);
-  if (!fusion || !playing || (*whose && !g_str_equal(whose, head.load()))) return;
+  g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event);
+  if (!fusion || !playing || (fusion->head && !g_str_equal(fusion->head, head.load()))) return;
   const auto at = now();
   if (!at) return;
   DeferredNotifications out = outbox();

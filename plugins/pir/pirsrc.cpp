@@ -383,11 +383,11 @@ gboolean event(GstBaseSrc* base, GstEvent* event) {
   auto* self = cerberus_pir_src_self(base);
   Private& priv = *self->priv;
   if (is_backwards(event)) return FALSE;
-  gdouble yaw_rate = 0;
-  if (cerberus_event_parse_base(event, &yaw_rate, nullptr)) {
+  if (g_autoptr(CerberusBase) turning = cerberus_event_parse_base(event)) {
     const std::lock_guard guard(priv.lock);
     if (priv.running)
-      priv.sensors.base(priv.live ? sensors_now(self) : time_of(priv.last), sensing::radians(yaw_rate));
+      priv.sensors.base(priv.live ? sensors_now(self) : time_of(priv.last),
+                        sensing::radians(turning->yaw_rate));
     priv.device.wake();
     return TRUE;
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "reports.hpp"
 
+#include <algorithm>
 #include <cerberus/private/messages.hpp>
 #include <cmath>
 
@@ -55,22 +56,25 @@ GstBuffer* publish(GstBaseSrc* source, const News& news) {
   GstElement* element = GST_ELEMENT(source);
   const drivers::SensorReading& reading = news.reading;
   const guint count = news.info.sensors;
-  guint8 presence[CERBERUS_PIR_MAX_SENSORS] = {};
-  for (guint i = 0; i < count; ++i) presence[i] = static_cast<guint8>(reading.presence[i]);
+  CerberusPir pir;
+  cerberus_pir_init(&pir);
+  pir.n_sensors = count;
+  pir.doubtful = static_cast<guint>(reading.doubtful);
+  std::copy_n(news.info.bearings, count, pir.bearings);
+  for (guint i = 0; i < count; ++i) pir.sensors[i] = static_cast<guint8>(reading.presence[i]);
   for (guint i = 0; i < count; ++i)
     if (reading.faulty >> i & 1)
       report_fault(element, static_cast<int>(i), news.faults[i], news.info.bearings[i], news.places[i]);
   if (reading.changed) {
-    const GstClockTime running = gst_segment_to_running_time(&source->segment, GST_FORMAT_TIME, news.time);
-    GstMessage* message = cerberus_message_new_pir(GST_OBJECT(source), running, &news.info, presence);
-    GstStructure* fields = gst_message_writable_structure(message);
-    gst_structure_set(fields, "doubtful", G_TYPE_UINT, static_cast<guint>(reading.doubtful), nullptr);
-    gst_element_post_message(element, message);
+    CerberusStamp stamp;
+    cerberus_stamp_init(&stamp);
+    stamp.running_time = gst_segment_to_running_time(&source->segment, GST_FORMAT_TIME, news.time);
+    gst_element_post_message(element, cerberus_message_new_pir(GST_OBJECT(source), &stamp, &pir));
   }
   const gsize size = cerberus_pir_info_buffer_size(&news.info);
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, size, nullptr);
   const bool volts = news.info.format == CERBERUS_PIR_LEVEL;
-  gst_buffer_fill(buffer, 0, volts ? static_cast<const void*>(reading.volts.data()) : presence, size);
+  gst_buffer_fill(buffer, 0, volts ? static_cast<const void*>(reading.volts.data()) : pir.sensors, size);
   GST_BUFFER_PTS(buffer) = news.time;
   return buffer;
 }

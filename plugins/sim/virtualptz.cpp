@@ -222,7 +222,7 @@ void attach_pose(const State& state, motion::Pose pose, const vision::WindowGeom
 void attach_base(GstBuffer* in, GstBuffer* out) {
   CerberusBase base;
   cerberus_base_init(&base);
-  base.told = TRUE;
+  base.source = CERBERUS_BASE_REPORTED;
   if (const CerberusBase* known = cerberus_buffer_peek_base(in)) base = *known;
   cerberus_buffer_set_base(out, &base);
 }

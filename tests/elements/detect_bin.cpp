@@ -27,26 +27,21 @@ GST_START_TEST(motion_starts_once_and_ends_after_hold_time) {
   });
   fail_unless(from > 0 && until < 60);
   GstMessage* message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
-  gboolean started = FALSE;
-  GstClockTime time = 0;
-  GPtrArray* objects = nullptr;
-  fail_unless(message && cerberus_message_parse_motion(message, &started, &time, &objects));
-  fail_unless(started);
-  fail_unless_equals_uint64(time, from * scene::kStep);
-  fail_unless_equals_int(objects->len, 1);
-  const guint id = static_cast<CerberusRegion*>(g_ptr_array_index(objects, 0))->id;
-  g_ptr_array_unref(objects);
+  g_autoptr(CerberusMotion) begin = cerberus_message_parse_motion(message);
+  fail_unless(begin && begin->state == CERBERUS_MOTION_STARTED);
+  fail_unless_equals_uint64(running_time_of(message), from * scene::kStep);
+  fail_unless_equals_int(begin->regions->len, 1);
+  const guint id = static_cast<CerberusRegion*>(g_ptr_array_index(begin->regions, 0))->id;
   gst_message_unref(message);
   message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
-  fail_unless(message && cerberus_message_parse_motion(message, &started, &time, &objects));
-  fail_if(started);
-  fail_unless_equals_uint64(time, (until + 10) * scene::kStep);
-  // who it was, where it was last seen
-  fail_unless_equals_int(objects->len, 1);
-  const auto* gone = static_cast<CerberusRegion*>(g_ptr_array_index(objects, 0));
+  g_autoptr(CerberusMotion) end = cerberus_message_parse_motion(message);
+  fail_unless(end && end->state == CERBERUS_MOTION_ENDED);
+  fail_unless_equals_uint64(running_time_of(message), (until + 10) * scene::kStep);
+  // the same identity, where it was last seen
+  fail_unless_equals_int(end->regions->len, 1);
+  const auto* gone = static_cast<CerberusRegion*>(g_ptr_array_index(end->regions, 0));
   fail_unless_equals_int(gone->id, id);
   fail_unless(scene::overlaps_figure(*gone, world, until));
-  g_ptr_array_unref(objects);
   gst_message_unref(message);
   fail_unless(gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT) == nullptr);
 }

@@ -17,6 +17,9 @@ declared = set()
 for header in headers:
     code = re.sub(r"/\*.*?\*/", "", pathlib.Path(header).read_text("utf-8"), flags=re.S)
     declared |= set(re.findall(r"CERBERUS_API\s[^;]*?\b(cerberus_\w+)\s*\(", code))
+    for kind, prefix in re.findall(r"CERBERUS_DECLARE_(\w+)\(\w+,\s*(cerberus_\w+)\)", code):
+        functions = {"BOXED": "get_type init new copy free", "ENUM": "get_type get_nick"}[kind].split()
+        declared |= {f"{prefix}_{function}" for function in functions}
 for name in sorted(exported - declared):
     print(f"exported but not declared: {name}")
 for name in sorted(declared - exported):

@@ -164,11 +164,10 @@ struct Rig {
   std::vector<std::string> told() {
     std::vector<std::string> result;
     while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT)) {
-      GstClockTime time = 0;
-      g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message, &time);
+      g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message);
       fail_unless(fusion);
-      result.push_back(std::to_string(time / kMs) + ":" + std::to_string(fusion->rule) + ":" +
-                       cerberus_fusion_action_get_nick(fusion->action));
+      result.push_back(std::to_string(running_time_of(message) / kMs) + ":" + std::to_string(fusion->rule) +
+                       ":" + cerberus_fusion_action_get_nick(fusion->action));
       gst_message_unref(message);
     }
     return result;

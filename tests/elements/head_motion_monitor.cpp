@@ -41,7 +41,7 @@ CerberusBase turning_at(double rate) {
   CerberusBase base;
   cerberus_base_init(&base);
   base.yaw_rate = rate;
-  base.told = TRUE;
+  base.source = CERBERUS_BASE_REPORTED;
   return base;
 }
 
@@ -65,8 +65,8 @@ double show(scene::Line& line, const Shown& shown, int from, int to) {
     else
       gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&pose));
     if (shown.told)
-      gst_harness_push_upstream_event(
-          line.harness, cerberus_event_new_base((sweep(k - 1) - sweep(k)) / 0.04, k * scene::kStep));
+      gst_harness_push_upstream_event(line.harness,
+                                      base_event((sweep(k - 1) - sweep(k)) / 0.04, k * scene::kStep));
     GstBuffer* out = line.through(in);
     const CerberusBase* base = cerberus_buffer_peek_base(out);
     rate = base ? base->yaw_rate : NAN;
@@ -200,7 +200,7 @@ GST_END_TEST
 
 GST_START_TEST(an_application_knows_its_robot_better) {
   scene::Line line(kLens);
-  gst_harness_push_upstream_event(line.harness, cerberus_event_new_base(33, 10 * scene::kStep));
+  gst_harness_push_upstream_event(line.harness, base_event(33, 10 * scene::kStep));
   fail_unless(std::abs(show(line, {}, 0, 10)) < 1);
   fail_unless(show(line, {}, 10, 20) == 33);
   // For a second: then it has fallen silent, and what is seen counts.
@@ -210,7 +210,7 @@ GST_START_TEST(an_application_knows_its_robot_better) {
   // It is passed on, too.
   bool passed = false;
   while (GstEvent* event = gst_harness_try_pull_upstream_event(line.harness)) {
-    passed = passed || cerberus_event_parse_base(event, nullptr, nullptr);
+    passed = passed || parse_base(event, nullptr, nullptr);
     gst_event_unref(event);
   }
   fail_unless(passed);
@@ -236,7 +236,7 @@ GST_START_TEST(a_base_on_a_buffer_survives_conversion_and_scaling) {
     fail_unless(cerberus_buffer_set_base(in, &carried));
     GstBuffer* out = line.through(in);
     g_autoptr(CerberusBase) base = cerberus_buffer_get_base(out);
-    fail_unless(base && base->yaw_rate == 7.5 && base->told, "%s", element);
+    fail_unless(base && base->yaw_rate == 7.5 && base->source == CERBERUS_BASE_REPORTED, "%s", element);
     fail_unless(cerberus_buffer_set_base(out, nullptr) && !cerberus_buffer_peek_base(out));
     gst_buffer_unref(out);
   }

@@ -29,40 +29,41 @@ START_TEST(a_strangers_structure_is_read_with_care) {
 END_TEST
 
 START_TEST(a_motion_message_reads_back) {
-  g_autoptr(GPtrArray) regions = g_ptr_array_new();
+  g_autoptr(CerberusMotion) motion = cerberus_motion_new();
   CerberusRegion one = walker(), two = walker();
   two.id = 6;
-  g_ptr_array_add(regions, &one);
-  g_ptr_array_add(regions, &two);
+  cerberus_motion_add_region(motion, &one);
+  cerberus_motion_add_region(motion, &two);
   g_autoptr(GstElement) source = gst_element_factory_make("identity", "here");
   gst_object_ref_sink(source);
   for (const bool started : {true, false}) {
-    g_autoptr(GstMessage) message = cerberus_message_new_motion(GST_OBJECT(source), started, 42, regions);
+    motion->state = started ? CERBERUS_MOTION_STARTED : CERBERUS_MOTION_ENDED;
+    const CerberusStamp stamp = stamp_at(42);
+    g_autoptr(GstMessage) message = cerberus_message_new_motion(GST_OBJECT(source), &stamp, motion);
     fail_unless(GST_MESSAGE_SRC(message) == GST_OBJECT(source));
     fail_unless(cerberus_message_is_motion(message));
     fail_unless_equals_string(gst_structure_get_string(gst_message_get_structure(message), "state"),
                               started ? "started" : "ended");
-    gboolean was_started = !started;
-    GstClockTime time = 0;
-    g_autoptr(GPtrArray) back = nullptr;
-    fail_unless(cerberus_message_parse_motion(message, &was_started, &time, &back));
-    fail_unless_equals_int(was_started, started);
-    fail_unless_equals_uint64(time, 42);
-    fail_unless_equals_int(back->len, 2);
-    assert_same(at(back, 0), one);
-    assert_same(at(back, 1), two);
-    fail_unless(cerberus_message_parse_motion(message, nullptr, nullptr, nullptr));
+    g_autoptr(CerberusMotion) back = cerberus_message_parse_motion(message);
+    fail_unless(back);
+    fail_unless_equals_int(back->state, motion->state);
+    fail_unless_equals_uint64(running_time_of(message), 42);
+    fail_unless_equals_int(back->regions->len, 2);
+    assert_same(at(back->regions, 0), one);
+    assert_same(at(back->regions, 1), two);
   }
 }
 END_TEST
 
 START_TEST(a_motion_message_may_have_no_objects_and_no_source) {
-  g_autoptr(GstMessage) message = cerberus_message_new_motion(nullptr, FALSE, GST_CLOCK_TIME_NONE, nullptr);
-  GstClockTime time = 0;
-  g_autoptr(GPtrArray) regions = nullptr;
-  fail_unless(cerberus_message_parse_motion(message, nullptr, &time, &regions));
-  fail_unless_equals_uint64(time, GST_CLOCK_TIME_NONE);
-  fail_unless_equals_int(regions->len, 0);
+  CerberusMotion ended;
+  cerberus_motion_init(&ended);
+  ended.state = CERBERUS_MOTION_ENDED;
+  g_autoptr(GstMessage) message = cerberus_message_new_motion(nullptr, nullptr, &ended);
+  g_autoptr(CerberusMotion) back = cerberus_message_parse_motion(message);
+  fail_unless(back && back->state == CERBERUS_MOTION_ENDED);
+  fail_unless_equals_uint64(running_time_of(message), GST_CLOCK_TIME_NONE);
+  fail_unless_equals_int(back->regions->len, 0);
 }
 END_TEST
 
@@ -79,13 +80,7 @@ START_TEST(other_messages_are_not_motion) {
                                                          "objects", G_TYPE_INT, 3, nullptr)),
   };
   for (GstMessage* message : messages) {
-    gboolean started = 77;
-    GstClockTime time = 77;
-    GPtrArray* regions = nullptr;
-    fail_if(cerberus_message_parse_motion(message, &started, &time, &regions));
-    fail_unless_equals_int(started, 77);
-    fail_unless_equals_uint64(time, 77);
-    fail_if(regions);
+    fail_if(cerberus_message_parse_motion(message));
     gst_message_unref(message);
   }
 }
@@ -95,7 +90,7 @@ START_TEST(nothing_crashes_on_null) {
   EXPECT_CRITICAL(cerberus_region_to_structure(nullptr));
   EXPECT_CRITICAL(cerberus_region_from_structure(nullptr));
   EXPECT_CRITICAL(cerberus_message_is_motion(nullptr));
-  EXPECT_CRITICAL(cerberus_message_parse_motion(nullptr, nullptr, nullptr, nullptr));
+  EXPECT_CRITICAL(cerberus_message_parse_motion(nullptr));
 }
 END_TEST
 

@@ -28,7 +28,7 @@ void show(Rig& rig, GstClockTime pts, const CerberusFusion& fusion) {
 // Its states since it was told between two frames.
 std::string told(Rig& rig, const CerberusFusion& fusion, const char* head = "head") {
   rig.messages();
-  gst_harness_push_event(rig.harness, cerberus_event_new_fusion(head, &fusion));
+  gst_harness_push_event(rig.harness, fusion_event(head, fusion));
   return rig.states();
 }
 
@@ -75,7 +75,7 @@ GST_START_TEST(strangers_are_not_obeyed) {
   const CerberusFusion right = decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs);
   fail_unless(told(rig, right, "tail").empty());
   for (const int action : {257, -1, 6}) {  // none that there is; the first is 1 in a byte
-    GstEvent* event = cerberus_event_new_fusion("head", &right);
+    GstEvent* event = fusion_event("head", right);
     gst_structure_set(gst_event_writable_structure(event), "action", CERBERUS_TYPE_FUSION_ACTION, action,
                       nullptr);
     gst_harness_push_event(rig.harness, event);

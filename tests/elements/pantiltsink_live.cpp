@@ -297,10 +297,9 @@ GST_START_TEST(whatever_a_driver_says_arrives) {
       rig.push(frame_with(CERBERUS_FUSION_TURN_RIGHT, frames++ * kFrame));
       continue;
     }
-    g_autofree gchar *state = nullptr, *reason = nullptr;
-    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, &reason);
-    if (pose) {
-      if (g_str_equal(state, "fault")) told = says(reason, "T\\xfcr zu");
+    const HeadState state(message);
+    if (!state.state.empty()) {
+      if (state.state == "fault") told = says(state.reason.c_str(), "T\\xfcr zu");
       continue;
     }
     fail_unless(GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING);

@@ -23,9 +23,8 @@ class Keeper {
  private:
   static GstBusSyncReply on_message(GstBus*, GstMessage* message, gpointer keeper) {
     auto* self = static_cast<Keeper*>(keeper);
-    g_autofree gchar* state = nullptr;
-    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
-    if (!pose || self->state_ != state || self->kept_) return GST_BUS_PASS;
+    const HeadState told(message);
+    if (self->state_ != told.state || self->kept_) return GST_BUS_PASS;
     self->kept_ = true;
     self->there_.set_value();
     self->go_.get_future().wait();
@@ -77,9 +76,8 @@ GST_START_TEST(an_answer_is_told_behind_what_it_answers) {
   gst_bus_set_sync_handler(
       rig.bus,
       [](GstBus*, GstMessage* message, gpointer answering) {
-        g_autofree gchar* state = nullptr;
-        g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
-        if (pose && g_str_equal(state, "turning")) fail_unless(static_cast<Rig*>(answering)->call("stop"));
+        const HeadState told(message);
+        if (told.state == "turning") fail_unless(static_cast<Rig*>(answering)->call("stop"));
         return GST_BUS_PASS;
       },
       &rig, nullptr);
@@ -97,9 +95,8 @@ GST_START_TEST(of_each_head_is_told_by_its_name) {
       rig.bus,
       [](GstBus*, GstMessage* message, gpointer told) {
         auto* rig = static_cast<Rig*>(told);
-        g_autofree gchar* state = nullptr;
-        g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
-        if (!pose || !g_str_equal(state, "manual") || !g_str_equal(pose->head, "first")) return GST_BUS_PASS;
+        const HeadState said(message);
+        if (said.state != "manual" || said.head != "first") return GST_BUS_PASS;
         gst_element_set_state(rig->element, GST_STATE_READY);
         g_object_set(rig->element, "head", "second", nullptr);
         gst_element_set_state(rig->element, GST_STATE_PAUSED);
@@ -111,9 +108,8 @@ GST_START_TEST(of_each_head_is_told_by_its_name) {
   gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
   std::string all;
   while (GstMessage* message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ELEMENT)) {
-    g_autofree gchar* state = nullptr;
-    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
-    if (pose) all += std::string(pose->head) + " " + state + ". ";
+    const HeadState told(message);
+    if (!told.state.empty()) all += told.head + " " + told.state + ". ";
     gst_message_unref(message);
   }
   fail_unless_equals_string(all.c_str(), "first manual. first stopped. second manual. ");
@@ -140,9 +136,8 @@ GST_START_TEST(a_warning_is_not_lost_among_states) {
   std::string last;
   while (GstMessage* message = gst_bus_pop(rig.bus)) {
     warnings += GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING;
-    g_autofree gchar* state = nullptr;
-    g_autoptr(CerberusPose) pose = cerberus_message_parse_pantilt(message, nullptr, &state, nullptr);
-    if (pose) last = state;
+    const HeadState told(message);
+    if (!told.state.empty()) last = told.state;
     gst_message_unref(message);
   }
   fail_unless_equals_int(warnings, 1);

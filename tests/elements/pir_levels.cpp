@@ -104,9 +104,8 @@ GST_START_TEST(who_asks_for_volts_gets_every_sample) {
   // The messages speak of presence in any case.
   std::string told;
   while (GstMessage* message = source.pop(GST_MESSAGE_ELEMENT)) {
-    g_autoptr(GBytes) readings = cerberus_message_parse_pir(message, nullptr);
-    const auto* bytes = static_cast<const guint8*>(g_bytes_get_data(readings, nullptr));
-    told += text(Bytes(bytes, bytes + g_bytes_get_size(readings))) + " ";
+    g_autoptr(CerberusPir) pir = cerberus_message_parse_pir(message);
+    told += text(Bytes(pir->sensors, pir->sensors + pir->n_sensors)) + " ";
     gst_message_unref(message);
   }
   assert_says(told, "22 01 00 ");

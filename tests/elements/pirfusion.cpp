@@ -207,8 +207,8 @@ GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
   Rig rig(true, "lost-after=0");
   rig.add_pir();
   rig.read(0, {0, 0, 0});
-  say(rig, cerberus_event_new_base(-5.1, 100 * kMs));
-  say(rig, cerberus_event_new_base(4.9, 10 * GST_SECOND));
+  say(rig, base_event(-5.1, 100 * kMs));
+  say(rig, base_event(4.9, 10 * GST_SECOND));
   rig.show(frame_at(0, 0));
   rig.read(200 * kMs, {0, 0, 1});
   CerberusFusion fusion = rig.show(frame_at(240 * kMs, 0));
@@ -243,13 +243,13 @@ GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
   std::vector<double> heard;
   while (GstEvent* event = gst_harness_try_pull_upstream_event(pir)) {
     double rate = 0;
-    if (cerberus_event_parse_base(event, &rate, nullptr)) heard.push_back(rate);
+    if (parse_base(event, &rate, nullptr)) heard.push_back(rate);
     gst_event_unref(event);
   }
   // Not each small change, but always what makes a doubt or ends it.
   fail_unless(heard == std::vector<double>({4.9, 5.1, -20, 0}));
   // An application knows better, until it falls silent.
-  say(rig, cerberus_event_new_base(0, 200 * kMs));
+  say(rig, base_event(0, 200 * kMs));
   rig.read(1000 * kMs, {1, 0, 0});
   fail_unless_equals_int(rig.show(turning(1199 * kMs, 40)).doubtful, 0);
   fail_unless_equals_int(rig.show(turning(1200 * kMs, 40)).doubtful, 0b001);
@@ -270,7 +270,7 @@ GST_START_TEST(the_sensors_sources_are_told_again_while_the_robot_turns) {
     rig.show(buffer);
     while (GstEvent* event = gst_harness_try_pull_upstream_event(pir)) {
       double rate = 0;
-      if (cerberus_event_parse_base(event, &rate, nullptr)) {
+      if (parse_base(event, &rate, nullptr)) {
         fail_unless_equals_float(rate, base.yaw_rate);
         told.push_back(time);
       }

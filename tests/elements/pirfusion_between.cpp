@@ -16,10 +16,10 @@ void set_time(Rig& rig, GstClockTime now) {
 std::vector<std::string> events(Rig& rig) {
   std::vector<std::string> result;
   while (GstEvent* event = gst_harness_try_pull_event(rig.video)) {
-    const gchar* head = nullptr;
-    if (g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event, &head))
+    if (g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event))
       result.push_back(std::to_string(fusion->decided / kMs) + ":" + fusion->rule_name + ":" +
-                       cerberus_fusion_action_get_nick(fusion->action) + ":" + head);
+                       cerberus_fusion_action_get_nick(fusion->action) + ":" +
+                       (fusion->head ? fusion->head : ""));
     gst_event_unref(event);
   }
   return result;
@@ -136,10 +136,10 @@ END_TEST
 GST_START_TEST(doubt_lasts_from_when_the_robot_stands) {
   Rig rig;
   rig.add_pir();
-  say(rig, cerberus_event_new_base(30, 0));
+  say(rig, base_event(30, 0));
   rig.read(0, {1, 0, 0});
   fail_unless_equals_int(static_cast<int>(see(rig, 40 * kMs, frame_at(0, 0)).doubtful), 1);
-  say(rig, cerberus_event_new_base(0, 700 * kMs));
+  say(rig, base_event(0, 700 * kMs));
   set_time(rig, 710 * kMs);
   rig.read(710 * kMs, {1, 0, 1});
   fail_unless(events(rig).size() == 1);
@@ -163,7 +163,7 @@ GST_START_TEST(what_another_one_upstream_decided_goes_no_further) {
   other.action = CERBERUS_FUSION_TURN_LEFT;
   other.decided = 50 * kMs;
   for (const char* head : {"head", "", "tail"})
-    fail_unless(gst_harness_push_event(rig.video, cerberus_event_new_fusion(head, &other)));
+    fail_unless(gst_harness_push_event(rig.video, fusion_event(head, other)));
   fail_unless(gst_harness_try_pull_event(rig.video) == nullptr);
   fail_unless(gst_harness_push_event(
       rig.video, gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM_OOB, gst_structure_new_empty("else"))));
@@ -186,7 +186,7 @@ GST_START_TEST(two_decisions_never_have_one_time_and_no_frame_knows_less) {
   GstClockTime decided = 0;
   int count = 0;
   while (GstEvent* event = gst_harness_try_pull_event(rig.video)) {
-    if (g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event, nullptr)) {
+    if (g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event)) {
       fail_unless(fusion->decided > decided);
       decided = fusion->decided;
       ++count;
@@ -334,7 +334,7 @@ GST_START_TEST(changes_are_told_once_and_in_their_order) {
   Bytes before{0, 0};
   std::array<int, 2> changes{};
   while (GstMessage* message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ELEMENT)) {
-    g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message, nullptr);
+    g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message);
     gst_message_unref(message);
     const Bytes now = sensors(*fusion);
     fail_if(now == before, "told twice");

@@ -96,9 +96,8 @@ GST_START_TEST(a_recording_is_sought_in_and_a_live_source_is_not) {
   fail_unless_equals_uint64(segment->time, 2 * GST_SECOND);
   for (const GstClockTime running : {0, 500, 520}) {  // ms
     g_autoptr(GstMessage) message = source.pop(GST_MESSAGE_ELEMENT);
-    GstClockTime time = 0;
-    g_autoptr(GBytes) readings = cerberus_message_parse_pir(message, &time);
-    fail_unless_equals_uint64(time, running * GST_MSECOND);
+    fail_unless(cerberus_message_is_pir(message));
+    fail_unless_equals_uint64(running_time_of(message), running * GST_MSECOND);
   }
   Source live("is-live=true " + script);
   live.play();
@@ -181,15 +180,11 @@ GST_START_TEST(every_change_is_a_message_and_a_heartbeat_is_none) {
   for (const auto& one : expected) {
     GstMessage* message = source.pop(GST_MESSAGE_ELEMENT);
     fail_unless(message != nullptr);
-    GstClockTime time = 0;
-    GBytes* readings = cerberus_message_parse_pir(message, &time);
+    g_autoptr(CerberusPir) readings = cerberus_message_parse_pir(message);
     fail_unless(readings != nullptr);
-    fail_unless_equals_uint64(time, one.time * GST_MSECOND);
-    fail_unless(digits(g_bytes_get_data(readings, nullptr), g_bytes_get_size(readings)) == one.readings);
-    guint doubtful = 7;
-    fail_unless(gst_structure_get_uint(gst_message_get_structure(message), "doubtful", &doubtful));
-    fail_unless_equals_int(doubtful, 0);
-    g_bytes_unref(readings);
+    fail_unless_equals_uint64(running_time_of(message), one.time * GST_MSECOND);
+    fail_unless(digits(readings->sensors, readings->n_sensors) == one.readings);
+    fail_unless_equals_int(readings->doubtful, 0);
     gst_message_unref(message);
   }
   fail_unless(source.pop(GST_MESSAGE_ELEMENT) == nullptr);
@@ -411,9 +406,9 @@ GST_START_TEST(while_the_base_turns_a_detection_is_doubtful) {
   Source source("is-live=true heartbeat=3600000000000 script=\"0,0,0,0; 1,0,1,0; 3600,0,1,0\"");
   source.play();
   fail_unless(source.pull().readings == "000");
-  fail_unless(gst_harness_push_upstream_event(source.harness(), cerberus_event_new_base(-20, 0)));
+  fail_unless(gst_harness_push_upstream_event(source.harness(), base_event(-20, 0)));
   gst_harness_set_time(source.harness(), GST_SECOND);
-  gst_harness_push_upstream_event(source.harness(), cerberus_event_new_base(-20, GST_SECOND));  // wakes it
+  gst_harness_push_upstream_event(source.harness(), base_event(-20, GST_SECOND));  // wakes it
   fail_unless(source.pull().readings == "010");
   guint doubtful = 0;
   for (int i = 0; i < 2; ++i) {

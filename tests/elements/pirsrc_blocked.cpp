@@ -60,8 +60,7 @@ GST_START_TEST(a_blocked_driver_delays_no_reading_event_or_query) {
         readings = readings_of(buffer);
       } while (nothing_is_known(readings));
       fail_unless(readings == std::vector({0, 0, 1}));  // what it said before it blocked
-      fail_unless(
-          gst_harness_push_upstream_event(blocked.source.harness(), cerberus_event_new_base(9, GST_SECOND)));
+      fail_unless(gst_harness_push_upstream_event(blocked.source.harness(), base_event(9, GST_SECOND)));
       g_autoptr(GstCaps) caps = gst_pad_peer_query_caps(blocked.source.harness()->sinkpad, nullptr);
       fail_unless(gst_caps_is_fixed(caps));
     });

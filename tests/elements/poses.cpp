@@ -73,7 +73,7 @@ START_TEST(a_pose_event_says_what_it_was_told) {
   g_autoptr(CerberusPose) back = cerberus_event_parse_pose(event);
   fail_unless(back);
   assert_same(*back, pose);
-  fail_if(cerberus_event_parse_base(event, nullptr, nullptr));
+  fail_if(parse_base(event, nullptr, nullptr));
 }
 END_TEST
 
@@ -117,35 +117,39 @@ START_TEST(other_events_are_neither_pose_nor_base) {
   };
   for (GstEvent* event : events) {
     fail_if(cerberus_event_parse_pose(event));
-    fail_if(cerberus_event_parse_base(event, nullptr, nullptr));
+    fail_if(parse_base(event, nullptr, nullptr));
     gst_event_unref(event);
   }
 }
 END_TEST
 
 START_TEST(a_base_event_says_how_fast_the_body_turns) {
-  g_autoptr(GstEvent) event = cerberus_event_new_base(-12.5, 3 * GST_SECOND);
+  g_autoptr(GstEvent) event = base_event(-12.5, 3 * GST_SECOND);
   double rate = 0;
   GstClockTime time = 0;
-  fail_unless(cerberus_event_parse_base(event, &rate, &time));
+  fail_unless(parse_base(event, &rate, &time));
   fail_unless(rate == -12.5);
   fail_unless_equals_uint64(time, 3 * GST_SECOND);
-  fail_unless(cerberus_event_parse_base(event, nullptr, nullptr));
+  fail_unless(parse_base(event, nullptr, nullptr));
   fail_if(cerberus_event_parse_pose(event));
   for (const double wrong : {kNan, HUGE_VAL, 1e300}) {
-    g_autoptr(GstEvent) bad = cerberus_event_new_base(wrong, 0);
-    fail_if(cerberus_event_parse_base(bad, &rate, &time));
+    g_autoptr(GstEvent) bad = base_event(wrong, 0);
+    fail_if(parse_base(bad, &rate, &time));
   }
-  g_autoptr(GstEvent) never = cerberus_event_new_base(1, GST_CLOCK_TIME_NONE);
-  fail_if(cerberus_event_parse_base(never, &rate, &time));
+  g_autoptr(GstEvent) never = base_event(1, GST_CLOCK_TIME_NONE);
+  fail_if(parse_base(never, &rate, &time));
   fail_unless(rate == -12.5 && time == 3 * GST_SECOND);  // nothing was written
 }
 END_TEST
 
 START_TEST(a_pantilt_message_tells_what_the_head_does) {
   const CerberusPose pose = turning();
-  g_autoptr(GstMessage) message =
-      cerberus_message_new_pantilt(nullptr, GST_SECOND, "fault", "it does not answer", &pose);
+  g_autoptr(CerberusPantilt) pantilt = cerberus_pantilt_new();
+  pantilt->state = CERBERUS_PANTILT_FAULT;
+  pantilt->reason = g_strdup("it does not answer");
+  pantilt->pose = pose;
+  const CerberusStamp stamp = stamp_at(GST_SECOND);
+  g_autoptr(GstMessage) message = cerberus_message_new_pantilt(nullptr, &stamp, pantilt);
   const GstStructure* s = gst_message_get_structure(message);
   fail_unless(gst_structure_has_name(s, CERBERUS_MESSAGE_PANTILT));
   fail_unless_equals_string(gst_structure_get_string(s, "state"), "fault");
@@ -154,25 +158,22 @@ START_TEST(a_pantilt_message_tells_what_the_head_does) {
   double pan = 0;
   fail_unless(gst_structure_get_double(s, "pan", &pan) && pan == -30.5);
 
-  GstClockTime time = 0;
-  g_autofree gchar* state = nullptr;
-  g_autofree gchar* reason = nullptr;
-  g_autoptr(CerberusPose) back = cerberus_message_parse_pantilt(message, &time, &state, &reason);
+  g_autoptr(CerberusPantilt) back = cerberus_message_parse_pantilt(message);
   fail_unless(back);
-  fail_unless_equals_string(state, "fault");
-  fail_unless_equals_string(reason, "it does not answer");
-  fail_unless_equals_string(back->head, "left eye");
-  fail_unless(back->pan == -30.5 && back->tilt == pose.tilt);
-  fail_unless(time == GST_SECOND && back->valid_from == GST_SECOND);
-  g_autoptr(CerberusPose) alone = cerberus_message_parse_pantilt(message, nullptr, nullptr, nullptr);
-  fail_unless(alone);
+  fail_unless_equals_int(back->state, CERBERUS_PANTILT_FAULT);
+  fail_unless_equals_string(back->reason, "it does not answer");
+  fail_unless_equals_string(back->pose.head, "left eye");
+  fail_unless(back->pose.pan == -30.5 && back->pose.tilt == pose.tilt);
+  fail_unless_equals_uint64(back->pose.valid_from, GST_SECOND);
+  g_autoptr(CerberusPantilt) copy = cerberus_pantilt_copy(back);
+  fail_unless(copy->reason != back->reason && g_str_equal(copy->reason, back->reason));
 
   for (const char* field : {"state", "reason", "head", "pan", "tilt", "running-time"}) {
-    g_autoptr(GstMessage) lacking = cerberus_message_new_pantilt(nullptr, 0, "stopped", nullptr, &pose);
-    g_autoptr(CerberusPose) whole = cerberus_message_parse_pantilt(lacking, nullptr, nullptr, nullptr);
+    g_autoptr(GstMessage) lacking = cerberus_message_new_pantilt(nullptr, nullptr, pantilt);
+    g_autoptr(CerberusPantilt) whole = cerberus_message_parse_pantilt(lacking);
     fail_unless(whole);
     gst_structure_remove_field(gst_message_writable_structure(lacking), field);
-    fail_if(cerberus_message_parse_pantilt(lacking, nullptr, nullptr, nullptr), "without %s", field);
+    fail_if(cerberus_message_parse_pantilt(lacking), "without %s", field);
   }
 }
 END_TEST
@@ -187,7 +188,7 @@ START_TEST(nothing_crashes_on_null) {
   EXPECT_CRITICAL(cerberus_pose_evaluate(nullptr, 0, nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_event_new_pose(nullptr));
   EXPECT_CRITICAL(cerberus_event_parse_pose(nullptr));
-  EXPECT_CRITICAL(cerberus_event_parse_base(nullptr, nullptr, nullptr));
+  EXPECT_CRITICAL(parse_base(nullptr, nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_buffer_set_pose(nullptr, pose));
   g_autoptr(GstBuffer) frame = gst_buffer_new();
   pose->head = nullptr;  // whoever reads it compares it with a name
@@ -196,12 +197,15 @@ START_TEST(nothing_crashes_on_null) {
   g_autoptr(GstEvent) event = cerberus_event_new_pose(pose);
   g_autoptr(CerberusPose) told = cerberus_event_parse_pose(event);
   fail_unless_equals_string(told->head, "head");
-  g_autoptr(GstMessage) message = cerberus_message_new_pantilt(nullptr, 0, "stopped", nullptr, pose);
-  g_autoptr(CerberusPose) posted = cerberus_message_parse_pantilt(message, nullptr, nullptr, nullptr);
-  fail_unless_equals_string(posted->head, "head");
+  g_autoptr(CerberusPantilt) nameless = cerberus_pantilt_new();
+  nameless->pose.head = nullptr;
+  g_autoptr(GstMessage) message = cerberus_message_new_pantilt(nullptr, nullptr, nameless);
+  g_autoptr(CerberusPantilt) posted = cerberus_message_parse_pantilt(message);
+  fail_unless_equals_string(posted->pose.head, "head");
+  fail_unless_equals_string(posted->reason, "");
   EXPECT_CRITICAL(cerberus_buffer_get_pose(nullptr));
-  EXPECT_CRITICAL(cerberus_message_new_pantilt(nullptr, 0, nullptr, nullptr, pose));
-  EXPECT_CRITICAL(cerberus_message_parse_pantilt(nullptr, nullptr, nullptr, nullptr));
+  EXPECT_CRITICAL(cerberus_message_new_pantilt(nullptr, nullptr, nullptr));
+  EXPECT_CRITICAL(cerberus_message_parse_pantilt(nullptr));
 }
 END_TEST
 

@@ -16,11 +16,16 @@
 
 static int boxed_types_copy_and_compare(void) {
   const GType types[] = {CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_THRESHOLD, CERBERUS_TYPE_REGION,
-                         CERBERUS_TYPE_POSE, CERBERUS_TYPE_FUSION};
+                         CERBERUS_TYPE_POSE,          CERBERUS_TYPE_FUSION,    CERBERUS_TYPE_BASE,
+                         CERBERUS_TYPE_PIR,           CERBERUS_TYPE_PANTILT,   CERBERUS_TYPE_MOTION,
+                         CERBERUS_TYPE_TRACK,         CERBERUS_TYPE_STAMP};
   guint i;
 
   for (i = 0; i < G_N_ELEMENTS(types); ++i) CHECK(G_TYPE_IS_BOXED(types[i]));
   CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_REGION_STATE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_PLANE_KIND));
+  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_UTC_SOURCE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_PANTILT_STATE));
+  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_MOTION_STATE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_TRACK_STATE));
+  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_BASE_SOURCE));
   CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_POSE_SOURCE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_FUSION_ACTION));
   {
     g_autoptr(CerberusRegion) region = cerberus_region_new();
@@ -85,6 +90,32 @@ static int a_head_and_its_sensors_are_told_of(void) {
   return 0;
 }
 
+static int a_message_carries_a_track_and_its_stamp(void) {
+  g_autoptr(CerberusTrack) track = cerberus_track_new();
+  g_autoptr(CerberusTrack) back = NULL;
+  g_autoptr(CerberusStamp) stamp = cerberus_stamp_new();
+  g_autoptr(CerberusStamp) stamp_back = NULL;
+  g_autoptr(GstMessage) message = NULL;
+
+  CHECK(stamp->running_time == GST_CLOCK_TIME_NONE && stamp->utc == GST_CLOCK_TIME_NONE);
+  stamp->running_time = 5;
+  stamp->utc = G_GUINT64_CONSTANT(1700000000123456789);
+  stamp->utc_source = CERBERUS_UTC_CLOCK;
+  cerberus_stamp_set_camera_name(stamp, "yard");
+  track->state = CERBERUS_TRACK_LEFT;
+  track->region.id = 7;
+  track->last = 4;
+  message = cerberus_message_new_track(NULL, stamp, track);
+  CHECK(cerberus_message_is_track(message) && !cerberus_message_is_motion(message));
+  back = cerberus_message_parse_track(message);
+  CHECK(back != NULL && back->state == CERBERUS_TRACK_LEFT && back->region.id == 7);
+  CHECK(back->first == GST_CLOCK_TIME_NONE && back->last == 4);
+  stamp_back = cerberus_message_parse_stamp(message);
+  CHECK(stamp_back != NULL && stamp_back->running_time == 5 && stamp_back->utc == stamp->utc);
+  CHECK(stamp_back->utc_source == CERBERUS_UTC_CLOCK && strcmp(stamp_back->camera_name, "yard") == 0);
+  return 0;
+}
+
 static int versions_agree(void) {
   guint major, minor, micro;
 
@@ -101,5 +132,5 @@ static int versions_agree(void) {
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
   return boxed_types_copy_and_compare() + a_buffer_carries_it_all() + a_head_and_its_sensors_are_told_of() +
-         versions_agree();
+         a_message_carries_a_track_and_its_stamp() + versions_agree();
 }

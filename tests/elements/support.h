@@ -2,13 +2,65 @@
 // What element tests share.
 #pragma once
 
+#include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 #include <gst/check/gstharness.h>
+
+#include <string>
 
 // Every format that our elements take.
 inline constexpr const char* kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
                                            "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
                                            "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
+
+// The base turns at `yaw_rate` degrees a second from `running_time` on.
+inline GstEvent* base_event(double yaw_rate, GstClockTime running_time) {
+  CerberusBase base;
+  cerberus_base_init(&base);
+  base.yaw_rate = yaw_rate;
+  base.valid_from = running_time;
+  return cerberus_event_new_base(&base);
+}
+
+// Nothing is written where `event` is another one.
+inline bool parse_base(GstEvent* event, double* yaw_rate, GstClockTime* running_time) {
+  g_autoptr(CerberusBase) base = cerberus_event_parse_base(event);
+  if (base && yaw_rate) *yaw_rate = base->yaw_rate;
+  if (base && running_time) *running_time = base->valid_from;
+  return base != nullptr;
+}
+
+inline CerberusStamp stamp_at(GstClockTime running_time) {
+  CerberusStamp stamp;
+  cerberus_stamp_init(&stamp);
+  stamp.running_time = running_time;
+  return stamp;
+}
+
+// Of a message of ours.
+inline GstClockTime running_time_of(GstMessage* message) {
+  g_autoptr(CerberusStamp) stamp = cerberus_message_parse_stamp(message);
+  fail_unless(stamp);
+  return stamp->running_time;
+}
+
+inline GstEvent* fusion_event(const char* head, const CerberusFusion& fusion) {
+  CerberusFusion sent = fusion;
+  cerberus_fusion_set_head(&sent, head);
+  return cerberus_event_new_fusion(&sent);
+}
+
+// The state's nick and the head of a message about a head; empty where `message` is another one.
+struct HeadState {
+  explicit HeadState(GstMessage* message) {
+    g_autoptr(CerberusPantilt) pantilt = cerberus_message_parse_pantilt(message);
+    if (!pantilt) return;
+    state = cerberus_pantilt_state_get_nick(pantilt->state);
+    head = pantilt->pose.head;
+    reason = pantilt->reason;
+  }
+  std::string state, head, reason;
+};
 
 // A new segment, of time from 0 on.
 inline void push_segment(GstHarness* h) {

@@ -160,7 +160,7 @@ GST_START_TEST(its_base_stands_unless_somebody_upstream_knows) {
   Ptz ptz;
   GstBuffer* out = ptz.through(0);
   const CerberusBase* base = cerberus_buffer_peek_base(out);
-  fail_unless(base && base->told && base->yaw_rate == 0);
+  fail_unless(base && base->source == CERBERUS_BASE_REPORTED && base->yaw_rate == 0);
   gst_buffer_unref(out);
   GstBuffer* in = noise(ptz.in, 1);
   CerberusBase turning;
@@ -171,7 +171,7 @@ GST_START_TEST(its_base_stands_unless_somebody_upstream_knows) {
   gst_harness_push(ptz.h.get(), in);
   out = gst_harness_pull(ptz.h.get());
   base = cerberus_buffer_peek_base(out);
-  fail_unless(base && !base->told && base->yaw_rate == -8);
+  fail_unless(base && base->source != CERBERUS_BASE_REPORTED && base->yaw_rate == -8);
   gst_buffer_unref(out);
 }
 GST_END_TEST

@@ -66,13 +66,40 @@ class OnAPlainBuffer(unittest.TestCase):
 
     def test_messages_read_back(self):
         moving = [region(id=7, tracked=True, x=1, y=2, width=3, height=4), region(id=8)]
-        message = Cerberus.message_new_motion(None, True, 5 * Gst.SECOND, moving)
+        motion, stamp = Cerberus.Motion.new(), Cerberus.Stamp.new()
+        for one in moving:
+            motion.add_region(one)
+        stamp.running_time = 5 * Gst.SECOND
+        stamp.set_camera_name("yard")
+        message = Cerberus.message_new_motion(None, stamp, motion)
         self.assertEqual(message.get_structure().get_name(), Cerberus.MESSAGE_MOTION)
-        good, started, running_time, found = Cerberus.message_parse_motion(message)
-        self.assertTrue(good and started)
-        self.assertEqual(running_time, 5 * Gst.SECOND)
-        self.assertEqual([r.id for r in found], [7, 8])
+        found = Cerberus.message_parse_motion(message)
+        self.assertEqual(found.state, Cerberus.MotionState.STARTED)
+        self.assertEqual([r.id for r in found.get_regions()], [7, 8])
+        back = Cerberus.message_parse_stamp(message)
+        self.assertEqual((back.running_time, back.utc, back.camera_name), (5 * Gst.SECOND, Gst.CLOCK_TIME_NONE, "yard"))
+        self.assertIsNone(Cerberus.message_parse_motion(Gst.Message.new_eos(None)))
         self.assertFalse(Cerberus.message_is_motion(Gst.Message.new_eos(None)))
+
+    def test_a_track_message_reads_back(self):
+        message = Gst.Message.new_element(None, Gst.Structure.from_string(
+            "cerberus-track, running-time=(guint64)2000000000, state=left, first=(guint64)1000000000, "
+            "last=(guint64)2000000000, object=(GstStructure)[cerberus-object, id=(guint)7, x=1.5]")[0])
+        self.assertTrue(Cerberus.message_is_track(message))
+        self.assertEqual(message.get_structure().get_string("state"), "left")
+        found = Cerberus.message_parse_track(message)
+        self.assertEqual(found.state, Cerberus.TrackState.LEFT)
+        self.assertEqual((found.region.id, found.region.x), (7, 1.5))
+        self.assertEqual((found.first, found.last), (Gst.SECOND, 2 * Gst.SECOND))
+        self.assertIsNone(Cerberus.message_parse_motion(message))
+
+    def test_a_stamp_rides_on_a_buffer(self):
+        stamp = Cerberus.Stamp.new()
+        stamp.utc, stamp.utc_source = 1234567890123456789, Cerberus.UtcSource.REFERENCE_TIMESTAMP
+        self.assertTrue(Cerberus.buffer_set_stamp(self.buffer, stamp))
+        found = Cerberus.buffer_get_stamp(self.buffer)
+        self.assertEqual((found.utc, found.utc_source, found.camera_name),
+                         (1234567890123456789, Cerberus.UtcSource.REFERENCE_TIMESTAMP, None))
 
     def test_structures_read_back(self):
         structure = region(id=3, x=1.5).to_structure()
@@ -171,7 +198,7 @@ class WithMotionDetect(unittest.TestCase):
                          Cerberus.buffer_get_regions(buffer)))
         while message := pipeline.get_bus().pop_filtered(Gst.MessageType.ELEMENT):
             if Cerberus.message_is_motion(message):
-                messages.append(Cerberus.message_parse_motion(message))
+                messages.append(message)
         pipeline.set_state(Gst.State.NULL)
         self.assertEqual(len(seen), len(balls))
 
@@ -208,10 +235,10 @@ class WithMotionDetect(unittest.TestCase):
         # And the application was told when it began, with the objects of that very frame.
         first = next(k for k, (_, _, regions) in enumerate(seen) if regions)
         self.assertTrue(messages)
-        good, started, running_time, told = messages[0]
-        self.assertTrue(good and started)
-        self.assertEqual(round(running_time * 30 / Gst.SECOND), first)
-        self.assertEqual([(r.id, r.x, r.y) for r in told], [(r.id, r.x, r.y) for r in seen[first][2]])
+        told = Cerberus.message_parse_motion(messages[0])
+        self.assertEqual(told.state, Cerberus.MotionState.STARTED)
+        self.assertEqual(round(Cerberus.message_parse_stamp(messages[0]).running_time * 30 / Gst.SECOND), first)
+        self.assertEqual([(r.id, r.x, r.y) for r in told.get_regions()], [(r.id, r.x, r.y) for r in seen[first][2]])
 
 
 if __name__ == "__main__":

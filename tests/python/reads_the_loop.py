@@ -18,8 +18,15 @@ SECOND = Gst.SECOND
 
 
 def readings(sensors):
-    """The PIR readings of a GLib.Bytes as a list: 0 nothing, 1 somebody, 2 invalid."""
+    """The PIR readings of a GLib.Bytes as a list: 0 nothing, 1 motion, 2 invalid."""
     return list(sensors.get_data())
+
+
+def stamp(seconds):
+    """The stamp of something that happened at that running time."""
+    result = Cerberus.Stamp.new()
+    result.running_time = seconds * SECOND
+    return result
 
 
 class OnAPlainBuffer(unittest.TestCase):
@@ -52,11 +59,12 @@ class OnAPlainBuffer(unittest.TestCase):
 
     def test_a_base_reads_back(self):
         base = Cerberus.Base.new()
-        base.yaw_rate, base.told = -12.5, True
+        base.yaw_rate, base.source, base.valid_from = -12.5, Cerberus.BaseSource.REPORTED, 7
         self.assertTrue(Cerberus.buffer_set_base(self.buffer, base))
         found = Cerberus.buffer_get_base(self.buffer)
-        self.assertEqual((found.yaw_rate, found.told), (-12.5, True))
-        self.assertEqual(Cerberus.event_parse_base(Cerberus.event_new_base(-12.5, 7)), (True, -12.5, 7))
+        self.assertEqual((found.yaw_rate, found.source), (-12.5, Cerberus.BaseSource.REPORTED))
+        back = Cerberus.event_parse_base(Cerberus.event_new_base(found))
+        self.assertEqual((back.yaw_rate, back.valid_from), (-12.5, 7))
 
     def test_a_decision_reads_back(self):
         fusion = Cerberus.Fusion.new()
@@ -71,27 +79,27 @@ class OnAPlainBuffer(unittest.TestCase):
         self.assertEqual((found.rule, found.action, found.target), (3, Cerberus.FusionAction.SEARCH, 9))
         self.assertEqual((found.pan, found.sector_from, found.sector_to), (-5.5, 60, 180))
         self.assertEqual((found.limited, found.camera_found, found.doubtful), (True, True, 4))
-        message = Cerberus.message_new_fusion(None, 8 * SECOND, found)
+        message = Cerberus.message_new_fusion(None, stamp(8), found)
         self.assertEqual(message.get_structure().get_name(), Cerberus.MESSAGE_FUSION)
-        told, running_time = Cerberus.message_parse_fusion(message)
-        self.assertEqual((told.rule, told.action, told.target, running_time),
+        told = Cerberus.message_parse_fusion(message)
+        self.assertEqual((told.rule, told.action, told.target, Cerberus.message_parse_stamp(message).running_time),
                          (3, Cerberus.FusionAction.SEARCH, 9, 8 * SECOND))
 
     def test_what_the_head_does_reads_back(self):
-        pose = Cerberus.Pose.new()
-        pose.set_head("attic")
-        pose.pan, pose.tilt = 20, -3
-        message = Cerberus.message_new_pantilt(None, 6 * SECOND, "limited", "the stop is near", pose)
-        self.assertEqual(message.get_structure().get_name(), Cerberus.MESSAGE_PANTILT)
-        where, running_time, state, reason = Cerberus.message_parse_pantilt(message)
-        self.assertEqual((where.head, where.pan, where.tilt), ("attic", 20, -3))
-        self.assertEqual((running_time, state, reason), (6 * SECOND, "limited", "the stop is near"))
+        message = Gst.Message.new_element(None, Gst.Structure.from_string(
+            'cerberus-pantilt, running-time=(guint64)6000000000, state=limited, reason="the stop is near", '
+            'head=attic, pan=20.0, tilt=-3.0')[0])
+        self.assertTrue(Cerberus.message_is_pantilt(message))
+        found = Cerberus.message_parse_pantilt(message)
+        self.assertEqual((found.pose.head, found.pose.pan, found.pose.tilt), ("attic", 20, -3))
+        self.assertEqual((found.state, found.reason), (Cerberus.PantiltState.LIMITED, "the stop is near"))
+        self.assertEqual(found.pose.valid_from, 6 * SECOND)
 
     def test_another_message_is_none_of_ours(self):
         stranger = Gst.Message.new_eos(None)
-        self.assertIsNone(Cerberus.message_parse_pir(stranger)[0])
-        self.assertIsNone(Cerberus.message_parse_fusion(stranger)[0])
-        self.assertIsNone(Cerberus.message_parse_pantilt(stranger)[0])
+        self.assertIsNone(Cerberus.message_parse_pir(stranger))
+        self.assertIsNone(Cerberus.message_parse_fusion(stranger))
+        self.assertIsNone(Cerberus.message_parse_pantilt(stranger))
 
 
 class WithATurningRobot(unittest.TestCase):
@@ -107,12 +115,14 @@ class WithATurningRobot(unittest.TestCase):
         told, written = [], []
         for number in range(4):
             if number == 2:
-                sink.send_event(Cerberus.event_new_base(20, 2 * SECOND // 30))
+                turning = Cerberus.Base.new()
+                turning.yaw_rate, turning.valid_from = 20, 2 * SECOND // 30
+                sink.send_event(Cerberus.event_new_base(turning))
             buffer = Gst.Buffer.new_wrapped(bytes(320 * 240))
             buffer.pts = number * SECOND // 30
             source.push_buffer(buffer)
             base = Cerberus.buffer_get_base(sink.try_pull_sample(TIMEOUT).get_buffer())
-            told.append(base.yaw_rate if base and base.told else None)
+            told.append(base.yaw_rate if base and base.source == Cerberus.BaseSource.REPORTED else None)
             line = lines.try_pull_sample(TIMEOUT).get_buffer()
             written.append(json.loads(line.extract_dup(0, line.get_size())).get("base", {}).get("yaw-rate"))
         pipeline.set_state(Gst.State.NULL)
@@ -149,7 +159,11 @@ class WithTheWholeLoop(unittest.TestCase):
                 cls.seen.append((buffer.pts / SECOND, Cerberus.buffer_get_pose(buffer),
                                  Cerberus.buffer_get_fusion(buffer)))
             cls.lines = [json.loads(line) for line in file.read_text("utf-8").splitlines()]
-        cls.pir, cls.fusion, cls.pantilt = ([found for found in map(parse, messages) if found[0]] for parse in (
+        def found(parse):
+            """What `parse` reads of the messages, each with the message's running time."""
+            return [(one, Cerberus.message_parse_stamp(message).running_time) for message in messages
+                    if (one := parse(message))]
+        cls.pir, cls.fusion, cls.pantilt = map(found, (
             Cerberus.message_parse_pir, Cerberus.message_parse_fusion, Cerberus.message_parse_pantilt))
 
     def test_each_frame_knows_what_the_sensors_said_then(self):
@@ -181,19 +195,20 @@ class WithTheWholeLoop(unittest.TestCase):
         self.assertAlmostEqual(pans[119], 0, places=3)
 
     def test_every_change_is_a_message(self):
-        self.assertEqual([(time / SECOND, readings(sensors)) for sensors, time in self.pir],
+        self.assertEqual([(time / SECOND, readings(pir.get_sensors())) for pir, time in self.pir],
                          [(0, [0, 0, 0]), (1, [0, 0, 1]), (2 + DEBOUNCE, [0, 0, 0])])
         changes = [(time, fusion) for k, (time, _, fusion) in enumerate(self.seen)
                    if k == 0 or fusion.action != self.seen[k - 1][2].action]
         told = {time / SECOND: fusion.action for fusion, time in self.fusion}
         for time, fusion in changes:
             self.assertEqual(told[time], fusion.action)
-        states = [state for _, _, state, _ in self.pantilt]
-        self.assertIn("turning", states)
-        self.assertIn("zeroing", states)
-        for pose, time, state, _ in self.pantilt:
-            self.assertEqual(pose.head, "head")
-            if state == "turning":
+        S = Cerberus.PantiltState
+        states = [pantilt.state for pantilt, _ in self.pantilt]
+        self.assertIn(S.TURNING, states)
+        self.assertIn(S.ZEROING, states)
+        for pantilt, time in self.pantilt:
+            self.assertEqual(pantilt.pose.head, "head")
+            if pantilt.state == S.TURNING:
                 self.assertEqual(round(30 * time / SECOND), 30)
 
     def test_the_lines_say_what_the_frames_carry(self):
