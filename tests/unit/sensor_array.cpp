@@ -7,7 +7,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "support/pipe.h"
 #include "support/says.h"
@@ -159,6 +162,37 @@ START_TEST(a_driver_that_blocks_keeps_nobody_and_is_heard_when_it_is_through) {
 }
 END_TEST
 
+// Notes the thread that opens it.
+class NotingSensor final : public Sensor {
+ public:
+  NotingSensor(bool at_once, std::thread::id& opener) : at_once_(at_once), opener_(opener) {}
+  SensorError open(const SensorSetup&) override {
+    opener_ = std::this_thread::get_id();
+    return {};
+  }
+  bool opens_at_once(const SensorSetup&) const override { return at_once_; }
+  void close() noexcept override {}
+  void stop() noexcept override {}
+  SensorError read(Time, std::vector<SensorEdge>&) override { return {}; }
+  std::string place(int) const override { return "nowhere"; }
+  bool recorded() const override { return true; }
+
+ private:
+  bool at_once_;
+  std::thread::id& opener_;
+};
+
+START_TEST(a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread) {
+  for (const bool at_once : {true, false}) {
+    std::thread::id opener;
+    SensorArray array;
+    ck_assert(!array.open(std::make_unique<NotingSensor>(at_once, opener), {}, {}, 10s));
+    ck_assert(array.opened());
+    ck_assert((opener == std::this_thread::get_id()) == at_once);
+  }
+}
+END_TEST
+
 START_TEST(a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well) {
   SensorArray array;
   must_be(play(array, "0,0; 1,1; 700,0; 800,0", {}, 1000s, 1),
@@ -249,6 +283,7 @@ int main() {
        what_a_recording_calls_invalid_is_so_until_it_says_something_else,
        a_recording_goes_on_wherever_it_is_asked_to,
        a_driver_that_blocks_keeps_nobody_and_is_heard_when_it_is_through,
+       a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread,
        a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well,
        a_driver_that_fails_ends_it_with_its_own_words,
        what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for,

@@ -171,11 +171,15 @@ START_TEST(places_have_names_and_leds_may_be_absent) {
 }
 END_TEST
 
-START_TEST(only_what_is_in_memory_opens_at_once) {
+START_TEST(only_what_is_in_memory_and_never_waits_opens_at_once) {
   SensorSetup setup;
   setup.script = "0,0,0,0; 1,1,0,0";
   for (const char* driver : {"gpio", "iio", "replay", "scripted"})
     ck_assert(make_sensor(driver)->opens_at_once(setup) == (driver == std::string("scripted")));
+  for (const char* waits : {"open wait 7; 0,0,0,0", "0,0,0,0; wait 7 8"}) {
+    setup.script = waits;
+    ck_assert(!make_sensor("scripted")->opens_at_once(setup));
+  }
 }
 END_TEST
 
@@ -205,7 +209,7 @@ int main() {
       {the_first_edges_tell_where_each_line_stands, a_driver_has_something_to_wait_for,
        closing_is_safe_at_any_time_and_opening_begins_anew,
        an_error_names_the_thing_and_leaves_the_driver_closed, places_have_names_and_leds_may_be_absent,
-       only_what_is_in_memory_opens_at_once, every_driver_is_known_by_name});
+       only_what_is_in_memory_and_never_waits_opens_at_once, every_driver_is_known_by_name});
   unlink(recording.c_str());
   return status;
 }
