@@ -45,79 +45,79 @@ motion::AxisCommand Law::approach(double target, double position, bool& moving) 
   return moving ? go(target, options_.gain * error) : motion::AxisCommand{};
 }
 
-Order Law::track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
-                 const motion::Pose& ahead) {
+Command Law::track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
+                   const motion::Pose& ahead) {
   const vision::Direction seen = lens.direction(target, capture.pan.position, capture.tilt.position);
   if (!std::isfinite(seen.bearing) || !std::isfinite(seen.elevation)) return {};
-  Order order;
-  order.doing = Doing::tracking;
+  Command command;
+  command.state = State::tracking;
   const motion::AxisLimits& pan = options_.limits.pan;
   const double straight = capture.pan.position + sensing::wrap(seen.bearing - capture.pan.position);
-  double goal = straight;
+  double bearing = straight;
   if (!pan.holds(straight)) {
     const double stop = pan.clamp(straight);
     const motion::Reach round = reach(seen.bearing, stop, pan);
     const bool worth = !round.limited && std::abs(straight - stop) > kGoRound;
-    goal = worth ? round.position : stop;
-    order.limited = !worth;
+    bearing = worth ? round.position : stop;
+    command.limited = !worth;
   }
   const double height = options_.limits.tilt.clamp(seen.elevation);
-  order.limited = order.limited || std::abs(height - seen.elevation) > options_.dead_band_start;
-  order.pan = approach(goal, ahead.pan.position, pan_moving_);
-  order.tilt = approach(height, ahead.tilt.position, tilt_moving_);
-  return order;
+  command.limited = command.limited || std::abs(height - seen.elevation) > options_.dead_band_start;
+  command.pan = approach(bearing, ahead.pan.position, pan_moving_);
+  command.tilt = approach(height, ahead.tilt.position, tilt_moving_);
+  return command;
 }
 
-Order Law::turn(double direction, const motion::Pose& ahead) const {
-  Order order;
-  order.doing = Doing::turning;
-  order.pan = {motion::AxisCommand::Kind::velocity, direction * options_.turn_speed, 0};
+Command Law::turn(double direction, const motion::Pose& ahead) const {
+  Command command;
+  command.state = State::turning;
+  command.pan = {motion::AxisCommand::Kind::velocity, direction * options_.turn_speed, 0};
   const motion::AxisLimits& pan = options_.limits.pan;
-  order.limited =
+  command.limited =
       direction > 0 ? ahead.pan.position >= pan.to - kThere : ahead.pan.position <= pan.from + kThere;
-  return order;
+  return command;
 }
 
-Order Law::search(const sensing::Interval& sector, const motion::Pose& ahead) {
+Command Law::search(const sensing::Interval& sector, const motion::Pose& ahead) {
   if (!std::isfinite(sector.from) || !std::isfinite(sector.to)) return {};
-  Order order;
-  order.doing = Doing::searching;
+  Command command;
+  command.state = State::searching;
   const motion::AxisLimits& pan = options_.limits.pan;
   const double from = pan.clamp(std::min(sector.from, sector.to));
   const double to = pan.clamp(std::max(sector.from, sector.to));
-  order.limited = from != std::min(sector.from, sector.to) || to != std::max(sector.from, sector.to);
+  command.limited = from != std::min(sector.from, sector.to) || to != std::max(sector.from, sector.to);
   const double position = ahead.pan.position;
   if (last_ != fusion::Action::search)
     sweeping_right_ = to - position < position - from;  // the nearer edge first
   if (position >= to - kThere) sweeping_right_ = false;
   if (position <= from + kThere) sweeping_right_ = true;
-  order.pan = go(sweeping_right_ ? to : from, options_.turn_speed);
-  return order;
+  command.pan = go(sweeping_right_ ? to : from, options_.turn_speed);
+  return command;
 }
 
-Order Law::zero() const {
-  Order order;
-  order.doing = Doing::zeroing;
-  order.pan = order.tilt = go(0, options_.turn_speed);
-  return order;
+Command Law::zero() const {
+  Command command;
+  command.state = State::zeroing;
+  command.pan = command.tilt = go(0, options_.turn_speed);
+  return command;
 }
 
-Order Law::update(const Wish& wish, const vision::Lens& lens, const motion::Pose& capture,
-                  const motion::Pose& ahead) {
+Command Law::update(const Goal& goal, const vision::Lens& lens, const motion::Pose& capture,
+                    const motion::Pose& ahead) {
   using fusion::Action;
-  Order order;
-  if (wish.action == Action::track && wish.target) {
+  Command command;
+  if (goal.action == Action::track && goal.target) {
     if (last_ != Action::track) pan_moving_ = tilt_moving_ = true;  // somebody new is brought into the middle
-    order = track(*wish.target, lens, capture, ahead);
-  } else if (wish.action == Action::turn_left || wish.action == Action::turn_right) {
-    order = turn(wish.action == Action::turn_right ? 1 : -1, ahead);
-  } else if (wish.action == Action::search) {
-    order = search(wish.sector, ahead);
-  } else if (wish.action == Action::zero) {
-    order = zero();
+    command = track(*goal.target, lens, capture, ahead);
+  } else if (goal.action == Action::turn_left || goal.action == Action::turn_right) {
+    command = turn(goal.action == Action::turn_right ? 1 : -1, ahead);
+  } else if (goal.action == Action::search) {
+    command = search(goal.sector, ahead);
+  } else if (goal.action == Action::zero) {
+    command = zero();
   }
-  last_ = order.doing == Doing::holding ? Action::hold : wish.action;
-  return order;
+  last_ = command.state == State::holding ? Action::hold : goal.action;
+  return command;
 }
 
 }  // namespace cerberus::control

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From what is wanted of a head (an action, a point of the picture) to what its axes are told.
+// The control law: from a goal (an action, a point of the picture) to the commands of the two axes.
 //
 // Here the law is proportional:
 //   target  = the pose when the frame was taken, turned by the angle under which the lens saw the point
-//   error   = target - where the head will be when the command reaches it, which is known: it only does what it is told
+//   error   = target - where the head will be when the command reaches it, which is known: it only executes commands
 //   command = go to the target, at no more than gain x |error|
-// so the delay of the loop is not in the loop, and a head that hears nothing more ends at the target. An axis at rest
+// so the delay of the loop is not in the loop, and a head without further commands ends at the target. An axis at rest
 // starts when the error exceeds the dead band's start and rests again when it is below its stop: with one threshold for
 // both, noise on the boxes makes a head hunt (the test in tests/unit/law.cpp counts the reversals).
 #pragma once
@@ -28,40 +28,40 @@ struct LawOptions {
   double dead_band_stop = sensing::radians(0.7);  // radians
 };
 
-// What is wanted, as of one frame.
-struct Wish {
+// What one frame asks of the head.
+struct Goal {
   fusion::Action action = fusion::Action::hold;
   std::optional<vision::Point> target;  // of Action::track, frame pixels; none: hold
   sensing::Interval sector{0, 0};       // of Action::search, pan angles
 };
 
-enum class Doing : std::uint8_t { holding, tracking, turning, searching, zeroing };
+enum class State : std::uint8_t { holding, tracking, turning, searching, zeroing };
 
-struct Order {
+struct Command {
   motion::AxisCommand pan, tilt;
-  Doing doing = Doing::holding;
-  bool limited = false;  // what is wanted lies beyond a stop, and the head is (or goes) as near as it can
+  State state = State::holding;
+  bool limited = false;  // the goal lies beyond a stop, and the head is (or goes) as near as it can
 };
 
 class Law {
  public:
   void set_options(const LawOptions& options);
   const LawOptions& options() const { return options_; }
-  // Forget what was being done.
+  // Forgets the state.
   void reset();
 
   // capture: where the head looked when the frame was taken. ahead: where it will be when this command reaches it.
-  // Without a known lens nothing can be tracked: hold. The same calls give the same orders; nothing is allocated.
-  Order update(const Wish& wish, const vision::Lens& lens, const motion::Pose& capture,
-               const motion::Pose& ahead);
+  // Without a known lens nothing can be tracked: hold. The same calls give the same commands; nothing is allocated.
+  Command update(const Goal& goal, const vision::Lens& lens, const motion::Pose& capture,
+                 const motion::Pose& ahead);
 
  private:
   motion::AxisCommand approach(double target, double position, bool& moving) const;
-  Order track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
-              const motion::Pose& ahead);
-  Order turn(double direction, const motion::Pose& ahead) const;
-  Order search(const sensing::Interval& sector, const motion::Pose& ahead);
-  Order zero() const;
+  Command track(vision::Point target, const vision::Lens& lens, const motion::Pose& capture,
+                const motion::Pose& ahead);
+  Command turn(double direction, const motion::Pose& ahead) const;
+  Command search(const sensing::Interval& sector, const motion::Pose& ahead);
+  Command zero() const;
 
   LawOptions options_;
   fusion::Action last_ = fusion::Action::hold;

@@ -1,51 +1,169 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "head_session.hpp"
 
-#include "head_opening.hpp"
+#include <cerberus/cerberus.h>
+
+#include "cerberus/private/messages.hpp"
+#include "drivers/head/head_lease.h"
+#include "shared/choices.hpp"
+#include "shared/pose_feed.hpp"
 
 namespace cerberus::plugin {
 
 namespace {
 
-// As kOpenPatience.
+// A change of state takes at most these together, whatever the driver does (100 ms is promised).
+constexpr auto kOpenPatience = std::chrono::milliseconds(60);
+constexpr auto kClosePatience = std::chrono::milliseconds(30);
 constexpr auto kHaltPatience = std::chrono::milliseconds(30);
+
+CerberusPose pose_of(const char* head, const motion::Pose& pose) {
+  CerberusPose out = to_c(pose);
+  if (head) out.head = head;
+  return out;
+}
+
+void refuse(GstElement* element, const char* head, const std::string& why) {
+  CERBERUS_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
+                         ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
+}
+
+static_assert(static_cast<int>(control::HeadState::stopped) == CERBERUS_PANTILT_STOPPED &&
+              static_cast<int>(control::HeadState::holding) == CERBERUS_PANTILT_HOLDING &&
+              static_cast<int>(control::HeadState::fault) == CERBERUS_PANTILT_FAULT);
+
+// Posts one notice.
+struct Posting {
+  GstElement* sink;
+  const char* head;
+
+  void operator()(const control::Status& status) const {
+    CerberusPantilt pantilt;
+    cerberus_pantilt_init(&pantilt);
+    pantilt.state = static_cast<CerberusPantiltState>(status.state);
+    pantilt.pose = pose_of(head, status.pose);
+    std::string reason = status.reason;
+    pantilt.reason = reason.data();
+    CerberusStamp stamp;
+    cerberus_stamp_init(&stamp);
+    stamp.running_time = clock_time(status.time);
+    gst_element_post_message(sink, cerberus_message_new_pantilt(GST_OBJECT(sink), &stamp, &pantilt));
+  }
+  void operator()(const control::Refusal& refusal) const { refuse(sink, head, refusal.why); }
+  void operator()(const control::Fault& fault) const {
+    CERBERUS_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, fault.what.c_str()),
+                             (nullptr));
+  }
+  void operator()(const control::Lost& lost) const {
+    CERBERUS_ELEMENT_WARNING(
+        sink, RESOURCE, NOT_FOUND,
+        ("Track %u, which was to be followed, is on no frame for %d s: the usual choice goes on.", lost.id,
+         static_cast<int>(fusion::TargetOverride::kPatience / std::chrono::seconds(1))),
+        ("head %s", head));
+  }
+};
+
+// A head that is open, or being opened, and that no other sink of this process drives. nullptr: `element` has posted why
+// not. moved, refused: as of the runner.
+std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
+                                               std::function<void()> moved, std::function<void()> refused) {
+  const char* name = s.head.c_str();
+  std::string wrong;
+  if (!g_utf8_validate(name, -1, nullptr))  // no event could carry it
+    wrong.append("The head's name \"").append(s.head).append("\" is no UTF-8: give it another (head=)");
+  const drivers::HeadSetup setup = head_setup(s);
+  if (wrong.empty()) wrong = motion::check(setup.limits);
+  auto head = drivers::make_head(s.driver);
+  if (wrong.empty() && !head)
+    wrong.append("There is no head driver \"").append(s.driver).append("\": take one of ") +=
+        drivers::head_drivers();
+  if (!wrong.empty()) {
+    CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
+    return nullptr;
+  }
+  auto lease = drivers::lease_head(s.head);
+  if (!lease) {
+    CERBERUS_ELEMENT_ERROR(
+        element, RESOURCE, BUSY,
+        ("Another pantiltsink drives the head \"%s\" already: give each its own name (head=).", name),
+        (nullptr));
+    return nullptr;
+  }
+  auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease), std::move(moved),
+                                                      std::move(refused));
+  runner->set_close_patience(kClosePatience);
+  if (runner->open(setup, kOpenPatience) == drivers::HeadRunner::Answer::failed) {
+    refuse(element, name, runner->refusal());
+    return nullptr;
+  }
+  return runner;
+}
 
 }  // namespace
 
-// On a thread of GStreamer's: a message may keep whoever posts it, and a driver's thread is not to be kept.
-void HeadSession::hear_soon() {
+control::FusionDecision from_c(const CerberusFusion& fusion) {
+  control::FusionDecision decision;
+  decision.made.action = static_cast<fusion::Action>(fusion.action);
+  decision.made.rule = fusion.rule;
+  decision.made.rule_name = fusion.rule_name;
+  decision.made.target = fusion.target;
+  decision.made.sector = {sensing::radians(fusion.sector_from), sensing::radians(fusion.sector_to)};
+  if (GST_CLOCK_TIME_IS_VALID(fusion.decided)) decision.decided = time_of(fusion.decided);
+  return decision;
+}
+
+void HeadSession::send(const Reports& reports) const {
+  reports.send(
+      [this](const char* whose, const motion::Pose& pose) {
+        const CerberusPose event = pose_of(whose, pose);
+        gst_pad_push_event(GST_BASE_SINK_PAD(sink), cerberus_event_new_pose(&event));
+      },
+      [this](const char* whose, const control::Notice& notice) {
+        std::visit(Posting{GST_ELEMENT(sink), whose}, notice);
+      });
+}
+
+// On a thread of GStreamer's: posting a message may take long, and the driver's thread must not wait for it.
+void HeadSession::refusal_soon() {
   gst_element_call_async(
       GST_ELEMENT(sink),
-      [](GstElement*, gpointer conductor) {
-        auto* self = static_cast<HeadSession*>(conductor);
-        guarded(self->sink, [&] { self->hear(); });
+      [](GstElement*, gpointer session) {
+        auto* self = static_cast<HeadSession*>(session);
+        guarded(self->sink, [&] {
+          Reports out = self->reports();
+          self->controller.on_refusal(out);
+          self->send(out);
+        });
       },
       this, nullptr);
 }
 
-void HeadSession::hear() {
-  DeferredNotifications out = outbox();
-  station.hear(out);
-  tell(out);
-}
-
 bool HeadSession::open() {
   const HeadSettings s = settings.snapshot();
-  auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); }, [this] { hear_soon(); });
+  auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); }, [this] { refusal_soon(); });
   if (!runner) return false;
   head = g_intern_string(s.head.c_str());
   clock_driven = real_ = !runner->simulated();
-  station.open(std::move(runner), head_setup(s));
-  station.set_clock_driven(clock_driven);
+  {
+    const std::lock_guard guard(configuring_);
+    in_force_ = s;
+    opened_ = true;
+  }
+  controller.open(std::move(runner), head_setup(s));
+  controller.set_clock_driven(clock_driven);
   configure();  // what has changed meanwhile, too
-  hear();       // what the driver said while the station had no head
+  Reports out = reports();
+  controller.on_refusal(out);  // what the driver reported while the controller had no head
+  send(out);
   return true;
 }
 
 void HeadSession::close() {
   pause();
   halt("stopped");
-  station.close(kClosePatience);
+  controller.close(kClosePatience);
+  const std::lock_guard guard(configuring_);
+  opened_ = false;
 }
 
 void HeadSession::configure() {
@@ -54,8 +172,12 @@ void HeadSession::configure() {
     const std::lock_guard guard(configuring_);
     const HeadSettings s = settings.snapshot();
     field_of_view = s.horizontal_fov;
-    station.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
-    wrong = station.set_limits(head_limits(s), now());
+    controller.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
+    if (opened_) wrong = controller.set_limits(head_limits(s), now());
+    if (wrong.empty())
+      in_force_ = s;
+    else
+      settings.adjust([this](HeadSettings& set) { copy_limits(in_force_, set); });
   }
   if (!wrong.empty())
     CERBERUS_ELEMENT_WARNING(sink, RESOURCE, SETTINGS, ("%s. The limits stay as they were.", wrong.c_str()),
@@ -63,26 +185,26 @@ void HeadSession::configure() {
 }
 
 void HeadSession::halt(const char* reason) {
-  DeferredNotifications out = outbox();
-  station.halt(reason, now(), kHaltPatience, out);
-  tell(out);
+  Reports out = reports();
+  controller.halt(reason, now(), kHaltPatience, out);
+  send(out);
 }
 
 void HeadSession::end() {
-  DeferredNotifications out = outbox();
-  station.end(now(), kHaltPatience, out);
-  tell(out);
+  Reports out = reports();
+  controller.end(now(), kHaltPatience, out);
+  send(out);
 }
 
 void HeadSession::resume() {
-  DeferredNotifications out = outbox();
-  station.resume(now(), out);
-  tell(out);
+  Reports out = reports();
+  controller.resume(now(), out);
+  send(out);
 }
 
 void HeadSession::set_live(bool live) {
   clock_driven = live || real_;
-  station.set_clock_driven(clock_driven);
+  controller.set_clock_driven(clock_driven);
   bool new_lack = false;
   {
     const std::lock_guard guard(ticker_lock_);
@@ -91,25 +213,25 @@ void HeadSession::set_live(bool live) {
   if (new_lack) halt_unwatched();
 }
 
-void HeadSession::heed(GstEvent* event) {
+void HeadSession::on_decision(GstEvent* event) {
   g_autoptr(CerberusFusion) fusion = cerberus_event_parse_fusion(event);
   if (!fusion || !playing || (fusion->head && !g_str_equal(fusion->head, head.load()))) return;
   const auto at = now();
   if (!at) return;
-  DeferredNotifications out = outbox();
-  station.heed(*fusion, *at, out);
-  tell(out);
+  Reports out = reports();
+  controller.on_decision(from_c(*fusion), *at, out);
+  send(out);
 }
 
 GstClockTime HeadSession::tick(GstClockTime time) {
   {
     const std::lock_guard wait(changing);
   }
-  DeferredNotifications out = outbox();
+  Reports out = reports();
   GstClockTime next = time + 20 * GST_MSECOND;
   if (const auto running = now())
-    guarded(sink, [&] { next = time + clock_time(station.tick(*running, out) - *running); });
-  tell(out);
+    guarded(sink, [&] { next = time + clock_time(controller.tick(*running, out) - *running); });
+  send(out);
   return next;
 }
 
@@ -130,12 +252,12 @@ bool HeadSession::run() {
 }
 
 void HeadSession::halt_unwatched() {
-  DeferredNotifications out = outbox();
-  station.halt("nobody watches over it", now(), kHaltPatience, out);
+  Reports out = reports();
+  controller.halt("nobody watches over it", now(), kHaltPatience, out);
   CERBERUS_ELEMENT_ERROR(sink, RESOURCE, FAILED,
                          ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
                          ("the system gives none: too many of this user or process, or too little memory"));
-  tell(out);
+  send(out);
 }
 
 void HeadSession::pause() {

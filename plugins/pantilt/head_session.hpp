@@ -1,72 +1,79 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Leads a station through the states of its sink: opens and closes the head by the settings, lets the clock's time pass
-// where that moves the head, and sends off what the station says. Thread-safe where nothing else is said.
+// Connects a head controller with the states, the clock and the bus of its sink: opens and closes the head by the
+// settings, calls tick() where the clock drives the head, and sends what the controller reports. Thread-safe where not
+// said otherwise.
 #pragma once
+
+#include <cerberus/fusion.h>
+#include <gst/base/gstbasesink.h>
 
 #include <atomic>
 #include <mutex>
 
 #include "cerberus/private/element.hpp"
-#include "head_controller.hpp"
+#include "control/head_controller.h"
 #include "head_settings.hpp"
-#include "shared/times.hpp"
+#include "shared/clock_times.hpp"
 #include "ticker.hpp"
 
 namespace cerberus::plugin {
 
+// A decision as the controller takes it; the name of its rule is interned.
+control::FusionDecision from_c(const CerberusFusion& fusion);
+
 struct HeadSession {
+  using Reports = control::DeferredNotifications;
+
   GstBaseSink* sink = nullptr;
   Adjustable<HeadSettings> settings;
-  HeadController station;
-  std::atomic<const char*> head = nullptr;  // its name, interned; that of the last one, if none is open
-  std::atomic<double> field_of_view = 0;
+  control::HeadController controller;
+  std::atomic<const char*> head = nullptr;  // its name, interned; of the last one, if none is open
+  std::atomic<double> field_of_view = 0;    // degrees
   std::atomic<bool> clock_driven = false, playing = false;
-  std::atomic<bool> watched = true;  // false: there is no thread to watch over a head that needs one
-  std::mutex changing;               // who holds it keeps the clock's time from passing
+  std::atomic<bool> watched = true;  // false: the head needs a ticker and the system has no thread for it
+  std::mutex changing;               // keeps the ticker waiting
 
-  // false: the sink has said why. From READY to PAUSED and back.
+  // From READY to PAUSED and back. False: an error message says why.
   bool open();
   void close();
-  // Passes on what the settings are now.
+  // Applies the settings. Limits that are refused are a warning, and the properties are set back to those in force.
   void configure();
   void halt(const char* reason);
   void end();  // of the stream
   void resume();
-  // Once the stream has told.
+  // Once it is known whether the stream is live.
   void set_live(bool live);
-  // Lets the clock's time pass from now on, if it moves the head; until pause(). False: there is no thread for it, and
-  // the caller says so when it holds no lock.
+  // Starts the ticker, until pause(), if the clock drives the head. False: there is no thread for it, and the caller
+  // calls halt_unwatched() when it holds no lock.
   bool run();
   void pause();
-  // What is to be done then: the head stops, and an error says why. With no lock held.
-  void halt_unwatched();
+  void halt_unwatched();  // posts the error
 
-  // A downstream event; a decision between two frames is obeyed.
-  void heed(GstEvent* event);
+  // A downstream event that may be a decision between two frames.
+  void on_decision(GstEvent* event);
 
   std::optional<motion::Time> now() const { return clock_now(sink); }
-  DeferredNotifications outbox() { return DeferredNotifications(outgoing_, head); }
-  void tell(const DeferredNotifications& out) const { out.send(sink); }
-  // act(station, now, outbox) -> done
+  Reports reports() { return Reports(queue_, head); }
+  void send(const Reports& reports) const;
+  // act(controller, now, reports) -> result; then the reports are sent.
   template <typename Act>
-  gboolean by_hand(Act act) {
-    return guarded(sink, FALSE, [&]() -> gboolean {
-      DeferredNotifications out = outbox();
-      const bool done = act(station, now(), out);
-      tell(out);
-      return done;
-    });
+  auto with_reports(Act act) {
+    Reports out = reports();
+    const auto result = act(controller, now(), out);
+    send(out);
+    return result;
   }
 
  private:
-  void hear_soon();
-  void hear();
+  void refusal_soon();
   bool start_ticker();
   GstClockTime tick(GstClockTime time);
 
-  Outgoing outgoing_;
+  control::NotificationQueue queue_;
   bool real_ = false;       // the head has a clock of its own
-  std::mutex configuring_;  // the newest settings come last
+  std::mutex configuring_;  // the newest settings come last; of the two that follow
+  HeadSettings in_force_;   // with the limits that the controller accepted
+  bool opened_ = false;
   std::mutex ticker_lock_;  // start and stop; never held by the ticker's own thread
   bool running_ = false;    // from run() to pause(); with that lock
   Ticker ticker_;

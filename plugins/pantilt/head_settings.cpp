@@ -11,6 +11,7 @@ using sensing::radians;
 namespace {
 
 constexpr double kMostDegrees = 3600;
+constexpr double kLeast = 0.001;  // degrees a second: motion::check() refuses a head that cannot move
 
 GType target_type() {
   static const GType type = register_target_choice("CerberusPanTiltTarget");
@@ -44,8 +45,10 @@ const Property<HeadSettings> kProperties[] = {
         .read_at_start(),
     property("turn-speed", &HeadSettings::turn_speed, 0, kMostDegrees,
              "Degrees a second at which the head turns, searches and returns to zero; 0 = the default"),
-    property("max-speed", &HeadSettings::max_speed, 0, 1e9, "Highest speed of the head in degrees a second"),
-    property("max-acceleration", &HeadSettings::max_acceleration, 0, 1e9,
+    property("max-speed", &HeadSettings::max_speed, kLeast, sensing::degrees(motion::kMostSpeed),
+             "Highest speed of the head in degrees a second"),
+    property("max-acceleration", &HeadSettings::max_acceleration, kLeast,
+             sensing::degrees(motion::kMostAcceleration),
              "Highest acceleration of the head in degrees a second squared"),
     property("gain", &HeadSettings::gain, 0, 100,
              "Speed with which a target is followed, in degrees a second for each degree that it is off the "
@@ -69,11 +72,11 @@ const Property<HeadSettings> kProperties[] = {
     property("seed", &HeadSettings::seed, 0, G_MAXINT, "Seed of the noise: equal seeds give equal runs")
         .read_at_start(),
     property("target", &HeadSettings::target, target_type,
-             "Whom to follow when nobody is followed yet, without pirfusion upstream"),
+             "Which track to follow when none is followed yet, without pirfusion upstream"),
     property("return-delay", &HeadSettings::return_delay,
-             "Nanoseconds without anybody after which the head returns to zero, without pirfusion upstream"),
+             "Nanoseconds without a track after which the head returns to zero, without pirfusion upstream"),
     property("hold-stopped", &HeadSettings::hold_stopped,
-             "Nanoseconds for which somebody who stopped is watched at least, without pirfusion upstream"),
+             "Nanoseconds for which a person who stopped is watched at least, without pirfusion upstream"),
     property("watchdog-timeout", &HeadSettings::watchdog_timeout,
              "Nanoseconds without a frame after which the head stops; 0 = never"),
 };
@@ -88,6 +91,13 @@ motion::Limits head_limits(const HeadSettings& s) {
   const double speed = radians(s.max_speed), acceleration = radians(s.max_acceleration);
   return {.pan = {radians(s.pan_min), radians(s.pan_max), speed, acceleration},
           .tilt = {radians(s.tilt_min), radians(s.tilt_max), speed, acceleration}};
+}
+
+void copy_limits(const HeadSettings& from, HeadSettings& to) {
+  for (const auto limit :
+       {&HeadSettings::pan_min, &HeadSettings::pan_max, &HeadSettings::tilt_min, &HeadSettings::tilt_max,
+        &HeadSettings::max_speed, &HeadSettings::max_acceleration})
+    to.*limit = from.*limit;
 }
 
 control::LawOptions law_options(const HeadSettings& s) {

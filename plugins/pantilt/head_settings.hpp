@@ -34,8 +34,10 @@ struct HeadSettings {
 std::span<const Property<HeadSettings>> head_properties();
 
 motion::Limits head_limits(const HeadSettings& settings);
+// The properties that head_limits() reads.
+void copy_limits(const HeadSettings& from, HeadSettings& to);
 control::LawOptions law_options(const HeadSettings& settings);
-// For who decides without pirfusion.
+// Of the decisions without pirfusion.
 fusion::FuserOptions fuser_options(const HeadSettings& settings);
 drivers::HeadSetup head_setup(const HeadSettings& settings);
 

@@ -56,9 +56,7 @@
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties) and `scripted` (for
  * tests: what `script` says). One head has one name (`head`) and in a process one sink.
  *
- * No change of state waits for its first frame (`async=false`). A pipeline with `decodebin` in which all sinks are such
- * may not end with its file: GStreamer can lose the end of the stream there (with `fakesink async=false`, too). Another
- * sink beside it cures that: `tee name=t ! queue ! pantiltsink t. ! queue ! fakesink`.
+ * No change of state waits for its first frame (`async=false`).
  *
  * ## Example launch lines
  * |[
@@ -67,8 +65,8 @@
  *
  * Since: 0.1
  */
-// The paper's II.D turns and tracks but does not say how; the law is lib/control/law.h, the heads are lib/drivers/.
-// This file only connects them with GStreamer: station.cpp holds what is decided and said.
+// The paper's II.D turns and tracks but does not say how; the law is lib/control/law.h, the heads are lib/drivers/,
+// and lib/control/head_controller.h decides. This file only connects them with GStreamer.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasesink.h>
 #include <gst/video/video.h>
@@ -79,6 +77,8 @@
 #include "cerberus/private/element.hpp"
 #include "head_session.hpp"
 #include "shared/complaint.hpp"
+#include "shared/times.hpp"
+#include "shared/tracks.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pantiltsink_debug);
 #define GST_CAT_DEFAULT pantiltsink_debug
@@ -94,25 +94,27 @@ GstStaticPadTemplate sink_template =
 
 struct State {  // streaming thread only
   GstVideoInfo info;
-  bool known = false;       // info
-  Complaint complaint;      // about the caps
-  bool live_known = false;  // whether upstream is live was asked
+  bool known = false;                 // info
+  Complaint complaint;                // about the caps
+  std::vector<fusion::Track> tracks;  // on the frame
+  bool began_late = false;            // the stream, after the sink was set to PLAYING
+  bool live_known = false;            // whether upstream is live was asked
 };
 
 struct Private {
-  HeadSession conductor;
+  HeadSession session;
   State state;
 };
 
 CERBERUS_DEFINE_TYPE(CerberusPanTiltSink, cerberus_pan_tilt_sink, GstBaseSink, GST_TYPE_BASE_SINK, Private)
 
 gboolean cerberus_pan_tilt_sink_unlock(GstBaseSink* sink) {
-  cerberus_pan_tilt_sink_self(sink)->priv->conductor.station.interrupt(true);
+  cerberus_pan_tilt_sink_self(sink)->priv->session.controller.interrupt(true);
   return TRUE;
 }
 
 gboolean cerberus_pan_tilt_sink_unlock_stop(GstBaseSink* sink) {
-  cerberus_pan_tilt_sink_self(sink)->priv->conductor.station.interrupt(false);
+  cerberus_pan_tilt_sink_self(sink)->priv->session.controller.interrupt(false);
   return TRUE;
 }
 
@@ -138,33 +140,33 @@ gboolean cerberus_pan_tilt_sink_propose_allocation(GstBaseSink*, GstQuery* query
   return TRUE;
 }
 
-// Live or not decides what drives the head's time. Asked when the stream begins: then everybody upstream knows.
+// Whether the stream is live decides what drives the head's time; known upstream when the stream begins.
 void ask_whether_live(Private& self) {
   if (std::exchange(self.state.live_known, true)) return;
-  HeadSession& conductor = self.conductor;
-  conductor.set_live(is_live(GST_BASE_SINK_PAD(conductor.sink)).value_or(false));
+  HeadSession& session = self.session;
+  session.set_live(is_live(GST_BASE_SINK_PAD(session.sink)).value_or(false));
 }
 
-// A driver is waited for with the base class's preroll lock held, which a change of state needs: each one interrupts,
-// then has the lock while whoever was interrupted waits here, and goes on where it was when told to.
+// The driver's answer is awaited with the base class's preroll lock held, which a change of state needs: a change of
+// state interrupts the wait, takes the lock while this thread waits in wait_preroll(), and then the call is repeated.
 template <typename Ask>
-GstFlowReturn persist(HeadSession& conductor, Ask ask) {
+GstFlowReturn persist(HeadSession& session, Ask ask) {
   for (;;) {
-    DeferredNotifications out = conductor.outbox();
-    const HeadController::Answer answer = ask(out);
-    conductor.tell(out);
-    if (answer != HeadController::Answer::interrupted) return GST_FLOW_OK;
-    const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink);
+    HeadSession::Reports out = session.reports();
+    const control::HeadController::Answer answer = ask(out);
+    session.send(out);
+    if (answer != control::HeadController::Answer::interrupted) return GST_FLOW_OK;
+    const GstFlowReturn flow = gst_base_sink_wait_preroll(session.sink);
     if (flow != GST_FLOW_OK) return flow;
   }
 }
 
 // When a frame was taken, in running time. Without a time stamp: now, or one frame after the last.
-std::optional<Time> running_time(const HeadSession& conductor, GstClockTime pts, std::optional<Time> newest,
+std::optional<Time> running_time(const HeadSession& session, GstClockTime pts, std::optional<Time> newest,
                                  Time length) {
-  const GstSegment& segment = conductor.sink->segment;
+  const GstSegment& segment = session.sink->segment;
   if (segment.format != GST_FORMAT_TIME || !GST_CLOCK_TIME_IS_VALID(pts)) {
-    if (conductor.clock_driven) return conductor.now();
+    if (session.clock_driven) return session.now();
     return newest ? *newest + length : Time::zero();
   }
   const GstClockTime running = gst_segment_to_running_time(&segment, GST_FORMAT_TIME, pts);
@@ -172,66 +174,97 @@ std::optional<Time> running_time(const HeadSession& conductor, GstClockTime pts,
   return time_of(running);
 }
 
-GstFlowReturn look(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
-  HeadSession& conductor = self.conductor;
+GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
+  HeadSession& session = self.session;
   // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
-  while (!conductor.playing)
-    if (const GstFlowReturn flow = gst_base_sink_wait_preroll(conductor.sink); flow != GST_FLOW_OK)
-      return flow;
+  while (!session.playing)
+    if (const GstFlowReturn flow = gst_base_sink_wait_preroll(session.sink); flow != GST_FLOW_OK) return flow;
   ask_whether_live(self);
-  if (!conductor.watched) return GST_FLOW_ERROR;  // which was said
+  if (!session.watched) return GST_FLOW_ERROR;  // which was said
   const GstVideoInfo& info = self.state.info;
-  const Time length = running_length(duration, info, conductor.sink->segment);
-  const auto newest = conductor.station.newest();
-  const auto taken = running_time(conductor, pts, newest, length);
+  const Time length = running_length(duration, info, session.sink->segment);
+  const auto newest = session.controller.newest();
+  const auto taken = running_time(session, pts, newest, length);
   if (!taken || (newest && *taken <= *newest)) {
-    GST_DEBUG_OBJECT(conductor.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
+    GST_DEBUG_OBJECT(session.sink, "dropped: %" GST_TIME_FORMAT " is not newer than the last",
                      GST_TIME_ARGS(pts));
     return GST_FLOW_OK;
   }
-  HeadController::Frame frame{
-      .buffer = buffer,
+  control::HeadController::Frame frame{
+      .seen = std::nullopt,
       .running = *taken,
       .length = length,
-      .now = conductor.now().value_or(*taken),
-      .lens = vision::Lens(radians(conductor.field_of_view), {info.width, info.height}),
+      .now = session.now().value_or(*taken),
+      .lens = vision::Lens(radians(session.field_of_view), {info.width, info.height}),
       .capture = std::nullopt};
+  if (buffer) {
+    read_tracks(buffer, self.state.tracks);
+    const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
+    frame.seen.emplace(self.state.tracks, fusion ? std::optional(from_c(*fusion)) : std::nullopt);
+  }
   const CerberusPose* pose = buffer ? cerberus_buffer_peek_pose(buffer) : nullptr;
-  if (pose && g_strcmp0(pose->head, conductor.head) == 0) {
+  if (pose && g_strcmp0(pose->head, session.head) == 0) {
     motion::Pose& capture = frame.capture.emplace();
     capture.pan.position = radians(pose->pan);
     capture.tilt.position = radians(pose->tilt);
   }
-  return persist(conductor, [&](DeferredNotifications& out) { return conductor.station.frame(frame, out); });
+  return persist(session, [&](HeadSession::Reports& out) { return session.controller.frame(frame, out); });
 }
 
 GstFlowReturn cerberus_pan_tilt_sink_render(GstBaseSink* sink, GstBuffer* buffer) {
   return guarded(sink, GST_FLOW_ERROR, [&] {
     Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
-    return look(self, buffer, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer));
+    return on_frame(self, buffer, GST_BUFFER_PTS(buffer), GST_BUFFER_DURATION(buffer));
   });
+}
+
+// True: the bin around the sink plays, and no other state is on the way.
+bool bin_plays(GstObject* bin) {
+  GST_OBJECT_LOCK(bin);
+  const bool plays = GST_STATE(bin) == GST_STATE_PLAYING && GST_STATE_PENDING(bin) == GST_STATE_VOID_PENDING;
+  GST_OBJECT_UNLOCK(bin);
+  return plays;
+}
+
+// GstBin forwards the end of the stream only if PLAYING was the last state that it posted. Where an element completes
+// READY to PAUSED in a streaming thread (decodebin), that thread posts PAUSED; the application, which reads it at once,
+// sets PLAYING before the thread notes that PAUSED was posted; and the end is never forwarded (GStreamer 1.22). Sinks
+// with async=true escape by their preroll lock. Here the bins post PLAYING once more before the end.
+void confirm_playing(GstElement* element) {
+  g_autoptr(GstObject) bin = gst_object_get_parent(GST_OBJECT(element));
+  if (!bin || !GST_IS_BIN(bin)) return;
+  confirm_playing(GST_ELEMENT(bin));
+  if (bin_plays(bin))
+    gst_element_post_message(
+        GST_ELEMENT(bin),
+        gst_message_new_state_changed(bin, GST_STATE_PLAYING, GST_STATE_PLAYING, GST_STATE_VOID_PENDING));
 }
 
 gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   Private& self = *cerberus_pan_tilt_sink_self(sink)->priv;
-  HeadSession& conductor = self.conductor;
+  HeadSession& session = self.session;
   const GstEventType type = GST_EVENT_TYPE(event);
   GstClockTime from = GST_CLOCK_TIME_NONE, length = GST_CLOCK_TIME_NONE;
   if (type == GST_EVENT_GAP) gst_event_parse_gap(event, &from, &length);
-  if (type == GST_EVENT_EOS) guarded(sink, [&] { conductor.end(); });
-  if (type == GST_EVENT_CUSTOM_DOWNSTREAM_OOB) guarded(sink, [&] { conductor.heed(event); });
-  if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { conductor.halt("flushed"); });
+  if (type == GST_EVENT_STREAM_START) self.state.began_late = session.playing;
+  if (type == GST_EVENT_EOS) {
+    guarded(sink, [&] { session.end(); });
+    if (self.state.began_late && !is_live(GST_BASE_SINK_PAD(sink)).value_or(false))
+      confirm_playing(GST_ELEMENT(sink));
+  }
+  if (type == GST_EVENT_CUSTOM_DOWNSTREAM_OOB) guarded(sink, [&] { session.on_decision(event); });
+  if (type == GST_EVENT_FLUSH_START) guarded(sink, [&] { session.halt("flushed"); });
   const gboolean done = cerberus_pan_tilt_sink_parent_class()->event(sink, event);
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
-      conductor.station.forget();
-      if (conductor.playing && conductor.watched) conductor.resume();
+      session.controller.forget();
+      if (session.playing && session.watched) session.resume();
     }
-    if (type == GST_EVENT_GAP && done) look(self, nullptr, from, length);
+    if (type == GST_EVENT_GAP && done) on_frame(self, nullptr, from, length);
     if (type != GST_EVENT_SEGMENT || !done) return;
     ask_whether_live(self);
-    const Time begin = running_time(conductor, sink->segment.start, {}, {}).value_or(Time::zero());
-    persist(conductor, [&](DeferredNotifications& out) { return conductor.station.announce(begin, out); });
+    const Time begin = running_time(session, sink->segment.start, {}, {}).value_or(Time::zero());
+    persist(session, [&](HeadSession::Reports& out) { return session.controller.announce(begin, out); });
   });
   return done;
 }
@@ -239,34 +272,34 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
 // The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes
 // under the lock too: a frame that comes in the middle waits until the change is through. The head obeys nobody before
 // the base class plays and there is a thread that watches over it, which begins when all is said.
-GstStateChangeReturn play(HeadSession& conductor) {
-  GstElement* element = GST_ELEMENT(conductor.sink);
+GstStateChangeReturn play(HeadSession& session) {
+  GstElement* element = GST_ELEMENT(session.sink);
   GstElementClass* base = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class());
-  conductor.station.interrupt(true);
+  session.controller.interrupt(true);
   GstStateChangeReturn done = base->change_state(element, GST_STATE_CHANGE_PAUSED_TO_PLAYING);
-  std::unique_lock changing(conductor.changing);
+  std::unique_lock changing(session.changing);
   const bool unwatched =
-      done != GST_STATE_CHANGE_FAILURE && !guarded(element, false, [&] { return conductor.run(); });
+      done != GST_STATE_CHANGE_FAILURE && !guarded(element, false, [&] { return session.run(); });
   if (unwatched) {
     changing.unlock();
-    conductor.pause();
+    session.pause();
     base->change_state(element, GST_STATE_CHANGE_PLAYING_TO_PAUSED);
     done = GST_STATE_CHANGE_FAILURE;
   }
-  DeferredNotifications out = conductor.outbox();
+  HeadSession::Reports out = session.reports();
   GST_BASE_SINK_PREROLL_LOCK(element);
-  conductor.station.interrupt(false);
+  session.controller.interrupt(false);
   if (done != GST_STATE_CHANGE_FAILURE) {
     // A segment that came meanwhile may have asked for a thread, and got none.
-    if (conductor.watched) guarded(element, [&] { conductor.station.resume(conductor.now(), out); });
-    conductor.playing = true;
+    if (session.watched) guarded(element, [&] { session.controller.resume(session.now(), out); });
+    session.playing = true;
   }
   GST_BASE_SINK_PREROLL_SIGNAL(element);
   GST_BASE_SINK_PREROLL_UNLOCK(element);
   if (changing) changing.unlock();
   guarded(element, [&] {
-    conductor.tell(out);
-    if (unwatched) conductor.halt_unwatched();  // last: whoever is told may change the state again
+    session.send(out);
+    if (unwatched) session.halt_unwatched();  // last: whoever is told may change the state again
   });
   return done;
 }
@@ -274,74 +307,64 @@ GstStateChangeReturn play(HeadSession& conductor) {
 // The head is not opened in GstBaseSink::start: that one adds an error message of its own.
 bool open(Private& self) {
   self.state = {};
-  return guarded(self.conductor.sink, false, [&] { return self.conductor.open(); });
+  return guarded(self.session.sink, false, [&] { return self.session.open(); });
 }
 
 GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, GstStateChange change) {
   Private& self = *cerberus_pan_tilt_sink_self(element)->priv;
-  HeadSession& conductor = self.conductor;
-  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(conductor);
+  HeadSession& session = self.session;
+  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING) return play(session);
   if (change == GST_STATE_CHANGE_READY_TO_PAUSED && !open(self)) return GST_STATE_CHANGE_FAILURE;
   if (change == GST_STATE_CHANGE_PLAYING_TO_PAUSED)
     guarded(element, [&] {
-      conductor.pause();
-      conductor.halt("paused");
+      session.pause();
+      session.halt("paused");
     });
   const GstStateChangeReturn done =
       GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->change_state(element, change);
   const bool failed = change == GST_STATE_CHANGE_READY_TO_PAUSED && done == GST_STATE_CHANGE_FAILURE;
-  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) guarded(element, [&] { conductor.close(); });
+  if (change == GST_STATE_CHANGE_PAUSED_TO_READY || failed) guarded(element, [&] { session.close(); });
   return done;
 }
 
-// Action signals: the application's own hand.
+// Action signals: act(controller, now, reports) for the application.
 template <typename Act>
-gboolean by_hand(CerberusPanTiltSink* sink, Act act) {
-  return sink->priv->conductor.by_hand(act);
+gboolean manual(CerberusPanTiltSink* sink, Act act) {
+  HeadSession& session = sink->priv->session;
+  return guarded(sink, FALSE, [&]() -> gboolean { return session.with_reports(act); });
 }
-gboolean move_to(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
-  return by_hand(sink, [=](HeadController& station, std::optional<Time> at, DeferredNotifications& out) {
-    return station.move(radians(pan), radians(tilt), false, at, out);
-  });
-}
-gboolean move_by(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
-  return by_hand(sink, [=](HeadController& station, std::optional<Time> at, DeferredNotifications& out) {
-    return station.move(radians(pan), radians(tilt), true, at, out);
-  });
-}
-gboolean stay(CerberusPanTiltSink* sink) {
-  return by_hand(sink, [](HeadController& station, auto at, DeferredNotifications& out) {
-    return station.stay(at, out);
+template <bool relative>
+gboolean move(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
+  return manual(sink, [=](auto& head, auto now, auto& out) {
+    return head.move(radians(pan), radians(tilt), relative, now, out);
   });
 }
 gboolean home(CerberusPanTiltSink* sink) {
-  return move_to(sink, 0, 0);
+  return move<false>(sink, 0, 0);
+}
+gboolean stay(CerberusPanTiltSink* sink) {
+  return manual(sink, [](auto& head, auto now, auto& out) { return head.stop(now, out); });
 }
 gboolean automatic(CerberusPanTiltSink* sink) {
-  return by_hand(sink, [](HeadController& station, auto at, DeferredNotifications& out) {
-    return station.automatic(at, out);
-  });
+  return manual(sink, [](auto& head, auto now, auto& out) { return head.automatic(now, out); });
 }
-
 gboolean follow(CerberusPanTiltSink* sink, guint id) {
-  return by_hand(sink, [=](HeadController& station, auto at, DeferredNotifications& out) {
-    return station.follow(id, at, out);
-  });
+  return manual(sink, [=](auto& head, auto now, auto& out) { return head.follow(id, now, out); });
 }
 
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
-  HeadSession& conductor = cerberus_pan_tilt_sink_self(object)->priv->conductor;
-  conductor.settings.set(head_properties(), id, value);
-  guarded(conductor.sink, [&] { conductor.configure(); });
+  HeadSession& session = cerberus_pan_tilt_sink_self(object)->priv->session;
+  session.settings.set(head_properties(), id, value);
+  guarded(session.sink, [&] { session.configure(); });
 }
 
 void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
-  cerberus_pan_tilt_sink_self(object)->priv->conductor.settings.get(head_properties(), id, value);
+  cerberus_pan_tilt_sink_self(object)->priv->session.settings.get(head_properties(), id, value);
 }
 
 void cerberus_pan_tilt_sink_init(CerberusPanTiltSink* self) {
   GstBaseSink* sink = GST_BASE_SINK(self);
-  self->priv->conductor.sink = sink;
+  self->priv->session.sink = sink;
   gst_base_sink_set_sync(sink, FALSE);
   gst_base_sink_set_async_enabled(sink, FALSE);
   gst_base_sink_set_qos_enabled(sink, FALSE);
@@ -360,8 +383,8 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   object->set_property = set_property;
   object->get_property = get_property;
   Adjustable<HeadSettings>::install(object, head_properties());
-  add_signal(object, "move-to", G_CALLBACK(move_to), 2);
-  add_signal(object, "move-by", G_CALLBACK(move_by), 2);
+  add_signal(object, "move-to", G_CALLBACK(move<false>), 2);
+  add_signal(object, "move-by", G_CALLBACK(move<true>), 2);
   add_signal(object, "stop", G_CALLBACK(stay));
   add_signal(object, "home", G_CALLBACK(home));
   add_signal(object, "auto", G_CALLBACK(automatic));

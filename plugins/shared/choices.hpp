@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lib/fusion can choose, as the C API and properties have it.
+// Decisions and choices of lib/fusion, to and from the C API and properties.
 #pragma once
 
 #include <cerberus/fusion.h>
@@ -12,9 +12,6 @@ namespace cerberus::plugin {
 constexpr CerberusFusionAction told(fusion::Action action) {
   return static_cast<CerberusFusionAction>(action);
 }
-constexpr fusion::Action heard(CerberusFusionAction action) {
-  return static_cast<fusion::Action>(action);
-}
 static_assert(told(fusion::Action::track) == CERBERUS_FUSION_TRACK &&
               told(fusion::Action::turn_left) == CERBERUS_FUSION_TURN_LEFT &&
               told(fusion::Action::turn_right) == CERBERUS_FUSION_TURN_RIGHT &&
@@ -22,7 +19,7 @@ static_assert(told(fusion::Action::track) == CERBERUS_FUSION_TRACK &&
               told(fusion::Action::zero) == CERBERUS_FUSION_ZERO &&
               told(fusion::Action::hold) == CERBERUS_FUSION_HOLD);
 
-// Whom to follow. Each module registers the enumeration under a name of its own.
+// The choice of a target. Each module registers the enumeration under a name of its own.
 inline GType register_target_choice(const char* name) {
   using fusion::TargetChoice;
   static const GEnumValue values[] = {

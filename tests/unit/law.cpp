@@ -35,7 +35,7 @@ Pose looking(double pan, double tilt = 0) {
   return pose;
 }
 
-Wish person(double x, double y = 240) {
+Goal person(double x, double y = 240) {
   return {Action::track, cerberus::vision::Point{x, y}, {0, 0}};
 }
 // Pixels right of the middle for an angle to the right.
@@ -58,19 +58,19 @@ bool holds(const AxisCommand& command) {
 START_TEST(a_pixel_is_an_angle_from_where_the_head_looked_when_the_frame_was_taken) {
   Law law;
   // Taken at 10 degrees, seen 45 to the right: 55. By the time of the command the head is at 30: 25 to go at gain 4.
-  const Order order = law.update(person(640), kLens, looking(10), looking(30));
-  assert_goes(order.pan, 55, 4 * 25);
-  ck_assert_int_eq(static_cast<int>(order.doing), static_cast<int>(Doing::tracking));
-  ck_assert(!order.limited);
+  const Command command = law.update(person(640), kLens, looking(10), looking(30));
+  assert_goes(command.pan, 55, 4 * 25);
+  ck_assert_int_eq(static_cast<int>(command.state), static_cast<int>(State::tracking));
+  ck_assert(!command.limited);
 }
 END_TEST
 
 START_TEST(tilt_follows_as_well) {
   Law law;
-  const Order order =
+  const Command command =
       law.update(person(320, 240 - 320 * std::tan(radians(20))), kLens, looking(0, 5), looking(0, 15));
-  assert_goes(order.tilt, 25, 4 * 10);
-  ck_assert(holds(order.pan));
+  assert_goes(command.tilt, 25, 4 * 10);
+  ck_assert(holds(command.pan));
 }
 END_TEST
 
@@ -109,8 +109,8 @@ START_TEST(a_head_before_somebody_who_stands_rests) {
       head.state(now, capture);
       head.state(now + setup.latency, ahead);
       const double off = 20 - degrees(capture.pan.position) + noise(random);
-      const Order order = law.update(person(pixel(off)), kLens, capture, ahead);
-      assert_text(head.command({now, order.pan, order.tilt}), "");
+      const Command command = law.update(person(pixel(off)), kLens, capture, ahead);
+      assert_text(head.command({now, command.pan, command.tilt}), "");
       if (k > 33 && capture.pan.speed * direction < 0) ++reversals;
       if (capture.pan.speed != 0) direction = capture.pan.speed;
     }
@@ -127,11 +127,11 @@ END_TEST
 
 START_TEST(turning_goes_at_turn_speed_until_the_stop) {
   Law law;
-  const Order right = law.update({Action::turn_right, {}, {}}, kLens, looking(0), looking(0));
+  const Command right = law.update({Action::turn_right, {}, {}}, kLens, looking(0), looking(0));
   ck_assert_int_eq(static_cast<int>(right.pan.kind), static_cast<int>(Kind::velocity));
   ck_assert_double_eq_tol(degrees(right.pan.value), 40, 1e-9);
   ck_assert(holds(right.tilt));
-  const Order left = law.update({Action::turn_left, {}, {}}, kLens, looking(0), looking(0));
+  const Command left = law.update({Action::turn_left, {}, {}}, kLens, looking(0), looking(0));
   ck_assert_double_eq_tol(degrees(left.pan.value), -40, 1e-9);
   ck_assert(!left.limited);
   ck_assert(law.update({Action::turn_left, {}, {}}, kLens, looking(-170), looking(-170)).limited);
@@ -141,38 +141,38 @@ END_TEST
 
 START_TEST(a_search_goes_from_edge_to_edge_the_nearer_one_first) {
   Law law;
-  const Wish wish{Action::search, {}, {radians(-30), radians(90)}};
-  assert_goes(law.update(wish, kLens, looking(0), looking(0)).pan, -30, 40);
-  assert_goes(law.update(wish, kLens, looking(-20), looking(-20)).pan, -30, 40);
-  assert_goes(law.update(wish, kLens, looking(-30), looking(-30)).pan, 90, 40);
-  assert_goes(law.update(wish, kLens, looking(0), looking(0)).pan, 90, 40);
-  assert_goes(law.update(wish, kLens, looking(90), looking(90)).pan, -30, 40);
+  const Goal goal{Action::search, {}, {radians(-30), radians(90)}};
+  assert_goes(law.update(goal, kLens, looking(0), looking(0)).pan, -30, 40);
+  assert_goes(law.update(goal, kLens, looking(-20), looking(-20)).pan, -30, 40);
+  assert_goes(law.update(goal, kLens, looking(-30), looking(-30)).pan, 90, 40);
+  assert_goes(law.update(goal, kLens, looking(0), looking(0)).pan, 90, 40);
+  assert_goes(law.update(goal, kLens, looking(90), looking(90)).pan, -30, 40);
   // From outside: past the near edge to the far one, without a halt.
   law.reset();
-  assert_goes(law.update(wish, kLens, looking(150), looking(150)).pan, -30, 40);
+  assert_goes(law.update(goal, kLens, looking(150), looking(150)).pan, -30, 40);
   law.reset();
-  assert_goes(law.update(wish, kLens, looking(-150), looking(-150)).pan, 90, 40);
+  assert_goes(law.update(goal, kLens, looking(-150), looking(-150)).pan, 90, 40);
 }
 END_TEST
 
 START_TEST(a_search_stays_within_the_stops) {
   Law law;
-  const Order order =
+  const Command command =
       law.update({Action::search, {}, {radians(150), radians(250)}}, kLens, looking(169), looking(169));
-  assert_goes(order.pan, 170, 40);
-  ck_assert(order.limited);
+  assert_goes(command.pan, 170, 40);
+  ck_assert(command.limited);
   ck_assert(holds(law.update({Action::search, {}, {kNan, 1}}, kLens, looking(0), looking(0)).pan));
 }
 END_TEST
 
 START_TEST(zero_returns_both_axes_and_hold_holds_them) {
   Law law;
-  const Order zero = law.update({Action::zero, {}, {}}, kLens, looking(90, 10), looking(90, 10));
+  const Command zero = law.update({Action::zero, {}, {}}, kLens, looking(90, 10), looking(90, 10));
   assert_goes(zero.pan, 0, 40);
   assert_goes(zero.tilt, 0, 40);
-  const Order hold = law.update({Action::hold, {}, {}}, kLens, looking(90, 10), looking(90, 10));
+  const Command hold = law.update({Action::hold, {}, {}}, kLens, looking(90, 10), looking(90, 10));
   ck_assert(holds(hold.pan) && holds(hold.tilt));
-  ck_assert_int_eq(static_cast<int>(hold.doing), static_cast<int>(Doing::holding));
+  ck_assert_int_eq(static_cast<int>(hold.state), static_cast<int>(State::holding));
 }
 END_TEST
 
@@ -190,10 +190,10 @@ END_TEST
 // place -160 would do, the long way round.
 START_TEST(somebody_beyond_the_stop_is_watched_from_it_until_going_round_helps) {
   Law law;
-  const Order near = law.update(person(pixel(15)), kLens, looking(170), looking(160));
+  const Command near = law.update(person(pixel(15)), kLens, looking(170), looking(160));
   assert_goes(near.pan, 170, 4 * 10);
   ck_assert(near.limited);
-  const Order far = law.update(person(pixel(30)), kLens, looking(170), looking(170));
+  const Command far = law.update(person(pixel(30)), kLens, looking(170), looking(170));
   assert_goes(far.pan, -160, 4 * 330);
   ck_assert(!far.limited);
 }

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "head_names.hpp"
+#include "drivers/head/head_lease.h"
 
 #include <mutex>
 #include <set>
 
-namespace cerberus::plugin {
+namespace cerberus::drivers {
 
 namespace {
 
@@ -38,4 +38,4 @@ std::shared_ptr<void> lease_head(const std::string& name) {
   return std::make_shared<Lease>(name);
 }
 
-}  // namespace cerberus::plugin
+}  // namespace cerberus::drivers

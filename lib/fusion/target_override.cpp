@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "fusion/chosen.h"
+#include "fusion/target_override.h"
 
 namespace cerberus::fusion {
 
-Chosen::Answer Chosen::watch(bool here, Time time) {
-  if (id_ == 0) return Answer::nobody;
+TargetOverride::Answer TargetOverride::watch(bool here, Time time) {
+  if (id_ == 0) return Answer::none;
   if (!since_) since_ = time;
   if (here) {
     seen_ = time;
     return Answer::here;
   }
-  if (time - seen_.value_or(*since_) < kPatience) return seen_ ? Answer::awaited : Answer::nobody;
+  if (time - seen_.value_or(*since_) < kPatience) return seen_ ? Answer::awaited : Answer::none;
   choose(0);
   return Answer::lost;
 }

@@ -1,48 +1,43 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "head_controller.hpp"
+#include "control/head_controller.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
-#include "shared/clock_times.hpp"
-
-namespace cerberus::plugin {
+namespace cerberus::control {
 
 namespace {
 
 using drivers::HeadCommand;
-using motion::AxisCommand;
 using motion::Pose;
 using std::chrono::milliseconds;
 
-// So far ahead the head's way is asked for: a command changes it sooner than that.
+// The head's plan is read so far ahead: the next command changes it sooner.
 constexpr motion::Time kAhead = std::chrono::seconds(1);
 constexpr motion::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(200);
-// A driver that answers is asked every 20 ms; one that does not, in this time, is at fault.
+// A driver is asked every 20 ms; without an answer for so long it is at fault.
 constexpr motion::Time kSilence = std::chrono::seconds(1);
 constexpr char kSilent[] = "the head does not answer";
-// When something can have been decided that is said now.
-constexpr motion::Time kHaste = milliseconds(100), kStale = std::chrono::seconds(1);
+// A decision between frames counts if it was made at most so long after, or before, now.
+constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds(1);
 constexpr auto kTickPatience = milliseconds(10);
-// A loaded machine is no reason to decide otherwise than an idle one; who cannot wait interrupts.
+// Results must not depend on the load of the machine, so this is long; a state change interrupts the wait.
 constexpr auto kFramePatience = std::chrono::seconds(10);
 
-const char* word(const control::Order& order) {
-  using control::Doing;
-  switch (order.doing) {
-    case Doing::holding:
-      return "holding";
-    case Doing::tracking:
-      return order.limited ? "limited" : "tracking";
-    case Doing::turning:
-      return order.limited ? "limited" : "turning";
-    case Doing::searching:
-      return "searching";
-    case Doing::zeroing:
-      return "zeroing";
+HeadState state_of(const Command& command) {
+  switch (command.state) {
+    case State::tracking:
+      return command.limited ? HeadState::limited : HeadState::tracking;
+    case State::turning:
+      return command.limited ? HeadState::limited : HeadState::turning;
+    case State::searching:
+      return HeadState::searching;
+    case State::zeroing:
+      return HeadState::zeroing;
+    case State::holding:
+      break;
   }
-  return "holding";
+  return HeadState::holding;
 }
 
 }  // namespace
@@ -51,16 +46,16 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   const std::lock_guard guard(lock_);
   runner_ = std::move(runner);
   setup_ = setup;
-  asked_ = setup.limits;
   limits_wait_ = false;
   law_.reset();
-  pilot_.reset();
-  pilot_.follow(0);
+  selector_.reset();
+  selector_.follow(0);
   history_.clear();
   watchdog_.rest();
-  manual_ = faulty_ = silent_ = ended_ = false;
+  manual_ = {};
+  faulty_ = silent_ = ended_ = false;
   halted_ = fresh_ = true;
-  told_ = epoch_ = published_ = Time::zero();
+  latest_ = epoch_ = published_ = Time::zero();
   newest_.reset();
   late_since_ = motion::kNever;
   Pose start;
@@ -70,10 +65,9 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   status_ = {};
 }
 
-void HeadController::hear(DeferredNotifications& out) {
+void HeadController::on_refusal(DeferredNotifications& out) {
   const std::lock_guard guard(lock_);
-  if (!runner_) return;
-  report_refusal(told_, out);
+  if (runner_) report_refusal(latest_, out);
 }
 
 void HeadController::close(drivers::HeadRunner::Patience patience) {
@@ -90,15 +84,14 @@ void HeadController::set_options(const control::LawOptions& law, const fusion::F
   const std::lock_guard guard(lock_);
   law_.set_options(law);
   confine_law();
-  pilot_.set_options(fuser);
+  selector_.set_options(fuser);
   timeout_ = watchdog;
   watchdog_.set_timeout(watchdog);
 }
 
 std::string HeadController::set_limits(const motion::Limits& limits, std::optional<Time> at) {
   const std::lock_guard guard(lock_);
-  if (!runner_ || limits == asked_) return {};
-  asked_ = limits;
+  if (!runner_ || limits == setup_.limits) return {};
   if (std::string wrong = motion::check(limits); !wrong.empty()) return wrong;
   setup_.limits = limits;
   confine_law();
@@ -116,24 +109,24 @@ void HeadController::forget() {
   const std::lock_guard guard(lock_);
   newest_.reset();
   fresh_ = true;
-  told_ = std::max(told_, published_);  // what was told happens before whatever comes now
+  latest_ = std::max(latest_, published_);  // published poses stay valid
   law_.reset();
-  pilot_.reset();
+  selector_.reset();
   ended_ = false;
 }
 
 // A running time that went back (a flush, another base time) does not turn the head's time back.
 HeadController::Time HeadController::head_time(Time running) {
   constexpr Time kJitter = milliseconds(100);
-  if (running + epoch_ + kJitter < told_) epoch_ = told_ - running;
-  told_ = std::max(told_, running + epoch_);
-  return told_;
+  if (running + epoch_ + kJitter < latest_) epoch_ = latest_ - running;
+  latest_ = std::max(latest_, running + epoch_);
+  return latest_;
 }
 
-// When what is told now counts at the earliest, in the head's time: nothing that was told of its way becomes untrue.
+// When a new command takes effect at the earliest, in the head's time: published poses stay valid.
 HeadController::Time HeadController::earliest(std::optional<Time> at) {
-  told_ = at && clock_driven_ ? head_time(*at) : std::max(told_, published_ - setup_.latency);
-  return told_;
+  latest_ = at && clock_driven_ ? head_time(*at) : std::max(latest_, published_ - setup_.latency);
+  return latest_;
 }
 
 void HeadController::confine_law() {
@@ -152,55 +145,55 @@ void HeadController::remember(const std::vector<Pose>& poses) {
   for (const Pose& pose : poses) history_.add(pose);
 }
 
-// The pieces from `published_` on, the last one cut at `until` (kNever: only the first, as it is).
+// Publishes the pieces from `published_` on, the last one cut at `until` (kNever: only the first, as it is).
 void HeadController::publish(const std::vector<Pose>& poses, Time until, DeferredNotifications& out) {
   if (poses.empty()) return;
   if (until == motion::kNever) {
-    out.tell(running(poses.front()));
+    out.add(running(poses.front()));
     return;
   }
   for (Pose pose : poses) {
     pose.until = std::max(pose.from, std::min(pose.until, until));
-    out.tell(running(pose));
+    out.add(running(pose));
     published_ = pose.until;
     if (pose.until >= until) break;
   }
 }
 
-void HeadController::say(const char* state, std::string reason, Time head, DeferredNotifications& out) {
-  if (g_str_equal(state, status_.state) && reason == status_.reason) return;
+void HeadController::report(HeadState state, std::string reason, Time head, DeferredNotifications& out) {
+  if (state == status_.state && reason == status_.reason) return;
   status_ = {state, std::move(reason), running(history_.at(head)), std::max(Time::zero(), head - epoch_)};
-  out.say(status_);
+  out.add(status_);
 }
 
-void HeadController::say_by_hand(Time head, DeferredNotifications& out) {
-  if (manual_ && !halted_ && !faulty_) say("manual", hand_, head, out);
+void HeadController::report_manual(Time head, DeferredNotifications& out) {
+  if (manual_.active() && !halted_ && !faulty_) report(HeadState::manual, manual_.reason(), head, out);
 }
 
-void HeadController::complain(const std::string& failure, Time head, DeferredNotifications& out) {
+void HeadController::report_fault(const std::string& failure, Time head, DeferredNotifications& out) {
   if (failure.empty()) return;
   const bool known = std::exchange(faulty_, true);
-  say("fault", failure, head, out);
-  if (!known) out.say(Fault{failure});
+  report(HeadState::fault, failure, head, out);
+  if (!known) out.add(Fault{failure});
 }
 
-// It cannot be opened: an error and no warning.
+// A head that cannot be opened is an error and not a fault.
 void HeadController::report_refusal(Time head, DeferredNotifications& out) {
   std::string why = runner_->refusal();
   if (why.empty()) return;
   faulty_ = true;
-  say("fault", why, head, out);
-  out.say(Refusal{std::move(why)});
+  report(HeadState::fault, why, head, out);
+  out.add(Refusal{std::move(why)});
 }
 
-// After an answer: is the head at fault, still or no longer?
+// After an answer of the driver: whether the head is at fault, still or no longer.
 void HeadController::check(const std::string& failure, Time head, DeferredNotifications& out) {
   if (!runner_ || !runner_->healthy()) {
     if (runner_) report_refusal(head, out);
-    complain(failure, head, out);
+    report_fault(failure, head, out);
     return;
   }
-  if (std::exchange(faulty_, false)) say_by_hand(head, out);
+  if (std::exchange(faulty_, false)) report_manual(head, out);
 }
 
 HeadController::Answer HeadController::announce(Time at, DeferredNotifications& out) {
@@ -210,7 +203,7 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
   const Time head = head_time(at);
   const Time from = fresh_ ? head : std::max(head, published_);
   const Time until = clock_driven_ ? motion::kNever : std::max(from, head + setup_.latency);
-  // Live nobody waits, and tick() tells the rest soon.
+  // Live nothing waits here, and tick() publishes the rest soon.
   const drivers::HeadRunner::Patience patience = clock_driven_ ? kTickPatience : kFramePatience;
   guard.unlock();
   std::vector<Pose> poses;
@@ -218,7 +211,7 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
   guard.lock();
   if (answer == Answer::interrupted) return answer;
   fresh_ = false;
-  // A driver that does not answer: then what is known of it.
+  // Without an answer of the driver: the last known pose.
   if (answer != Answer::done) poses.assign(1, history_.at(from));
   if (answer != Answer::done) poses[0].from = from;
   remember(poses);
@@ -229,21 +222,22 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
 HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotifications& out) {
   HeadCommand command{now, {}, {}};
   if (halted_) return command;
-  if (manual_) {
-    say_by_hand(now, out);
-    command.pan = wanted_.pan;
-    command.tilt = wanted_.tilt;
+  if (manual_.active()) {
+    report_manual(now, out);
+    command.pan = manual_.command().pan;
+    command.tilt = manual_.command().tilt;
     return command;
   }
   const Time taken = frame.running + epoch_;
   const Pose capture = frame.capture ? *frame.capture : history_.at(taken);
   const Pose ahead = history_.at(now + setup_.latency);
-  const TargetSelector::Verdict verdict = pilot_.look(frame.buffer, frame.running, capture.pan.position);
-  if (verdict.lost != 0) out.say(Lost{verdict.lost});
-  const control::Order order = law_.update(verdict.wish, frame.lens, capture, ahead);
-  command.pan = order.pan;
-  command.tilt = order.tilt;
-  if (!faulty_) say(word(order), verdict.reason, now, out);
+  const TargetSelector::Selection selection =
+      selector_.on_frame(*frame.seen, frame.running, capture.pan.position);
+  if (selection.lost != 0) out.add(Lost{selection.lost});
+  const Command axes = law_.update(selection.goal, frame.lens, capture, ahead);
+  command.pan = axes.pan;
+  command.tilt = axes.tilt;
+  if (!faulty_) report(state_of(axes), selection.reason, now, out);
   return command;
 }
 
@@ -253,48 +247,48 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   if (!runner) return Answer::failed;
   if (clock_driven_) {
     newest_ = frame.running;
-    if (!frame.buffer || halted_) return Answer::done;
+    if (!frame.seen || halted_) return Answer::done;
     const Time now = head_time(frame.now);
     watchdog_.feed(now);
     const HeadCommand command = decide(frame, now, out);
-    if (!manual_) runner->command(command);
+    if (!manual_.active()) runner->command(command);
     return Answer::done;
   }
 
   if (silent_ && !runner->idle()) {  // blocked since a frame before: nothing is caught up with
     newest_ = frame.running;
-    complain(kSilent, told_, out);
+    report_fault(kSilent, latest_, out);
     return Answer::late;
   }
-  // What was told of the head's way stays true: nothing given now changes it before `published_`.
+  // Published poses stay valid: the command takes effect only after them.
   const Time now = std::max(head_time(frame.running), published_ - setup_.latency);
   const Time horizon = now + std::max(setup_.latency, frame.length) + kAhead;
   std::vector<Pose> poses;
-  // Until here at least no frame came to decide by: until the one before this could have come, or the gap's end.
-  const Time nobody = frame.buffer ? now - frame.length : now + frame.length;
-  if (const Time deadline = watchdog_.deadline(); deadline < nobody) {
+  // Until here at least no frame came: until the one before this one could have come, or until the end of the gap.
+  const Time unseen = frame.seen ? now - frame.length : now + frame.length;
+  if (const Time deadline = watchdog_.deadline(); deadline < unseen) {
     const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}};
-    told_ = std::max(told_, brake.time);
+    latest_ = std::max(latest_, brake.time);
     guard.unlock();
     const Answer answer = runner->ask(brake, brake.time, horizon, poses, kFramePatience);
     guard.lock();
     if (answer == Answer::interrupted) return answer;
     watchdog_.rest();
     remember(poses);
-    stand(brake.time, out);
+    on_timeout(brake.time, out);
   }
   std::optional<HeadCommand> command;
-  if (frame.buffer) command = decide(frame, now, out);
+  if (frame.seen) command = decide(frame, now, out);
   const Time from = published_;
   guard.unlock();
   const Answer answer = runner->ask(command, from, horizon, poses, kFramePatience);
   guard.lock();
   if (answer == Answer::interrupted) return answer;
   newest_ = frame.running;
-  if (frame.buffer) watchdog_.feed(now);
+  if (frame.seen) watchdog_.feed(now);
   silent_ = answer == Answer::late;
   if (silent_) {
-    complain(kSilent, now, out);
+    report_fault(kSilent, now, out);
     return answer;
   }
   check(runner->failure(), now, out);
@@ -303,19 +297,18 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   return answer;
 }
 
-void HeadController::heed(const CerberusFusion& fusion, Time at, DeferredNotifications& out) {
+void HeadController::on_decision(const FusionDecision& decision, Time at, DeferredNotifications& out) {
   const std::lock_guard guard(lock_);
-  // Frames alone keep a head going: one that waits for them moves for nobody.
-  if (!runner_ || !clock_driven_ || halted_ || manual_ || !watchdog_.alive()) return;
-  const Time decided = time_of(fusion.decided);
-  if (decided > at + kHaste || decided < at - kStale) return;
-  const std::optional<TargetSelector::Verdict> verdict = pilot_.heed(fusion);
-  if (!verdict) return;
+  // Only frames feed the watchdog: without them no decision moves the head.
+  if (!runner_ || !clock_driven_ || halted_ || manual_.active() || !watchdog_.alive()) return;
+  if (!decision.decided || *decision.decided > at + kEarly || *decision.decided < at - kStale) return;
+  const auto selection = selector_.on_decision(decision);
+  if (!selection) return;
   const Time now = head_time(at);
   const Pose ahead = history_.at(now + setup_.latency);
-  const control::Order order = law_.update(verdict->wish, {}, ahead, ahead);
-  if (!faulty_) say(word(order), verdict->reason, now, out);
-  runner_->command({now, order.pan, order.tilt});
+  const Command command = law_.update(selection->goal, {}, ahead, ahead);
+  if (!faulty_) report(state_of(command), selection->reason, now, out);
+  runner_->command({now, command.pan, command.tilt});
 }
 
 HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
@@ -325,7 +318,7 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   const Time now = head_time(at);
   if (watchdog_.bites(now)) {
     runner->command({now, {}, {}});
-    stand(now, out);
+    on_timeout(now, out);
   }
   guard.unlock();
   std::vector<Pose> poses;
@@ -333,7 +326,7 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   guard.lock();
   if (answer == Answer::late) {
     if (late_since_ == motion::kNever) late_since_ = now;
-    if (now - late_since_ > kSilence) complain(kSilent, now, out);
+    if (now - late_since_ > kSilence) report_fault(kSilent, now, out);
     return at + kWhileMoving;
   }
   if (answer != Answer::interrupted) check(runner->failure(), now, out);
@@ -361,9 +354,9 @@ void HeadController::halt(const char* reason, std::optional<Time> at, drivers::H
   if (answer == Answer::done && clock_driven_) runner->ask({}, now, motion::kNever, poses, kTickPatience);
   guard.lock();
   remember(poses);
-  for (const Pose& pose : poses) out.tell(running(pose));  // until it rests: in PAUSED nobody asks again
-  if (answer == Answer::late) complain("the head does not answer: it may not have stopped", now, out);
-  if (!faulty_) say("stopped", reason, now, out);
+  for (const Pose& pose : poses) out.add(running(pose));  // until it rests: in PAUSED it is not asked again
+  if (answer == Answer::late) report_fault("the head does not answer: it may not have stopped", now, out);
+  if (!faulty_) report(HeadState::stopped, reason, now, out);
 }
 
 void HeadController::end(std::optional<Time> at, drivers::HeadRunner::Patience patience,
@@ -371,23 +364,17 @@ void HeadController::end(std::optional<Time> at, drivers::HeadRunner::Patience p
   {
     const std::lock_guard guard(lock_);
     ended_ = true;
-    pilot_.follow(0);
-    lapse("its order was over with the stream");
+    selector_.follow(0);
+    manual_.expire("its order was over with the stream");
   }
   halt("end of the stream", at, patience, out);
 }
 
-// What the application ordered is over. Who has the head in his hand keeps it: nobody else moves it, and it stands.
-void HeadController::lapse(const char* reason) {
-  if (!manual_) return;
-  wanted_ = {};
-  hand_ = reason;
-}
-
-// The watchdog has bitten.
-void HeadController::stand(Time head, DeferredNotifications& out) {
-  lapse("its order was over when no frame came");
-  say("stopped", "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head, out);
+// The watchdog has expired.
+void HeadController::on_timeout(Time head, DeferredNotifications& out) {
+  manual_.expire("its order was over when no frame came");
+  report(HeadState::stopped, "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head,
+         out);
 }
 
 void HeadController::resume(std::optional<Time> at, DeferredNotifications& out) {
@@ -395,9 +382,9 @@ void HeadController::resume(std::optional<Time> at, DeferredNotifications& out) 
   if (ended_) return;
   halted_ = false;
   if (runner_ && std::exchange(limits_wait_, false)) runner_->limit(earliest(at), setup_.limits);
-  if (runner_ && manual_ && clock_driven_ && at)
-    runner_->command({head_time(*at), wanted_.pan, wanted_.tilt});
-  say_by_hand(told_, out);
+  if (runner_ && manual_.active() && clock_driven_ && at)
+    runner_->command({head_time(*at), manual_.command().pan, manual_.command().tilt});
+  report_manual(latest_, out);
 }
 
 void HeadController::interrupt(bool on) {
@@ -410,4 +397,55 @@ std::optional<HeadController::Time> HeadController::newest() const {
   return newest_;
 }
 
-}  // namespace cerberus::plugin
+// The command of the application goes to the head at once where the clock drives it, else with the next frame.
+void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications& out) {
+  law_.reset();
+  const Time now = at && clock_driven_ ? head_time(*at) : latest_;
+  if (clock_driven_ && !halted_) runner_->command({now, manual_.command().pan, manual_.command().tilt});
+  report(HeadState::manual, manual_.reason(), now, out);
+}
+
+bool HeadController::move(double pan, double tilt, bool relative, std::optional<Time> at,
+                          DeferredNotifications& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_ || ended_) return false;
+  const Time now = at && clock_driven_ ? head_time(*at) : std::max(latest_, published_);
+  if (!manual_.move(pan, tilt, relative, history_.at(now), setup_.limits)) return false;
+  apply_manual(at, out);
+  return true;
+}
+
+bool HeadController::stop(std::optional<Time> at, DeferredNotifications& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_) return false;
+  manual_.stop();
+  apply_manual(at, out);
+  return true;
+}
+
+// From the application back to the decisions.
+void HeadController::end_manual(const char* reason, std::optional<Time> at, DeferredNotifications& out) {
+  if (!manual_.end()) return;
+  const Time now = at && clock_driven_ ? head_time(*at) : latest_;
+  if (clock_driven_ && !halted_) runner_->command({now, {}, {}});
+  report(HeadState::holding, reason, now, out);
+}
+
+bool HeadController::automatic(std::optional<Time> at, DeferredNotifications& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_) return false;
+  selector_.follow(0);
+  end_manual("told to go on by itself", at, out);
+  return true;
+}
+
+bool HeadController::follow(std::uint32_t id, std::optional<Time> at, DeferredNotifications& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_ || ended_ || id == 0) return false;
+  selector_.follow(id);
+  law_.reset();  // another target
+  end_manual("told to follow somebody", at, out);
+  return true;
+}
+
+}  // namespace cerberus::control

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a head controller reports, as data: poses for the elements upstream, states and faults for the application. A
+// controller writes them while it holds its lock; they are sent later, without any lock, in the order of their writing.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "motion/pose.h"
+#include "threads/in_order.h"
+
+namespace cerberus::control {
+
+enum class HeadState : std::uint8_t {
+  stopped,
+  tracking,
+  turning,
+  searching,
+  zeroing,
+  holding,
+  manual,
+  limited,
+  fault,
+};
+struct Status {
+  HeadState state = HeadState::stopped;
+  std::string reason;  // for a user
+  motion::Pose pose;
+  motion::Time time{};
+};
+struct Refusal {  // the head cannot be opened: an error
+  std::string why;
+  bool operator==(const Refusal&) const = default;
+};
+struct Fault {  // the head begins to fail: a warning
+  std::string what;
+  bool operator==(const Fault&) const = default;
+};
+struct Lost {  // the track that was chosen is on no frame any more: a warning
+  std::uint32_t id = 0;
+  bool operator==(const Lost&) const = default;
+};
+using Notice = std::variant<Status, Refusal, Fault, Lost>;
+
+// What all threads have written and none has sent yet. Each entry names its head, because the sender may drive another
+// one by now.
+struct NotificationQueue {
+  template <typename T>
+  struct Of {
+    const char* head = nullptr;  // must live as long as the queue: an interned string
+    T thing;
+  };
+  // A newer status replaces an older one of the same head; another notice is replaced by an equal one only.
+  static bool replaces(const Of<Notice>& newer, const Of<Notice>& older) {
+    if (newer.head != older.head || newer.thing.index() != older.thing.index()) return false;
+    if (const auto* refusal = std::get_if<Refusal>(&newer.thing))
+      return *refusal == std::get<Refusal>(older.thing);
+    if (const auto* fault = std::get_if<Fault>(&newer.thing)) return *fault == std::get<Fault>(older.thing);
+    if (const auto* lost = std::get_if<Lost>(&newer.thing)) return *lost == std::get<Lost>(older.thing);
+    return true;
+  }
+
+  threads::InOrder<Of<motion::Pose>> poses;
+  threads::InOrder<Of<Notice>> notices{replaces};
+};
+
+// What one call of the controller reports.
+class DeferredNotifications {
+ public:
+  // head: of what is written at that moment; it is set before the controller opens that head.
+  DeferredNotifications(NotificationQueue& queue, const std::atomic<const char*>& head)
+      : queue_(queue), head_(head) {}
+  // With the controller's lock held.
+  void add(const motion::Pose& pose) {
+    queue_.poses.put({head_, pose});
+    poses_ = true;
+  }
+  void add(Notice notice) {
+    queue_.notices.put({head_, std::move(notice)});
+    notices_ = true;
+  }
+  // With no lock held. send_pose(head, pose), then send_notice(head, notice), for everything that waits in the queue.
+  template <typename SendPose, typename SendNotice>
+  void send(SendPose send_pose, SendNotice send_notice) const {
+    if (poses_) queue_.poses.tell([&](const auto& pose) { send_pose(pose.head, pose.thing); });
+    if (notices_) queue_.notices.tell([&](const auto& notice) { send_notice(notice.head, notice.thing); });
+  }
+
+ private:
+  NotificationQueue& queue_;
+  const std::atomic<const char*>& head_;
+  bool poses_ = false, notices_ = false;
+};
+
+}  // namespace cerberus::control

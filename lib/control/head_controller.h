@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Drives one head: takes frames, decisions and the application's commands, decides, commands the driver, keeps the
+// history of poses, and reports. Thread-safe. Reports are written into the caller's DeferredNotifications with the lock
+// held and sent by the caller without it.
+//
+// All times that are passed are running times. The head's own time never goes back: where running time does (a flush),
+// it goes on. clock-driven: the head moves while the clock runs; otherwise its time is that of the frames.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "control/deferred_notifications.h"
+#include "control/law.h"
+#include "control/manual_override.h"
+#include "control/target_selector.h"
+#include "control/watchdog.h"
+#include "drivers/head/head_runner.h"
+
+namespace cerberus::control {
+
+class HeadController {
+ public:
+  using Time = motion::Time;
+  using Answer = drivers::HeadRunner::Answer;
+  using Patience = drivers::HeadRunner::Patience;
+
+  // The head is open or being opened. The controller is halted until resume().
+  void open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::HeadSetup& setup);
+  // The driver said, at any time, that the head cannot be opened.
+  void on_refusal(DeferredNotifications& out);
+  // Gives the driver the rest of its patience, then abandons it.
+  void close(Patience patience);
+
+  // At once, or when a halt ends. Returns what is wrong with the limits, for a user; then the old ones stay.
+  std::string set_limits(const motion::Limits& limits, std::optional<Time> now);
+  // The limits of `law` are ignored: set_limits() sets them.
+  void set_options(const LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
+  void set_clock_driven(bool on);
+  // Forgets the frames and the end of the stream (a flush): the next frame begins anew.
+  void forget();
+  // Publishes where the head looks at the start, valid until its latency allows something else. interrupted: call again.
+  Answer announce(Time running, DeferredNotifications& out);
+
+  struct Frame {
+    std::optional<Observation> seen;  // nothing: a gap
+    Time running;                     // when it was taken
+    Time length{};                    // until the next one, as far as known
+    Time now{};                       // clock-driven: running time by the clock
+    vision::Lens lens;
+    std::optional<motion::Pose> capture;  // where the head looked then, if the frame carries it
+  };
+  // interrupted: call again. With any other answer the frame is done with.
+  Answer frame(const Frame& frame, DeferredNotifications& out);
+
+  // A decision between two frames, which counts if the clock drives the head and frames come.
+  void on_decision(const FusionDecision& decision, Time now, DeferredNotifications& out);
+
+  // Clock-driven: publishes the pose, checks the watchdog. Returns when it is to be called again.
+  Time tick(Time now, DeferredNotifications& out);
+  // Brakes, within `patience`. Frames are ignored until resume(). now: by the clock, if there is one.
+  void halt(const char* reason, std::optional<Time> now, Patience patience, DeferredNotifications& out);
+  void resume(std::optional<Time> now, DeferredNotifications& out);
+  // The stream is over: a halt that only forget() and open() end. A manual command expires.
+  void end(std::optional<Time> now, Patience patience, DeferredNotifications& out);
+
+  // Manual override until automatic(). Radians; now: as for halt(). False: not possible.
+  bool move(double pan, double tilt, bool relative, std::optional<Time> now, DeferredNotifications& out);
+  bool stop(std::optional<Time> now, DeferredNotifications& out);
+  bool automatic(std::optional<Time> now, DeferredNotifications& out);
+  // The track to be followed while it lives; ends a manual override. 0 is refused.
+  bool follow(std::uint32_t id, std::optional<Time> now, DeferredNotifications& out);
+
+  // As of the runner.
+  void interrupt(bool on);
+  // Running time of the last frame that counted.
+  std::optional<Time> newest() const;
+
+ private:
+  Time head_time(Time running);
+  Time earliest(std::optional<Time> now);
+  void confine_law();
+  void remember(const std::vector<motion::Pose>& poses);
+  void publish(const std::vector<motion::Pose>& poses, Time until, DeferredNotifications& out);
+  void report(HeadState state, std::string reason, Time head, DeferredNotifications& out);
+  void report_manual(Time head, DeferredNotifications& out);
+  void report_fault(const std::string& failure, Time head, DeferredNotifications& out);
+  void report_refusal(Time head, DeferredNotifications& out);
+  void check(const std::string& failure, Time head, DeferredNotifications& out);
+  drivers::HeadCommand decide(const Frame& frame, Time now, DeferredNotifications& out);
+  void on_timeout(Time head, DeferredNotifications& out);
+  void apply_manual(std::optional<Time> now, DeferredNotifications& out);
+  void end_manual(const char* reason, std::optional<Time> now, DeferredNotifications& out);
+  motion::Pose running(motion::Pose pose) const;
+
+  mutable std::mutex lock_;
+  std::shared_ptr<drivers::HeadRunner> runner_;
+  drivers::HeadSetup setup_;
+  bool limits_wait_ = false;  // for the end of a halt
+  Law law_;
+  motion::PoseHistory history_;  // in the head's time
+  Watchdog watchdog_;
+  TargetSelector selector_;
+  ManualOverride manual_;
+  bool clock_driven_ = false, halted_ = false, faulty_ = false, silent_ = false;
+  bool ended_ = false;          // the stream
+  Time latest_{}, epoch_{};     // head time of the last command; head time = running time + epoch
+  Time published_{};            // head time until which poses were published
+  bool fresh_ = true;           // no pose was published since running time may have begun anew
+  std::optional<Time> newest_;  // running
+  Time timeout_{};
+  Time late_since_ = motion::kNever;
+  Status status_;
+};
+
+}  // namespace cerberus::control
