@@ -27,7 +27,7 @@ struct Scene {
   // How many of these are left in the next frame.
   int see(std::vector<Region> found, const Transform& motion = kPan, double minimum_area = 0) {
     regions = std::move(found);
-    newcomers.hold_back(regions, frames++, minimum_area, motion, kSize);
+    newcomers.filter(regions, frames++, minimum_area, motion, kSize);
     return static_cast<int>(regions.size());
   }
 };
@@ -123,7 +123,7 @@ START_TEST(clutter_is_survived_without_allocation) {
   const std::size_t bytes = s.newcomers.bytes();
   s.regions = many;
   const std::size_t before = cerberus::tests::allocations();
-  for (int frame = 3; frame < 30; ++frame) s.newcomers.hold_back(s.regions, frame, 0, {}, kSize);
+  for (int frame = 3; frame < 30; ++frame) s.newcomers.filter(s.regions, frame, 0, {}, kSize);
   ck_assert_uint_eq(cerberus::tests::allocations(), before);
   ck_assert_uint_eq(s.newcomers.bytes(), bytes);
 }

@@ -5,26 +5,15 @@
 #include <cmath>
 
 namespace cerberus::vision {
-namespace {
-
-constexpr double kSpread =
-    0.10;  // people and their blobs differ by this share of the height (standard deviation)
-constexpr double kAgree = 2.0;       // samples this many deviations from the line agree with it
-constexpr double kShare = 0.5;       // of the samples that must
-constexpr double kUncertain = 0.16;  // relative standard error of the line beyond which it says nothing
-constexpr double kRepeats = 4.0;     // neighbouring frames show the same person: so many samples count as one
-constexpr int kGuesses = 40;         // pairs of samples tried as lines
-constexpr double kSteepest = 4.0;    // body height / mounting height: a camera at 0.45 m
-
-}  // namespace
-
 void HeightPrior::advance(const Transform& motion, Size picture) {
   if (motion.is_identity() || count_ == 0) return;
   const Point middle{picture.width / 2.0, picture.height / 2.0};
   const Point moved = motion.apply(middle);
   const Point lower = motion.apply({middle.x, middle.y + 1});
   const double scale = std::hypot(lower.x - moved.x, lower.y - moved.y), shift = moved.y - middle.y;
-  if (!std::isfinite(scale) || !std::isfinite(shift) || !(scale > 0.5 && scale < 2)) return reset();
+  if (!std::isfinite(scale) || !std::isfinite(shift) ||
+      !(scale > 1 / parameters_.zoom && scale < parameters_.zoom))
+    return reset();
   const auto row = [&](double y) { return middle.y + shift + scale * (y - middle.y); };
   for (std::size_t i = 0; i < count_; ++i) {
     samples_[i].foot = static_cast<float>(row(samples_[i].foot));
@@ -39,17 +28,17 @@ void HeightPrior::learn(double foot, double height, double weight) {
   samples_[next_] = {static_cast<float>(foot), static_cast<float>(height), static_cast<float>(weight)};
   next_ = (next_ + 1) % kCapacity;
   count_ = std::min(count_ + 1, kCapacity);
-  // Every sample counts at the start; later the line hardly changes.
-  if (++fresh_ >= std::max<std::size_t>(1, count_ / 16)) fit();
+  if (++fresh_ >= std::max<std::size_t>(1, count_ / static_cast<std::size_t>(parameters_.refit))) fit();
 }
 
 // The line with most agreement among lines through two samples (M. A. Fischler, R. C. Bolles, "Random sample
-// consensus", 1981), then weighted least squares over those who agree, with a weak prior on the slope: a horizon at
-// the picture's upper edge, give or take as much again.
+// consensus", 1981), then least squares over the samples that agree, with a weak prior on the slope: a horizon at the
+// picture's upper edge, give or take as much again.
 void HeightPrior::fit() {
+  const Parameters& q = parameters_;
   fresh_ = 0;
   ready_ = false;
-  if (count_ < kLeast) return;
+  if (count_ < static_cast<std::size_t>(q.least)) return;
   const auto pick = [&] {
     random_ = random_ * 1664525u + 1013904223u;
     return samples_[(random_ >> 8) % count_];
@@ -58,20 +47,21 @@ void HeightPrior::fit() {
     double sum = 0;
     for (std::size_t i = 0; i < count_; ++i) {
       const double expected = offset + slope * samples_[i].foot;
-      const double e = (samples_[i].height - expected) / (kSpread * expected);
-      if (expected > 0 && std::abs(e) < kAgree) sum += samples_[i].weight * (1 - e * e / (kAgree * kAgree));
+      const double e = (samples_[i].height - expected) / (q.spread * expected);
+      if (expected > 0 && std::abs(e) < q.agree)
+        sum += samples_[i].weight * (1 - e * e / (q.agree * q.agree));
     }
     return sum;
   };
   double best = 0, best_slope = 0, best_offset = 0;
-  for (int guess = 0; guess < kGuesses; ++guess) {
+  for (int guess = 0; guess < q.guesses; ++guess) {
     const Sample a = pick(), b = pick();
     double slope = a.height / std::max(a.foot, 1.f);  // horizon at the upper edge
-    if (guess % 4 != 0) {
-      if (std::abs(a.foot - b.foot) < 0.2 * std::max(a.height, b.height)) continue;
+    if (guess % q.through_horizon != 0) {
+      if (std::abs(a.foot - b.foot) < q.baseline * std::max(a.height, b.height)) continue;
       slope = (a.height - b.height) / (a.foot - b.foot);
     }
-    if (slope < 0 || slope > kSteepest) continue;
+    if (slope < 0 || slope > q.steepest) continue;
     const double offset = a.height - slope * a.foot, sum = agreement(slope, offset);
     if (sum > best) best = sum, best_slope = slope, best_offset = offset;
   }
@@ -79,27 +69,29 @@ void HeightPrior::fit() {
   for (std::size_t i = 0; i < count_; ++i) {
     all += samples_[i].weight;
     const double y = samples_[i].foot, h = samples_[i].height, expected = best_offset + best_slope * y;
-    if (!(expected > 0) || std::abs(h - expected) > kAgree * kSpread * expected) continue;
+    if (!(expected > 0) || std::abs(h - expected) > q.agree * q.spread * expected) continue;
     agreed += samples_[i].weight;
     n += 1, sy += y, sh += h, syy += y * y, syh += y * h;
   }
-  if (n < kLeast || agreed < kShare * all) return;
+  if (n < q.least || agreed < q.share * all) return;
   mean_foot_ = sy / n;
   mean_height_ = sh / n;
-  const double variance = kSpread * mean_height_ * kSpread * mean_height_ * kRepeats;
+  const double variance = q.spread * mean_height_ * q.spread * mean_height_ * q.repeats;
   const double spread = syy - n * mean_foot_ * mean_foot_, joint = syh - n * mean_foot_ * mean_height_;
   const double usual = mean_height_ / std::max(mean_foot_, 1.0);
   const double precision = spread / variance, prior = 1 / (usual * usual);
-  slope_ = std::clamp((joint / variance + usual * prior) / (precision + prior), 0.0, kSteepest);
+  slope_ = std::clamp((joint / variance + usual * prior) / (precision + prior), 0.0, q.steepest);
   slope_variance_ = 1 / (precision + prior);
   mean_variance_ = variance / n;
   ready_ = true;
 }
 
 double HeightPrior::height(double foot) const {
+  const Parameters& q = parameters_;
   if (!ready_) return 0;
   const double d = foot - mean_foot_, h = mean_height_ + slope_ * d;
-  if (!(h > 4) || mean_variance_ + slope_variance_ * d * d > kUncertain * h * kUncertain * h) return 0;
+  if (!(h > q.least_height) || mean_variance_ + slope_variance_ * d * d > q.uncertain * h * q.uncertain * h)
+    return 0;
   return h;
 }
 

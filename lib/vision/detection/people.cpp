@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The likelihood: a pixel moves with one probability in the middle half of a person's columns, with a lower one in the
-// outer ones and with hardly any elsewhere (people_kernels.h). A person at a place gains, for each pixel not yet
-// explained by another, the logarithm of the ratio to "elsewhere"; whoever gains less than its price is not there. (The
-// idea of explaining foreground by boxes of known size: F. Fleuret et al., "Multi-camera people tracking with a
+// The likelihood: a pixel is foreground with one probability in the middle half of a person's columns, with a lower one
+// in the outer ones and with hardly any elsewhere (people_kernels.h). A person at a place gains, for each pixel not yet
+// explained by another, the logarithm of the ratio to "elsewhere"; a gain below the price of a person is none. (The idea of explaining foreground by boxes of known size: F. Fleuret et al., "Multi-camera people tracking with a
 // probabilistic occupancy map", PAMI 30(2), 2008; here one camera, greedy, with all sums from one table.)
 #include "vision/detection/people.h"
 
@@ -16,25 +15,18 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr double kBodyAspect = 0.36;  // width of a walking body / its height
-constexpr int kRowsOfABody = 24;      // cells a body is cut into at least, if it has as many pixels
-constexpr int kUnit = 64;             // of the logarithms in people_kernels.h
-constexpr double kSolid = 0.88;       // share of the boxes that moves: people leave more gaps
-constexpr int kWideBlock = 4;         // bodies; in so wide a row of people there are gaps
-constexpr double kGaps = 0.11;        // share of such a row that is gaps, at least; of cars .06 to .10
-constexpr double kGapsLeft = 0.16;    // the same of what is left of a wide block
-constexpr std::size_t kMostPeople = 12;
+constexpr int kUnit = 64;          // of the logarithms in people_kernels.h
 constexpr int kMostCells = 16384;  // in a grid; both packed sums stay below 65536
 
 }  // namespace
 
 void PeopleFinder::preallocate(Size picture) {
   picture_ = picture;
-  // A cell a pixel is for people below 2 kRowsOfABody pixels; around the picture there are then at most so many columns
-  // and rows, and fewer cells at every larger step.
-  const int tallest = 2 * kRowsOfABody;
-  const auto columns = static_cast<std::size_t>(picture.width + 2 * (kBodyAspect * tallest + 2));
-  const auto rows = static_cast<std::size_t>(picture.height + 1.3 * tallest + 2);
+  // Cells of one pixel are used for people below 2 parameters_.cells pixels: around the picture there are then at most
+  // so many columns and rows, and fewer cells at every larger step.
+  const int tallest = 2 * parameters_.cells;
+  const auto columns = static_cast<std::size_t>(picture.width + 2 * (parameters_.aspect * tallest + 2));
+  const auto rows = static_cast<std::size_t>(picture.height + parameters_.tallest * tallest + 2);
   vision::preallocate(shapes_, rows + 1);
   for (auto* sums : {&moving_, &band_, &sums_}) vision::preallocate(*sums, columns + 1);
   vision::preallocate(scores_, columns + 1);
@@ -48,16 +40,17 @@ std::size_t PeopleFinder::bytes() const {
          bytes_of(chosen_) + bytes_of(other_) + bytes_of(people_);
 }
 
-// Cells around the window, wide enough that every place a person may be judged at lies on the grid. Outside the picture
-// nothing is counted; inside the picture but outside the window nothing moves.
+// Cells around the window, wide enough for every position that is scored. Outside the picture no cell is counted; inside
+// the picture but outside the window no cell is foreground.
 bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std::uint8_t> room) {
   const double tallest = prior_->height(window.bottom);
   if (tallest <= 0) return false;
-  // A crowd all across the picture is looked at more coarsely.
-  for (step_ = std::max(1, static_cast<int>(tallest / kRowsOfABody));; ++step_) {
-    const int around = static_cast<int>(kBodyAspect * tallest) + 2 * step_;
-    const int above = static_cast<int>(0.7 * tallest);
-    const int below = window.bottom >= picture_.height ? static_cast<int>(0.6 * tallest) : 2 * step_;
+  // A crowd all across the picture gets larger cells.
+  for (step_ = std::max(1, static_cast<int>(tallest / parameters_.cells));; ++step_) {
+    const int around = static_cast<int>(parameters_.aspect * tallest) + 2 * step_;
+    const int above = static_cast<int>(parameters_.above * tallest);
+    const int below =
+        window.bottom >= picture_.height ? static_cast<int>(parameters_.below * tallest) : 2 * step_;
     x0_ = window.left - around;
     y0_ = window.top - above;
     columns_ = (window.width() + 2 * around + step_ - 1) / step_;
@@ -76,7 +69,7 @@ bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std:
   std::ranges::fill(cells_, std::uint8_t{0});
   for (int r = inside_.top; r < inside_.bottom; ++r)
     std::fill_n(cells(r) + inside_.left, inside_.width(), kCellCounted);
-  // A cell moves when at least half of its pixels do (of one pixel: when it does).
+  // A cell is foreground when at least half of its pixels are (of one pixel: when it is).
   const int half = std::max(1, step_ * step_ / 2);
   std::vector<std::uint32_t>& moving = band_;  // not in use yet
   for (int r = window_.top; r < window_.bottom; ++r) {
@@ -93,18 +86,18 @@ bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std:
     const double height = prior_->height(y0_ + r * step_) / step_;
     if (height > 0)
       shapes_[r] = {std::max(2, static_cast<int>(std::lround(height))),
-                    std::max(1, static_cast<int>(std::lround(kBodyAspect * height)))};
+                    std::max(1, static_cast<int>(std::lround(parameters_.aspect * height)))};
   }
   for (auto* sums : {&moving_, &band_, &sums_}) sums->resize(static_cast<std::size_t>(columns_) + 1);
   scores_.resize(static_cast<std::size_t>(columns_) + 1);
   return true;
 }
 
-void PeopleFinder::forget_explained() {
+void PeopleFinder::clear_explained() {
   for (std::uint8_t& cell : cells_) cell &= static_cast<std::uint8_t>(~kCellExplained);
 }
 
-// What lies in the box is explained: it counts for nobody else.
+// The cells of the box are explained: they count for no other person.
 void PeopleFinder::mark_explained(const Candidate& c) {
   for (int r = c.top; r < c.bottom; ++r)
     for (int x = c.left; x < c.right; ++x) cells(r)[x] |= kCellExplained;
@@ -130,18 +123,18 @@ void PeopleFinder::slide(int top, int bottom, int left, int right) {
   for (int c = left; c < right; ++c) sums_[c + 1] = sum += band_[c];
 }
 
-// The best place for one more person whose left edge lies in [from, to). Score 0: nowhere. With an anchor, a column,
-// what stays unexplained between it and the box is taken for lost and counts against the place.
+// The best position for one more person whose left edge lies in [from, to). Score 0: none. With an anchor, a column,
+// the foreground that stays unexplained between it and the box counts against the position.
 PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   Candidate best;
   int best_value = 0;
   for (int foot = rows_; foot > window_.top; --foot) {
     const auto [h, w] = shapes_[foot];
     if (h == 0 || foot - h < 0) continue;
-    if (foot - window_.top < 0.4 * h) break;
-    // A third of the body at least is in the picture.
-    const int q = w / 4, first = std::max({from, 0, inside_.left - w + (w + 2) / 3});
-    const int end = std::min({to, columns_ - w + 1, inside_.right - (w + 2) / 3 + 1});
+    if (foot - window_.top < parameters_.least_feet * h) break;
+    const int q = w / parameters_.side_part, part = (w + parameters_.least_part - 1) / parameters_.least_part;
+    const int first = std::max({from, 0, inside_.left - w + part});
+    const int end = std::min({to, columns_ - w + 1, inside_.right - part + 1});
     if (first >= end) continue;
     const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
     slide(foot - h, foot, first, end - 1 + w);
@@ -165,26 +158,27 @@ PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   return best;
 }
 
-// Takes people one after another, the best first or always the leftmost one, and returns what is gained in all.
+// Chooses people one after another, the best first or always the leftmost one, and returns the total gain.
 int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
-  forget_explained();
+  clear_explained();
   add_up_window();
   const int width = std::max(1, shapes_[std::min(window_.bottom, rows_)].width);
   int total = 0, edge = window_.left;
   const auto [height, body] = shapes_[std::min(window_.bottom, rows_)];
   while (chosen_.size() < kMostPeople) {
-    // What is left may be too little to pay for a third of a person.
+    // The rest may be too little for the price of the least part of a person.
     const auto moving = static_cast<int>(moving_[columns_]);
-    if (moving * kCoreMoving < kPrice * height * body / 3) break;
+    if (moving * kCoreMoving < kPrice * height * body / parameters_.least_part) break;
     Candidate c;
     if (from_the_left) {
-      // The leftmost column that still holds something decides; a person's edge is near it.
+      // A person's edge is near the leftmost column with unexplained foreground.
       while (edge < window_.right && moving_[edge + 1] == moving_[edge]) ++edge;
       if (edge >= window_.right) break;
-      c = best(edge - width / 3, edge + width / 3 + 1, edge);
+      const int reach = width / parameters_.edge_part;
+      c = best(edge - reach, edge + reach + 1, edge);
       if (c.score <= 0) {
-        edge += std::max(1, width / 4);
+        edge += std::max(1, width / parameters_.edge_step);
         continue;
       }
     } else {
@@ -199,13 +193,13 @@ int PeopleFinder::explain(bool from_the_left) {
   return total;
 }
 
-// Each in turn may move, given the others.
+// Moves each person in turn, given the others.
 void PeopleFinder::settle() {
   const std::size_t n = chosen_.size();
   for (std::size_t i = 0; i < n && n > 1; ++i) {
     const Candidate old = chosen_.front();
     chosen_.erase(chosen_.begin());
-    forget_explained();
+    clear_explained();
     for (const Candidate& c : chosen_) mark_explained(c);
     add_up_window();
     const int w = old.right - old.left;
@@ -214,9 +208,9 @@ void PeopleFinder::settle() {
   }
 }
 
-// Share of the cells in the chosen boxes that move.
+// Share of the cells in the chosen boxes that are foreground.
 double PeopleFinder::filled() {
-  forget_explained();
+  clear_explained();
   int moving = 0, all = 0;
   for (const Candidate& c : chosen_)
     for (int r = c.top; r < c.bottom; ++r)
@@ -230,8 +224,8 @@ double PeopleFinder::filled() {
   return all > 0 ? static_cast<double>(moving) / all : 0;
 }
 
-// Share of what lies between the first and the last moving cell of each row that does not move: between heads, legs and
-// neighbours. Unlike the share of people's boxes it does not ask for a rectangle: cars are round and run aslant.
+// Share of gaps: background cells between the first and the last foreground cell of each row, as between heads, legs and
+// neighbours. Unlike filled() it does not expect rectangles: cars are round and move aslant.
 double PeopleFinder::gaps() {
   int between = 0, still = 0;
   for (int r = window_.top; r < window_.bottom; ++r) {
@@ -245,19 +239,19 @@ double PeopleFinder::gaps() {
   return between > 0 ? static_cast<double>(still) / between : 0;
 }
 
-// A block is no people: a car, a door.
+// Is the group a car or a door, not people?
 bool PeopleFinder::is_block(bool was_wide) {
   const std::size_t n = chosen_.size();
-  const bool wide = n > 2 && window_.width() >= kWideBlock * shapes_[window_.bottom].width;
-  wide_block_ = (wide && gaps() < kGaps) || (was_wide && n > 1 && gaps() < kGapsLeft);
-  return wide_block_ || (n > 2 && filled() > kSolid);
+  const bool wide = n > 2 && window_.width() >= parameters_.block_width * shapes_[window_.bottom].width;
+  wide_block_ = (wide && gaps() < parameters_.gaps) || (was_wide && n > 1 && gaps() < parameters_.gaps_after);
+  return wide_block_ || (n > 2 && filled() > parameters_.solid);
 }
 
 void PeopleFinder::choose(bool was_wide_block) {
-  // The leftmost first is right for people side by side, where the best first may stand in their middle; the best first
-  // is right for people behind one another.
+  // Leftmost first is right for people side by side, where the best position may be the middle between two; best first is
+  // right for people behind one another.
   const int best_first = explain(false);
-  if (chosen_.size() > 1 || window_.width() > 1.3 * shapes_[window_.bottom].width) {
+  if (chosen_.size() > 1 || window_.width() > parameters_.one_wide * shapes_[window_.bottom].width) {
     std::swap(chosen_, other_);
     if (explain(true) <= best_first) std::swap(chosen_, other_);
     settle();

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inner loop of looking for people, chosen for the processor at run time.
+// Inner loops of PeopleFinder, chosen for the processor at run time.
 #pragma once
 
 #include <cstdint>
 
 namespace cerberus::vision {
 
-// What a cell says for a person: 64 ln(p / kOutside) where it moves and 64 ln((1 - p) / (1 - kOutside)) where it does
-// not, with p = .65 in the core, .35 at the sides and kOutside = .04; and what a cell of the box costs.
+// Log-likelihood ratio of one cell for a person at its place, in 1/64: 64 ln(p / p0) where the cell is foreground and
+// 64 ln((1 - p) / (1 - p0)) where it is not. derived: p = .65 in the core, .35 in the outer columns, p0 = .04 elsewhere.
 constexpr int kCoreMoving = 178, kCoreStill = -65;
 constexpr int kSideMoving = 139, kSideStill = -25;
-constexpr int kPrice = 26;  // 0.4 for each cell of the box; a whole person brings 1 to 1.7
+// Price of one cell of the box in 1/64 (0.4). A whole person gains 1 to 1.7 a cell. Guard: boxes on vtest.avi.
+constexpr int kPrice = 26;
 
-// One cell carries two numbers: moving in the lower 16 bits, counted at all in the upper. Sums of up to 65535 cells,
+// One cell carries two numbers: foreground in the lower 16 bits, counted at all in the upper. Sums of up to 65535 cells,
 // and differences of sums, are exact in both halves.
 constexpr std::uint32_t kCounted = 0x10000, kMoving = 1;
 
@@ -25,14 +26,14 @@ struct BoxRow {
   int columns(int l) const { return (l + width < right ? l + width : right) - (l > left ? l : left); }
 };
 
-// scores[l], first <= l < end: what a person there gains, less its price. Returns the highest.
+// scores[l], first <= l < end: gain of a person with the left edge at l, less its price, 1/64. Returns the highest.
 int score_boxes(const BoxRow& row, int first, int end, int* scores);
 int score_boxes_reference(const BoxRow& row, int first, int end, int* scores);
 
-// What a cell of the grid is, one byte a cell.
+// A cell of the grid, one byte: bits.
 constexpr std::uint8_t kCellMoving = 1, kCellCounted = 2, kCellExplained = 4;
 
-// sums[c] += (or -=) what cell c carries: nothing once it is explained.
+// sums[c] += (or -=) the two numbers of cell c; 0 if it is explained.
 void add_cells(const std::uint8_t* cells, int columns, std::uint32_t* sums);
 void subtract_cells(const std::uint8_t* cells, int columns, std::uint32_t* sums);
 

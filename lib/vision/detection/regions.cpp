@@ -334,7 +334,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
       if (s.group[i] == static_cast<int>(i)) s.explain(static_cast<int>(i));
   }
   for (Region& r : s.regions) r.area = static_cast<double>(s.moving_in(r.box));
-  if (s.options.people) s.newcomers.hold_back(s.regions, s.seen, s.options.minimum_area, motion, s.size);
+  if (s.options.people) s.newcomers.filter(s.regions, s.seen, s.options.minimum_area, motion, s.size);
   return s.regions;
 }
 
