@@ -166,9 +166,56 @@ START_TEST(who_runs_off_stretches_and_who_meets_sometrack_jumps) {
 }
 END_TEST
 
+START_TEST(each_transition_leads_to_its_state) {
+  using State = TrackHypothesis::State;
+  const Region seen{{180, 190, 40, 100}, 4000, 0.9, 1};
+  const CameraOrientation camera{Lens(60 * kDegree, kFrame), 0, 0};
+  TrackHypothesis track = walker(200, 240);
+  ck_assert(track.state == State::tentative && !track.in_view());
+  track.correct(seen, true, 0.1, kFrame);
+  track.miss(0.1);
+  ck_assert(track.state == State::tentative);
+  track.confirm(7);
+  ck_assert(track.state == State::confirmed && track.id == 7);
+  track.miss(0.1);
+  ck_assert(track.state == State::coasted && track.in_view() && !track.stands());
+  track.stop();
+  ck_assert(track.state == State::stopped && track.stands());
+  ck_assert_double_eq(track.speed(), 0);
+  track.miss(0.1);
+  ck_assert(track.state == State::stopped);
+  track.correct(seen, true, 0.1, kFrame);
+  ck_assert(track.state == State::confirmed);
+  // A stopped track comes back as a stopped one, another as a coasted one: the region that it is matched with corrects
+  // it.
+  for (const bool stopped : {true, false}) {
+    track.miss(0.1);
+    if (stopped) track.stop();
+    track.leave(camera);
+    ck_assert(track.state == State::off_screen && !track.in_view() && track.stands() == stopped);
+    track.miss(0.1);
+    ck_assert(track.state == State::off_screen);
+    track.come_back(seen.box);
+    ck_assert(track.state == (stopped ? State::stopped : State::coasted));
+    track.correct(seen, true, 0.1, kFrame);
+    ck_assert(track.state == State::confirmed);
+  }
+  track.miss(0.1);
+  track.stop();
+  track.leave(camera);
+  track.off_screen.absent = 0.4;
+  track.resume_stop();
+  ck_assert(track.state == State::stopped);
+  ck_assert_double_eq(track.stop_data.absent, 0.4);
+  track.lose();
+  ck_assert(track.state == State::lost && !track.in_view());
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "track_hypothesis", {a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_velocity,
+      "track_hypothesis", {each_transition_leads_to_its_state, a_zoom_scales_all_of_its_lengths,
+                           a_camera_that_rolls_turns_the_velocity,
                            a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
                            towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
                            it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,

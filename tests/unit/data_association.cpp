@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Data association on tracks and regions whose pairs are plain by hand.
+#include "vision/tracking/data_association.h"
+
+#include <check.h>
+
+#include <vector>
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr Size kFrame{640, 480};
+using State = TrackHypothesis::State;
+
+Region region(double x, double y, double width, double height, double confidence = 0.4) {
+  return {{x, y, width, height}, width * height, confidence, 1};
+}
+
+// A track at this box, seen for `age` seconds.
+TrackHypothesis track(const Box& box, State state = State::confirmed, double age = 2) {
+  TrackHypothesis t = TrackHypothesis::first_seen({box, box.area(), 0.9, 1});
+  if (state != State::tentative) t.confirm(1);
+  t.state = state;
+  t.age = age;
+  for (MovingValue* a : {&t.x, &t.y}) a->pp = a->vv = 1;
+  return t;
+}
+
+struct Scene {
+  std::vector<TrackHypothesis> tracks;
+  std::vector<Region> regions;
+  DataAssociation association;
+  RegionAppearances appearances;
+
+  std::span<const Match> associate() {
+    appearances.update({}, regions, {}, kFrame);
+    association.associate(tracks, regions, appearances, {kFrame, 0.1, 0});
+    return association.matches();
+  }
+};
+
+}  // namespace
+
+START_TEST(each_track_has_the_region_at_its_place_and_what_is_left_is_new) {
+  Scene s{{track({100, 100, 40, 100}), track({300, 100, 40, 100})},
+          {region(303, 102, 40, 100), region(500, 100, 40, 100), region(98, 101, 40, 100)},
+          {},
+          {}};
+  const auto matches = s.associate();
+  ck_assert_int_eq(matches[0].region, 2);
+  ck_assert_int_eq(matches[1].region, 0);
+  for (const Match& m : matches) ck_assert(m.sharers == 1 && !m.occluded && !m.reshaped && !m.merged);
+  ck_assert(!s.association.is_new(0) && s.association.is_new(1) && !s.association.is_new(2));
+}
+END_TEST
+
+START_TEST(a_track_in_view_comes_before_a_tentative_one_that_is_nearer) {
+  Scene s{{track({100, 100, 40, 100}, State::tentative), track({108, 100, 40, 100}, State::coasted)},
+          {region(100, 100, 40, 100)},
+          {},
+          {}};
+  const auto matches = s.associate();
+  ck_assert_int_eq(matches[0].region, -1);
+  ck_assert_int_eq(matches[1].region, 0);
+}
+END_TEST
+
+START_TEST(an_off_screen_track_comes_before_a_tentative_one_and_has_no_region_while_it_is_behind_the_camera) {
+  for (const bool in_front : {true, false}) {
+    Scene s{{track({100, 100, 40, 100}, State::tentative), track({108, 100, 40, 100}, State::off_screen)},
+            {region(100, 100, 40, 100)},
+            {},
+            {}};
+    s.tracks[1].off_screen.in_front = in_front;
+    const auto matches = s.associate();
+    ck_assert_int_eq(matches[in_front ? 1 : 0].region, 0);
+    ck_assert_int_eq(matches[in_front ? 0 : 1].region, -1);
+  }
+}
+END_TEST
+
+// Twice the area when it left, .25 more than that.
+START_TEST(a_track_comes_back_as_a_region_of_at_most_twice_its_area) {
+  for (const double height : {120.0, 250.0}) {
+    Scene s{{track({100, 100, 40, 100}, State::off_screen)}, {region(100, 100, 40, height)}, {}, {}};
+    for (MovingValue* a : {&s.tracks[0].x, &s.tracks[0].y}) a->pp = 1e4;
+    ck_assert_int_eq(s.associate()[0].region, height > 200 ? -1 : 0);
+  }
+}
+END_TEST
+
+START_TEST(a_fragment_completes_the_region_of_its_track) {
+  Scene s{{track({100, 100, 40, 100})}, {region(100, 130, 40, 70), region(110, 100, 20, 20)}, {}, {}};
+  ck_assert_int_eq(s.associate()[0].region, 0);
+  ck_assert_double_eq(s.regions[0].box.y, 100);
+  ck_assert_double_eq(s.regions[0].box.bottom(), 200);
+  ck_assert_double_eq(s.regions[0].box.width, 40);
+  ck_assert(!s.association.is_new(1));
+}
+END_TEST
+
+START_TEST(a_person_like_region_is_neither_a_fragment_nor_completed) {
+  for (const int whole : {0, 1}) {
+    Scene s{{track({100, 100, 40, 100})}, {region(100, 130, 40, 70), region(110, 100, 20, 20)}, {}, {}};
+    s.regions[static_cast<std::size_t>(whole)].confidence = 0.9;
+    ck_assert_int_eq(s.associate()[0].region, 0);
+    ck_assert_double_eq(s.regions[0].box.y, 130);
+    ck_assert(s.association.is_new(1));
+  }
+}
+END_TEST
+
+// A box of 100 x 100 was a group: 40 and 40 columns with a gap of 20, all of its height.
+START_TEST(two_upright_regions_side_by_side_are_two_persons_and_not_fragments_of_one) {
+  Scene s{{track({100, 100, 100, 100})}, {region(100, 100, 40, 100), region(160, 100, 40, 100)}, {}, {}};
+  const Match match = s.associate()[0];
+  ck_assert_int_ge(match.region, 0);
+  ck_assert(match.reshaped);
+  ck_assert(s.association.is_new(match.region == 0 ? 1 : 0));
+}
+END_TEST
+
+START_TEST(a_track_without_region_shares_the_blob_it_is_expected_in_unless_it_has_stopped) {
+  for (const State state : {State::confirmed, State::coasted, State::stopped}) {
+    Scene s{
+        {track({100, 100, 40, 100}), track({150, 100, 40, 100}, state)}, {region(95, 98, 100, 104)}, {}, {}};
+    s.tracks[1].id = 2;
+    s.tracks[0].x.position = 140;  // the blob's centre is nearer to it
+    const auto matches = s.associate();
+    const bool shares = state != State::stopped;
+    ck_assert_int_eq(matches[0].region, 0);
+    ck_assert_int_eq(matches[1].region, shares ? 0 : -1);
+    ck_assert_int_eq(matches[0].sharers, shares ? 2 : 1);
+  }
+}
+END_TEST
+
+// Head and legs of one person, the legs seen for longer, in the person's own region since .3 s.
+START_TEST(fragments_one_above_the_other_merge_into_the_older_one) {
+  for (const double shared : {0.25, 0.3}) {
+    Scene s{{track({100, 100, 40, 40}, State::confirmed, 1), track({100, 145, 40, 55})},
+            {region(100, 100, 40, 100)},
+            {},
+            {}};
+    s.tracks[0].shared = s.tracks[1].shared = shared;
+    const auto matches = s.associate();
+    const bool merges = shared >= 0.3;
+    ck_assert_int_eq(matches[0].region, 0);
+    ck_assert_int_eq(matches[1].region, 0);
+    ck_assert(matches[0].merged == merges && !matches[1].merged);
+    ck_assert(matches[1].reshaped == merges);
+    ck_assert_int_eq(matches[1].sharers, merges ? 1 : 2);
+  }
+}
+END_TEST
+
+START_TEST(others_are_expected_only_in_a_larger_region_that_holds_half_of_them) {
+  const DataAssociation association;
+  const std::vector<TrackHypothesis> tracks{track({100, 100, 40, 100}), track({150, 100, 40, 100}),
+                                            track({400, 100, 40, 100}),
+                                            track({150, 100, 40, 100}, State::lost)};
+  const auto expected = [&](const Box& box) {
+    return association.others_expected(tracks, tracks[0], box, kFrame);
+  };
+  ck_assert(expected({100, 100, 71, 100}));   // 21 of 40 columns of the second
+  ck_assert(!expected({100, 100, 69, 100}));  // 19
+  ck_assert(!expected({150, 100, 51, 100}));  // 5100 of 4000 pixels are not 1.3 times as many
+  ck_assert(!expected({200, 100, 100, 100}));
+}
+END_TEST
+
+START_TEST(a_region_is_crowded_where_another_track_covers_a_fifth_of_it) {
+  const DataAssociation association;
+  std::vector<TrackHypothesis> tracks{track({100, 100, 40, 100}), track({131, 100, 40, 100})};
+  const Box box{100, 100, 40, 100};
+  ck_assert(association.crowded(tracks, tracks[0], box));  // 9 of 40 columns
+  tracks[1].x.position += 2;
+  ck_assert(!association.crowded(tracks, tracks[0], box));  // 7
+  tracks[1].x.position -= 2;
+  tracks[1].state = State::tentative;
+  ck_assert(!association.crowded(tracks, tracks[0], box));
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "data_association",
+      {each_track_has_the_region_at_its_place_and_what_is_left_is_new,
+       a_track_in_view_comes_before_a_tentative_one_that_is_nearer,
+       an_off_screen_track_comes_before_a_tentative_one_and_has_no_region_while_it_is_behind_the_camera,
+       a_track_comes_back_as_a_region_of_at_most_twice_its_area, a_fragment_completes_the_region_of_its_track,
+       a_person_like_region_is_neither_a_fragment_nor_completed,
+       two_upright_regions_side_by_side_are_two_persons_and_not_fragments_of_one,
+       a_track_without_region_shares_the_blob_it_is_expected_in_unless_it_has_stopped,
+       fragments_one_above_the_other_merge_into_the_older_one,
+       others_are_expected_only_in_a_larger_region_that_holds_half_of_them,
+       a_region_is_crowded_where_another_track_covers_a_fifth_of_it});
+}
