@@ -8,16 +8,30 @@
 G_BEGIN_DECLS
 
 /**
- * CERBERUS_VIDEO_FORMATS:
+ * CERBERUS_VIDEO_FORMATS_8_BIT:
  *
- * Every video format that the elements read, as a list for a caps string: all 8-bit formats with a luma plane (or
- * interleaved luma), read without any conversion, and the packed RGB family, from which luma is computed.
+ * The 8-bit formats among %CERBERUS_VIDEO_FORMATS, without the braces of a list.
  *
  * Since: 0.1
  */
-#define CERBERUS_VIDEO_FORMATS                                                            \
-  "{ GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, RGB, BGR, RGBx, BGRx, " \
-  "xRGB, xBGR, RGBA, BGRA, ARGB, ABGR }"
+#define CERBERUS_VIDEO_FORMATS_8_BIT                                                    \
+  "GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, RGB, BGR, RGBx, BGRx, " \
+  "xRGB, xBGR, RGBA, BGRA, ARGB, ABGR"
+
+/**
+ * CERBERUS_VIDEO_FORMATS:
+ *
+ * Every video format that the elements read, as a list for a caps string: those with a luma plane (or interleaved
+ * luma) of 8 bits, or of 10 to 16 bits in words of 16, read without any conversion, and the packed RGB family, from
+ * which luma is computed.
+ *
+ * Since: 0.1
+ */
+#define CERBERUS_VIDEO_FORMATS                                                                    \
+  "{ " CERBERUS_VIDEO_FORMATS_8_BIT                                                               \
+  ", P010_10LE, P010_10BE, P012_LE, P012_BE, P016_LE, P016_BE, I420_10LE, I420_10BE, I420_12LE, " \
+  "I420_12BE, I422_10LE, I422_10BE, I422_12LE, I422_12BE, Y444_10LE, Y444_10BE, Y444_12LE, "      \
+  "Y444_12BE, Y444_16LE, Y444_16BE, GRAY16_LE, GRAY16_BE }"
 
 /**
  * CERBERUS_VIDEO_CAPS:

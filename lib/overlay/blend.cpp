@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <optional>
 
 #include "overlay/blend_kernels.h"
@@ -88,6 +89,53 @@ void blend_component(vision::View<const std::uint32_t> drawing, int x, int y, co
   }
 }
 
+// A component of more than 8 bits. Sums of bytes over n pixels times 16.16 weights are in 64 bits.
+class WordBlender {
+ public:
+  explicit WordBlender(const BlendComponent& c)
+      : c_(c),
+        red_(fixed(c.red)),
+        green_(fixed(c.green)),
+        blue_(fixed(c.blue)),
+        alpha_(fixed(c.offset / 255)) {}
+
+  void blend(vision::View<const std::uint32_t> drawing, int x, int y) const {
+    const int right = x + drawing.width, bottom = y + drawing.height;
+    for (int v = y >> c_.shift_y; v << c_.shift_y < bottom; ++v) {
+      const int top = std::max(v << c_.shift_y, y) - y, end = std::min((v + 1) << c_.shift_y, bottom) - y;
+      std::uint8_t* to = c_.data + v * c_.stride + static_cast<std::ptrdiff_t>(x >> c_.shift_x) * c_.step;
+      for (int u = x >> c_.shift_x; u << c_.shift_x < right; ++u, to += c_.step) {
+        const int left = std::max(u << c_.shift_x, x) - x, stop = std::min((u + 1) << c_.shift_x, right) - x;
+        std::int64_t r = 0, g = 0, b = 0, a = 0;
+        for (int row = top; row < end; ++row)
+          for (int i = left; i < stop; ++i) {
+            const std::uint32_t p = drawing.row(row)[i];
+            r += p >> 16 & 255, g += p >> 8 & 255, b += p & 255, a += p >> 24;
+          }
+        if (a > 0) mix(to, red_ * r + green_ * g + blue_ * b + alpha_ * a, a);
+      }
+    }
+  }
+
+ private:
+  void mix(std::uint8_t* to, std::int64_t value, std::int64_t alpha) const {
+    const int pixels = 1 << (c_.shift_x + c_.shift_y);
+    std::uint16_t word;
+    std::memcpy(&word, to, sizeof word);
+    const std::int64_t before = order(word) >> c_.word_shift;
+    const std::int64_t rest = before * (255 * pixels - alpha) * 65536 / 255;
+    const std::int64_t mixed = ((value + rest) / pixels + 32768) >> 16;
+    word = order(static_cast<int>(std::clamp<std::int64_t>(mixed, 0, (1 << c_.bits) - 1) << c_.word_shift));
+    std::memcpy(to, &word, sizeof word);
+  }
+  std::uint16_t order(int word) const {
+    return static_cast<std::uint16_t>(c_.swapped ? (word << 8 | (word >> 8 & 255)) : word);
+  }
+
+  const BlendComponent& c_;
+  std::int64_t red_, green_, blue_, alpha_;
+};
+
 // Which byte of a pixel each component is, where all are bytes of pixels of four that take one colour each.
 std::optional<PackedLayout> packed_layout(std::span<const BlendComponent> picture) {
   if (picture.empty() || !picture[0].pixel) return std::nullopt;
@@ -116,7 +164,12 @@ void blend(vision::View<const std::uint32_t> drawing, int x, int y, std::span<co
                    picture[0].pixel + (y + row) * picture[0].stride + 4 * static_cast<std::ptrdiff_t>(x));
     return;
   }
-  for (const BlendComponent& component : picture) blend_component(drawing, x, y, component);
+  for (const BlendComponent& component : picture) {
+    if (component.bits > 8)
+      WordBlender(component).blend(drawing, x, y);
+    else
+      blend_component(drawing, x, y, component);
+  }
 }
 
 }  // namespace cerberus::overlay

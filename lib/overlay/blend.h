@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Small drawings onto a picture of any 8-bit layout: cost follows the drawing, not the picture.
+// Small drawings onto a picture of any layout of bytes or of words of 16 bits: cost follows the drawing, not the picture.
 #pragma once
 
 #include <cstddef>
@@ -20,6 +20,9 @@ struct BlendComponent {
   int step = 1;               // bytes between samples
   int shift_x = 0, shift_y = 0;  // a sample stands for 2^shift pixels; shift_y at most 1
   double red = 0, green = 0, blue = 0, offset = 0;
+  int bits = 8;          // of a sample; more than 8: in a word of 16 bits,
+  int word_shift = 0;    // so far from its lowest bit (P010: 6),
+  bool swapped = false;  // which has the other byte order than this machine
 };
 
 // A drawing in words of alpha, red, green, blue from the highest byte down, colours multiplied by alpha (Porter and

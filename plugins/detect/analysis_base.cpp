@@ -25,8 +25,6 @@ GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
 namespace cerberus::plugin {
 namespace {
 
-constexpr int kMinimumSide = 32;
-constexpr int kMaximumWidth = 3840, kMaximumHeight = 2160;
 constexpr int kLeastAnalysisWidth = 48;  // of less, people are a pixel or none
 
 struct Settings {
@@ -34,12 +32,11 @@ struct Settings {
 };
 
 const Property<Settings> kProperties[] = {
-    property("analysis-width", &Settings::analysis_width, 0, kMaximumWidth,
+    property("analysis-width", &Settings::analysis_width, 0, vision::kMaximumAnalysisSide,
              "Width in pixels of the small picture that is analysed, where none comes from upstream: larger "
              "sees smaller "
              "objects and costs more; frames that are not wider are analysed as they are, 1 to 47 counts as "
-             "48; 0 = always the "
-             "frame's own width"),
+             "48; 0 = always the frame's own width; larger than 3840 x 2160 pixels it never becomes"),
 };
 
 }  // namespace
@@ -264,13 +261,7 @@ std::string what_is_wrong(const GstCaps* caps, GstVideoInfo* info) {
   if (!gst_video_info_from_caps(info, caps)) return kCapsIncomplete;
   if (GST_VIDEO_INFO_IS_INTERLACED(info))
     return "Interlaced video cannot be analysed: put the element `deinterlace` in front.";
-  const int width = GST_VIDEO_INFO_WIDTH(info), height = GST_VIDEO_INFO_HEIGHT(info);
-  if (width >= kMinimumSide && height >= kMinimumSide && width <= kMaximumWidth && height <= kMaximumHeight)
-    return {};
-  const auto size = [](int w, int h) { return std::to_string(w) + " x " + std::to_string(h); };
-  return "Frames of " + size(width, height) + " pixels cannot be analysed, only " +
-         size(kMinimumSide, kMinimumSide) + " to " + size(kMaximumWidth, kMaximumHeight) +
-         ": put `videoscale` in front.";
+  return {};
 }
 
 // Pixels count as squares everywhere: in boxes, in a person's proportions and in angles.
@@ -368,10 +359,10 @@ void class_init(CerberusAnalysisClass* klass) {
                           "what all analysing elements share");
   install_properties<CerberusAnalysis, kProperties>(G_OBJECT_CLASS(klass));
 
-  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-                                                             GST_STATIC_CAPS(VIDEO_AND_SINGLE_FIELDS_CAPS));
+  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(
+      "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ANALYSED_VIDEO_AND_SINGLE_FIELDS_CAPS));
   static GstStaticPadTemplate src =
-      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(ANALYSED_VIDEO_CAPS));
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink);
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src);
 

@@ -2,7 +2,7 @@
 // What every analysing element shares: frames go through untouched, in place and never copied; one of them at a time is
 // handed to the element's Analyser with all that is known about it.
 //
-// The base decides what is not thinking: caps (progressive, 32 x 32 to 3840 x 2160), when history ends (see History and
+// The base decides what is not thinking: caps (progressive, 32 x 32 to 8192 x 8192: the pad templates), when history ends (see History and
 // below), the camera's motion as found on the buffer, buffers that hold no picture, the property analysis-width, and
 // that no exception leaves.
 //

@@ -18,7 +18,7 @@
  * `head`, `axis` (`pan`, `tilt`), `fault` (`slips`, `reversed`, `scale`), `gain`, `travel` (degrees). Poses that came
  * on the frames are not compared: who made the frames knew.
  *
- * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
+ * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 8192x8192.
  *
  * ## Example
  * |[

@@ -16,7 +16,7 @@
  * whether it is backwards or forwards. A buffer without its picture is passed on with the flag CORRUPTED and one
  * warning, and ends no scene unless more than five come in a row.
  *
- * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 3840x2160.
+ * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 8192x8192.
  *
  * ## Example
  * |[
@@ -285,10 +285,10 @@ void cerberus_motion_detect_class_init(CerberusMotionDetectClass* klass) {
           preset_type(), PRESET_DEFAULT,
           static_cast<GParamFlags>(G_PARAM_READWRITE | G_PARAM_STATIC_STRINGS | GST_PARAM_MUTABLE_PLAYING)));
 
-  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-                                                             GST_STATIC_CAPS(VIDEO_AND_SINGLE_FIELDS_CAPS));
+  static GstStaticPadTemplate sink = GST_STATIC_PAD_TEMPLATE(
+      "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ANALYSED_VIDEO_AND_SINGLE_FIELDS_CAPS));
   static GstStaticPadTemplate src =
-      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+      GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(ANALYSED_VIDEO_CAPS));
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &sink);
   gst_element_class_add_static_pad_template(element, &src);

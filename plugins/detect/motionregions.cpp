@@ -46,7 +46,7 @@ GST_DEBUG_CATEGORY_STATIC(motionregions_debug);
 namespace cerberus::plugin {
 namespace {
 
-constexpr double kMaximumPixels = 3840, kMaximumMetres = 100;
+constexpr double kMaximumPixels = 8192, kMaximumMetres = 100;
 
 struct Settings {
   int closing = vision::RegionOptions{}.closing;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "composition.hpp"
 
+#include "cerberus/private/video.hpp"
 #include "overlay/blend.h"
 
 namespace cerberus::plugin {
@@ -38,6 +39,9 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
     c.red = weights[0] * scale[i] / 255, c.green = weights[1] * scale[i] / 255,
     c.blue = weights[2] * scale[i] / 255;
     c.offset = alpha ? 255 : offset[i];
+    c.bits = GST_VIDEO_FORMAT_INFO_DEPTH(format, i);
+    c.word_shift = GST_VIDEO_FORMAT_INFO_SHIFT(format, i);
+    c.swapped = c.bits > 8 && cerberus::is_swapped(format);
   }
   return n;
 }

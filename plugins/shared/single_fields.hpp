@@ -9,6 +9,12 @@
 
 #define SINGLE_FIELDS_CAPS \
   "video/x-raw(" GST_CAPS_FEATURE_FORMAT_INTERLACED "), interlace-mode = (string) alternate"
+// What is analysed: smaller frames hold nobody, larger ones are not laid out for. `videoscale` in front negotiates by
+// itself.
+#define ANALYSED_VIDEO_CAPS                                \
+  "video/x-raw, format = (string) " CERBERUS_VIDEO_FORMATS \
+  ", width = (int) [ 32, 8192 ], height = (int) [ 32, 8192 ]"
+#define ANALYSED_VIDEO_AND_SINGLE_FIELDS_CAPS ANALYSED_VIDEO_CAPS "; " SINGLE_FIELDS_CAPS
 // For the template of a sink pad that refuses them in words.
 #define VIDEO_AND_SINGLE_FIELDS_CAPS CERBERUS_VIDEO_CAPS "; " SINGLE_FIELDS_CAPS
 

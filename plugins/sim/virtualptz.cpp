@@ -77,10 +77,11 @@ using motion::Time;
 using sensing::degrees;
 using sensing::radians;
 
-GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS,
-                                                             GST_STATIC_CAPS(VIDEO_AND_SINGLE_FIELDS_CAPS));
+#define WINDOW_CAPS GST_VIDEO_CAPS_MAKE("{ " CERBERUS_VIDEO_FORMATS_8_BIT " }")
+GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
+    "sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(WINDOW_CAPS "; " SINGLE_FIELDS_CAPS));
 GstStaticPadTemplate src_template =
-    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(WINDOW_CAPS));
 
 // What can be read only: beyond the ids of window_properties().
 enum { PROP_PAN_MIN = 100, PROP_PAN_MAX, PROP_TILT_MIN, PROP_TILT_MAX, PROP_WINDOW_FOV };

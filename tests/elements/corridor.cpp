@@ -89,8 +89,9 @@ GST_START_TEST(every_format_works_at_odd_sizes) {
 }
 GST_END_TEST
 
-GST_START_TEST(sizes_from_32x32_to_3840x2160_are_accepted) {
-  for (const Size size : {Size{32, 32}, Size{33, 35}, Size{3840, 2160}, Size{3840, 32}, Size{32, 2160}}) {
+GST_START_TEST(sizes_from_32x32_to_8192x8192_are_accepted) {
+  for (const Size size : {Size{32, 32}, Size{33, 35}, Size{4096, 2160}, Size{2160, 3840}, Size{4000, 3000},
+                          Size{8192, 8192}, Size{8192, 32}, Size{32, 8192}}) {
     Line line(kElements[__i__], scene::caps("GRAY8", size.width, size.height));
     for (int k = 0; k < 3; ++k) {
       const std::vector<std::uint8_t> grey(static_cast<std::size_t>(size.width) * size.height, 100);
@@ -117,11 +118,36 @@ void expect_refusal(const char* element, const std::string& caps, const char* wo
   }
 }
 
-GST_START_TEST(sizes_beyond_are_refused_with_the_size_and_the_remedy) {
-  expect_refusal(kElements[__i__], scene::caps("GRAY8", 31, 240), "31 x 240", "videoscale");
-  expect_refusal(kElements[__i__], scene::caps("GRAY8", 320, 16), "320 x 16", "videoscale");
-  expect_refusal(kElements[__i__], scene::caps("GRAY8", 3841, 240), "3841 x 240", "videoscale");
-  expect_refusal(kElements[__i__], scene::caps("GRAY8", 320, 2161), "320 x 2161", "videoscale");
+// As upstream sees it before it sends anything: what a template promises is taken, and nothing else.
+GST_START_TEST(pads_promise_exactly_the_sizes_that_are_accepted) {
+  Line line(kElements[__i__]);
+  for (GstPad* pad : {line.harness->srcpad, line.harness->sinkpad})
+    for (const auto& [size, good] : {std::pair{Size{32, 32}, true},
+                                     {Size{8192, 8192}, true},
+                                     {Size{31, 240}, false},
+                                     {Size{320, 31}, false},
+                                     {Size{8193, 240}, false},
+                                     {Size{320, 8193}, false}}) {
+      g_autoptr(GstCaps) caps =
+          gst_caps_from_string(scene::caps("P010_10LE", size.width, size.height).c_str());
+      g_autoptr(GstPad) peer = gst_pad_get_peer(pad);
+      g_autoptr(GstCaps) pad_template = gst_pad_get_pad_template_caps(peer);
+      fail_unless_equals_int(gst_caps_can_intersect(caps, pad_template), good);
+      fail_unless_equals_int(gst_pad_query_accept_caps(peer, caps), good);
+    }
+}
+GST_END_TEST
+
+GST_START_TEST(what_is_too_large_or_too_small_is_scaled_by_a_videoscale_in_front) {
+  for (const Size size : {Size{9000, 90}, Size{16, 64}}) {
+    Line line("videoscale ! " + std::string(kElements[__i__]), scene::caps("GRAY8", size.width, size.height));
+    const std::vector<std::uint8_t> grey(static_cast<std::size_t>(size.width) * size.height, 100);
+    gst_buffer_unref(line.through(scene::buffer("GRAY8", size.width, size.height, grey, 0)));
+    g_autoptr(GstCaps) caps = gst_pad_get_current_caps(line.harness->sinkpad);
+    gint width = 0;
+    fail_unless(gst_structure_get_int(gst_caps_get_structure(caps, 0), "width", &width));
+    fail_unless_equals_int(width, size.width > 32 ? 8192 : 32);
+  }
 }
 GST_END_TEST
 
@@ -272,8 +298,10 @@ Suite* corridor_suite() {
   tcase_add_loop_test(tests, a_shared_frame_is_neither_copied_nor_annotated_for_the_others, 0, kElementCount);
   tcase_add_loop_test(tests, every_format_gives_the_same_regions, 0, kFormatCount);
   tcase_add_loop_test(tests, every_format_works_at_odd_sizes, 0, kFormatCount);
-  tcase_add_loop_test(tests, sizes_from_32x32_to_3840x2160_are_accepted, 0, kElementCount);
-  tcase_add_loop_test(tests, sizes_beyond_are_refused_with_the_size_and_the_remedy, 0, kElementCount);
+  tcase_add_loop_test(tests, sizes_from_32x32_to_8192x8192_are_accepted, 0, kElementCount);
+  tcase_add_loop_test(tests, pads_promise_exactly_the_sizes_that_are_accepted, 0, kElementCount);
+  tcase_add_loop_test(tests, what_is_too_large_or_too_small_is_scaled_by_a_videoscale_in_front, 0,
+                      kElementCount);
   tcase_add_loop_test(tests, interlaced_video_is_refused_naming_deinterlace, 0, kElementCount);
   tcase_add_loop_test(tests, caps_without_a_frame_rate_are_enough, 0, kElementCount);
   tcase_add_loop_test(tests, a_new_size_in_mid_stream_begins_a_new_scene, 0, kElementCount);

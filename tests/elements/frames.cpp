@@ -34,13 +34,19 @@ std::uint8_t sample(int x, int y, int channel) {
 void fill(GstVideoFrame* frame) {
   const GstVideoFormatInfo* format = frame->info.finfo;
   const int width = GST_VIDEO_FRAME_WIDTH(frame), height = GST_VIDEO_FRAME_HEIGHT(frame);
-  std::vector<std::uint8_t> line(4 * (width + 8));
+  const bool words = GST_VIDEO_FORMAT_INFO_DEPTH(format, 0) > 8;  // packed from 16 bits: any low byte
+  std::vector<std::uint8_t> line(4 * (width + 8) * 2);
+  std::vector<std::uint16_t> wide(4 * (width + 8));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       line[4 * x] = 255;
       for (int c = 0; c < 3; ++c) line[4 * x + 1 + c] = sample(x, y, c);
+      wide[4 * x] = 65535;
+      for (int c = 0; c < 3; ++c)
+        wide[4 * x + 1 + c] = static_cast<std::uint16_t>(sample(x, y, c) << 8 | sample(y, x, 5));
     }
-    format->pack_func(format, GST_VIDEO_PACK_FLAG_NONE, line.data(), 0, frame->data, frame->info.stride,
+    const gpointer packed = words ? static_cast<gpointer>(wide.data()) : line.data();
+    format->pack_func(format, GST_VIDEO_PACK_FLAG_NONE, packed, 0, frame->data, frame->info.stride,
                       GST_VIDEO_CHROMA_SITE_UNKNOWN, y, width);
   }
 }
@@ -52,9 +58,12 @@ void assert_found(const LumaSource& source, int width, int height, bool rgb, con
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const std::uint8_t* pixel = source.data + y * source.stride + x * source.pixel_stride;
+      int luma = pixel[0];
+      if (source.word_shift > 0)
+        luma = (source.swapped ? pixel[0] << 8 | pixel[1] : pixel[1] << 8 | pixel[0]) >> source.word_shift;
       const bool good = rgb ? pixel[source.r] == sample(x, y, 0) && pixel[source.g] == sample(x, y, 1) &&
                                   pixel[source.b] == sample(x, y, 2)
-                            : pixel[0] == sample(x, y, 0);
+                            : luma == sample(x, y, 0);
       fail_unless(good, "%s %dx%d: wrong at %d, %d", what, width, height, x, y);
     }
   }

@@ -30,10 +30,17 @@ inline GstVideoInfo info_of(const std::string& caps_text) {
   return info;
 }
 
-// Frame `number` at 25 a second, every byte `value`.
+// Frame `number` at 25 a second, every byte `value`; words of 16 bits mean the same level.
 inline GstBuffer* frame(const GstVideoInfo& info, int number = 0, int value = 100) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, info.size, nullptr);
   gst_buffer_memset(buffer, 0, static_cast<guint8>(value), info.size);
+  GstVideoFrame f;
+  if (GST_VIDEO_INFO_COMP_DEPTH(&info, 0) > 8 && gst_video_frame_map(&f, &info, buffer, GST_MAP_WRITE)) {
+    for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS(&f); ++c)
+      for (int y = 0; y < GST_VIDEO_FRAME_COMP_HEIGHT(&f, c); ++y)
+        for (int x = 0; x < GST_VIDEO_FRAME_COMP_WIDTH(&f, c); ++x) set_sample(&f, c, x, y, value);
+    gst_video_frame_unmap(&f);
+  }
   GST_BUFFER_PTS(buffer) = number * 40 * GST_MSECOND;
   GST_BUFFER_DURATION(buffer) = 40 * GST_MSECOND;
   return buffer;

@@ -66,8 +66,7 @@ inline GstBuffer* with_region(const GstVideoInfo& info, const CerberusRegion& r,
 // Luma (or green) of a pixel, whatever the format.
 inline int level(GstVideoFrame* f, int x, int y) {
   const int comp = GST_VIDEO_FORMAT_INFO_IS_RGB(f->info.finfo) ? GST_VIDEO_COMP_G : GST_VIDEO_COMP_Y;
-  return GST_VIDEO_FRAME_COMP_DATA(
-      f, comp)[y * GST_VIDEO_FRAME_COMP_STRIDE(f, comp) + x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, comp)];
+  return sample_at(f, static_cast<guint>(comp), x, y);
 }
 
 inline int changed_pixels(GstVideoFrame* f, int x0, int y0, int x1, int y1, int was) {

@@ -99,17 +99,13 @@ inline void paint(GstVideoFrame* frame, const std::vector<std::uint8_t>& grey) {
   const bool rgb = GST_VIDEO_FORMAT_INFO_IS_RGB(frame->info.finfo);
   for (guint c = 0; c < GST_VIDEO_FRAME_N_COMPONENTS(frame); ++c) {
     const int width = GST_VIDEO_FRAME_COMP_WIDTH(frame, c), height = GST_VIDEO_FRAME_COMP_HEIGHT(frame, c);
-    for (int y = 0; y < height; ++y) {
-      guint8* row = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(frame, c)) +
-                    static_cast<gssize>(y) * GST_VIDEO_FRAME_COMP_STRIDE(frame, c);
-      for (int x = 0; x < width; ++x) {
-        const bool bright = c == 0 || (rgb && c < 3);
-        row[x * GST_VIDEO_FRAME_COMP_PSTRIDE(frame, c)] =
-            bright   ? grey[static_cast<std::size_t>(y) * GST_VIDEO_FRAME_WIDTH(frame) + x]
-            : c == 3 ? 255
-                     : 128;
-      }
-    }
+    const bool bright = c == 0 || (rgb && c < 3);
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        set_sample(frame, c, x, y,
+                   bright   ? grey[static_cast<std::size_t>(y) * GST_VIDEO_FRAME_WIDTH(frame) + x]
+                   : c == 3 ? 255
+                            : 128);
   }
 }
 

@@ -2,16 +2,52 @@
 // What element tests share.
 #pragma once
 
+#include <algorithm>
+#include <string>
+
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 #include <gst/check/gstharness.h>
-
-#include <string>
+#include <gst/video/video.h>
 
 // Every format that our elements take.
-inline constexpr const char* kFormats[] = {"GRAY8", "I420", "YV12", "NV12", "NV21", "Y41B", "Y42B",
-                                           "Y444",  "YUY2", "UYVY", "RGB",  "BGR",  "RGBx", "BGRx",
-                                           "xRGB",  "xBGR", "RGBA", "BGRA", "ARGB", "ABGR"};
+// The first kByteFormatCount have samples of a byte, the others in words of 16 bits.
+inline constexpr const char* kFormats[] = {
+    "GRAY8",     "I420",      "YV12",      "NV12",      "NV21",      "Y41B",      "Y42B",
+    "Y444",      "YUY2",      "UYVY",      "RGB",       "BGR",       "RGBx",      "BGRx",
+    "xRGB",      "xBGR",      "RGBA",      "BGRA",      "ARGB",      "ABGR",      "P010_10LE",
+    "P010_10BE", "P012_LE",   "P012_BE",   "P016_LE",   "P016_BE",   "I420_10LE", "I420_10BE",
+    "I420_12LE", "I420_12BE", "I422_10LE", "I422_10BE", "I422_12LE", "I422_12BE", "Y444_10LE",
+    "Y444_10BE", "Y444_12LE", "Y444_12BE", "Y444_16LE", "Y444_16BE", "GRAY16_LE", "GRAY16_BE"};
+inline constexpr int kByteFormatCount = 20;
+
+// A sample of a mapped frame (in samples of its component) as 8 bits, whatever its depth.
+inline int sample_at(const GstVideoFrame* f, guint component, int x, int y) {
+  const GstVideoFormatInfo* format = f->info.finfo;
+  const auto* p = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(f, component)) +
+                  static_cast<gssize>(y) * GST_VIDEO_FRAME_COMP_STRIDE(f, component) +
+                  x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, component);
+  const int depth = GST_VIDEO_FORMAT_INFO_DEPTH(format, component);
+  if (depth <= 8) return *p;
+  const int word = GST_VIDEO_FORMAT_INFO_IS_LE(format) ? GST_READ_UINT16_LE(p) : GST_READ_UINT16_BE(p);
+  return word >> (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + depth - 8);
+}
+
+inline void set_sample(GstVideoFrame* f, guint component, int x, int y, int level) {
+  const GstVideoFormatInfo* format = f->info.finfo;
+  auto* p = static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(f, component)) +
+            static_cast<gssize>(y) * GST_VIDEO_FRAME_COMP_STRIDE(f, component) +
+            x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, component);
+  const int depth = GST_VIDEO_FORMAT_INFO_DEPTH(format, component);
+  const auto word = static_cast<guint16>(
+      level << (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + std::max(depth, 8) - 8));
+  if (depth <= 8)
+    *p = static_cast<guint8>(level);
+  else if (GST_VIDEO_FORMAT_INFO_IS_LE(format))
+    GST_WRITE_UINT16_LE(p, word);
+  else
+    GST_WRITE_UINT16_BE(p, word);
+}
 
 // The base turns at `yaw_rate` degrees a second from `running_time` on.
 inline GstEvent* base_event(double yaw_rate, GstClockTime running_time) {

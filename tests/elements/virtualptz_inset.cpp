@@ -3,6 +3,7 @@
 // from the upper right corner. A window that looks straight ahead lies at (80, 60), so its place in the inset is 12..36
 // x 9..27. A pan of 8.2132 degrees moves it by 40 pixels (virtualptz.cpp), 6 of the inset.
 #include <cmath>
+#include <span>
 #include <string>
 
 #include "outputs.h"
@@ -63,7 +64,7 @@ void is_marked(GstVideoOverlayRectangle* drawing, int left, int top, int right, 
 }  // namespace
 
 GST_START_TEST(the_scene_is_in_the_corner_with_the_windows_place_in_it_in_every_format) {
-  for (const char* format : kFormats) {
+  for (const char* format : std::span(kFormats).first(kByteFormatCount)) {
     Window window(kLine + "inset=true", format);
     GstBuffer* out = window.through(frame(window.in));
     GstVideoOverlayRectangle* drawing = rectangle(out);

@@ -82,6 +82,35 @@ START_TEST(every_layout_agrees_with_the_definition) {
 }
 END_TEST
 
+// 10 bits: Y of BT.601 in the limited range, 64 + 876 * ..., of white 940; a half of black over 400 is 231.
+START_TEST(words_of_sixteen_bits_are_drawn_on_in_either_layout_and_byte_order) {
+  const double scale = 876 / 255.0;
+  for (const int shift : {0, 6})
+    for (const bool swapped : {false, true}) {
+      const auto word = [&](int value) {
+        const int w = value << shift;
+        return static_cast<std::uint16_t>(swapped ? (w << 8 | w >> 8) : w);
+      };
+      std::vector<std::uint16_t> row{word(400), word(400), word(400), word(400)};
+      BlendComponent c{nullptr,       nullptr,       8,  2,  0,     0,      0.299 * scale,
+                       0.587 * scale, 0.114 * scale, 64, 10, shift, swapped};
+      c.data = reinterpret_cast<std::uint8_t*>(row.data());
+      const std::uint32_t drawing[] = {0xffffffff, 0, 0x80000000, 0xffffffff};
+      blend({drawing, 3, 1, 3}, 0, 0, {&c, 1});
+      ck_assert_uint_eq(row[0], word(940));
+      ck_assert_uint_eq(row[1], word(400));
+      ck_assert_uint_eq(row[2], word(231));  // 400 * 127 / 255 + 64 * 128 / 255 = 231.3
+      ck_assert_uint_eq(row[3], word(400));
+      // Chroma of half the width: the mean of both pixels.
+      c.shift_x = 1;
+      row = {word(400), word(400), word(400), word(400)};
+      blend({drawing, 2, 1, 2}, 0, 0, {&c, 1});
+      ck_assert_uint_eq(row[0], word(670));
+      ck_assert_uint_eq(row[1], word(400));
+    }
+}
+END_TEST
+
 START_TEST(opaque_white_is_white_and_nothing_is_nothing) {
   std::vector<std::uint8_t> y(16, 60), cb(4, 90);
   BlendComponent c[2] = {kMatrices[0], kMatrices[1]};
@@ -137,7 +166,9 @@ START_TEST(pixels_of_four_bytes_are_blended_as_their_components_are) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite(
-      "blend", {every_layout_agrees_with_the_definition, opaque_white_is_white_and_nothing_is_nothing,
-                pixels_of_four_bytes_are_blended_as_their_components_are});
+  return cerberus::tests::run_suite("blend",
+                                    {every_layout_agrees_with_the_definition,
+                                     words_of_sixteen_bits_are_drawn_on_in_either_layout_and_byte_order,
+                                     opaque_white_is_white_and_nothing_is_nothing,
+                                     pixels_of_four_bytes_are_blended_as_their_components_are});
 }

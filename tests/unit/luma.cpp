@@ -4,6 +4,7 @@
 
 #include <check.h>
 
+#include <bit>
 #include <vector>
 
 #include "support/allocations.h"
@@ -20,15 +21,25 @@ struct Layout {
   int pixel_stride, first;
   bool rgb;
   int r, g, b;
+  int word_shift = 0;
+  bool swapped = false;
 };
-constexpr Layout kLayouts[] = {{"planar", 1, 0, false, 0, 0, 0}, {"YUY2", 2, 0, false, 0, 0, 0},
-                               {"UYVY", 2, 1, false, 0, 0, 0},   {"RGB", 3, 0, true, 0, 1, 2},
-                               {"BGR", 3, 0, true, 2, 1, 0},     {"xRGB", 4, 0, true, 1, 2, 3},
-                               {"BGRx", 4, 0, true, 2, 1, 0}};
+constexpr Layout kLayouts[] = {{"planar", 1, 0, false, 0, 0, 0},
+                               {"YUY2", 2, 0, false, 0, 0, 0},
+                               {"UYVY", 2, 1, false, 0, 0, 0},
+                               {"RGB", 3, 0, true, 0, 1, 2},
+                               {"BGR", 3, 0, true, 2, 1, 0},
+                               {"xRGB", 4, 0, true, 1, 2, 3},
+                               {"BGRx", 4, 0, true, 2, 1, 0},
+                               // Random words also hold more than 10 bits: they count as white.
+                               {"P010", 2, 0, false, 0, 0, 0, 8},
+                               {"P010 swapped", 2, 0, false, 0, 0, 0, 8, true},
+                               {"10 bits", 2, 0, false, 0, 0, 0, 2},
+                               {"12 bits swapped", 2, 0, false, 0, 0, 0, 4, true}};
 
 // Bytes from the first luma sample to the end of the frame, where the frame's last row has no padding.
 std::size_t frame_bytes(const Layout& l, Size size, std::ptrdiff_t stride) {
-  const int last = l.rgb ? std::max({l.r, l.g, l.b}) : 0;
+  const int last = l.rgb ? std::max({l.r, l.g, l.b}) : l.word_shift > 0 ? 1 : 0;
   return static_cast<std::size_t>(stride * (size.height - 1) + (size.width - 1) * l.pixel_stride + last + 1);
 }
 
@@ -57,7 +68,9 @@ int worst_error(const Layout& l, Size from, Size to, int padding) {
                           l.rgb,
                           l.r,
                           l.g,
-                          l.b};
+                          l.b,
+                          l.word_shift,
+                          l.swapped};
   const GuardedPicture fast(to, 5);
   Image<std::uint8_t> exact(to);
   LumaScaler().scale(source, fast.view());
@@ -79,6 +92,48 @@ START_TEST(the_analysis_size_keeps_the_aspect_and_never_grows) {
   ck_assert(analysis_size({3840, 2160}, 0) == (Size{3840, 2160}));
   ck_assert(analysis_size({3840, 64}, 320) == (Size{320, 16}));  // at least 16 rows
   ck_assert(analysis_size({640, 8}, 320) == (Size{320, 8}));     // but never more than the frame has
+}
+END_TEST
+
+START_TEST(what_is_analysed_has_at_most_3840_by_2160_pixels_and_3840_to_a_side) {
+  ck_assert(analysis_size({7680, 4320}, 320) == (Size{320, 180}));
+  ck_assert(analysis_size({7680, 4320}, 0) == (Size{3840, 2160}));
+  ck_assert(analysis_size({2160, 3840}, 0) == (Size{2160, 3840}));
+  ck_assert(analysis_size({4096, 2160}, 0) == (Size{3840, 2025}));
+  ck_assert(analysis_size({4000, 3000}, 0) == (Size{3325, 2494}));  // sqrt(8294400 / 12 million) = .8314
+  ck_assert(analysis_size({8192, 8192}, 0) == (Size{2880, 2880}));
+  ck_assert(analysis_size({8192, 32}, 0) == (Size{3840, 16}));  // at least 16 rows
+  ck_assert(analysis_size({32, 8192}, 0) == (Size{15, 3840}));
+  ck_assert(analysis_size({64, 8192}, 60) == (Size{30, 3840}));
+}
+END_TEST
+
+START_TEST(luma_of_words_is_their_upper_eight_bits_in_either_byte_order) {
+  // 10 bits: 940 is nominal white, luma 235; 943 is cut off, not rounded; above 1023 there is nothing but white.
+  const std::uint8_t low[] = {0xac, 0x03, 0xaf, 0x03, 0x00, 0x00, 0xff, 0x03, 0xff, 0xff};
+  const std::uint8_t high[] = {0xeb, 0x00, 0xeb, 0xc0, 0x00,
+                               0x00, 0xff, 0xc0, 0xff, 0xff};  // big-endian P010
+  const int expected[] = {235, 235, 0, 255, 255};
+  constexpr bool kBig = std::endian::native == std::endian::big;
+  std::uint8_t from_low[5], from_high[5];
+  LumaScaler().scale({low, 5, 1, 10, 2, false, 0, 0, 0, 2, kBig}, {from_low, 5, 1, 5});
+  LumaScaler().scale({high, 5, 1, 10, 2, false, 0, 0, 0, 8, !kBig}, {from_high, 5, 1, 5});
+  for (int x = 0; x < 5; ++x) {
+    ck_assert_int_eq(from_low[x], expected[x]);
+    ck_assert_int_eq(from_high[x], expected[x]);
+  }
+}
+END_TEST
+
+START_TEST(the_largest_frame_is_reduced_without_an_overflow) {
+  // 8192 x 8192 white RGBx: the largest sums there are. One row, seen 8192 times.
+  const std::vector<std::uint8_t> row(8192 * 4, 255);
+  for (const Size size : {Size{320, 320}, Size{48, 48}, Size{2880, 2880}}) {
+    Image<std::uint8_t> out(size);
+    LumaScaler().scale({row.data(), 8192, 8192, 0, 4, true, 2, 1, 0}, out.view());
+    for (int y = 0; y < size.height; y += 7)
+      for (int x = 0; x < size.width; x += 7) ck_assert_int_eq(out.view().at(x, y), 255);
+  }
 }
 END_TEST
 
@@ -178,6 +233,9 @@ END_TEST
 int main() {
   return run_suite_on_every_target(
       "luma", {the_analysis_size_keeps_the_aspect_and_never_grows,
+               what_is_analysed_has_at_most_3840_by_2160_pixels_and_3840_to_a_side,
+               luma_of_words_is_their_upper_eight_bits_in_either_byte_order,
+               the_largest_frame_is_reduced_without_an_overflow,
                the_reference_is_the_area_average_computed_by_hand, luma_of_rgb_has_the_weights_of_bt_601,
                every_layout_is_within_one_level_of_the_reference_and_inside_its_memory,
                ratios_beyond_the_vertical_sums_use_the_reference, the_frames_own_size_is_a_plain_copy,

@@ -15,6 +15,13 @@ namespace cerberus {
 constexpr char kCapsIncomplete[] =
     "The video's caps are incomplete: they need a format, a width and a height.";
 
+// Bytes that hold one sample of a component: 1, or 2 for more than 8 bits.
+inline int sample_bytes(const GstVideoFormatInfo* format, guint component) {
+  const auto bits =
+      GST_VIDEO_FORMAT_INFO_DEPTH(format, component) + GST_VIDEO_FORMAT_INFO_SHIFT(format, component);
+  return GST_VIDEO_FORMAT_INFO_DEPTH(format, component) > 8 ? static_cast<int>(bits + 7) / 8 : 1;
+}
+
 // A mapped frame, unmapped at the end of its life. False where the buffer cannot be mapped or is too small
 // for its caps (truncated files).
 class VideoFrame {
@@ -58,7 +65,8 @@ class VideoFrame {
       const GstMapInfo& map = frame_.map[frame_.meta ? GST_VIDEO_FRAME_COMP_PLANE(&frame_, c) : 0];
       const gint64 rows = GST_VIDEO_FRAME_COMP_HEIGHT(&frame_, c);
       const gint64 row =
-          gint64{GST_VIDEO_FRAME_COMP_WIDTH(&frame_, c) - 1} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, c) + 1;
+          gint64{GST_VIDEO_FRAME_COMP_WIDTH(&frame_, c) - 1} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, c) +
+          sample_bytes(frame_.info.finfo, c);
       const gint64 last = (rows - 1) * GST_VIDEO_FRAME_COMP_STRIDE(&frame_, c);  // negative: bottom-up
       const gint64 first = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame_, c)) - map.data;
       if (rows > 1 && std::abs(last) < (rows - 1) * row) return false;  // rows that lie over one another
@@ -71,6 +79,11 @@ class VideoFrame {
   GstVideoFrame frame_;
   bool mapped_ = false;
 };
+
+// Whether samples of 16 bits have the other byte order than this machine.
+inline bool is_swapped(const GstVideoFormatInfo* format) {
+  return GST_VIDEO_FORMAT_INFO_IS_LE(format) != (G_BYTE_ORDER == G_LITTLE_ENDIAN);
+}
 
 // Where the brightness of a mapped frame is: any of CERBERUS_VIDEO_FORMATS, any stride (also negative).
 inline vision::LumaSource luma_source(const GstVideoFrame& frame) {
@@ -86,7 +99,13 @@ inline vision::LumaSource luma_source(const GstVideoFrame& frame) {
     source.g = GST_VIDEO_FRAME_COMP_POFFSET(&frame, GST_VIDEO_COMP_G);
     source.b = GST_VIDEO_FRAME_COMP_POFFSET(&frame, GST_VIDEO_COMP_B);
   } else {
+    const GstVideoFormatInfo* format = frame.info.finfo;
     source.data = GST_VIDEO_FRAME_COMP_DATA(&frame, GST_VIDEO_COMP_Y);
+    if (sample_bytes(format, GST_VIDEO_COMP_Y) == 2) {
+      source.word_shift = GST_VIDEO_FORMAT_INFO_SHIFT(format, GST_VIDEO_COMP_Y) +
+                          GST_VIDEO_FORMAT_INFO_DEPTH(format, GST_VIDEO_COMP_Y) - 8;
+      source.swapped = is_swapped(format);
+    }
   }
   return source;
 }

@@ -40,11 +40,21 @@ int end_source(int j, int source, int target) {
   return static_cast<int>((std::int64_t{j + 1} * source + target - 1) / target);
 }
 
+// Luma of one word of 16 bits.
+std::uint8_t word_luma(const std::uint8_t* bytes, const LumaSource& s) {
+  std::uint16_t word;
+  std::memcpy(&word, bytes, sizeof word);
+  if (s.swapped) word = static_cast<std::uint16_t>(word << 8 | word >> 8);
+  return static_cast<std::uint8_t>(std::min(255, word >> s.word_shift));
+}
+
 void copy(const LumaSource& s, MutableGrayView target) {
   for (int y = 0; y < target.height; ++y) {
     const std::uint8_t* in = s.data + y * s.stride;
     std::uint8_t* out = target.row(y);
-    if (!s.rgb && s.pixel_stride == 1) {
+    if (s.word_shift > 0) {
+      for (int x = 0; x < s.width; ++x, in += s.pixel_stride) out[x] = word_luma(in, s);
+    } else if (!s.rgb && s.pixel_stride == 1) {
       std::memcpy(out, in, static_cast<std::size_t>(s.width));
     } else if (!s.rgb) {
       for (int x = 0; x < s.width; ++x, in += s.pixel_stride) out[x] = *in;
@@ -57,15 +67,28 @@ void copy(const LumaSource& s, MutableGrayView target) {
 
 bool same_layout(const LumaSource& a, const LumaSource& b) {
   return a.width == b.width && a.height == b.height && a.pixel_stride == b.pixel_stride && a.rgb == b.rgb &&
-         a.r == b.r && a.g == b.g && a.b == b.b;
+         a.r == b.r && a.g == b.g && a.b == b.b && (a.word_shift > 0) == (b.word_shift > 0);
+}
+
+// Samples of a row of vertical averages between one pixel and the next: bytes, or one a word.
+int sum_stride(const LumaSource& s) {
+  return s.word_shift > 0 ? 1 : s.pixel_stride;
 }
 
 }  // namespace
 
 Size analysis_size(Size frame, int analysis_width) {
-  if (analysis_width <= 0 || analysis_width >= frame.width) return frame;
-  const double height = static_cast<double>(frame.height) * analysis_width / frame.width;
-  return {analysis_width, std::min(frame.height, std::max(16, static_cast<int>(std::lround(height))))};
+  Size size = frame;
+  if (analysis_width > 0 && analysis_width < frame.width) {
+    const double height = static_cast<double>(frame.height) * analysis_width / frame.width;
+    size = {analysis_width, std::min(frame.height, std::max(16, static_cast<int>(std::lround(height))))};
+  }
+  const double side = kMaximumAnalysisSide, area = kMaximumAnalysisArea;
+  const double scale = std::min({1.0, side / size.width, side / size.height, std::sqrt(area / size.area())});
+  if (scale == 1) return size;
+  // Rounded down: 16 rows of the largest width are far below the area.
+  return {std::max(1, static_cast<int>(scale * size.width)),
+          std::min(frame.height, std::max(16, static_cast<int>(scale * size.height)))};
 }
 
 void LumaScaler::prepare_rows(int source_height, int target_height) {
@@ -94,12 +117,13 @@ void LumaScaler::prepare_columns(const LumaSource& source, int target_width) {
   const PixelWeights pixel = pixel_weights(source);
   int last_byte = 0;  // of a pixel
   for (const ByteWeight& p : pixel) last_byte = std::max(last_byte, p.offset);
-  used_ = (source.width - 1) * source.pixel_stride + last_byte + 1;
+  const int stride = sum_stride(source);
+  used_ = (source.width - 1) * stride + last_byte + 1;
   int longest = 0;
   for (int j = 0; j < target_width; ++j)
     longest = std::max(
         longest, end_source(j, source.width, target_width) - first_source(j, source.width, target_width));
-  blocks_ = (longest * source.pixel_stride + 7) / 8;
+  blocks_ = (longest * stride + 7) / 8;
   first_.resize({target_width, 1});
   weights_.resize({target_width * blocks_ * 8, 1});
   weights_.fill_bytes(0);
@@ -108,7 +132,7 @@ void LumaScaler::prepare_columns(const LumaSource& source, int target_width) {
   for (int j = 0; j < target_width; ++j) {
     const int first = first_source(j, source.width, target_width);
     const int end = end_source(j, source.width, target_width);
-    first_.view().at(j, 0) = first * source.pixel_stride;
+    first_.view().at(j, 0) = first * stride;
     std::int16_t* weights = weights_.view().data + static_cast<std::ptrdiff_t>(j) * blocks_ * 8;
     // Cumulative rounding: the weights add up to 2^14 exactly.
     double exact = 0;
@@ -117,7 +141,7 @@ void LumaScaler::prepare_columns(const LumaSource& source, int target_width) {
       for (const ByteWeight& p : pixel) {
         exact += 16384.0 * p.weight / 256 * overlap(i, j, source.width, target_width) / source.width;
         const int now = static_cast<int>(std::lround(exact));
-        weights[(i - first) * source.pixel_stride + p.offset] += static_cast<std::int16_t>(now - given);
+        weights[(i - first) * stride + p.offset] += static_cast<std::int16_t>(now - given);
         given = now;
       }
   }
@@ -140,7 +164,7 @@ void LumaScaler::scale(const LumaSource& source, MutableGrayView target) {
   for (int y = 0; y < target.height; ++y) {
     const Rows& r = rows_.view().at(y, 0);
     average_rows({source.data + r.first * source.stride, source.stride, r.count, shift_, r.first_weight,
-                  r.last_weight, r.reciprocal},
+                  r.last_weight, r.reciprocal, source.word_shift, source.swapped},
                  used_, column_sums_.view().data);
     average_columns(column_sums_.view().data, first_.view().data, weights_.view().data, blocks_, target.width,
                     target.row(y));
@@ -160,7 +184,10 @@ void scale_luma_reference(const LumaSource& source, MutableGrayView target) {
           const std::uint8_t* p = source.data + v * source.stride + std::ptrdiff_t{u} * source.pixel_stride;
           const std::int64_t area =
               overlap(v, y, source.height, target.height) * overlap(u, x, source.width, target.width);
-          for (const ByteWeight& w : pixel) total += area * w.weight * p[w.offset];
+          if (source.word_shift > 0)
+            total += area * 256 * word_luma(p, source);
+          else
+            for (const ByteWeight& w : pixel) total += area * w.weight * p[w.offset];
         }
       target.at(x, y) = static_cast<std::uint8_t>((total + whole / 2) / whole);
     }

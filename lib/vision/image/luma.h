@@ -10,9 +10,10 @@
 
 namespace cerberus::vision {
 
-// Where the brightness of a frame is. Either one luma sample every `pixel_stride` bytes (planar 1, YUY2 and
-// UYVY 2), or packed RGB of 3 or 4 bytes a pixel, whose luma is computed: (77 R + 150 G + 29 B) / 256, the
-// BT.601 weights.
+// Where the brightness of a frame is. One luma sample every `pixel_stride` bytes (planar 1, YUY2 and UYVY 2); or
+// packed RGB of 3 or 4 bytes a pixel, whose luma is computed: (77 R + 150 G + 29 B) / 256, the BT.601 weights; or
+// one luma sample in every word of 16 bits, of which the upper 8 significant bits count (P010, I420_10LE and kin):
+// what is cut off is less than one grey level, and the same in every frame.
 struct LumaSource {
   const std::uint8_t* data = nullptr;  // first luma sample, or first byte of the first RGB pixel
   int width = 0;                       // pixels
@@ -21,10 +22,17 @@ struct LumaSource {
   int pixel_stride = 1;       // bytes between pixels
   bool rgb = false;
   int r = 0, g = 0, b = 0;  // byte offsets inside an RGB pixel
+  int word_shift = 0;       // > 0: words of 16 bits, luma = min(255, word >> word_shift); pixel_stride is 2
+  bool swapped = false;     // those words have the other byte order than this machine
 };
 
+// The most that is analysed: counters of 32 bits and coordinates of 16 bits are laid out for it.
+inline constexpr int kMaximumAnalysisSide = 3840;
+inline constexpr long kMaximumAnalysisArea = 3840L * 2160;
+
 // The analysis size for a frame: `analysis_width` wide with the frame's aspect, at least 16 rows; never
-// larger than the frame (a small frame is analysed as it is). analysis_width 0: the frame's own size.
+// larger than the frame (a small frame is analysed as it is). analysis_width 0: the frame's own size. What would be
+// wider or higher than kMaximumAnalysisSide, or larger than kMaximumAnalysisArea, is made smaller with its aspect kept.
 Size analysis_size(Size frame, int analysis_width);
 
 // Area averaging reduction: every source pixel counts with the share of it that lies in the target pixel.

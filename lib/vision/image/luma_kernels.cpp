@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/image/luma_kernels.h"
 
+#include <cstring>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vision/image/luma_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -11,36 +13,70 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// One vector of columns, all rows.
-template <class D>
-HWY_INLINE hn::Vec<D> average_vector(D d, const RowAverage& t, int x) {
-  const hn::Rebind<std::uint8_t, D> bytes;
-  const std::uint8_t* p = t.rows + x;
-  const auto load = [&] { return hn::PromoteTo(d, hn::LoadU(bytes, p)); };
-  auto total = hn::Mul(load(), hn::Set(d, t.first_weight));
+// One vector of columns, all rows. load(row) gives the samples of one row as 16 bits of at most 255.
+template <class D, class Load>
+HWY_INLINE hn::Vec<D> average_vector(D d, const RowAverage& t, const std::uint8_t* p, const Load& load) {
+  auto total = hn::Mul(load(p), hn::Set(d, t.first_weight));
   if (t.count > 1) {
     auto between = hn::Zero(d);
     p += t.stride;
-    for (int i = 1; i < t.count - 1; ++i, p += t.stride) between = hn::Add(between, load());
-    total = hn::Add(total,
-                    hn::Add(hn::ShiftLeftSame(between, t.shift), hn::Mul(load(), hn::Set(d, t.last_weight))));
+    for (int i = 1; i < t.count - 1; ++i, p += t.stride) between = hn::Add(between, load(p));
+    total = hn::Add(
+        total, hn::Add(hn::ShiftLeftSame(between, t.shift), hn::Mul(load(p), hn::Set(d, t.last_weight))));
   }
   return hn::MulHigh(total, hn::Set(d, t.reciprocal));
 }
 
-void average_rows(const RowAverage& t, int width, std::uint16_t* out) {
+struct LoadBytes {
+  static constexpr int kBytes = 1;  // a sample
+  template <class D>
+  HWY_INLINE hn::Vec<D> operator()(D d, const RowAverage&, const std::uint8_t* p) const {
+    return hn::PromoteTo(d, hn::LoadU(hn::Rebind<std::uint8_t, D>(), p));
+  }
+};
+
+struct LoadWords {
+  static constexpr int kBytes = 2;
+  template <class D>
+  HWY_INLINE hn::Vec<D> operator()(D d, const RowAverage& t, const std::uint8_t* p) const {
+#if HWY_TARGET == HWY_SCALAR
+    std::uint16_t value;
+    std::memcpy(&value, p, sizeof value);  // rows of words may begin at odd addresses
+    auto word = hn::Set(d, value);
+#else
+    auto word = hn::LoadU(d, reinterpret_cast<const std::uint16_t*>(p));
+#endif
+    if (t.swapped) word = hn::Or(hn::ShiftLeft<8>(word), hn::ShiftRight<8>(word));
+    return hn::Min(hn::ShiftRightSame(word, t.word_shift), hn::Set(d, 255));
+  }
+};
+
+template <class Loader>
+HWY_INLINE void average_samples(const RowAverage& t, int width, std::uint16_t* out) {
+  const Loader loader;
+  const auto at = [&](auto d, int x) HWY_ATTR {
+    return average_vector(d, t, t.rows + static_cast<std::ptrdiff_t>(x) * Loader::kBytes,
+                          [&](const std::uint8_t* p) HWY_ATTR { return loader(d, t, p); });
+  };
   const hn::ScalableTag<std::uint16_t> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   int x = 0;
-  for (; x + lanes <= width; x += lanes) hn::StoreU(average_vector(d, t, x), d, out + x);
+  for (; x + lanes <= width; x += lanes) hn::StoreU(at(d, x), d, out + x);
   if (x == width) return;
   if (width >= lanes) {  // the last vector overlaps its neighbour: nothing behind the row is read
     x = width - lanes;
-    hn::StoreU(average_vector(d, t, x), d, out + x);
+    hn::StoreU(at(d, x), d, out + x);
     return;
   }
   const hn::CappedTag<std::uint16_t, 1> one;
-  for (; x < width; ++x) hn::StoreU(average_vector(one, t, x), one, out + x);
+  for (; x < width; ++x) hn::StoreU(at(one, x), one, out + x);
+}
+
+void average_rows(const RowAverage& t, int width, std::uint16_t* out) {
+  if (t.word_shift > 0)
+    average_samples<LoadWords>(t, width, out);
+  else
+    average_samples<LoadBytes>(t, width, out);
 }
 
 // Sum of the products of one target pixel, spread over four lanes.

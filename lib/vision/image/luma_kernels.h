@@ -7,7 +7,8 @@
 
 namespace cerberus::vision {
 
-// Vertical averages of `count` rows of `width` bytes:
+// Vertical averages of `count` rows of `width` bytes, or (word_shift > 0) of `width` words of 16 bits, each of which
+// stands for min(255, word >> word_shift), its bytes swapped first where the words have the other byte order:
 // out[x] = (first_weight * row[0][x] + ((row[1][x] + ... + row[count-2][x]) << shift) + last_weight *
 // row[count-1][x])
 //          * reciprocal >> 16.
@@ -19,6 +20,8 @@ struct RowAverage {
   int count;
   int shift;
   std::uint16_t first_weight, last_weight, reciprocal;
+  int word_shift = 0;
+  bool swapped = false;
 };
 void average_rows(const RowAverage& task, int width, std::uint16_t* out);
 
