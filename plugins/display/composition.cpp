@@ -29,7 +29,7 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
         weights[j] = i == GST_VIDEO_COMP_Y ? luma[j] : ((j == own) - luma[j]) / (2 * (1 - luma[own]));
     }
     auto& c = all[i];
-    c.data = GST_VIDEO_FRAME_COMP_DATA(frame, i);
+    c.data = cerberus::component_data(frame, i);
     c.pixel =
         static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(frame, GST_VIDEO_FORMAT_INFO_PLANE(format, i)));
     c.stride = GST_VIDEO_FRAME_COMP_STRIDE(frame, i);

@@ -304,9 +304,11 @@ gboolean cerberus_motion_view_decide_allocation(GstBaseTransform* transform, Gst
   return cerberus_motion_view_parent_class()->decide_allocation(transform, query);
 }
 
-// Everything that is true of the new picture as well (it has the frame's size); not what describes the old memory.
+// Everything that is true of the new picture as well (it has the frame's size); not what describes the old memory, nor
+// which part of that memory the frame was.
 gboolean cerberus_motion_view_transform_meta(GstBaseTransform*, GstBuffer*, GstMeta* meta, GstBuffer*) {
-  return !gst_meta_api_type_has_tag(meta->info->api, g_quark_from_static_string(GST_META_TAG_MEMORY_STR));
+  return meta->info->api != GST_VIDEO_CROP_META_API_TYPE &&
+         !gst_meta_api_type_has_tag(meta->info->api, g_quark_from_static_string(GST_META_TAG_MEMORY_STR));
 }
 
 gboolean cerberus_motion_view_query(GstBaseTransform* transform, GstPadDirection direction, GstQuery* query) {

@@ -191,9 +191,12 @@ gboolean propose_allocation(GstBaseTransform* trans, GstQuery* decide, GstQuery*
   return cerberus_virtual_ptz_parent_class()->propose_allocation(trans, decide, query);
 }
 
-// What lies in pixels of the wide picture has no place in the window.
+// What lies in pixels of the wide picture, or crops it, has no place in the window.
 gboolean transform_meta(GstBaseTransform*, GstBuffer*, GstMeta* meta, GstBuffer*) {
-  if (meta->info->api == GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE) return FALSE;  // has no tags
+  // Without tags:
+  if (meta->info->api == GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE ||
+      meta->info->api == GST_VIDEO_CROP_META_API_TYPE)
+    return FALSE;
   const gchar* const* tags = gst_meta_api_type_get_tags(meta->info->api);
   if (!tags) return meta->info->api != CERBERUS_POSE_META_API_TYPE;
   for (; *tags; ++tags)

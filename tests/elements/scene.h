@@ -182,7 +182,7 @@ class Line {
                                                     : gst_harness_new_parse(launch.c_str());
     bus = gst_bus_new();
     gst_element_set_bus(harness->element, bus);
-    gst_harness_set_src_caps_str(harness, caps_text.c_str());
+    if (!caps_text.empty()) gst_harness_set_src_caps_str(harness, caps_text.c_str());
   }
   ~Line() {
     gst_element_set_bus(harness->element, nullptr);

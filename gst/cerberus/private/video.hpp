@@ -22,8 +22,16 @@ inline int sample_bytes(const GstVideoFormatInfo* format, guint component) {
   return GST_VIDEO_FORMAT_INFO_DEPTH(format, component) > 8 ? static_cast<int>(bits + 7) / 8 : 1;
 }
 
+// First sample of a component. GStreamer 1.22 gives V of P010 and its kin an offset of one byte, not two.
+inline guint8* component_data(const GstVideoFrame* frame, guint component) {
+  const int offset = GST_VIDEO_FRAME_COMP_POFFSET(frame, component);
+  return static_cast<guint8*>(GST_VIDEO_FRAME_COMP_DATA(frame, component)) +
+         (sample_bytes(frame->info.finfo, component) == 2 ? offset % 2 : 0);
+}
+
 // A mapped frame, unmapped at the end of its life. False where the buffer cannot be mapped or is too small
-// for its caps (truncated files).
+// for its caps (truncated files). Where a GstVideoCropMeta says that the picture is a part of what is in memory, as
+// `videocrop` writes it for sinks that crop themselves, that part is the frame.
 class VideoFrame {
  public:
   VideoFrame(const GstVideoInfo& info, GstBuffer* buffer, GstMapFlags flags) {
@@ -34,9 +42,11 @@ class VideoFrame {
     mapped_ = gst_video_frame_map(
         &frame_, &info, buffer, static_cast<GstMapFlags>(int{flags} | int{GST_VIDEO_FRAME_MAP_FLAG_NO_REF}));
     if (!mapped_) return;
+    const GstVideoCropMeta* crop = gst_buffer_get_video_crop_meta(buffer);
+    const bool whole = !crop || move_to(*crop, info);
     GST_VIDEO_INFO_WIDTH(&frame_.info) = GST_VIDEO_INFO_WIDTH(&info);
     GST_VIDEO_INFO_HEIGHT(&frame_.info) = GST_VIDEO_INFO_HEIGHT(&info);
-    if (!fits()) unmap();
+    if (!whole || !fits()) unmap();
   }
   ~VideoFrame() { unmap(); }
   VideoFrame(const VideoFrame&) = delete;
@@ -58,6 +68,33 @@ class VideoFrame {
            meta.width >= static_cast<guint>(GST_VIDEO_INFO_WIDTH(&info)) &&
            meta.height >= static_cast<guint>(GST_VIDEO_INFO_HEIGHT(&info));
   }
+  // The first sample of every plane becomes that of the crop, rounded down to whole chroma samples and groups of
+  // packed ones, as `videocrop` does where it copies. False where the crop lies outside the frame in memory, or is
+  // smaller than the caps.
+  bool move_to(const GstVideoCropMeta& crop, const GstVideoInfo& info) {
+    const GstVideoFormatInfo* format = info.finfo;
+    const auto within = [](guint from, guint length, gint needed, gint all) {
+      return length >= static_cast<guint>(needed) && guint64{from} + length <= static_cast<guint64>(all);
+    };
+    if (!within(crop.x, crop.width, GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_WIDTH(&frame_.info)) ||
+        !within(crop.y, crop.height, GST_VIDEO_INFO_HEIGHT(&info), GST_VIDEO_INFO_HEIGHT(&frame_.info)))
+      return false;
+    for (guint p = 0; p < GST_VIDEO_FRAME_N_PLANES(&frame_); ++p) {
+      gint c[GST_VIDEO_MAX_COMPONENTS];  // of the plane, ended by -1
+      gst_video_format_info_component(format, p, c);
+      guint x = crop.x;
+      for (const gint* each = c; each != c + GST_VIDEO_MAX_COMPONENTS && *each >= 0; ++each)
+        x = x >> GST_VIDEO_FORMAT_INFO_W_SUB(format, *each) << GST_VIDEO_FORMAT_INFO_W_SUB(format, *each);
+      const auto first = static_cast<guint>(c[0]);
+      auto* data = static_cast<guint8*>(GST_VIDEO_FRAME_PLANE_DATA(&frame_, p));
+      data += gssize{static_cast<gint>(crop.y >> GST_VIDEO_FORMAT_INFO_H_SUB(format, first))} *
+              GST_VIDEO_FRAME_PLANE_STRIDE(&frame_, p);
+      data += gssize{static_cast<gint>(x >> GST_VIDEO_FORMAT_INFO_W_SUB(format, first))} *
+              GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, first);
+      frame_.data[p] = data;
+    }
+    return true;
+  }
   // It never compares the strides and offsets of a meta with the memory behind them: every sample of every
   // component must lie inside.
   bool fits() const {
@@ -68,7 +105,7 @@ class VideoFrame {
           gint64{GST_VIDEO_FRAME_COMP_WIDTH(&frame_, c) - 1} * GST_VIDEO_FRAME_COMP_PSTRIDE(&frame_, c) +
           sample_bytes(frame_.info.finfo, c);
       const gint64 last = (rows - 1) * GST_VIDEO_FRAME_COMP_STRIDE(&frame_, c);  // negative: bottom-up
-      const gint64 first = static_cast<const guint8*>(GST_VIDEO_FRAME_COMP_DATA(&frame_, c)) - map.data;
+      const gint64 first = component_data(&frame_, c) - map.data;
       if (rows > 1 && std::abs(last) < (rows - 1) * row) return false;  // rows that lie over one another
       if (first + std::min<gint64>(0, last) < 0) return false;
       if (first + std::max<gint64>(0, last) + row > static_cast<gint64>(map.size)) return false;
