@@ -21,11 +21,12 @@ using Kind = AxisCommand::Kind;
 
 namespace {
 
-constexpr const char* kDrivers[] = {"simulated", "scripted"};
+constexpr const char* kDrivers[] = {"simulated", "scripted", "external"};
 
 HeadSetup setup() {
   HeadSetup setup;
   setup.latency = 60ms;
+  setup.command = "sh -c 'read hello; echo ready 1 position velocity; cat >/dev/null'";  // of external
   return setup;
 }
 

@@ -22,6 +22,8 @@ struct HeadSetup {
   unsigned seed = 0;         // of the noise
   double pan = 0, tilt = 0;  // where it looks at the start
   std::string script;        // of scripted_head.h
+  std::string command;       // of helper_head.h: what runs the helper
+  Time helper_timeout = std::chrono::milliseconds(500);  // silence after which a helper stops its head
 };
 
 struct HeadCommand {
@@ -48,9 +50,9 @@ class Head {
   virtual bool blocks() const { return true; }
 };
 
-// "simulated", "scripted"; nullptr for a name that is no driver's.
+// "simulated", "scripted", "external"; nullptr for a name that is no driver's.
 std::unique_ptr<Head> make_head(std::string_view driver);
-// All names, for error messages: "simulated, scripted".
+// All names, for error messages: "simulated, scripted, external".
 std::string head_drivers();
 
 }  // namespace cerberus::drivers

@@ -3,6 +3,7 @@
 #include <array>
 #include <utility>
 
+#include "drivers/helper/helper_head.h"
 #include "drivers/simulated/scripted_head.h"
 #include "drivers/simulated/simulated_head.h"
 
@@ -15,9 +16,10 @@ std::unique_ptr<Head> make() {
   return std::make_unique<T>();
 }
 
-constexpr std::array<std::pair<std::string_view, std::unique_ptr<Head> (*)()>, 2> kDrivers{{
+constexpr std::array<std::pair<std::string_view, std::unique_ptr<Head> (*)()>, 3> kDrivers{{
     {"simulated", make<SimulatedHead>},
     {"scripted", make<ScriptedHead>},
+    {"external", make<HelperHead>},
 }};
 
 }  // namespace

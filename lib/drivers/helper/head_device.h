@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a helper process drives: one real head behind a protocol or a bus. serve_head() (helper_loop.h) calls it from one
+// thread. No call blocks for longer than a few milliseconds; what takes longer is done in steps by tick(). Time is
+// CLOCK_MONOTONIC as a parameter. Texts are for a user and name the device; empty = good.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <poll.h>
+
+#include "drivers/helper/head_lines.h"
+
+namespace cerberus::drivers {
+
+class HeadDevice {
+ public:
+  virtual ~HeadDevice() = default;
+  virtual std::string open(const HeadSetup& setup, Time now) = 0;
+  virtual HeadAbilities abilities() const = 0;
+  // Commands as HeadLines has them; what abilities() does not list is never asked for.
+  virtual void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) = 0;
+  virtual void limit(const motion::Limits& limits, Time now) = 0;
+  // Stops both axes. A device that acknowledges is sent Stop again by tick() until it has.
+  virtual void stop(Time now) noexcept = 0;
+  // True while a stop is not acknowledged: the process does not end before, or before kStopPatience is over.
+  virtual bool stopping() const = 0;
+  // Descriptors to wait on.
+  virtual void watch(std::vector<pollfd>& fds) const = 0;
+  // Reads what has come, sends what is due. Returns when it must be called again at the latest.
+  virtual Time tick(Time now) = 0;
+  // The position since the last call, if there is a new one.
+  virtual std::optional<PoseLine> take_pose(Time now) = 0;
+  // What is wrong with the device now; empty: nothing.
+  virtual std::string fault() const = 0;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The line protocol between a pipeline and the helper process that drives a head, version 1. A line is ASCII text with
+// a line feed at its end and at most kMostLine bytes. Angles are degrees (pan positive to the right, tilt positive up),
+// speeds degrees a second, accelerations degrees a second squared, times seconds; numbers have a point in every locale.
+// docs/manual/head-protocol.md describes it for those who write a helper.
+//
+//   pipeline -> helper
+//     cerberus-head 1 timeout T limits PAN-MIN PAN-MAX TILT-MIN TILT-MAX speed PAN TILT acceleration PAN TILT start PAN TILT
+//     move PAN-COMMAND TILT-COMMAND     a command is `hold`, `to POSITION SPEED` or `at SPEED`
+//     limits PAN-MIN PAN-MAX TILT-MIN TILT-MAX
+//     alive | stop | quit
+//   helper -> pipeline
+//     ready 1 [position] [velocity] [feedback] [rate N]
+//     pose PAN TILT PAN-SPEED TILT-SPEED AGE
+//     fault TEXT | recovered | stopped TEXT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+
+#include "drivers/head/head.h"
+
+namespace cerberus::drivers {
+
+inline constexpr int kHeadProtocol = 1;
+inline constexpr std::size_t kMostLine = 512;  // bytes, the line feed included
+
+// What the helper can do with its head.
+struct HeadAbilities {
+  bool position = false;  // it goes to an angle
+  bool velocity = false;  // it turns at a speed
+  bool feedback = false;  // it sends `pose` lines
+  double rate = 50;       // commands a second that it takes, 1 to 1000
+};
+
+struct ReadyLine {
+  HeadAbilities abilities;
+};
+struct PoseLine {
+  motion::AxisState pan, tilt;  // radians; acceleration 0
+  double age = 0;               // seconds since it was measured
+};
+struct FaultLine {
+  std::string text;
+};
+struct RecoveredLine {};
+struct StoppedLine {
+  std::string text;  // why the helper stopped the head by itself
+};
+// What a helper sends.
+using HelperLine = std::variant<ReadyLine, PoseLine, FaultLine, RecoveredLine, StoppedLine>;
+
+struct HelloLine {
+  HeadSetup setup;  // limits, start and helper_timeout; the rest as by default
+};
+struct MoveLine {
+  motion::AxisCommand pan, tilt;
+};
+struct LimitsLine {
+  motion::Limits limits;  // the stops only
+};
+struct AliveLine {};
+struct StopLine {};
+struct QuitLine {};
+// What a pipeline sends.
+using PipelineLine = std::variant<HelloLine, MoveLine, LimitsLine, AliveLine, StopLine, QuitLine>;
+
+std::string hello_line(const HeadSetup& setup, Time timeout);
+std::string move_line(const motion::AxisCommand& pan, const motion::AxisCommand& tilt);
+std::string limits_line(const motion::Limits& limits);
+
+// Without a line feed.
+std::string ready_line(const HeadAbilities& abilities);
+std::string pose_line(const PoseLine& pose);
+
+// One line without its line feed. Nothing: it is no line of this protocol, a number is not finite, its limits are not
+// those of a head (motion::check()), or its timeout is not between 1 ms and 10 s.
+std::optional<PipelineLine> parse_pipeline_line(std::string_view line);
+
+// One line without its line feed. Nothing: it is no line of this protocol, its numbers are not finite, or a `ready`
+// names another version or neither `position` nor `velocity`. Unknown words at the end of `ready` are skipped, so that
+// later versions can add abilities.
+std::optional<HelperLine> parse_helper_line(std::string_view line);
+
+// Cuts bytes that arrive in pieces into lines. A line that is too long is dropped whole.
+class LineBuffer {
+ public:
+  void append(std::string_view bytes);
+  // The oldest complete line without its line feed; nothing when there is none.
+  std::optional<std::string> take();
+
+ private:
+  std::string bytes_;
+  std::size_t line_begin_ = 0;  // of the line that is not complete yet
+  bool overlong_ = false;       // the rest of a dropped line is still to come
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/helper/helper_head.h"
+
+#include <poll.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <utility>
+
+#include "drivers/helper/head_lines.h"
+#include "drivers/helper/helper_process.h"
+#include "drivers/simulated/simulated_head.h"
+
+namespace cerberus::drivers {
+namespace {
+
+using motion::AxisCommand;
+using motion::AxisState;
+using motion::Pose;
+using Clock = std::chrono::steady_clock;
+using Kind = AxisCommand::Kind;
+
+struct Parameters {
+  Time ready_timeout = std::chrono::seconds(5);  // derived: a slow network camera logs in within it
+  Time restart_delay =
+      std::chrono::seconds(1);           // derived: issue "used again when it returns", without a busy loop
+  Time fresh = std::chrono::seconds(1);  // feedback older than this does not make a pose measured
+  double correction_gain =
+      0.3;                     // share of the difference to a reported pose; derived: settles in ten reports
+  double least_change = 1e-4;  // radians a second: slower changes of a speed are not sent
+};
+constexpr Parameters kParameters;
+
+Time since_start(Clock::time_point at) {
+  return std::chrono::duration_cast<Time>(at.time_since_epoch());
+}
+
+}  // namespace
+
+// Shared with the thread that talks to the helper. `lock` guards everything.
+struct HelperHead::Core {
+  std::mutex lock;
+  std::condition_variable answered;
+  HeadSetup setup;
+  std::string command;
+  HelperProcess process;
+  LineBuffer lines;
+  SimulatedHead model;
+  HeadAbilities abilities;
+  bool open = false, ready = false, ended = false, follows = false;
+  std::string fault;      // of the head, as the helper reports it
+  std::string notice;     // what the next command() returns, once
+  Time epoch{};           // running time 0 on the steady clock
+  HeadCommand last;       // of the caller
+  std::string last_move;  // as sent
+  Time next_follow{}, next_alive{}, next_start{};
+  double pan_correction = 0, tilt_correction = 0;  // radians: what to add to the model
+  std::optional<Time> measured;                    // running time of the last report
+  int wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+
+  ~Core() { ::close(wake); }
+  void run();
+  std::string start();
+  void lose(const std::string& why);
+  bool read_lines();
+  void handle(const HelperLine& line);
+  void send(const std::string& line);
+  void send_command();
+  void follow(Time now);
+  void poke() const {
+    const std::uint64_t one = 1;
+    [[maybe_unused]] const ssize_t written = ::write(wake, &one, sizeof one);
+  }
+  Time running_time() const { return since_start(Clock::now()) - epoch; }
+  Time period() const { return Time(static_cast<Time::rep>(1e9 / abilities.rate)); }
+};
+
+std::string HelperHead::Core::start() {
+  ready = false;
+  fault.clear();
+  lines = {};
+  last_move.clear();
+  pan_correction = tilt_correction = 0;
+  measured.reset();
+  next_alive = Time::min();
+  if (std::string wrong = process.start(command); !wrong.empty()) return wrong;
+  HeadSetup now = setup;
+  if (Pose pose; model.state(running_time(), pose).empty()) {
+    now.pan = pose.pan.position;
+    now.tilt = pose.tilt.position;
+  }
+  send(hello_line(now, setup.helper_timeout));
+  return {};
+}
+
+// The helper ended, or does not read any more. A command starts it again after restart_delay.
+void HelperHead::Core::lose(const std::string& why) {
+  ready = false;
+  process.hang_up();
+  fault = why == fault ? why : "the head's helper `" + command + "` is gone: " + why;
+  next_start = since_start(Clock::now()) + kParameters.restart_delay;
+  answered.notify_all();
+}
+
+void HelperHead::Core::send(const std::string& line) {
+  if (!process.running() || process.send(line)) return;
+  const bool full = errno == EAGAIN || errno == EWOULDBLOCK;
+  read_lines();  // it may have said why
+  lose(!fault.empty() ? fault : full ? "it does not read its input" : "it ended");
+}
+
+void HelperHead::Core::send_command() {
+  const auto direct = [this](const AxisCommand& c) {
+    return c.kind == Kind::hold || (c.kind == Kind::position && abilities.position) ||
+           (c.kind == Kind::velocity && abilities.velocity && abilities.position);
+  };
+  follows = !direct(last.pan) || !direct(last.tilt);
+  if (follows) {
+    next_follow = Time::min();
+    follow(running_time());
+    return;
+  }
+  const std::string line = move_line(last.pan, last.tilt);
+  if (line != last_move) send(line);
+  last_move = line;
+}
+
+// Makes the head do what the model does.
+void HelperHead::Core::follow(Time now) {
+  if (now < next_follow) return;
+  next_follow = now + period();
+  Pose ahead;
+  if (!model.state(now + setup.latency, ahead).empty()) return;
+  const auto axis = [this](const AxisState& state, double correction) -> AxisCommand {
+    if (!abilities.velocity) return {Kind::position, state.position, std::abs(state.speed)};
+    const double speed = state.speed - correction * (measured ? 1.0 : 0.0);
+    return std::abs(speed) < kParameters.least_change ? AxisCommand{} : AxisCommand{Kind::velocity, speed, 0};
+  };
+  const std::string line = move_line(axis(ahead.pan, pan_correction), axis(ahead.tilt, tilt_correction));
+  if (line != last_move) send(line);
+  last_move = line;
+  if (ahead.settled && !measured) follows = false;
+}
+
+void HelperHead::Core::handle(const HelperLine& line) {
+  if (const auto* came = std::get_if<ReadyLine>(&line)) {
+    abilities = came->abilities;
+    ready = true;
+    fault.clear();
+  } else if (const auto* reported = std::get_if<FaultLine>(&line)) {
+    fault = reported->text;
+  } else if (std::get_if<RecoveredLine>(&line)) {
+    fault.clear();
+    last_move.clear();
+  } else if (const auto* halted = std::get_if<StoppedLine>(&line)) {
+    notice = "the helper stopped the head: " + halted->text;
+    last_move.clear();
+  } else if (const auto* pose = std::get_if<PoseLine>(&line)) {
+    const Time at = running_time() - Time(static_cast<Time::rep>(std::min(pose->age, 10.0) * 1e9));
+    Pose expected;
+    if (!model.state(at, expected).empty()) return;
+    const auto correct = [](double& correction, double difference) {
+      correction += kParameters.correction_gain * (difference - correction);
+    };
+    correct(pan_correction, pose->pan.position - expected.pan.position);
+    correct(tilt_correction, pose->tilt.position - expected.tilt.position);
+    measured = at;
+  }
+  answered.notify_all();
+}
+
+// False: the helper has closed its end.
+bool HelperHead::Core::read_lines() {
+  std::string bytes;
+  const bool alive = process.receive(bytes);
+  lines.append(bytes);
+  while (const auto text = lines.take())
+    if (const auto line = parse_helper_line(*text)) handle(*line);
+  return alive;
+}
+
+void HelperHead::Core::run() {
+  std::unique_lock guard(lock);
+  while (!ended) {
+    const Time now = since_start(Clock::now());
+    if (process.running() && now >= next_alive) {
+      next_alive = now + setup.helper_timeout / 4;
+      send("alive\n");
+    }
+    if (ready && follows) follow(running_time());
+    if (!process.running()) process.end();
+    Time until = process.running() ? next_alive : now + kParameters.restart_delay;
+    if (ready && follows) until = std::min(until, next_follow + epoch);
+    const auto wait = std::chrono::ceil<std::chrono::milliseconds>(until - since_start(Clock::now()));
+    pollfd fds[2]{{wake, POLLIN, 0}, {process.fd(), POLLIN, 0}};  // a negative descriptor is skipped
+    guard.unlock();
+    ::poll(fds, 2, static_cast<int>(std::clamp<long>(wait.count(), 0, 1000)));
+    guard.lock();
+    std::uint64_t count;
+    [[maybe_unused]] const ssize_t drained = ::read(wake, &count, sizeof count);
+    if (fds[1].revents && process.fd() == fds[1].fd && !read_lines())
+      lose(fault.empty() ? "it ended" : fault);
+  }
+  send("stop\nquit\n");
+  guard.unlock();
+  process.finish();
+}
+
+HelperHead::HelperHead(std::string command) : command_(std::move(command)) {}
+
+HelperHead::~HelperHead() {
+  close();
+}
+
+std::string HelperHead::open(const HeadSetup& setup) {
+  close();
+  const std::string& command = command_.empty() ? setup.command : command_;
+  if (command.empty()) return "the driver external needs a helper to run (command=)";
+  if (setup.helper_timeout <= Time::zero()) return "helper-timeout must be more than 0";
+  auto core = std::make_shared<Core>();
+  if (std::string wrong = core->model.open(setup); !wrong.empty()) return wrong;
+  std::unique_lock guard(core->lock);
+  core->setup = setup;
+  core->command = command;
+  core->epoch = since_start(Clock::now());
+  if (std::string wrong = core->start(); !wrong.empty()) return wrong;
+  core_ = core;
+  worker_.emplace([core] { core->run(); });
+  const auto over = [&] { return core->ready || !core->fault.empty(); };
+  const bool came = core->answered.wait_for(guard, kParameters.ready_timeout, over);
+  core->open = core->ready;
+  const std::string fault = core->fault;
+  guard.unlock();
+  if (core->open) return {};
+  close();
+  return came ? fault : "the head's helper `" + command + "` does not answer with `ready 1 ...`";
+}
+
+void HelperHead::close() noexcept {
+  if (!core_) return;
+  {
+    const std::lock_guard guard(core_->lock);
+    core_->ended = true;
+    core_->open = false;
+  }
+  core_->poke();
+  if (worker_) worker_->leave(2 * HelperProcess::kPatience);
+  worker_.reset();
+  core_.reset();
+}
+
+void HelperHead::stop(Time now) noexcept {
+  if (!core_) return;
+  const std::lock_guard guard(core_->lock);
+  core_->model.stop(now);
+  core_->last.pan = core_->last.tilt = {};
+  core_->follows = false;
+  core_->last_move.clear();
+  core_->send("stop\n");
+}
+
+std::string HelperHead::command(const HeadCommand& command) {
+  if (!core_ || !core_->open) return "the head's helper is not open";
+  const std::lock_guard guard(core_->lock);
+  Core& c = *core_;
+  if (std::string wrong = c.model.command(command); !wrong.empty()) return wrong;
+  c.last = command;
+  c.epoch = since_start(Clock::now()) - command.time;
+  if (!c.process.running() && since_start(Clock::now()) >= c.next_start)
+    if (const std::string wrong = c.start(); !wrong.empty()) c.lose(wrong);
+  if (!c.fault.empty()) return c.fault;
+  if (!c.ready) return "the head's helper has been started again and is not ready yet";
+  c.send_command();
+  c.poke();
+  return std::exchange(c.notice, {});
+}
+
+std::string HelperHead::limit(Time now, const motion::Limits& limits) {
+  if (!core_ || !core_->open) return "the head's helper is not open";
+  const std::lock_guard guard(core_->lock);
+  if (std::string wrong = core_->model.limit(now, limits); !wrong.empty()) return wrong;
+  core_->setup.limits = limits;
+  core_->send(limits_line(limits));
+  return {};
+}
+
+std::string HelperHead::state(Time time, Pose& pose) {
+  if (!core_ || !core_->open) return "the head's helper is not open";
+  const std::lock_guard guard(core_->lock);
+  if (std::string wrong = core_->model.state(time, pose); !wrong.empty()) return wrong;
+  pose.measured = core_->measured && time - *core_->measured < kParameters.fresh;
+  if (!pose.measured) return {};
+  pose.pan.position += core_->pan_correction;
+  pose.tilt.position += core_->tilt_correction;
+  return {};
+}
+
+}  // namespace cerberus::drivers

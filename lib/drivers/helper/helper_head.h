@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A head that a helper process drives (head_lines.h): the driver `external`, and what every real head is made of.
+//
+// The process of the pipeline may die at any moment; the helper then sees the end of its input and stops the head. It
+// stops it as well when no line has come for helper-timeout. A thread here sends `alive` four times in that time.
+//
+// The pose is dead-reckoned: a model of the head (SimulatedHead) carries out the same commands with the same limits and
+// latency. Where the helper reports positions, the difference to the model at the time of the measurement corrects it.
+// A head that only turns at speeds is given the speeds of the model's motion, so it brakes before its limits; one that
+// only goes to angles is given the model's angles.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "drivers/head/head.h"
+#include "drivers/worker.h"
+
+namespace cerberus::drivers {
+
+class HelperHead final : public Head {
+ public:
+  // command: what /bin/sh runs; empty: that of HeadSetup::command.
+  explicit HelperHead(std::string command = {});
+  ~HelperHead() override;
+
+  std::string open(const HeadSetup& setup) override;
+  void close() noexcept override;
+  void stop(Time now) noexcept override;
+  std::string command(const HeadCommand& command) override;
+  std::string limit(Time now, const motion::Limits& limits) override;
+  std::string state(Time time, motion::Pose& pose) override;
+
+ private:
+  struct Core;
+  std::string command_;
+  std::shared_ptr<Core> core_;
+  std::optional<Worker> worker_;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The main loop of a helper process: lines in, a head moved, lines out (head_lines.h).
+//
+// The head stops at the end of the input, after `quit`, and when no line has come for the timeout of the first line; a
+// line after such a silence brings `stopped silence` first, and the next `move` is obeyed again. Lines that are not of
+// the protocol are skipped.
+#pragma once
+
+#include "drivers/helper/head_device.h"
+
+namespace cerberus::drivers {
+
+// How long the process waits at its end for the device to acknowledge the stop.
+inline constexpr std::chrono::milliseconds kStopPatience{2000};
+
+// Serves until the end. in, out: descriptors of the socket. Returns the process's exit status.
+int serve_head(int in, int out, HeadDevice& device);
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A child process joined by a socket pair, which is its standard input and output. The child is never killed: a killed
+// helper cannot switch its motors off. It ends by itself when the socket is closed, as the line protocol demands, and
+// is asked by SIGTERM if it does not.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace cerberus::drivers {
+
+class HelperProcess {
+ public:
+  HelperProcess() = default;
+  ~HelperProcess() { finish(); }
+  HelperProcess(const HelperProcess&) = delete;
+  HelperProcess& operator=(const HelperProcess&) = delete;
+
+  // Runs `command` by /bin/sh. Returns why it could not; empty: it runs.
+  std::string start(const std::string& command);
+  bool running() const { return fd_ >= 0; }
+  int fd() const { return fd_; }
+  // Never blocks. False: the child is gone, or has not read for so long that the socket is full.
+  bool send(std::string_view bytes) noexcept;
+  // Appends what has arrived. False: the child has closed its end.
+  bool receive(std::string& bytes);
+  // Closes the socket: the helper stops its head and ends. Never blocks.
+  void hang_up() noexcept;
+  // After hang_up(): how the child ended, in words; nothing while it still runs. Asks it by SIGTERM once kPatience has
+  // passed since hang_up(). Never blocks. An empty text where no child was running.
+  std::optional<std::string> end() noexcept;
+  // hang_up(), and waits for the end.
+  void finish() noexcept;
+
+  static constexpr std::chrono::milliseconds kPatience{1000};
+
+ private:
+  int fd_ = -1;
+  pid_t pid_ = -1;
+  bool asked_ = false;  // by SIGTERM
+  std::chrono::steady_clock::time_point hung_up_{};
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A VISCA camera for tests, written from the vendors' command lists and not from our encoder: on a pseudo-terminal, UDP
+// or TCP on loopback, with faults. It turns in real time by its own speed table and keeps what it was sent.
+#pragma once
+
+#include <arpa/inet.h>
+#include <fcntl.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace cerberus::tests {
+
+struct ViscaFaults {
+  bool acknowledges = true;
+  bool reports = true;     // answers position inquiries
+  bool header = true;      // expects the header of VISCA over IP, over UDP
+  int refuses = 0;         // as many moves are answered by "buffer full"
+  int loses_answers = 0;   // as many acknowledgements are lost
+  int swallows_stops = 0;  // as many stops are neither obeyed nor answered
+  std::chrono::milliseconds delay{0};
+};
+
+class ViscaCamera {
+ public:
+  using Clock = std::chrono::steady_clock;
+  enum class Line { serial, udp, tcp };
+
+  explicit ViscaCamera(Line line, ViscaFaults faults = {}) : line_(line), faults_(faults) {
+    if (line == Line::serial) {
+      char name[128];
+      if (::openpty(&fd_, &slave_, name, nullptr, nullptr) != 0) std::abort();
+      device_ = std::string("serial:") + name;
+    } else {
+      const int socket = ::socket(AF_INET, line == Line::udp ? SOCK_DGRAM : SOCK_STREAM, 0);
+      sockaddr_in at{};
+      at.sin_family = AF_INET;
+      at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      socklen_t size = sizeof at;
+      if (::bind(socket, reinterpret_cast<sockaddr*>(&at), size) != 0) std::abort();
+      ::getsockname(socket, reinterpret_cast<sockaddr*>(&at), &size);
+      if (line == Line::tcp) {
+        ::listen(socket, 1);
+        listener_ = socket;
+      } else {
+        fd_ = socket;
+      }
+      device_ =
+          (line == Line::udp ? "udp:127.0.0.1:" : "tcp:127.0.0.1:") + std::to_string(ntohs(at.sin_port));
+    }
+    last_ = Clock::now();
+    thread_ = std::thread([this] { run(); });
+  }
+  ~ViscaCamera() {
+    end_ = true;
+    thread_.join();
+    for (const int fd : {fd_, slave_, listener_})
+      if (fd >= 0) ::close(fd);
+  }
+  const std::string& device() const { return device_; }
+  double pan() { return state(pan_); }          // degrees
+  double speed() { return state(pan_speed_); }  // degrees a second
+  int moves() const { return moves_; }
+  // When the camera stopped last.
+  Clock::time_point stopped() {
+    const std::lock_guard guard(lock_);
+    return stopped_;
+  }
+  // The camera's cable is pulled (TCP: the connection ends).
+  void hang_up() { hang_up_ = true; }
+
+ private:
+  double state(double& value) {
+    const std::lock_guard guard(lock_);
+    advance();
+    return value;
+  }
+  void advance() {
+    const auto now = Clock::now();
+    pan_ += pan_speed_ * std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+  }
+  void run() {
+    std::vector<std::uint8_t> bytes;
+    while (!end_) {
+      if (hang_up_.exchange(false) && line_ == Line::tcp && fd_ >= 0) ::close(fd_), fd_ = -1;
+      if (line_ == Line::tcp && fd_ < 0) {
+        pollfd wait{listener_, POLLIN, 0};
+        if (::poll(&wait, 1, 5) == 1) fd_ = ::accept(listener_, nullptr, nullptr);
+        continue;
+      }
+      pollfd wait{fd_, POLLIN, 0};
+      if (::poll(&wait, 1, 5) != 1) continue;
+      std::uint8_t piece[512];
+      peer_size_ = sizeof peer_;
+      const ssize_t got = line_ == Line::udp ? ::recvfrom(fd_, piece, sizeof piece, 0,
+                                                          reinterpret_cast<sockaddr*>(&peer_), &peer_size_)
+                                             : ::read(fd_, piece, sizeof piece);
+      if (got <= 0) {
+        if (line_ == Line::tcp) ::close(fd_), fd_ = -1;
+        continue;
+      }
+      std::size_t skip = 0;
+      if (line_ == Line::udp && faults_.header) {
+        if (got < 9 || piece[0] != 0x01) continue;  // control messages: the sequence number begins anew
+        skip = 8;
+        std::memcpy(header_, piece, 8);
+      }
+      bytes.insert(bytes.end(), piece + skip, piece + got);
+      for (std::size_t i = 0; i < bytes.size(); ++i)
+        if (bytes[i] == 0xff) {
+          obey({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(i) + 1});
+          bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+          i = static_cast<std::size_t>(-1);
+        }
+    }
+  }
+  void answer(std::vector<std::uint8_t> message) {
+    std::this_thread::sleep_for(faults_.delay);
+    if (line_ == Line::udp && faults_.header) {
+      const std::uint8_t head[8] = {
+          1,          0x11,       0,          static_cast<std::uint8_t>(message.size()),
+          header_[4], header_[5], header_[6], header_[7]};
+      message.insert(message.begin(), head, head + 8);
+    }
+    if (line_ == Line::udp)
+      ::sendto(fd_, message.data(), message.size(), 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
+    else if (::write(fd_, message.data(), message.size()) < 0)
+      return;
+  }
+  void obey(const std::vector<std::uint8_t>& m) {
+    if (m.size() == 5 && m[0] == 0x81 && m[1] == 0x09 && m[2] == 0x06 && m[3] == 0x12) {
+      if (!faults_.reports) return;
+      const auto units = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(pan() * 14.4)));
+      std::vector<std::uint8_t> reply{0x90, 0x50};
+      for (int shift = 12; shift >= 0; shift -= 4)
+        reply.push_back(static_cast<std::uint8_t>(units >> shift & 15));
+      reply.insert(reply.end(), {0, 0, 0, 0, 0xff});
+      return answer(reply);
+    }
+    if (m.size() != 9 || m[0] != 0x81 || m[1] != 1 || m[2] != 6 || m[3] != 1) return;
+    const bool stop = m[6] == 3 && m[7] == 3;
+    if (stop && faults_.swallows_stops > 0) return void(--faults_.swallows_stops);
+    if (!stop && faults_.refuses > 0) {
+      --faults_.refuses;
+      return answer({0x90, 0x60, 0x03, 0xff});
+    }
+    {
+      static constexpr double kSpeeds[] = {.3, 1,  1.5, 2.2, 2.4, 2.6, 2.8, 3.0, 3.2, 3.4, 3.8, 4.5, 6,
+                                           9,  15, 19,  25,  32,  38,  45,  58,  75,  88,  105, 120};
+      const std::lock_guard guard(lock_);
+      advance();
+      const bool moved = pan_speed_ != 0;
+      pan_speed_ = m[6] == 3 ? 0 : kSpeeds[m[4]] * (m[6] == 2 ? 1 : -1);
+      if (moved && pan_speed_ == 0) stopped_ = Clock::now();
+      if (!stop) ++moves_;
+    }
+    if (!faults_.acknowledges) return;
+    if (faults_.loses_answers > 0) return void(--faults_.loses_answers);
+    answer({0x90, 0x41, 0xff});
+    answer({0x90, 0x51, 0xff});
+  }
+
+  Line line_;
+  ViscaFaults faults_;
+  std::string device_;
+  int fd_ = -1, slave_ = -1, listener_ = -1;
+  std::uint8_t header_[8]{};
+  sockaddr_storage peer_{};
+  socklen_t peer_size_ = 0;
+  std::mutex lock_;
+  double pan_ = 0, pan_speed_ = 0;
+  Clock::time_point last_, stopped_;
+  std::atomic<int> moves_{0};
+  std::atomic<bool> end_{false}, hang_up_{false};
+  std::thread thread_;
+};
+
+}  // namespace cerberus::tests

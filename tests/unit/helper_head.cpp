@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Heads that a helper process drives. The helpers here are shell scripts that record what they read, and the example
+// that is shipped.
+#include "drivers/helper/helper_head.h"
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "sensing/angles.h"
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::motion::Pose;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
+using Clock = std::chrono::steady_clock;
+using Kind = cerberus::motion::AxisCommand::Kind;
+
+namespace {
+
+// A helper that answers `ready` and writes every line that it reads, and at last `eof`, to a file.
+class Recorder {
+ public:
+  explicit Recorder(const std::string& abilities) {
+    file_ = "/tmp/cerberus-helper-" + std::to_string(::getpid()) + ".log";
+    std::remove(file_.c_str());
+    command_ = "sh -c 'read line; echo \"$line\" >>" + file_ + "; echo ready 1 " + abilities +
+               "; while read line; do echo \"$line\" >>" + file_ + "; done; echo eof >>" + file_ + "'";
+  }
+  ~Recorder() { std::remove(file_.c_str()); }
+  const std::string& command() const { return command_; }
+  std::vector<std::string> lines() const {
+    std::ifstream in(file_);
+    std::vector<std::string> all;
+    for (std::string line; std::getline(in, line);) all.push_back(line);
+    return all;
+  }
+  // The lines but `alive`, once there are `least` and the last of them is `last`.
+  std::vector<std::string> until(const std::string& last, std::size_t least = 1) const {
+    for (const auto end = Clock::now() + 10s; Clock::now() < end; std::this_thread::sleep_for(5ms)) {
+      std::vector<std::string> all = lines();
+      std::erase(all, "alive");
+      if (all.size() >= least && all.back() == last) return all;
+    }
+    ck_abort_msg("the helper never read '%s'", last.c_str());
+  }
+
+ private:
+  std::string file_, command_;
+};
+
+HeadSetup setup_with(const std::string& command) {
+  HeadSetup setup;
+  setup.command = command;
+  return setup;
+}
+
+std::string refusal_of(const std::string& command) {
+  HelperHead head;
+  return head.open(setup_with(command));
+}
+
+}  // namespace
+
+START_TEST(the_shipped_example_goes_where_it_is_sent_and_reports_it) {
+  HelperHead head;
+  const std::string example = std::string(std::getenv("CERBERUS_SOURCE")) + "/pipelines/heads/example.py";
+  assert_text(head.open(setup_with("python3 " + example)), "");
+  const auto begin = Clock::now();
+  assert_text(head.command({0s, {Kind::position, radians(20), radians(90)}, {}}), "");
+  Pose pose;
+  while (Clock::now() < begin + 10s) {
+    assert_text(head.state(Clock::now() - begin, pose), "");
+    if (pose.measured && pose.settled && std::abs(degrees(pose.pan.position) - 20) < 0.1) break;
+    std::this_thread::sleep_for(20ms);
+  }
+  ck_assert(pose.measured);
+  ck_assert_double_eq_tol(degrees(pose.pan.position), 20, 0.1);
+}
+END_TEST
+
+START_TEST(a_helper_is_told_what_was_commanded) {
+  const Recorder helper("position velocity");
+  HelperHead head;
+  assert_text(head.open(setup_with(helper.command())), "");
+  assert_text(
+      head.command({0s, {Kind::position, radians(10), radians(40)}, {Kind::velocity, radians(-5), 0}}), "");
+  assert_text(
+      head.command({1s, {Kind::position, radians(10), radians(40)}, {Kind::velocity, radians(-5), 0}}), "");
+  head.stop(2s);
+  head.close();
+  const auto lines = helper.until("eof");
+  ck_assert_uint_eq(lines.size(), 6);
+  ck_assert(lines[0].starts_with("cerberus-head 1 timeout 0.5 limits -170 170 -45 45 "));
+  assert_text(lines[1], "move to 10 40 at -5");  // once, though it was commanded twice
+  assert_text(lines[2], "stop");
+  assert_text(lines[3], "stop");
+  assert_text(lines[4], "quit");
+}
+END_TEST
+
+START_TEST(a_head_that_only_knows_speeds_brakes_at_the_target) {
+  const Recorder helper("velocity rate 100");
+  HelperHead head;
+  assert_text(head.open(setup_with(helper.command())), "");
+  assert_text(head.command({0s, {Kind::position, radians(6), radians(20)}, {}}), "");
+  const auto lines = helper.until("move hold hold", 6);
+  double most = 0;
+  for (const std::string& line : lines) {
+    double speed = 0;
+    if (std::sscanf(line.c_str(), "move at %lf hold", &speed) == 1) most = std::max(most, speed);
+  }
+  ck_assert_double_gt(most, 15);
+  ck_assert_double_le(most, 20.0001);
+}
+END_TEST
+
+START_TEST(a_helper_hears_from_us_well_within_its_timeout) {
+  const Recorder helper("position");
+  HelperHead head;
+  HeadSetup setup = setup_with(helper.command());
+  setup.helper_timeout = 200ms;
+  assert_text(head.open(setup), "");
+  std::this_thread::sleep_for(1s);
+  const auto all = helper.lines();
+  ck_assert_int_ge(std::count(all.begin(), all.end(), "alive"), 10);  // of 20
+}
+END_TEST
+
+START_TEST(a_helper_that_cannot_open_its_head_says_why) {
+  assert_text(refusal_of("sh -c 'echo fault no port /dev/ttyUSB9: permission denied; cat >/dev/null'"),
+              "no port /dev/ttyUSB9: permission denied");
+  assert_text(refusal_of("false"), "the head's helper `false` is gone: it ended");
+  assert_text(refusal_of(""), "the driver external needs a helper to run (command=)");
+}
+END_TEST
+
+START_TEST(a_helper_that_ended_is_reported_and_started_again) {
+  HelperHead head;
+  const std::string command =
+      "sh -c 'read a; echo ready 1 position; while read b; do case $b in move*) exit 1;; esac; done'";
+  assert_text(head.open(setup_with(command)), "");
+  assert_text(head.command({0s, {Kind::position, 0.1, 1}, {}}), "");
+  std::string wrong;
+  Time time = 0s;
+  const auto end = Clock::now() + 10s;
+  while (wrong.empty() && Clock::now() < end) {
+    std::this_thread::sleep_for(10ms);
+    wrong = head.command({time += 1ms, {}, {}});
+  }
+  ck_assert_msg(wrong.find("is gone") != std::string::npos, "%s", wrong.c_str());
+  while (!wrong.empty() && Clock::now() < end) {
+    std::this_thread::sleep_for(10ms);
+    wrong = head.command({time += 1ms, {}, {}});
+  }
+  assert_text(wrong, "");
+}
+END_TEST
+
+START_TEST(a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline) {
+  const Recorder helper("velocity");
+  const pid_t pipeline = ::fork();
+  if (pipeline == 0) {
+    HelperHead head;
+    if (!head.open(setup_with(helper.command())).empty()) ::_exit(1);
+    if (!head.command({0s, {Kind::velocity, radians(5), 0}, {}}).empty()) ::_exit(1);
+    for (;;) ::pause();
+  }
+  for (const auto end = Clock::now() + 10s; Clock::now() < end && helper.lines().size() < 3;)
+    std::this_thread::sleep_for(5ms);
+  ::kill(pipeline, SIGKILL);
+  const auto killed = Clock::now();
+  ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
+  helper.until("eof");
+  ck_assert(Clock::now() - killed < 500ms);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "helper_head",
+      {the_shipped_example_goes_where_it_is_sent_and_reports_it, a_helper_is_told_what_was_commanded,
+       a_head_that_only_knows_speeds_brakes_at_the_target, a_helper_hears_from_us_well_within_its_timeout,
+       a_helper_that_cannot_open_its_head_says_why, a_helper_that_ended_is_reported_and_started_again,
+       a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline});
+}

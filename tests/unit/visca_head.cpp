@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The VISCA driver against an emulated camera: serial, UDP, TCP, and what cameras do wrong. A served head is the whole
+// helper, joined by a socket pair as in its process.
+#include "drivers/visca/visca_head.h"
+
+#include <sys/socket.h>
+
+#include <future>
+#include <string>
+#include <thread>
+
+#include "drivers/helper/helper_loop.h"
+#include "support/visca_camera.h"
+
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::tests::assert_text;
+using cerberus::tests::ViscaCamera;
+using cerberus::tests::ViscaFaults;
+using Clock = std::chrono::steady_clock;
+
+namespace {
+
+ViscaOptions options_for(const ViscaCamera& camera, bool header = true) {
+  ViscaOptions options;
+  options.device = camera.device();
+  options.header = header;
+  return options;
+}
+
+// A helper that serves `head` until the pipeline's end of the line is closed.
+class Served {
+ public:
+  explicit Served(ViscaOptions options) : head_(std::move(options)) {
+    if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_) != 0) std::abort();
+    status_ = std::async(std::launch::async, [this] { return serve_head(ends_[1], ends_[1], head_); });
+    say("cerberus-head 1 timeout 0.2 limits -170 170 -45 45 speed 90 90 acceleration 600 600 start 0 0");
+  }
+  ~Served() {
+    hang_up();
+    if (status_.valid()) status_.wait();
+    ::close(ends_[1]);
+  }
+  void say(std::string line) {
+    line += '\n';
+    if (::write(ends_[0], line.data(), line.size()) < 0) std::abort();
+  }
+  void hang_up() {
+    if (ends_[0] >= 0) ::close(ends_[0]);
+    ends_[0] = -1;
+  }
+  // Keeps the line alive until the condition holds; false after 10 s.
+  template <typename Condition>
+  bool until(Condition holds, const std::string& line = "alive") {
+    for (const auto end = Clock::now() + 10s; Clock::now() < end; std::this_thread::sleep_for(10ms)) {
+      if (holds()) return true;
+      say(line);
+    }
+    return false;
+  }
+  // Reads until a line begins like this.
+  std::string line(const std::string& begin) {
+    const auto end = Clock::now() + 10s;
+    while (Clock::now() < end) {
+      while (const auto text = lines_.take())
+        if (text->starts_with(begin)) return *text;
+      char bytes[512];
+      const ssize_t got = ::recv(ends_[0], bytes, sizeof bytes, MSG_DONTWAIT);
+      if (got > 0)
+        lines_.append({bytes, static_cast<std::size_t>(got)});
+      else
+        std::this_thread::sleep_for(2ms);
+      if (got <= 0) say("alive");
+    }
+    return {};
+  }
+  int status() { return status_.get(); }
+
+ private:
+  ViscaHead head_;
+  int ends_[2];
+  LineBuffer lines_;
+  std::future<int> status_;
+};
+
+constexpr ViscaCamera::Line kLines[] = {ViscaCamera::Line::serial, ViscaCamera::Line::udp,
+                                        ViscaCamera::Line::tcp};
+
+}  // namespace
+
+START_TEST(a_camera_turns_reports_and_stops_on_every_line) {
+  ViscaCamera camera(kLines[_i]);
+  Served served(options_for(camera));
+  assert_text(served.line("ready"), "ready 1 velocity feedback rate 20");
+  served.say("move at 45 hold");
+  ck_assert(served.until([&] { return camera.pan() > 5; }));
+  ck_assert_double_eq(camera.speed(), 45);
+  ck_assert(served.line("pose").starts_with("pose "));
+  served.say("move hold hold");
+  ck_assert(served.until([&] { return camera.speed() == 0; }));
+}
+END_TEST
+
+START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second) {
+  for (const bool silent : {true, false}) {
+    ViscaCamera camera(kLines[_i]);
+    Served served(options_for(camera));
+    served.line("ready");
+    served.say("move at -45 hold");
+    ck_assert(served.until([&] { return camera.speed() == -45; }));
+    const auto last_word = Clock::now();
+    if (!silent) served.hang_up();
+    while (camera.speed() != 0 && Clock::now() - last_word < 5s) std::this_thread::sleep_for(2ms);
+    ck_assert(camera.speed() == 0);
+    ck_assert(camera.stopped() - last_word < 500ms);
+  }
+}
+END_TEST
+
+START_TEST(a_stop_is_sent_until_the_camera_obeys) {
+  ViscaFaults faults;
+  faults.swallows_stops = 4;  // the first is sent at the start
+  ViscaCamera camera(ViscaCamera::Line::udp, faults);
+  Served served(options_for(camera));
+  served.line("ready");
+  ck_assert(served.until([&] { return camera.speed() == 45; }, "move at 45 hold"));
+  served.hang_up();
+  ck_assert_int_eq(served.status(), 0);
+  ck_assert_double_eq(camera.speed(), 0);
+}
+END_TEST
+
+START_TEST(cameras_that_never_acknowledge_are_driven_all_the_same) {
+  ViscaFaults faults;
+  faults.acknowledges = faults.reports = false;
+  ViscaCamera camera(kLines[_i], faults);
+  Served served(options_for(camera));
+  assert_text(served.line("ready"), "ready 1 velocity rate 20");
+  ck_assert(served.until([&] { return camera.speed() == 15; }, "move at 15 hold"));
+  ck_assert(served.until([&] { return camera.speed() == 0; }, "move hold hold"));
+}
+END_TEST
+
+START_TEST(what_a_full_camera_refused_is_sent_again) {
+  ViscaFaults faults;
+  faults.refuses = 3;
+  faults.loses_answers = 1;
+  ViscaCamera camera(ViscaCamera::Line::serial, faults);
+  Served served(options_for(camera));
+  served.line("ready");
+  served.say("move at 9 hold");
+  ck_assert(served.until([&] { return camera.speed() == 9; }));
+}
+END_TEST
+
+START_TEST(a_camera_without_the_header_of_visca_over_ip_is_understood) {
+  ViscaFaults faults;
+  faults.header = false;
+  ViscaCamera camera(ViscaCamera::Line::udp, faults);
+  Served served(options_for(camera, false));
+  assert_text(served.line("ready"), "ready 1 velocity feedback rate 20");
+  served.say("move at 25 hold");
+  ck_assert(served.until([&] { return camera.speed() == 25; }));
+}
+END_TEST
+
+START_TEST(a_camera_that_goes_away_is_reported_and_used_again_at_rest) {
+  ViscaCamera camera(ViscaCamera::Line::tcp);
+  Served served(options_for(camera));
+  served.line("ready");
+  ck_assert(served.until([&] { return camera.speed() == 45; }, "move at 45 hold"));
+  const auto pulled = Clock::now();
+  camera.hang_up();
+  const std::string fault = served.line("fault");
+  ck_assert(Clock::now() - pulled < 1s);
+  ck_assert_msg(fault.find("is gone") != std::string::npos, "%s", fault.c_str());
+  assert_text(served.line("recovered"), "recovered");
+  ck_assert(served.until([&] { return camera.speed() == 0; }));  // it does not run away
+}
+END_TEST
+
+START_TEST(what_cannot_be_opened_is_named) {
+  const auto refusal = [](const char* device, int baud = 9600) {
+    ViscaOptions options;
+    options.device = device;
+    options.baud = baud;
+    return ViscaHead(options).open({}, 0s);
+  };
+  assert_text(refusal("serial:/dev/no-such-port"),
+              "the serial port /dev/no-such-port cannot be opened: No such file or directory");
+  assert_text(refusal("serial:/dev/null"), "/dev/null is no serial port");
+  ck_assert(refusal("/dev/ttyUSB0").find("write serial:/dev/ttyUSB0") != std::string::npos);
+  ck_assert(refusal("udp:127.0.0.1").find("names no port") != std::string::npos);
+  ck_assert(refusal("tcp:127.0.0.1:1").find("cannot be reached: Connection refused") != std::string::npos);
+  const ViscaCamera camera(ViscaCamera::Line::serial);
+  ck_assert(refusal(camera.device().c_str(), 12345).find("no baud rate 12345") != std::string::npos);
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("visca_head");
+  TCase* cases = tcase_create("visca_head");
+  tcase_set_timeout(cases, 60);
+  for (const TTest* test : {a_camera_turns_reports_and_stops_on_every_line,
+                            silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
+                            cameras_that_never_acknowledge_are_driven_all_the_same})
+    tcase_add_loop_test(cases, test, 0, std::size(kLines));
+  for (const TTest* test :
+       {a_stop_is_sent_until_the_camera_obeys, what_a_full_camera_refused_is_sent_again,
+        a_camera_without_the_header_of_visca_over_ip_is_understood,
+        a_camera_that_goes_away_is_reported_and_used_again_at_rest, what_cannot_be_opened_is_named})
+    tcase_add_test(cases, test);
+  suite_add_tcase(suite, cases);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
