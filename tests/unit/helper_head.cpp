@@ -68,14 +68,14 @@ HeadSetup setup_with(const std::string& command) {
 }
 
 std::string refusal_of(const std::string& command) {
-  HelperHead head;
+  HelperHead head("external");
   return head.open(setup_with(command));
 }
 
 }  // namespace
 
 START_TEST(the_shipped_example_goes_where_it_is_sent_and_reports_it) {
-  HelperHead head;
+  HelperHead head("external");
   const std::string example = std::string(std::getenv("CERBERUS_SOURCE")) + "/pipelines/heads/example.py";
   assert_text(head.open(setup_with("python3 " + example)), "");
   const auto begin = Clock::now();
@@ -93,7 +93,7 @@ END_TEST
 
 START_TEST(a_helper_is_told_what_was_commanded) {
   const Recorder helper("position velocity");
-  HelperHead head;
+  HelperHead head("external");
   assert_text(head.open(setup_with(helper.command())), "");
   assert_text(
       head.command({0s, {Kind::position, radians(10), radians(40)}, {Kind::velocity, radians(-5), 0}}), "");
@@ -113,7 +113,7 @@ END_TEST
 
 START_TEST(a_head_that_only_knows_speeds_brakes_at_the_target) {
   const Recorder helper("velocity rate 100");
-  HelperHead head;
+  HelperHead head("external");
   assert_text(head.open(setup_with(helper.command())), "");
   assert_text(head.command({0s, {Kind::position, radians(6), radians(20)}, {}}), "");
   const auto lines = helper.until("move hold hold", 6);
@@ -129,7 +129,7 @@ END_TEST
 
 START_TEST(a_helper_hears_from_us_well_within_its_timeout) {
   const Recorder helper("position");
-  HelperHead head;
+  HelperHead head("external");
   HeadSetup setup = setup_with(helper.command());
   setup.helper_timeout = 200ms;
   assert_text(head.open(setup), "");
@@ -148,7 +148,7 @@ START_TEST(a_helper_that_cannot_open_its_head_says_why) {
 END_TEST
 
 START_TEST(a_helper_that_ended_is_reported_and_started_again) {
-  HelperHead head;
+  HelperHead head("external");
   const std::string command =
       "sh -c 'read a; echo ready 1 position; while read b; do case $b in move*) exit 1;; esac; done'";
   assert_text(head.open(setup_with(command)), "");
@@ -173,7 +173,7 @@ START_TEST(a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeli
   const Recorder helper("velocity");
   const pid_t pipeline = ::fork();
   if (pipeline == 0) {
-    HelperHead head;
+    HelperHead head("external");
     if (!head.open(setup_with(helper.command())).empty()) ::_exit(1);
     if (!head.command({0s, {Kind::velocity, radians(5), 0}, {}}).empty()) ::_exit(1);
     for (;;) ::pause();

@@ -22,7 +22,10 @@ struct HeadSetup {
   unsigned seed = 0;         // of the noise
   double pan = 0, tilt = 0;  // where it looks at the start
   std::string script;        // of scripted_head.h
-  std::string command;       // of helper_head.h: what runs the helper
+  std::string command;       // of the driver external: the helper, run by /bin/sh
+  std::string helper;        // the program that drives real heads
+  std::string device;        // of a real head: serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT
+  std::string options;       // of its driver: "baud=38400 address=2"
   Time helper_timeout = std::chrono::milliseconds(500);  // silence after which a helper stops its head
 };
 
@@ -50,9 +53,9 @@ class Head {
   virtual bool blocks() const { return true; }
 };
 
-// "simulated", "scripted", "external"; nullptr for a name that is no driver's.
+// "simulated", "scripted", "external", "visca", "pelco-d"; nullptr for a name that is no driver's.
 std::unique_ptr<Head> make_head(std::string_view driver);
-// All names, for error messages: "simulated, scripted, external".
+// All names, for error messages: "simulated, scripted, external, visca, pelco-d".
 std::string head_drivers();
 
 }  // namespace cerberus::drivers

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The table of head drivers.
+#include <algorithm>
 #include <array>
-#include <utility>
+#include <string_view>
 
 #include "drivers/helper/helper_head.h"
 #include "drivers/simulated/scripted_head.h"
@@ -11,28 +12,20 @@ namespace cerberus::drivers {
 
 namespace {
 
-template <typename T>
-std::unique_ptr<Head> make() {
-  return std::make_unique<T>();
-}
-
-constexpr std::array<std::pair<std::string_view, std::unique_ptr<Head> (*)()>, 3> kDrivers{{
-    {"simulated", make<SimulatedHead>},
-    {"scripted", make<ScriptedHead>},
-    {"external", make<HelperHead>},
-}};
+constexpr std::array<std::string_view, 5> kDrivers{"simulated", "scripted", "external", "visca", "pelco-d"};
 
 }  // namespace
 
 std::unique_ptr<Head> make_head(std::string_view driver) {
-  for (const auto& [name, maker] : kDrivers)
-    if (name == driver) return maker();
-  return nullptr;
+  if (driver == "simulated") return std::make_unique<SimulatedHead>();
+  if (driver == "scripted") return std::make_unique<ScriptedHead>();
+  if (std::find(kDrivers.begin(), kDrivers.end(), driver) == kDrivers.end()) return nullptr;
+  return std::make_unique<HelperHead>(std::string(driver));
 }
 
 std::string head_drivers() {
   std::string names;
-  for (const auto& entry : kDrivers) names.append(names.empty() ? "" : ", ").append(entry.first);
+  for (const std::string_view name : kDrivers) names.append(names.empty() ? "" : ", ").append(name);
   return names;
 }
 

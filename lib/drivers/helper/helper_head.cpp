@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "drivers/helper/head_lines.h"
 #include "drivers/helper/helper_process.h"
@@ -37,6 +38,20 @@ struct Parameters {
 };
 constexpr Parameters kParameters;
 
+// HeadSetup::options as words; blanks part them, single quotes keep them.
+std::vector<std::string> helper_arguments(const std::string& driver, const HeadSetup& setup) {
+  std::vector<std::string> words{setup.helper, driver, "--device=" + setup.device};
+  bool quoted = false, begun = false;
+  for (const char c : setup.options) {
+    if (c == '\'') quoted = !quoted;
+    const bool blank = c == ' ' && !quoted;
+    if (!blank && !begun) words.emplace_back("--");
+    begun = !blank;
+    if (!blank && c != '\'') words.back() += c;
+  }
+  return words;
+}
+
 Time since_start(Clock::time_point at) {
   return std::chrono::duration_cast<Time>(at.time_since_epoch());
 }
@@ -48,7 +63,8 @@ struct HelperHead::Core {
   std::mutex lock;
   std::condition_variable answered;
   HeadSetup setup;
-  std::string command;
+  std::vector<std::string> arguments;
+  std::string name;  // of the helper, for messages
   HelperProcess process;
   LineBuffer lines;
   SimulatedHead model;
@@ -89,7 +105,7 @@ std::string HelperHead::Core::start() {
   pan_correction = tilt_correction = 0;
   measured.reset();
   next_alive = Time::min();
-  if (std::string wrong = process.start(command); !wrong.empty()) return wrong;
+  if (std::string wrong = process.start(arguments); !wrong.empty()) return wrong;
   HeadSetup now = setup;
   if (Pose pose; model.state(running_time(), pose).empty()) {
     now.pan = pose.pan.position;
@@ -103,7 +119,7 @@ std::string HelperHead::Core::start() {
 void HelperHead::Core::lose(const std::string& why) {
   ready = false;
   process.hang_up();
-  fault = why == fault ? why : "the head's helper `" + command + "` is gone: " + why;
+  fault = why == fault ? why : "the head's helper `" + name + "` is gone: " + why;
   next_start = since_start(Clock::now()) + kParameters.restart_delay;
   answered.notify_all();
 }
@@ -212,22 +228,23 @@ void HelperHead::Core::run() {
   process.finish();
 }
 
-HelperHead::HelperHead(std::string command) : command_(std::move(command)) {}
-
 HelperHead::~HelperHead() {
   close();
 }
 
 std::string HelperHead::open(const HeadSetup& setup) {
   close();
-  const std::string& command = command_.empty() ? setup.command : command_;
-  if (command.empty()) return "the driver external needs a helper to run (command=)";
+  const bool external = driver_ == "external";
+  if (external && setup.command.empty()) return "the driver external needs a helper to run (command=)";
+  if (!external && setup.device.empty()) return "the driver " + driver_ + " needs a device (device=)";
   if (setup.helper_timeout <= Time::zero()) return "helper-timeout must be more than 0";
   auto core = std::make_shared<Core>();
   if (std::string wrong = core->model.open(setup); !wrong.empty()) return wrong;
   std::unique_lock guard(core->lock);
   core->setup = setup;
-  core->command = command;
+  core->arguments = external ? std::vector<std::string>{"/bin/sh", "-c", "exec " + setup.command}
+                             : helper_arguments(driver_, setup);
+  core->name = external ? setup.command : driver_ + " of " + setup.device;
   core->epoch = since_start(Clock::now());
   if (std::string wrong = core->start(); !wrong.empty()) return wrong;
   core_ = core;
@@ -235,11 +252,11 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const auto over = [&] { return core->ready || !core->fault.empty(); };
   const bool came = core->answered.wait_for(guard, kParameters.ready_timeout, over);
   core->open = core->ready;
-  const std::string fault = core->fault;
+  const std::string fault = core->fault, name = core->name;
   guard.unlock();
   if (core->open) return {};
   close();
-  return came ? fault : "the head's helper `" + command + "` does not answer with `ready 1 ...`";
+  return came ? fault : "the head's helper `" + name + "` does not answer with `ready 1 ...`";
 }
 
 void HelperHead::close() noexcept {

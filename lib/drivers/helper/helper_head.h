@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head that a helper process drives (head_lines.h): the driver `external`, and what every real head is made of.
+// A head that a helper process drives (head_lines.h). The driver `external` runs HeadSetup::command by /bin/sh; a driver
+// of a real head runs `HeadSetup::helper DRIVER --device=... OPTIONS`.
 //
 // The process of the pipeline may die at any moment; the helper then sees the end of its input and stops the head. It
 // stops it as well when no line has come for helper-timeout. A thread here sends `alive` four times in that time.
@@ -12,6 +13,8 @@
 
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "drivers/head/head.h"
 #include "drivers/worker.h"
@@ -20,8 +23,8 @@ namespace cerberus::drivers {
 
 class HelperHead final : public Head {
  public:
-  // command: what /bin/sh runs; empty: that of HeadSetup::command.
-  explicit HelperHead(std::string command = {});
+  // driver: "external", or a name that the helper program knows.
+  explicit HelperHead(std::string driver) : driver_(std::move(driver)) {}
   ~HelperHead() override;
 
   std::string open(const HeadSetup& setup) override;
@@ -33,7 +36,7 @@ class HelperHead final : public Head {
 
  private:
   struct Core;
-  std::string command_;
+  std::string driver_;
   std::shared_ptr<Core> core_;
   std::optional<Worker> worker_;
 };

@@ -54,23 +54,24 @@ struct SpawnActions {
 
 }  // namespace
 
-std::string HelperProcess::start(const std::string& command) {
+std::string HelperProcess::start(const std::vector<std::string>& arguments) {
   hang_up();
-  if (!end()) return "the helper `" + command + "` that ran before has not ended yet";
+  if (!end()) return "the helper that ran before has not ended yet";
   int pair[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, pair) != 0)
     return std::string("no socket pair for the helper: ") + std::strerror(errno);
-  const std::string script = "exec " + command;
-  const std::array<const char*, 4> arguments{"sh", "-c", script.c_str(), nullptr};
+  std::vector<char*> words;
+  for (const std::string& argument : arguments) words.push_back(const_cast<char*>(argument.c_str()));
+  words.push_back(nullptr);
   const SpawnActions actions(pair[1]);
   const SpawnAttributes attributes;
-  const int failed = ::posix_spawn(&pid_, "/bin/sh", &actions.value, &attributes.value,
-                                   const_cast<char* const*>(arguments.data()), environ);
+  const int failed =
+      ::posix_spawnp(&pid_, words.front(), &actions.value, &attributes.value, words.data(), environ);
   ::close(pair[1]);
   if (failed != 0) {
     ::close(pair[0]);
     pid_ = -1;
-    return "the helper `" + command + "` cannot be started: " + std::strerror(failed);
+    return arguments.front() + " cannot be started: " + std::strerror(failed);
   }
   fd_ = pair[0];
   ::fcntl(fd_, F_SETFL, ::fcntl(fd_, F_GETFL) | O_NONBLOCK);

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace cerberus::drivers {
 
@@ -20,8 +21,8 @@ class HelperProcess {
   HelperProcess(const HelperProcess&) = delete;
   HelperProcess& operator=(const HelperProcess&) = delete;
 
-  // Runs `command` by /bin/sh. Returns why it could not; empty: it runs.
-  std::string start(const std::string& command);
+  // Runs the program arguments[0], looked for in PATH where it has no slash. Returns why it could not; empty: it runs.
+  std::string start(const std::vector<std::string>& arguments);
   bool running() const { return fd_ >= 0; }
   int fd() const { return fd_; }
   // Never blocks. False: the child is gone, or has not read for so long that the socket is full.

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// cerberus-head: the helper process that drives a real head for pantiltsink. It reads the line protocol
+// (docs/manual/head-protocol.md) from its standard input. It lives on when the pipeline is killed, for as long as it
+// takes to stop the head.
+#include <glib-unix.h>
+#include <glib.h>
+
+#include <csignal>
+#include <memory>
+#include <string>
+
+#include "drivers/helper/helper_loop.h"
+#include "drivers/pelco/pelco_head.h"
+#include "drivers/visca/visca_head.h"
+
+namespace {
+
+using namespace cerberus::drivers;
+
+struct Options {
+  gchar* device = nullptr;
+  gint baud = 0, address = 1;
+  gboolean no_header = FALSE, no_feedback = FALSE, feedback = FALSE;
+  gdouble pan_speed = PelcoOptions{}.pan_speed, tilt_speed = PelcoOptions{}.tilt_speed;
+  gchar* speeds = nullptr;
+};
+
+int fail(const std::string& text) {
+  // The pipeline reads standard output: what it cannot open is a fault, in words.
+  g_print("fault %s\n", text.c_str());
+  return 2;
+}
+
+int run_visca(const Options& o) {
+  ViscaOptions options;
+  options.device = o.device;
+  if (o.baud != 0) options.baud = o.baud;
+  options.address = o.address;
+  options.header = !o.no_header;
+  options.feedback = !o.no_feedback;
+  if (o.speeds)
+    if (const std::string wrong = visca::parse_speed_table(o.speeds, options.speeds); !wrong.empty())
+      return fail(wrong);
+  ViscaHead head(options);
+  return serve_head(0, 1, head);
+}
+
+int run_pelco(const Options& o) {
+  PelcoOptions options;
+  options.device = o.device;
+  if (o.baud != 0) options.baud = o.baud;
+  options.address = o.address;
+  options.feedback = o.feedback;
+  options.pan_speed = o.pan_speed;
+  options.tilt_speed = o.tilt_speed;
+  PelcoHead head(options);
+  return serve_head(0, 1, head);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // The end of the input stops the head and ends the program. A signal meant for the pipeline must not end it before.
+  for (const int number : {SIGINT, SIGHUP, SIGTERM}) std::signal(number, SIG_IGN);
+  Options o;
+  const GOptionEntry entries[] = {
+      {"device", 0, 0, G_OPTION_ARG_STRING, &o.device, "serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT",
+       "DEVICE"},
+      {"baud", 0, 0, G_OPTION_ARG_INT, &o.baud, "Baud rate of a serial port (visca 9600, pelco-d 2400)", "N"},
+      {"address", 0, 0, G_OPTION_ARG_INT, &o.address, "Address on a serial line (1)", "N"},
+      {"no-header", 0, 0, G_OPTION_ARG_NONE, &o.no_header, "UDP without the header of VISCA over IP",
+       nullptr},
+      {"no-feedback", 0, 0, G_OPTION_ARG_NONE, &o.no_feedback, "Do not ask the camera for its position",
+       nullptr},
+      {"feedback", 0, 0, G_OPTION_ARG_NONE, &o.feedback, "Ask a Pelco-D head for its position", nullptr},
+      {"pan-speed", 0, 0, G_OPTION_ARG_DOUBLE, &o.pan_speed,
+       "Degrees a second of a Pelco-D head's fastest pan (40)", "N"},
+      {"tilt-speed", 0, 0, G_OPTION_ARG_DOUBLE, &o.tilt_speed, "Degrees a second of its fastest tilt (20)",
+       "N"},
+      {"speeds", 0, 0, G_OPTION_ARG_STRING, &o.speeds,
+       "Speeds of a VISCA camera's steps 0, 1, 2 ... in degrees a second: \"PAN PAN ...; TILT TILT ...\"",
+       "TABLE"},
+      {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
+  const std::unique_ptr<GOptionContext, decltype(&g_option_context_free)> context(
+      g_option_context_new("DRIVER"), g_option_context_free);
+  g_option_context_set_summary(context.get(),
+                               "Drives a pan-tilt head for pantiltsink. Drivers: visca, pelco-d.");
+  g_option_context_add_main_entries(context.get(), entries, nullptr);
+  GError* error = nullptr;
+  if (!g_option_context_parse(context.get(), &argc, &argv, &error)) {
+    const std::string text = error->message;
+    g_error_free(error);
+    return fail(text);
+  }
+  const std::string driver = argc == 2 ? argv[1] : "";
+  if (driver != "visca" && driver != "pelco-d")
+    return fail("there is no head driver \"" + driver + "\": take visca or pelco-d");
+  if (!o.device) return fail("the driver " + driver + " needs --device");
+  return driver == "visca" ? run_visca(o) : run_pelco(o);
+}

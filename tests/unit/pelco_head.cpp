@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The Pelco-D driver against a head on a pseudo-terminal, which reads frames by the manual and not by our decoder.
+#include "drivers/pelco/pelco_head.h"
+
+#include <pty.h>
+#include <unistd.h>
+
+#include <string>
+#include <thread>
+
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
+using Kind = cerberus::motion::AxisCommand::Kind;
+
+namespace {
+
+// The far end of the line: what has come of it, frame by frame, and a way to answer.
+class Line {
+ public:
+  Line() {
+    char name[128];
+    if (::openpty(&fd_, &slave_, name, nullptr, nullptr) != 0) std::abort();
+    device_ = std::string("serial:") + name;
+  }
+  ~Line() {
+    ::close(fd_);
+    ::close(slave_);
+  }
+  const std::string& device() const { return device_; }
+  // The newest frame; waits until one has come.
+  std::array<std::uint8_t, 7> frame() {
+    std::array<std::uint8_t, 7> last{};
+    pollfd wait{fd_, POLLIN, 0};
+    for (int timeout = 5000; ::poll(&wait, 1, timeout) == 1; timeout = 0) {
+      ck_assert_int_eq(::read(fd_, last.data(), last.size()), 7);
+      ck_assert_uint_eq(last[0], 0xff);
+      ck_assert_uint_eq(last[6], (last[1] + last[2] + last[3] + last[4] + last[5]) & 255);
+      ++frames_;
+    }
+    return last;
+  }
+  bool silent() {
+    pollfd wait{fd_, POLLIN, 0};
+    return ::poll(&wait, 1, 20) == 0;
+  }
+  void answer(const std::array<std::uint8_t, 7>& frame) {
+    ck_assert_int_eq(::write(fd_, frame.data(), frame.size()), 7);
+    pollfd wait{slave_, POLLIN, 0};
+    ck_assert_int_eq(::poll(&wait, 1, 5000), 1);
+  }
+  int frames() const { return frames_; }
+
+ private:
+  int fd_ = -1, slave_ = -1, frames_ = 0;
+  std::string device_;
+};
+
+PelcoOptions options_for(const Line& line, bool feedback = false) {
+  PelcoOptions options;
+  options.device = line.device();
+  options.feedback = feedback;
+  return options;
+}
+
+}  // namespace
+
+START_TEST(speeds_become_steps_and_are_sent_again) {
+  Line line;
+  PelcoHead head(options_for(line));
+  assert_text(head.open({}, 0s), "");
+  ck_assert_uint_eq(line.frame()[3], 0);  // it stands from the start
+  head.move({Kind::velocity, radians(20), 0}, {Kind::velocity, radians(-20), 0}, 1s);
+  const auto drive = line.frame();
+  ck_assert_uint_eq(drive[3], 0x12);  // right and down
+  ck_assert_uint_eq(drive[4], 32);    // half of 40 degrees a second: 31.5 of 63
+  ck_assert_uint_eq(drive[5], 63);
+  head.tick(1s + 100ms);
+  ck_assert(line.silent());
+  head.tick(1s + 200ms);
+  ck_assert(line.frame() == drive);
+}
+END_TEST
+
+START_TEST(a_stop_is_sent_five_times) {
+  Line line;
+  PelcoHead head(options_for(line));
+  head.open({}, 0s);
+  head.move({Kind::velocity, 1, 0}, {}, 1s);
+  line.frame();
+  const int before = line.frames();
+  head.move({}, {}, 2s);
+  for (Time t = 2s; t < 3s; t += 10ms) {
+    head.tick(t);
+    if (!line.silent()) ck_assert_uint_eq(line.frame()[3], 0);
+  }
+  ck_assert_int_eq(line.frames() - before, 5);
+  ck_assert(!head.stopping());
+}
+END_TEST
+
+START_TEST(positions_are_asked_for_and_a_head_at_its_limit_stops) {
+  Line line;
+  PelcoHead head(options_for(line, true));
+  HeadSetup setup;
+  setup.limits.pan = {radians(-50), radians(40), 1, 1};
+  head.open(setup, 0s);
+  for (Time t = 0s; t < 300ms; t += 50ms) head.tick(t);
+  line.frame();
+  head.move({Kind::velocity, 0.3, 0}, {}, 1s);
+  ck_assert_uint_eq(line.frame()[3], 0x02);
+  head.tick(1s + 100ms);
+  const auto query = line.frame();
+  ck_assert(query[3] == 0x51 || query[3] == 0x53);
+  line.answer({0xff, 1, 0, 0x5b, 0, 0, 0x5c});
+  line.answer({0xff, 1, 0, 0x59, 0x0b, 0xb8, 0x1d});  // 30 degrees
+  head.tick(1s + 110ms);
+  const auto pose = head.take_pose(1s + 110ms);
+  ck_assert(pose);
+  ck_assert_double_eq_tol(pose->pan.position, radians(30), 1e-9);
+  ck_assert(!head.take_pose(1s + 110ms));
+  line.answer({0xff, 1, 0, 0x59, 0x0f, 0xa0, 0x09});  // 40 degrees: the limit
+  head.tick(1s + 120ms);
+  ck_assert_uint_eq(line.frame()[3], 0);
+  ck_assert(head.stopping());
+}
+END_TEST
+
+START_TEST(what_cannot_be_is_named) {
+  Line line;
+  PelcoOptions options = options_for(line);
+  options.address = 0;
+  assert_text(PelcoHead(options).open({}, 0s), "a Pelco-D address is 1 to 255");
+  options = options_for(line);
+  options.pan_speed = 0;
+  assert_text(PelcoHead(options).open({}, 0s), "pan-speed and tilt-speed must be more than 0");
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "pelco_head", {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
+                     positions_are_asked_for_and_a_head_at_its_limit_stops, what_cannot_be_is_named});
+}
