@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "head_settings.hpp"
 
+#include "helper_program.hpp"
 #include "shared/choices.hpp"
 #include "shared/times.hpp"
 
@@ -19,12 +20,26 @@ GType target_type() {
 }
 
 const Property<HeadSettings> kProperties[] = {
-    property("driver", &HeadSettings::driver, "What drives the head: simulated or scripted").read_at_start(),
+    property("driver", &HeadSettings::driver,
+             "What drives the head: simulated, scripted, external, visca or pelco-d")
+        .read_at_start(),
     property("head", &HeadSettings::head, "Name of the head, in pose events and messages; one sink a name")
         .read_at_start(),
     property("script", &HeadSettings::script,
              "What the scripted driver does, for tests: parts like 'record 7; command 3 fail no power; stop "
              "wait 8' with file descriptors")
+        .read_at_start(),
+    property("device", &HeadSettings::device,
+             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT")
+        .read_at_start(),
+    property("device-options", &HeadSettings::device_options,
+             "Options of the real head's driver, as 'baud=38400 address=2'")
+        .read_at_start(),
+    property("command", &HeadSettings::command,
+             "The helper program of driver=external, run by /bin/sh, which speaks the line protocol of heads")
+        .read_at_start(),
+    property("helper-timeout", &HeadSettings::helper_timeout,
+             "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
         .read_at_start(),
     property("horizontal-fov", &HeadSettings::horizontal_fov, 0, 179,
              "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing "
@@ -123,7 +138,12 @@ drivers::HeadSetup head_setup(const HeadSettings& s) {
           .seed = static_cast<unsigned>(s.seed),
           .pan = radians(s.start_pan),
           .tilt = radians(s.start_tilt),
-          .script = s.script};
+          .script = s.script,
+          .command = s.command,
+          .helper = helper_program(),
+          .device = s.device,
+          .options = s.device_options,
+          .helper_timeout = time_of(s.helper_timeout)};
 }
 
 }  // namespace cerberus::plugin

@@ -16,6 +16,8 @@ struct HeadSettings {
   std::string driver = "simulated";
   std::string head = "head";
   std::string script;
+  std::string device, device_options, command;
+  guint64 helper_timeout = 500 * GST_MSECOND;
   double horizontal_fov = 60;
   double pan_min = -170, pan_max = 170, tilt_min = -45, tilt_max = 45;
   double start_pan = 0, start_tilt = 0;

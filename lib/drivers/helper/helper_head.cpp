@@ -17,6 +17,7 @@
 #include "drivers/helper/head_lines.h"
 #include "drivers/helper/helper_process.h"
 #include "drivers/simulated/simulated_head.h"
+#include "text/numbers.h"
 
 namespace cerberus::drivers {
 namespace {
@@ -237,7 +238,9 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const bool external = driver_ == "external";
   if (external && setup.command.empty()) return "the driver external needs a helper to run (command=)";
   if (!external && setup.device.empty()) return "the driver " + driver_ + " needs a device (device=)";
-  if (setup.helper_timeout <= Time::zero()) return "helper-timeout must be more than 0";
+  if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))
+    return "helper-timeout must be 1 ms to 10 s, and is " +
+           text::significant(motion::seconds(setup.helper_timeout), 6).string() + " s";
   auto core = std::make_shared<Core>();
   if (std::string wrong = core->model.open(setup); !wrong.empty()) return wrong;
   std::unique_lock guard(core->lock);
