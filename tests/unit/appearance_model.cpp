@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What somebody looks like, on flat pictures where it can be computed by hand.
+// Appearance models of flat pictures, where they can be computed by hand.
 #include "vision/tracking/appearance_model.h"
 
 #include <check.h>
@@ -18,7 +18,7 @@ namespace {
 constexpr Size kSize{160, 120};
 constexpr Box kPerson{60, 20, 20, 50};
 
-// A street of even brightness with noise, and a person with a coat and legs on it who is all that moves.
+// A street of even brightness with noise; the foreground is one person with a coat and legs.
 struct Street {
   Image<std::uint8_t> luma{kSize}, mask{kSize};
 
@@ -66,7 +66,7 @@ START_TEST(a_band_of_one_brightness_is_in_the_bin_of_its_logarithm) {
 }
 END_TEST
 
-START_TEST(looks_differ_by_the_share_of_pixels_that_are_not_as_bright) {
+START_TEST(appearances_differ_by_the_share_of_pixels_of_another_brightness) {
   const AppearanceModel dark = look_of(Street(10, 10)), light = look_of(Street(200, 200)),
                         both = look_of(Street(10, 200));
   ck_assert_double_eq(appearance_distance(dark, dark), 0);
@@ -78,7 +78,7 @@ START_TEST(looks_differ_by_the_share_of_pixels_that_are_not_as_bright) {
 }
 END_TEST
 
-START_TEST(what_does_not_move_does_not_count) {
+START_TEST(background_pixels_do_not_count) {
   Street street(60, 20);
   const AppearanceModel alone = look_of(street);
   Box wide = kPerson;  // as much ground as person, and the person in the middle
@@ -93,7 +93,7 @@ START_TEST(what_does_not_move_does_not_count) {
 }
 END_TEST
 
-START_TEST(a_step_of_exposure_is_no_other_coat) {
+START_TEST(a_step_of_exposure_does_not_change_the_appearance) {
   for (const double gain : {0.5, 0.7, 1.4}) {
     BrightnessLevel level;
     const Street before(100, 40), after(100, 40, gain);
@@ -121,7 +121,7 @@ START_TEST(neither_a_turning_camera_nor_people_change_the_level) {
 }
 END_TEST
 
-START_TEST(what_is_learnt_comes_slowly_and_a_band_that_was_not_seen_at_once) {
+START_TEST(a_known_band_is_learnt_slowly_and_an_unknown_one_at_once) {
   const AppearanceModel dark = look_of(Street(10, 10)), light = look_of(Street(200, 200));
   AppearanceModel look = dark;
   look.learn(light, 0.25);
@@ -164,8 +164,9 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "look", {a_band_of_one_brightness_is_in_the_bin_of_its_logarithm,
-               looks_differ_by_the_share_of_pixels_that_are_not_as_bright, what_does_not_move_does_not_count,
-               a_step_of_exposure_is_no_other_coat, neither_a_turning_camera_nor_people_change_the_level,
-               what_is_learnt_comes_slowly_and_a_band_that_was_not_seen_at_once,
+               appearances_differ_by_the_share_of_pixels_of_another_brightness,
+               background_pixels_do_not_count, a_step_of_exposure_does_not_change_the_appearance,
+               neither_a_turning_camera_nor_people_change_the_level,
+               a_known_band_is_learnt_slowly_and_an_unknown_one_at_once,
                boxes_anywhere_and_of_any_size_do_no_harm_and_nothing_is_allocated});
 }

@@ -58,7 +58,7 @@ START_TEST(nothing_to_match_gives_nothing) {
 }
 END_TEST
 
-START_TEST(who_costs_less_without_partner_has_none) {
+START_TEST(a_row_that_costs_less_unmatched_has_no_partner) {
   // Alone row 0 would take column 0; row 1 fits there, and has nothing else as good.
   const std::vector<double> cost = {1.2, Assignment::kForbidden, 0.3, 1.3}, price = {2, 2}, high = {3, 2};
   Assignment assignment;
@@ -105,5 +105,5 @@ int main() {
   return cerberus::tests::run_suite(
       "assignment",
       {the_greedy_choice_is_not_taken_when_it_costs_more, nothing_to_match_gives_nothing,
-       who_costs_less_without_partner_has_none, random_gated_problems_match_the_exhaustive_search});
+       a_row_that_costs_less_unmatched_has_no_partner, random_gated_problems_match_the_exhaustive_search});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who is who where places alone do not tell: tracks of people whose coats are known.
+// Identities by appearance where positions are not enough.
 #include "unit/place.h"
 
 #include <check.h>
@@ -56,7 +56,7 @@ constexpr Person kDark{0, 120, kBlack, kBlack}, kLight{0, 122, kWhite, kJeans},
 
 }  // namespace
 
-START_TEST(two_in_different_coats_who_meet_and_turn_back_keep_their_identities) {
+START_TEST(two_appearances_that_meet_and_turn_back_keep_their_identities) {
   for (const Person& other : {kLight, kMiddle}) {
     Place one, two;
     ck_assert(turn_back(one, kDark, other));
@@ -73,7 +73,7 @@ START_TEST(a_step_of_exposure_while_they_stand_together_changes_nothing) {
 }
 END_TEST
 
-START_TEST(two_who_pass_each_other_keep_their_identities_whatever_they_wear) {
+START_TEST(two_persons_who_pass_keep_their_identities_whatever_their_appearance) {
   Place one, two, three;
   ck_assert(pass(one, kDark, kLight));
   ck_assert(pass(two, kLight, kDark));
@@ -82,7 +82,7 @@ START_TEST(two_who_pass_each_other_keep_their_identities_whatever_they_wear) {
 END_TEST
 
 // In equal coats places decide, exactly as they do without the picture.
-START_TEST(equal_coats_are_told_apart_by_their_places_alone) {
+START_TEST(equal_appearances_are_associated_by_position_alone) {
   Place looking, blind;
   blind.looking = false;
   for (int k = 0; k < 30; ++k) {
@@ -100,8 +100,8 @@ START_TEST(equal_coats_are_told_apart_by_their_places_alone) {
 }
 END_TEST
 
-// Two whole people come out of a second in which nobody was seen, each nearer to the other's place than to his own.
-START_TEST(the_look_decides_where_places_would_swap_two_people) {
+// After some frames without regions two person-like regions appear, each nearer to the other's predicted position.
+START_TEST(appearance_decides_where_positions_would_swap_two_persons) {
   for (const bool looking : {true, false}) {
     Place place;
     place.looking = looking;
@@ -126,8 +126,8 @@ START_TEST(the_look_decides_where_places_would_swap_two_people) {
 }
 END_TEST
 
-// Someone walks behind somebody who stands: 2.5 s without a region of his own, more than coast-time.
-START_TEST(who_was_hidden_behind_somebody_is_the_same_when_he_comes_out) {
+// A person walks behind a standing one: 2.5 s without an own region, more than coast-time.
+START_TEST(an_occluded_person_keeps_the_identity) {
   Place place;
   std::uint32_t standing = 0, walking = 0;
   double x = 0;
@@ -149,8 +149,8 @@ START_TEST(who_was_hidden_behind_somebody_is_the_same_when_he_comes_out) {
 }
 END_TEST
 
-// But not for ever: who does not come out for three seconds is nobody's ghost before the one who stands there.
-START_TEST(who_does_not_come_out_again_leaves_no_ghost) {
+// After three seconds the occluded track ends.
+START_TEST(an_occluded_person_who_does_not_reappear_leaves_no_track) {
   Place place;
   for (int k = 0; k < 90; ++k) {
     Person front = kLight, back = kDark;
@@ -165,8 +165,8 @@ START_TEST(who_does_not_come_out_again_leaves_no_ghost) {
 }
 END_TEST
 
-// The pavement beside a pole where somebody vanishes is not the person, however person-like its region.
-START_TEST(a_region_that_looks_like_nobody_does_not_take_the_identity) {
+// Pavement beside a pole where a person vanishes is not the person, however person-like its region.
+START_TEST(a_region_of_another_appearance_does_not_take_the_identity) {
   for (const bool ghost : {true, false}) {
     Place place;
     std::uint32_t id = 0;
@@ -188,8 +188,8 @@ START_TEST(a_region_that_looks_like_nobody_does_not_take_the_identity) {
 }
 END_TEST
 
-// But who walks into the shade, and is darker there from step to step, stays who he is; and when a cloud comes, too.
-START_TEST(who_gets_darker_step_by_step_stays_the_same) {
+// A person who walks into the shade becomes darker from frame to frame; a cloud darkens everything.
+START_TEST(a_gradual_change_of_appearance_keeps_the_identity) {
   Place place;
   std::uint32_t id = 0;
   for (int k = 0; k < 50; ++k) {
@@ -206,8 +206,8 @@ START_TEST(who_gets_darker_step_by_step_stays_the_same) {
 }
 END_TEST
 
-// The camera turns away from somebody, and in his place somebody stands when it comes back.
-START_TEST(who_comes_back_in_another_coat_is_somebody_else) {
+// The camera turns away from a person, and another one stands there when it comes back.
+START_TEST(another_appearance_after_off_screen_is_a_new_track) {
   for (const Person& back : {kDark, kLight}) {
     Place place;
     std::uint32_t id = 0;
@@ -238,7 +238,7 @@ START_TEST(who_comes_back_in_another_coat_is_somebody_else) {
 END_TEST
 
 // One frame in which all are one blob is no reason to take them for pieces of one.
-START_TEST(three_who_are_one_blob_for_a_moment_are_three_afterwards) {
+START_TEST(three_persons_in_one_blob_for_a_moment_are_three_afterwards) {
   Place place;
   std::vector<std::uint32_t> ids;
   for (int k = 0; k < 30; ++k) {
@@ -261,7 +261,7 @@ START_TEST(three_who_are_one_blob_for_a_moment_are_three_afterwards) {
 }
 END_TEST
 
-START_TEST(looking_allocates_nothing) {
+START_TEST(appearance_allocates_nothing) {
   Place place;
   turn_back(place, kDark, kLight);
   const std::vector<Region> regions{{{125, 80, 55, 80}, 1000, 0.4, 1}};
@@ -275,13 +275,13 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "coats",
-      {two_in_different_coats_who_meet_and_turn_back_keep_their_identities,
+      {two_appearances_that_meet_and_turn_back_keep_their_identities,
        a_step_of_exposure_while_they_stand_together_changes_nothing,
-       two_who_pass_each_other_keep_their_identities_whatever_they_wear,
-       equal_coats_are_told_apart_by_their_places_alone, the_look_decides_where_places_would_swap_two_people,
-       who_was_hidden_behind_somebody_is_the_same_when_he_comes_out,
-       who_does_not_come_out_again_leaves_no_ghost,
-       a_region_that_looks_like_nobody_does_not_take_the_identity,
-       who_gets_darker_step_by_step_stays_the_same, who_comes_back_in_another_coat_is_somebody_else,
-       three_who_are_one_blob_for_a_moment_are_three_afterwards, looking_allocates_nothing});
+       two_persons_who_pass_keep_their_identities_whatever_their_appearance,
+       equal_appearances_are_associated_by_position_alone,
+       appearance_decides_where_positions_would_swap_two_persons, an_occluded_person_keeps_the_identity,
+       an_occluded_person_who_does_not_reappear_leaves_no_track,
+       a_region_of_another_appearance_does_not_take_the_identity,
+       a_gradual_change_of_appearance_keeps_the_identity, another_appearance_after_off_screen_is_a_new_track,
+       three_persons_in_one_blob_for_a_moment_are_three_afterwards, appearance_allocates_nothing});
 }

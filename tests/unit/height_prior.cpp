@@ -29,7 +29,7 @@ void teach(HeightPrior& prior, int people, double from, double to, double outlie
 
 }  // namespace
 
-START_TEST(nothing_is_said_before_eight_people_agree) {
+START_TEST(the_height_is_unknown_before_eight_samples_agree) {
   HeightPrior prior;
   ck_assert_double_eq(prior.height(100), 0);
   teach(prior, 7, 60, 200, 0, 1);
@@ -52,7 +52,7 @@ START_TEST(the_line_is_found_among_four_wrong_of_ten) {
 }
 END_TEST
 
-START_TEST(heights_without_any_order_teach_nothing) {
+START_TEST(heights_without_order_give_no_line) {
   int spoke = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     HeightPrior prior;
@@ -63,7 +63,7 @@ START_TEST(heights_without_any_order_teach_nothing) {
 }
 END_TEST
 
-START_TEST(a_prior_learnt_in_one_row_says_nothing_about_rows_far_away) {
+START_TEST(a_prior_learnt_in_one_row_is_unknown_in_rows_far_away) {
   HeightPrior prior;
   teach(prior, 60, 148, 152, 0, 3);
   ck_assert_double_ge(prior.height(150), 0.93 * truth(150));
@@ -73,7 +73,7 @@ START_TEST(a_prior_learnt_in_one_row_says_nothing_about_rows_far_away) {
 }
 END_TEST
 
-START_TEST(what_was_learnt_moves_with_the_camera) {
+START_TEST(the_line_moves_with_the_camera) {
   HeightPrior prior;
   teach(prior, 100, 60, 200, 0, 4);
   const double before = prior.height(120);
@@ -112,9 +112,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "height_prior",
-      {nothing_is_said_before_eight_people_agree, the_line_is_found_among_four_wrong_of_ten,
-       heights_without_any_order_teach_nothing, a_prior_learnt_in_one_row_says_nothing_about_rows_far_away,
-       what_was_learnt_moves_with_the_camera, a_zoom_about_the_middle_scales_heights_and_rows,
-       a_new_truth_replaces_an_old_one});
+      "height_prior", {the_height_is_unknown_before_eight_samples_agree,
+                       the_line_is_found_among_four_wrong_of_ten, heights_without_order_give_no_line,
+                       a_prior_learnt_in_one_row_is_unknown_in_rows_far_away, the_line_moves_with_the_camera,
+                       a_zoom_about_the_middle_scales_heights_and_rows, a_new_truth_replaces_an_old_one});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whose identity is whose once people have parted, on bodies whose looks are given.
+// Identity swaps, on tracks whose appearances are given.
 #include "vision/tracking/identity_swap.h"
 
 #include <check.h>
@@ -22,7 +22,7 @@ AppearanceModel looks(int bin) {
   return look;
 }
 
-// Somebody 100 pixels tall who has long been known by that look.
+// A person 100 pixels tall whose appearance has long been learnt.
 TrackHypothesis person(std::uint32_t id, double x, int bin) {
   TrackHypothesis b = TrackHypothesis::first_seen({{x - 20, 100, 40, 100}, 2000, 0.9, 1});
   b.confirm(id);
@@ -41,7 +41,7 @@ void seen_alone(TrackHypothesis& b, int bin, int frames) {
   }
 }
 
-// Two who were mixed up and look like each other for `frames` since.
+// Two whose identities were swapped at contact: each has looked like the other for `frames` since.
 std::vector<TrackHypothesis> swapped(double apart = 60, int frames = 3) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 200 + apart, 6)};
   for (TrackHypothesis& b : two) b.touch();
@@ -56,14 +56,14 @@ bool exchanged(const std::vector<TrackHypothesis>& two) {
 
 }  // namespace
 
-START_TEST(two_who_look_like_each_other_since_they_were_close_get_their_identities_back) {
+START_TEST(two_that_look_like_each_other_since_contact_get_their_identities_back) {
   auto two = swapped();
   two[0].top_speed = 7;
   const double place = two[0].x.position, age = two[0].age, other = two[1].age;
   two[0].age += 3;
   undo_identity_swaps(two);
   ck_assert(exchanged(two));
-  // What is known of the person goes with the identity, where he is stays with the body.
+  // The history goes with the identity, position and extent stay.
   ck_assert_double_eq(two[0].x.position, place);
   ck_assert_double_eq(two[0].age, other);
   ck_assert_double_eq(two[1].age, age + 3);
@@ -75,7 +75,7 @@ START_TEST(two_who_look_like_each_other_since_they_were_close_get_their_identiti
 }
 END_TEST
 
-START_TEST(who_looks_as_before_stays_who_he_is) {
+START_TEST(unchanged_appearances_keep_their_identities) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 260, 6)};
   for (TrackHypothesis& b : two) b.touch();
   seen_alone(two[0], 1, 3);
@@ -86,7 +86,7 @@ START_TEST(who_looks_as_before_stays_who_he_is) {
 }
 END_TEST
 
-START_TEST(two_frames_tell_nothing_yet) {
+START_TEST(two_frames_of_recent_appearance_are_too_few) {
   auto two = swapped(60, 2);
   undo_identity_swaps(two);
   ck_assert(!exchanged(two));
@@ -94,7 +94,7 @@ START_TEST(two_frames_tell_nothing_yet) {
 END_TEST
 
 // After 0.3 s apart: 0.6 S and 0.45 S.
-START_TEST(who_is_too_far_away_was_not_mixed_up_with_anybody) {
+START_TEST(tracks_too_far_apart_keep_their_identities) {
   auto near = swapped(100), far = swapped(110);
   undo_identity_swaps(near);
   undo_identity_swaps(far);
@@ -103,7 +103,7 @@ START_TEST(who_is_too_far_away_was_not_mixed_up_with_anybody) {
 }
 END_TEST
 
-START_TEST(one_of_them_may_be_hidden_still) {
+START_TEST(one_of_the_two_may_still_be_occluded) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 260, 6)};
   for (TrackHypothesis& b : two) b.touch();
   seen_alone(two[0], 6, 3);
@@ -112,7 +112,7 @@ START_TEST(one_of_them_may_be_hidden_still) {
 }
 END_TEST
 
-START_TEST(who_is_unconfirmed_or_away_takes_part_in_nothing) {
+START_TEST(tentative_and_off_screen_tracks_take_no_part) {
   auto one = swapped(), two = swapped();
   one[1].state = TrackHypothesis::State::tentative;
   two[1].state = TrackHypothesis::State::off_screen;
@@ -123,8 +123,8 @@ START_TEST(who_is_unconfirmed_or_away_takes_part_in_nothing) {
 }
 END_TEST
 
-// Two who have never been close, and each looks as the other did: one came into the sun, the other into the shade.
-START_TEST(who_was_never_close_to_anybody_keeps_the_identity) {
+// No contact, and each looks as the other did: one came into the sun, the other into the shade.
+START_TEST(without_contact_identities_stay) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 260, 6)};
   seen_alone(two[0], 6, 4);
   seen_alone(two[1], 1, 4);
@@ -134,9 +134,8 @@ START_TEST(who_was_never_close_to_anybody_keeps_the_identity) {
 }
 END_TEST
 
-// Half a second after somebody else was close a look is learnt again, not before; one that is another now, only after
-// four.
-START_TEST(a_look_is_not_learnt_while_it_may_be_somebody_else) {
+// Learning goes on half a second after contact; a changed appearance is learnt after four.
+START_TEST(the_appearance_model_is_frozen_after_contact) {
   TrackHypothesis b = person(1, 200, 1), suddenly = person(2, 400, 1);
   AppearanceModel a_little = looks(1);
   for (auto& band : a_little.share) {
@@ -168,10 +167,9 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "identities",
-      {two_who_look_like_each_other_since_they_were_close_get_their_identities_back,
-       who_looks_as_before_stays_who_he_is, two_frames_tell_nothing_yet,
-       who_is_too_far_away_was_not_mixed_up_with_anybody, one_of_them_may_be_hidden_still,
-       who_is_unconfirmed_or_away_takes_part_in_nothing, who_was_never_close_to_anybody_keeps_the_identity,
-       a_look_is_not_learnt_while_it_may_be_somebody_else, settling_allocates_nothing});
+      "identities", {two_that_look_like_each_other_since_contact_get_their_identities_back,
+                     unchanged_appearances_keep_their_identities, two_frames_of_recent_appearance_are_too_few,
+                     tracks_too_far_apart_keep_their_identities, one_of_the_two_may_still_be_occluded,
+                     tentative_and_off_screen_tracks_take_no_part, without_contact_identities_stay,
+                     the_appearance_model_is_frozen_after_contact, settling_allocates_nothing});
 }

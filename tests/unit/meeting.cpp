@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Tracks of people who share a region, or come in pieces.
+// Tracks in blobs of several objects, and of objects in fragments.
 #include "unit/walkers.h"
 
 #include <check.h>
@@ -14,7 +14,7 @@
 using namespace cerberus::vision;
 using namespace cerberus::tests;
 
-START_TEST(two_who_meet_in_one_blob_come_out_with_the_identities_they_had) {
+START_TEST(two_persons_who_meet_in_one_blob_keep_their_identities) {
   Tracker tracker;
   std::uint32_t left_id = 0, right_id = 0;
   for (int k = 0; k < 60; ++k) {
@@ -45,7 +45,7 @@ START_TEST(two_who_meet_in_one_blob_come_out_with_the_identities_they_had) {
 }
 END_TEST
 
-START_TEST(three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three) {
+START_TEST(three_persons_who_meet_in_a_mostly_empty_blob_stay_three) {
   Tracker tracker;
   std::vector<std::uint32_t> ids(3);
   for (int k = 0; k < 44; ++k) {
@@ -72,7 +72,7 @@ START_TEST(three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three) {
 }
 END_TEST
 
-START_TEST(a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people) {
+START_TEST(a_new_region_does_not_shift_the_assignment_along_a_row_of_people) {
   Tracker tracker;
   std::uint32_t in_front = 0;
   for (int k = 0; k < 30; ++k) {
@@ -92,10 +92,10 @@ START_TEST(a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people) 
 }
 END_TEST
 
-START_TEST(who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it) {
+START_TEST(a_track_in_a_group_does_not_follow_the_person_who_leaves_it) {
   Tracker tracker;
   for (int k = 0; k < 50; ++k) {
-    // Two walk in and stand beside each other, first apart, then in one blob; from behind them somebody walks away.
+    // Two walk in and stand beside each other, first apart, then in one blob; from behind them a third walks away.
     const double a = 200 - 8.0 * std::max(0, 12 - k), b = 240 - 8.0 * std::max(0, 12 - k);
     std::vector<Region> seen = {person(a, 240), person(b, 240)};
     if (k >= 25) seen = {{{a - 20, 190, b - a + 40, 100}, 5000, 0.3, 1}};
@@ -126,7 +126,7 @@ START_TEST(a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost
 }
 END_TEST
 
-START_TEST(pieces_of_one_object_are_not_counted_apart_for_long) {
+START_TEST(fragments_of_one_object_are_soon_one_track) {
   Tracker tracker;
   std::size_t last = 0;
   for (int k = 0; k < 60; ++k) {
@@ -144,7 +144,7 @@ START_TEST(pieces_of_one_object_are_not_counted_apart_for_long) {
 END_TEST
 
 // They were one blob at first, so their common box holds both later regions. Nobody knows how tall people are.
-START_TEST(two_who_come_out_of_one_blob_side_by_side_are_two) {
+START_TEST(two_persons_who_leave_a_blob_side_by_side_are_two) {
   for (const double gap : {15.0, 25.0, 45.0}) {
     Tracker tracker;
     for (int k = 0; k < 30; ++k) {
@@ -165,11 +165,11 @@ START_TEST(two_who_come_out_of_one_blob_side_by_side_are_two) {
 END_TEST
 
 int main() {
-  return run_suite("meeting", {two_who_meet_in_one_blob_come_out_with_the_identities_they_had,
-                               three_who_meet_in_a_blob_that_is_mostly_empty_are_still_three,
-                               a_newcomer_s_region_does_not_push_the_regions_along_a_row_of_people,
-                               who_stays_in_a_group_does_not_go_with_the_one_who_leaves_it,
+  return run_suite("meeting", {two_persons_who_meet_in_one_blob_keep_their_identities,
+                               three_persons_who_meet_in_a_mostly_empty_blob_stay_three,
+                               a_new_region_does_not_shift_the_assignment_along_a_row_of_people,
+                               a_track_in_a_group_does_not_follow_the_person_who_leaves_it,
                                a_blob_that_turns_out_to_be_two_people_becomes_two_boxes_and_no_ghost,
-                               pieces_of_one_object_are_not_counted_apart_for_long,
-                               two_who_come_out_of_one_blob_side_by_side_are_two});
+                               fragments_of_one_object_are_soon_one_track,
+                               two_persons_who_leave_a_blob_side_by_side_are_two});
 }

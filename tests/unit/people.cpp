@@ -53,7 +53,7 @@ struct Scene {
   }
 };
 
-// Each expected box has its own found one and nobody else is there.
+// Each expected box has its own found one, and there are no others.
 void same_people(std::span<const Person> found, const std::vector<Box>& expected,
                  double least_overlap = 0.6) {
   ck_assert_uint_eq(found.size(), expected.size());
@@ -86,7 +86,7 @@ END_TEST
 // Cells of several pixels, at whose edges the window need not begin. A cell moves when half of it does: an edge is
 // found to half a cell, and as much is won as lost. Of a solid person half of the columns bring 178 / 64 a pixel, by
 // the definition of the score, and half 139 / 64.
-START_TEST(all_that_moves_in_the_window_counts_at_any_size) {
+START_TEST(all_foreground_in_the_window_counts_at_any_size) {
   double score = 0, sizes = 0;
   for (int height = 60; height <= 200; height += 4) {
     Scene scene({640, 480}, 480.0 / height);
@@ -104,7 +104,7 @@ START_TEST(all_that_moves_in_the_window_counts_at_any_size) {
 }
 END_TEST
 
-START_TEST(two_side_by_side_who_touch_are_two) {
+START_TEST(two_persons_side_by_side_that_touch_are_two) {
   for (const double distance : {14.0, 16.0, 19.0, 23.0}) {
     Scene scene;
     PeopleFinder finder;
@@ -134,7 +134,7 @@ START_TEST(a_person_cut_in_two_by_a_lamp_post_or_a_belt_is_one) {
 }
 END_TEST
 
-START_TEST(somebody_who_walks_behind_somebody_else_is_found_by_what_shows) {
+START_TEST(a_partly_occluded_person_is_found_by_the_visible_part) {
   Scene scene;
   PeopleFinder finder;
   const Box front = scene.draw(150, 200, 50), back = scene.draw(158, 172, 43);
@@ -142,7 +142,7 @@ START_TEST(somebody_who_walks_behind_somebody_else_is_found_by_what_shows) {
 }
 END_TEST
 
-START_TEST(specks_and_small_animals_are_nobody) {
+START_TEST(specks_and_small_animals_are_no_persons) {
   Scene scene;
   PeopleFinder finder;
   scene.fill(150, 170, 158, 180);  // 8 x 10 where people are 16 x 45
@@ -182,7 +182,7 @@ START_TEST(a_larger_picture_gives_the_same_people_larger) {
 }
 END_TEST
 
-START_TEST(without_a_known_height_nobody_is_said_to_be_there) {
+START_TEST(without_a_known_height_no_person_is_found) {
   Scene scene;
   PeopleFinder finder;
   scene.draw(150, 180, 45);
@@ -191,7 +191,7 @@ START_TEST(without_a_known_height_nobody_is_said_to_be_there) {
 }
 END_TEST
 
-START_TEST(a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory) {
+START_TEST(a_second_call_gives_the_same_and_allocates_nothing) {
   Scene scene;
   PeopleFinder finder;
   for (int i = 0; i < 4; ++i) scene.draw(120 + 17 * i, 180 + i % 2, 45);
@@ -211,12 +211,11 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "people",
-      {one_person_is_one_box_in_the_right_place, all_that_moves_in_the_window_counts_at_any_size,
-       two_side_by_side_who_touch_are_two, four_in_a_row_are_four,
+      {one_person_is_one_box_in_the_right_place, all_foreground_in_the_window_counts_at_any_size,
+       two_persons_side_by_side_that_touch_are_two, four_in_a_row_are_four,
        a_person_cut_in_two_by_a_lamp_post_or_a_belt_is_one,
-       somebody_who_walks_behind_somebody_else_is_found_by_what_shows, specks_and_small_animals_are_nobody,
+       a_partly_occluded_person_is_found_by_the_visible_part, specks_and_small_animals_are_no_persons,
        a_person_whose_feet_are_below_the_picture_is_placed_below_it,
        a_person_at_the_left_border_may_be_half_outside, a_larger_picture_gives_the_same_people_larger,
-       without_a_known_height_nobody_is_said_to_be_there,
-       a_second_look_at_the_same_scene_says_the_same_and_takes_no_memory});
+       without_a_known_height_no_person_is_found, a_second_call_gives_the_same_and_allocates_nothing});
 }

@@ -24,7 +24,7 @@ std::vector<std::uint32_t> sums_of(const std::vector<std::pair<unsigned, unsigne
 
 }  // namespace
 
-START_TEST(a_place_gains_what_its_core_and_sides_say_less_its_price) {
+START_TEST(a_score_is_the_gain_of_core_and_sides_less_the_price) {
   // Six columns of 10 rows, the box is four wide with one on either side: columns 1 to 4.
   const auto sums = sums_of({{0, 10}, {3, 10}, {10, 10}, {7, 9}, {1, 10}, {0, 10}});
   const BoxRow row{sums.data(), 4, 1, 0, 6, 10};
@@ -100,7 +100,7 @@ END_TEST
 int main() {
   return run_suite_on_every_target(
       "people_kernels",
-      {a_place_gains_what_its_core_and_sides_say_less_its_price, columns_outside_the_picture_cost_nothing,
+      {a_score_is_the_gain_of_core_and_sides_less_the_price, columns_outside_the_picture_cost_nothing,
        random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touched,
        cells_add_up_and_are_taken_away_again_unless_explained});
 }

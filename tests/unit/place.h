@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A paved place with people in coats, and a tracker that is shown it.
+// A paved place with people of given appearances, and a tracker of its frames.
 #pragma once
 
 #include <algorithm>
@@ -33,8 +33,7 @@ struct Person {
 };
 constexpr int kBlack = 20, kJeans = 80, kGrey = 100, kWhite = 220;
 
-// 10 frames a second of people on a paved place. Who touch each other are one blob, of which nobody knows how many it
-// is.
+// 10 frames a second of people on a paved place. People who touch are one blob.
 struct Place {
   Tracker tracker;
   Image<std::uint8_t> luma{kFrame}, mask{kFrame};
@@ -45,7 +44,7 @@ struct Place {
 
   // The first is drawn last: it stands in front.
   std::span<const Track> step(const std::vector<Person>& people, double pan = 0,
-                              std::optional<std::vector<Region>> told = {}) {
+                              std::optional<std::vector<Region>> given = {}) {
     shift += pan;
     for (int y = 0; y < kFrame.height; ++y)
       for (int x = 0; x < kFrame.width; ++x) {
@@ -61,7 +60,7 @@ struct Place {
           mask.view().at(x, y) = 255;
         }
     }
-    const std::vector<Region> regions = told ? *told : blobs(people);
+    const std::vector<Region> regions = given ? *given : blobs(people);
     const Sight sight = looking ? Sight{luma.view(), mask.view()} : Sight{};
     const auto found = tracker.update(regions, pan != 0 ? Transform::translation(pan, 0) : Transform{}, 0.1,
                                       kFrame, {}, sight);

@@ -184,7 +184,7 @@ START_TEST(two_people_arm_in_arm_are_one_region_before_and_two_after_people_were
 }
 END_TEST
 
-START_TEST(a_region_s_area_is_what_moves_in_its_box_whoever_it_is) {
+START_TEST(a_region_s_area_is_the_foreground_in_its_box) {
   RegionFinder finder;
   let_people_walk_by(finder);
   Picture picture;
@@ -233,7 +233,7 @@ START_TEST(a_car_among_people_is_not_cut_into_people_nor_lost) {
 }
 END_TEST
 
-// No rectangle, so that boxes of people cut from it hold what does not move; it is told by its one outline. What is
+// No rectangle, so that boxes of people cut from it hold what does not move; it is recognised by its one outline. What is
 // left of it at the border is as wide as two people, one after another.
 START_TEST(a_round_car_as_tall_as_people_is_one_region_until_it_has_left) {
   for (const int step : {-4, 4}) {
@@ -313,7 +313,7 @@ START_TEST(a_dog_among_people_is_a_small_region) {
 }
 END_TEST
 
-START_TEST(what_never_walks_teaches_nothing) {
+START_TEST(blobs_that_never_walk_teach_no_height) {
   RegionFinder finder;
   Picture picture;
   for (int k = 0; k < 100; ++k) {
@@ -346,7 +346,7 @@ START_TEST(people_off_and_reset_give_plain_components_again) {
 }
 END_TEST
 
-START_TEST(what_was_learnt_follows_a_tilting_camera) {
+START_TEST(the_learnt_heights_follow_a_tilting_camera) {
   RegionFinder finder;
   let_people_walk_by(finder);
   Picture picture;
@@ -441,7 +441,7 @@ int main() {
                   the_mask_comes_back_closed_and_without_specks,
                   a_low_shadow_on_the_floor_is_not_part_of_the_box,
                   two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
-                  a_region_s_area_is_what_moves_in_its_box_whoever_it_is,
+                  a_region_s_area_is_the_foreground_in_its_box,
                   head_and_legs_without_a_trunk_are_one_person_once_people_are_known,
                   a_car_among_people_is_not_cut_into_people_nor_lost,
                   a_round_car_as_tall_as_people_is_one_region_until_it_has_left,
@@ -449,9 +449,9 @@ int main() {
                   a_solid_block_three_bodies_wide_is_no_people,
                   two_people_are_two_where_a_car_left_a_frame_before_the_last,
                   a_dog_among_people_is_a_small_region,
-                  what_never_walks_teaches_nothing,
+                  blobs_that_never_walk_teach_no_height,
                   people_off_and_reset_give_plain_components_again,
-                  what_was_learnt_follows_a_tilting_camera,
+                  the_learnt_heights_follow_a_tilting_camera,
                   a_mask_full_of_clutter_or_wholly_set_is_survived,
                   no_picture_takes_memory_after_the_first});
 }

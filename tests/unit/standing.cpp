@@ -19,7 +19,7 @@ Region piece(double x, double y, double width, double height) {
   return {{x, y, width, height}, 0.6 * width * height, 0.35, 1};
 }
 
-// Of somebody at the top edge, the upper share.
+// The upper share of a person at the top edge.
 std::vector<Region> upper(const Person& p, double share) {
   return {piece(p.x - kWidth / 2, 0, kWidth, share * (p.y + kHeight / 2))};
 }
@@ -57,7 +57,7 @@ struct Standing {
 
 }  // namespace
 
-START_TEST(who_stands_at_the_picture_s_edge_and_fades_from_the_feet_is_held_whole) {
+START_TEST(a_person_standing_at_the_edge_and_fading_from_the_feet_keeps_the_whole_box) {
   for (const int fading : {2, 8, 80}) {
     Standing s(fading);
     for (int k = 0; k < 60; ++k) {
@@ -74,7 +74,7 @@ START_TEST(who_stands_at_the_picture_s_edge_and_fades_from_the_feet_is_held_whol
 }
 END_TEST
 
-START_TEST(somebody_who_passes_in_front_of_him_does_not_end_him) {
+START_TEST(a_person_passing_in_front_does_not_end_a_stopped_track) {
   Standing s;
   for (int k = 0; k < 80; ++k) {
     const Person other{300 - 4.0 * k, kTop + 6, kWhite, kGrey};
@@ -87,7 +87,7 @@ START_TEST(somebody_who_passes_in_front_of_him_does_not_end_him) {
 }
 END_TEST
 
-START_TEST(a_change_of_exposure_does_not_drive_him_away) {
+START_TEST(a_change_of_exposure_does_not_end_a_stopped_track) {
   Standing s;
   for (int k = 0; k < 60; ++k) {
     s.place.gain = 1 + 0.005 * std::min(k, 30);
@@ -97,7 +97,7 @@ START_TEST(a_change_of_exposure_does_not_drive_him_away) {
 }
 END_TEST
 
-START_TEST(who_was_held_at_the_edge_is_given_up_within_half_a_second_of_his_place_being_empty) {
+START_TEST(a_stopped_track_at_the_edge_ends_half_a_second_after_its_place_is_empty) {
   Standing s;
   for (int k = 0; k < 20; ++k) s.see({});
   ck_assert_uint_eq(s.place.tracks.size(), 1);
@@ -107,7 +107,7 @@ START_TEST(who_was_held_at_the_edge_is_given_up_within_half_a_second_of_his_plac
 END_TEST
 
 // He goes out through the edge that he stood at: his feet come up as they do when he fades, and the floor appears.
-START_TEST(who_stood_at_the_edge_and_leaves_through_it_is_not_held) {
+START_TEST(a_person_who_stood_at_the_edge_and_leaves_is_not_held) {
   for (const double speed : {2.0, 4.0, 8.0}) {  // pixels a frame
     Place place;
     Person man = kMan;
@@ -125,8 +125,8 @@ START_TEST(who_stood_at_the_edge_and_leaves_through_it_is_not_held) {
 }
 END_TEST
 
-// The edge cuts more and more off who walks out, so that what is left of him hardly moves.
-START_TEST(who_walks_out_and_leaves_a_shadow_at_the_edge_has_not_stopped_there) {
+// The edge cuts more and more off a person who walks out, so that the visible rest hardly moves.
+START_TEST(a_shadow_left_at_the_edge_is_no_stopped_person) {
   for (const double shadow : {292.0, 312.0}) {  // where it ends; as wide as he, or a strip
     Place place;
     Person man{0, 120, kBlack, kJeans};
@@ -156,7 +156,7 @@ START_TEST(slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person) {
 END_TEST
 
 // An arm moves beside a standing person and gets a track of its own; then the region of both is less than the person.
-START_TEST(who_stands_is_not_as_small_as_a_piece_that_is_shared_with_an_arm) {
+START_TEST(a_standing_person_does_not_shrink_to_a_fragment_shared_with_an_arm) {
   Standing s;
   for (int k = 0; k < 30; ++k) {
     const double reach = 3.0 * std::min(k, 6);
@@ -183,7 +183,7 @@ END_TEST
 
 // Measured where a man had stood for ten seconds: the table behind him gets a region, which the memory takes in from
 // one side, then all but a strip.
-START_TEST(a_hole_that_gets_less_has_not_moved) {
+START_TEST(a_shrinking_hole_has_not_travelled) {
   for (const bool lies : {false, true}) {
     Tracker tracker;
     for (int k = 0; k < 60; ++k) {
@@ -201,12 +201,12 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "standing",
-      {who_stands_at_the_picture_s_edge_and_fades_from_the_feet_is_held_whole,
-       a_change_of_exposure_does_not_drive_him_away, somebody_who_passes_in_front_of_him_does_not_end_him,
-       who_was_held_at_the_edge_is_given_up_within_half_a_second_of_his_place_being_empty,
-       who_stood_at_the_edge_and_leaves_through_it_is_not_held,
-       who_walks_out_and_leaves_a_shadow_at_the_edge_has_not_stopped_there,
+      {a_person_standing_at_the_edge_and_fading_from_the_feet_keeps_the_whole_box,
+       a_change_of_exposure_does_not_end_a_stopped_track,
+       a_person_passing_in_front_does_not_end_a_stopped_track,
+       a_stopped_track_at_the_edge_ends_half_a_second_after_its_place_is_empty,
+       a_person_who_stood_at_the_edge_and_leaves_is_not_held, a_shadow_left_at_the_edge_is_no_stopped_person,
        slivers_at_both_sides_of_a_head_at_the_edge_are_not_the_person,
-       who_stands_is_not_as_small_as_a_piece_that_is_shared_with_an_arm,
-       a_hole_that_gets_less_has_not_moved});
+       a_standing_person_does_not_shrink_to_a_fragment_shared_with_an_arm,
+       a_shrinking_hole_has_not_travelled});
 }

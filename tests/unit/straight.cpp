@@ -78,20 +78,21 @@ Shares watch(Way way, double speed, const Clothes& clothes) {
   return {static_cast<double>(regions) / kFrames, static_cast<double>(tracks) / kFrames, wrong};
 }
 
-constexpr double kStep = 0.1;  // s, of those that are told where he is
+constexpr double kStep = 0.1;  // s between frames with regions
 
 Region piece(double x, double y, double width, double height, double confidence = 0.3) {
   return {{x, y, width, height}, 0.7 * width * height, confidence, 1};
 }
 
-std::vector<Track> told(Tracker& tracker, const std::vector<Region>& regions, const Transform& motion = {}) {
+std::vector<Track> update(Tracker& tracker, const std::vector<Region>& regions,
+                          const Transform& motion = {}) {
   const auto tracks = tracker.update(regions, motion, kStep, RoomCamera::kSize);
   return {tracks.begin(), tracks.end()};
 }
 
 }  // namespace
 
-START_TEST(who_walks_straight_down_up_or_near_is_found_from_the_first_second_on) {
+START_TEST(a_person_walking_straight_down_up_or_near_is_found_within_a_second) {
   struct Case {
     const char* name;
     Way way;
@@ -112,13 +113,14 @@ START_TEST(who_walks_straight_down_up_or_near_is_found_from_the_first_second_on)
 }
 END_TEST
 
-START_TEST(fronts_that_become_one_region_are_one) {
+START_TEST(moving_edges_that_become_one_region_are_one_track) {
   Tracker tracker;
   std::vector<Track> tracks;
   // Head, waist and feet go down and grow, as what they have left is seen of them.
   for (int k = 0; k < 12; ++k)
-    tracks = told(tracker, {piece(149, 28, 22, 8 + k), piece(149, 54, 22, 8 + k), piece(149, 80, 22, 8 + k)});
-  for (int k = 0; k < 5; ++k) tracks = told(tracker, {piece(149, 28 + k, 22, 72)});
+    tracks =
+        update(tracker, {piece(149, 28, 22, 8 + k), piece(149, 54, 22, 8 + k), piece(149, 80, 22, 8 + k)});
+  for (int k = 0; k < 5; ++k) tracks = update(tracker, {piece(149, 28 + k, 22, 72)});
   ck_assert_uint_eq(tracks.size(), 1);
   ck_assert_double_gt(intersection_over_union(tracks[0].box, {149, 32, 22, 72}), 0.8);
 }
@@ -129,19 +131,19 @@ START_TEST(two_upright_people_in_one_region_stay_two) {
   std::vector<Track> tracks;
   // They come from both sides, and one stands higher up in the picture, aslant behind the other.
   for (int k = 0; k <= 10; ++k)
-    tracks = told(tracker, {piece(90 + 5 * k, 60, 16, 40, 0.9), piece(210 - 5 * k, 100, 20, 50, 0.9)});
+    tracks = update(tracker, {piece(90 + 5 * k, 60, 16, 40, 0.9), piece(210 - 5 * k, 100, 20, 50, 0.9)});
   ck_assert_uint_eq(tracks.size(), 2);
-  for (int k = 0; k < 8; ++k) tracks = told(tracker, {piece(140, 60, 40, 90)});
+  for (int k = 0; k < 8; ++k) tracks = update(tracker, {piece(140, 60, 40, 90)});
   ck_assert_uint_eq(tracks.size(), 2);
 }
 END_TEST
 
-START_TEST(who_comes_nearer_is_published_though_his_middle_stays) {
+START_TEST(an_approaching_person_is_published_though_the_centre_stays) {
   Tracker tracker;
   std::vector<Track> tracks;
   for (int k = 0; k < 20 && tracks.empty(); ++k) {
     const double height = 60 + 3.0 * k;
-    tracks = told(tracker, {piece(160 - height / 6, 120 - height / 2, height / 3, height)});
+    tracks = update(tracker, {piece(160 - height / 6, 120 - height / 2, height / 3, height)});
   }
   ck_assert_uint_eq(tracks.size(), 1);
   ck_assert_double_ge(tracks[0].box.height, 1.3 * 60);
@@ -149,22 +151,22 @@ START_TEST(who_comes_nearer_is_published_though_his_middle_stays) {
 }
 END_TEST
 
-START_TEST(who_leaves_where_he_stood_is_published_though_his_place_shows_with_him) {
+START_TEST(a_person_leaving_a_place_of_the_background_is_published_though_the_place_is_foreground) {
   constexpr double kPace = 3, kHeight = 97;  // pixels a step of 0.1 s: half a body a second
   for (const bool down : {true, false}) {
     Tracker tracker;
     std::vector<Track> tracks =
-        told(tracker, {piece(146, down ? 33 : 18, 27, 82)});  // without his head, or feet
+        update(tracker, {piece(146, down ? 33 : 18, 27, 82)});  // without head, or feet
     double gone = 0;
     for (; tracks.empty() && gone < kHeight; gone += kPace)
-      tracks = told(tracker, {piece(146, down ? 18 : 18 - gone, 28, kHeight + gone)});
+      tracks = update(tracker, {piece(146, down ? 18 : 18 - gone, 28, kHeight + gone)});
     ck_assert_msg(gone > 0.1 * kHeight && gone < 0.2 * kHeight, "%s: after %.0f pixels", down ? "down" : "up",
                   gone);
   }
 }
 END_TEST
 
-START_TEST(he_is_however_large_the_picture_is_before_a_camera_that_seems_to_tremble) {
+START_TEST(the_same_holds_at_any_picture_size_before_a_trembling_camera) {
   constexpr double kPace = 3, kHeight = 97;
   for (const double scale : {1.0, 6.0}) {  // pixels a pixel of the picture that was analysed
     const Size size{static_cast<int>(320 * scale), static_cast<int>(240 * scale)};
@@ -183,42 +185,43 @@ START_TEST(he_is_however_large_the_picture_is_before_a_camera_that_seems_to_trem
 }
 END_TEST
 
-START_TEST(what_shows_more_and_less_of_itself_has_gone_nowhere) {
+START_TEST(an_object_that_shows_more_and_less_of_itself_has_not_travelled) {
   Tracker leaps, lies, stands, turns;
   for (int k = 0; k < 16; ++k)
-    ck_assert_uint_eq(told(leaps, {piece(146, 40, 28, k % 4 < 2 ? 90 : 107)}).size(), 0);
-  for (int k = 0; k < 14; ++k) ck_assert_uint_eq(told(lies, {piece(100, 100, 80, 40 + k)}).size(), 0);
+    ck_assert_uint_eq(update(leaps, {piece(146, 40, 28, k % 4 < 2 ? 90 : 107)}).size(), 0);
+  for (int k = 0; k < 14; ++k) ck_assert_uint_eq(update(lies, {piece(100, 100, 80, 40 + k)}).size(), 0);
   for (int k = 0; k < 50; ++k)  // and the camera sinks into its mount
-    ck_assert_uint_eq(told(stands, {piece(146, 40 + 0.4 * k, 28, 90)}, Transform::translation(0, 0.4)).size(),
-                      0);
+    ck_assert_uint_eq(
+        update(stands, {piece(146, 40 + 0.4 * k, 28, 90)}, Transform::translation(0, 0.4)).size(), 0);
   for (int k = 0; k < 10; ++k)  // and the camera turns
     ck_assert_uint_eq(
-        told(turns, {piece(146 + 2 * k, 40, 28, 90 + 2 * k)}, Transform::translation(2, 0)).size(), 0);
+        update(turns, {piece(146 + 2 * k, 40, 28, 90 + 2 * k)}, Transform::translation(2, 0)).size(), 0);
 }
 END_TEST
 
-START_TEST(what_grows_one_way_or_by_the_camera_s_zoom_is_not_nearer) {
+START_TEST(growth_along_one_axis_or_by_zoom_is_no_approach) {
   Tracker grows, zoomed;
   constexpr double kZoom = 1.04;
   for (int k = 0; k < 20; ++k) {
     const double height = 60 + 3.0 * k, scale = std::pow(kZoom, k);
-    ck_assert_uint_eq(told(grows, {piece(150, 120 - height / 2, 20 + 0.1 * k, height)}).size(), 0);
+    ck_assert_uint_eq(update(grows, {piece(150, 120 - height / 2, 20 + 0.1 * k, height)}).size(), 0);
     const Transform zoom =
         Transform::translation(160, 120) * similarity(kZoom, 0, 0, 0) * Transform::translation(-160, -120);
     ck_assert_uint_eq(
-        told(zoomed, {piece(160 - 10 * scale, 120 - 30 * scale, 20 * scale, 60 * scale)}, zoom).size(), 0);
+        update(zoomed, {piece(160 - 10 * scale, 120 - 30 * scale, 20 * scale, 60 * scale)}, zoom).size(), 0);
   }
 }
 END_TEST
 
 int main() {
-  return run_suite("straight",
-                   {who_walks_straight_down_up_or_near_is_found_from_the_first_second_on,
-                    fronts_that_become_one_region_are_one, two_upright_people_in_one_region_stay_two,
-                    who_comes_nearer_is_published_though_his_middle_stays,
-                    who_leaves_where_he_stood_is_published_though_his_place_shows_with_him,
-                    he_is_however_large_the_picture_is_before_a_camera_that_seems_to_tremble,
-                    what_shows_more_and_less_of_itself_has_gone_nowhere,
-                    what_grows_one_way_or_by_the_camera_s_zoom_is_not_nearer},
-                   60);
+  return run_suite(
+      "straight",
+      {a_person_walking_straight_down_up_or_near_is_found_within_a_second,
+       moving_edges_that_become_one_region_are_one_track, two_upright_people_in_one_region_stay_two,
+       an_approaching_person_is_published_though_the_centre_stays,
+       a_person_leaving_a_place_of_the_background_is_published_though_the_place_is_foreground,
+       the_same_holds_at_any_picture_size_before_a_trembling_camera,
+       an_object_that_shows_more_and_less_of_itself_has_not_travelled,
+       growth_along_one_axis_or_by_zoom_is_no_approach},
+      60);
 }

@@ -19,7 +19,7 @@
 using namespace cerberus::vision;
 using namespace cerberus::tests;
 
-START_TEST(a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed) {
+START_TEST(a_walker_is_published_in_the_third_frame_and_keeps_its_identity_and_speed) {
   Tracker tracker;
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, 2);
@@ -69,7 +69,7 @@ START_TEST(blobs_that_flash_up_here_and_there_are_never_published) {
 }
 END_TEST
 
-START_TEST(what_never_moves_is_never_published) {
+START_TEST(a_region_that_never_moves_is_never_published) {
   Tracker tracker;
   std::mt19937 random(3);
   std::normal_distribution<double> noise(0, 1.5);
@@ -96,7 +96,7 @@ START_TEST(a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_cha
 }
 END_TEST
 
-START_TEST(a_zoom_scales_box_and_speed_of_a_track_without_evidence) {
+START_TEST(a_zoom_scales_box_and_speed_of_a_coasted_track) {
   Tracker tracker;
   for (int k = 0; k < 20; ++k) {
     const Region seen = person(100 + 8 * k, 240);
@@ -125,7 +125,7 @@ START_TEST(a_flickering_object_is_coasted_over_its_gaps) {
 }
 END_TEST
 
-START_TEST(who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go) {
+START_TEST(a_stopped_track_is_held_for_thirty_seconds) {
   Tracker tracker;
   double x = 100;
   for (int k = 0; k < 30; ++k) {
@@ -146,7 +146,7 @@ START_TEST(who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go) {
 }
 END_TEST
 
-START_TEST(who_stood_and_walks_on_is_the_same_person) {
+START_TEST(a_stopped_person_who_walks_on_keeps_the_identity) {
   Tracker tracker;
   for (int k = 0; k < 100; ++k) {
     const double x = k < 20 ? 100 + 8 * k : k < 70 ? 252 : 252 + 8 * (k - 70);
@@ -181,7 +181,7 @@ START_TEST(a_standing_person_s_moving_arm_does_not_make_the_person_small) {
 }
 END_TEST
 
-START_TEST(who_leaves_the_picture_is_gone_within_half_a_second) {
+START_TEST(a_track_that_leaves_the_picture_ends_within_half_a_second) {
   for (const double speed : {30.0, 80.0, 200.0}) {  // pixels a second
     Tracker tracker;
     double left = -1;
@@ -199,8 +199,8 @@ START_TEST(who_leaves_the_picture_is_gone_within_half_a_second) {
 }
 END_TEST
 
-// He may be behind the edge, and nobody else is where he was; in the middle of the picture he is hidden.
-START_TEST(who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_seen_again) {
+// At the edge the person may have left; in the middle of the picture the person is occluded.
+START_TEST(a_track_unseen_at_the_edge_is_unpublished_and_keeps_its_identity) {
   for (const bool edge : {true, false}) {
     Tracker tracker;
     std::uint32_t id = 0;
@@ -218,7 +218,7 @@ START_TEST(who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_
 }
 END_TEST
 
-START_TEST(who_was_seen_for_a_moment_only_is_not_carried_on) {
+START_TEST(a_track_seen_for_a_moment_only_is_not_coasted) {
   for (const int looks : {4, 10}) {
     Tracker tracker;
     for (int k = 0; k <= looks; ++k) {
@@ -231,7 +231,7 @@ START_TEST(who_was_seen_for_a_moment_only_is_not_carried_on) {
 }
 END_TEST
 
-START_TEST(a_sliver_beside_somebody_unseen_is_not_the_person) {
+START_TEST(a_sliver_beside_an_unseen_person_is_another_object) {
   Tracker tracker;
   double x = 100;
   for (int k = 0; k < 24; ++k) {
@@ -245,7 +245,7 @@ START_TEST(a_sliver_beside_somebody_unseen_is_not_the_person) {
 }
 END_TEST
 
-START_TEST(legs_tell_less_of_where_somebody_is_than_the_whole_person) {
+START_TEST(a_fragment_corrects_the_position_less_than_a_whole_person) {
   for (const bool whole : {false, true}) {
     Tracker tracker;
     for (int k = 0; k < 20; ++k) {
@@ -315,8 +315,8 @@ START_TEST(boxes_are_clamped_to_the_frame_and_identities_never_come_again) {
 }
 END_TEST
 
-// A jump of 80 pixels in a tenth of a second: without a limit he who was seen once has gone there, with one that is
-// somebody else, who was not there before.
+// A jump of 80 pixels in a tenth of a second: without a limit a track that was seen once has gone there, with one the
+// region is a new object.
 START_TEST(a_limit_of_speed_keeps_the_too_fast_apart) {
   for (const double limit : {0.0, 200.0}) {
     Tracker tracker;
@@ -352,7 +352,7 @@ START_TEST(the_steady_state_allocates_nothing_and_thousands_of_regions_are_survi
 }
 END_TEST
 
-// However much moves in them: who has found them says it or does not.
+// Their area (foreground pixels) may be unknown.
 START_TEST(of_more_regions_than_there_is_room_for_the_largest_boxes_count) {
   Tracker tracker;
   std::mt19937 random(8);
@@ -391,21 +391,21 @@ START_TEST(the_same_regions_give_the_same_tracks) {
 END_TEST
 
 int main() {
-  return run_suite("tracks", {a_walker_is_published_at_the_third_look_and_keeps_its_identity_and_speed,
+  return run_suite("tracks", {a_walker_is_published_in_the_third_frame_and_keeps_its_identity_and_speed,
                               the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
                               blobs_that_flash_up_here_and_there_are_never_published,
-                              what_never_moves_is_never_published,
+                              a_region_that_never_moves_is_never_published,
                               a_camera_that_pans_does_not_make_the_standing_move_or_the_walking_change,
-                              a_zoom_scales_box_and_speed_of_a_track_without_evidence,
+                              a_zoom_scales_box_and_speed_of_a_coasted_track,
                               a_flickering_object_is_coasted_over_its_gaps,
-                              who_walks_in_and_stands_is_held_for_thirty_seconds_and_then_let_go,
-                              who_stood_and_walks_on_is_the_same_person,
+                              a_stopped_track_is_held_for_thirty_seconds,
+                              a_stopped_person_who_walks_on_keeps_the_identity,
                               a_standing_person_s_moving_arm_does_not_make_the_person_small,
-                              who_leaves_the_picture_is_gone_within_half_a_second,
-                              who_is_unseen_at_the_picture_s_edge_is_not_told_of_and_the_same_when_seen_again,
-                              who_was_seen_for_a_moment_only_is_not_carried_on,
-                              a_sliver_beside_somebody_unseen_is_not_the_person,
-                              legs_tell_less_of_where_somebody_is_than_the_whole_person,
+                              a_track_that_leaves_the_picture_ends_within_half_a_second,
+                              a_track_unseen_at_the_edge_is_unpublished_and_keeps_its_identity,
+                              a_track_seen_for_a_moment_only_is_not_coasted,
+                              a_sliver_beside_an_unseen_person_is_another_object,
+                              a_fragment_corrects_the_position_less_than_a_whole_person,
                               an_unknown_time_is_taken_as_the_last_known_one,
                               impossible_regions_and_transforms_do_no_harm,
                               boxes_are_clamped_to_the_frame_and_identities_never_come_again,

@@ -26,7 +26,7 @@ struct Turning {
   double pan = 0;    // degrees
   std::vector<Track> tracks;
 
-  // 10 frames a second; people at these bearings, degrees, level, who see to be 7 by 17.4 degrees (40 x 98 pixels in
+  // 10 frames a second; persons at these bearings, degrees, level, of 7 by 17.4 degrees (40 x 98 pixels in
   // the middle), as far as the picture shows them.
   void step(double to, std::vector<double> people) {
     std::vector<Region> regions;
@@ -58,7 +58,7 @@ struct Turning {
 
 }  // namespace
 
-START_TEST(who_is_left_by_the_camera_is_the_same_when_it_comes_back) {
+START_TEST(an_off_screen_track_keeps_its_identity_when_the_camera_returns) {
   for (const bool head : {true, false}) {
     Turning camera;
     camera.head = head;
@@ -76,7 +76,7 @@ START_TEST(who_is_left_by_the_camera_is_the_same_when_it_comes_back) {
 }
 END_TEST
 
-START_TEST(a_head_that_turned_its_back_finds_the_same_person_again) {
+START_TEST(a_track_behind_the_camera_keeps_its_identity) {
   Turning camera;
   camera.watch(-30, 1.5, 20);
   const std::uint32_t id = camera.id();
@@ -89,19 +89,19 @@ START_TEST(a_head_that_turned_its_back_finds_the_same_person_again) {
 }
 END_TEST
 
-START_TEST(somebody_else_in_another_place_is_somebody_else) {
+START_TEST(a_person_in_another_place_is_a_new_track) {
   Turning camera;
   camera.watch(-30, 1.5, 20);
   const std::uint32_t id = camera.id();
   camera.turn(-60, 6, {-1});
   for (int k = 0; k < 5; ++k)
-    camera.step(-60, {-80.0 + k});  // nobody comes four body lengths in half a second
+    camera.step(-60, {-80.0 + k});  // no person walks four body lengths in half a second
   ck_assert_uint_eq(camera.tracks.size(), 1);
   ck_assert_uint_ne(camera.id(), id);
 }
 END_TEST
 
-START_TEST(who_is_away_too_long_is_forgotten) {
+START_TEST(an_off_screen_track_ends_after_the_away_time) {
   for (const double seconds : {3.0, 8.0}) {
     Turning camera;
     camera.watch(-30, 1.5, 20);
@@ -116,7 +116,7 @@ START_TEST(who_is_away_too_long_is_forgotten) {
 }
 END_TEST
 
-START_TEST(who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new) {
+START_TEST(a_person_who_leaves_the_picture_of_a_still_camera_returns_as_a_new_track) {
   Turning camera;
   camera.watch(0, 2, 22);
   const std::uint32_t id = camera.id();
@@ -129,7 +129,7 @@ START_TEST(who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_n
 }
 END_TEST
 
-START_TEST(what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far) {
+START_TEST(an_object_uncovered_by_a_turning_camera_is_published_without_travel) {
   for (const bool turned : {true, false}) {
     Turning camera;
     camera.step(0, {});
@@ -145,9 +145,9 @@ END_TEST
 
 int main() {
   return run_suite("turning",
-                   {who_is_left_by_the_camera_is_the_same_when_it_comes_back,
-                    a_head_that_turned_its_back_finds_the_same_person_again,
-                    somebody_else_in_another_place_is_somebody_else, who_is_away_too_long_is_forgotten,
-                    who_walks_out_of_a_standing_camera_s_picture_comes_back_as_somebody_new,
-                    what_a_turning_camera_uncovers_is_published_though_it_has_not_come_far});
+                   {an_off_screen_track_keeps_its_identity_when_the_camera_returns,
+                    a_track_behind_the_camera_keeps_its_identity, a_person_in_another_place_is_a_new_track,
+                    an_off_screen_track_ends_after_the_away_time,
+                    a_person_who_leaves_the_picture_of_a_still_camera_returns_as_a_new_track,
+                    an_object_uncovered_by_a_turning_camera_is_published_without_travel});
 }

@@ -19,22 +19,22 @@ Region region(const Box& box, double area = 0) {
 constexpr Box kSmall{100, 100, 20, 30}, kLarge{100, 100, 30, 40};  // 0.008 and 0.016 of the picture
 
 struct Scene {
-  TwoFrameConfirmation newcomers;
+  TwoFrameConfirmation confirmation;
   std::vector<Region> regions;
   int frames = 3;
 
-  Scene() { newcomers.preallocate(); }
+  Scene() { confirmation.preallocate(); }
   // How many of these are left in the next frame.
   int see(std::vector<Region> found, const Transform& motion = kPan, double minimum_area = 0) {
     regions = std::move(found);
-    newcomers.filter(regions, frames++, minimum_area, motion, kSize);
+    confirmation.filter(regions, frames++, minimum_area, motion, kSize);
     return static_cast<int>(regions.size());
   }
 };
 
 }  // namespace
 
-START_TEST(something_small_is_told_when_it_is_seen_again) {
+START_TEST(a_small_region_passes_in_its_second_frame) {
   for (const Transform& motion : {kPan, Transform{}}) {
     Scene s;
     s.frames = 5;
@@ -48,7 +48,7 @@ START_TEST(something_small_is_told_when_it_is_seen_again) {
 }
 END_TEST
 
-START_TEST(what_lies_where_the_camera_was_pointed_before_is_not_the_same) {
+START_TEST(a_region_is_compared_at_its_place_in_the_scene) {
   Scene s;
   const Transform far = Transform::translation(60, 0);
   ck_assert_int_eq(s.see({region(kSmall)}), 0);
@@ -58,7 +58,7 @@ END_TEST
 
 // A quarter of the smaller side and 4 pixels: 9 of a box of 20 x 30, with its half in what was there 19, in 20 x 50 as
 // well.
-START_TEST(what_walks_no_further_than_its_smaller_side_allows_is_the_same) {
+START_TEST(a_region_may_move_by_a_quarter_of_its_smaller_side) {
   for (const double height : {30.0, 50.0})
     for (const double step : {18.0, 20.0}) {
       Scene s;
@@ -69,7 +69,7 @@ START_TEST(what_walks_no_further_than_its_smaller_side_allows_is_the_same) {
 }
 END_TEST
 
-START_TEST(a_piece_of_what_was_seen_is_no_newcomer) {
+START_TEST(a_fragment_of_a_region_of_the_frame_before_passes) {
   Scene s;
   ck_assert_int_eq(s.see({region(kLarge)}), 1);
   ck_assert_int_eq(
@@ -77,13 +77,13 @@ START_TEST(a_piece_of_what_was_seen_is_no_newcomer) {
 }
 END_TEST
 
-START_TEST(what_is_large_is_told_at_once) {
+START_TEST(a_large_region_passes_at_once) {
   Scene s;
   ck_assert_int_eq(s.see({region(kLarge), region(kSmall)}), 1);
 }
 END_TEST
 
-START_TEST(how_long_it_lasts_depends_on_what_errs) {
+START_TEST(the_time_of_confirmation_depends_on_camera_and_border) {
   const Box at_left{0, 100, 20, 30}, at_top{100, 0, 20, 30}, at_right{300, 100, 20, 30},
       at_bottom{100, 210, 20, 30};
   struct Case {
@@ -105,11 +105,11 @@ START_TEST(how_long_it_lasts_depends_on_what_errs) {
 }
 END_TEST
 
-START_TEST(a_speck_says_nothing_until_somebody_says_how_small_a_thing_may_be) {
+START_TEST(a_speck_is_removed_unless_a_minimum_area_is_set) {
   for (const double minimum : {0.0, 20.0}) {
     Scene s;
     s.see({region(kSmall, 59), region(kSmall, 60)}, kPan, minimum);
-    // 60 pixels are 1 / 1280, whoever they are.
+    // 60 pixels are 1 / 1280 of the picture.
     ck_assert_int_eq(s.see({region(kSmall, 59), region(kSmall, 60), {kSmall, 59, 0.6, 1}}, kPan, minimum),
                      minimum > 0 ? 3 : 1);
   }
@@ -120,22 +120,20 @@ START_TEST(clutter_is_survived_without_allocation) {
   Scene s;
   std::vector<Region> many;
   for (int k = 0; k < 300; ++k) many.push_back(region({k % 300 * 1.0, 10, 10, 20}));
-  const std::size_t bytes = s.newcomers.bytes();
+  const std::size_t bytes = s.confirmation.bytes();
   s.regions = many;
   const std::size_t before = cerberus::tests::allocations();
-  for (int frame = 3; frame < 30; ++frame) s.newcomers.filter(s.regions, frame, 0, {}, kSize);
+  for (int frame = 3; frame < 30; ++frame) s.confirmation.filter(s.regions, frame, 0, {}, kSize);
   ck_assert_uint_eq(cerberus::tests::allocations(), before);
-  ck_assert_uint_eq(s.newcomers.bytes(), bytes);
+  ck_assert_uint_eq(s.confirmation.bytes(), bytes);
 }
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("newcomers",
-                                    {something_small_is_told_when_it_is_seen_again,
-                                     what_lies_where_the_camera_was_pointed_before_is_not_the_same,
-                                     what_walks_no_further_than_its_smaller_side_allows_is_the_same,
-                                     a_piece_of_what_was_seen_is_no_newcomer, what_is_large_is_told_at_once,
-                                     how_long_it_lasts_depends_on_what_errs,
-                                     a_speck_says_nothing_until_somebody_says_how_small_a_thing_may_be,
-                                     clutter_is_survived_without_allocation});
+  return cerberus::tests::run_suite(
+      "confirmation",
+      {a_small_region_passes_in_its_second_frame, a_region_is_compared_at_its_place_in_the_scene,
+       a_region_may_move_by_a_quarter_of_its_smaller_side, a_fragment_of_a_region_of_the_frame_before_passes,
+       a_large_region_passes_at_once, the_time_of_confirmation_depends_on_camera_and_border,
+       a_speck_is_removed_unless_a_minimum_area_is_set, clutter_is_survived_without_allocation});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which objects are worth telling: limits of size and speed, in pixels and, where lens and mounting height
-// place the object, in metres. Pure functions of what was measured.
+// Limits of size and speed of the objects to report, in pixels and, where lens and mounting height give the distance, in
+// metres. Pure functions of the measurements.
 #pragma once
 
 #include "vision/geometry/lens.h"
@@ -25,9 +25,8 @@ struct SpeedLimits {
   Range metres{};  // a second, judged only where the object's distance is known
 };
 
-// The paper's human gate (III): bodies 48 cm wide at 0.1 to 4 m/s. A box is not a body: half of it is
-// accepted (seen from the side, partly hidden) and three times of it (a stride with swinging arms, two arm in
-// arm).
+// The paper's limits for humans (III): bodies 48 cm wide at 0.1 to 4 m/s. Boxes from half the width (seen from the
+// side, partly hidden) to three times the width (a stride with swinging arms, two persons arm in arm) pass.
 constexpr double kBodyWidth = 0.48;
 SizeLimits human_size();
 SpeedLimits human_speed();
@@ -35,8 +34,8 @@ SpeedLimits human_speed();
 bool passes(const SizeLimits& gate, const Box& box, const Placement& place);
 
 // speed: now; top_speed: the highest the object has shown (smoothed), both frame pixels a second. The upper
-// limit is for the speed now. The lower limit asks whether it has ever been that fast: somebody who came
-// walking and stands is still somebody, a swaying bush never was.
+// limit is compared with the speed now, the lower limit with the highest: a person who came walking and stands
+// passes, a swaying bush does not.
 bool passes(const SpeedLimits& gate, double speed, double top_speed, const Placement& place);
 
 // Of lengths and speeds across the line of sight.

@@ -7,14 +7,9 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr double kDark = 8;  // grey levels: added, so that noise in the dark is not a difference
-constexpr double kLowest = 3, kHighest = 8.05;  // log2 of 0 and of 255 with it
-constexpr int kShares = 16;
-constexpr int kDarkest = 12, kBrightest = 243;  // beyond them a picture does not tell how bright it is
-constexpr int kLeastPairs = 24;
-// Of the level, by each frame: small errors of a minute ago do not add up for ever, and looks live for seconds.
-constexpr double kKeep = 1 - 1.0 / 2000;
-constexpr double kLeastFilled = 0.08;  // of a band's samples: fewer are a rim
+constexpr const AppearanceParameters& q = kAppearanceParameters;
+constexpr double kLowest = 3, kHighest = 8.05;  // log2 of 0 and of 255, each plus AppearanceParameters::dark
+constexpr int kShares = 16;                     // a pixel is shared between two bins in 1/16
 
 }  // namespace
 
@@ -31,7 +26,7 @@ void BrightnessLevel::reset() {
 void BrightnessLevel::make_bins() {
   made_for_ = level_;
   for (int grey = 0; grey < 256; ++grey) {
-    const double at = (std::log2(grey * std::exp2(-level_) + kDark) - kLowest) / (kHighest - kLowest) *
+    const double at = (std::log2(grey * std::exp2(-level_) + q.dark) - kLowest) / (kHighest - kLowest) *
                           AppearanceModel::kBins -
                       0.5;
     const double inside = std::clamp(at, 0.0, AppearanceModel::kBins - 1.0);
@@ -41,7 +36,7 @@ void BrightnessLevel::make_bins() {
   }
 }
 
-// The median of what a few places of the scene have become: people cover the fewest of them.
+// The median change of grid points carried with the scene: people cover few of them.
 void BrightnessLevel::update(GrayView luma, const Transform& motion) {
   std::array<double, kColumns * kRows> ratio;
   int count = 0;
@@ -54,21 +49,21 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
       const Point p = motion.apply(place(i));
       if (!(p.x >= 0 && p.y >= 0 && p.x < luma.width && p.y < luma.height)) continue;
       const int now = grey(static_cast<int>(p.x), static_cast<int>(p.y)), then = before_[i];
-      if (now < kDarkest || now > kBrightest || then < kDarkest || then > kBrightest) continue;
+      if (now < q.darkest || now > q.brightest || then < q.darkest || then > q.brightest) continue;
       ratio[count++] = std::log2(static_cast<double>(now) / then);
     }
   }
-  if (count >= kLeastPairs) {
+  if (count >= q.least_pairs) {
     const auto middle = ratio.begin() + count / 2;
     std::nth_element(ratio.begin(), middle, ratio.begin() + count);
-    level_ = kKeep * level_ + *middle;
+    level_ = q.keep * level_ + *middle;
   }
   size_ = luma.size();
   for (int i = 0; i < kColumns * kRows; ++i) {
     const Point p = place(i);
     before_[i] = grey(static_cast<int>(p.x), static_cast<int>(p.y));
   }
-  if (std::abs(level_ - made_for_) > 0.02) make_bins();
+  if (std::abs(level_ - made_for_) > q.rebin) make_bins();
 }
 
 bool AppearanceModel::known() const {
@@ -118,8 +113,8 @@ AppearanceModel appearance_of(const Sight& sight, const BrightnessLevel& level, 
       }
     }
     const double all =
-        whole / AppearanceModel::kBands / (step * step);  // of a band that is all in the picture and moves
-    if (count < 4 || count < kLeastFilled * all) continue;
+        whole / AppearanceModel::kBands / (step * step);  // samples of a band that is all foreground
+    if (count < q.least_samples || count < q.least_filled * all) continue;
     for (int i = 0; i < AppearanceModel::kBins; ++i)
       look.share[b][i] =
           static_cast<std::uint16_t>(counts[i] * std::uint64_t{AppearanceModel::kAll} / (count * kShares));

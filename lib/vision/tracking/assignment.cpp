@@ -6,8 +6,8 @@
 
 namespace cerberus::vision {
 
-// There are as many columns for "unmatched" beyond the real ones as there are rows. Whoever ends
-// there, or on a forbidden pair, is without partner, and a full matching always exists.
+// Beyond the real columns there are as many columns for "unmatched" as there are rows, so that a full matching always
+// exists. A row that ends there, or on a forbidden pair, is without partner.
 double Assignment::cost(int row, int column) const {
   if (column >= columns_) return unmatched_.empty() ? kForbidden : unmatched_[row];
   return std::min(cost_[static_cast<std::size_t>(row) * columns_ + column], kForbidden);

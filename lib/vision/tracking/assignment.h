@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who belongs to whom at the least total cost.
+// Assignment of rows to columns at the least total cost.
 #pragma once
 
 #include <cstddef>
@@ -15,10 +15,10 @@ class Assignment {
   // A pair that may not be matched has this cost or a higher one.
   static constexpr double kForbidden = 1e6;
 
-  // Problems up to this size take no memory any more.
+  // Memory: problems up to this size allocate nothing.
   void reserve(int rows, int columns);
 
-  // cost: rows x columns, row-major, each >= 0. unmatched: what each row costs without partner; none given: kForbidden,
+  // cost: rows x columns, row-major, each >= 0. unmatched: cost of each row without partner; none given: kForbidden,
   // then as many rows are matched as the gates allow. Returns for each row its column, -1 for none, at the least total
   // cost; deterministic. Lives until the next call.
   std::span<const int> solve(std::span<const double> cost, int rows, int columns,
