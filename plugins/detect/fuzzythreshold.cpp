@@ -41,7 +41,7 @@ struct Settings {
   bool clip = vision::FuzzyThresholdOptions{}.clip;
   int area = static_cast<int>(vision::ForegroundMaskOptions{}.area);
   bool noise_floor = vision::ForegroundMaskOptions{}.noise_floor;
-  bool memory = vision::ForegroundMaskOptions{}.memory;
+  bool memory = vision::ForegroundMaskOptions{}.background_model;
 };
 
 const Property<Settings> kProperties[] = {
@@ -79,7 +79,7 @@ vision::ForegroundMaskOptions options(const Settings& s) {
   options.threshold.clip = s.clip;
   options.area = static_cast<vision::Area>(s.area);
   options.noise_floor = s.noise_floor;
-  options.memory = s.memory;
+  options.background_model = s.memory;
   return options;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The alignment to the memory recovers motions that were put in, and is not pulled by an object.
+// Alignment to the background recovers known motions, and moving objects do not bias it.
 #include "vision/background/alignment.h"
 
 #include <check.h>
@@ -18,7 +18,7 @@ namespace {
 constexpr Size kSize{320, 240};
 constexpr int kColumns = 20, kRows = 15;
 
-// The sums of frame(q) = scene seen after `motion` against memory = scene.
+// The sums of frame(q) = scene seen after `motion` against background = scene.
 std::vector<BlockSums> sums(const Scene& scene, const Transform& motion, bool object) {
   Image<std::uint8_t> memory({kSize.width + 32, kSize.height + 2}), present(kSize), age(kSize), quiet(kSize);
   age.fill_bytes(9);
@@ -71,20 +71,20 @@ START_TEST(a_perspective_is_recovered) {
 }
 END_TEST
 
-START_TEST(an_object_does_not_pull) {
+START_TEST(an_object_does_not_bias_the_alignment) {
   assert_recovers(Transform::translation(0.5, 0.3), true, 0.15);
 }
 END_TEST
 
-START_TEST(nothing_to_correct_is_no_correction) {
+START_TEST(no_correction_below_the_least) {
   ck_assert(!align_to_background(sums(Scene(12), {}, false), kColumns, kSize));
   ck_assert(
-      !align_to_background(std::vector<BlockSums>(kColumns * kRows), kColumns, kSize));  // nothing known
+      !align_to_background(std::vector<BlockSums>(kColumns * kRows), kColumns, kSize));  // no measured pixel
 }
 END_TEST
 
 int main() {
   return run_suite("scene_alignment", {a_translation_is_recovered, a_turn_about_the_centre_is_recovered,
-                                       a_perspective_is_recovered, an_object_does_not_pull,
-                                       nothing_to_correct_is_no_correction});
+                                       a_perspective_is_recovered, an_object_does_not_bias_the_alignment,
+                                       no_correction_below_the_least});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The memory's kernels against their scalar references, on every vector target of this processor, and the references
+// The background model's kernels against their scalar references, on every vector target of this processor, and the references
 // against values computed by hand.
 #include "vision/background/background_kernels.h"
 
@@ -19,7 +19,7 @@ namespace {
 constexpr int kMargin = 16;
 const int kWidths[] = {1, 7, 16, 33, 63, 64, 65, 200, 320};
 
-// A plane with readable margins, as the memory keeps it.
+// A plane with readable margins, as the background model has it.
 struct Margined {
   explicit Margined(Size size) : image({size.width + 2 * kMargin, size.height + 2}), size(size) {}
   MutableGrayView view() {
@@ -51,14 +51,14 @@ bool bit(const std::vector<std::uint64_t>& bits, int x) {
 START_TEST(block_sums_agree_with_the_reference) {
   std::mt19937 random(1);
   const Size size{48, 40};
-  Image<std::uint8_t> present(size), age(size), quiet(size);
+  Image<std::uint8_t> frame(size), age(size), quiet(size);
   Margined memory(size);
   for (int round = 0; round < 40; ++round) {
     scatter(memory.image.view(), random, round % 2 ? 256 : 40);
-    scatter(present.view(), random, round % 2 ? 256 : 40);
+    scatter(frame.view(), random, round % 2 ? 256 : 40);
     scatter(age.view(), random, 3);
     scatter(quiet.view(), random, 6);
-    BlockRows rows{present.view(), memory.view(), age.view(), quiet.view(), 1, 17, 1 + round % 2, 3};
+    BlockRows rows{frame.view(), memory.view(), age.view(), quiet.view(), 1, 17, 1 + round % 2, 3};
     for (const int x : {0, 16, 32})
       ck_assert(block_sums(rows, x, 1 + round % 5, 47 - round % 11) ==
                 block_sums_reference(rows, x, 1 + round % 5, 47 - round % 11));
@@ -67,19 +67,19 @@ START_TEST(block_sums_agree_with_the_reference) {
 END_TEST
 
 START_TEST(block_sums_of_a_ramp_are_those_of_its_slope) {
-  // memory = 3 x + 2 y, the frame is brighter by 5: doubled gradients 6 and 4, e = 5.
+  // background = 3 x + 2 y, the frame is brighter by 5: doubled gradients 6 and 4, e = 5.
   const Size size{32, 20};
-  Image<std::uint8_t> present(size), age(size), quiet(size);
+  Image<std::uint8_t> frame(size), age(size), quiet(size);
   Margined memory(size);
   for (int y = 0; y < 20; ++y)
     for (int x = 0; x < 32; ++x) {
       memory.view().at(x, y) = static_cast<std::uint8_t>(3 * x + 2 * y);
-      present.view().at(x, y) = static_cast<std::uint8_t>(3 * x + 2 * y + 5);
+      frame.view().at(x, y) = static_cast<std::uint8_t>(3 * x + 2 * y + 5);
       age.view().at(x, y) = 1;
       quiet.view().at(x, y) = x < 4 ? 2 : 3;
     }
   const BlockSums s =
-      block_sums({present.view(), memory.view(), age.view(), quiet.view(), 1, 5, 2, 3}, 0, 1, 31);
+      block_sums({frame.view(), memory.view(), age.view(), quiet.view(), 1, 5, 2, 3}, 0, 1, 31);
   const int n = 15 * 2;  // columns 1 to 15, rows 1 and 3
   const BlockSums expected{n * 36, n * 24, n * 16, n * 30, n * 20, n * 25, n, 12 * 2 * 8 * 5, 12 * 2 * 64};
   ck_assert(s == expected);  // |gradient| = 6 + 4 / 2, where it has been quiet
@@ -91,11 +91,11 @@ START_TEST(comparison_agrees_with_the_reference) {
   for (const int width : kWidths)
     for (int round = 0; round < 12; ++round) {
       const Size size{width, 1};
-      Image<std::uint8_t> present(size), spread(size), age(size), tolerance(size), fast_quiet(size),
+      Image<std::uint8_t> frame(size), spread(size), age(size), tolerance(size), fast_quiet(size),
           slow_quiet(size);
       Margined memory({width, 3});
       scatter(memory.image.view(), random, round % 2 ? 256 : 30);
-      scatter(present.view(), random, round % 2 ? 256 : 30);
+      scatter(frame.view(), random, round % 2 ? 256 : 30);
       scatter(spread.view(), random, round % 3 ? 20 : 256);
       scatter(age.view(), random, 5);
       scatter(tolerance.view(), random, 49);
@@ -105,7 +105,7 @@ START_TEST(comparison_agrees_with_the_reference) {
       CompareLimits limits;
       limits.registered = round % 4 < 2;
       for (auto& n : limits.noise) n = static_cast<std::uint8_t>(random() % (round % 2 ? 256 : 40));
-      CompareRow row{present.view().data,    memory.view().row(0),
+      CompareRow row{frame.view().data,      memory.view().row(0),
                      memory.view().row(1),   memory.view().row(2),
                      spread.view().data,     age.view().data,
                      tolerance.view().data,  moved.data(),
@@ -146,7 +146,7 @@ START_TEST(comparison_follows_its_definition_on_single_pixels) {
       {30, 16, 0, 20, 32, 9, false, false, false},
       {40, 16, 0, 0, 16, 1, false, false, false},  // too young: D(k) decides
       {0, 16, 0, 0, 16, 1, true, true, true},
-      {20, 16, 0, 20, 16, 1, true, true, false, true},  // which may be an error of registration
+      {20, 16, 0, 20, 16, 1, true, true, false, true},  // which may be a registration error
       {21, 16, 0, 20, 16, 1, true, true, true, true},
       {20, 16, 0, 20, 16, 1, true, true, true, false}};
   for (const Case& c : cases) {
@@ -155,7 +155,7 @@ START_TEST(comparison_follows_its_definition_on_single_pixels) {
     Image<std::uint8_t> one(size);
     for (int y = -1; y < 4 - 1; ++y)
       for (int x = -1; x <= 1; ++x) memory.view().at(x, y) = static_cast<std::uint8_t>(100 + c.slope * x);
-    const std::uint8_t present = static_cast<std::uint8_t>(100 + c.difference),
+    const std::uint8_t frame = static_cast<std::uint8_t>(100 + c.difference),
                        spread = static_cast<std::uint8_t>(c.spread), age = static_cast<std::uint8_t>(c.age),
                        tolerance = static_cast<std::uint8_t>(c.tolerance);
     std::uint8_t quiet = 7;
@@ -164,8 +164,8 @@ START_TEST(comparison_follows_its_definition_on_single_pixels) {
     limits.noise.fill(static_cast<std::uint8_t>(c.noise));
     limits.registered = c.registered;
     std::uint64_t weak = 0, strong = 0;
-    compare_row_reference({&present, memory.view().row(0), memory.view().row(1), memory.view().row(2),
-                           &spread, &age, &tolerance, &moved, &quiet, 1},
+    compare_row_reference({&frame, memory.view().row(0), memory.view().row(1), memory.view().row(2), &spread,
+                           &age, &tolerance, &moved, &quiet, 1},
                           limits, &weak, &strong);
     ck_assert_msg((weak & 1) == c.weak && (strong & 1) == c.strong, "difference %d noise %d slope %d",
                   c.difference, c.noise, c.slope);
@@ -179,10 +179,10 @@ START_TEST(learning_agrees_with_the_reference) {
   for (const int width : kWidths)
     for (int round = 0; round < 12; ++round) {
       const Size size{width, 1};
-      Image<std::uint8_t> present(size), memory(size), taken(size), quiet(size), spread[2], age[2];
+      Image<std::uint8_t> frame(size), memory(size), taken(size), quiet(size), spread[2], age[2];
       Image<std::uint16_t> mean[2];
       for (int i = 0; i < 2; ++i) spread[i].resize(size), age[i].resize(size), mean[i].resize(size);
-      scatter(present.view(), random, 256);
+      scatter(frame.view(), random, 256);
       scatter(memory.view(), random, 256);
       scatter(taken.view(), random, 256);
       scatter(quiet.view(), random, 256);
@@ -197,7 +197,7 @@ START_TEST(learning_agrees_with_the_reference) {
       const auto keep = random_bits(width, random), absorb = random_bits(width, random),
                  valid = random_bits(width, random);
       for (int i = 0; i < 2; ++i) {
-        const LearnRow row{present.view().data,
+        const LearnRow row{frame.view().data,
                            memory.view().data,
                            taken.view().data,
                            quiet.view().data,
@@ -230,10 +230,9 @@ START_TEST(a_steady_picture_is_averaged_over_its_first_frames) {
   const std::uint8_t quiet = 0;
   const std::uint64_t none = 0, all = 1;
   for (const int value : {100, 110, 120, 130}) {
-    const std::uint8_t present = static_cast<std::uint8_t>(value),
+    const std::uint8_t frame = static_cast<std::uint8_t>(value),
                        memory = static_cast<std::uint8_t>((mean + 128) >> 8);
-    learn_row_reference(
-        {&present, &memory, &present, &quiet, &none, &none, &all, &mean, &spread, &age, 1, 0});
+    learn_row_reference({&frame, &memory, &frame, &quiet, &none, &none, &all, &mean, &spread, &age, 1, 0});
   }
   ck_assert_int_eq(age, 4);
   ck_assert_double_eq_tol(mean / 256.0, 115, 0.2);

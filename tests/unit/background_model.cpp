@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the memory takes for noise: known by brightness, because a sensor's grows with it. What it knows of places that
-// the camera turns back to.
+// Noise by brightness, because sensor noise grows with it; content that the camera turns back to.
 #include "vision/background/background_model.h"
 
 #include <random>
@@ -43,7 +42,7 @@ long count(GrayView mask, int left, int top, int right, int bottom) {
 
 }  // namespace
 
-START_TEST(what_is_faint_is_seen_in_the_dark_and_noise_is_not_in_the_bright) {
+START_TEST(a_faint_object_is_found_in_the_dark_and_bright_noise_is_not) {
   std::mt19937 random(9);
   Image<std::uint8_t> picture(kSize);
   AreaChain chain(kSize);
@@ -68,7 +67,7 @@ int turned(int frame) {
   return kTurn * (frame <= kAway ? frame : 2 * kAway - frame);
 }
 struct Turn {
-  // The picture of one frame; somebody stands in the scene where it says, with his first frame.
+  // The picture of one frame, with a person in it from a given frame on.
   Turn(Size size, unsigned seed) : scene(31, 12), coat(32, 12), picture(size), chain(size), random(seed) {}
   // shade: taken from the grey levels of the scene's columns before `lit`.
   void feed(int frame, const Square* somebody, int shade = 0, int lit = 1000) {
@@ -89,13 +88,13 @@ struct Turn {
   int before = 0;
 };
 
-START_TEST(who_is_there_when_the_camera_turns_back_is_seen_at_once) {
+START_TEST(a_person_is_found_at_once_when_the_camera_turns_back) {
   const Size size{160, 120};
   Turn turn(size, 5);
   Score score;
   for (int k = 0; k <= 2 * kAway; ++k) {
-    // Has come while the camera looked elsewhere, and walks on: whole in the picture for the first and second time
-    // here.
+    // He came while the camera looked elsewhere, and walks on: here he is whole in the picture for the first and second
+    // time.
     const Square square{40 + 2.0 * (k - 2 * kAway), 45, 28};
     turn.feed(k, k > kAway ? &square : nullptr);
     const double left = square.x - turned(k);
@@ -106,7 +105,7 @@ START_TEST(who_is_there_when_the_camera_turns_back_is_seen_at_once) {
 }
 END_TEST
 
-START_TEST(a_camera_that_turns_back_takes_nothing_that_stands_for_motion) {
+START_TEST(a_camera_that_turns_back_reports_no_standing_object_as_motion) {
   const Size size{160, 120};
   for (const int shade : {0, 8, 30}) {
     Turn turn(size, 6);
@@ -119,7 +118,7 @@ START_TEST(a_camera_that_turns_back_takes_nothing_that_stands_for_motion) {
 }
 END_TEST
 
-START_TEST(shade_that_fell_where_nobody_looked_is_no_motion) {
+START_TEST(shade_that_fell_out_of_view_is_no_motion) {
   const Size size{160, 120};
   Turn turn(size, 7);
   for (int k = 0; k <= 2 * kAway; ++k) {
@@ -130,8 +129,8 @@ START_TEST(shade_that_fell_where_nobody_looked_is_no_motion) {
 END_TEST
 
 int main() {
-  return run_suite("scene_memory", {what_is_faint_is_seen_in_the_dark_and_noise_is_not_in_the_bright,
-                                    who_is_there_when_the_camera_turns_back_is_seen_at_once,
-                                    a_camera_that_turns_back_takes_nothing_that_stands_for_motion,
-                                    shade_that_fell_where_nobody_looked_is_no_motion});
+  return run_suite("scene_memory", {a_faint_object_is_found_in_the_dark_and_bright_noise_is_not,
+                                    a_person_is_found_at_once_when_the_camera_turns_back,
+                                    a_camera_that_turns_back_reports_no_standing_object_as_motion,
+                                    shade_that_fell_out_of_view_is_no_motion});
 }

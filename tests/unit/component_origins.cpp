@@ -27,14 +27,14 @@ struct Frames {
     for (auto* bits : {&differs, &gone}) bits->fill_bytes(0);
     set_bits(differs.view().row(r.row), r.first, r.end);
     set_bits(gone.view().row(taken.row), taken.first, taken.end);
-    origins.note(r, origin);
+    origins.record(r, origin);
     origins.step(differs.view(), gone.view());
   }
-  void expect(const Run& r, int any, int here) const {
-    ComponentOrigins::Before before;
-    origins.add(r, before);
-    ck_assert_int_eq(before.any, any);
-    ck_assert_int_eq(before.here, here);
+  void expect(const Run& r, int differed, int inside) const {
+    ComponentOrigins::Overlap before;
+    origins.add_overlap(r, before);
+    ck_assert_int_eq(before.differed, differed);
+    ck_assert_int_eq(before.inside, inside);
   }
 };
 
@@ -43,51 +43,51 @@ struct Frames {
 START_TEST(nothing_has_differed_at_the_start) {
   Frames f;
   f.expect(run(0, 100), 0, 0);
-  f.see(run(10, 80), Origin::here);
+  f.see(run(10, 80), Origin::inside);
   f.expect(run(0, 100), 70, 70);
-  f.origins.begin();
+  f.origins.reset();
   f.expect(run(0, 100), 0, 0);
 }
 END_TEST
 
-START_TEST(what_moves_on_is_found_two_pixels_beside_it) {
+START_TEST(overlap_is_searched_two_pixels_to_either_side) {
   Frames f;
-  f.see(run(10, 20), Origin::here);
+  f.see(run(10, 20), Origin::inside);
   f.expect(run(21, 40), 1, 1);
   f.expect(run(22, 40), 0, 0);
   f.expect(run(4, 8), 0, 0);
   f.expect(run(4, 9), 1, 1);
-  f.see(run(90, 100), Origin::here);
+  f.see(run(90, 100), Origin::inside);
   f.expect(run(95, 100), 7, 7);  // at the picture's edge
 }
 END_TEST
 
-START_TEST(each_pixel_keeps_its_origin_and_new_ones_are_as_most_of_the_part) {
+START_TEST(each_pixel_keeps_its_origin_and_new_ones_take_the_component_s) {
   Frames f;
-  f.see(run(10, 20), Origin::here);
-  f.see(run(10, 40), Origin::elsewhere);  // somebody from outside has come to it
+  f.see(run(10, 20), Origin::inside);
+  f.see(run(10, 40), Origin::outside);  // an object from outside has joined it
   f.expect(run(12, 38), 30, 10);
-  f.see(run(10, 50), Origin::here);
+  f.see(run(10, 50), Origin::inside);
   f.expect(run(12, 48), 40, 20);
-  f.see(run(10, 50), Origin::found);
+  f.see(run(10, 50), Origin::resolved);
   f.expect(run(12, 48), 40, 0);
 }
 END_TEST
 
-START_TEST(what_is_taken_over_or_differs_no_more_begins_anew) {
+START_TEST(absorbed_pixels_and_those_that_fit_again_lose_their_origin) {
   Frames f;
-  f.see(run(10, 40), Origin::here, run(10, 20));
+  f.see(run(10, 40), Origin::inside, run(10, 20));
   f.expect(run(10, 40), 20, 20);
-  f.see(run(30, 40), Origin::elsewhere);
+  f.see(run(30, 40), Origin::outside);
   f.expect(run(10, 40), 10, 10);
-  f.see(run(10, 40), Origin::elsewhere);
+  f.see(run(10, 40), Origin::outside);
   f.expect(run(10, 40), 30, 10);
 }
 END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "scene_origins", {nothing_has_differed_at_the_start, what_moves_on_is_found_two_pixels_beside_it,
-                        each_pixel_keeps_its_origin_and_new_ones_are_as_most_of_the_part,
-                        what_is_taken_over_or_differs_no_more_begins_anew});
+      "component_origins", {nothing_has_differed_at_the_start, overlap_is_searched_two_pixels_to_either_side,
+                            each_pixel_keeps_its_origin_and_new_ones_take_the_component_s,
+                            absorbed_pixels_and_those_that_fit_again_lose_their_origin});
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which parts of a difference are objects. Pictures here are 320 x 240, the scene is 100 everywhere, what stands before
-// it 200; expectations follow from the header's rules by hand.
+// Which components are objects and which are ghosts. Pictures are 320 x 240, the background is 100 everywhere, objects
+// are 200; expectations follow from the header's rules by hand.
 #include "vision/background/components.h"
 
 #include <algorithm>
@@ -14,42 +14,44 @@ using namespace cerberus::vision;
 namespace {
 
 constexpr Size kSize{320, 240};
-constexpr ClassificationWindows kWindows;  // of 25 frames a second
+constexpr FrameWindows kWindows;  // of 25 frames a second
 
 struct Rect {
   int x, y, width, height;
 };
 
 struct Scene {
-  Image<std::uint8_t> present, memory, age, quiet;
+  Image<std::uint8_t> frame, background, age, quiet;
   BitMask mask, absorb;
-  ForegroundComponents parts;
+  ForegroundComponents components;
 
-  explicit Scene(int scene_age, Size size = kSize) : present(size), memory(size), age(size), quiet(size) {
-    for (auto* picture : {&present, &memory}) picture->fill_bytes(100);
+  explicit Scene(int scene_age, Size size = kSize) : frame(size), background(size), age(size), quiet(size) {
+    for (auto* picture : {&frame, &background}) picture->fill_bytes(100);
     age.fill_bytes(scene_age);
     quiet.fill_bytes(200);
     for (auto* bits : {&mask, &absorb}) bits->resize(bit_mask_size(size));
-    parts.preallocate(size);
+    components.preallocate(size);
   }
   static void paint(Image<std::uint8_t>& picture, const Rect& r, int value) {
     for (int y = r.y; y < r.y + r.height; ++y)
       std::fill_n(picture.view().row(y) + r.x, r.width, static_cast<std::uint8_t>(value));
   }
-  // Differs, and moved `since` frames ago.
+  // These pixels differ from the background and moved `since` frames ago.
   void differs(const Rect& r, int since) {
     for (int y = r.y; y < r.y + r.height; ++y) set_bits(mask.view().row(y), r.x, r.x + r.width);
     paint(quiet, r, since);
   }
-  ClassificationPlanes planes(bool still = true) const {
-    return {present.view(), memory.view(), age.view(), quiet.view(), still};
+  ComponentInput input(bool still = true) const {
+    return {frame.view(), background.view(), age.view(), quiet.view(), still};
   }
-  bool judge(bool still = true) { return parts.judge(planes(still), kWindows, mask.view(), absorb.view()); }
-  void join() {
+  bool classify(bool still = true) {
+    return components.classify(input(still), kWindows, mask.view(), absorb.view());
+  }
+  void merge_neighbours() {
     BitMask closed;
     closed.resize(bit_mask_size(kSize));
     std::copy_n(mask.view().data, mask.bytes() / sizeof(std::uint64_t), closed.view().data);
-    parts.join(planes(), kWindows, closed.view(), mask.view());
+    components.merge_neighbours(input(), kWindows, closed.view(), mask.view());
   }
 };
 
@@ -68,43 +70,41 @@ constexpr Rect kPerson{100, 80, 30, 80};
 }  // namespace
 
 START_TEST(windows_are_times_not_frames) {
-  const ClassificationWindows usual = ClassificationWindows::of(1 / 25.0),
-                              slow = ClassificationWindows::of(1 / 5.0),
-                              fast = ClassificationWindows::of(1 / 100.0);
+  const FrameWindows usual = FrameWindows::of(1 / 25.0), slow = FrameWindows::of(1 / 5.0),
+                     fast = FrameWindows::of(1 / 100.0);
   ck_assert_int_eq(usual.fresh, kWindows.fresh);
-  ck_assert_int_eq(usual.now, kWindows.now);
-  ck_assert_int_eq(usual.lately, kWindows.lately);
+  ck_assert_int_eq(usual.moving, kWindows.moving);
+  ck_assert_int_eq(usual.recent, kWindows.recent);
   ck_assert_int_eq(usual.young, kWindows.young);
   ck_assert_int_eq(usual.hold, kWindows.hold);
   ck_assert_int_eq(slow.hold, 50);   // 10 s
   ck_assert_int_eq(slow.young, 10);  // 2 s
-  ck_assert_int_eq(slow.now, 3);     // never fewer than three frames
+  ck_assert_int_eq(slow.moving, 3);  // never fewer than three frames
   ck_assert_int_eq(slow.fresh, 1);
   ck_assert_int_eq(fast.fresh, 4);
-  ck_assert_int_eq(fast.now, 12);
-  ck_assert_int_eq(fast.lately, 100);
+  ck_assert_int_eq(fast.moving, 12);
+  ck_assert_int_eq(fast.recent, 100);
   ck_assert_int_eq(fast.hold, 250);  // as far as 8 bits count
 }
 END_TEST
 
-START_TEST(what_moves_is_an_object) {
+START_TEST(a_moving_component_is_an_object) {
   Scene s(200);
-  Scene::paint(s.present, kPerson, 200);
+  Scene::paint(s.frame, kPerson, 200);
   s.differs(kPerson, 0);
-  ck_assert(!s.judge());  // an old memory
+  ck_assert(!s.classify());  // an old background
   ck_assert_int_eq(count(s.mask, kPerson), all(kPerson));
   ck_assert_int_eq(count(s.absorb, kPerson), 0);
 }
 END_TEST
 
-// Two halves that belong together, in a picture of four times the size; and so many specks beside them, each too far
-// from the next.
-START_TEST(where_there_is_nothing_but_clutter_nothing_is_joined) {
+// Two halves of one object in a picture of four times the size, and specks beside them, each too far from the next.
+START_TEST(in_clutter_no_neighbours_are_merged) {
   constexpr Size kLarge{1280, 960};
   constexpr Rect kLeft{400, 300, 40, 300}, kRight{460, 300, 40, 300}, kBetween{440, 300, 20, 300};
   for (const int specks : {0, 400, 600}) {
-    Image<std::uint8_t> present(kLarge), memory(kLarge), age(kLarge), quiet(kLarge);
-    for (auto* picture : {&present, &memory}) picture->fill_bytes(100);
+    Image<std::uint8_t> frame(kLarge), background(kLarge), age(kLarge), quiet(kLarge);
+    for (auto* picture : {&frame, &background}) picture->fill_bytes(100);
     age.fill_bytes(5);
     quiet.fill_bytes(0);
     BitMask mask, closed;
@@ -116,42 +116,42 @@ START_TEST(where_there_is_nothing_but_clutter_nothing_is_joined) {
       add(kLeft), add(kRight);
       for (int i = 0; i < specks; ++i) add({700 + 20 * (i % 25), 10 + 30 * (i / 25), 2, 2});
     }
-    ForegroundComponents parts;
-    parts.preallocate(kLarge);
-    parts.join({present.view(), memory.view(), age.view(), quiet.view(), true}, kWindows, closed.view(),
-               mask.view());
+    ForegroundComponents components;
+    components.preallocate(kLarge);
+    components.merge_neighbours({frame.view(), background.view(), age.view(), quiet.view(), true}, kWindows,
+                                closed.view(), mask.view());
     ck_assert_int_eq(count(mask, kBetween), specks > 512 ? 0 : all(kBetween));
-    ck_assert_int_eq(count(mask, {700, 0, 580, 960}), 0);  // no speck stays, however many there are
+    ck_assert_int_eq(count(mask, {700, 0, 580, 960}), 0);  // no speck stays, whatever their number
   }
 }
 END_TEST
 
-START_TEST(who_stopped_is_kept_for_ten_seconds) {
+START_TEST(an_object_that_stopped_stays_foreground_for_ten_seconds) {
   for (const int since : {100, 249, 250, 251}) {
     Scene s(255);
-    Scene::paint(s.present, kPerson, 200);
+    Scene::paint(s.frame, kPerson, 200);
     s.differs(kPerson, since);
-    s.judge();
+    s.classify();
     ck_assert_int_eq(count(s.mask, kPerson), all(kPerson));
     ck_assert_int_eq(count(s.absorb, kPerson), since > 250 ? all(kPerson) : 0);
   }
 }
 END_TEST
 
-START_TEST(whose_place_is_empty_is_forgotten_at_once) {
+START_TEST(a_ghost_is_absorbed_at_once) {
   for (const bool young : {false, true}) {
     Scene s(young ? 10 : 255);
-    Scene::paint(s.memory, kPerson, 200);  // he stood there, the memory says
+    Scene::paint(s.background, kPerson, 200);  // the background shows an object
     s.differs(kPerson, 20);
-    ck_assert(!s.judge());
+    ck_assert(!s.classify());
     ck_assert_int_eq(count(s.mask, kPerson), 0);
     ck_assert_int_eq(count(s.absorb, kPerson), all(kPerson));
   }
 }
 END_TEST
 
-START_TEST(what_the_memory_saw_for_moments_needs_motion_now) {
-  // For less than a second whatever it looks like; for less than two if its outline is no edge of the frame.
+START_TEST(over_a_young_background_a_component_needs_motion) {
+  // Learnt for less than a second: whatever its outline; for less than two: if its outline is no edge of the frame.
   struct Case {
     int age;
     bool outline, kept_at_rest;
@@ -159,55 +159,55 @@ START_TEST(what_the_memory_saw_for_moments_needs_motion_now) {
   for (const Case& c : {Case{24, true, false}, {25, true, true}, {49, true, true}, {49, false, false}})
     for (const int since : {2, 3}) {
       Scene s(c.age);
-      if (c.outline) Scene::paint(s.present, kPerson, 200);
+      if (c.outline) Scene::paint(s.frame, kPerson, 200);
       s.differs(kPerson, since);
       const bool kept = since < 3 || c.kept_at_rest;
-      s.judge();
+      s.classify();
       ck_assert_int_eq(count(s.mask, kPerson), kept ? all(kPerson) : 0);
       ck_assert_int_eq(count(s.absorb, kPerson), kept ? 0 : all(kPerson));
     }
 }
 END_TEST
 
-START_TEST(objects_before_a_young_memory_are_told) {
+START_TEST(objects_over_a_young_background_are_reported) {
   for (const int age : {49, 50}) {
     Scene s(age);
-    Scene::paint(s.present, kPerson, 200);
+    Scene::paint(s.frame, kPerson, 200);
     s.differs(kPerson, 0);
-    ck_assert(s.judge() == (age < 50));
+    ck_assert(s.classify() == (age < 50));
   }
 }
 END_TEST
 
-START_TEST(before_a_camera_that_moves_only_what_moves_now_counts) {
+START_TEST(for_a_moving_camera_only_present_motion_counts) {
   for (const int since : {2, 3}) {
     Scene s(255);
-    Scene::paint(s.present, kPerson, 200);
+    Scene::paint(s.frame, kPerson, 200);
     s.differs(kPerson, since);
-    s.judge(false);
+    s.classify(false);
     ck_assert_int_eq(count(s.mask, kPerson), since < 3 ? all(kPerson) : 0);
   }
 }
 END_TEST
 
-START_TEST(before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment) {
+START_TEST(for_a_moving_camera_a_ghost_needs_motion_in_the_last_frame) {
   struct Case {
     int since;
     bool kept;
   };
   for (const Case& c : {Case{0, true}, {1, false}, {2, false}}) {
     Scene s(255);
-    Scene::paint(s.memory, kPerson, 200);
+    Scene::paint(s.background, kPerson, 200);
     s.differs(kPerson, c.since);
-    s.judge(false);
+    s.classify(false);
     ck_assert_int_eq(count(s.mask, kPerson), c.kept ? all(kPerson) : 0);
   }
 }
 END_TEST
 
-START_TEST(before_a_camera_that_moves_who_rests_in_a_young_memory_is_known_by_his_outline) {
-  // What moved one frame ago and, but for some rows or none, does not move now; its outline is an edge of the frame
-  // only, or of the memory as well.
+START_TEST(for_a_moving_camera_the_outline_decides_about_rest_over_a_young_background) {
+  // The component moved one frame ago and rests now, but for some rows or none; its outline is an edge of the frame
+  // only, or of the background as well.
   struct Case {
     Rect part;
     int age, moving_rows;
@@ -222,25 +222,25 @@ START_TEST(before_a_camera_that_moves_who_rests_in_a_young_memory_is_known_by_hi
                         {kLarger, 10, 0, false, false},
                         {kSmall, 10, 0, false, true}}) {
     Scene s(c.age);
-    Scene::paint(s.present, c.part, 200);
-    if (!c.object) Scene::paint(s.memory, c.part, 190);
+    Scene::paint(s.frame, c.part, 200);
+    if (!c.object) Scene::paint(s.background, c.part, 190);
     s.differs(c.part, 1);
     s.differs({c.part.x, c.part.y, c.part.width, c.moving_rows}, 0);
-    s.judge(false);
+    s.classify(false);
     ck_assert_int_eq(count(s.mask, c.part), c.kept ? all(c.part) : 0);
-    ck_assert_int_eq(count(s.absorb, c.part), 0);  // not taken over before it has rested for longer
+    ck_assert_int_eq(count(s.absorb, c.part), 0);  // not absorbed before it has rested for longer
   }
 }
 END_TEST
 
-START_TEST(two_fronts_are_one_where_the_memory_is_young) {
+START_TEST(two_rims_are_one_object_over_a_young_background) {
   // A body of 40 x 80 that has moved by 6: a strip before it, a strip behind it.
   constexpr Rect kBehind{100, 80, 6, 80}, kBetween{106, 80, 34, 80}, kBefore{140, 80, 6, 80};
   for (const int age : {10, 100}) {
     Scene s(age);
     s.differs(kBehind, 1);
     s.differs(kBefore, 1);
-    s.join();
+    s.merge_neighbours();
     ck_assert_int_eq(count(s.mask, kBetween), age < 50 ? all(kBetween) : 0);
     ck_assert_int_eq(count(s.mask, kBehind), all(kBehind));
     ck_assert_int_eq(count(s.mask, kBefore), all(kBefore));
@@ -248,9 +248,9 @@ START_TEST(two_fronts_are_one_where_the_memory_is_young) {
 }
 END_TEST
 
-// As high and as far from each other as the fronts of one body. What lies between them has not changed: where a wall of
-// bricks or a slope would have, had it moved as far as they are wide, they are two people.
-START_TEST(two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one) {
+// The components are as high and as far from each other as the rims of one body. The gap has not changed; a brick wall or
+// a slope would have, had it moved by the rims' width, so these are two people.
+START_TEST(two_people_before_a_textured_background_are_not_the_rims_of_one) {
   enum Wall { even, bricks, slope };
   struct Case {
     Wall wall;
@@ -262,47 +262,47 @@ START_TEST(two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one) {
     Scene s(10);
     for (int x = 0; x < 256; ++x)
       if (c.wall == slope || (c.wall == bricks && x % 16 < 8))
-        Scene::paint(s.present, {x, 0, 1, kSize.height}, c.wall == slope ? x : 120);
+        Scene::paint(s.frame, {x, 0, 1, kSize.height}, c.wall == slope ? x : 120);
     s.differs(left, 1);
     s.differs(right, 1);
-    s.join();
+    s.merge_neighbours();
     ck_assert_int_eq(count(s.mask, between), c.one ? all(between) : 0);
     ck_assert_int_eq(count(s.mask, left) + count(s.mask, right), all(left) + all(right));
   }
 }
 END_TEST
 
-START_TEST(a_front_belongs_to_what_is_near) {
+START_TEST(a_rim_belongs_to_its_neighbour) {
   Scene s(10);
   constexpr Rect kFront{155, 80, 8, 80};  // 25 away: between a fifth and half of their height
   s.differs(kPerson, 1);
   s.differs(kFront, 1);
-  s.join();
+  s.merge_neighbours();
   ck_assert_int_eq(count(s.mask, {130, 80, 25, 80}), all({130, 80, 25, 80}));
 }
 END_TEST
 
-START_TEST(fronts_far_apart_or_of_other_heights_are_two) {
+START_TEST(rims_far_apart_or_of_other_heights_are_two_objects) {
   Scene apart(10);
   apart.differs({100, 80, 6, 80}, 1);
   apart.differs({190, 80, 6, 80}, 1);  // 84 between them, 80 high
-  apart.join();
+  apart.merge_neighbours();
   ck_assert_int_eq(count(apart.mask, {106, 80, 84, 80}), 0);
   Scene heights(10);
   heights.differs({100, 20, 6, 80}, 1);
   heights.differs({130, 80, 6, 80}, 1);  // only 20 of 80 beside each other
-  heights.join();
+  heights.merge_neighbours();
   ck_assert_int_eq(count(heights.mask, {106, 20, 24, 140}), 0);
 }
 END_TEST
 
-START_TEST(a_piece_near_a_big_part_is_dropped_where_the_memory_is_young) {
+START_TEST(a_fragment_near_a_large_component_is_dropped_over_a_young_background) {
   constexpr Rect kPiece{150, 100, 10, 20};  // 20 away: a quarter of the person's height
   for (const int age : {10, 100}) {
     Scene s(age);
     s.differs(kPerson, 1);
     s.differs(kPiece, 1);
-    s.join();
+    s.merge_neighbours();
     ck_assert_int_eq(count(s.mask, kPerson), all(kPerson));
     ck_assert_int_eq(count(s.mask, kPiece), age < 50 ? 0 : all(kPiece));
   }
@@ -310,65 +310,65 @@ START_TEST(a_piece_near_a_big_part_is_dropped_where_the_memory_is_young) {
   constexpr Rect kFar{175, 100, 10, 20};  // 45 away: more than half of the person's height
   far.differs(kPerson, 1);
   far.differs(kFar, 1);
-  far.join();
+  far.merge_neighbours();
   ck_assert_int_eq(count(far.mask, kFar), all(kFar));
 }
 END_TEST
 
-// Joined to somebody beside it, it would be a strip of the scene between the corners of two boxes.
-START_TEST(a_piece_beside_a_big_part_is_dropped_not_joined) {
+// Merged with its neighbour it would add a strip of background between the corners of two boxes.
+START_TEST(a_fragment_beside_a_large_component_is_dropped_not_merged) {
   constexpr Rect kPiece{140, 140, 12, 20}, kTiny{140, 100, 7, 7};  // 10 away: less than a fifth of the height
   for (const Rect& piece : {kPiece, kTiny}) {
     Scene s(10);
     s.differs(kPerson, 1);
     s.differs(piece, 1);
-    s.join();
+    s.merge_neighbours();
     ck_assert_int_eq(count(s.mask, {0, 0, 320, 240}), all(kPerson));
   }
 }
 END_TEST
 
-START_TEST(a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion) {
-  // A fifteenth of it moves: his last, where he may be out of the picture.
+START_TEST(a_ghost_at_the_picture_s_edge_needs_more_motion) {
+  // A fifteenth of it moves: the last motion of an object that may be out of the picture.
   constexpr Rect kAtEdge{0, 80, 10, 30}, kMoves{0, 80, 10, 2}, kInside{9, 80, 10, 30},
       kMovesInside{9, 80, 10, 2};
   for (const auto& [place, moves] : {std::pair{kAtEdge, kMoves}, {kInside, kMovesInside}}) {
     Scene s(10);
-    Scene::paint(s.memory, place, 200);
+    Scene::paint(s.background, place, 200);
     s.differs(place, 20);
     Scene::paint(s.quiet, moves, 0);
-    s.judge();
+    s.classify();
     ck_assert_int_eq(count(s.mask, place), place.x == 0 ? 0 : all(place));
   }
 }
 END_TEST
 
-// A camera that moves shows new columns, and does not show others any more. Neither end is an edge of anything.
-START_TEST(the_end_of_what_is_known_is_no_edge) {
+// A moving camera shows new columns and hides others. Neither boundary is an edge of an object.
+START_TEST(the_boundary_of_the_visible_background_is_no_edge) {
   constexpr Rect kAll{5, 80, 40, 30}, kFar{25, 80, 20, 30}, kStrip{0, 0, 5, 240};
   const auto judge = [&](Scene& s, std::span<const RowSpan> shown) {
     s.differs(kAll, 0);
-    ClassificationPlanes planes = s.planes(false);
-    planes.followed = true;
-    planes.shown = shown;
-    s.parts.judge(planes, kWindows, s.mask.view(), s.absorb.view());
+    ComponentInput planes = s.input(false);
+    planes.registered = true;
+    planes.visible = shown;
+    s.components.classify(planes, kWindows, s.mask.view(), s.absorb.view());
     return count(s.mask, kAll);
   };
-  // Somebody is there, his far side little brighter than the scene. The strip that has just come in shows him, and the
-  // memory has it from there.
+  // A person is there, his far side little brighter than the scene. The strip that has just come in shows him, and the
+  // background was learnt from it.
   for (const int strip_age : {1, 10}) {
     Scene s(10);
-    Scene::paint(s.present, kAll, 200);
-    Scene::paint(s.present, kFar, 120);
-    for (auto* picture : {&s.present, &s.memory}) Scene::paint(*picture, {0, 80, 5, 30}, 200);
+    Scene::paint(s.frame, kAll, 200);
+    Scene::paint(s.frame, kFar, 120);
+    for (auto* picture : {&s.frame, &s.background}) Scene::paint(*picture, {0, 80, 5, 30}, 200);
     Scene::paint(s.age, kStrip, strip_age);
     ck_assert_int_eq(judge(s, {}), strip_age == 1 ? all(kAll) : 0);
   }
-  // Somebody was there, and the frame ends beside it.
+  // A person was there, and the frame ends beside that place.
   for (const bool ends : {true, false}) {
     Scene s(10);
-    Scene::paint(s.memory, kAll, 200);
-    Scene::paint(s.present, kStrip, 0);
+    Scene::paint(s.background, kAll, 200);
+    Scene::paint(s.frame, kStrip, 0);
     const std::vector<RowSpan> shown(kSize.height, RowSpan{ends ? 5 : 0, kSize.width});
     ck_assert_int_eq(judge(s, shown), ends ? 0 : all(kAll));
   }
@@ -376,56 +376,57 @@ START_TEST(the_end_of_what_is_known_is_no_edge) {
 END_TEST
 
 START_TEST(two_people_stay_two) {
-  // 20 away: more than a fifth of their height. The child has 0.42 of the other's area: more than a piece.
+  // 20 away: more than a fifth of their height. The child has 0.42 of the other's area: more than a fragment.
   constexpr Rect kOther{150, 80, 30, 80}, kChild{150, 110, 20, 50};
   for (const Rect& other : {kOther, kChild}) {
     Scene s(10);
     s.differs(kPerson, 1);
     s.differs(other, 1);
-    s.join();
+    s.merge_neighbours();
     ck_assert_int_eq(count(s.mask, {0, 0, 320, 240}), all(kPerson) + all(other));
   }
 }
 END_TEST
 
-START_TEST(a_tiny_part_says_nothing_while_the_memory_is_young) {
+START_TEST(a_tiny_component_is_dropped_over_a_young_background) {
   constexpr Rect kTiny{200, 100, 7, 8}, kSmall{200, 200, 8, 8};  // 60 pixels are 1 / 1280
   Scene s(10);
   s.differs(kTiny, 1);
   s.differs(kSmall, 1);
-  s.join();
+  s.merge_neighbours();
   ck_assert_int_eq(count(s.mask, kTiny), 0);
   ck_assert_int_eq(count(s.mask, kSmall), all(kSmall));
 }
 END_TEST
 
-// What stood there was 160 on the right of it, what is there now is 200 on the left: half of its outline is an edge of
-// the frame, half one of the memory.
+// The old object was 160 on the right, the new one is 200 on the left: half of the outline is an edge of the frame, half
+// one of the background.
 void half_and_half(Scene& s, const Rect& r) {
-  Scene::paint(s.present, {r.x, r.y, r.width / 2, r.height}, 200);
-  Scene::paint(s.memory, {r.x + r.width / 2, r.y, r.width - r.width / 2, r.height}, 160);
+  Scene::paint(s.frame, {r.x, r.y, r.width / 2, r.height}, 200);
+  Scene::paint(s.background, {r.x + r.width / 2, r.y, r.width - r.width / 2, r.height}, 160);
 }
 
 constexpr Rect kWalker{170, 80, 30, 80};  // forty pixels from kPerson
 
-START_TEST(a_piece_of_the_place_that_somebody_leaves_is_taken_over) {
-  // What came in at the left edge keeps its second at rest, and so does who rests while nobody leaves.
+START_TEST(a_fragment_of_a_ghost_is_absorbed) {
+  // A component that came in at the left edge stays for its second at rest, and so does one at rest while no object
+  // leaves.
   struct Case {
     bool from_outside, somebody_leaves, kept;
   };
   for (const Case& c : {Case{false, true, false}, {true, true, true}, {false, false, true}}) {
     Scene s(255);
-    s.judge();  // the camera stands, nothing differs
+    s.classify();  // the camera stands, the frame fits the background
     half_and_half(s, kPerson);
-    Scene::paint(s.present, kWalker, 200);
+    Scene::paint(s.frame, kWalker, 200);
     if (c.from_outside) s.differs({0, 80, 100, 80}, 0);
     s.differs(kPerson, 0);
     if (c.somebody_leaves) s.differs(kWalker, 0);
-    s.judge();
+    s.classify();
     s.mask.fill_bytes(0);
     s.differs(kPerson, 10);
     if (c.somebody_leaves) s.differs(kWalker, 0);
-    s.judge();
+    s.classify();
     ck_assert_int_eq(count(s.mask, kPerson), c.kept ? all(kPerson) : 0);
     ck_assert_int_eq(count(s.absorb, kPerson), c.kept ? 0 : all(kPerson));
     ck_assert_int_eq(count(s.mask, kWalker), c.somebody_leaves ? all(kWalker) : 0);
@@ -433,18 +434,18 @@ START_TEST(a_piece_of_the_place_that_somebody_leaves_is_taken_over) {
 }
 END_TEST
 
-// However clearly a thing's outline shows: an eighth of who leaves is 300 pixels.
-START_TEST(what_is_small_beside_somebody_who_leaves_is_a_piece_of_his_place) {
+// Even with a certain outline: an eighth of the object that leaves is 300 pixels.
+START_TEST(a_small_component_beside_a_leaving_object_is_a_fragment_of_its_ghost) {
   for (const int side : {17, 18}) {
     const Rect piece{120, 100, side, side};
     Scene s(255);
-    s.judge();
+    s.classify();
     for (const int since : {0, 10}) {
       s.mask.fill_bytes(0);
-      for (const Rect& r : {piece, kWalker}) Scene::paint(s.present, r, 200);
+      for (const Rect& r : {piece, kWalker}) Scene::paint(s.frame, r, 200);
       s.differs(piece, since);
       s.differs(kWalker, 0);
-      s.judge();
+      s.classify();
     }
     ck_assert_int_eq(count(s.mask, piece), side < 18 ? 0 : all(piece));
     ck_assert_int_eq(count(s.absorb, piece), side < 18 ? all(piece) : 0);
@@ -452,58 +453,58 @@ START_TEST(what_is_small_beside_somebody_who_leaves_is_a_piece_of_his_place) {
 }
 END_TEST
 
-// So many parts are rain: whose place a thing is would take too long to find out. Those two, and specks.
-START_TEST(in_clutter_nobody_looks_for_places) {
+// So many components are rain, and the search for ghosts would take too long. Two components and specks.
+START_TEST(in_clutter_ghosts_are_not_searched) {
   constexpr Rect kPlace{120, 100, 17, 17};
-  for (const int parts : {2, 512, 513}) {
+  for (const int components : {2, 512, 513}) {
     Scene s(255, {1280, 960});
-    s.judge();
+    s.classify();
     for (const int since : {0, 10}) {
       s.mask.fill_bytes(0);
-      for (int i = 2; i < parts; ++i) s.differs({700 + 20 * (i % 25), 10 + 30 * (i / 25), 2, 2}, 0);
-      for (const Rect& r : {kPlace, kWalker}) Scene::paint(s.present, r, 200);
+      for (int i = 2; i < components; ++i) s.differs({700 + 20 * (i % 25), 10 + 30 * (i / 25), 2, 2}, 0);
+      for (const Rect& r : {kPlace, kWalker}) Scene::paint(s.frame, r, 200);
       s.differs(kPlace, since);
       s.differs(kWalker, 0);
-      s.judge();
+      s.classify();
     }
-    ck_assert_int_eq(count(s.mask, kPlace), parts > 512 ? all(kPlace) : 0);
-    ck_assert_int_eq(count(s.absorb, kPlace), parts > 512 ? 0 : all(kPlace));
+    ck_assert_int_eq(count(s.mask, kPlace), components > 512 ? all(kPlace) : 0);
+    ck_assert_int_eq(count(s.absorb, kPlace), components > 512 ? 0 : all(kPlace));
     ck_assert_int_eq(count(s.mask, kWalker), all(kWalker));
   }
 }
 END_TEST
 
-START_TEST(who_left_a_place_is_an_object_where_he_stops) {
-  // His outline tells little there, and somebody else who was there from the beginning walks near.
+START_TEST(an_object_whose_ghost_was_found_stays_an_object_where_it_stops) {
+  // Its outline says little there, and another person, in the picture from the start, walks nearby.
   constexpr Rect kOther{220, 80, 30, 80};
-  // What did not look like an object when it began to move may be a piece of the place itself.
+  // A component without an object's outline at its first motion may be a fragment of the ghost.
   struct Case {
     bool place_found, clear;
   };
   for (const auto& [place_found, clear] : {Case{true, true}, {false, true}, {true, false}}) {
     Scene s(255);
-    s.judge();
+    s.classify();
     if (clear)
-      Scene::paint(s.present, kWalker, 200);
+      Scene::paint(s.frame, kWalker, 200);
     else
       half_and_half(s, kWalker);
     s.differs(kWalker, 0);
     if (place_found) {
-      Scene::paint(s.memory, kPerson, 200);
+      Scene::paint(s.background, kPerson, 200);
       s.differs(kPerson, 10);
     }
-    s.judge();
+    s.classify();
     ck_assert_int_eq(count(s.absorb, kPerson), place_found ? all(kPerson) : 0);
     s.mask.fill_bytes(0);
     s.differs(kWalker, 0);
     s.differs(kOther, 0);
-    s.judge();
+    s.classify();
     s.mask.fill_bytes(0);
-    Scene::paint(s.present, kWalker, 100);
+    Scene::paint(s.frame, kWalker, 100);
     half_and_half(s, kWalker);
     s.differs(kWalker, 10);
     s.differs(kOther, 0);
-    s.judge();
+    s.classify();
     ck_assert_int_eq(count(s.mask, kWalker), place_found && clear ? all(kWalker) : 0);
   }
 }
@@ -511,28 +512,28 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "scene_parts", {windows_are_times_not_frames,
-                      what_moves_is_an_object,
-                      where_there_is_nothing_but_clutter_nothing_is_joined,
-                      who_stopped_is_kept_for_ten_seconds,
-                      whose_place_is_empty_is_forgotten_at_once,
-                      what_the_memory_saw_for_moments_needs_motion_now,
-                      objects_before_a_young_memory_are_told,
-                      before_a_camera_that_moves_only_what_moves_now_counts,
-                      before_a_camera_that_moves_a_place_that_was_left_needs_motion_at_this_moment,
-                      before_a_camera_that_moves_who_rests_in_a_young_memory_is_known_by_his_outline,
-                      two_fronts_are_one_where_the_memory_is_young,
-                      two_who_walk_before_a_scene_that_shows_are_no_fronts_of_one,
-                      a_front_belongs_to_what_is_near,
-                      fronts_far_apart_or_of_other_heights_are_two,
-                      a_piece_near_a_big_part_is_dropped_where_the_memory_is_young,
-                      a_piece_beside_a_big_part_is_dropped_not_joined,
-                      a_place_at_the_edge_that_somebody_has_just_left_needs_more_motion,
-                      the_end_of_what_is_known_is_no_edge,
-                      two_people_stay_two,
-                      a_tiny_part_says_nothing_while_the_memory_is_young,
-                      what_is_small_beside_somebody_who_leaves_is_a_piece_of_his_place,
-                      a_piece_of_the_place_that_somebody_leaves_is_taken_over,
-                      in_clutter_nobody_looks_for_places,
-                      who_left_a_place_is_an_object_where_he_stops});
+      "components", {windows_are_times_not_frames,
+                     a_moving_component_is_an_object,
+                     in_clutter_no_neighbours_are_merged,
+                     an_object_that_stopped_stays_foreground_for_ten_seconds,
+                     a_ghost_is_absorbed_at_once,
+                     over_a_young_background_a_component_needs_motion,
+                     objects_over_a_young_background_are_reported,
+                     for_a_moving_camera_only_present_motion_counts,
+                     for_a_moving_camera_a_ghost_needs_motion_in_the_last_frame,
+                     for_a_moving_camera_the_outline_decides_about_rest_over_a_young_background,
+                     two_rims_are_one_object_over_a_young_background,
+                     two_people_before_a_textured_background_are_not_the_rims_of_one,
+                     a_rim_belongs_to_its_neighbour,
+                     rims_far_apart_or_of_other_heights_are_two_objects,
+                     a_fragment_near_a_large_component_is_dropped_over_a_young_background,
+                     a_fragment_beside_a_large_component_is_dropped_not_merged,
+                     a_ghost_at_the_picture_s_edge_needs_more_motion,
+                     the_boundary_of_the_visible_background_is_no_edge,
+                     two_people_stay_two,
+                     a_tiny_component_is_dropped_over_a_young_background,
+                     a_small_component_beside_a_leaving_object_is_a_fragment_of_its_ghost,
+                     a_fragment_of_a_ghost_is_absorbed,
+                     in_clutter_ghosts_are_not_searched,
+                     an_object_whose_ghost_was_found_stays_an_object_where_it_stops});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The moving area: Eq. 3 and the set algebra by hand, and the memory in the situations it is for.
+// The foreground mask: Eq. 3 and the set algebra by hand, and the background model in its typical situations.
 #include "vision/background/foreground_mask.h"
 
 #include <check.h>
@@ -83,7 +83,7 @@ START_TEST(the_paper_s_sets_are_formed_from_one_threshold) {
   const Histogram h = histogram_of(now.view());
   ForegroundMaskOptions o;
   o.threshold = {Weighting::linear, Extremes::subset, 1, 0.3964, false};
-  o.noise_floor = o.memory = false;
+  o.noise_floor = o.background_model = false;
   ForegroundMaskInput in;
   in.picture = picture.view();
   in.current = now.view();
@@ -113,7 +113,7 @@ START_TEST(the_paper_s_sets_are_formed_from_one_threshold) {
   };
   says_nothing();
   in.frames = 3;
-  in.previous = {};  // nor do sets of differences of which one is not known
+  in.previous = {};  // nor do sets of differences while one is missing
   for (const Area area : {Area::common, Area::leading}) {
     o.area = area;
     says_nothing();
@@ -204,13 +204,13 @@ START_TEST(an_object_that_is_there_from_the_first_frame_is_found_from_the_third)
 }
 END_TEST
 
-START_TEST(something_that_leaves_its_place_leaves_no_ghost) {
+START_TEST(an_object_that_leaves_its_place_leaves_no_ghost) {
   const Size size{160, 120};
   const Scene scene(51, kContrast), texture(52, kContrast);
   AreaChain chain(size);
   Image<std::uint8_t> picture(size);
   std::mt19937 random(7);
-  for (int k = 0; k < 60; ++k) {  // stands for 30 frames, from the start; walks out; then the scene is empty
+  for (int k = 0; k < 60; ++k) {  // stands for 30 frames, then walks out; the scene is empty afterwards
     look(scene, {}, picture.view());
     const double x = k < 30 ? 60 : 60 + 8.0 * (k - 30);
     draw(picture.view(), {x, 40, 28}, texture);
@@ -221,7 +221,7 @@ START_TEST(something_that_leaves_its_place_leaves_no_ghost) {
 }
 END_TEST
 
-START_TEST(something_that_stops_stays_in_the_mask_of_a_standing_camera) {
+START_TEST(an_object_that_stops_stays_in_the_mask_of_a_standing_camera) {
   const Size size{160, 120};
   const Scene scene(61, kContrast), texture(62, kContrast);
   AreaChain chain(size);
@@ -240,7 +240,7 @@ START_TEST(something_that_stops_stays_in_the_mask_of_a_standing_camera) {
 }
 END_TEST
 
-START_TEST(after_a_reset_nothing_of_the_old_scene_is_left) {
+START_TEST(a_reset_drops_the_old_scene) {
   const Size size{160, 120};
   const Scene first(71), second(72);
   AreaChain chain(size);
@@ -261,7 +261,7 @@ START_TEST(after_a_reset_nothing_of_the_old_scene_is_left) {
 }
 END_TEST
 
-START_TEST(a_change_of_scene_that_nobody_announced_is_overcome) {
+START_TEST(the_model_recovers_from_an_unannounced_change_of_scene) {
   const Size size{160, 120};
   const Scene first(81), second(82);
   AreaChain chain(size);
@@ -274,7 +274,7 @@ START_TEST(a_change_of_scene_that_nobody_announced_is_overcome) {
 }
 END_TEST
 
-START_TEST(turning_and_zooming_for_long_stays_registered) {
+START_TEST(long_rotation_and_zoom_stay_registered) {
   const Size size{160, 120};
   const Scene scene(91);
   AreaChain chain(size);
@@ -293,7 +293,7 @@ START_TEST(turning_and_zooming_for_long_stays_registered) {
 }
 END_TEST
 
-START_TEST(motion_that_cannot_be_and_odd_sizes_do_no_harm) {
+START_TEST(impossible_motion_and_odd_sizes_do_no_harm) {
   for (const Size size : {Size{33, 35}, Size{65, 32}, Size{16, 16}, Size{320, 17}}) {
     AreaChain chain(size);
     Image<std::uint8_t> picture(size);
@@ -343,10 +343,9 @@ int main() {
        bands_of_a_rolling_shutter_are_no_motion_in_1000_frames, exposure_steps_cost_three_frames_at_most,
        a_square_before_a_still_camera_is_found, a_square_before_a_panning_camera_is_found,
        an_object_that_is_there_from_the_first_frame_is_found_from_the_third,
-       something_that_leaves_its_place_leaves_no_ghost,
-       something_that_stops_stays_in_the_mask_of_a_standing_camera,
-       after_a_reset_nothing_of_the_old_scene_is_left, a_change_of_scene_that_nobody_announced_is_overcome,
-       turning_and_zooming_for_long_stays_registered, motion_that_cannot_be_and_odd_sizes_do_no_harm,
-       steady_state_allocates_nothing_and_stays_small},
+       an_object_that_leaves_its_place_leaves_no_ghost,
+       an_object_that_stops_stays_in_the_mask_of_a_standing_camera, a_reset_drops_the_old_scene,
+       the_model_recovers_from_an_unannounced_change_of_scene, long_rotation_and_zoom_stay_registered,
+       impossible_motion_and_odd_sizes_do_no_harm, steady_state_allocates_nothing_and_stays_small},
       100);
 }

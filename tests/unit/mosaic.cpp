@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the scene's memory keeps of what lies beyond the picture.
+// The part of the background model that lies beyond the picture.
 #include "vision/background/mosaic.h"
 
 #include <algorithm>
@@ -32,13 +32,13 @@ int slope(int x, int y) {
   return 60 + x / 2 + y / 4;
 }
 
-// A memory that knows all of the scene that its picture shows; `left`, `top`: of the picture in the scene.
-class Memory {
+// A model that has learnt all of the scene that its picture shows; `left`, `top`: of the picture in the scene.
+class Model {
  public:
-  explicit Memory(int (*scene)(int, int), std::uint8_t spread = 20) : scene_(scene), spread_of_all_(spread) {
+  explicit Model(int (*scene)(int, int), std::uint8_t spread = 20) : scene_(scene), spread_of_all_(spread) {
     mean_.resize(kSize);
     for (auto* plane : {&spread_, &age_, &quiet_}) plane->resize(kSize);
-    surroundings.preallocate(kSize);
+    mosaic.preallocate(kSize);
     learn();
   }
   BackgroundPixels pixels() { return {mean_.view(), spread_.view(), age_.view(), quiet_.view()}; }
@@ -51,14 +51,14 @@ class Memory {
         quiet_.view().at(x, y) = 200;
       }
   }
-  // The picture goes to the right and down by this; what it had not in view before is known as far as it is kept.
+  // The picture moves to the right and down by this. Only content that the mosaic holds is restored in the new part.
   void look(int dx, int dy) {
     const Transform next = Transform::translation(-dx, -dy);
-    surroundings.keep(pixels(), next);
+    mosaic.store(pixels(), next);
     shift_content<std::uint16_t>(mean_.view(), -dx, -dy, 0);
     for (auto* plane : {&spread_, &age_}) shift_content<std::uint8_t>(plane->view(), -dx, -dy, 0);
     shift_content<std::uint8_t>(quiet_.view(), -dx, -dy, 77);
-    surroundings.recall(pixels(), next);
+    mosaic.restore(pixels(), next);
     left += dx;
     top += dy;
   }
@@ -74,7 +74,7 @@ class Memory {
     return n;
   }
 
-  Mosaic surroundings;
+  Mosaic mosaic;
   int left = 0, top = 0;
 
  private:
@@ -86,14 +86,14 @@ class Memory {
 
 }  // namespace
 
-START_TEST(what_leaves_comes_back_as_means_of_4_by_4_pixels_whatever_the_way) {
+START_TEST(content_that_left_comes_back_as_means_of_4_by_4_pixels) {
   struct Way {
     int dx, dy, steps;
   };
   for (const Way way : {Way{kStep, 0, 4}, Way{-kStep, 0, 4}, Way{5, 0, 7}, Way{0, 3, 2}, Way{-7, 2, 3}}) {
-    Memory memory(texture);
-    memory.go_and_return(way.dx, way.dy, way.steps);
-    const auto p = memory.pixels();
+    Model model(texture);
+    model.go_and_return(way.dx, way.dy, way.steps);
+    const auto p = model.pixels();
     long returned = 0;
     for (int y = 0; y < kSize.height; ++y)
       for (int x = 0; x < kSize.width; ++x) {
@@ -110,63 +110,63 @@ START_TEST(what_leaves_comes_back_as_means_of_4_by_4_pixels_whatever_the_way) {
     const long out = kSize.area() - (kSize.width - std::abs(way.dx * way.steps)) *
                                         static_cast<long>(kSize.height - std::abs(way.dy * way.steps));
     ck_assert_int_ge(returned, out - (way.dy ? 16 * kSize.width + 16 * kSize.height : 0));
-    if (way.dy == 0) ck_assert_int_eq(memory.unknown(), 0);
+    if (way.dy == 0) ck_assert_int_eq(model.unknown(), 0);
   }
 }
 END_TEST
 
 START_TEST(details_that_the_means_leave_out_count_as_spread) {
-  Memory flat(even_wall);
+  Model flat(even_wall);
   flat.go_and_return(kStep, 0, 2);
   ck_assert_int_eq(flat.pixels().spread.at(0, 0), 20);
   // Columns of 80 and 110 by turns: 15 grey levels from their mean, in sixteenths.
-  Memory stripes([](int x, int) { return x % 2 ? 110 : 80; });
+  Model stripes([](int x, int) { return x % 2 ? 110 : 80; });
   stripes.go_and_return(kStep, 0, 2);
   ck_assert_int_eq(stripes.pixels().spread.at(0, 0), 15 * 16);
   ck_assert_int_eq(stripes.pixels().mean.at(0, 0), 95 << 8);
 }
 END_TEST
 
-START_TEST(what_was_never_known_is_not_kept) {
-  Memory memory(texture);
-  const auto p = memory.pixels();
+START_TEST(pixels_without_age_are_not_stored) {
+  Model model(texture);
+  const auto p = model.pixels();
   for (int y = 0; y < kSize.height; ++y) std::fill_n(p.age.row(y), 24, std::uint8_t{0});
-  memory.go_and_return(kStep, 0, 1);
-  // The memory learnt them on the way, but at the step itself they were not known.
+  model.go_and_return(kStep, 0, 1);
+  // The model learnt them on the way, but they had no age at the step itself.
   ck_assert_int_eq(p.age.at(0, 0), 0);
   ck_assert_int_eq(p.age.at(kStep - 1, 20), 0);
 }
 END_TEST
 
-START_TEST(a_camera_that_goes_far_forgets_what_is_farthest_away) {
+START_TEST(the_mosaic_follows_the_camera_and_drops_its_far_end) {
   for (const int way : {kStep, -kStep}) {
-    Memory memory(slope);
+    Model model(slope);
     // Two pictures.
     const int steps = 2 * kSize.width / kStep;
-    for (int k = 0; k < steps; ++k) memory.look(way, 0), memory.learn();
-    int known = 0, unknown = 0;
+    for (int k = 0; k < steps; ++k) model.look(way, 0), model.learn();
+    int background = 0, unknown = 0;
     const int x = way > 0 ? 2 : kSize.width - 3;
     for (int k = 0; k < steps; ++k) {
-      memory.look(-way, 0);
-      const auto p = memory.pixels();
+      model.look(-way, 0);
+      const auto p = model.pixels();
       if (p.age.at(x, 30) == 0) {
         ++unknown;
         continue;
       }
-      // What is known is right, and nothing is known beyond what is not.
+      // All restored content is right, and none lies beyond a gap.
       ck_assert_int_eq(unknown, 0);
-      ck_assert_int_le(std::abs((p.mean.at(x, 30) >> 8) - slope(memory.left + x, memory.top + 30)), 2);
-      ++known;
+      ck_assert_int_le(std::abs((p.mean.at(x, 30) >> 8) - slope(model.left + x, model.top + 30)), 2);
+      ++background;
     }
-    // The mosaic is as wide as two and a half pictures, one of which is this one, and goes along by steps of its own.
-    ck_assert_int_ge(known * kStep, kSize.width);
-    ck_assert_int_le(known * kStep, kSize.width * 3 / 2);
+    // The mosaic is two and a half pictures wide, one of which is this one, and follows by steps of its own.
+    ck_assert_int_ge(background * kStep, kSize.width);
+    ck_assert_int_le(background * kStep, kSize.width * 3 / 2);
     ck_assert_int_gt(unknown, 0);
   }
 }
 END_TEST
 
-START_TEST(a_camera_that_turns_finds_it_where_it_was) {
+START_TEST(a_turning_camera_restores_content_at_its_place) {
   // As a rotating camera sees it, 70 pixels of focal length: 0.05 radians a step, 5 there and 5 back.
   const double f = 70, angle = 0.05;
   const auto turn = [&](double a) {
@@ -175,8 +175,8 @@ START_TEST(a_camera_that_turns_finds_it_where_it_was) {
     const Point m{(kSize.width - 1) / 2.0, (kSize.height - 1) / 2.0};
     return Transform::translation(m.x, m.y) * rotation * Transform::translation(-m.x, -m.y);
   };
-  Memory memory(slope);
-  const auto p = memory.pixels();
+  Model model(slope);
+  const auto p = model.pixels();
   Transform seen;  // first picture's pixel to this one's
   const auto draw = [&](bool all) {
     const Transform back = seen.inverse();
@@ -190,17 +190,17 @@ START_TEST(a_camera_that_turns_finds_it_where_it_was) {
       }
   };
   for (int k = 0; k < 5; ++k) {
-    memory.surroundings.keep(p, turn(angle));
+    model.mosaic.store(p, turn(angle));
     seen = turn(angle) * seen;
     draw(true);
-    memory.surroundings.recall(p, turn(angle));
+    model.mosaic.restore(p, turn(angle));
   }
   long recalled = 0;
   for (int k = 0; k < 5; ++k) {
-    memory.surroundings.keep(p, turn(-angle));
+    model.mosaic.store(p, turn(-angle));
     const Transform next = turn(-angle);
-    // The memory itself comes along: what this picture shows that the one before did not is unknown.
-    Image<std::uint8_t> known(kSize);
+    // The model follows the camera: pixels that the picture before did not show have no age.
+    Image<std::uint8_t> background(kSize);
     const Transform back = next.inverse();
     seen = next * seen;
     draw(true);
@@ -211,12 +211,12 @@ START_TEST(a_camera_that_turns_finds_it_where_it_was) {
         p.age.at(x, y) = 0;
         p.mean.at(x, y) = 0;
       }
-    memory.surroundings.recall(p, next);
+    model.mosaic.restore(p, next);
     const Transform first = seen.inverse();
     for (int y = 0; y < kSize.height; ++y)
       for (int x = 0; x < kSize.width; ++x) {
         const Point q = first.apply({static_cast<double>(x), static_cast<double>(y)});
-        // What the memory knows itself stays.
+        // The model's own content stays.
         if (p.age.at(x, y) == kOld)
           ck_assert_double_eq_tol(p.mean.at(x, y) / 256.0, 60 + q.x / 2 + q.y / 4, 0.01);
         if (p.age.at(x, y) != Mosaic::kOldest) continue;
@@ -229,107 +229,107 @@ START_TEST(a_camera_that_turns_finds_it_where_it_was) {
 }
 END_TEST
 
-START_TEST(what_comes_back_in_another_light_is_not_believed) {
+START_TEST(content_that_comes_back_in_another_light_is_dropped) {
   for (const int change : {0, 5, -30, 30}) {
-    Memory memory(even_wall, 10);
-    memory.go_and_return(kStep, 0, 1);
-    const auto p = memory.pixels();
-    Image<std::uint8_t> present(kSize), known(kSize);
+    Model model(even_wall, 10);
+    model.go_and_return(kStep, 0, 1);
+    const auto p = model.pixels();
+    Image<std::uint8_t> frame(kSize), background(kSize);
     std::vector<RowSpan> shown(static_cast<std::size_t>(kSize.height), {0, kSize.width});
     for (int y = 0; y < kSize.height; ++y) {
-      std::fill_n(present.view().row(y), kSize.width, static_cast<std::uint8_t>(90 + change));
-      std::fill_n(known.view().row(y), kSize.width, std::uint8_t{90});
+      std::fill_n(frame.view().row(y), kSize.width, static_cast<std::uint8_t>(90 + change));
+      std::fill_n(background.view().row(y), kSize.width, std::uint8_t{90});
     }
     p.age.at(5, 30) = kOld;
-    memory.surroundings.doubt(p, present.view(), known.view(), shown);
+    model.mosaic.verify(p, frame.view(), background.view(), shown);
     ck_assert_int_eq(p.age.at(3, 30), std::abs(change) > 20 ? 0 : Mosaic::kOldest);
     ck_assert_int_eq(p.age.at(5, 30), kOld);
     ck_assert_int_eq(p.age.at(kStep, 30), kOld);
     // Only once.
-    for (int y = 0; y < kSize.height; ++y) std::fill_n(present.view().row(y), kSize.width, std::uint8_t{0});
-    memory.surroundings.doubt(p, present.view(), known.view(), shown);
+    for (int y = 0; y < kSize.height; ++y) std::fill_n(frame.view().row(y), kSize.width, std::uint8_t{0});
+    model.mosaic.verify(p, frame.view(), background.view(), shown);
     ck_assert_int_eq(p.age.at(3, 30), std::abs(change) > 20 ? 0 : Mosaic::kOldest);
   }
-  // Somebody who fills half of it is no reason; nor is what the frame does not show.
+  // A person who fills half of it is no reason, nor are pixels outside the frame.
   for (const bool somebody : {true, false}) {
-    Memory memory(even_wall, 10);
-    memory.go_and_return(kStep, 0, 1);
-    const auto p = memory.pixels();
-    Image<std::uint8_t> present(kSize), known(kSize);
+    Model model(even_wall, 10);
+    model.go_and_return(kStep, 0, 1);
+    const auto p = model.pixels();
+    Image<std::uint8_t> frame(kSize), background(kSize);
     std::vector<RowSpan> shown(static_cast<std::size_t>(kSize.height),
                                {somebody ? 0 : kStep - 2, kSize.width});
     for (int y = 0; y < kSize.height; ++y)
       for (int x = 0; x < kSize.width; ++x) {
-        known.view().at(x, y) = 90;
-        present.view().at(x, y) = somebody ? (y < kSize.height / 2 ? 10 : 90) : (x < kStep - 2 ? 10 : 90);
+        background.view().at(x, y) = 90;
+        frame.view().at(x, y) = somebody ? (y < kSize.height / 2 ? 10 : 90) : (x < kStep - 2 ? 10 : 90);
       }
-    memory.surroundings.doubt(p, present.view(), known.view(), shown);
+    model.mosaic.verify(p, frame.view(), background.view(), shown);
     ck_assert_int_eq(p.age.at(3, 30), Mosaic::kOldest);
   }
 }
 END_TEST
 
-START_TEST(a_change_of_light_reaches_what_is_out_of_view) {
-  Memory memory(even_wall);
-  memory.look(kStep, 0);
-  memory.surroundings.relight(128, 10 * 256);
-  memory.look(-kStep, 0);
-  ck_assert_int_eq(memory.pixels().mean.at(0, 0), (90 / 2 + 10) << 8);
+START_TEST(a_change_of_light_reaches_content_out_of_view) {
+  Model model(even_wall);
+  model.look(kStep, 0);
+  model.mosaic.relight(128, 10 * 256);
+  model.look(-kStep, 0);
+  ck_assert_int_eq(model.pixels().mean.at(0, 0), (90 / 2 + 10) << 8);
 }
 END_TEST
 
-START_TEST(after_a_beginning_nothing_of_the_old_scene_is_left) {
-  Memory memory(texture);
-  for (int k = 0; k < 3; ++k) memory.look(kStep, 0), memory.learn();
-  memory.surroundings.begin(kSize);
-  for (int k = 0; k < 3; ++k) memory.look(-kStep, 0);
-  ck_assert_int_eq(memory.unknown(), 3 * kStep * kSize.height);
-  // Nor does it come back when something is kept again.
-  memory.go_and_return(kStep, 0, 3);
-  memory.learn();
-  memory.surroundings.begin(kSize);
-  memory.look(kStep, 0);
-  ck_assert_int_eq(memory.unknown(), kStep * kSize.height);
+START_TEST(a_reset_drops_the_old_scene) {
+  Model model(texture);
+  for (int k = 0; k < 3; ++k) model.look(kStep, 0), model.learn();
+  model.mosaic.reset(kSize);
+  for (int k = 0; k < 3; ++k) model.look(-kStep, 0);
+  ck_assert_int_eq(model.unknown(), 3 * kStep * kSize.height);
+  // Nor does it come back when content is stored again.
+  model.go_and_return(kStep, 0, 3);
+  model.learn();
+  model.mosaic.reset(kSize);
+  model.look(kStep, 0);
+  ck_assert_int_eq(model.unknown(), kStep * kSize.height);
 }
 END_TEST
 
-START_TEST(a_camera_that_zooms_too_far_forgets) {
+START_TEST(a_zoom_beyond_the_limit_drops_the_content) {
   for (const double zoom : {1.5, 2.5, 0.4}) {
-    Memory memory(even_wall);
-    memory.look(kStep, 0);
-    memory.surroundings.recall(memory.pixels(), similarity(zoom, 0, 0, 0));
-    memory.surroundings.recall(memory.pixels(), similarity(1 / zoom, 0, 0, 0));
-    memory.look(-kStep, 0);
-    ck_assert_int_eq(memory.pixels().age.at(2, 30), zoom == 1.5 ? Mosaic::kOldest : 0);
+    Model model(even_wall);
+    model.look(kStep, 0);
+    model.mosaic.restore(model.pixels(), similarity(zoom, 0, 0, 0));
+    model.mosaic.restore(model.pixels(), similarity(1 / zoom, 0, 0, 0));
+    model.look(-kStep, 0);
+    ck_assert_int_eq(model.pixels().age.at(2, 30), zoom == 1.5 ? Mosaic::kOldest : 0);
   }
 }
 END_TEST
 
-START_TEST(motions_that_cannot_be_do_no_harm_and_nothing_is_allocated) {
-  Memory memory(texture);
-  const auto p = memory.pixels();
+START_TEST(impossible_motions_do_no_harm_and_nothing_is_allocated) {
+  Model model(texture);
+  const auto p = model.pixels();
   const std::size_t before = allocations();
   for (const Transform& t :
        {Transform::translation(1e7, -1e7), Transform::translation(kSize.width, kSize.height),
         similarity(3, 0, 0, 0), similarity(0.2, 1, 5, 5), similarity(1, 3.1, 0, 0),
         Transform{{1, 0, 0, 0, 1, 0, 0.012, 0, 1}}, Transform{}}) {
-    memory.surroundings.keep(p, t);
-    memory.surroundings.recall(p, t);
-    memory.learn();
+    model.mosaic.store(p, t);
+    model.mosaic.restore(p, t);
+    model.learn();
   }
   ck_assert_uint_eq(allocations(), before);
   // Three eighths of a byte a pixel at most.
-  ck_assert_uint_le(memory.surroundings.bytes(), static_cast<std::size_t>(kSize.area()) * 3 / 8);
+  ck_assert_uint_le(model.mosaic.bytes(), static_cast<std::size_t>(kSize.area()) * 3 / 8);
 }
 END_TEST
 
 int main() {
   return run_suite(
-      "scene_surroundings",
-      {what_leaves_comes_back_as_means_of_4_by_4_pixels_whatever_the_way,
-       details_that_the_means_leave_out_count_as_spread, what_was_never_known_is_not_kept,
-       a_camera_that_goes_far_forgets_what_is_farthest_away, a_camera_that_turns_finds_it_where_it_was,
-       what_comes_back_in_another_light_is_not_believed, a_change_of_light_reaches_what_is_out_of_view,
-       after_a_beginning_nothing_of_the_old_scene_is_left, a_camera_that_zooms_too_far_forgets,
-       motions_that_cannot_be_do_no_harm_and_nothing_is_allocated});
+      "mosaic",
+      {content_that_left_comes_back_as_means_of_4_by_4_pixels,
+       details_that_the_means_leave_out_count_as_spread, pixels_without_age_are_not_stored,
+       the_mosaic_follows_the_camera_and_drops_its_far_end, a_turning_camera_restores_content_at_its_place,
+       content_that_comes_back_in_another_light_is_dropped, a_change_of_light_reaches_content_out_of_view,
+       a_reset_drops_the_old_scene, a_zoom_beyond_the_limit_drops_the_content,
+       impossible_motions_do_no_harm_and_nothing_is_allocated});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Edges that blur has drawn out are nothing that moves, and what moves in a blurred frame is.
+// Blurred edges are no foreground; objects that move in a blurred frame are.
 #include "vision/background/motion_blur.h"
 
 #include <check.h>
@@ -84,14 +84,14 @@ struct Blur {
 
 }  // namespace
 
-START_TEST(sharpness_is_below_one_in_a_blurred_frame_and_above_one_over_a_blurred_memory) {
+START_TEST(sharpness_is_below_one_in_a_blurred_frame_and_above_one_over_a_blurred_background) {
   Blur b;
   const auto sharp = street(1), soft = blurred(sharp, 10, 4);
   ck_assert_double_eq_tol(b.sharpness(sharp, sharp), 1, 1e-9);
   const double less = b.sharpness(soft, sharp), more = b.sharpness(sharp, soft);
   ck_assert_double_lt(less, 0.6);
   ck_assert_double_eq_tol(less * more, 1, 0.1);
-  // Where the memory knows nothing, nothing is compared; a blank wall says nothing.
+  // Pixels without age are not compared; a blank wall has too little texture.
   b.age.fill_bytes(0);
   ck_assert_double_eq(b.sharpness(soft, sharp), 1);
   b.age.fill_bytes(10);
@@ -102,7 +102,7 @@ START_TEST(sharpness_is_below_one_in_a_blurred_frame_and_above_one_over_a_blurre
 END_TEST
 
 // A lively object before a third of the street is not blur.
-START_TEST(what_moves_has_no_say_in_the_sharpness) {
+START_TEST(moving_objects_do_not_affect_the_sharpness) {
   Blur b;
   const auto scene = street(2);
   auto frame = street(2);
@@ -113,7 +113,7 @@ START_TEST(what_moves_has_no_say_in_the_sharpness) {
 }
 END_TEST
 
-START_TEST(blur_is_forgiven_and_what_it_cannot_explain_is_not) {
+START_TEST(pixels_that_blur_explains_are_suppressed_and_no_others) {
   Blur b;
   const auto sharp = street(4);
   auto soft = blurred(sharp, 12, 5);
@@ -130,8 +130,8 @@ START_TEST(blur_is_forgiven_and_what_it_cannot_explain_is_not) {
   ck_assert_int_gt(count(bits.view()), 3000);
   std::array<std::uint8_t, kBrightness> tolerance;
   tolerance.fill(6);
-  b.blur.forgive(soft.view(), sharp.view(), tolerance, bits.view(), inner.view());
-  // All of somebody is left, in both, and nothing else.
+  b.blur.suppress(soft.view(), sharp.view(), tolerance, bits.view(), inner.view());
+  // All of the person is left in both masks, and nothing else.
   ck_assert_int_eq(count(bits.view()), somebody.side * somebody.side);
   ck_assert_int_eq(count(inner.view()), somebody.side * somebody.side);
   for (int y = 100; y < 124; ++y)
@@ -157,7 +157,7 @@ START_TEST(the_range_has_two_ends_and_a_tolerance_by_brightness) {
     }
   std::array<std::uint8_t, kBrightness> tolerance{};
   tolerance[100 / 16] = 6, tolerance[200 / 16] = 0;
-  b.blur.forgive(v, sharp.view(), tolerance, bits.view(), inner.view());
+  b.blur.suppress(v, sharp.view(), tolerance, bits.view(), inner.view());
   const auto left = [&](int x, int y) { return bits.view().row(y)[x / 64] >> (x % 64) & 1; };
   ck_assert_int_eq(count(bits.view()), 3);
   ck_assert(left(10, 10) && left(20, 10) && left(300 - 9, 200));
@@ -165,9 +165,9 @@ START_TEST(the_range_has_two_ends_and_a_tolerance_by_brightness) {
 }
 END_TEST
 
-// The whole of it: a camera that shakes. Every third frame is blurred; first after 20 sharp ones, then from the second
+// The whole chain with a shaking camera. Every third frame is blurred; first after 20 sharp ones, then from the second
 // on.
-START_TEST(frames_that_are_blurred_have_no_area_but_what_moves) {
+START_TEST(blurred_frames_have_no_foreground_but_moving_objects) {
   for (const int first : {20, 1}) {
     const auto scene = street(5);
     AreaChain chain(kSize);
@@ -195,7 +195,7 @@ START_TEST(frames_that_are_blurred_have_no_area_but_what_moves) {
 }
 END_TEST
 
-START_TEST(it_allocates_nothing) {
+START_TEST(nothing_is_allocated) {
   Blur b;
   const auto sharp = street(6), soft = blurred(sharp, 12, 5);
   BitMask bits(bit_mask_size(kSize)), inner(bit_mask_size(kSize));
@@ -203,7 +203,7 @@ START_TEST(it_allocates_nothing) {
   std::array<std::uint8_t, kBrightness> tolerance{};
   const std::size_t before = allocations();
   b.sharpness(soft, sharp);
-  b.blur.forgive(soft.view(), sharp.view(), tolerance, bits.view(), inner.view());
+  b.blur.suppress(soft.view(), sharp.view(), tolerance, bits.view(), inner.view());
   ck_assert_uint_eq(allocations() - before, 0);
   ck_assert_uint_gt(b.blur.bytes(), 2 * 320);
 }
@@ -212,8 +212,8 @@ END_TEST
 int main() {
   return run_suite(
       "motion_blur",
-      {sharpness_is_below_one_in_a_blurred_frame_and_above_one_over_a_blurred_memory,
-       what_moves_has_no_say_in_the_sharpness, blur_is_forgiven_and_what_it_cannot_explain_is_not,
+      {sharpness_is_below_one_in_a_blurred_frame_and_above_one_over_a_blurred_background,
+       moving_objects_do_not_affect_the_sharpness, pixels_that_blur_explains_are_suppressed_and_no_others,
        the_range_has_two_ends_and_a_tolerance_by_brightness,
-       frames_that_are_blurred_have_no_area_but_what_moves, it_allocates_nothing});
+       blurred_frames_have_no_foreground_but_moving_objects, nothing_is_allocated});
 }

@@ -10,10 +10,15 @@ namespace cerberus::vision {
 namespace {
 
 constexpr int kUnknowns = 8;
-constexpr int kRounds = 3;
-constexpr int kLeastPixels = 16;                   // of a block
-constexpr double kScale = 4;                       // squared grey levels
-constexpr double kSmallest = 0.04, kLargest = 12;  // pixels at the corners
+// Origin unknown: kept from the first version. Guard of all: unit-alignment and mean F of bench-quality.
+constexpr struct Parameters {
+  int rounds = 3;                        // of reweighting
+  int least_pixels = 16;                 // of a block that counts
+  double scale = 4;                      // squared grey levels: of the Cauchy weight
+  double smallest = 0.04, largest = 12;  // pixels at the corners: of a correction
+  double damping = 1e-3;              // of the strongest diagonal element, added to the affine unknowns' ...
+  double perspective_damping = 3e-3;  // ... and to the perspective ones'
+} kParameters;
 using System = std::array<std::array<double, kUnknowns + 1>, kUnknowns>;
 using Solution = std::array<double, kUnknowns>;
 
@@ -112,7 +117,7 @@ std::optional<Transform> align_to_background(std::span<const BlockSums> blocks, 
   };
   const std::size_t across = static_cast<std::size_t>(columns);
   Solution p{};
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kParameters.rounds; ++round) {
     Moments moments;
     for (std::size_t first = 0; first + across <= blocks.size(); first += across) {
       RowMoments row;
@@ -121,12 +126,12 @@ std::optional<Transform> align_to_background(std::span<const BlockSums> blocks, 
       const double v0 = p[3] + y * (p[5] + y * p[7]), v1 = p[4] + y * p[6];
       for (std::size_t bx = 0; bx < across; ++bx) {
         const BlockSums& b = blocks[first + bx];
-        if (b.n < kLeastPixels) continue;
+        if (b.n < kParameters.least_pixels) continue;
         const double x = place(bx, cx);
         // The sums hold doubled gradients: half the displacement goes with them.
         const double u = 0.5 * (u0 + x * (u1 + x * u2)), v = 0.5 * (v0 + x * v1);
         const double left = b.ee + u * (2.0 * b.xe + u * b.xx + 2 * v * b.xy) + v * (2.0 * b.ye + v * b.yy);
-        const double cauchy = b.n / (kScale * b.n + std::max(left, 0.0));
+        const double cauchy = b.n / (kParameters.scale * b.n + std::max(left, 0.0));
         row.add(b, x, cauchy * cauchy);
       }
       moments.add(row, y);
@@ -135,7 +140,8 @@ std::optional<Transform> align_to_background(std::span<const BlockSums> blocks, 
     double strongest = 0;
     for (int i = 0; i < kUnknowns; ++i) strongest = std::max(strongest, m[i][i]);
     for (int i = 0; i < kUnknowns; ++i)
-      m[i][i] += (i < 6 ? 1e-3 : 3e-3) * strongest + 1e-9;  // what the picture does not tell stays 0
+      // Unknowns that the picture does not determine stay 0.
+      m[i][i] += (i < 6 ? kParameters.damping : kParameters.perspective_damping) * strongest + 1e-9;
     p = solve(m);
   }
   for (const int i : {1, 2, 4, 5}) p[i] /= unit;
@@ -143,7 +149,8 @@ std::optional<Transform> align_to_background(std::span<const BlockSums> blocks, 
   const Transform about_centre{{1 + p[1], p[2], p[0], p[4], 1 + p[5], p[3], -p[6], -p[7], 1}};
   const Transform c = Transform::translation(cx, cy) * about_centre * Transform::translation(-cx, -cy);
   const double reach = c.corner_motion(picture);
-  if (!(reach >= kSmallest && reach <= kLargest) || !c.is_sane(picture)) return std::nullopt;
+  if (!(reach >= kParameters.smallest && reach <= kParameters.largest) || !c.is_sane(picture))
+    return std::nullopt;
   return c;
 }
 

@@ -73,10 +73,10 @@ BlockSums block_sums(const BlockRows& rows, int x0, int begin, int end) {
     const auto inside = hn::And(hn::Gt(column, hn::Set(d, static_cast<std::int16_t>(begin - 1))),
                                 hn::Lt(column, hn::Set(d, static_cast<std::int16_t>(end))));
     for (int y = rows.first; y < rows.end; y += rows.step) {
-      const std::uint8_t* m = rows.memory.row(y) + x;
-      const auto e = hn::Sub(load(d, rows.present.row(y) + x), load(d, m));
+      const std::uint8_t* m = rows.background.row(y) + x;
+      const auto e = hn::Sub(load(d, rows.frame.row(y) + x), load(d, m));
       const auto gx = hn::Sub(load(d, m + 1), load(d, m - 1));
-      const auto gy = hn::Sub(load(d, m + rows.memory.stride), load(d, m - rows.memory.stride));
+      const auto gy = hn::Sub(load(d, m + rows.background.stride), load(d, m - rows.background.stride));
       const auto use =
           hn::And(inside, hn::And(hn::Gt(load(d, rows.age.row(y) + x), zero), hn::Lt(hn::Abs(e), largest)));
       const auto ue = hn::IfThenElseZero(use, e);
@@ -105,7 +105,7 @@ HWY_INLINE void put_bits(D d, hn::Mask<D> mask, std::uint64_t* row, int x) {
 }
 
 // Calls run(vectors, x) along a row: 32 samples at a time where the processor has such vectors, and the rest by 16 or
-// what there is. Planes are padded for that (scene_kernels.h).
+// what there is. Planes are padded for that (background_kernels.h).
 template <class Run>
 HWY_INLINE void along_row(int width, Run&& run) {
   const hn::CappedTag<std::int16_t, 32> wide;
@@ -130,9 +130,9 @@ void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64
     const auto weak_least = set(limits.weak_least), strong_least = set(limits.strong_least);
     const auto young = set(limits.young), one = set(1), most = set(255);
     const auto sure = hn::Eq(set(limits.registered), hn::Zero(d));
-    const auto m = load(d, row.memory + x);
-    const auto e = hn::ShiftLeft<4>(hn::Abs(hn::Sub(load(d, row.present + x), m)));
-    const auto gx = hn::Sub(load(d, row.memory + x + 1), load(d, row.memory + x - 1));
+    const auto m = load(d, row.background + x);
+    const auto e = hn::ShiftLeft<4>(hn::Abs(hn::Sub(load(d, row.frame + x), m)));
+    const auto gx = hn::Sub(load(d, row.background + x + 1), load(d, row.background + x - 1));
     const auto gy = hn::Sub(load(d, row.below + x), load(d, row.above + x));
     // |g| * tolerance: half of the doubled gradient's length times sixteenths of a pixel.
     const auto edge = hn::ShiftRight<1>(hn::Mul(length(gx, gy), load(d, row.tolerance + x)));
@@ -172,7 +172,7 @@ void learn_row(const LearnRow& row) {
       return hn::And(hn::BitCast(d, hn::TableLookupBytesOr0(table, hn::BitCast(d8, hn::Or(index, high)))),
                      most);
     };
-    const auto f = load(d, row.present + x), m = load(d, row.memory + x);
+    const auto f = load(d, row.frame + x), m = load(d, row.background + x);
     const auto age = load(d, row.age + x), quiet = load(d, row.quiet + x), spread = load(d, row.spread + x);
     const auto mean = hn::LoadU(du, row.mean + x);
     const auto valid = bits_at(d, row.valid, x);
@@ -255,10 +255,10 @@ BlockSums block_sums_reference(const BlockRows& rows, int x0, int begin, int end
   BlockSums s;
   for (int y = rows.first; y < rows.end; y += rows.step)
     for (int x = std::max(x0, begin); x < std::min(x0 + kBackgroundBlock, end); ++x) {
-      const int e = rows.present.at(x, y) - rows.memory.at(x, y);
+      const int e = rows.frame.at(x, y) - rows.background.at(x, y);
       if (rows.age.at(x, y) < 1 || std::abs(e) > BlockSums::kLargest) continue;
-      const int gx = rows.memory.at(x + 1, y) - rows.memory.at(x - 1, y);
-      const int gy = rows.memory.at(x, y + 1) - rows.memory.at(x, y - 1);
+      const int gx = rows.background.at(x + 1, y) - rows.background.at(x - 1, y);
+      const int gy = rows.background.at(x, y + 1) - rows.background.at(x, y - 1);
       s.xx += gx * gx, s.xy += gx * gy, s.yy += gy * gy, s.xe += gx * e, s.ye += gy * e, s.ee += e * e;
       ++s.n;
       if (rows.quiet.at(x, y) < rows.quiet_from) continue;
@@ -271,8 +271,8 @@ BlockSums block_sums_reference(const BlockRows& rows, int x0, int begin, int end
 void compare_row_reference(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,
                            std::uint64_t* strong) {
   for (int x = 0; x < row.width; ++x) {
-    const int m = row.memory[x], e = std::abs(row.present[x] - m) * 16;
-    const int g = gradient_length(row.memory[x + 1] - row.memory[x - 1], row.below[x] - row.above[x]);
+    const int m = row.background[x], e = std::abs(row.frame[x] - m) * 16;
+    const int g = gradient_length(row.background[x + 1] - row.background[x - 1], row.below[x] - row.above[x]);
     const int edge = g * row.tolerance[x] / 2;
     const int s = std::max<int>(limits.noise[m / 16], row.spread[x] + row.spread[x] / 4);
     const int weak_limit = std::max(limits.weak_least, limits.weak_sigmas * s);
@@ -288,7 +288,7 @@ void compare_row_reference(const CompareRow& row, const CompareLimits& limits, s
 void learn_row_reference(const LearnRow& row) {
   for (int x = 0; x < row.width; ++x) {
     if (!bit(row.valid, x)) continue;
-    const int f = row.present[x], age = row.age[x];
+    const int f = row.frame[x], age = row.age[x];
     if (age == 0 || bit(row.absorb, x)) {
       row.mean[x] = static_cast<std::uint16_t>(row.taken[x] << 8);
       row.spread[x] = 16;
@@ -297,7 +297,7 @@ void learn_row_reference(const LearnRow& row) {
       continue;
     }
     if (bit(row.keep, x)) continue;
-    const int e = f - row.memory[x], size = std::abs(e);
+    const int e = f - row.background[x], size = std::abs(e);
     const int rate = age < 16 ? kYoungRate[age] : kOldRate[age / 16];
     row.mean[x] = static_cast<std::uint16_t>(
         std::clamp(e > 0 ? row.mean[x] + size * rate : row.mean[x] - size * rate, 0, 255 << 8));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The inner loops of the scene's memory, one row at a time (Highway, run-time dispatch), each with its scalar
-// reference. Planes belong to Image: rows may be read and written up to the next multiple of 16 samples, rows of bits
-// by whole words (bits beyond the width become anything).
+// The inner loops of the background model, one row at a time (Highway, run-time dispatch), each with its scalar
+// reference. Planes belong to Image: rows are read and written up to the next multiple of 16 samples, rows of bits by
+// whole words (bits beyond the width become undefined).
 #pragma once
 
 #include <array>
@@ -13,23 +13,23 @@
 namespace cerberus::vision {
 
 constexpr int kBackgroundBlock = 16;  // side of a block of statistics, pixels
-constexpr int kBrightness = 16;       // classes of brightness the noise is known for: grey level / 16
+constexpr int kBrightness = 16;       // classes of brightness, for noise: grey level / 16
 
-// How a block of the frame differs from the memory, for its alignment: sums over the pixels that are known and differ
-// by at most kLargest. Gradients are twice the central difference's slope: m(x+1) - m(x-1).
+// Differences of a block of the frame from the background, for alignment: sums over the pixels of age > 0 that differ by
+// at most kLargest. Gradients are twice the slope: b(x+1) - b(x-1).
 struct BlockSums {
   static constexpr int kLargest = 60;
   std::int32_t xx = 0, xy = 0, yy = 0;  // gradient products
-  std::int32_t xe = 0, ye = 0, ee = 0;  // with e = frame - memory
+  std::int32_t xe = 0, ye = 0, ee = 0;  // with e = frame - background
   std::int32_t n = 0;
-  std::int32_t ge = 0, gg = 0;  // |e| g and g^2, only where it has been quiet
+  std::int32_t ge = 0, gg = 0;  // |e| g and g^2 of the pixels with quiet >= quiet_from
   bool operator==(const BlockSums&) const = default;
 };
 
 struct BlockRows {
-  GrayView present, memory, age, quiet;  // memory: readable one pixel beyond every side
-  int first = 0, end = 0;                // rows to use, 1 <= first, end <= height - 1
-  int step = 1;                          // every step-th of them
+  GrayView frame, background, age, quiet;  // background: readable one pixel beyond every side
+  int first = 0, end = 0;                  // rows to use, 1 <= first, end <= height - 1
+  int step = 1;                            // every step-th of them
   int quiet_from = 3;
 };
 // The block whose columns begin at x; columns outside [begin, end) are left out, with begin >= 1, end <= width - 1.
@@ -44,9 +44,9 @@ inline int gradient_length(int gx, int gy) {
 
 // One row of the comparison. Differences are in 1/16 grey level.
 struct CompareRow {
-  const std::uint8_t* present = nullptr;
-  const std::uint8_t *above = nullptr, *memory = nullptr,
-                     *below = nullptr;  // memory readable at -1 and width
+  const std::uint8_t* frame = nullptr;
+  // Rows of the background, readable at -1 and width.
+  const std::uint8_t *above = nullptr, *background = nullptr, *below = nullptr;
   const std::uint8_t *spread = nullptr, *age = nullptr;
   const std::uint8_t* tolerance = nullptr;  // registration error, 1/16 pixel, per pixel
   const std::uint64_t* moved = nullptr;     // D(k) > Th
@@ -54,17 +54,17 @@ struct CompareRow {
   int width = 0;
 };
 struct CompareLimits {
-  std::array<std::uint8_t, kBrightness> noise{};  // sigma of frame - memory by brightness, 1/16 level
+  std::array<std::uint8_t, kBrightness> noise{};  // sigma of frame - background, 1/16 level
   static constexpr int weak_sigmas = 3, strong_sigmas = 5;
   static constexpr int weak_least = 6 * 16, strong_least = 9 * 16;  // 1/16 level
-  static constexpr int young = 2;  // below this age the memory says nothing and D(k) decides ...
-  bool registered = false;         // ... and may be an error of registration itself
+  static constexpr int young = 2;                                   // frames: below this age D(k) decides ...
+  bool registered = false;  // ... and may itself be a registration error
 };
-// weak, strong: bits of the pixels that differ from the memory by more than noise and registration explain. With
-//   s = max(noise[m / 16], 5/4 spread), edge = |gradient of m| * tolerance, e = |present - m|:
+// weak, strong: bits of the pixels that differ from the background by more than noise and registration explain. With
+//   s = max(noise[b / 16], 5/4 spread), edge = |gradient of b| * tolerance, e = |frame - b|, b = background:
 //   strong: e > max(strong_least, strong_sigmas s) + edge;  weak: the same with its own limits, or moved and
-//   e > max(weak_least, weak_sigmas s): two witnesses need no tolerance. Young pixels: both are `moved`; where
-//   pictures had to be registered, strong also asks for e > edge.
+//   e > max(weak_least, weak_sigmas s): two pieces of evidence need no tolerance. Young pixels: both are
+//   `moved`; where pictures had to be registered, strong also needs e > edge.
 void compare_row(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,
                  std::uint64_t* strong);
 void compare_row_reference(const CompareRow& row, const CompareLimits& limits, std::uint64_t* weak,
@@ -78,20 +78,20 @@ inline constexpr std::array<std::uint8_t, 16> kOldRate{28, 10, 6, 5, 4, 3, 3, 3,
 
 // One row of learning.
 struct LearnRow {
-  const std::uint8_t* present = nullptr;
-  const std::uint8_t* memory = nullptr;  // as compared: under the present light
-  const std::uint8_t* taken = nullptr;   // what is taken over of the present, mostly in the memory's light
+  const std::uint8_t* frame = nullptr;
+  const std::uint8_t* background = nullptr;  // as compared: under the frame's light
+  const std::uint8_t* taken = nullptr;       // the frame as it is learnt: mostly under the model's light
   const std::uint8_t* quiet = nullptr;
-  const std::uint64_t* keep = nullptr;    // not to be learnt: foreground
-  const std::uint64_t* absorb = nullptr;  // to be taken over at once
-  const std::uint64_t* valid = nullptr;   // seen in this frame
+  const std::uint64_t* keep = nullptr;    // foreground: not learnt
+  const std::uint64_t* absorb = nullptr;  // replaced at once by `taken`
+  const std::uint64_t* valid = nullptr;   // covered by this frame
   std::uint16_t* mean = nullptr;          // grey level * 256
   std::uint8_t *spread = nullptr, *age = nullptr;
   int width = 0;
   int phase = 0;  // 0 or 15, alternating: rounding of the spread
 };
-// mean += rate(age) (present - memory), rate = 1 / (age + 1) down to 3 / 256; spread follows 16 |present - memory| with
-// 1/16; age + 1. Unknown pixels (age 0) and absorbed ones take `taken` over.
+// mean += rate(age) (frame - background), rate = 1 / (age + 1) down to 3 / 256; spread follows
+// 16 |frame - background| with 1/16; age + 1. Pixels of age 0 and absorbed ones are set to `taken`.
 void learn_row(const LearnRow& row);
 void learn_row_reference(const LearnRow& row);
 

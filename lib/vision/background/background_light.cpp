@@ -9,27 +9,31 @@
 namespace cerberus::vision {
 namespace {
 
-// Grey levels brighter or darker than a memory may be compared with: before a still scene lamps may flicker by that
-// much.
-constexpr double kOtherLight = 3, kFlicker = 40;
-constexpr double kStep = 12;  // grey levels from one frame to the next: a step of the exposure, not flicker
-// Share of pixels a change of light has to explain, else it is another scene.
-constexpr double kAgreement = 0.3;
+// Origin unknown: kept from the first version. Guard of all: unit-background_light, and flicker, bands and exposure steps
+// in unit-foreground_mask.
+constexpr struct Parameters {
+  // Grey levels from which a change of light is adopted: for a moving camera, and for a standing one, whose lamps may
+  // flicker by that much.
+  double other_light = 3, flicker = 40;
+  double step = 12;        // grey levels from one frame to the next: a step of the exposure, not flicker
+  double agreement = 0.3;  // share of pixels that a change of light must explain, else it is another scene
+  double noise = 2;        // sigmas by which a pixel differs from the relit background after a step
+} kParameters;
 
 }  // namespace
 
 void BackgroundLight::preallocate(Size picture) {
-  known_.resize({picture.width + 2 * kMargin, picture.height + 2});
+  background_.resize({picture.width + 2 * kMargin, picture.height + 2});
   row_.resize({picture.width, 1});
 }
 
-MutableGrayView BackgroundLight::known() {
-  const auto v = known_.view();
+MutableGrayView BackgroundLight::background() {
+  const auto v = background_.view();
   return {v.data + v.stride + kMargin, v.width - 2 * kMargin, v.height - 2, v.stride};
 }
 
 void BackgroundLight::repeat_borders() {
-  const MutableGrayView k = known();
+  const MutableGrayView k = background();
   for (int y = 0; y < k.height; ++y) {
     std::uint8_t* row = k.row(y);
     row[-1] = row[0];
@@ -40,58 +44,58 @@ void BackgroundLight::repeat_borders() {
   std::memcpy(k.row(k.height) - 1, k.row(k.height - 1) - 1, bytes);
 }
 
-void BackgroundLight::draw(View<const std::uint16_t> mean) {
-  const MutableGrayView k = known();
+void BackgroundLight::load(View<const std::uint16_t> mean) {
+  const MutableGrayView k = background();
   for (int y = 0; y < k.height; ++y) round_row(mean.row(y), k.width, k.row(y));
   repeat_borders();
 }
 
-void BackgroundLight::estimate(GrayView present, std::span<const RowSpan> shown, bool still) {
-  samples_.take(known(), present, shown);
+void BackgroundLight::estimate(GrayView frame, std::span<const RowSpan> visible, bool still) {
+  samples_.take(background(), frame, visible);
   change_.estimate(samples_, still);
 }
 
-// known, as it was drawn, under the light of the present.
-void BackgroundLight::relight(GrayView present) {
-  const MutableGrayView k = known();
-  for (int y = 0; y < k.height; ++y) change_.relight(k.row(y), present.row(y), y, k.width, k.row(y));
+// Brings background(), as loaded, under the light of the frame.
+void BackgroundLight::relight(GrayView frame) {
+  const MutableGrayView k = background();
+  for (int y = 0; y < k.height; ++y) change_.relight(k.row(y), frame.row(y), y, k.width, k.row(y));
   repeat_borders();
 }
 
-void BackgroundLight::relight_rows(GrayView present, std::span<const RowSpan> shown) {
-  estimate(present, shown, true);
-  if (change_.agreement() >= kAgreement && !change_.none()) relight(present);
+void BackgroundLight::relight_rows(GrayView frame, std::span<const RowSpan> visible) {
+  estimate(frame, visible, true);
+  if (change_.agreement() >= kParameters.agreement && !change_.none()) relight(frame);
   change_.clear();
 }
 
-// White stays white: it may have been anything from there on.
-const std::uint8_t* BackgroundLight::remembered(int y, const std::uint8_t* present) {
+// White stays white: the sensor was saturated, and the brightness is undetermined.
+const std::uint8_t* BackgroundLight::in_background_light(int y, const std::uint8_t* frame) {
   const RowLight light = change_.row(y);
-  if (light == RowLight{}) return present;
+  if (light == RowLight{}) return frame;
   const auto whole = [&](double v) { return static_cast<std::int32_t>(std::lround(v * 256 / light.gain)); };
   const MutableGrayView row = row_.view();
-  relight_row(present, {whole(256), whole(-light.offset)}, row.width, row.data);
-  for (int x = 0; x < row.width; ++x) row.data[x] = present[x] >= kWhite ? present[x] : row.data[x];
+  relight_row(frame, {whole(256), whole(-light.offset)}, row.width, row.data);
+  for (int x = 0; x < row.width; ++x) row.data[x] = frame[x] >= kWhite ? frame[x] : row.data[x];
   return row.data;
 }
 
-bool BackgroundLight::is_other() const {
-  return std::abs(brighter_) > kOtherLight;
+bool BackgroundLight::is_different() const {
+  return std::abs(brighter_) > kParameters.other_light;
 }
 
-void BackgroundLight::adopt(const BackgroundPixels& pixels, Mosaic& surroundings,
-                            std::span<const RowSpan> shown) {
+void BackgroundLight::adopt(const BackgroundPixels& pixels, Mosaic& mosaic,
+                            std::span<const RowSpan> visible) {
   const int gain = static_cast<int>(std::lround(change_.gain() * 256));
   const int offset = static_cast<int>(std::lround(change_.offset() * 256));
-  const MutableGrayView k = known();
+  const MutableGrayView k = background();
   for (int y = 0; y < pixels.mean.height; ++y) {
-    const RowSpan span = shown.empty() ? RowSpan{} : shown[static_cast<std::size_t>(y)];
+    const RowSpan span = visible.empty() ? RowSpan{} : visible[static_cast<std::size_t>(y)];
     std::uint16_t* row = pixels.mean.row(y);
     std::uint8_t* age = pixels.age.row(y);
     const auto relit = [&](int then) { return std::clamp((then * gain >> 8) + offset, 0, 255 << 8); };
     int brightest = 0;
     for (int x = 0; x < pixels.mean.width; ++x) brightest = std::max(brightest, int{row[x]});
-    if (std::max(brightest, relit(brightest)) < kNearWhite << 8) {  // most rows
+    if (std::max(brightest, relit(brightest)) < kNearWhite << 8) {  // no white: most rows
       for (int x = 0; x < pixels.mean.width; ++x) row[x] = static_cast<std::uint16_t>(relit(row[x]));
       continue;
     }
@@ -108,48 +112,48 @@ void BackgroundLight::adopt(const BackgroundPixels& pixels, Mosaic& surroundings
       }
     }
   }
-  surroundings.relight(gain, offset);
-  begin();
+  mosaic.relight(gain, offset);
+  reset();
 }
 
-bool BackgroundLight::compensate(const BackgroundPixels& pixels, Mosaic& surroundings, GrayView present,
-                                 std::span<const RowSpan> shown, bool still) {
+bool BackgroundLight::compensate(const BackgroundPixels& pixels, Mosaic& mosaic, GrayView frame,
+                                 std::span<const RowSpan> visible, bool still) {
   const double before = brighter_;
-  estimate(present, shown, still);
+  estimate(frame, visible, still);
   brighter_ = change_.gain() * 128 + change_.offset() - 128;
-  const bool step = std::abs(brighter_ - before) > kStep;
-  if (change_.agreement() < kAgreement && still) {  // not a change of light: another scene
-    for (int y = 0; y < present.height; ++y) std::fill_n(pixels.age.row(y), present.width, std::uint8_t{0});
-    surroundings.begin(present.size());
-    begin();
+  const bool step = std::abs(brighter_ - before) > kParameters.step;
+  if (change_.agreement() < kParameters.agreement && still) {  // another scene
+    for (int y = 0; y < frame.height; ++y) std::fill_n(pixels.age.row(y), frame.width, std::uint8_t{0});
+    mosaic.reset(frame.size());
+    reset();
     return false;
   }
   if (change_.none()) return step;
-  // Flicker comes back, and what it makes white in the memory is lost: the memory keeps the light it was learnt in. A
-  // stronger change is there to stay.
-  if (std::abs(brighter_) > (still ? kFlicker : kOtherLight)) {
-    relight(present);
-    adopt(pixels, surroundings, shown);
-    draw(pixels.mean);
-    estimate(present, shown, still);
+  // Flicker is periodic, and a model that followed it would lose its whites: the model keeps its light. A stronger
+  // change lasts.
+  if (std::abs(brighter_) > (still ? kParameters.flicker : kParameters.other_light)) {
+    relight(frame);
+    adopt(pixels, mosaic, visible);
+    load(pixels.mean);
+    estimate(frame, visible, still);
   }
-  relight(present);
+  relight(frame);
   return step;
 }
 
-void BackgroundLight::forgive_step(const BackgroundPixels& pixels, GrayView present, BitView foreground,
-                                   const std::array<double, kBrightness>& sigma, MutableBitView moved) {
-  const MutableGrayView k = known();
+void BackgroundLight::suppress_step(const BackgroundPixels& pixels, GrayView frame, BitView foreground,
+                                    const std::array<double, kBrightness>& sigma, MutableBitView moved) {
+  const MutableGrayView k = background();
   intersect(moved, foreground, moved);
   for (int y = 0; y < k.height; ++y) {
     const std::uint64_t* there = foreground.row(y);
-    const std::uint8_t* f = present.row(y);
-    const std::uint8_t* taken = remembered(y, f);
+    const std::uint8_t* f = frame.row(y);
+    const std::uint8_t* taken = in_background_light(y, f);
     std::uint8_t* m = k.row(y);
     std::uint8_t* a = pixels.age.row(y);
     for (int x = 0; x < k.width; ++x) {
       const bool free = !(there[x / 64] >> (x % 64) & 1);
-      if (!free || std::abs(f[x] - m[x]) <= 2 * sigma[m[x] >> 4]) continue;
+      if (!free || std::abs(f[x] - m[x]) <= kParameters.noise * sigma[m[x] >> 4]) continue;
       pixels.mean.at(x, y) = static_cast<std::uint16_t>(taken[x] << 8);
       m[x] = f[x];
       a[x] = std::min(a[x], kRelearn);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The scene's memory under the light of the frame it is compared with, and what becomes of it when the light has
-// changed.
+// The background image under the light of the frame that it is compared with, and the model's adaptation when the light
+// has changed.
 #pragma once
 
 #include <array>
@@ -18,60 +18,64 @@
 
 namespace cerberus::vision {
 
-// Frames: what is learnt anew because it was wrong, or known from one frame only, counts as if it were this old.
+// Frames: a pixel that is learnt anew because it was wrong, or from one frame only, counts as this old.
+// Origin unknown: kept from the first version; guard: mean F of bench-quality.
 inline constexpr std::uint8_t kRelearn = 4;
 
 class BackgroundLight {
  public:
   void preallocate(Size picture);
-  // The memory begins: there is no light but the frame's.
-  void begin() {
+  // The model starts anew, under the frame's light.
+  void reset() {
     brighter_ = 0;
     change_.clear();
   }
 
-  // The memory's mean as it is compared, in 8 bits; borders repeated by one pixel, readable a little beyond.
-  MutableGrayView known();
-  // known := the mean, under the light it was learnt in.
-  void draw(View<const std::uint16_t> mean);
+  // The model's mean in 8 bits, as it is compared; borders are repeated by one pixel, and 16 columns beyond are
+  // readable.
+  MutableGrayView background();
+  // background() := the mean, under the light in which it was learnt.
+  void load(View<const std::uint16_t> mean);
 
-  // Whether the last frame's light was so different that it cannot be aligned with the memory (alignment knows nothing
-  // of light).
-  bool is_other() const;
-  // A row of the present under the memory's light, as it would be remembered: itself, or valid until the next call.
-  const std::uint8_t* remembered(int y, const std::uint8_t* present);
-  // The memory under the light that was measured last. What nobody knows then (white in less light) has age 0; where
-  // known() has been relit for the frame that shows it, it is as that says, and learnt anew.
-  void adopt(const BackgroundPixels& pixels, Mosaic& surroundings, std::span<const RowSpan> shown = {});
+  // Whether the last frame's light was too different for alignment, which does not model light.
+  bool is_different() const;
+  // A row of the frame under the model's light, as it is learnt: the row itself, or a buffer that is valid until the next
+  // call.
+  const std::uint8_t* in_background_light(int y, const std::uint8_t* frame);
+  // Brings the model and the mosaic under the light that was measured last. Pixels that this leaves undetermined (white,
+  // under less light) get age 0. Where background() has been relit for the visible frame, they take its value and are
+  // learnt anew.
+  void adopt(const BackgroundPixels& pixels, Mosaic& mosaic, std::span<const RowSpan> visible = {});
 
-  // known, as it was drawn, under the light of `present`, by rows, as before a standing camera: to align the two.
-  void relight_rows(GrayView present, std::span<const RowSpan> shown);
-  // known, as it was drawn, under the light of `present`. Where that explains too little, the scene is another one:
-  // ages become 0. A change that is there to stay is adopted. True if the light went in a step since the last frame.
-  bool compensate(const BackgroundPixels& pixels, Mosaic& surroundings, GrayView present,
-                  std::span<const RowSpan> shown, bool still);
-  // A step of the light moves every pixel (D(k) knows nothing of light), and what was clipped before or is now, or what
-  // a line cannot say of the sensor's curve, does not come out as the memory expects. Where nothing was in the
-  // foreground one frame ago, neither is motion (moved), and where the memory is wrong now it starts anew (kRelearn).
-  // sigma: noise by brightness.
-  void forgive_step(const BackgroundPixels& pixels, GrayView present, BitView foreground,
-                    const std::array<double, kBrightness>& sigma, MutableBitView moved);
+  // Brings background(), as loaded, under the light of `frame` row by row, for their alignment.
+  void relight_rows(GrayView frame, std::span<const RowSpan> visible);
+  // Brings background(), as loaded, under the light of `frame`. If that explains too few pixels the scene is another one
+  // and ages become 0. A lasting change is adopted. Returns true if the light changed in a step since the last frame.
+  bool compensate(const BackgroundPixels& pixels, Mosaic& mosaic, GrayView frame,
+                  std::span<const RowSpan> visible, bool still);
+  // After a step of the light every pixel has moved (D(k) does not model light), and pixels that were or are clipped, or
+  // where the sensor's curve is not a line, differ from the relit background. Where there was no foreground one frame
+  // ago, clears `moved` and replaces wrong pixels of the model (age at most kRelearn). sigma: noise by brightness.
+  void suppress_step(const BackgroundPixels& pixels, GrayView frame, BitView foreground,
+                     const std::array<double, kBrightness>& sigma, MutableBitView moved);
 
-  std::size_t bytes() const { return known_.bytes() + row_.bytes() + samples_.bytes() + change_.bytes(); }
+  std::size_t bytes() const {
+    return background_.bytes() + row_.bytes() + samples_.bytes() + change_.bytes();
+  }
 
  private:
-  void estimate(GrayView present, std::span<const RowSpan> shown, bool still);
-  void relight(GrayView present);
+  void estimate(GrayView frame, std::span<const RowSpan> visible, bool still);
+  void relight(GrayView frame);
   void repeat_borders();
 
-  static constexpr int kMargin =
-      16;  // columns beside the compared memory, so that kernels may look beyond the border
-  Image<std::uint8_t, kMargin> known_;  // with margins
-  Image<std::uint8_t> row_;             // of the present under the memory's light
+  // Columns beside the image, so that kernels may read beyond the border.
+  static constexpr int kMargin = 16;
+  Image<std::uint8_t, kMargin> background_;  // with margins
+  Image<std::uint8_t> row_;                  // of the frame under the model's light
   LightSamples samples_;
-  LightChange change_;  // from the memory to the frame
-  double brighter_ =
-      0;  // grey levels the last frame was brighter than the memory, in the middle of the scale
+  LightChange change_;  // from the model to the frame
+  // Grey levels by which the last frame was brighter than the model, in the middle of the scale.
+  double brighter_ = 0;
 };
 
 }  // namespace cerberus::vision

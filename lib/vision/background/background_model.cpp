@@ -3,9 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "vision/background/alignment.h"
-#include "vision/background/background_state.h"
+#include "vision/background/background_kernels.h"
+#include "vision/background/background_light.h"
+#include "vision/background/foreground_classification.h"
+#include "vision/background/mosaic.h"
+#include "vision/geometry/warp.h"
 #include "vision/image/blur.h"
 #include "vision/image/mask.h"
 #include "vision/image/rounding.h"
@@ -14,11 +20,17 @@
 namespace cerberus::vision {
 namespace {
 
-// Pixels a corner may be off by turning and zooming before the memory is redrawn.
-constexpr double kFarthest = 12;
-constexpr double kRedo = 1;   // pixels: a smaller correction is used from the next frame on
-constexpr int kStanding = 5;  // frames after which a standing camera's memory is redrawn to fit it exactly
-constexpr double kUsualPeriod = 0.04;  // seconds, where nobody knows
+// Origin unknown where none is given: kept from the first version. Guard of all: mean F of bench-quality.
+constexpr struct Parameters {
+  double farthest = 12;  // pixels a corner may be off by rotation and zoom before the model is resampled
+  double realign = 1;    // pixels: a smaller correction takes effect with the next frame
+  double shift = 0.75;   // pixels the centre may be off before the model moves by whole pixels
+  int standing = 5;      // frames after which the model of a standing camera is resampled to fit exactly
+  double usual_period = 0.04;  // seconds from frame to frame where that is unknown
+  double period_rate = 0.1;    // share by which the smoothed period follows a frame's
+  int block_step = 2;          // every so many rows of a block are measured
+  int block_quiet = 3;         // frames without motion from which a pixel counts for the registration error
+} kParameters;
 
 // 64 bits of a row from x on, zeros outside the row.
 std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
@@ -29,8 +41,8 @@ std::uint64_t bits_from(const std::uint64_t* row, int words, int x) {
   return low >> part | high << (64 - part);
 }
 
-// out(q) := in(map q), to the nearest pixel, with one displacement for 32 x 8 pixels: what is left of a registration by
-// whole pixels turns so little that this is exact to about half a pixel.
+// out(q) := in(map q), to the nearest pixel, with one displacement for 32 x 8 pixels. The map is what a registration by
+// whole pixels leaves, so small a rotation that this is exact to about half a pixel.
 void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
   constexpr double kFar = 1 << 20;  // beyond every picture, where a perspective may point
   for (int y0 = 0; y0 < out.height; y0 += 8)
@@ -51,6 +63,38 @@ void map_bits(BitView in, const Transform& map, MutableBitView out, int width) {
 
 }  // namespace
 
+struct BackgroundModel::State {
+  Size size;
+  int frames = 0;
+  int standing = 0;    // frames the camera has stood while the model was not in the frame's coordinates
+  double period = 0;   // seconds from frame to frame, smoothed
+  Transform to_frame;  // model pixel to frame pixel
+  Image<std::uint16_t> mean;
+  Image<std::uint8_t> spread, age, quiet;
+  Image<std::uint8_t> frame;  // F(k) in the model's coordinates, blurred
+  BitMask mask;               // D(k) > Th in the model's coordinates, then the foreground
+  BitMask absorb;             // pixels to be taken over at once
+  BitMask covered;            // one row: the pixels that the frame shows
+  Mosaic mosaic;
+  Warp warp;
+  BackgroundLight light;
+  ForegroundClassification classification;
+  int columns = 0, rows = 0;  // of blocks
+  std::vector<BlockSums> blocks;
+
+  BackgroundPixels pixels() { return {mean.view(), spread.view(), age.view(), quiet.view()}; }
+  void prepare(Size to);
+  void restart();
+  void measure_period(double seconds);
+  void follow_camera(const BackgroundInput& in);
+  void resample();
+  bool warp_frame(const BackgroundInput& in, GrayView blurred);
+  void measure_blocks();
+  void align(const BackgroundInput& in, GrayView blurred);
+  void classify(const BackgroundInput& in);
+  void learn(bool still);
+};
+
 BackgroundModel::BackgroundModel() : state_(std::make_unique<State>()) {}
 BackgroundModel::~BackgroundModel() = default;
 BackgroundModel::BackgroundModel(BackgroundModel&&) noexcept = default;
@@ -63,98 +107,95 @@ void BackgroundModel::reset() {
 void BackgroundModel::State::prepare(Size to) {
   if (to != size) {
     mean.resize(to);
-    for (auto* plane : {&spread, &age, &quiet, &present}) plane->resize(to);
+    for (auto* plane : {&spread, &age, &quiet, &frame}) plane->resize(to);
     light.preallocate(to);
-    tolerance.resize({to.width, 1});
-    for (auto* bits : {&weak, &strong, &moved, &absorb}) bits->resize(bit_mask_size(to));
-    valid.resize({bit_mask_size(to).width, 1});
-    parts.preallocate(to);
-    surroundings.preallocate(to);
-    blur.preallocate(to);
+    for (auto* bits : {&mask, &absorb}) bits->resize(bit_mask_size(to));
+    covered.resize({bit_mask_size(to).width, 1});
+    classification.preallocate(to);
+    mosaic.preallocate(to);
     columns = (to.width + kBackgroundBlock - 1) / kBackgroundBlock;
     rows = (to.height + kBackgroundBlock - 1) / kBackgroundBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
     frames = 0;
-    size = to;  // last: what threw is tried again
+    size = to;  // last: an allocation that threw is tried again with the next frame
   }
   if (frames == 0) {
     mean.fill_bytes(0);
     for (auto* plane : {&spread, &age, &quiet}) plane->fill_bytes(0);
-    surroundings.begin(to);
-    parts.begin();
+    mosaic.reset(to);
+    classification.reset();
     to_frame = {};
-    light.begin();
+    light.reset();
   }
   ++frames;
 }
 
-// Frame rates vary, and frames come late: the usual time between them counts.
-void BackgroundModel::State::measure_time(double seconds) {
-  if (!(seconds > 0)) seconds = period > 0 ? period : kUsualPeriod;
-  period = period > 0 ? period + 0.1 * (seconds - period) : seconds;
-  windows = ClassificationWindows::of(period);
+void BackgroundModel::State::restart() {
+  frames = 0;
+  prepare(size);
 }
 
-// The memory goes along with the camera by whole pixels.
-void BackgroundModel::State::follow(const BackgroundInput& in) {
-  if (in.still && !to_frame.is_identity() && ++standing == kStanding) redraw();
+// Frame rates vary and frames come late, so the period is smoothed.
+void BackgroundModel::State::measure_period(double seconds) {
+  if (!(seconds > 0)) seconds = period > 0 ? period : kParameters.usual_period;
+  period = period > 0 ? period + kParameters.period_rate * (seconds - period) : seconds;
+  classification.set_period(period);
+}
+
+// Moves the model with the camera by whole pixels.
+void BackgroundModel::State::follow_camera(const BackgroundInput& in) {
+  if (in.still && !to_frame.is_identity() && ++standing == kParameters.standing) resample();
   if (!in.still) standing = 0;
   if (in.still || frames == 1) return;
   to_frame = in.motion * to_frame;
   const Point centre{(size.width - 1) / 2.0, (size.height - 1) / 2.0};
   const Point seen = to_frame.apply(centre);
   const double tx = seen.x - centre.x, ty = seen.y - centre.y;
-  if (!to_frame.is_sane(size) || std::abs(tx) > size.width || std::abs(ty) > size.height) {
-    frames = 0;
-    prepare(size);
-    return;
-  }
-  if (std::abs(tx) > 0.75 || std::abs(ty) > 0.75) {
+  if (!to_frame.is_sane(size) || std::abs(tx) > size.width || std::abs(ty) > size.height) return restart();
+  if (std::abs(tx) > kParameters.shift || std::abs(ty) > kParameters.shift) {
     const int dx = static_cast<int>(std::lround(tx)), dy = static_cast<int>(std::lround(ty));
     const Transform shift = Transform::translation(dx, dy);
-    surroundings.keep(pixels(), shift);
+    mosaic.store(pixels(), shift);
     shift_content<std::uint16_t>(mean.view(), dx, dy, 0);
     for (auto* plane : {&spread, &age, &quiet}) shift_content<std::uint8_t>(plane->view(), dx, dy, 0);
-    surroundings.recall(pixels(), shift);
+    mosaic.restore(pixels(), shift);
     to_frame = to_frame * Transform::translation(-dx, -dy);
   }
-  if (to_frame.corner_motion(size) > kFarthest) redraw();
+  if (to_frame.corner_motion(size) > kParameters.farthest) resample();
 }
 
-// The memory in the frame's own coordinates, by interpolation: only after much turning or zooming.
-void BackgroundModel::State::redraw() {
-  if (!warp.prepare(to_frame, size)) {
-    frames = 0;
-    prepare(size);
-    return;
-  }
-  surroundings.keep(pixels(), to_frame);
-  light.draw(mean.view());
-  warp.bilinear(light.known(), present.view());
+// Interpolates the model into the frame's own coordinates: only after much rotation or zoom.
+void BackgroundModel::State::resample() {
+  if (!warp.prepare(to_frame, size)) return restart();
+  mosaic.store(pixels(), to_frame);
+  light.load(mean.view());
+  warp.bilinear(light.background(), frame.view());
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x)
-      mean.view().at(x, y) = static_cast<std::uint16_t>(present.view().at(x, y) << 8);
+      mean.view().at(x, y) = static_cast<std::uint16_t>(frame.view().at(x, y) << 8);
   for (auto* plane : {&spread, &age, &quiet}) {
-    warp.nearest(plane->view(), present.view());
-    plane->swap(present);
+    warp.nearest(plane->view(), frame.view());
+    plane->swap(frame);
   }
-  surroundings.recall(pixels(), to_frame);
+  mosaic.restore(pixels(), to_frame);
   to_frame = {};
   standing = 0;
 }
 
-bool BackgroundModel::State::draw_present(const BackgroundInput& in, GrayView blurred) {
+// frame := F(k) in the model's coordinates. False for a perspective whose inverse is not sane.
+bool BackgroundModel::State::warp_frame(const BackgroundInput& in, GrayView blurred) {
   if (!warp.prepare(to_frame.inverse(), size)) return false;
   if (warp.is_identity())
-    blur3(in.picture, 3, present.view());
+    blur3(in.picture, 3, frame.view());
   else
-    warp.bilinear(blurred, present.view());
+    warp.bilinear(blurred, frame.view());
   return true;
 }
 
 void BackgroundModel::State::measure_blocks() {
   const auto spans = warp.spans();
-  BlockRows r{present.view(), light.known(), age.view(), quiet.view(), 0, 0, 2, 3};
+  BlockRows r{frame.view(),           light.background(),     age.view(), quiet.view(), 0, 0,
+              kParameters.block_step, kParameters.block_quiet};
   for (int by = 0; by < rows; ++by) {
     r.first = std::max(by * kBackgroundBlock, 1);
     r.end = std::min((by + 1) * kBackgroundBlock, size.height - 1);
@@ -169,34 +210,46 @@ void BackgroundModel::State::measure_blocks() {
   }
 }
 
-// Registers the frame to the memory's content; leaves the block sums as they are after it.
+// Registers the frame to the model's content. The block sums are those after registration.
 void BackgroundModel::State::align(const BackgroundInput& in, GrayView blurred) {
   measure_blocks();
   const auto correction = align_to_background(blocks, columns, size);
   if (!correction) return;
   const Transform before = to_frame;
   to_frame = to_frame * *correction;
-  if (correction->corner_motion(size) < kRedo) return;
-  if (!to_frame.is_sane(size) || !draw_present(in, blurred)) {
+  if (correction->corner_motion(size) < kParameters.realign) return;
+  if (!to_frame.is_sane(size) || !warp_frame(in, blurred)) {
     to_frame = before;
-    draw_present(in, blurred);
+    warp_frame(in, blurred);
   }
   measure_blocks();
 }
 
-// Before a camera that moves what is measured of the light is half errors of registration: better the frame as it is.
+void BackgroundModel::State::classify(const BackgroundInput& in) {
+  ClassificationInput input;
+  input.picture = in.picture, input.difference = in.difference;
+  input.sigma = in.sigma, input.still = in.still, input.frames = frames;
+  input.frame = frame.view(), input.background = light.background(), input.model = pixels();
+  input.spans = warp.spans();
+  input.blocks = blocks, input.columns = columns, input.rows = rows;
+  classification.classify(input, mask.view(), absorb.view());
+}
+
+// The model keeps the light that it was learnt in, but for a moving camera the measured change of light is half
+// registration error, and the frame is learnt as it is.
 void BackgroundModel::State::learn(bool still) {
   LearnRow row;
   row.width = size.width;
   row.phase = frames % 2 ? 15 : 0;
-  row.valid = valid.view().data;
+  row.valid = covered.view().data;
   for (int y = 0; y < size.height; ++y) {
-    row.present = present.view().row(y), row.memory = light.known().row(y), row.quiet = quiet.view().row(y);
-    row.taken = still ? light.remembered(y, row.present) : row.present;
-    row.keep = weak.view().row(y), row.absorb = absorb.view().row(y);
+    row.frame = frame.view().row(y), row.background = light.background().row(y),
+    row.quiet = quiet.view().row(y);
+    row.taken = still ? light.in_background_light(y, row.frame) : row.frame;
+    row.keep = classification.foreground().row(y), row.absorb = absorb.view().row(y);
     const RowSpan span = warp.spans()[static_cast<std::size_t>(y)];
-    valid.fill_bytes(0);
-    set_bits(valid.view().data, span.begin, span.end);
+    covered.fill_bytes(0);
+    set_bits(covered.view().data, span.begin, span.end);
     row.mean = mean.view().row(y), row.spread = spread.view().row(y), row.age = age.view().row(y);
     learn_row(row);
   }
@@ -205,55 +258,52 @@ void BackgroundModel::State::learn(bool still) {
 void BackgroundModel::update(const BackgroundInput& in, MutableGrayView mask) {
   State& s = *state_;
   s.prepare(mask.size());
-  s.measure_time(in.seconds);
-  const bool other_light = !in.still && s.light.is_other();
-  if (other_light) s.light.adopt(s.pixels(), s.surroundings);
-  s.follow(in);
-  GrayView blurred = mask;
+  s.measure_period(in.seconds);
+  const bool other_light = !in.still && s.light.is_different();
+  if (other_light) s.light.adopt(s.pixels(), s.mosaic);
+  s.follow_camera(in);
+  const GrayView blurred = mask;
   if (!in.still || !s.to_frame.is_identity()) blur3(in.picture, 3, mask);
-  s.light.draw(s.mean.view());
-  // False for a perspective whose inverse is beyond reason. The mask holds the blurred picture then.
-  if (!s.draw_present(in, blurred)) {
+  s.light.load(s.mean.view());
+  if (!s.warp_frame(in, blurred)) {
     s.frames = 0;
     for (int y = 0; y < mask.height; ++y) std::fill_n(mask.row(y), mask.width, std::uint8_t{0});
     return;
   }
   if (!in.still && s.frames > 1) {
-    // Lamps' light may be in bands, which no adopting takes away; they would pull at the alignment.
-    if (other_light) s.light.relight_rows(s.present.view(), s.warp.spans());
+    // Lamps may light the frame in bands, which adopt() does not remove; they would bias the alignment.
+    if (other_light) s.light.relight_rows(s.frame.view(), s.warp.spans());
     s.align(in, blurred);
-    if (other_light) s.light.draw(s.mean.view());
+    if (other_light) s.light.load(s.mean.view());
   }
-  const bool step = s.frames > 1 && s.light.compensate(s.pixels(), s.surroundings, s.present.view(),
-                                                       s.warp.spans(), in.still);
-  s.surroundings.doubt(s.pixels(), s.present.view(), s.light.known(), s.warp.spans());
+  const bool step =
+      s.frames > 1 && s.light.compensate(s.pixels(), s.mosaic, s.frame.view(), s.warp.spans(), in.still);
+  s.mosaic.verify(s.pixels(), s.frame.view(), s.light.background(), s.warp.spans());
   if (s.warp.is_identity()) {
-    binarise(in.difference, in.threshold, s.moved.view());
+    binarise(in.difference, in.threshold, s.mask.view());
   } else {
     binarise(in.difference, in.threshold, s.absorb.view());
-    map_bits(s.absorb.view(), s.to_frame, s.moved.view(), s.size.width);
+    map_bits(s.absorb.view(), s.to_frame, s.mask.view(), s.size.width);
   }
   if (step && in.still)
-    s.light.forgive_step(s.pixels(), s.present.view(), s.weak.view(), s.sigma, s.moved.view());
-  s.learn_noise(in);
-  s.compare(in);
-  s.decide(in);
+    s.light.suppress_step(s.pixels(), s.frame.view(), s.classification.foreground(), s.classification.noise(),
+                          s.mask.view());
+  s.classify(in);
   s.learn(in.still);
   if (s.to_frame.is_identity()) {
-    unpack(s.plain(), mask);
+    unpack(s.mask.view(), mask);
   } else {
-    map_bits(s.plain(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
+    map_bits(s.mask.view(), s.to_frame.inverse(), s.absorb.view(), s.size.width);
     unpack(s.absorb.view(), mask);
   }
 }
 
 std::size_t BackgroundModel::bytes() const {
   const State& s = *state_;
-  std::size_t total = sizeof(State) + s.mean.bytes() + s.tolerance.bytes() + s.morphology.bytes() +
-                      s.parts.bytes() + s.surroundings.bytes() + s.warp.bytes() + s.light.bytes() +
-                      s.blur.bytes();
-  for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.present}) total += plane->bytes();
-  for (const auto* bits : {&s.weak, &s.strong, &s.moved, &s.valid, &s.absorb}) total += bits->bytes();
+  std::size_t total = sizeof(State) + s.mean.bytes() + s.classification.bytes() + s.mosaic.bytes() +
+                      s.warp.bytes() + s.light.bytes();
+  for (const auto* plane : {&s.spread, &s.age, &s.quiet, &s.frame}) total += plane->bytes();
+  for (const auto* bits : {&s.mask, &s.covered, &s.absorb}) total += bits->bytes();
   return total + s.blocks.capacity() * sizeof(BlockSums);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the scene behind the moving objects looks like: a registered memory that needs no training.
+// A registered background model that needs no training: the static scene behind the moving objects, pixel by pixel.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 
 #include "vision/geometry/transform.h"
@@ -20,20 +20,14 @@ struct BackgroundInput {
   double seconds = 0;   // since frame k-1; 0: unknown
 };
 
-// Per pixel 5 bytes: mean (8.8 fixed point), spread, age, frames since it moved. The memory has coordinates of its own,
-// which follow the frame's by whole pixels (a copy, not an interpolation: interpolating it every frame would blur it);
-// the rest, to_frame, is fitted to the memory's own content every frame, and the frame is warped, never the memory.
-// What leaves the picture is kept coarsely beyond it (scene_surroundings.h), for a camera that turns back.
+// A pixel takes 5 bytes: mean (8.8 fixed point), spread, age (frames learnt) and quiet (frames since it moved). The
+// model has coordinates of its own. They follow the frame's by whole pixels, which is a copy; interpolation in every
+// frame would blur the model. The remaining transform is fitted to the model's content in every frame, and the frame
+// is warped by it. What leaves the picture is kept coarsely in a mosaic (mosaic.h) for a camera that turns back.
 //
-// A pixel is foreground by confidence:
-// - it differs from the memory by more than noise (known by brightness: sensor noise grows with it), its own spread,
-//   and what an error of registration would make of the edge under it (|gradient| x error; the error is measured around
-//   it, one pixel at least);
-// - where the memory is too young to say anything, it is foreground if D(k) says so;
-// - a connected part stays only if enough of it has really moved lately, or if, the camera standing, its outline is an
-//   edge of the frame (something that stopped) and not one of the memory (a ghost: something that left).
-// Foreground is never learnt; parts that do not move are taken over as one: ghosts at once, things of unclear origin
-// when they have been there longer than what they replaced, things that stopped after ten seconds (scene_parts.h).
+// A frame is compared with the model and its pixels are classified (foreground_classification.h). Foreground is never
+// learnt. Components that do not move are absorbed as a whole: ghosts at once, components of unclear origin when they
+// have been there longer than what they replaced, objects that stopped after ten seconds (components.h).
 class BackgroundModel {
  public:
   BackgroundModel();
@@ -42,8 +36,8 @@ class BackgroundModel {
   BackgroundModel& operator=(BackgroundModel&&) noexcept;
 
   void reset();
-  // mask := 0 or 255 a pixel, not closed: who makes regions of it closes it, and needs the gaps between people before
-  // that. (Used as scratch first.)
+  // mask := 0 or 255 a pixel, not closed: region finding needs the gaps between people and closes the mask itself. The
+  // mask also serves as scratch memory.
   void update(const BackgroundInput& input, MutableGrayView mask);
   std::size_t bytes() const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether what differs from the scene's memory began to do so in the middle of the picture. Who comes from outside has
-// left nothing in the scene; of something that begins to move in the middle of it, the memory may have the picture.
+// Whether a difference from the background model began inside the picture or came from outside. An object from outside
+// is not in the model; the model may show an object that starts to move in the middle of the picture.
 #pragma once
 
 #include <cstddef>
@@ -11,30 +11,30 @@
 
 namespace cerberus::vision {
 
-// Two bits a pixel: differed one frame ago, and began here. For a camera that stands.
+// Two bits a pixel: it differed one frame ago; its difference began inside the picture. For a camera that stands.
 class ComponentOrigins {
  public:
   void preallocate(Size picture);
-  // Nothing has differed yet.
-  void begin();
+  // No pixel has differed yet.
+  void reset();
 
-  // Pixels beside and in a part that differed one frame ago, and those of them that began here.
-  struct Before {
-    int any = 0, here = 0;
+  // Pixels in and beside a component that differed one frame ago, and those of them that began inside.
+  struct Overlap {
+    int differed = 0, inside = 0;
   };
-  void add(const Run& run, Before& before) const;
+  void add_overlap(const Run& run, Overlap& overlap) const;
 
-  // What is now known of a run's part: new pixels are as most of it is. found: it is known where all of it began, and
-  // no doubt is left.
-  enum class Origin { elsewhere, here, found };
-  void note(const Run& run, Origin origin);
-  // This frame is the one before now. differs: all that was noted; gone: what does not differ any more from now on.
+  // The origin of a run's component: its new pixels take it over. resolved: where all of it began has been found, and
+  // the mark `inside` is removed.
+  enum class Origin { outside, inside, resolved };
+  void record(const Run& run, Origin origin);
+  // Ends the frame. differs: all recorded pixels; gone: those that do not differ any more from now on.
   void step(BitView differs, BitView gone);
 
-  std::size_t bytes() const { return differed_.bytes() + here_.bytes(); }
+  std::size_t bytes() const { return differed_.bytes() + inside_.bytes(); }
 
  private:
-  BitMask differed_, here_;
+  BitMask differed_, inside_;
 };
 
 }  // namespace cerberus::vision

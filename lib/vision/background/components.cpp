@@ -7,60 +7,69 @@
 #include <cstdlib>
 
 #include "vision/background/background_light.h"
-#include "vision/background/component_fronts.h"
+#include "vision/background/fragment_joining.h"
 
 namespace cerberus::vision {
 namespace {
 
-constexpr double kMovingShare = 0.1;  // of a part that must have moved lately
-constexpr double kFreshShare = 0.05;  // of a doubtful part that must move now
-constexpr double kEmptyShare = 0.2;   // and of one whose owner may be out of the picture
-constexpr int kShake = 3;             // frames a camera moves and stands again
-constexpr int kLeastMoved = 4;        // pixels
-constexpr int kEdge = 6;              // grey levels of contrast: what is noise to the comparison is so here
-// Times as many places of an outline are an edge of the frame only as of the memory only: an object, and one beyond
-// doubt.
-constexpr double kClear = 2, kSure = 5;
-constexpr double kOutline = 0.1;    // share of the outline that says so at least
-constexpr double kOwner = 1 / 8.0;  // share of its owner's area that a place has, or an owner of its place's
-// Shares of the taller part's height.
-constexpr double kGap = 0.2;       // between neighbours that are one
-constexpr double kFrontGap = 1;    // between two fronts of one
-constexpr double kPieceGap = 0.5;  // between a part and its pieces, a front and the rest
-constexpr double kNarrow = 0.3;    // a front is narrower than this share of its height
-// Grey levels by which a pixel would surely differ from the memory, and the share of what lies between two fronts of
-// one that may be as uneven.
-constexpr int kShows = 12;
-constexpr double kUneven = 0.25;
-constexpr double kLevel = 0.5;  // share of the lower one's height at which they stand beside each other
-constexpr double kLeast = 1 / 1280.0;       // share of the picture below which a part says nothing yet
-constexpr double kPiece = 1 / 3.0;          // share of the bigger part's area below which a part is a piece
-constexpr double kLeastFront = 1 / 2560.0;  // share of the picture below which a part is no front of anybody
-constexpr std::size_t kMostFronts = 128;    // parts beyond which a picture is clutter
-// More than 320 x 240 pixels can have (labelling.cpp): of larger pictures so many are rain, or snow, and to compare each
-// with each other would take longer than a frame.
-constexpr std::size_t kMostParts = 512;
+// Origin unknown where none is given: kept from the first version. Guard of all: mean F of bench-quality and the cases
+// of unit-components.
+constexpr struct Parameters {
+  // One component by itself.
+  double recent_share = 0.1;   // of its area that must have moved within `recent`
+  double moving_share = 0.05;  // of a doubtful one that must be moving
+  double empty_share =
+      0.2;              // of one that was background before, at the picture's edge: its object may have left
+  int least_moved = 4;  // pixels: fewer are noise
+  int shake = 3;        // frames within which a shaken camera has not moved away from what it saw
+  int contrast = 6;     // grey levels of an edge: the comparison's limit for noise
+  double contrast_ratio = 1.3;               // times as much contrast in one of frame and background, and
+  double contrast_margin = 2;                // grey levels a pixel more, for the outline to decide
+  double empty_ratio = 2, empty_margin = 4;  // the same where the outline is certainly the background's
+  // Times as many outline pixels are edges of the frame only as of the background only: an object, and a certain one.
+  double clear = 2, certain = 5;
+  double certain_share = 0.1;      // of the outline that is an edge of the frame only, of a certain object
+  double least_ghost = 1 / 8.0;    // of an object's area that its ghost has, and the other way round
+  double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component says nothing
 
-struct Between {
+  // Neighbours. Gaps are shares of the taller one's height.
+  double gap = 0.2;             // between two of similar size
+  double narrow_gap = 1;        // between two narrow ones
+  double fragment_gap = 0.5;    // between one and its fragment, or a narrow one and the rest
+  double narrow = 0.3;          // a narrow one's width, of its height
+  double level = 0.5;           // of the lower one's height at which they stand beside each other
+  double fragment = 1 / 3.0;    // of the larger one's area: below, a component is a fragment
+  int visible_difference = 12;  // grey levels by which a pixel certainly differs from the background
+  double uneven = 0.25;         // share of a gap's pixels that may differ so much from their neighbours
+
+  double least_fragment = 1 / 2560.0;  // of the picture: a smaller component joins nothing
+  std::size_t most_fragments = 128;    // more components are clutter
+  // Derived: more than 320 x 240 pixels can have (labelling.cpp). So many in a larger picture are rain or snow, and the
+  // comparison of all pairs would take longer than a frame.
+  std::size_t most_components = 512;
+} kParameters;
+
+struct Gap {
   int left, top, right, bottom;
 };
 
-// Inside of what moves only an even part differs from nothing. What is uneven over as many pixels as it would have
-// moved, the width of the fronts, and has not changed is the scene behind two things.
-bool is_even(GrayView frame, const Between& part, int moved) {
-  const int step = std::max(std::min(moved, (part.right - part.left) / 2), 1);
+// Whether the gap between two components may be the inside of a moving object: only an even inside differs from
+// nothing. A gap that is uneven over as many pixels as the object would have moved (`moved`, the components' width) and
+// has not changed is background between two objects.
+bool is_even(GrayView frame, const Gap& gap, int moved) {
+  const int step = std::max(std::min(moved, (gap.right - gap.left) / 2), 1);
   int uneven = 0, seen = 0;
-  for (int y = part.top; y < part.bottom; ++y)
-    for (int x = part.left; x + step < part.right; ++x) {
+  for (int y = gap.top; y < gap.bottom; ++y)
+    for (int x = gap.left; x + step < gap.right; ++x) {
       ++seen;
-      uneven += std::abs(frame.at(x + step, y) - frame.at(x, y)) > kShows;
+      uneven += std::abs(frame.at(x + step, y) - frame.at(x, y)) > kParameters.visible_difference;
     }
-  return uneven <= kUneven * seen;
+  return uneven <= kParameters.uneven * seen;
 }
 
 }  // namespace
 
-ClassificationWindows ClassificationWindows::of(double seconds) {
+FrameWindows FrameWindows::of(double seconds) {
   const auto frames = [seconds](double time, int least) {
     return static_cast<int>(std::clamp(std::round(time / seconds), static_cast<double>(least), 250.0));
   };
@@ -69,62 +78,61 @@ ClassificationWindows ClassificationWindows::of(double seconds) {
 
 void ForegroundComponents::preallocate(Size picture) {
   labeller_.preallocate(picture);
-  parts_.reserve(labeller_.limits().components);
+  evidence_.reserve(labeller_.limits().components);
   origins_.preallocate(picture);
 }
 
-void ForegroundComponents::begin() {
-  origins_.begin();
-  moved_ = kShake;
+void ForegroundComponents::reset() {
+  origins_.reset();
+  moved_ = kParameters.shake;
 }
 
-void ForegroundComponents::measure(const ClassificationPlanes& planes, const ClassificationWindows& windows,
-                                   BitView mask) {
-  const GrayView &f = planes.present, &m = planes.memory;
+void ForegroundComponents::measure(const ComponentInput& input, const FrameWindows& windows, BitView mask) {
+  const GrayView &f = input.frame, &b = input.background;
   const int w = f.width;
-  // A memory that has to be registered is believed less: what does not move now is not believed.
-  const int lately = planes.still ? windows.lately : windows.now;
-  // Somebody whom the camera follows is away from the place he was in within a frame or two.
-  const int fresh_window = planes.still ? windows.now : windows.fresh;
+  // A background that had to be registered is less reliable: only present motion counts.
+  const int recent_window = input.still ? windows.recent : windows.moving;
+  // A person whom the camera follows has left his place in the picture within a frame or two.
+  const int moving_window = input.still ? windows.moving : windows.fresh;
   for (const Run& r : labeller_.runs()) {
-    Part& part = parts_[r.component];
-    const std::uint8_t *quiet = planes.quiet.row(r.row), *age = planes.age.row(r.row);
-    int now = 0, before = 0, young = 0, newest = 0;
+    Evidence& evidence = evidence_[r.component];
+    const std::uint8_t *quiet = input.quiet.row(r.row), *age = input.age.row(r.row);
+    int moving = 0, recent = 0, young = 0, newest = 0;
     for (int x = r.first; x < r.end; ++x)
-      now += quiet[x] < fresh_window, before += quiet[x] < lately, young += age[x] < windows.young,
-          newest += age[x] < windows.lately;
-    part.now += now;
-    part.lately += before;
-    part.young += young;
-    part.newest += newest;
-    const RowSpan shown =
-        planes.shown.empty() ? RowSpan{0, w} : planes.shown[static_cast<std::size_t>(r.row)];
+      moving += quiet[x] < moving_window, recent += quiet[x] < recent_window, young += age[x] < windows.young,
+          newest += age[x] < windows.recent;
+    evidence.moving_pixels += moving;
+    evidence.recent_pixels += recent;
+    evidence.young_pixels += young;
+    evidence.newest_pixels += newest;
+    const RowSpan visible =
+        input.visible.empty() ? RowSpan{0, w} : input.visible[static_cast<std::size_t>(r.row)];
     const auto contrast = [&](int outside, int inside) {
-      ++part.outline;
-      if (outside < shown.begin || outside >= shown.end) return;
-      // What has just come into the picture beside a thing is learnt from that thing: its end is no edge of the scene.
-      if (!planes.still && age[outside] < std::min(age[inside], kRelearn)) return;
-      part.frame += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
-      part.memory += std::abs(m.at(outside, r.row) - m.at(inside, r.row));
-      ++part.compared;
+      ++evidence.outline;
+      if (outside < visible.begin || outside >= visible.end) return;
+      // Pixels that entered the picture beside an object were learnt from that object: they hold no background edge.
+      if (!input.still && age[outside] < std::min(age[inside], kRelearn)) return;
+      evidence.frame_contrast += std::abs(f.at(outside, r.row) - f.at(inside, r.row));
+      evidence.background_contrast += std::abs(b.at(outside, r.row) - b.at(inside, r.row));
+      ++evidence.compared;
     };
     if (r.first >= 2) contrast(r.first - 2, std::min(r.first + 1, w - 1));
     if (r.end + 1 < w) contrast(r.end + 1, std::max(r.end - 2, 0));
-    if (!planes.still) continue;
-    measure_edges(planes, r, mask, part);
-    origins_.add(r, part.before);
+    if (!input.still) continue;
+    measure_edges(input, r, mask, evidence);
+    origins_.add_overlap(r, evidence.overlap);
   }
 }
 
-void ForegroundComponents::measure_edges(const ClassificationPlanes& planes, const Run& r, BitView mask,
-                                         Part& part) const {
-  const GrayView &f = planes.present, &m = planes.memory;
+void ForegroundComponents::measure_edges(const ComponentInput& input, const Run& r, BitView mask,
+                                         Evidence& evidence) const {
+  const GrayView &f = input.frame, &b = input.background;
   const auto across = [&](int x_out, int y_out, int x_in, int y_in) {
-    const int frame = std::abs(f.at(x_out, y_out) - f.at(x_in, y_in));
-    const int memory = std::abs(m.at(x_out, y_out) - m.at(x_in, y_in));
-    part.frame_only += frame > kEdge && frame > 2 * memory;
-    part.memory_only += memory > kEdge && memory > 2 * frame;
-    ++part.places;
+    const int in_frame = std::abs(f.at(x_out, y_out) - f.at(x_in, y_in));
+    const int in_background = std::abs(b.at(x_out, y_out) - b.at(x_in, y_in));
+    evidence.frame_only += in_frame > kParameters.contrast && in_frame > 2 * in_background;
+    evidence.background_only += in_background > kParameters.contrast && in_background > 2 * in_frame;
+    ++evidence.places;
   };
   const int w = f.width, h = f.height, y = r.row;
   if (r.first >= 2) across(r.first - 2, y, std::min(r.first + 1, w - 1), y);
@@ -143,174 +151,199 @@ void ForegroundComponents::measure_edges(const ClassificationPlanes& planes, con
   along(y + 1, y + 2, y - 1);
 }
 
-// By itself.
-void ForegroundComponents::weigh(const ClassificationPlanes& planes, const Component& c, Part& part) const {
-  const Size size = planes.present.size();
+// Decides about one component by its own evidence.
+void ForegroundComponents::decide(const ComponentInput& input, const Component& c, Evidence& evidence) const {
+  const Parameters& p = kParameters;
+  const Size size = input.frame.size();
   const double area = c.area;
-  const bool young = part.young > area / 2, newest = part.newest > area / 2;
+  const bool young = evidence.young_pixels > area / 2, newest = evidence.newest_pixels > area / 2;
   const bool at_edge = c.left == 0 || c.top == 0 || c.right == size.width || c.bottom == size.height;
-  const ComponentOrigins::Before& b = part.before;
-  const bool here = planes.still && (b.any ? 2 * b.here > b.any : young || (moved_ == 0 && !at_edge));
-  part.origin = here ? ComponentOrigins::Origin::here : ComponentOrigins::Origin::elsewhere;
-  part.object = part.compared > 0 && part.frame > 1.3 * part.memory + 2 * part.compared;
-  part.ghost = part.compared > 0 && part.memory > 1.3 * part.frame + 2 * part.compared;
-  // Motion shows at outlines first: of something large and even, a rim as long as its outline is enough.
-  part.moving =
-      part.lately >= std::max<double>(kLeastMoved, std::min<double>(kMovingShare * area, part.outline));
-  // At the picture's edge the motion of a place that somebody has just left is his last.
-  const bool was_here = part.memory > 2 * part.frame + 4 * part.compared && young;
+  const ComponentOrigins::Overlap& before = evidence.overlap;
+  const bool inside = input.still && (before.differed ? 2 * before.inside > before.differed
+                                                      : young || (moved_ == 0 && !at_edge));
+  evidence.origin = inside ? ComponentOrigins::Origin::inside : ComponentOrigins::Origin::outside;
+  const auto exceeds = [&](int a, int b, double ratio, double margin) {
+    return a > ratio * b + margin * evidence.compared;
+  };
+  const int frame = evidence.frame_contrast, background = evidence.background_contrast;
+  evidence.object = evidence.compared > 0 && exceeds(frame, background, p.contrast_ratio, p.contrast_margin);
+  evidence.ghost = evidence.compared > 0 && exceeds(background, frame, p.contrast_ratio, p.contrast_margin);
+  // Motion shows at outlines first. Of a large even object a rim as long as its outline is enough.
+  evidence.moved_recently =
+      evidence.recent_pixels >=
+      std::max<double>(p.least_moved, std::min<double>(p.recent_share * area, evidence.outline));
+  // At the picture's edge the motion of a place that an object has just left is that object's last.
+  const bool was_empty = exceeds(background, frame, p.empty_ratio, p.empty_margin) && young;
   const double least =
-      was_here && at_edge ? std::min<double>(kEmptyShare * area, part.outline) : kFreshShare * area;
-  part.fresh = part.now >= std::max<double>(kLeastMoved, least);
-  // What the memory saw only for moments may be an object's place at the start, and outlines tell little where all is
-  // textured: like a ghost it needs its owner's motion, or it goes at once. Who walked in a second after the start and
-  // stopped has the outline of an object.
-  part.doubtful = part.ghost || (planes.still && (newest || (young && !part.object)));
-  // What a camera that moves has learnt for moments only may be anybody's place: who rests altogether in this frame is
-  // an object if his outline says so. That of a small part says nothing.
-  const bool rests =
-      !planes.still && young && part.now < kLeastMoved && area >= kLeast * static_cast<double>(size.area());
-  // Where the camera turns, a place that was left is soon far from its owner, and no join() will bring them together.
-  part.kept = part.moving && (part.fresh || !part.doubtful) && (part.object || !rests) &&
-              !(planes.followed && was_here);
+      was_empty && at_edge ? std::min<double>(p.empty_share * area, evidence.outline) : p.moving_share * area;
+  evidence.moving = evidence.moving_pixels >= std::max<double>(p.least_moved, least);
+  // A background learnt for moments may show an object that stood there at the start, and outlines are weak evidence in
+  // texture. Such a component needs motion like a ghost, or is absorbed at once. A person who walked in a second after
+  // the start and stopped has an object's outline.
+  evidence.doubtful = evidence.ghost || (input.still && (newest || (young && !evidence.object)));
+  // A moving camera has learnt a young background for moments only: a component at rest is an object only by its
+  // outline. The outline of a small component says nothing.
+  const bool rests = !input.still && young && evidence.moving_pixels < p.least_moved &&
+                     area >= p.least_area * static_cast<double>(size.area());
+  // Before a turning camera a ghost is soon far from its object, beyond the reach of merge_neighbours().
+  evidence.kept = evidence.moved_recently && (evidence.moving || !evidence.doubtful) &&
+                  (evidence.object || !rests) && !(input.registered && was_empty);
 }
 
-// Where somebody stood since the scene began the memory has his picture. He goes, the place stays: what rests while
-// something moves on that began there, too, is a place, unless its outline leaves no doubt. By itself the outline of a
-// piece of a place tells little: it ends where what stood there and what is there now happen to be alike. That of a
-// small piece tells nothing.
-void ForegroundComponents::find_places() {
+// The model shows an object that has stood there since the model's start. When the object leaves, its ghost stays. A
+// component at rest is a ghost if another one of the same origin moves nearby, unless its outline is certain. The
+// outline of a ghost's fragment alone is weak: it ends where the object and the background behind it happen to be
+// alike. That of a small fragment says nothing.
+void ForegroundComponents::find_ghosts() {
+  const Parameters& p = kParameters;
   const auto components = labeller_.components();
   for (std::size_t i = 0; i < components.size(); ++i) {
-    Part& part = parts_[i];
+    Evidence& evidence = evidence_[i];
     const Component& a = components[i];
-    const bool newest = 2 * part.newest > static_cast<int>(a.area);
-    const bool sure =
-        part.object && !newest && part.frame_only > kSure * part.memory_only + kOutline * part.places;
-    if (part.fresh || part.origin != ComponentOrigins::Origin::here) continue;
+    const bool newest = 2 * evidence.newest_pixels > static_cast<int>(a.area);
+    const bool certain =
+        evidence.object && !newest &&
+        evidence.frame_only > p.certain * evidence.background_only + p.certain_share * evidence.places;
+    if (evidence.moving || evidence.origin != ComponentOrigins::Origin::inside) continue;
     for (std::size_t j = 0; j < components.size(); ++j) {
-      const Part& other = parts_[j];
-      if (!other.moving || !other.fresh || other.ghost || other.origin != ComponentOrigins::Origin::here)
+      const Evidence& other = evidence_[j];
+      if (!other.moved_recently || !other.moving || other.ghost ||
+          other.origin != ComponentOrigins::Origin::inside)
         continue;
       const Component& b = components[j];
-      if (sure && a.area >= kOwner * b.area) continue;
-      if (b.area > kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
-        part.doubtful = true, part.kept = false;
+      if (certain && a.area >= p.least_ghost * b.area) continue;
+      if (b.area > p.least_ghost * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
+        evidence.doubtful = true, evidence.kept = false;
         break;
       }
     }
   }
 }
 
-// Whose place has been found came from there, and is an object wherever it stops. A piece of a place beside another one
-// is no such thing: its outline is not clear.
-void ForegroundComponents::find_owners() {
+// A moving object whose ghost was found came from there, and stays an object wherever it stops. The outline must be
+// clear: a fragment of a ghost beside another fragment has no clear one.
+void ForegroundComponents::resolve_origins() {
+  const Parameters& p = kParameters;
   const auto components = labeller_.components();
   for (std::size_t i = 0; i < components.size(); ++i) {
-    Part& part = parts_[i];
-    if (part.origin != ComponentOrigins::Origin::here || !part.moving || !part.fresh || part.ghost) continue;
-    if (!part.object || part.frame_only < kClear * part.memory_only) continue;
+    Evidence& evidence = evidence_[i];
+    if (evidence.origin != ComponentOrigins::Origin::inside || !evidence.moved_recently || !evidence.moving ||
+        evidence.ghost)
+      continue;
+    if (!evidence.object || evidence.frame_only < p.clear * evidence.background_only) continue;
     const Component& a = components[i];
     for (std::size_t j = 0; j < components.size(); ++j) {
       const Component& b = components[j];
-      if (parts_[j].kept || !parts_[j].ghost) continue;
-      if (b.area >= kOwner * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
-        part.origin = ComponentOrigins::Origin::found;
+      if (evidence_[j].kept || !evidence_[j].ghost) continue;
+      if (b.area >= p.least_ghost * a.area && are_within(std::max(a.height(), b.height()), a, b)) {
+        evidence.origin = ComponentOrigins::Origin::resolved;
         break;
       }
     }
   }
 }
 
-bool ForegroundComponents::judge(const ClassificationPlanes& planes, const ClassificationWindows& windows,
-                                 MutableBitView mask, MutableBitView absorb) {
-  labeller_.find(mask, planes.present.width);
+bool ForegroundComponents::classify(const ComponentInput& input, const FrameWindows& windows,
+                                    MutableBitView mask, MutableBitView absorb) {
+  labeller_.find(mask, input.frame.width);
   const auto components = labeller_.components();
-  parts_.assign(components.size(), {});
-  // A shake is over before anything has gone far.
-  if (!planes.still && ++moved_ == kShake) origins_.begin();
-  measure(planes, windows, mask);
-  for (std::size_t i = 0; i < components.size(); ++i) weigh(planes, components[i], parts_[i]);
-  if (planes.still) {
-    if (components.size() <= kMostParts) {
-      find_places();
-      find_owners();
+  evidence_.assign(components.size(), {});
+  if (!input.still && ++moved_ == kParameters.shake) origins_.reset();
+  measure(input, windows, mask);
+  for (std::size_t i = 0; i < components.size(); ++i) decide(input, components[i], evidence_[i]);
+  if (input.still) {
+    if (components.size() <= kParameters.most_components) {
+      find_ghosts();
+      resolve_origins();
     }
-    for (const Run& r : labeller_.runs()) origins_.note(r, parts_[r.component].origin);
+    for (const Run& r : labeller_.runs()) origins_.record(r, evidence_[r.component].origin);
   }
   bool young_objects = false;
   for (std::size_t i = 0; i < components.size(); ++i)
-    young_objects =
-        young_objects || (parts_[i].kept && 2 * parts_[i].young > static_cast<int>(components[i].area));
-  for (int y = 0; y < absorb.height; ++y) std::fill_n(absorb.row(y), absorb.width, std::uint64_t{0});
+    young_objects = young_objects || (evidence_[i].kept &&
+                                      2 * evidence_[i].young_pixels > static_cast<int>(components[i].area));
+  absorb_rest(input, windows, absorb);
+  if (input.still) origins_.step(mask, absorb);
   for (const Run& r : labeller_.runs()) {
-    const Part& part = parts_[r.component];
-    if (part.kept) continue;
-    for (int x = r.first; x < r.end; ++x) {
-      const int patience = planes.still && part.object
-                               ? windows.hold
-                               : std::clamp<int>(planes.age.at(x, r.row), kLeastMoved, windows.hold);
-      if (part.doubtful || planes.quiet.at(x, r.row) > patience) set_bits(absorb.row(r.row), x, x + 1);
-    }
-  }
-  if (planes.still) origins_.step(mask, absorb);
-  for (const Run& r : labeller_.runs()) {
-    const Part& part = parts_[r.component];
-    if (!part.kept && (!(planes.still && part.object) || part.doubtful))
+    const Evidence& evidence = evidence_[r.component];
+    if (!evidence.kept && (!(input.still && evidence.object) || evidence.doubtful))
       clear_bits(mask.row(r.row), r.first, r.end);
   }
-  if (planes.still) moved_ = 0;
+  if (input.still) moved_ = 0;
   return young_objects;
 }
 
-void ForegroundComponents::join(const ClassificationPlanes& planes, const ClassificationWindows& windows,
-                                MutableBitView closed, MutableBitView mask) {
-  labeller_.find(closed, planes.present.width);
-  const auto components = labeller_.components();
-  parts_.assign(components.size(), {});
+// absorb := pixels of the components that are not kept: doubtful ones at once, the others after as many frames at rest
+// as the background had been learnt for, objects before a standing camera after `hold`.
+void ForegroundComponents::absorb_rest(const ComponentInput& input, const FrameWindows& windows,
+                                       MutableBitView absorb) const {
+  for (int y = 0; y < absorb.height; ++y) std::fill_n(absorb.row(y), absorb.width, std::uint64_t{0});
   for (const Run& r : labeller_.runs()) {
-    const std::uint8_t* age = planes.age.row(r.row);
-    for (int x = r.first; x < r.end; ++x) parts_[r.component].young += age[x] < windows.young;
+    const Evidence& evidence = evidence_[r.component];
+    if (evidence.kept) continue;
+    for (int x = r.first; x < r.end; ++x) {
+      const int patience =
+          input.still && evidence.object
+              ? windows.hold
+              : std::clamp<int>(input.age.at(x, r.row), kParameters.least_moved, windows.hold);
+      if (evidence.doubtful || input.quiet.at(x, r.row) > patience) set_bits(absorb.row(r.row), x, x + 1);
+    }
+  }
+}
+
+void ForegroundComponents::merge_neighbours(const ComponentInput& input, const FrameWindows& windows,
+                                            MutableBitView closed, MutableBitView mask) {
+  const Parameters& p = kParameters;
+  labeller_.find(closed, input.frame.width);
+  const auto components = labeller_.components();
+  evidence_.assign(components.size(), {});
+  for (const Run& r : labeller_.runs()) {
+    const std::uint8_t* age = input.age.row(r.row);
+    for (int x = r.first; x < r.end; ++x) evidence_[r.component].young_pixels += age[x] < windows.young;
   }
   for (std::size_t i = 0; i < components.size(); ++i) {
     const Component& a = components[i];
-    if (2 * parts_[i].young < static_cast<int>(a.area)) continue;
-    parts_[i].piece = a.area < kLeast * planes.present.size().area();
-    for (std::size_t j = 0; components.size() <= kMostParts && j < components.size(); ++j) {
+    if (2 * evidence_[i].young_pixels < static_cast<int>(a.area)) continue;
+    evidence_[i].fragment = a.area < p.least_area * input.frame.size().area();
+    for (std::size_t j = 0; components.size() <= p.most_components && j < components.size(); ++j) {
       const Component& b = components[j];
       if (i == j || b.area < a.area || (b.area == a.area && j < i)) continue;
       const int tall = std::max(a.height(), b.height());
       const int across = gap(a.left, a.right, b.left, b.right), down = gap(a.top, a.bottom, b.top, b.bottom);
-      const Between between{std::min(a.right, b.right), std::max(a.top, b.top), std::max(a.left, b.left),
-                            std::min(a.bottom, b.bottom)};
-      const bool level = -down > kLevel * std::min(a.height(), b.height());
-      const bool narrow_a = a.width() < kNarrow * a.height(), narrow_b = b.width() < kNarrow * b.height();
-      const double reach = narrow_a && narrow_b ? kFrontGap : narrow_a || narrow_b ? kPieceGap : kGap;
-      const bool two = a.area >= kPiece * b.area || narrow_a || narrow_b;
-      if (level && across > 0 && across < reach * tall && two && !parts_[i].piece &&
-          is_even(planes.present, between, std::min(a.width(), b.width()))) {
+      const Gap between{std::min(a.right, b.right), std::max(a.top, b.top), std::max(a.left, b.left),
+                        std::min(a.bottom, b.bottom)};
+      const bool level = -down > p.level * std::min(a.height(), b.height());
+      const bool narrow_a = a.width() < p.narrow * a.height(), narrow_b = b.width() < p.narrow * b.height();
+      const double reach = narrow_a && narrow_b   ? p.narrow_gap
+                           : narrow_a || narrow_b ? p.fragment_gap
+                                                  : p.gap;
+      const bool two = a.area >= p.fragment * b.area || narrow_a || narrow_b;
+      if (level && across > 0 && across < reach * tall && two && !evidence_[i].fragment &&
+          is_even(input.frame, between, std::min(a.width(), b.width()))) {
         for (int y = between.top; y < between.bottom; ++y) set_bits(mask.row(y), between.left, between.right);
-        parts_[i].whole = parts_[j].whole = true;
-      } else if (across < kPieceGap * tall && down < kPieceGap * tall && a.area < kPiece * b.area) {
-        parts_[i].piece = true;
+        evidence_[i].merged = evidence_[j].merged = true;
+      } else if (across < p.fragment_gap * tall && down < p.fragment_gap * tall &&
+                 a.area < p.fragment * b.area) {
+        evidence_[i].fragment = true;
       }
     }
   }
   for (const Run& r : labeller_.runs())
-    if (parts_[r.component].piece && !parts_[r.component].whole) clear_bits(mask.row(r.row), r.first, r.end);
+    if (evidence_[r.component].fragment && !evidence_[r.component].merged)
+      clear_bits(mask.row(r.row), r.first, r.end);
 }
 
-void ForegroundComponents::join_fronts(const ClassificationPlanes& planes, MutableBitView closed,
-                                       MutableBitView mask) {
-  if (!planes.still || labeller_.components().size() < 2) return;
-  const Size size = planes.present.size();
-  const auto parts =
-      labeller_.find(closed, size.width, static_cast<std::uint32_t>(kLeastFront * size.area()));
-  if (parts.size() <= kMostFronts) vision::join_fronts(planes.present, parts, mask);
+void ForegroundComponents::join_fragments(const ComponentInput& input, MutableBitView closed,
+                                          MutableBitView mask) {
+  if (!input.still || labeller_.components().size() < 2) return;
+  const Size size = input.frame.size();
+  const auto components = labeller_.find(
+      closed, size.width, static_cast<std::uint32_t>(kParameters.least_fragment * size.area()));
+  if (components.size() <= kParameters.most_fragments) vision::join_fragments(input.frame, components, mask);
 }
 
 std::size_t ForegroundComponents::bytes() const {
-  return labeller_.bytes() + parts_.capacity() * sizeof(Part) + origins_.bytes();
+  return labeller_.bytes() + evidence_.capacity() * sizeof(Evidence) + origins_.bytes();
 }
 
 }  // namespace cerberus::vision

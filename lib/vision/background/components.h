@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which connected parts of what differs from the scene's memory are objects: by how much of them has moved, by whether
-// their outline is an edge of the frame or one of the memory, and by where they came from.
+// Which connected components of the pixels that differ from the background model are objects, and which are ghosts:
+// places that an object left. Evidence: how much of a component moved lately, whether its outline is an edge of the
+// frame or of the background, and whether it came from outside the picture.
 #pragma once
 
 #include <cstddef>
@@ -15,79 +16,79 @@
 
 namespace cerberus::vision {
 
-// How many frames of this rate things take. Limits are those of the planes' 8 bits.
-struct ClassificationWindows {
-  int fresh = 1;    // what moves at this moment: the last frame, 0.04 s
-  int now = 3;      // what moved so lately moves: 3 frames, 0.12 s
-  int lately = 25;  // 1 s: what moved so lately may have stopped for a moment
-  int young = 50;   // 2 s: what the memory has learnt for less may be an object's place
-  int hold = 250;   // 10 s, 50 to 250 frames: how long something that stopped is kept
+// Durations in frames. The limits are those of the planes' 8 bits.
+struct FrameWindows {
+  int fresh = 1;    // 0.04 s: motion in the last frame
+  int moving = 3;   // 0.12 s, at least 3 frames: a pixel that moved so lately is moving
+  int recent = 25;  // 1 s: a pixel that moved so lately may have stopped for a moment
+  int young = 50;   // 2 s: a background learnt for less may show an object
+  int hold = 250;   // 10 s, 50 to 250 frames: how long an object that stopped stays foreground
   // seconds: from frame to frame, > 0.
-  static ClassificationWindows of(double seconds);
+  static FrameWindows of(double seconds);
 };
 
-struct ClassificationPlanes {
-  GrayView present, memory;  // the frame and the memory, blurred alike, under the same light
-  GrayView age;              // frames the memory has learnt a pixel for
-  GrayView quiet;            // frames since a pixel moved
-  bool still = false;        // the camera stands
-  bool followed = false;     // it moves, and the memory fits the frame nearly everywhere
-  // What the frame shows of each row; none: all.
-  std::span<const RowSpan> shown{};
+struct ComponentInput {
+  GrayView frame, background;  // blurred alike, under the same light
+  GrayView age;                // frames for which the model has learnt a pixel
+  GrayView quiet;              // frames since a pixel moved
+  bool still = false;          // the camera stands
+  bool registered = false;     // it moves, and the model fits the frame nearly everywhere
+  // The columns that the frame covers, per row; empty: all.
+  std::span<const RowSpan> visible{};
 };
 
 class ForegroundComponents {
  public:
   void preallocate(Size picture);
-  // The memory begins.
-  void begin();
-  // mask: what differs in; out, the objects. absorb := what the memory shall take over. True if the memory is young
-  // under one of the objects: then join() is due.
-  bool judge(const ClassificationPlanes& planes, const ClassificationWindows& windows, MutableBitView mask,
-             MutableBitView absorb);
-  // A place that somebody leaves who stood there when the scene began looks like an object: the memory has his picture,
-  // a moving edge goes along it, and from a few frames nobody can tell which is which. So where the memory is young,
-  // what lies close together is one: two of about a size, or two fronts, with an even gap between them (which belongs
-  // to it), or a big part and its pieces (which are dropped: joined to it they would be a strip of the scene beside
-  // it). closed: the mask with its gaps closed, used as scratch; mask: in and out.
-  void join(const ClassificationPlanes& planes, const ClassificationWindows& windows, MutableBitView closed,
-            MutableBitView mask);
-  // After these: what lies between fronts of one thing, one above the other, belongs to it (scene_fronts.h), if the
-  // camera stands: errors of registration lie along edges of the scene, which are sides of nothing. closed: as for
-  // join().
-  void join_fronts(const ClassificationPlanes& planes, MutableBitView closed, MutableBitView mask);
+  // The background model starts anew.
+  void reset();
+  // mask in: the pixels that differ from the background; out: the objects. absorb := the pixels that the model shall
+  // take over. Returns true if the model is young under one of the objects: merge_neighbours() is due then.
+  bool classify(const ComponentInput& input, const FrameWindows& windows, MutableBitView mask,
+                MutableBitView absorb);
+  // Where the background is young, the ghost of an object that stood there at the start looks like an object: a moving
+  // edge runs along it, and a few frames cannot tell the two apart. Components close to each other are then one object:
+  // two of similar size, or two narrow ones, with an even gap between them (the gap is filled), or a large component
+  // and its fragments (the fragments are dropped: they would join a strip of background to it).
+  // closed: the mask with its gaps closed, used as scratch memory.
+  void merge_neighbours(const ComponentInput& input, const FrameWindows& windows, MutableBitView closed,
+                        MutableBitView mask);
+  // Called last: fills the gap between fragments of one object that lie one above the other (fragment_joining.h), if
+  // the camera stands. Registration errors of a moving camera lie along edges of the background. closed: as above.
+  void join_fragments(const ComponentInput& input, MutableBitView closed, MutableBitView mask);
   std::size_t bytes() const;
 
  private:
-  // What is known of a connected part.
-  struct Part {
-    int now = 0, lately = 0;    // pixels that moved in the last frames, and for some time back
-    int young = 0, newest = 0;  // pixels that the memory has learnt for no longer than those windows
-    int outline = 0;            // places of it to the left and right
-    int frame = 0, memory = 0;  // contrast across those in frame and memory ...
-    int compared = 0;           // ... of which so many are known in both
-    // Places of it, above and below too, that are an edge of one of them only.
-    int frame_only = 0, memory_only = 0;
-    int places = 0;
-    ComponentOrigins::Before before;
-    ComponentOrigins::Origin origin = ComponentOrigins::Origin::elsewhere;
-    bool moving = false, fresh = false;  // has moved lately, and moves
-    bool ghost = false, object = false;  // by its outline
-    bool doubtful = false;               // needs its owner's motion
+  // Of one component.
+  struct Evidence {
+    int moving_pixels = 0, recent_pixels = 0;  // pixels that moved within these windows
+    int young_pixels = 0, newest_pixels = 0;   // pixels learnt for less than the windows `young` and `recent`
+    int outline = 0;                           // outline pixels to the left and right
+    int compared = 0;  // those of them that lie inside the frame and the background ...
+    int frame_contrast = 0, background_contrast = 0;  // ... and the sums of their contrasts, grey levels
+    int places = 0;                                   // outline pixels on all four sides
+    int frame_only = 0, background_only = 0;          // those that are an edge of one of the two only
+    ComponentOrigins::Overlap overlap;
+    ComponentOrigins::Origin origin = ComponentOrigins::Origin::outside;
+    bool moved_recently = false, moving = false;
+    bool object = false, ghost = false;  // as the outline says; both false: undecided
+    bool doubtful = false;               // stays only while it moves
     bool kept = false;                   // is an object
-    bool whole = false;                  // has been joined with another one
-    bool piece = false;                  // of another one
+    bool merged = false;                 // with a neighbour
+    bool fragment = false;               // of a larger neighbour
   };
-  void measure(const ClassificationPlanes& planes, const ClassificationWindows& windows, BitView mask);
-  void measure_edges(const ClassificationPlanes& planes, const Run& run, BitView mask, Part& part) const;
-  void weigh(const ClassificationPlanes& planes, const Component& component, Part& part) const;
-  void find_places();
-  void find_owners();
+  void measure(const ComponentInput& input, const FrameWindows& windows, BitView mask);
+  void measure_edges(const ComponentInput& input, const Run& run, BitView mask, Evidence& evidence) const;
+  void decide(const ComponentInput& input, const Component& component, Evidence& evidence) const;
+  void find_ghosts();
+  void resolve_origins();
+  void absorb_rest(const ComponentInput& input, const FrameWindows& windows, MutableBitView absorb) const;
 
   Labeller labeller_;
-  std::vector<Part> parts_;
+  std::vector<Evidence> evidence_;  // by component
   ComponentOrigins origins_;
-  int moved_ = 3;  // frames since the camera stood; as many as end what is known: it never did
+  int moved_ =
+      3;  // frames since the camera stood; as many as `shake` and more: it has moved away from what it saw
 };
 
 }  // namespace cerberus::vision

@@ -14,15 +14,14 @@ struct ForegroundMask::State {
   ForegroundMaskOptions options;
   BitMask now, before;
   Morphology morphology;
-  BackgroundModel memory;
+  BackgroundModel background;
 };
 
 namespace {
 
-// What differs from the scene is where the object is now: it has no leading and no common part. Who asks for one asks
-// for the sets of the two differences.
-bool uses_memory(const ForegroundMaskOptions& options) {
-  return options.memory && options.area == Area::all;
+// The difference from the background has no leading and no common part: those are sets of the two frame differences.
+bool uses_background(const ForegroundMaskOptions& options) {
+  return options.background_model && options.area == Area::all;
 }
 
 }  // namespace
@@ -33,12 +32,12 @@ ForegroundMask::ForegroundMask(ForegroundMask&&) noexcept = default;
 ForegroundMask& ForegroundMask::operator=(ForegroundMask&&) noexcept = default;
 
 void ForegroundMask::set_options(const ForegroundMaskOptions& options) {
-  // A memory that was switched off has not seen where the camera went since.
-  if (uses_memory(options) != uses_memory(state_->options)) state_->memory.reset();
+  // A model that was switched off has lost the camera's motion since.
+  if (uses_background(options) != uses_background(state_->options)) state_->background.reset();
   state_->options = options;
 }
 void ForegroundMask::reset() {
-  state_->memory.reset();
+  state_->background.reset();
 }
 
 ForegroundMaskResult ForegroundMask::update(const ForegroundMaskInput& input, MutableGrayView mask) {
@@ -50,11 +49,11 @@ ForegroundMaskResult ForegroundMask::update(const ForegroundMaskInput& input, Mu
   result.threshold =
       s.options.noise_floor ? clamp_to_noise(result.fuzzy_threshold, result.sigma) : result.fuzzy_threshold;
   result.ready = input.frames >= 3 && (s.options.area == Area::all || !input.previous.empty());
-  if (uses_memory(s.options)) {
-    if (input.frames <= 1) s.memory.reset();
-    s.memory.update({input.picture, input.current, result.threshold, result.sigma, input.motion, input.still,
-                     input.seconds},
-                    mask);
+  if (uses_background(s.options)) {
+    if (input.frames <= 1) s.background.reset();
+    s.background.update({input.picture, input.current, result.threshold, result.sigma, input.motion,
+                         input.still, input.seconds},
+                        mask);
     if (result.ready) return result;
   }
   if (!result.ready) {
@@ -79,7 +78,7 @@ ForegroundMaskResult ForegroundMask::update(const ForegroundMaskInput& input, Mu
 
 std::size_t ForegroundMask::bytes() const {
   const State& s = *state_;
-  return s.memory.bytes() + s.now.bytes() + s.before.bytes() + s.morphology.bytes() + sizeof(State);
+  return s.background.bytes() + s.now.bytes() + s.before.bytes() + s.morphology.bytes() + sizeof(State);
 }
 
 }  // namespace cerberus::vision

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From differences to the moving area: threshold, set algebra (paper Eq. 3, M(k-1), M(k)) and, in preset
-// `default`, a registered memory of the scene chosen by confidence.
+// From differences to the foreground mask: threshold, set algebra (paper Eq. 3, M(k-1), M(k)) and, in preset `default`,
+// a registered background model.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,8 @@ enum class Area { leading, common, all };  // M(k), M(k-1), D(k)
 struct ForegroundMaskOptions {
   FuzzyThresholdOptions threshold;
   Area area = Area::all;
-  bool noise_floor = true;  // clamp Th to the measured noise
-  bool memory = true;       // use the registered memory, where area is all
+  bool noise_floor = true;       // clamp Th to the measured noise
+  bool background_model = true;  // use the background model; only where area is all
 };
 
 struct ForegroundMaskInput {
@@ -25,7 +25,7 @@ struct ForegroundMaskInput {
   Transform motion;     // frame k-1 to k
   bool still = false;   // the camera stands
   GrayView current{};   // D(k)
-  GrayView previous{};  // D(k-1); empty where it is not known: only area=all goes without
+  GrayView previous{};  // D(k-1); empty: missing, only area=all works without
   const Histogram* histogram = nullptr;
   int frames = 0;      // DifferenceResult::frames
   double seconds = 0;  // since frame k-1; 0: unknown
@@ -33,9 +33,9 @@ struct ForegroundMaskInput {
 
 struct ForegroundMaskResult {
   int threshold = 0;        // Th used
-  int fuzzy_threshold = 0;  // Th as fuzziness alone chose it
+  int fuzzy_threshold = 0;  // Th as fuzziness alone chooses it
   double sigma = 0;         // noise of the plain difference
-  bool ready = false;       // false until all is known that three frames of the scene say: the mask is empty
+  bool ready = false;       // false until three frames of the scene have come: the mask is empty
 };
 
 class ForegroundMask {
@@ -47,7 +47,7 @@ class ForegroundMask {
 
   void set_options(const ForegroundMaskOptions& options);
   void reset();
-  // mask := 0 or 255 a pixel. Not closed: RegionFinder closes it, once it has seen the gaps between people.
+  // mask := 0 or 255 a pixel, not closed: RegionFinder needs the gaps between people and closes it.
   ForegroundMaskResult update(const ForegroundMaskInput& input, MutableGrayView mask);
   std::size_t bytes() const;
 

@@ -8,13 +8,16 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr int kReach = 8;         // pixels at 320 columns
-constexpr int kRowStep = 4;       // sharpness is measured on every fourth row
-constexpr int kLeastPixels = 24;  // of a block
-constexpr int kTexture = 60;  // squared gradient (twice the slope) a pixel, from which a block says something
-constexpr int kLeastBlocks = 8;
+// Origin unknown: kept from the first version. Guard of all: unit-motion_blur and bench-steady.
+constexpr struct Parameters {
+  int reach = 8;          // pixels at 320 columns: blur to either side
+  int row_step = 4;       // sharpness is measured on every so many rows
+  int least_pixels = 24;  // of a block that counts
+  int texture = 60;       // squared gradient (twice the slope) a pixel, of a block that counts
+  int least_blocks = 8;   // for a median
+} kParameters;
 
-// Sum of squared gradients of a block's row (m(x+1) - m(x-1), as everywhere in the memory).
+// Sum of squared gradients of a block's row (m(x+1) - m(x-1), as in background_kernels.h).
 int energy(GrayView picture, int y, int begin, int end) {
   const std::uint8_t *here = picture.row(y), *above = picture.row(y - 1), *below = picture.row(y + 1);
   int sum = 0;
@@ -25,7 +28,7 @@ int energy(GrayView picture, int y, int begin, int end) {
   return sum;
 }
 
-// How often which ratio, in sixteenths of an octave: a median without a place for every value.
+// A histogram of ratios in sixteenths of an octave: a median in constant memory.
 class RatioCounts {
  public:
   void add(int a, int b) {
@@ -69,17 +72,18 @@ std::uint8_t greater(std::uint8_t a, std::uint8_t b) {
 }  // namespace
 
 void MotionBlur::preallocate(Size picture) {
-  reach_ = std::max(2, kReach * picture.width / 320);
+  reach_ = std::max(2, kParameters.reach * picture.width / 320);
   for (auto* row : {&low_, &high_}) row->resize(static_cast<std::size_t>(picture.width + 2 * reach_));
 }
 
-double MotionBlur::sharpness(GrayView frame, GrayView memory, GrayView age, std::span<const RowSpan> spans) {
+double MotionBlur::sharpness(GrayView frame, GrayView background, GrayView age,
+                             std::span<const RowSpan> spans) {
   RatioCounts ratios;
   for (int top = 0; top < frame.height; top += kBackgroundBlock) {
     const int bottom = std::min(top + kBackgroundBlock, frame.height - 1);
     for (int left = 0; left < frame.width; left += kBackgroundBlock) {
-      int in_frame = 0, in_memory = 0, pixels = 0;
-      for (int y = std::max(top, 1); y < bottom; y += kRowStep) {
+      int in_frame = 0, in_background = 0, pixels = 0;
+      for (int y = std::max(top, 1); y < bottom; y += kParameters.row_step) {
         int begin = left, end = left + kBackgroundBlock;
         for (const RowSpan& span : spans.subspan(static_cast<std::size_t>(y) - 1, 3)) {
           begin = std::max(begin, span.begin + 1);
@@ -87,14 +91,15 @@ double MotionBlur::sharpness(GrayView frame, GrayView memory, GrayView age, std:
         }
         if (begin >= end || !age.at(begin, y) || !age.at(end - 1, y)) continue;
         in_frame += energy(frame, y, begin, end);
-        in_memory += energy(memory, y, begin, end);
+        in_background += energy(background, y, begin, end);
         pixels += end - begin;
       }
-      if (pixels >= kLeastPixels && std::max(in_frame, in_memory) > kTexture * pixels)
-        ratios.add(in_frame, in_memory);
+      if (pixels >= kParameters.least_pixels &&
+          std::max(in_frame, in_background) > kParameters.texture * pixels)
+        ratios.add(in_frame, in_background);
     }
   }
-  return ratios.count() < kLeastBlocks ? 1 : ratios.median();
+  return ratios.count() < kParameters.least_blocks ? 1 : ratios.median();
 }
 
 void MotionBlur::find_range(GrayView sharp, int y) {
@@ -113,9 +118,9 @@ void MotionBlur::find_range(GrayView sharp, int y) {
   slide(high_, 2 * reach_ + 1, greater);
 }
 
-void MotionBlur::forgive(GrayView blurred, GrayView sharp,
-                         const std::array<std::uint8_t, kBrightness>& tolerance, MutableBitView bits,
-                         MutableBitView inner) {
+void MotionBlur::suppress(GrayView blurred, GrayView sharp,
+                          const std::array<std::uint8_t, kBrightness>& tolerance, MutableBitView bits,
+                          MutableBitView inner) {
   for (int y = 0; y < bits.height; ++y) {
     std::uint64_t *row = bits.row(y), *within = inner.row(y);
     if (std::all_of(row, row + bits.width, [](std::uint64_t word) { return word == 0; })) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What lies between two fronts of one thing. Pictures are 160 x 120, the scene is 100 everywhere.
-#include "vision/background/component_fronts.h"
+// Gaps between fragments of one object. Pictures are 160 x 120, the background is 100 everywhere.
+#include "vision/background/fragment_joining.h"
 
 #include <algorithm>
 #include <random>
@@ -32,13 +32,13 @@ struct Scene {
     for (int y = r.y; y < r.y + r.height; ++y)
       std::fill_n(frame.view().row(y) + r.x, r.width, static_cast<std::uint8_t>(value));
   }
-  // Pixels set between these parts.
+  // Pixels set between these components.
   int join(const Rect& a, const Rect& b) {
     for (const Rect& r : {a, b})
       for (int y = r.y; y < r.y + r.height; ++y) set_bits(mask.view().row(y), r.x, r.x + r.width);
     Labeller labeller;
     labeller.preallocate(kSize);
-    join_fronts(frame.view(), labeller.find(mask.view(), kSize.width), mask.view());
+    join_fragments(frame.view(), labeller.find(mask.view(), kSize.width), mask.view());
     int set = 0;
     for (int y = 0; y < kSize.height; ++y)
       for (int x = 0; x < kSize.width; ++x) set += mask.view().row(y)[x / 64] >> (x % 64) & 1;
@@ -48,7 +48,7 @@ struct Scene {
 
 }  // namespace
 
-START_TEST(what_has_its_sides_from_front_to_front_is_one) {
+START_TEST(fragments_with_continuous_sides_are_joined) {
   for (const int value : {40, 108, 200}) {
     Scene scene;
     scene.paint({60, 20, 20, 60}, value);
@@ -66,7 +66,7 @@ START_TEST(the_sides_may_lean) {
 }
 END_TEST
 
-START_TEST(where_the_scene_is_seen_between_them_they_are_two) {
+START_TEST(fragments_with_background_between_them_are_not_joined) {
   Scene scene;
   scene.paint({60, 16, 20, 8}, 40);
   scene.paint({60, 76, 20, 6}, 40);
@@ -74,7 +74,7 @@ START_TEST(where_the_scene_is_seen_between_them_they_are_two) {
 }
 END_TEST
 
-START_TEST(one_side_is_the_scene_s) {
+START_TEST(one_continuous_side_is_not_enough) {
   Scene scene;
   scene.paint({0, 0, 60, 120}, 40);
   ck_assert_int_eq(scene.join({60, 16, 20, 8}, {60, 76, 20, 6}), 0);
@@ -82,7 +82,7 @@ START_TEST(one_side_is_the_scene_s) {
 END_TEST
 
 // Seventy grey levels of noise, in grains of so many pixels, are full of edges.
-START_TEST(gravel_has_no_sides_that_go_on) {
+START_TEST(gravel_has_no_continuous_sides) {
   for (const int grain : {1, 2, 3, 4}) {
     Scene scene;
     std::mt19937 random(5);
@@ -97,8 +97,8 @@ START_TEST(gravel_has_no_sides_that_go_on) {
 }
 END_TEST
 
-// Where the wall behind somebody ends and the floor begins his sides are the other way round from there on.
-START_TEST(a_side_may_turn_where_another_scene_begins) {
+// Where the wall behind a person ends and the floor begins, the contrast of his sides changes its sign.
+START_TEST(a_side_may_change_its_sign_where_the_background_changes) {
   Scene scene;
   scene.paint({0, 48, 160, 72}, 40);
   scene.paint({60, 20, 20, 60}, 70);
@@ -106,7 +106,7 @@ START_TEST(a_side_may_turn_where_another_scene_begins) {
 }
 END_TEST
 
-START_TEST(who_is_beside_or_far_or_of_other_columns_is_another) {
+START_TEST(components_beside_or_far_apart_or_of_other_columns_are_not_joined) {
   Scene scene;
   scene.paint({60, 10, 20, 100}, 40);
   ck_assert_int_eq(scene.join({60, 20, 20, 40}, {90, 20, 20, 40}), 0);  // beside
@@ -119,7 +119,7 @@ START_TEST(who_is_beside_or_far_or_of_other_columns_is_another) {
 }
 END_TEST
 
-START_TEST(a_side_out_of_the_picture_is_none) {
+START_TEST(a_side_beyond_the_picture_does_not_count) {
   for (const int x : {0, 140, 4, 136}) {
     Scene scene;
     scene.paint({x, 20, 20, 60}, 40);
@@ -129,9 +129,10 @@ START_TEST(a_side_out_of_the_picture_is_none) {
 END_TEST
 
 int main() {
-  return run_suite("scene_fronts",
-                   {what_has_its_sides_from_front_to_front_is_one, the_sides_may_lean,
-                    where_the_scene_is_seen_between_them_they_are_two, one_side_is_the_scene_s,
-                    gravel_has_no_sides_that_go_on, a_side_may_turn_where_another_scene_begins,
-                    who_is_beside_or_far_or_of_other_columns_is_another, a_side_out_of_the_picture_is_none});
+  return run_suite("fragment_joining",
+                   {fragments_with_continuous_sides_are_joined, the_sides_may_lean,
+                    fragments_with_background_between_them_are_not_joined, one_continuous_side_is_not_enough,
+                    gravel_has_no_continuous_sides, a_side_may_change_its_sign_where_the_background_changes,
+                    components_beside_or_far_apart_or_of_other_columns_are_not_joined,
+                    a_side_beyond_the_picture_does_not_count});
 }
