@@ -1,47 +1,49 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the painter's parts draw with.
+// What is drawn with cairo draws with these: text, and shapes that seldom change.
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <utility>
-#include <vector>
+#include <cairo.h>
 
-#include "overlay/painter.h"
+#include <algorithm>
+#include <memory>
+#include <numbers>
+
+#include "overlay/color.h"
+#include "overlay/picture.h"
 
 namespace cerberus::overlay {
 
-inline constexpr double kCasing = 0.6;  // opacity of the dark casing under lines
-// How far the target's corners lie outside its box, in widths of a line.
-inline constexpr double kTargetRoom = 2.5;
+struct SurfaceDeleter {
+  void operator()(cairo_surface_t* s) const { cairo_surface_destroy(s); }
+};
+using SurfacePtr = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
+struct ContextDeleter {
+  void operator()(cairo_t* c) const { cairo_destroy(c); }
+};
+using ContextPtr = std::unique_ptr<cairo_t, ContextDeleter>;
 
-inline void source(cairo_t* cr, Color c, double alpha = 1) {
+inline void set_color(cairo_t* cr, Color c, double alpha = 1) {
   cairo_set_source_rgba(cr, c.r, c.g, c.b, alpha);
 }
 
-// A patch of the frame, drawn by `draw` in the frame's coordinates; clipped to the frame.
-template <typename Draw>
-void add_patch(std::vector<Patch>& patches, Area frame, Area area, Draw draw) {
-  area = area.intersection(frame);
-  if (area.empty()) return;
-  SurfacePtr surface(cairo_image_surface_create(CAIRO_FORMAT_ARGB32, area.width, area.height));
-  ContextPtr cr(cairo_create(surface.get()));
-  // Half the time of the default, and no eye sees it in lines of two pixels.
-  cairo_set_antialias(cr.get(), CAIRO_ANTIALIAS_FAST);
-  cairo_set_tolerance(cr.get(), 0.4);
-  cairo_translate(cr.get(), -area.x, -area.y);
-  draw(cr.get());
-  if (cairo_status(cr.get()) != CAIRO_STATUS_SUCCESS) return;
-  cr.reset();
-  cairo_surface_flush(surface.get());
-  patches.push_back({area, std::move(surface)});
+// A sans-serif face at `size` pixels.
+inline void select_font(cairo_t* cr, double size, bool bold = false) {
+  cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+                         bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cr, size);
 }
 
-inline Area around(double left, double top, double right, double bottom, double margin) {
-  const int x = static_cast<int>(std::floor(left - margin)), y = static_cast<int>(std::floor(top - margin));
-  return {x, y, static_cast<int>(std::ceil(right + margin)) - x,
-          static_cast<int>(std::ceil(bottom + margin)) - y};
+// Width that the context's font gives `text`, pixels.
+inline double text_width(cairo_t* cr, const char* text) {
+  cairo_text_extents_t extents;
+  cairo_text_extents(cr, text, &extents);
+  return extents.x_advance;
+}
+
+// A context to measure text with.
+inline ContextPtr measuring_context() {
+  const SurfacePtr scratch(cairo_image_surface_create(CAIRO_FORMAT_A8, 1, 1));
+  return ContextPtr(cairo_create(scratch.get()));
 }
 
 inline void rounded_rectangle(cairo_t* cr, double x, double y, double w, double h, double r) {
@@ -53,6 +55,24 @@ inline void rounded_rectangle(cairo_t* cr, double x, double y, double w, double 
   cairo_arc(cr, x + r, y + h - r, r, kQuarter, 2 * kQuarter);
   cairo_arc(cr, x + r, y + r, r, 2 * kQuarter, 3 * kQuarter);
   cairo_close_path(cr);
+}
+
+// The part of `area` within the frame, drawn by `draw` in the frame's coordinates; without pixels where nothing is left,
+// or where cairo fails.
+template <typename Draw>
+Patch drawn_patch(PicturePool& pool, Area frame, Area area, Draw draw) {
+  area = area.intersection(frame);
+  if (area.empty()) return {};
+  const PicturePtr picture = pool.take(area.width, area.height);
+  const SurfacePtr surface(
+      cairo_image_surface_create_for_data(reinterpret_cast<unsigned char*>(picture->words.data()),
+                                          CAIRO_FORMAT_ARGB32, area.width, area.height, 4 * area.width));
+  const ContextPtr cr(cairo_create(surface.get()));
+  cairo_translate(cr.get(), -area.x, -area.y);
+  draw(cr.get());
+  cairo_surface_flush(surface.get());
+  if (cairo_status(cr.get()) != CAIRO_STATUS_SUCCESS) return {};
+  return {area, picture};
 }
 
 }  // namespace cerberus::overlay

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "overlay/painter.h"
+#include "overlay/color.h"
 
 namespace cerberus::overlay {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <string>
 
-#include "overlay/painter.h"
+#include "overlay/cairo_helpers.h"
 #include "text/numbers.h"
 
 namespace cerberus::overlay {
@@ -17,17 +17,13 @@ constexpr Color kPaper{0.075, 0.085, 0.10}, kGrid{0.22, 0.24, 0.27}, kText{0.82,
 constexpr Color kBars{0.45, 0.49, 0.54}, kBackground{0.337, 0.706, 0.914}, kObject{0.902, 0.624, 0.0};
 constexpr Color kThreshold{1.0, 0.35, 0.25};
 
-void set(cairo_t* cr, Color c, double alpha = 1) {
-  cairo_set_source_rgba(cr, c.r, c.g, c.b, alpha);
-}
-
 // Anchors: 0 left / top, 0.5 middle, 1 right / bottom of the text.
 void text(cairo_t* cr, double x, double y, double anchor_x, double anchor_y, const std::string& what,
           Color color) {
   cairo_font_extents_t font;
   cairo_font_extents(cr, &font);
   const double width = text_width(cr, what.c_str());
-  set(cr, color);
+  set_color(cr, color);
   cairo_move_to(cr, x - anchor_x * width, y + (1 - anchor_y) * font.ascent - anchor_y * font.descent * 0.5);
   cairo_show_text(cr, what.c_str());
 }
@@ -59,13 +55,13 @@ void draw_levels_axis(cairo_t* cr, const Panel& panel, double font, bool labels)
   cairo_set_line_width(cr, 1);
   for (int level = 0; level <= panel.levels; level += every) {
     const double x = std::floor(panel.left + level * panel.width / panel.levels) + 0.5;
-    set(cr, kGrid);
+    set_color(cr, kGrid);
     line(cr, x, panel.top, x, panel.top + panel.height);
     if (!labels) continue;
     const double anchor = level == panel.levels ? 1 : 0.5;  // the last one stays inside the picture
     text(cr, x, panel.top + panel.height + 0.25 * font, anchor, 0, std::to_string(level), kText);
   }
-  set(cr, kText, 0.6);
+  set_color(cr, kText, 0.6);
   line(cr, panel.left, panel.top + panel.height + 0.5, panel.left + panel.width,
        panel.top + panel.height + 0.5);
 }
@@ -79,7 +75,7 @@ void draw_histogram(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
   draw_levels_axis(cr, panel, font, false);
   for (int decade = 0; decade <= decades; ++decade) {
     const double y = std::floor(panel.y(decade / decades)) + 0.5;
-    set(cr, kGrid);
+    set_color(cr, kGrid);
     line(cr, panel.left, y, panel.left + panel.width, y);
     static constexpr const char* kNames[] = {"1",  "10",  "100",  "1k", "10k", "100k",
                                              "1M", "10M", "100M", "1G", "10G"};
@@ -93,11 +89,11 @@ void draw_histogram(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
     if (!counts[level]) continue;
     const auto& c = figure.curves;
     const bool seeds = c.seed_high > c.seed_low;
-    set(cr,
-        seeds && level <= c.seed_low    ? kBackground
-        : seeds && level >= c.seed_high ? kObject
-                                        : kBars,
-        0.6);
+    set_color(cr,
+              seeds && level <= c.seed_low    ? kBackground
+              : seeds && level >= c.seed_high ? kObject
+                                              : kBars,
+              0.6);
     const double y = panel.y(height(counts[level]));
     cairo_rectangle(cr, panel.left + level * step, y, step - gap, panel.top + panel.height - y);
     cairo_fill(cr);
@@ -109,7 +105,7 @@ void draw_histogram(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
       const double share = figure.curves.membership[level];
       cairo_line_to(cr, panel.x(level), panel.y(object ? share : 1 - share));
     }
-    set(cr, object ? kObject : kBackground);
+    set_color(cr, object ? kObject : kBackground);
     cairo_set_line_width(cr, std::max(1.2, font / 7));
     cairo_stroke(cr);
   }
@@ -134,7 +130,7 @@ void draw_fuzziness(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
   const int every = 1 + (high - low - 1) / 5;
   for (int tenths = low; tenths <= high; tenths += every) {
     const double y = std::floor(panel.y(height(tenths / 10.0))) + 0.5;
-    set(cr, kGrid);
+    set_color(cr, kGrid);
     cairo_set_line_width(cr, 1);
     line(cr, panel.left, y, panel.left + panel.width, y);
     if (labels) text(cr, panel.left - 0.4 * font, y, 1, 0.5, text::fixed(tenths / 10.0, 1).string(), kText);
@@ -143,7 +139,7 @@ void draw_fuzziness(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
     cairo_new_path(cr);
     for (int x = c.seed_low + 1; x < c.seed_high && x < 256; ++x)
       cairo_line_to(cr, panel.x(x), panel.y(height(object ? c.omega[x] : c.beta[x])));
-    set(cr, object ? kObject : kBackground);
+    set_color(cr, object ? kObject : kBackground);
     cairo_set_line_width(cr, std::max(1.5, font / 6));
     cairo_stroke(cr);
   }
@@ -156,7 +152,7 @@ void draw_threshold(cairo_t* cr, const Panel& panel, int level, bool dashed, dou
   const double x = panel.left + (level + 1) * panel.width / panel.levels;
   cairo_set_dash(cr, dashes, dashed ? 2 : 0, 0);
   cairo_set_line_width(cr, std::max(1.5, font / 6));
-  set(cr, kThreshold, dashed ? 0.75 : 1);
+  set_color(cr, kThreshold, dashed ? 0.75 : 1);
   line(cr, x, panel.top, x, panel.top + panel.height);
   cairo_set_dash(cr, nullptr, 0, 0);
 }
@@ -178,10 +174,8 @@ void draw_legend(cairo_t* cr, double left, double right, double y, double font,
   }
 }
 
-}  // namespace
-
-void draw_threshold_figure(cairo_t* cr, int width, int height, const ThresholdFigure& figure) {
-  set(cr, kPaper);
+void draw_figure(cairo_t* cr, int width, int height, const ThresholdFigure& figure) {
+  set_color(cr, kPaper);
   cairo_paint(cr);
   const bool labels = width >= 200 && height >= 150;  // below that no letter could be read
   const double font = std::max(9.0, 9.5 * std::pow(std::min(width * 0.75, double(height)) / 240, 0.75));
@@ -232,6 +226,17 @@ void draw_threshold_figure(cairo_t* cr, int width, int height, const ThresholdFi
   text(cr, lower.left, second, 0, 0, "index of fuzziness", kText);
   draw_legend(cr, lower.left + text_width(cr, "index of fuzziness") + font, right, second, font,
               {{"omega", kObject}, {"beta (normalised)", kBackground}});
+}
+
+}  // namespace
+
+bool draw_threshold_figure(const ThresholdFigure& figure, const Canvas& canvas) {
+  const SurfacePtr surface(cairo_image_surface_create_for_data(
+      canvas.data, CAIRO_FORMAT_RGB24, canvas.width, canvas.height, static_cast<int>(canvas.stride)));
+  const ContextPtr cairo(cairo_create(surface.get()));
+  draw_figure(cairo.get(), canvas.width, canvas.height, figure);
+  cairo_surface_flush(surface.get());
+  return cairo_status(cairo.get()) == CAIRO_STATUS_SUCCESS;
 }
 
 }  // namespace cerberus::overlay

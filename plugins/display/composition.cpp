@@ -46,28 +46,41 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
   return n;
 }
 
+GstVideoOverlayRectangle* rectangle_of(const overlay::Patch& patch) {
+  // The buffer holds the picture: no copy.
+  using Holder = std::shared_ptr<const overlay::Picture>;
+  const overlay::Picture& picture = *patch.pixels;
+  const gsize size = sizeof(std::uint32_t) * static_cast<gsize>(picture.stride()) * picture.height;
+  GstBuffer* pixels = gst_buffer_new_wrapped_full(
+      GST_MEMORY_FLAG_READONLY, const_cast<std::uint32_t*>(picture.words.data()), size, 0, size,
+      new Holder(patch.pixels), [](gpointer data) { delete static_cast<Holder*>(data); });
+  gst_buffer_add_video_meta(pixels, GST_VIDEO_FRAME_FLAG_NONE, GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB,
+                            static_cast<guint>(picture.width), static_cast<guint>(picture.height));
+  GstVideoOverlayRectangle* rectangle = gst_video_overlay_rectangle_new_raw(
+      pixels, patch.area.x, patch.area.y, static_cast<guint>(patch.area.width),
+      static_cast<guint>(patch.area.height), GST_VIDEO_OVERLAY_FORMAT_FLAG_PREMULTIPLIED_ALPHA);
+  gst_buffer_unref(pixels);
+  return rectangle;
+}
+
 }  // namespace
 
-CompositionPtr compose(std::span<const overlay::Patch> patches, const GstVideoOverlayComposition* before) {
+CompositionPtr Composer::compose(std::span<const overlay::Patch> patches,
+                                 const GstVideoOverlayComposition* before) {
   CompositionPtr composition(gst_video_overlay_composition_new(nullptr));
+  std::swap(last_, next_);
+  next_.clear();
+  std::size_t at = 0;  // patches keep their order: the search for one goes on behind the one before
   for (const overlay::Patch& patch : patches) {
-    // The buffer holds the surface: no copy, and labels that stay the same are shared from frame to frame.
-    cairo_surface_t* surface = cairo_surface_reference(patch.pixels.get());
-    const gsize size = static_cast<gsize>(cairo_image_surface_get_stride(surface)) * patch.area.height;
-    GstBuffer* pixels = gst_buffer_new_wrapped_full(
-        GST_MEMORY_FLAG_READONLY, cairo_image_surface_get_data(surface), size, 0, size, surface,
-        [](gpointer data) { cairo_surface_destroy(static_cast<cairo_surface_t*>(data)); });
-    gsize offsets[GST_VIDEO_MAX_PLANES] = {};
-    gint strides[GST_VIDEO_MAX_PLANES] = {cairo_image_surface_get_stride(surface)};
-    gst_buffer_add_video_meta_full(pixels, GST_VIDEO_FRAME_FLAG_NONE,
-                                   GST_VIDEO_OVERLAY_COMPOSITION_FORMAT_RGB, patch.area.width,
-                                   patch.area.height, 1, offsets, strides);
-    GstVideoOverlayRectangle* rectangle = gst_video_overlay_rectangle_new_raw(
-        pixels, patch.area.x, patch.area.y, patch.area.width, patch.area.height,
-        GST_VIDEO_OVERLAY_FORMAT_FLAG_PREMULTIPLIED_ALPHA);
-    gst_buffer_unref(pixels);
-    gst_video_overlay_composition_add_rectangle(composition.get(), rectangle);
-    gst_video_overlay_rectangle_unref(rectangle);
+    RectanglePtr rectangle;
+    for (std::size_t i = at; i < last_.size() && !rectangle; ++i)
+      if (last_[i].rectangle && last_[i].patch.pixels == patch.pixels && last_[i].patch.area == patch.area) {
+        rectangle = std::move(last_[i].rectangle);
+        at = i + 1;
+      }
+    if (!rectangle) rectangle.reset(rectangle_of(patch));
+    gst_video_overlay_composition_add_rectangle(composition.get(), rectangle.get());
+    next_.push_back({patch, std::move(rectangle)});
   }
   auto* others = const_cast<GstVideoOverlayComposition*>(before);
   for (guint i = 0; others && i < gst_video_overlay_composition_n_rectangles(others); ++i)
@@ -79,13 +92,8 @@ CompositionPtr compose(std::span<const overlay::Patch> patches, const GstVideoOv
 void blend(std::span<const overlay::Patch> patches, GstVideoFrame* frame) {
   overlay::BlendComponent all[GST_VIDEO_MAX_COMPONENTS];
   const auto n = static_cast<std::size_t>(components(frame, all));
-  for (const overlay::Patch& patch : patches) {
-    cairo_surface_t* surface = patch.pixels.get();
-    const vision::View<const std::uint32_t> drawing{
-        reinterpret_cast<const std::uint32_t*>(cairo_image_surface_get_data(surface)), patch.area.width,
-        patch.area.height, cairo_image_surface_get_stride(surface) / 4};
-    overlay::blend(drawing, patch.area.x, patch.area.y, {all, n});
-  }
+  for (const overlay::Patch& patch : patches)
+    overlay::blend(patch.pixels->view(), patch.area.x, patch.area.y, {all, n});
 }
 
 }  // namespace cerberus::plugin

@@ -7,8 +7,9 @@
 
 #include <memory>
 #include <span>
+#include <vector>
 
-#include "overlay/painter.h"
+#include "overlay/picture.h"
 
 namespace cerberus::plugin {
 
@@ -17,8 +18,26 @@ struct CompositionDeleter {
 };
 using CompositionPtr = std::unique_ptr<GstVideoOverlayComposition, CompositionDeleter>;
 
-// The patches as rectangles below those of `before` (may be null), which is not changed. Pixels are not copied.
-CompositionPtr compose(std::span<const overlay::Patch> patches, const GstVideoOverlayComposition* before);
+struct RectangleDeleter {
+  void operator()(GstVideoOverlayRectangle* r) const { gst_video_overlay_rectangle_unref(r); }
+};
+using RectanglePtr = std::unique_ptr<GstVideoOverlayRectangle, RectangleDeleter>;
+
+// Patches as rectangles of a composition. A patch that stays as it was keeps its rectangle: a sink that has uploaded it
+// needs not do so again.
+class Composer {
+ public:
+  // The patches below the rectangles of `before` (may be null), which is not changed. Pixels are not copied.
+  CompositionPtr compose(std::span<const overlay::Patch> patches, const GstVideoOverlayComposition* before);
+  void reset() { last_.clear(), next_.clear(); }
+
+ private:
+  struct Composed {
+    overlay::Patch patch;
+    RectanglePtr rectangle;
+  };
+  std::vector<Composed> last_, next_;
+};
 
 // Draws the patches into a frame of CERBERUS_VIDEO_FORMATS, mapped for reading and writing.
 // gst_video_overlay_composition_blend() knows every format, but converts each row that a rectangle touches over the

@@ -123,6 +123,7 @@ struct State {  // streaming thread only
   cerberus::plugin::CameraFollower camera;
   overlay::Trails trails;
   overlay::Painter painter;
+  cerberus::plugin::Composer composer;
   std::vector<overlay::Object> objects;
   std::vector<overlay::Area> covered;
   std::vector<overlay::TrailMark> marks;
@@ -196,6 +197,7 @@ void read_covered(State& state, const GstVideoOverlayCompositionMeta* meta) {
 void forget(State& state) {
   state.trails.reset();
   state.painter.reset();
+  state.composer.reset();
   state.fresh = true;
 }
 
@@ -409,7 +411,7 @@ GstFlowReturn cerberus_motion_overlay_transform_ip(GstBaseTransform* transform, 
     if (meta) gst_buffer_remove_video_overlay_composition_meta(buffer, meta);
     if (state.attach) {
       gst_buffer_add_video_overlay_composition_meta(
-          buffer, cerberus::plugin::compose(state.patches, before.get()).get());
+          buffer, state.composer.compose(state.patches, before.get()).get());
     } else if (!draw_into(state, buffer, before.get()) && !state.warned) {
       state.warned = true;
       CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, ("A frame could not be drawn on."),

@@ -33,7 +33,6 @@
  * Since: 0.1
  */
 
-#include <cairo.h>
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/gstvideometa.h>
@@ -46,7 +45,6 @@
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/plane_pool.hpp"
 #include "cerberus/private/video.hpp"
-#include "overlay/painter.h"
 #include "overlay/plane_view.h"
 #include "overlay/threshold_figure.h"
 #include "shared/complaint.hpp"
@@ -191,12 +189,7 @@ bool show_histogram(const MappedPlane& plane, GstBuffer* buffer, const overlay::
     figure.fuzzy_threshold = static_cast<int>(std::min(meta->threshold.fuzzy_threshold, 255u));
     figure.noise = meta->threshold.noise;
   }
-  const overlay::SurfacePtr surface(cairo_image_surface_create_for_data(
-      canvas.data, CAIRO_FORMAT_RGB24, canvas.width, canvas.height, static_cast<int>(canvas.stride)));
-  const overlay::ContextPtr cairo(cairo_create(surface.get()));
-  overlay::draw_threshold_figure(cairo.get(), canvas.width, canvas.height, figure);
-  cairo_surface_flush(surface.get());
-  return cairo_status(cairo.get()) == CAIRO_STATUS_SUCCESS;
+  return overlay::draw_threshold_figure(figure, canvas);
 }
 
 // The analysis picture, made here as cameramotion makes it.

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The labels of objects: a pill in the colour of the identity, with the identity, two bars for an object that stands,
+// speed and distance. A label is kept as long as it is shown, and drawn again only when its text changes.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+
+#include "overlay/glyphs.h"
+#include "overlay/picture.h"
+#include "overlay/scene.h"
+
+namespace cerberus::overlay {
+
+class Labels {
+ public:
+  // Begins a frame. font: size of the text, pixels.
+  void begin(double font, PicturePool& pool);
+  // The label of an object; `detailed`: with speed (if `speeds`) and distance where they are known. Null where there is
+  // nothing to write. Numbers are as a glance takes them in: 3.2, 45.
+  std::shared_ptr<const Picture> label(const Object& object, bool detailed, bool speeds);
+  // Forgets the labels that were not shown since begin().
+  void end();
+  void clear() { labels_.clear(); }
+
+ private:
+  struct Label {
+    ObjectState state = ObjectState::seen;
+    std::string details;
+    PicturePtr picture;
+    bool drawn = false, used = false;
+  };
+  void write_details(const Object& object, bool speeds);
+  PicturePtr draw(const Object& object);
+
+  double font_ = 0;
+  PicturePool* pool_ = nullptr;  // from begin() on
+  Glyphs bold_, small_;
+  std::string details_;                              // of the object at hand
+  std::unordered_map<std::uint64_t, Label> labels_;  // by identity and detail
+};
+
+}  // namespace cerberus::overlay

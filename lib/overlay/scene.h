@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What the overlay shows of one frame.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "overlay/picture.h"
+#include "overlay/trails.h"
+
+namespace cerberus::overlay {
+
+enum class ObjectState { seen, coasted, stopped };
+
+struct Object {
+  std::uint32_t id = 0;  // 0: none
+  double x = 0, y = 0, width = 0, height = 0;
+  double speed = 0;     // pixels a second; not finite: unknown
+  double distance = 0;  // metres; not finite: unknown
+  ObjectState state = ObjectState::seen;
+  bool target = false;  // the head follows it
+};
+
+struct Light {
+  int sensor = 0;            // its number, from 1
+  std::uint8_t reading = 2;  // 0 nothing, 1 somebody, else invalid
+  bool operator==(const Light&) const = default;
+};
+
+// The head's direction, and the last decision of the fusion.
+struct System {
+  bool pose = false, decision = false;  // what of the following is known
+  double pan = 0, tilt = 0;             // degrees
+  std::string rule, action;
+  std::vector<Light> lights;  // from left to right
+};
+
+struct Scene {
+  vision::Size frame;
+  System system;
+  std::span<const Object> objects;
+  std::span<const Trails::Trail> trails;
+  std::span<const Area>
+      covered;            // by drawings of other elements, which lie on top: labels keep clear of them
+  double time = 0;        // s, of this frame
+  double trail_time = 2;  // s, after which a trail has faded
+  double line_width = 0;  // pixels, 0: from the frame's size
+  bool boxes = true, ids = true, speeds = true, crosshair = false;
+};
+
+}  // namespace cerberus::overlay

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The judge is cairo, which strokes the same path.
+#include "overlay/outline.h"
+
+#include <cairo.h>
+#include <check.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <vector>
+
+#include "overlay/cairo_helpers.h"
+#include "support/suite.h"
+
+using namespace cerberus::overlay;
+
+namespace {
+
+constexpr int kWidth = 200, kHeight = 160;
+constexpr Area kAll{0, 0, kWidth, kHeight};
+
+struct Case {
+  double x, y, width, height, line;
+  LineStyle style;
+};
+
+std::vector<std::uint32_t> drawn(const Case& c, Area area = kAll) {
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(area.width * area.height), 0u);
+  Outline(c.x, c.y, c.width, c.height, c.line, c.style, {1, 0.5, 0})
+      .draw(area, {words.data(), area.width, area.height, area.width});
+  return words;
+}
+
+std::vector<std::uint32_t> stroked(const Case& c) {
+  std::vector<std::uint32_t> words(static_cast<std::size_t>(kWidth * kHeight), 0u);
+  const SurfacePtr surface(cairo_image_surface_create_for_data(
+      reinterpret_cast<unsigned char*>(words.data()), CAIRO_FORMAT_ARGB32, kWidth, kHeight, 4 * kWidth));
+  const ContextPtr cr(cairo_create(surface.get()));
+  rounded_rectangle(cr.get(), c.x, c.y, c.width, c.height, std::min({2 * c.line, c.width / 2, c.height / 2}));
+  const double casing = std::max(1.0, 0.6 * c.line);
+  const double dashes[] = {5 * c.line, 4 * c.line}, dots[] = {0.01 * c.line, 2.6 * c.line};
+  if (c.style == LineStyle::dashed) cairo_set_dash(cr.get(), dashes, 2, 0);
+  if (c.style == LineStyle::dotted) {
+    cairo_set_dash(cr.get(), dots, 2, 0);
+    cairo_set_line_cap(cr.get(), CAIRO_LINE_CAP_ROUND);
+  }
+  cairo_set_line_width(cr.get(), c.line + 2 * casing);
+  set_color(cr.get(), {}, 0.6);
+  cairo_stroke_preserve(cr.get());
+  cairo_set_line_width(cr.get(), c.style == LineStyle::dotted ? 1.3 * c.line : c.line);
+  set_color(cr.get(), {1, 0.5, 0}, c.style == LineStyle::dashed ? 0.85 : 1);
+  cairo_stroke(cr.get());
+  cairo_surface_flush(surface.get());
+  return words;
+}
+
+const Case kCases[] = {
+    {20, 20, 150, 120, 3, LineStyle::solid},
+    {20.3, 20.7, 150.4, 119.6, 3.7, LineStyle::solid},
+    {30.25, 25.5, 40, 100.5, 1.3, LineStyle::solid},
+    {50, 40, 9, 12, 2, LineStyle::solid},
+    {20.3, 20.7, 150.4, 119.6, 3.7, LineStyle::dashed},
+    {30, 25, 60, 100, 2, LineStyle::dashed},
+    {20.3, 20.7, 150.4, 119.6, 3.7, LineStyle::dotted},
+    {30, 25, 60, 100, 2, LineStyle::dotted},
+};
+
+int difference(std::uint32_t a, std::uint32_t b) {
+  int most = 0;
+  for (int shift = 0; shift < 32; shift += 8)
+    most = std::max(most, std::abs(static_cast<int>(a >> shift & 255) - static_cast<int>(b >> shift & 255)));
+  return most;
+}
+
+}  // namespace
+
+START_TEST(a_box_is_what_cairo_strokes) {
+  for (const Case& c : kCases) {
+    const auto is = drawn(c), should = stroked(c);
+    double sum = 0;
+    int most = 0, touched = 0, far = 0;
+    for (std::size_t i = 0; i < is.size(); ++i) {
+      const int d = difference(is[i], should[i]);
+      most = std::max(most, d);
+      sum += d;
+      far += d > 64;
+      touched += (is[i] | should[i]) != 0;
+    }
+    ck_assert_msg(sum / touched < 10 && far * 50 <= touched,
+                  "line %g, style %d: mean %.2f, most %d, far %d of %d", c.line, static_cast<int>(c.style),
+                  sum / touched, most, far, touched);
+  }
+}
+END_TEST
+
+// Sides are exact, up to rounding: a pixel's share of an upright line is what the line covers of its width.
+START_TEST(sides_cover_pixels_as_far_as_they_reach) {
+  const auto words = drawn({20.25, 20, 150, 120, 3, LineStyle::solid});
+  // Line from 18.75 to 21.75, casing 1.8 to both sides: 16.95 to 23.55.
+  const double line[] = {0, 0, 0.25, 1, 1, 0.75, 0, 0}, casing[] = {0.05, 1, 1, 1, 1, 1, 1, 0.55};
+  for (int i = 0; i < 8; ++i) {
+    const std::uint32_t word = words[static_cast<std::size_t>(80 * kWidth + 16 + i)];
+    const double alpha = line[i] + (1 - line[i]) * 0.6 * casing[i];
+    ck_assert_int_le(std::abs(static_cast<int>(word >> 24) - static_cast<int>(std::lround(255 * alpha))), 1);
+    ck_assert_int_le(
+        std::abs(static_cast<int>(word >> 16 & 255) - static_cast<int>(std::lround(255 * line[i]))), 1);
+  }
+}
+END_TEST
+
+// However the frame is cut into areas, dashes and dots join.
+START_TEST(parts_are_parts_of_the_whole) {
+  for (const Case& c : kCases) {
+    const auto whole = drawn(c);
+    for (const Area part : {Area{0, 0, kWidth, 40}, Area{0, 40, 60, 80}, Area{150, 33, 50, 100}}) {
+      const auto words = drawn(c, part);
+      for (int y = 0; y < part.height; ++y)
+        for (int x = 0; x < part.width; ++x)
+          ck_assert_int_le(difference(words[static_cast<std::size_t>(y * part.width + x)],
+                                      whole[static_cast<std::size_t>((y + part.y) * kWidth + x + part.x)]),
+                           2);
+    }
+  }
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "outline",
+      {a_box_is_what_cairo_strokes, sides_cover_pixels_as_far_as_they_reach, parts_are_parts_of_the_whole});
+}
