@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "overlay/cairo_helpers.h"
-#include "overlay/target_marks.h"
+#include "overlay/marks/target_marks.h"
 
 namespace cerberus::overlay {
 

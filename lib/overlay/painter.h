@@ -7,12 +7,12 @@
 #include <unordered_map>
 #include <vector>
 
-#include "overlay/labels.h"
-#include "overlay/outline.h"
+#include "overlay/marks/labels.h"
+#include "overlay/marks/outline.h"
+#include "overlay/marks/system_panel.h"
+#include "overlay/marks/trail_line.h"
 #include "overlay/picture.h"
 #include "overlay/scene.h"
-#include "overlay/system_panel.h"
-#include "overlay/trail_line.h"
 
 namespace cerberus::overlay {
 

@@ -326,6 +326,21 @@ GST_START_TEST(a_missing_plane_is_black_and_told_once) {
 }
 GST_END_TEST
 
+GST_START_TEST(each_stage_that_misses_its_plane_is_warned_of_once) {
+  const std::string caps = caps_string("I420", 64, 48);
+  Harness harness = started("motionview stage=mask", caps);
+  GstElement* element = gst_harness_find_element(harness.get(), "motionview");
+  Bus bus(harness.get());
+  int number = 0;
+  for (const char* stage : {"mask", "difference", "previous-difference", "mask", "difference"}) {
+    gst_util_set_object_arg(G_OBJECT(element), "stage", stage);
+    for (int k = 0; k < 2; ++k) fail_unless(shown(harness.get(), frame(info_of(caps), number++)).all(0));
+  }
+  fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING), 3);
+  gst_object_unref(element);
+}
+GST_END_TEST
+
 // Grey of level 77 in every format: what is shown is what cameramotion would have analysed.
 GST_START_TEST(luma_is_made_here_where_no_stage_made_it) {
   for (const char* format : kFormats) {
@@ -504,6 +519,7 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, each_option_of_the_threshold_moves_the_curves);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
   tcase_add_test(tc, a_missing_plane_is_black_and_told_once);
+  tcase_add_test(tc, each_stage_that_misses_its_plane_is_warned_of_once);
   tcase_add_test(tc, luma_is_made_here_where_no_stage_made_it);
   tcase_add_test(tc, a_buffer_without_a_picture_is_black_and_told_once);
   tc = tcase_create("stream");

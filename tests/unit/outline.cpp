@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The judge is cairo, which strokes the same path.
-#include "overlay/outline.h"
+#include "overlay/marks/outline.h"
 
 #include <cairo.h>
 #include <check.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "overlay/glyphs.h"
+#include "overlay/marks/glyphs.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "overlay/labels.h"
+#include "overlay/marks/labels.h"
 
 #include <algorithm>
 #include <charconv>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "overlay/system_panel.h"
+#include "overlay/marks/system_panel.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "overlay/target_marks.h"
+#include "overlay/marks/target_marks.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "overlay/trail_line.h"
+#include "overlay/marks/trail_line.h"
 
 #include <algorithm>
 #include <array>

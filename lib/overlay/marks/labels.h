@@ -7,7 +7,7 @@
 #include <string>
 #include <unordered_map>
 
-#include "overlay/glyphs.h"
+#include "overlay/marks/glyphs.h"
 #include "overlay/picture.h"
 #include "overlay/scene.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "overlay/outline.h"
+#include "overlay/marks/outline.h"
 
 #include <algorithm>
 #include <cmath>
