@@ -15,8 +15,8 @@ using Patience = std::chrono::steady_clock::duration;
 
 class Worker {
  public:
-  // `work` owns or shares all that it touches: if it hangs, it keeps
-  // that until it returns, and whoever began it may be long gone.
+  // `work` owns or shares all that it touches: if it hangs, it keeps that until it returns, beyond the life of the
+  // Worker.
   template <typename Work>
   explicit Worker(Work work) {
     std::promise<void> over;
@@ -30,7 +30,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // Waits for the end of the work, so long; then it is on its own.
+  // Waits for the end of the work for `patience`; then detaches it.
   void leave(Patience patience) {
     if (!thread_.joinable()) return;
     if (over_.wait_for(patience) == std::future_status::ready)
@@ -44,24 +44,24 @@ class Worker {
   std::thread thread_;
 };
 
-// Whom a worker tells something, until he does not want to hear any more.
+// A notification from a worker, until the receiver silences it.
 class Bell {
  public:
-  explicit Bell(std::function<void()> told) : told_(std::move(told)) {}
-  // On the worker's thread. Who is told must not block, nor silence the bell.
+  explicit Bell(std::function<void()> notify) : notify_(std::move(notify)) {}
+  // On the worker's thread. The receiver must not block, nor silence the bell.
   void ring() {
     const std::lock_guard guard(lock_);
-    if (told_) told_();
+    if (notify_) notify_();
   }
-  // When it returns nobody is being told.
+  // Returns when no notification is in progress; none follows.
   void silence() {
     const std::lock_guard guard(lock_);
-    told_ = nullptr;
+    notify_ = nullptr;
   }
 
  private:
   std::mutex lock_;
-  std::function<void()> told_;
+  std::function<void()> notify_;
 };
 
 }  // namespace cerberus::drivers

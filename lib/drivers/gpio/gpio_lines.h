@@ -15,7 +15,7 @@ namespace cerberus::drivers {
 
 struct GpioEdge {
   Time time{};         // CLOCK_MONOTONIC, the kernel's stamp
-  std::size_t line{};  // its place in what was requested
+  std::size_t line{};  // index in the request
   bool level = false;
 };
 
@@ -29,17 +29,17 @@ class GpioLines {
 
   // Of the open chip.
   std::string name() const;   // "gpiochip0"
-  std::string label() const;  // what the kernel's driver calls it
+  std::string label() const;  // the kernel driver's label
   unsigned count() const;
   int find(const std::string& line) const;  // offset of a line by its name; -1: no such
-  std::string user(unsigned offset) const;  // who has the line; empty: nobody, or nobody knows
+  std::string user(unsigned offset) const;  // the line's consumer; empty: none, or unknown
 
   // Once each. Inputs report both edges, outputs begin low.
   int request_inputs(std::span<const unsigned> offsets, LineBias bias);
   int request_outputs(std::span<const unsigned> offsets);
 
   int fd() const;  // readable when an input line had an edge; -1: nothing requested
-  // Appends the edges that wait, oldest first of each line, never blocks.
+  // Appends the pending edges, oldest first of each line; never blocks.
   int read(std::vector<GpioEdge>& edges);
   int levels(std::vector<bool>& levels);     // of the input lines
   int set(const std::vector<bool>& levels);  // of the output lines

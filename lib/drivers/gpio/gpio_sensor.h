@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors on lines of a GPIO chip, with the kernel's time stamps; nothing is polled for edges. LEDs on output lines of
-// the same chip. read() also asks for the lines' levels: an edge that the kernel had to drop does not leave a
-// sensor wrong for ever, and a chip that went away is noticed although kernels before 6.5 do not wake who waits for it.
+// Sensors on lines of a GPIO chip, with the kernel's time stamps; edges are not polled. LEDs on output lines of the same
+// chip. read() also reads the lines' levels: so a sensor recovers from an edge that the kernel dropped, and a removed
+// chip is noticed although kernels before 6.5 do not wake a poll on it.
 #pragma once
 
 #include "drivers/gpio/gpio_lines.h"
@@ -34,7 +34,7 @@ class GpioSensor final : public Sensor {
   std::vector<unsigned> inputs_, outputs_;
   std::size_t reds_ = 0, blues_ = 0;
   std::vector<GpioEdge> waiting_;
-  std::vector<bool> levels_, asked_, leds_;  // as told, as the chip says, as lit
+  std::vector<bool> levels_, asked_, leds_;  // as reported, as read from the chip, as lit
   bool open_ = false, begun_ = false;
 };
 

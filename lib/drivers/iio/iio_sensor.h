@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Analogue sensors on an A/D converter of Linux' IIO: (in_voltageY_raw + offset) x scale = millivolts, compared with a
-// threshold that has a hysteresis. Sampled at an interval, by a timer that fd() is; every sample is told.
+// threshold with hysteresis. Sampled at an interval by the timer behind fd(); every sample is reported.
 #pragma once
 
 #include "drivers/sensor/sensor.h"

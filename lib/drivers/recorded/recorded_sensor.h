@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What replay and scripted sensors share: they play a Recording.
+// Common base of replay and scripted sensors: plays a Recording.
 #pragma once
 
 #include <cstddef>

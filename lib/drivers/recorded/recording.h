@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Levels of PIR lines over time, written down. Two forms, told apart by the first character that counts:
+// Levels of PIR lines over time as text. Two forms, distinguished by the first character that counts:
 //
 //   time,infer1,infer2,infer3          {"time": 0, "pir": [0, 0, 0]}
 //   0,0,0,0                            {"time": 2.5, "pir": [1, 0, 0]}
@@ -8,7 +8,7 @@
 //
 // CSV: seconds, then a level (0, 1) a sensor; a heading, empty lines and lines that begin with # do not count.
 // JSON lines: `time` in seconds or `pts` in nanoseconds, and `pir`.
-// 2: the reading is invalid until the next 0 or 1. Times never go back. What an analogue sensor said is written in
+// 2: the reading is invalid until the next 0 or 1. Times never go back. Readings of an analogue sensor are written in
 // volts, on all lines or on none: 0,0.1V,3.2V,0V or {"time": 0, "volts": [...]}.
 #pragma once
 
@@ -22,7 +22,7 @@ namespace cerberus::drivers {
 struct Recording {
   std::vector<SensorEdge> edges;  // in order of time; those of one line of text have one time
   Time end{};                     // of the last line
-  bool volts = false;             // it says volts, and no levels: each edge's `level` is still to be found
+  bool volts = false;             // it holds volts and no levels: each edge's `level` is still to be computed
 };
 
 // `name`: of the file, for error messages. The error names it

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors of one driver, each with its PirModel: what they say together, at the start, at every change and every
-// heartbeat, each with the time when it was so.
+// Sensors of one driver, each with its PirModel: a reading of all of them at the start, at every change and every
+// heartbeat, with its time.
 #pragma once
 
 #include <array>
@@ -31,19 +31,19 @@ class SensorArray {
     reading,  // here is one
     wait,     // nothing more until `now`: come again at due(), or when the driver's fd has something
     ended,    // of a recording
-    failed,  // see error(); final. The reading before it is invalid: nothing is known of the sensors any more
+    failed,   // see error(); final. The reading before it is invalid: the sensors' states are unknown
   };
 
   SensorArray();
   ~SensorArray();
 
-  // Takes the sensors and opens them, and waits for that as long as patience goes. heartbeat > 0. refused: called on
+  // Takes the sensors and opens them, and waits for that for `patience` at most. heartbeat > 0. refused: called on
   // another thread if they cannot be opened, however late; must not block, nor call the array.
   SensorError open(std::unique_ptr<Sensor> sensor, const SensorSetup& setup,
                    const sensing::PirOptions& options, Time heartbeat,
                    Patience patience = std::chrono::minutes(10), std::function<void()> refused = {});
   void close() noexcept;
-  // False: they are still being opened. Nothing is known of them, and next() says so; fd() tells when that is over.
+  // False: they are still being opened. Until then next() gives invalid readings; fd() becomes readable at the end.
   bool opened();
 
   // The next reading not later than `now`. Readings begin with the time of the first call; there is one at least.
@@ -80,7 +80,7 @@ class SensorArray {
   Time start_{};  // of a recording, by seek()
   sensing::PirOptions options_;
   std::vector<sensing::PirModel> models_;
-  std::vector<SensorEdge> edges_;  // read, not yet told to the models from next_edge_ on
+  std::vector<SensorEdge> edges_;  // read; from next_edge_ on not yet passed to the models
   std::size_t next_edge_ = 0;
   std::vector<sensing::PirFault> faults_;
   SensorReading last_;

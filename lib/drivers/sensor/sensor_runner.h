@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors on a thread of their own: whoever reads them takes what is there, and never
-// waits for their driver, neither while it is opened nor when it reads or lights LEDs.
-// A recording is only opened there, then handed over. (Heads have a head_runner.h.)
+// Sensors on a thread of their own: the caller takes the readings that are there and never waits for the driver, neither
+// while it is opened nor when it reads or lights LEDs. A recording is only opened there, then handed over. (The same for
+// heads: head_runner.h.)
 //
 // A driver that blocks for ever keeps its thread and its device until it returns, then closes and ends by itself; the
 // runner may be long gone.
@@ -24,11 +24,11 @@ class SensorRunner final : public Sensor {
   // Begins to open the sensors. refused: called if they cannot be
   // opened, on the thread; must not block, nor call the runner.
   void begin(std::unique_ptr<Sensor> sensor, const SensorSetup& setup, std::function<void()> refused);
-  // It is over, well or not, within so long. Before that there is nothing to read, and fd() becomes readable then.
+  // Opening has ended, well or not, within `patience`. Before that there is nothing to read; fd() becomes readable then.
   bool opened(Patience patience = {}) const;
-  // Why it went wrong.
+  // Why opening or reading failed.
   SensorError error() const;
-  // What was opened, if it is a recording; once.
+  // The opened sensor, if it is a recording; once.
   std::unique_ptr<Sensor> recording();
 
   SensorError open(const SensorSetup&) override { return error(); }

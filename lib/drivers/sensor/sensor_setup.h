@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What sensor drivers are told at the start, and how they say that something is wrong.
+// Settings and errors of sensor drivers.
 #pragma once
 
 #include <chrono>
@@ -34,14 +34,14 @@ struct SensorSetup {
   std::string location;  // replay: a file, see recording.h
   std::string script;    // scripted: see scripted_sensor.h
 
-  sensing::LevelOptions level;  // of what is measured in volts: by iio, in recordings
+  sensing::LevelOptions level;  // of readings in volts: iio, recordings
 };
 
 enum class SensorFault : std::uint8_t {
   none,
-  settings,   // what was asked for makes no sense
+  settings,   // the settings contradict each other or the device
   not_found,  // no such chip, line, device, channel, file
-  busy,       // somebody else has it
+  busy,       // another process has it
   denied,     // no permission
   missing,    // this build has no such driver
   data,       // a recording that cannot be used

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What scripted drivers block on.
+// A file descriptor that scripted drivers block on.
 #pragma once
 
 #include <fcntl.h>
