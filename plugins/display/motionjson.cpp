@@ -31,6 +31,11 @@
  *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, wherever the head looks, positive to
  *   the right; `distance`: metres.
  *
+ * Keys that are there only where their values are known, after `frame`:
+ * - `utc`: wall-clock time of the frame, ISO 8601; `utc-source`: `reference-timestamp` (the buffer carries one, as of
+ *   rtspsrc's `add-reference-timestamp-meta`) or `clock` (live: the system's clock when the frame arrived).
+ * - `camera-name`: the property of this name, here or upstream.
+ *
  * Keys that are there only where an element told, after `objects`:
  * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
  *   `moving` true or false.
@@ -73,7 +78,10 @@
 #include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
+#include "shared/properties.hpp"
+#include "shared/stamps.hpp"
 #include "text/json_line.h"
+#include "text/utc.h"
 
 namespace {
 
@@ -91,14 +99,24 @@ constexpr int kShareDecimals = 3;
 constexpr int kCameraDigits = 9;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
+struct Settings {
+  std::string camera_name;
+};
+
+const cerberus::plugin::Property<Settings> kProperties[] = {
+    cerberus::plugin::property("camera-name", &Settings::camera_name, cerberus::plugin::kCameraNameBlurb),
+};
+
 struct State {  // streaming thread only
   int width = 0, height = 0;
   guint64 frame = 0;
+  cerberus::plugin::Stamps stamps;
   cerberus::plugin::Complaint complaint;  // about the caps
   cerberus::text::JsonLine line;
 };
 
 struct Private {
+  cerberus::plugin::Adjustable<Settings> settings;
   State state;
 };
 
@@ -147,7 +165,15 @@ void write_system(cerberus::text::JsonLine& line, GstBuffer* buffer, GstClockTim
   line.close('}');
 }
 
-std::string_view write_line(State& state, GstBuffer* buffer, GstClockTime time) {
+void write_stamp(cerberus::text::JsonLine& line, const CerberusStamp& stamp) {
+  if (GST_CLOCK_TIME_IS_VALID(stamp.utc)) {
+    line.key("utc").string(cerberus::text::Utc(cerberus::plugin::time_of(stamp.utc)));
+    line.key("utc-source").string(cerberus_utc_source_get_nick(stamp.utc_source));
+  }
+  if (stamp.camera_name) line.key("camera-name").text(cerberus::printable(stamp.camera_name));
+}
+
+std::string_view write_line(State& state, GstBuffer* buffer, const CerberusStamp& stamp) {
   cerberus::text::JsonLine& line = state.line;
   line.clear();
   line.open('{').key("pts");
@@ -156,6 +182,7 @@ std::string_view write_line(State& state, GstBuffer* buffer, GstClockTime time) 
   else
     line.null();
   line.key("frame").integer(state.frame);
+  write_stamp(line, stamp);
   line.key("width").integer(state.width).key("height").integer(state.height);
 
   line.key("threshold");
@@ -181,7 +208,7 @@ std::string_view write_line(State& state, GstBuffer* buffer, GstClockTime time) 
   for (guint i = 0; i < regions->len; ++i)
     write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
   line.close(']');
-  write_system(line, buffer, time);
+  write_system(line, buffer, stamp.running_time);
   return line.close('}').finish();
 }
 
@@ -190,6 +217,7 @@ gboolean cerberus_motion_json_start(GstBaseTransform* transform) {
   state.frame = 0;
   state.width = state.height = 0;
   state.complaint.forget();
+  state.stamps.reset();
   return TRUE;
 }
 
@@ -228,9 +256,12 @@ GstFlowReturn cerberus_motion_json_generate_output(GstBaseTransform* transform, 
   GstBuffer* in = std::exchange(transform->queued_buf, nullptr);
   if (!in) return GST_FLOW_OK;  // asked again after each line
   const GstFlowReturn flow = cerberus::guarded(transform, GST_FLOW_ERROR, [&] {
-    State& state = cerberus_motion_json_self(transform)->priv->state;
-    const std::string_view line =
-        write_line(state, in, cerberus::plugin::running_time_of(transform->segment, in));
+    Private& priv = *cerberus_motion_json_self(transform)->priv;
+    State& state = priv.state;
+    const CerberusStamp stamp = state.stamps.frame(GST_BASE_TRANSFORM_SINK_PAD(transform), in,
+                                                   cerberus::plugin::running_time_of(transform->segment, in),
+                                                   priv.settings.snapshot().camera_name);
+    const std::string_view line = write_line(state, in, stamp);
     *out = gst_buffer_new_memdup(line.data(), line.size());
     gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
     GST_BUFFER_OFFSET(*out) = state.frame;
@@ -247,6 +278,7 @@ void cerberus_motion_json_init(CerberusMotionJson* self) {
 }
 
 void cerberus_motion_json_class_init(CerberusMotionJsonClass* klass) {
+  cerberus::plugin::install_properties<CerberusMotionJson, kProperties>(G_OBJECT_CLASS(klass));
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(
       element, "Motion to JSON lines", "Filter/Analyzer/Video",

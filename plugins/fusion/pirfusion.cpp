@@ -75,6 +75,7 @@
 #include "sensing/pir_model.h"
 #include "settings.hpp"
 #include "settings_check.hpp"
+#include "shared/stamps.hpp"
 #include "text/numbers.h"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
@@ -107,6 +108,7 @@ struct Private {
   GstPad* src = nullptr;
   Adjustable<Settings> settings;
   std::unique_ptr<State> state = std::make_unique<State>();
+  Stamps stamps;
   Inputs inputs;
   Decisions decisions{inputs};
 
@@ -185,9 +187,7 @@ void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guin
 
 void tell_changes(CerberusPirFusion* self) {
   self->priv->decisions.tell([self](Time time, const CerberusFusion& fusion) {
-    CerberusStamp stamp;
-    cerberus_stamp_init(&stamp);
-    stamp.running_time = clock_time(time);
+    const CerberusStamp stamp = self->priv->stamps.at(clock_time(time));
     gst_element_post_message(GST_ELEMENT(self),
                              cerberus_message_new_fusion(GST_OBJECT(self), &stamp, &fusion));
   });
@@ -273,6 +273,7 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     warn_of_misfits(self, settings, told.moment);
     buffer.reset(gst_buffer_make_writable(buffer.release()));
     cerberus_buffer_set_fusion(buffer.get(), &told.fusion);
+    priv.stamps.mark(pad, buffer.get(), clock_time(state.time), settings.camera_name);
     tell_changes(self);
     return gst_pad_push(priv.src, buffer.release());
   });
@@ -284,6 +285,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_STREAM_START:
       state.live.reset();
+      priv.stamps.reset();
       priv.inputs.begin_video();
       break;
     case GST_EVENT_SEGMENT: {

@@ -4,6 +4,7 @@
 #include "motion/head_limits.h"
 #include "sensing/angles.h"
 #include "shared/choices.hpp"
+#include "shared/stamps.hpp"
 
 namespace cerberus::plugin {
 namespace {
@@ -67,6 +68,7 @@ const Property<Settings> kTable[] = {
         "Volts between switching to somebody and switching back, level-threshold in the middle; read with "
         "the caps"),
     property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
+    property("camera-name", &Settings::camera_name, kCameraNameBlurb),
 };
 
 }  // namespace

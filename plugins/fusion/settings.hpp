@@ -30,6 +30,7 @@ struct Settings {
   double level_threshold = sensing::LevelOptions{}.threshold;
   double level_hysteresis = sensing::LevelOptions{}.hysteresis;
   std::string head = "head";
+  std::string camera_name;
 };
 
 extern const std::span<const Property<Settings>> kProperties;

@@ -98,6 +98,8 @@ const Property<PirSettings> kProperties[] = {
              "level "
              "may be volts (1.7V; volts in JSON)"),
     property("script", &S::script, "scripted: lines as in a replayed file, separated by semicolons"),
+    property("camera-name", &S::camera_name,
+             "Name of the camera that the sensors belong to, for messages; empty = none"),
 };
 
 std::vector<std::string> split(const std::string& list) {

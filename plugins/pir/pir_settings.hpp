@@ -43,6 +43,7 @@ struct PirSettings {
   guint64 sample_interval = clock_time(drivers::SensorSetup{}.interval);
 
   std::string location, script;
+  std::string camera_name;
 };
 
 std::span<const Property<PirSettings>> pir_properties();

@@ -58,6 +58,7 @@
 #include "drivers/sensor/sensor_array.h"
 #include "pir_settings.hpp"
 #include "reports.hpp"
+#include "shared/stamps.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirsrc_debug);
 #define GST_CAT_DEFAULT pirsrc_debug
@@ -302,6 +303,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     if (step == SensorArray::Step::reading) {
       news.time = priv.last = std::max(priv.last, running_time(self, news.reading.time));
       news.info = priv.info;
+      news.stamp = Stamps::now(GST_CLOCK_TIME_NONE, priv.live, priv.settings.snapshot().camera_name);
       for (int i = 0; i < priv.sensors.count(); ++i) {
         if (!(news.reading.faulty >> i & 1)) continue;
         news.faults[static_cast<std::size_t>(i)] = priv.sensors.fault(i);

@@ -66,8 +66,7 @@ GstBuffer* publish(GstBaseSrc* source, const News& news) {
     if (reading.faulty >> i & 1)
       report_fault(element, static_cast<int>(i), news.faults[i], news.info.bearings[i], news.places[i]);
   if (reading.changed) {
-    CerberusStamp stamp;
-    cerberus_stamp_init(&stamp);
+    CerberusStamp stamp = news.stamp;
     stamp.running_time = gst_segment_to_running_time(&source->segment, GST_FORMAT_TIME, news.time);
     gst_element_post_message(element, cerberus_message_new_pir(GST_OBJECT(source), &stamp, &pir));
   }

@@ -22,6 +22,7 @@ struct News {
   drivers::SensorReading reading;
   GstClockTime time = 0;
   CerberusPirInfo info{};
+  CerberusStamp stamp;  // of the reading; its running time is set when it is published
   std::array<sensing::PirFault, sensing::kMaxSensors> faults{};
   std::array<std::string, sensing::kMaxSensors> places;
 };

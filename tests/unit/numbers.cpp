@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Numbers as text, against what printf() writes where the locale is C's.
 #include "text/numbers.h"
+#include "text/utc.h"
 
 #include <check.h>
 
@@ -35,6 +36,19 @@ START_TEST(each_way_of_writing_has_its_use) {
   assert_is(text::significant(27.0512, 4), "27.05");
   assert_is(text::significant(80, 4), "80");
   assert_is(text::significant(1234567, 3), "1.23e+06");
+}
+END_TEST
+
+START_TEST(a_point_of_time_is_iso_8601) {
+  using namespace std::chrono_literals;
+  const auto is = [](std::chrono::nanoseconds time, const char* expected) {
+    return std::string_view(text::Utc(time)) == expected;
+  };
+  ck_assert(is(0ns, "1970-01-01T00:00:00.000000Z"));
+  ck_assert(is(1700000000123456789ns, "2023-11-14T22:13:20.123456Z"));
+  ck_assert(is(951782399s + 999999999ns, "2000-02-28T23:59:59.999999Z"));
+  ck_assert(is(951782400s, "2000-02-29T00:00:00.000000Z"));  // a leap day
+  ck_assert(is(-1ns, "1969-12-31T23:59:59.999999Z"));
 }
 END_TEST
 
@@ -92,7 +106,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "numbers",
-      {each_way_of_writing_has_its_use, no_zero_is_below_zero, whatever_number_it_is_there_is_room_for_it,
-       it_is_what_printf_writes_in_c_and_the_same_in_germany, nothing_is_allocated});
+      "numbers", {each_way_of_writing_has_its_use, a_point_of_time_is_iso_8601, no_zero_is_below_zero,
+                  whatever_number_it_is_there_is_room_for_it,
+                  it_is_what_printf_writes_in_c_and_the_same_in_germany, nothing_is_allocated});
 }
