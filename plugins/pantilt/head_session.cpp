@@ -36,6 +36,7 @@ static_assert(static_cast<int>(control::HeadState::stopped) == CERBERUS_PANTILT_
 struct Posting {
   GstElement* sink;
   const char* head;
+  const Stamps& stamps;
 
   void operator()(const control::Status& status) const {
     CerberusPantilt pantilt;
@@ -44,9 +45,7 @@ struct Posting {
     pantilt.pose = pose_of(head, status.pose);
     std::string reason = status.reason;
     pantilt.reason = reason.data();
-    CerberusStamp stamp;
-    cerberus_stamp_init(&stamp);
-    stamp.running_time = clock_time(status.time);
+    const CerberusStamp stamp = stamps.at(clock_time(status.time));
     gst_element_post_message(sink, cerberus_message_new_pantilt(GST_OBJECT(sink), &stamp, &pantilt));
   }
   void operator()(const control::Refusal& refusal) const { refuse(sink, head, refusal.why); }
@@ -119,7 +118,7 @@ void HeadSession::send(const Reports& reports) const {
         gst_pad_push_event(GST_BASE_SINK_PAD(sink), cerberus_event_new_pose(&event));
       },
       [this](const char* whose, const control::Notice& notice) {
-        std::visit(Posting{GST_ELEMENT(sink), whose}, notice);
+        std::visit(Posting{GST_ELEMENT(sink), whose, stamps}, notice);
       });
 }
 
@@ -143,6 +142,8 @@ bool HeadSession::open() {
   auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); }, [this] { refusal_soon(); });
   if (!runner) return false;
   head = g_intern_string(s.head.c_str());
+  camera_name = s.camera_name;
+  stamps.reset();
   clock_driven = real_ = !runner->simulated();
   {
     const std::lock_guard guard(configuring_);

@@ -14,6 +14,7 @@
 #include "control/head_controller.h"
 #include "head_settings.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/stamps.hpp"
 #include "ticker.hpp"
 
 namespace cerberus::plugin {
@@ -63,6 +64,9 @@ struct HeadSession {
     send(out);
     return result;
   }
+
+  Stamps stamps;  // of the frames
+  std::string camera_name;
 
  private:
   void refusal_soon();

@@ -3,6 +3,7 @@
 
 #include "helper_program.hpp"
 #include "shared/choices.hpp"
+#include "shared/stamps.hpp"
 #include "shared/times.hpp"
 
 namespace cerberus::plugin {
@@ -94,6 +95,7 @@ const Property<HeadSettings> kProperties[] = {
              "Nanoseconds for which a person who stopped is watched at least, without pirfusion upstream"),
     property("watchdog-timeout", &HeadSettings::watchdog_timeout,
              "Nanoseconds without a frame after which the head stops; 0 = never"),
+    property("camera-name", &HeadSettings::camera_name, kCameraNameBlurb).read_at_start(),
 };
 
 }  // namespace

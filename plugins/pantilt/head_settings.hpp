@@ -15,6 +15,7 @@ namespace cerberus::plugin {
 struct HeadSettings {
   std::string driver = "simulated";
   std::string head = "head";
+  std::string camera_name;
   std::string script;
   std::string device, device_options, command;
   guint64 helper_timeout = 500 * GST_MSECOND;

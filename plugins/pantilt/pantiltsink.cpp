@@ -200,6 +200,7 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
       .lens = vision::Lens(radians(session.field_of_view), {info.width, info.height}),
       .capture = std::nullopt};
   if (buffer) {
+    session.stamps.frame(GST_BASE_SINK_PAD(session.sink), buffer, clock_time(*taken), session.camera_name);
     read_tracks(buffer, self.state.tracks);
     const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
     frame.seen.emplace(self.state.tracks, fusion ? std::optional(from_c(*fusion)) : std::nullopt);

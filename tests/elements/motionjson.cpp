@@ -314,6 +314,7 @@ GST_START_TEST(gaps_pass_and_nothing_is_delayed) {
   fail_unless(gst_harness_push_event(h.get(), gst_event_new_gap(40 * GST_MSECOND, 40 * GST_MSECOND)));
   fail_unless(event_came(h.get(), GST_EVENT_GAP));
   fail_unless_equals_int(gst_harness_buffers_in_queue(h.get()), 0);
+  gst_harness_set_live(h.get(), TRUE);
   gst_harness_set_upstream_latency(h.get(), 5 * GST_MSECOND);
   fail_unless_equals_uint64(gst_harness_query_latency(h.get()), 5 * GST_MSECOND);
 }

@@ -133,7 +133,7 @@ class OnAPlainBuffer(unittest.TestCase):
         self.assertEqual((version.major, version.minor, version.micro),
                          (Cerberus.VERSION_MAJOR, Cerberus.VERSION_MINOR, Cerberus.VERSION_MICRO))
         self.assertTrue(Cerberus.video_format_is_supported(GstVideo.VideoFormat.NV12))
-        self.assertFalse(Cerberus.video_format_is_supported(GstVideo.VideoFormat.P010_10LE))
+        self.assertFalse(Cerberus.video_format_is_supported(GstVideo.VideoFormat.V308))
 
 
 class ThroughAPipeline(unittest.TestCase):
