@@ -121,8 +121,8 @@ void RegionFinder::State::trim() {
   }
 }
 
-// Only walkers teach: blobs that look like one person, with nobody and nothing near, of the same height for three
-// looks, and on the way. Pieces of somebody close by come in crowds, flicker and stay in place.
+// Only walkers are samples of the height prior: blobs that look like one person, isolated, of the same height for three
+// frames, and moving. Fragments of a person close by come in crowds, flicker and stay in place.
 void RegionFinder::State::learn(const Transform& motion) {
   const auto parts = labeller.components();
   std::swap(walkers, walkers_before);
@@ -179,9 +179,8 @@ void RegionFinder::State::add_plain(std::size_t i, bool person) {
   if (regions.size() == regions.capacity()) return;
   Box box = box_of(bodies[i]);
   const double filled = c.area / box.area();
-  // What somebody leaves who stood there when the scene began differs from the memory as he does: the edge that moves
-  // has him on one side and the place he left on the other, and nobody can tell which is which yet. The box takes in
-  // both.
+  // An object that was there when the scene began uncovers its place: the foreground edge has the object on one side and
+  // the place on the other, and in a young scene they cannot be distinguished. The box takes in both.
   if (options.people && !person && seen <= kYoung) {
     const double rim = std::max(1.0, std::round(kRim * size.width / 320));
     const double left = std::max(box.x - rim, 0.0), top = std::max(box.y - rim, 0.0);
@@ -323,7 +322,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   s.morphology.close(s.closed.view(), mask.width, side);
   const auto parts = s.labeller.find(s.closed.view(), mask.width, s.least());
   unpack(s.closed.view(), mask);
-  if (!labels.empty()) s.labeller.write(labels);  // empty: nobody wants them
+  if (!labels.empty()) s.labeller.write(labels);  // empty: not wanted
   s.trim();
   if (!s.options.people || parts.size() > kMostParts) {
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);

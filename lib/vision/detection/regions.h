@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From the moving area to regions of interest: clean-up, labelling, merging of one person's fragments,
-// splitting of two people side by side ("post treatment" of the paper).
+// From the foreground mask to regions of interest: closing, labelling, joining the fragments of one person, parting
+// people side by side ("post treatment" of the paper).
 #pragma once
 
 #include <cstdint>
@@ -38,13 +38,13 @@ class RegionFinder {
   RegionFinder& operator=(RegionFinder&&) noexcept;
 
   void set_options(const RegionOptions& options);
-  // Forget what was learnt of the scene (heights); a cut does that.
+  // Forgets the scene: learnt heights, young-scene rules. Called at a cut.
   void reset();
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,
-  // may be empty where nobody wants them. What is small in a young scene is no region before it was seen twice, see
-  // TwoFrameConfirmation. motion: frame k-1 to k, so that what was learnt moves with the camera. The
-  // span lives until the next call. Memory is bounded, and taken at the first picture of a size; what is beyond it is
-  // clutter, see Labeller.
+  // may be empty. Small regions of a young scene are returned from their second frame on, see TwoFrameConfirmation.
+  // motion: frame k-1 to k, analysis pixels, by which the learnt heights move with the camera. The span lives until the
+  // next call. Memory is bounded and allocated at the first picture of a size; components beyond it are clutter, see
+  // Labeller.
   std::span<const Region> update(MutableGrayView mask, View<std::uint16_t> labels, const Transform& motion);
   std::size_t bytes() const;
 
