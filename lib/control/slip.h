@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Does the picture follow the head? For one axis: what the head was told against what the picture shows.
+// Slip detection for one axis: does the turn of the picture follow the commanded turn of the head?
 //
-// A robot's own turning moves the picture too, so speeds say nothing; only their changes do: in a moment in which the
-// head's speed was told to change, the picture's must change by as much, whatever the robot does besides.
+// A robot's own turn moves the picture too, so that speeds cannot be compared, only their changes: when the commanded
+// speed changes, the picture's must change by as much, whatever the robot does besides.
 //
-//   bins of kBin; of each the mean speeds h (head, as told) and r (picture)
+//   bins of kBin; of each the mean speeds h (head, as commanded) and r (picture)
 //   pairs of bins with one between them: e = h(j) - h(j-2), d = r(j) - r(j-2); counted where |e| >= kLeastChange
 //   episode: pairs in a row; gain = sum d e / sum e^2; stir = max - min of r - gain h over the episode's bins
 //   all this for heads that are 0 .. (kLags - 1) kLag late: the lag that leaves the least stir counts
-//   finding: least_episodes() in a row that say the same, and kLeastTravel
+//   finding: least_episodes() in a row of the same fault, and kLeastTravel
 //
 // One case looks like a head that slips and is none: a head that holds a target while the robot turns below it moves,
 // and the picture stands. It cannot do so without being late, though (it sees the robot turn before it answers), and
@@ -32,21 +32,21 @@ enum class SlipFault : std::uint8_t {
   none,
   slips,     // the picture stands: the head does not turn at all
   reversed,  // the picture turns the other way
-  scale,     // it turns by another angle: the lens or the gear is not what was said
+  scale,     // it turns by another angle: the lens or the gear is not as set
 };
 
 struct SlipFinding {
   SlipFault fault = SlipFault::none;
-  double gain = 1;    // what the picture turns for each degree that was told
-  double travel = 0;  // what was told while this was seen, radians
+  double gain = 1;    // turn of the picture / commanded turn
+  double travel = 0;  // radians commanded in the evidence
 };
 
 class SlipWatch {
  public:
   static constexpr double kBin = 0.2;                           // seconds
   static constexpr double kLeastChange = sensing::radians(15);  // a second
-  static constexpr double kLeastTravel = sensing::radians(20);  // of evidence before anything is said
-  // As well. That it follows again is no more easily believed than a fault.
+  static constexpr double kLeastTravel = sensing::radians(20);  // of evidence before a finding
+  // As well. The end of a fault needs as much evidence as a fault.
   static constexpr int least_episodes(SlipFault fault) {
     return fault == SlipFault::slips || fault == SlipFault::reversed ? 2 : 3;
   }
@@ -55,9 +55,9 @@ class SlipWatch {
 
   // Forgets everything.
   void reset() { *this = {}; }
-  // The next frame: `seconds` after the one before it, in which the picture turned by `picture` and the head was told
-  // to turn by `head`, radians. NaN: the picture does not say. Returns a fault when it is found, once; it is found anew
-  // only after the head has followed again.
+  // The next frame: `seconds` after the one before it, in which the picture turned by `picture` and the head was
+  // commanded to turn by `head`, radians. picture NaN: unknown. Returns a fault once, when it is found; the same fault is
+  // found again only after the head has followed in between.
   std::optional<SlipFinding> add(double seconds, double picture, double head);
   SlipFault fault() const { return fault_; }  // that stands
 
@@ -79,18 +79,18 @@ class SlipWatch {
     void see(Bin& seen);
     void add(const Bin& now, const Bin& before);
     double gain(unsigned lag) const { return de[lag] / ee[lag]; }
-    // Between which speeds the picture went, were the head's part (the gain's share of what it was told) not there.
+    // Range of the picture's speed less the head's part (gain x commanded speed).
     double stir(unsigned lag) const;
     unsigned lag() const;
   };
-  // Episodes in a row that say the same.
+  // Episodes in a row with the same fault.
   struct Run {
     SlipFault fault = SlipFault::none;
     int episodes = 0;
     double gains = 0, travel = 0;
     bool goes_on(SlipFault next, double gain) const;
   };
-  // What the head was told to have turned since the beginning, and when.
+  // Commanded turn since the beginning, and when.
   struct Told {
     double time = 0, head = 0;
   };
