@@ -8,7 +8,8 @@
  *
  * Where a head's pose is known (its meta on the buffer, else the events `cerberus-pose` that pass upstream), the pose
  * at the frame's own running time is attached too, and with `horizontal-fov` the head's turn is the first guess; a
- * turned picture is bent, which is taken from it too. The events are passed on.
+ * turned picture is bent, which is taken from it too. The events are passed on. In a stream that is not live, events
+ * that come through a queue behind this element are ignored, with a warning: each run would use them for other frames.
  *
  * With `horizontal-fov` it tells two more things. How fast the body turns that carries the camera (a robot) is attached
  * as a #CerberusBase: the picture's rotation without the head's. An event `cerberus-base` from the application (it
@@ -101,7 +102,7 @@ bool Private::analyse(Frame& frame) {
   if (!picture) return false;
   if (frame.fresh) state->motion.reset();
   const vision::Lens lens(radians(state->settings.horizontal_fov), frame.size());
-  std::optional<vision::Transform> prior = carrier.look(frame, state->settings.head, lens);
+  std::optional<vision::Transform> prior = carrier.look(GST_ELEMENT(base), frame, state->settings.head, lens);
   if (prior) prior = prior->rescaled(frame.size(), picture.size());
   const vision::CameraMotionResult result = state->motion.update(picture.view<std::uint8_t>(), prior);
 

@@ -65,6 +65,7 @@ void HeadMotionMonitor::forget() {
   before_ = now_ = {};
   base_.reset();
   begin_comparison();
+  pose_thread_.forget();
   const std::lock_guard guard(lock_);
   poses_.clear();
   told_base_.clear();
@@ -77,19 +78,22 @@ void HeadMotionMonitor::begin_comparison() {
 
 void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
   g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
+  const bool counts = pose && (head.empty() || head == pose->head);
+  if (counts) pose_thread_.on_pose(pose->head);
   const std::lock_guard guard(lock_);
-  if (pose && (head.empty() || head == pose->head))
+  if (counts)
     poses_.insert(time_of(pose->valid_from), *pose);
   else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
     told_base_.hear(time_of(base->valid_from), base->yaw_rate);
 }
 
-HeadMotionMonitor::Head HeadMotionMonitor::head_of(Frame& frame, const std::string& head) {
+HeadMotionMonitor::Head HeadMotionMonitor::head_of(GstElement* element, Frame& frame,
+                                                   const std::string& head) {
   if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
     if (!head.empty() && head != carried->head) return {.look = kStrange, .name = carried->head};
     return {frame.look.value_or(kStrange), carried->head};
   }
-  if (!GST_CLOCK_TIME_IS_VALID(frame.running_time)) return {};
+  if (!GST_CLOCK_TIME_IS_VALID(frame.running_time) || !pose_thread_.poses_count(element)) return {};
   const Time time = time_of(frame.running_time);
   const std::lock_guard guard(lock_);
   const CerberusPose* heard = poses_.at(time);
@@ -103,9 +107,9 @@ HeadMotionMonitor::Head HeadMotionMonitor::head_of(Frame& frame, const std::stri
   return {look_of(pose, frame.running_time).value_or(kStrange), pose.head, true};
 }
 
-std::optional<vision::Transform> HeadMotionMonitor::look(Frame& frame, const std::string& head,
-                                                         const vision::Lens& lens) {
-  before_ = std::exchange(now_, head_of(frame, head));
+std::optional<vision::Transform> HeadMotionMonitor::look(GstElement* element, Frame& frame,
+                                                         const std::string& head, const vision::Lens& lens) {
+  before_ = std::exchange(now_, head_of(element, frame, head));
   if (!before_.look || !now_.look || !lens.known()) return std::nullopt;
   return lens.turn(before_.look->pan, before_.look->tilt, now_.look->pan, now_.look->tilt);
 }

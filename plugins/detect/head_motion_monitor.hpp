@@ -12,6 +12,7 @@
 #include "control/base_rate.h"
 #include "control/slip.h"
 #include "shared/frame.hpp"
+#include "shared/pose_thread.hpp"
 #include "shared/timeline.hpp"
 #include "shared/told_base.hpp"
 
@@ -30,7 +31,8 @@ class HeadMotionMonitor {
   // For each frame look() and then compare(), in the streaming thread.
   // Where the head looked, from the frame's own pose, else by what was heard; that is put on the frame. Returns where
   // the picture went since the previous frame as far as the head says, frame pixels.
-  std::optional<vision::Transform> look(Frame& frame, const std::string& head, const vision::Lens& lens);
+  std::optional<vision::Transform> look(GstElement* element, Frame& frame, const std::string& head,
+                                        const vision::Lens& lens);
   // `motion` since the previous frame, frame pixels, and how sure it is. Puts the body's turning on the frame where it
   // is known, and warns in the name of `element` of a head that does not do what it was told.
   void compare(GstElement* element, Frame& frame, const vision::Lens& lens, const vision::Transform& motion,
@@ -43,13 +45,14 @@ class HeadMotionMonitor {
     const gchar* name = nullptr;  // interned
     bool commanded = false;       // it was heard; else who made the frame attached it, and knows
   };
-  Head head_of(Frame& frame, const std::string& head);
+  Head head_of(GstElement* element, Frame& frame, const std::string& head);
   void tell_base(Frame& frame, double seen);
 
   Head before_, now_;
   control::BaseRate base_;
   control::SlipWatch pan_, tilt_;
 
+  PoseThread pose_thread_;
   std::mutex lock_;  // of what was told
   Timeline<CerberusPose> poses_;
   ToldBase told_base_;

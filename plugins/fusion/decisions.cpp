@@ -74,13 +74,13 @@ CerberusFusion Decisions::decide(const Frame& frame, Time at) {
   return fusion;
 }
 
-Decisions::Told Decisions::frame(GstBuffer* buffer, Time time, Time heard, const std::string& head,
-                                 bool live) {
+Decisions::Told Decisions::frame(GstBuffer* buffer, Time time, Time heard, const std::string& head, bool live,
+                                 bool by_event) {
   const std::lock_guard guard(lock_);
   // Whoever asked for a later moment meanwhile is not contradicted; by more, running time began anew.
   if (live && heard < heard_ && heard_ - heard < Timeline<Reading>::kDisorder) heard = heard_;
   heard_ = heard;
-  const Frame frame{time, heard, inputs_.at(time, heard, head, buffer)};
+  const Frame frame{time, heard, inputs_.at(time, heard, head, by_event, buffer)};
   read_tracks(buffer, tracks_);
   const CerberusFusion fusion = decide(frame, time);
   last_.reset();

@@ -34,7 +34,8 @@ class Decisions {
   void forget();                    // everything
 
   // For the frame of `time`, by what was heard until `heard`. live: others may ask before the next one.
-  Told frame(GstBuffer* frame, Time time, Time heard, const std::string& head, bool live);
+  // by_event: poses of the head that came as events count for a frame without its own.
+  Told frame(GstBuffer* frame, Time time, Time heard, const std::string& head, bool live, bool by_event);
   // Until the next frame: the last one once more, with what sensors, head and base have said until `heard`. Nothing: no
   // sensor says anything else than for the last decision, or there is no live frame to speak of.
   std::optional<Told> between(Time heard, const std::string& head);

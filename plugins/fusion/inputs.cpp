@@ -14,10 +14,6 @@ namespace {
 constexpr Time kAhead = std::chrono::seconds(10);
 constexpr Time kLongest = std::chrono::hours(24 * 365);  // the clock's own time must not overflow
 
-bool is_named(const CerberusPose& pose, const std::string& head) {
-  return head.empty() || head == pose.head;
-}
-
 bool is_missing(GstPad* pad, Time time) {
   const PirPad& pir = pir_pad(pad);
   return pir.linked && !pir.given_up && !pir.history.covers(time);
@@ -42,6 +38,10 @@ int places_of(const PirPad& pir) {
 }
 
 }  // namespace
+
+bool is_named(const CerberusPose& pose, const std::string& head) {
+  return head.empty() || head == pose.head;
+}
 
 void Moment::add(const Reading& reading) {
   const auto known = std::min(static_cast<std::size_t>(reading.array->count), sensors.size() - count);
@@ -134,7 +134,7 @@ void Inputs::listen(Time heard, Time frame_time, const std::string& head, Moment
   if (const auto rate = base_.at(heard)) moment.base_degrees = *rate;
 }
 
-Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* frame) {
+Moment Inputs::at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame) {
   Moment moment;
   const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
   const CerberusBase* seen = cerberus_buffer_peek_base(frame);
@@ -144,7 +144,7 @@ Moment Inputs::at(Time time, Time heard, const std::string& head, GstBuffer* fra
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
   moment.pan_on_frame = pose != nullptr;
-  if (!pose) {
+  if (!pose && by_event) {
     pose = poses_.at(time) ? poses_.at(time) : poses_.first();  // before the first one: where it begins
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }

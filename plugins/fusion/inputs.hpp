@@ -47,6 +47,9 @@ struct SilentPad {
 
 // The lock is never held while something is pushed, queried or
 // posted, and no GStreamer object's lock is taken under it.
+// Whether this is the head of that name; an empty name is any.
+bool is_named(const CerberusPose& pose, const std::string& head);
+
 class Inputs {
  public:
   // ---- video thread
@@ -59,8 +62,9 @@ class Inputs {
 
   // ---- whoever decides: the video thread, or a PIR thread between two frames (see decisions.hpp)
   // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before
-  // a pose that was heard, but after a base's: an application knows its robot. Forgets what no later frame can ask for.
-  Moment at(Time time, Time heard, const std::string& head, GstBuffer* frame);
+  // a pose event (by_event: they count), but after a base's: an application knows its robot. Forgets what no later frame
+  // can ask for.
+  Moment at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame);
   // Brings the moment of the frame of `frame_time` up to `heard`: the sensors' readings; the pan by the newest pose
   // that was heard, unless the frame carried one that is not older; the base's rate, where an event has told it.
   void listen(Time heard, Time frame_time, const std::string& head, Moment& moment);

@@ -28,7 +28,8 @@
  *   `is-live`) beside a live video keeps it for `lost-after`.
  *
  * The pan angle of a frame comes from the pose on the buffer, else from the head's `cerberus-pose` events passing
- * upstream, evaluated at the frame's running time. Between two frames it is that of the newest such event, evaluated at
+ * upstream, evaluated at the frame's running time. In a stream that is not live, events that come through a queue
+ * behind this element are ignored, with a warning: each run would use them for other frames. Between two frames it is that of the newest such event, evaluated at
  * the time of the decision; where none came for a time after a frame that carried a pose, it is still the frame's.
  * Until a head has told, it is not known, and no turn is ordered.
  *
@@ -75,6 +76,7 @@
 #include "sensing/pir_model.h"
 #include "settings.hpp"
 #include "settings_check.hpp"
+#include "shared/pose_thread.hpp"
 #include "shared/stamps.hpp"
 #include "text/numbers.h"
 
@@ -111,6 +113,7 @@ struct Private {
   Stamps stamps;
   Inputs inputs;
   Decisions decisions{inputs};
+  PoseThread pose_thread;
 
   std::mutex lock;
   std::shared_ptr<const fusion::RuleTable> table;  // of rules-file
@@ -157,10 +160,8 @@ void apply_settings(CerberusPirFusion* self) {
   }
   Decisions& decisions = self->priv->decisions;
   fusion::FuserOptions options = fuser_options(s, table != nullptr);
-  if (const std::string fault = limits_fault(s); !fault.empty()) {
-    options.limits = decisions.limits();
-    CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, (fault + " The old limits stay."), (nullptr));
-  }
+  if (!limits_fault(s).empty())
+    options.limits = decisions.limits();  // set_property() is about to set them back
   const bool by_table = options.rules == fusion::RuleSet::table;
   self->priv->state->rules_sensors = !by_table ? 0 : table ? table->sensors : fusion::paper_rules().sensors;
   decisions.configure(options, table ? *table : fusion::paper_rules());
@@ -267,8 +268,11 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     if (state.live != false && settings.lost_after > 0)
       priv.inputs.give_up_silent(heard, time_of(settings.lost_after), silent);
     warn_of(self, silent, max_wait ? *max_wait : settings.lost_after);
+    const CerberusPose* carried = cerberus_buffer_peek_pose(buffer.get());
+    const bool by_event = !(carried && is_named(*carried, settings.head)) &&
+                          (state.live == true || priv.pose_thread.poses_count(GST_ELEMENT(self)));
     const Decisions::Told told =
-        priv.decisions.frame(buffer.get(), state.time, heard, settings.head, state.live == true);
+        priv.decisions.frame(buffer.get(), state.time, heard, settings.head, state.live == true, by_event);
     pass_base_on(self, state.time, told.moment);
     warn_of_misfits(self, settings, told.moment);
     buffer.reset(gst_buffer_make_writable(buffer.release()));
@@ -338,9 +342,10 @@ GstIterator* internal_links(GstPad* pad, GstObject* parent) {
 void listen(Private& priv, GstEvent* event) {
   g_autoptr(CerberusPose) pose = cerberus_event_parse_pose(event);
   const std::string head = priv.settings.snapshot().head;
-  if (pose && (head.empty() || head == pose->head))
+  if (pose && is_named(*pose, head)) {
+    priv.pose_thread.on_pose(pose->head);
     priv.inputs.hear(*pose);
-  else if (pose)
+  } else if (pose)
     priv.inputs.hear_stranger(*pose);
   else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
     priv.inputs.hear_base(base->yaw_rate, time_of(base->valid_from));
@@ -392,6 +397,7 @@ void forget_everything(Private& priv) {
   priv.settings.refresh();
   priv.decisions.forget();
   priv.inputs.forget();
+  priv.pose_thread.forget();
 }
 
 // A sink pad that is switched off lets go of the frame that waits in its chain function, and no frame is the last one
@@ -426,7 +432,17 @@ void set_property(GObject* object, guint id, const GValue* value, GParamSpec* sp
         return;
       }
     }
-    self->priv->settings.set(kProperties, id, value);
+    auto& settings = self->priv->settings;
+    const Settings before = settings.snapshot();
+    settings.set(kProperties, id, value);
+    const std::string fault = limits_fault(settings.snapshot());
+    if (fault.empty() || GST_STATE(self) < GST_STATE_READY)
+      return;  // before READY they are an error of the start
+    settings.adjust([&](Settings& s) {
+      s.pan_minimum = before.pan_minimum;
+      s.pan_maximum = before.pan_maximum;
+    });
+    CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, (fault + " The old limits stay."), (nullptr));
   });
 }
 

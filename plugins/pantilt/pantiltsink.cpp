@@ -33,6 +33,7 @@
  * live a simulated head's time is the running time of the frames, never a clock: each frame is answered with the poses
  * until its running time plus `latency` (or until the next frame, if that is later), so that a source upstream can keep
  * in step with it and two runs give the same.
+ * Listeners upstream use those poses only where no queue lies between (see `cameramotion`, `pirfusion`).
  *
  * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by
  * hand goes on after PAUSED, but not after the end of the stream, nor when frames came and stay away for
