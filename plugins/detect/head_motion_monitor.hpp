@@ -13,7 +13,6 @@
 #include "control/slip.h"
 #include "shared/frame.hpp"
 #include "shared/pose_thread.hpp"
-#include "shared/timeline.hpp"
 #include "shared/told_base.hpp"
 
 namespace cerberus::plugin {

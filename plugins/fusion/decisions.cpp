@@ -55,7 +55,7 @@ void Decisions::forget() {
 }
 
 CerberusFusion Decisions::decide(const Frame& frame, Time at) {
-  const Moment& moment = frame.moment;
+  const SensorSnapshot& moment = frame.moment;
   if (moment.count > 0) {
     sensing::Geometry geometry;
     geometry.set(std::span(moment.bearings).first(moment.count),
@@ -99,8 +99,8 @@ std::optional<Decisions::Told> Decisions::between(Time heard, const std::string&
                               std::span(last_->moment.*part).first(last_->moment.count));
   };
   // Other sensors are for the next frame.
-  if (!same(&Moment::bearings) || !same(&Moment::fields_of_view)) return std::nullopt;
-  if (same(&Moment::sensors)) return std::nullopt;
+  if (!same(&SensorSnapshot::bearings) || !same(&SensorSnapshot::fields_of_view)) return std::nullopt;
+  if (same(&SensorSnapshot::sensors)) return std::nullopt;
   heard_ = std::max(heard, heard_ + Time(1));
   last_ = frame;
   return Told{decide(frame, heard_), frame.moment};

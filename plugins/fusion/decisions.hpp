@@ -22,7 +22,7 @@ class Decisions {
  public:
   struct Told {
     CerberusFusion fusion;
-    Moment moment;
+    SensorSnapshot moment;
   };
 
   explicit Decisions(Inputs& inputs) : inputs_(inputs) {}
@@ -46,7 +46,7 @@ class Decisions {
  private:
   struct Frame {
     Time time, heard;
-    Moment moment;
+    SensorSnapshot moment;
   };
   struct Change {
     Time time;

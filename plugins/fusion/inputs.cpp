@@ -43,15 +43,6 @@ bool is_named(const CerberusPose& pose, const std::string& head) {
   return head.empty() || head == pose.head;
 }
 
-void Moment::add(const Reading& reading) {
-  const auto known = std::min(static_cast<std::size_t>(reading.array->count), sensors.size() - count);
-  for (std::size_t i = 0; i < known; ++i, ++count) {
-    sensors[count] = reading.values[i];
-    bearings[count] = reading.array->bearings[i];
-    fields_of_view[count] = reading.array->field_of_view;
-  }
-}
-
 void Inputs::set(bool& flag, bool value) {
   const std::lock_guard guard(lock_);
   flag = value;
@@ -98,7 +89,7 @@ void Inputs::give_up_silent(Time heard, Time patience, std::vector<SilentPad>& s
 }
 
 // The lock is held.
-void Inputs::hear_sensors(Time heard, Moment& moment) {
+void Inputs::hear_sensors(Time heard, SensorSnapshot& moment) {
   moment.count = 0;
   moment.told = true;
   guint number = 0;
@@ -125,7 +116,7 @@ bool Inputs::flushing() {
   return flushing_;
 }
 
-void Inputs::listen(Time heard, Time frame_time, const std::string& head, Moment& moment) {
+void Inputs::listen(Time heard, Time frame_time, const std::string& head, SensorSnapshot& moment) {
   const std::lock_guard guard(lock_);
   hear_sensors(heard, moment);
   const auto* pose = poses_.entry_at(heard);
@@ -134,8 +125,8 @@ void Inputs::listen(Time heard, Time frame_time, const std::string& head, Moment
   if (const auto rate = base_.at(heard)) moment.base_degrees = *rate;
 }
 
-Moment Inputs::at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame) {
-  Moment moment;
+SensorSnapshot Inputs::at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame) {
+  SensorSnapshot moment;
   const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
   const CerberusBase* seen = cerberus_buffer_peek_base(frame);
   const std::lock_guard guard(lock_);

@@ -15,29 +15,22 @@
 #include <string>
 #include <vector>
 
+#include "fusion/sensor_history.h"
+#include "fusion/sensor_snapshot.h"
 #include "sensing/sectors.h"
-#include "sensor_history.hpp"
-#include "shared/timeline.hpp"
+#include "sensing/timeline.h"
 #include "shared/told_base.hpp"
 
 namespace cerberus::plugin {
 
+using fusion::kInvalid;
+using fusion::Reading;
+using fusion::SensorArray;
+using fusion::SensorHistory;
+using fusion::SensorSnapshot;
+using sensing::Timeline;
+
 struct PirPad;
-
-// What is known of a frame before the fuser is asked. Degrees as they were told; NaN: not known.
-struct Moment {
-  std::array<std::uint8_t, sensing::kMaxSensors> sensors{};
-  std::array<double, sensing::kMaxSensors> bearings{}, fields_of_view{};  // radians
-  std::size_t count = 0;
-  double pan_degrees = std::numeric_limits<double>::quiet_NaN();
-  double base_degrees = std::numeric_limits<double>::quiet_NaN();  // a second
-  bool pan_on_frame = false;
-  bool base_heard = false;         // by an event, which the PIR pads have got too
-  bool told = true;                // all sensors, by caps: none is assumed
-  const char* stranger = nullptr;  // interned: another head, which told its pose
-
-  void add(const Reading& reading);  // what does not fit is dropped
-};
 
 // A PIR pad that has been silent for too long.
 struct SilentPad {
@@ -45,11 +38,11 @@ struct SilentPad {
   bool ended;
 };
 
-// The lock is never held while something is pushed, queried or
-// posted, and no GStreamer object's lock is taken under it.
 // Whether this is the head of that name; an empty name is any.
 bool is_named(const CerberusPose& pose, const std::string& head);
 
+// The lock is never held while something is pushed, queried or
+// posted, and no GStreamer object's lock is taken under it.
 class Inputs {
  public:
   // ---- video thread
@@ -64,10 +57,10 @@ class Inputs {
   // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. What `frame` carries goes before
   // a pose event (by_event: they count), but after a base's: an application knows its robot. Forgets what no later frame
   // can ask for.
-  Moment at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame);
+  SensorSnapshot at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame);
   // Brings the moment of the frame of `frame_time` up to `heard`: the sensors' readings; the pan by the newest pose
   // that was heard, unless the frame carried one that is not older; the base's rate, where an event has told it.
-  void listen(Time heard, Time frame_time, const std::string& head, Moment& moment);
+  void listen(Time heard, Time frame_time, const std::string& head, SensorSnapshot& moment);
   bool flushing();
 
   // ---- the video's events
@@ -100,7 +93,7 @@ class Inputs {
   bool wait_for_video(std::unique_lock<std::mutex>& guard, const PirPad& pad, Time time);
 
  private:
-  void hear_sensors(Time heard, Moment& moment);
+  void hear_sensors(Time heard, SensorSnapshot& moment);
 
   std::mutex lock_;
   std::condition_variable news_;  // of anything below, and of the pads

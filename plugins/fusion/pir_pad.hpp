@@ -11,7 +11,6 @@
 #include "cerberus/private/element.hpp"
 #include "inputs.hpp"
 #include "sensing/levels.h"
-#include "sensor_history.hpp"
 
 namespace cerberus::plugin {
 

@@ -71,11 +71,11 @@
 #include "decisions.hpp"
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
+#include "fusion/settings_check.h"
 #include "inputs.hpp"
 #include "pir_pad.hpp"
 #include "sensing/pir_model.h"
 #include "settings.hpp"
-#include "settings_check.hpp"
 #include "shared/pose_thread.hpp"
 #include "shared/stamps.hpp"
 #include "text/numbers.h"
@@ -100,7 +100,7 @@ struct State {  // video thread only
   double base_told = 0;      // to the PIR pads, degrees a second
   Time base_told_at{};
   int rules_sensors = 0;  // of which the rules speak; 0: any number
-  SettingsCheck misfits;
+  fusion::SettingsCheck misfits;
 
   State() { gst_segment_init(&segment, GST_FORMAT_UNDEFINED); }
 };
@@ -208,7 +208,7 @@ void decide_between_frames(CerberusPirFusion* self) {
   tell_changes(self);
 }
 
-void warn_of_misfits(CerberusPirFusion* self, const Settings& s, const Moment& moment) {
+void warn_of_misfits(CerberusPirFusion* self, const Settings& s, const SensorSnapshot& moment) {
   State& state = *self->priv->state;
   const std::string rules = s.rules_file.empty() ? "rules=paper" : s.rules_file;
   for (const std::string& text : {state.misfits.sensors(rules, state.rules_sensors, moment),
@@ -225,7 +225,7 @@ void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
 
 // The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter, and
 // before they forget it; that it stands is what they take silence for.
-void pass_base_on(CerberusPirFusion* self, Time time, const Moment& moment) {
+void pass_base_on(CerberusPirFusion* self, Time time, const SensorSnapshot& moment) {
   constexpr double kMatters = 1;  // degrees a second
   const auto doubtful = [](double rate) { return std::abs(sensing::radians(rate)) > sensing::kDoubtfulTurn; };
   State& state = *self->priv->state;

@@ -27,7 +27,7 @@ const gchar* RuleName::of(std::string_view name) {
   return interned_;
 }
 
-CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment, RuleName& name) {
+CerberusFusion as_fusion(const fusion::Decision& decision, const SensorSnapshot& moment, RuleName& name) {
   CerberusFusion fusion;
   cerberus_fusion_init(&fusion);
   if (!decision.rule_name.empty()) fusion.rule_name = name.of(decision.rule_name);

@@ -22,6 +22,6 @@ class RuleName {
   const gchar* interned_ = nullptr;
 };
 
-CerberusFusion as_fusion(const fusion::Decision& decision, const Moment& moment, RuleName& name);
+CerberusFusion as_fusion(const fusion::Decision& decision, const SensorSnapshot& moment, RuleName& name);
 
 }  // namespace cerberus::plugin

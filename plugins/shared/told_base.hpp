@@ -8,11 +8,14 @@
 #include <optional>
 
 #include "sensing/pir_model.h"
-#include "timeline.hpp"
+#include "sensing/timeline.h"
 
 namespace cerberus::plugin {
 
 static_assert(sensing::kBaseLifetime == std::chrono::nanoseconds(CERBERUS_BASE_LIFETIME));
+
+using Time = std::chrono::nanoseconds;
+using sensing::Timeline;
 
 class ToldBase {
  public:

@@ -103,6 +103,9 @@ GST_START_TEST(properties_count_while_playing) {
   rig.at(600 * kMs);
   const std::string warning = rig.warning();
   fail_unless(warning.find("pan-min 200 and pan-max 170") != std::string::npos, "%s", warning.c_str());
+  double pan_min = 0;
+  g_object_get(rig.element, "pan-min", &pan_min, nullptr);
+  fail_unless(pan_min < 0, "%g", pan_min);  // as in force
 }
 GST_END_TEST
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What was said when: entries in the order of their running time, for "the newest
-// one not later than this moment". Which moment that is, the asker knows: of
-// poses the frame's own, of PIR readings, live, the one in which the frame came.
+// Values by running time, for "the newest one not later than this time": for poses the time of the frame, for PIR readings
+// of a live stream the time at which the frame arrived.
 #pragma once
 
 #include <algorithm>
@@ -10,13 +9,12 @@
 #include <deque>
 #include <utility>
 
-namespace cerberus::plugin {
-
-using Time = std::chrono::nanoseconds;
+namespace cerberus::sensing {
 
 template <typename T>
 class Timeline {
  public:
+  using Time = std::chrono::nanoseconds;
   struct Entry {
     Time time;
     T value;
@@ -24,7 +22,7 @@ class Timeline {
   // Entries that come late by less than this are put where they belong. By more: running time began anew (a seek of a
   // live pipeline), and what seems to lie in the future is of the time before.
   static constexpr Time kDisorder = std::chrono::seconds(1);
-  // Nobody reads what was said so often; the oldest entry goes.
+  // Of more entries the oldest is dropped.
   static constexpr std::size_t kMost = 4096;
 
   // Of two entries of one time the later call counts.
@@ -55,10 +53,10 @@ class Timeline {
   const Entry* last(std::size_t before = 0) const {
     return entries_.size() > before ? &entries_[entries_.size() - 1 - before] : nullptr;
   }
-  // The last entry was said again: later.
+  // The last entry came again, later.
   void postpone_last(Time time) { entries_.back().time = time; }
 
-  // Drops what nobody can ask for who asks for `time` or later.
+  // Drops the entries that at(`time`) and later times cannot return.
   void forget_before(Time time) {
     while (entries_.size() > 1 && entries_[1].time <= time) entries_.pop_front();
   }
@@ -69,4 +67,4 @@ class Timeline {
   std::deque<Entry> entries_;
 };
 
-}  // namespace cerberus::plugin
+}  // namespace cerberus::sensing

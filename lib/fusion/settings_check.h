@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Settings that fit neither the sensors nor the head that there are: nothing fails, and nothing does what was meant.
-// Each is told once, in words for a user; empty: it fits, or was told.
+// Settings that do not fit the sensors or the head that are there: nothing fails, and nothing does what was meant. Each
+// finding is returned once, in words for a user; empty: it fits, or was returned before.
 #pragma once
 
 #include <chrono>
@@ -9,16 +9,16 @@
 #include <string>
 #include <utility>
 
-#include "inputs.hpp"
+#include "fusion/sensor_snapshot.h"
 
-namespace cerberus::plugin {
+namespace cerberus::fusion {
 
 class SettingsCheck {
  public:
   // `rules` that speak of `wanted` sensors (0: of any number).
-  std::string sensors(const std::string& rules, int wanted, const Moment& moment) {
-    const auto there = static_cast<int>(moment.count);
-    if (wanted == 0 || there == 0 || there == wanted || !moment.told) return {};
+  std::string sensors(const std::string& rules, int wanted, const SensorSnapshot& snapshot) {
+    const auto there = static_cast<int>(snapshot.count);
+    if (wanted == 0 || there == 0 || there == wanted || !snapshot.told) return {};
     if (std::exchange(told_, std::pair(wanted, there)) == std::pair(wanted, there)) return {};
     return rules + " speaks of " + std::to_string(wanted) + " PIR sensors, and there are " +
            std::to_string(there) + ": " +
@@ -26,15 +26,15 @@ class SettingsCheck {
   }
 
   // Only another head than `head` tells its pose.
-  std::string head(const std::string& head, Time time, const Moment& moment) {
+  std::string head(const std::string& head, Time time, const SensorSnapshot& snapshot) {
     constexpr Time kPatience = std::chrono::seconds(2);
-    if (!moment.stranger || !std::isnan(moment.pan_degrees)) {
+    if (!snapshot.stranger || !std::isnan(snapshot.pan_degrees)) {
       since_.reset();
       return {};
     }
     if (!since_ || time < *since_) since_ = time;
     if (time - *since_ < kPatience || std::exchange(head_told_, true)) return {};
-    return "The head \"" + std::string(moment.stranger) +
+    return "The head \"" + std::string(snapshot.stranger) +
            "\" tells where it looks, but the one that counts is \"" + head +
            "\" (property head), which says nothing: pan is not known, and no turn is ordered.";
   }
@@ -45,4 +45,4 @@ class SettingsCheck {
   bool head_told_ = false;
 };
 
-}  // namespace cerberus::plugin
+}  // namespace cerberus::fusion

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What one PIR pad said, by running time, and how far that goes. Not live it is asked
-// for the frame's running time, and only when it covers that; live for the moment in
-// which the frame came, which may be later. Knows no GStreamer; not thread-safe.
+// The readings of one group of PIR sensors by running time, and the time up to which they are complete. A stream that is
+// not live waits until covers(frame's running time) and reads at that time; a live one reads at the time when the frame
+// arrived, which may be later. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -9,12 +9,13 @@
 #include <memory>
 #include <span>
 
+#include "fusion/fuser.h"
 #include "sensing/sectors.h"
-#include "shared/timeline.hpp"
+#include "sensing/timeline.h"
 
-namespace cerberus::plugin {
+namespace cerberus::fusion {
 
-// What caps say of the sensors of one pad.
+// The sensors of one group.
 struct SensorArray {
   int count = 0;
   std::array<double, sensing::kMaxSensors> bearings{};  // radians
@@ -23,9 +24,9 @@ struct SensorArray {
 
 constexpr std::uint8_t kInvalid = 2;  // as in the PIR caps
 
-// The sensors of one pad at one time.
+// Their values at one time.
 struct Reading {
-  std::shared_ptr<const SensorArray> array;               // nullptr: not known yet, nothing to tell
+  std::shared_ptr<const SensorArray> array;               // nullptr: not known yet
   std::array<std::uint8_t, sensing::kMaxSensors> values;  // 0, 1, kInvalid
   bool operator==(const Reading&) const = default;
 };
@@ -53,10 +54,10 @@ class SensorHistory {
   std::size_t size() const { return readings_.size(); }
 
  private:
-  Timeline<Reading> readings_;
+  sensing::Timeline<Reading> readings_;
   std::shared_ptr<const SensorArray> array_;
   Time covered_ = Time::min();  // everything before it is known
   bool ended_ = false;
 };
 
-}  // namespace cerberus::plugin
+}  // namespace cerberus::fusion

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "sensor_history.hpp"
+#include "fusion/sensor_history.h"
 
 #include <algorithm>
 
-namespace cerberus::plugin {
+namespace cerberus::fusion {
 
 void SensorHistory::append(Time time, std::span<const std::uint8_t> values) {
   Reading reading;
@@ -14,7 +14,8 @@ void SensorHistory::append(Time time, std::span<const std::uint8_t> values) {
                          [](std::uint8_t value) { return std::min(value, kInvalid); });
 
   const auto* last = readings_.last();
-  if (last && time < last->time - Timeline<Reading>::kDisorder) covered_ = Time::min();  // time began anew
+  if (last && time < last->time - sensing::Timeline<Reading>::kDisorder)
+    covered_ = Time::min();  // time began anew
   // Heartbeats repeat what is known: of equal readings in a row the first and the last are kept.
   const auto* before = readings_.last(1);
   if (before && time >= last->time && last->value == reading && before->value == reading)
@@ -45,4 +46,4 @@ Reading SensorHistory::at(Time time) const {
   return none;
 }
 
-}  // namespace cerberus::plugin
+}  // namespace cerberus::fusion
