@@ -55,40 +55,10 @@ struct _CerberusBase {
 #define CERBERUS_BASE_META_API_TYPE (cerberus_base_meta_api_get_type())
 
 /**
- * cerberus_base_init: (skip)
- */
-/**
  * cerberus_base_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusBase, cerberus_base)
 CERBERUS_DECLARE_ENUM(CerberusBaseSource, cerberus_base_source)
-
-/**
- * cerberus_event_new_base:
- * @base: how the body moves, and from when on
- *
- * Returns: (transfer full): a new %CERBERUS_EVENT_BASE.
- */
-CERBERUS_API
-GstEvent* cerberus_event_new_base(const CerberusBase* base);
-
-/**
- * cerberus_event_is_base:
- * @event: an event
- *
- * Returns: %TRUE if @event is a %CERBERUS_EVENT_BASE.
- */
-CERBERUS_API
-gboolean cerberus_event_is_base(GstEvent* event);
-
-/**
- * cerberus_event_parse_base:
- * @event: an event
- *
- * Returns: (transfer full) (nullable): what it reports; %NULL if @event is no well-formed %CERBERUS_EVENT_BASE.
- */
-CERBERUS_API
-CerberusBase* cerberus_event_parse_base(GstEvent* event);
 
 /**
  * cerberus_buffer_set_base:
@@ -102,21 +72,7 @@ CerberusBase* cerberus_event_parse_base(GstEvent* event);
 CERBERUS_API
 gboolean cerberus_buffer_set_base(GstBuffer* buffer, const CerberusBase* base);
 
-/**
- * cerberus_buffer_get_base:
- * @buffer: a buffer
- *
- * Returns: (transfer full) (nullable): a copy of how the body moved when the frame was taken; %NULL if it is not known.
- */
-CERBERUS_API
-CerberusBase* cerberus_buffer_get_base(GstBuffer* buffer);
-
-/**
- * cerberus_buffer_peek_base: (skip)
- */
-CERBERUS_API
-const CerberusBase* cerberus_buffer_peek_base(GstBuffer* buffer);
-CERBERUS_API
-GType cerberus_base_meta_api_get_type(void);
+CERBERUS_DECLARE_EVENT(CerberusBase, base)
+CERBERUS_DECLARE_META(CerberusBase, base)
 
 G_END_DECLS

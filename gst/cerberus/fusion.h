@@ -95,9 +95,6 @@ struct _CerberusFusion {
 #define CERBERUS_FUSION_META_API_TYPE (cerberus_fusion_meta_api_get_type())
 
 /**
- * cerberus_fusion_init: (skip)
- */
-/**
  * cerberus_fusion_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusFusion, cerberus_fusion)
@@ -137,23 +134,6 @@ CERBERUS_API
 gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fusion);
 
 /**
- * cerberus_buffer_get_fusion:
- * @buffer: a buffer
- *
- * Returns: (transfer full) (nullable): a copy of the decision for the frame; %NULL if there is none.
- */
-CERBERUS_API
-CerberusFusion* cerberus_buffer_get_fusion(GstBuffer* buffer);
-
-/**
- * cerberus_buffer_peek_fusion: (skip)
- */
-CERBERUS_API
-const CerberusFusion* cerberus_buffer_peek_fusion(GstBuffer* buffer);
-CERBERUS_API
-GType cerberus_fusion_meta_api_get_type(void);
-
-/**
  * cerberus_message_new_fusion:
  * @src: (nullable): the object that posts it
  * @stamp: (nullable): when, and by which camera
@@ -165,49 +145,8 @@ CERBERUS_API
 GstMessage* cerberus_message_new_fusion(GstObject* src, const CerberusStamp* stamp,
                                         const CerberusFusion* fusion);
 
-/**
- * cerberus_message_is_fusion:
- * @message: a message
- *
- * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_FUSION.
- */
-CERBERUS_API
-gboolean cerberus_message_is_fusion(GstMessage* message);
-
-/**
- * cerberus_message_parse_fusion:
- * @message: a message
- *
- * Returns: (transfer full) (nullable): the decision; %NULL if @message is no well-formed %CERBERUS_MESSAGE_FUSION.
- */
-CERBERUS_API
-CerberusFusion* cerberus_message_parse_fusion(GstMessage* message);
-
-/**
- * cerberus_event_new_fusion:
- * @fusion: a decision with the time at which it was made
- *
- * Returns: (transfer full): a new %CERBERUS_EVENT_FUSION.
- */
-CERBERUS_API
-GstEvent* cerberus_event_new_fusion(const CerberusFusion* fusion);
-
-/**
- * cerberus_event_is_fusion:
- * @event: an event
- *
- * Returns: %TRUE if @event is a %CERBERUS_EVENT_FUSION.
- */
-CERBERUS_API
-gboolean cerberus_event_is_fusion(GstEvent* event);
-
-/**
- * cerberus_event_parse_fusion:
- * @event: an event
- *
- * Returns: (transfer full) (nullable): the decision; %NULL if @event is no well-formed %CERBERUS_EVENT_FUSION.
- */
-CERBERUS_API
-CerberusFusion* cerberus_event_parse_fusion(GstEvent* event);
+CERBERUS_DECLARE_EVENT(CerberusFusion, fusion)
+CERBERUS_DECLARE_MESSAGE(CerberusFusion, fusion)
+CERBERUS_DECLARE_META(CerberusFusion, fusion)
 
 G_END_DECLS

@@ -86,17 +86,11 @@ struct _CerberusTrack {
 #define CERBERUS_TYPE_TRACK_STATE (cerberus_track_state_get_type())
 
 /**
- * cerberus_motion_init: (skip)
- */
-/**
  * cerberus_motion_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusMotion, cerberus_motion)
 CERBERUS_DECLARE_ENUM(CerberusMotionState, cerberus_motion_state)
 
-/**
- * cerberus_track_init: (skip)
- */
 /**
  * cerberus_track_free: (skip)
  */
@@ -135,25 +129,6 @@ GstMessage* cerberus_message_new_motion(GstObject* src, const CerberusStamp* sta
                                         const CerberusMotion* motion);
 
 /**
- * cerberus_message_is_motion:
- * @message: a message
- *
- * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_MOTION.
- */
-CERBERUS_API
-gboolean cerberus_message_is_motion(GstMessage* message);
-
-/**
- * cerberus_message_parse_motion:
- * @message: a message
- *
- * Returns: (transfer full) (nullable): the start or the end of motion; %NULL if @message is no well-formed
- *     %CERBERUS_MESSAGE_MOTION.
- */
-CERBERUS_API
-CerberusMotion* cerberus_message_parse_motion(GstMessage* message);
-
-/**
  * cerberus_message_new_track:
  * @src: (nullable): the object that posts it
  * @stamp: (nullable): when, and by which camera
@@ -165,23 +140,7 @@ CERBERUS_API
 GstMessage* cerberus_message_new_track(GstObject* src, const CerberusStamp* stamp,
                                        const CerberusTrack* track);
 
-/**
- * cerberus_message_is_track:
- * @message: a message
- *
- * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_TRACK.
- */
-CERBERUS_API
-gboolean cerberus_message_is_track(GstMessage* message);
-
-/**
- * cerberus_message_parse_track:
- * @message: a message
- *
- * Returns: (transfer full) (nullable): what happened to a track; %NULL if @message is no well-formed
- *     %CERBERUS_MESSAGE_TRACK.
- */
-CERBERUS_API
-CerberusTrack* cerberus_message_parse_track(GstMessage* message);
+CERBERUS_DECLARE_MESSAGE(CerberusMotion, motion)
+CERBERUS_DECLARE_MESSAGE(CerberusTrack, track)
 
 G_END_DECLS

@@ -65,9 +65,6 @@ struct _CerberusPantilt {
 #define CERBERUS_TYPE_PANTILT_STATE (cerberus_pantilt_state_get_type())
 
 /**
- * cerberus_pantilt_init: (skip)
- */
-/**
  * cerberus_pantilt_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusPantilt, cerberus_pantilt)
@@ -85,23 +82,6 @@ CERBERUS_API
 GstMessage* cerberus_message_new_pantilt(GstObject* src, const CerberusStamp* stamp,
                                          const CerberusPantilt* pantilt);
 
-/**
- * cerberus_message_is_pantilt:
- * @message: a message
- *
- * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_PANTILT.
- */
-CERBERUS_API
-gboolean cerberus_message_is_pantilt(GstMessage* message);
-
-/**
- * cerberus_message_parse_pantilt:
- * @message: a message
- *
- * Returns: (transfer full) (nullable): the state of the head; %NULL if @message is no well-formed
- *     %CERBERUS_MESSAGE_PANTILT.
- */
-CERBERUS_API
-CerberusPantilt* cerberus_message_parse_pantilt(GstMessage* message);
+CERBERUS_DECLARE_MESSAGE(CerberusPantilt, pantilt)
 
 G_END_DECLS

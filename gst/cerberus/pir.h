@@ -125,9 +125,6 @@ struct _CerberusPir {
 #define CERBERUS_TYPE_PIR (cerberus_pir_get_type())
 
 /**
- * cerberus_pir_init: (skip)
- */
-/**
  * cerberus_pir_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusPir, cerberus_pir)
@@ -152,22 +149,6 @@ GBytes* cerberus_pir_get_sensors(const CerberusPir* pir);
 CERBERUS_API
 GstMessage* cerberus_message_new_pir(GstObject* src, const CerberusStamp* stamp, const CerberusPir* pir);
 
-/**
- * cerberus_message_is_pir:
- * @message: a message
- *
- * Returns: %TRUE if @message is a %CERBERUS_MESSAGE_PIR.
- */
-CERBERUS_API
-gboolean cerberus_message_is_pir(GstMessage* message);
-
-/**
- * cerberus_message_parse_pir:
- * @message: a message
- *
- * Returns: (transfer full) (nullable): the readings; %NULL if @message is no well-formed %CERBERUS_MESSAGE_PIR.
- */
-CERBERUS_API
-CerberusPir* cerberus_message_parse_pir(GstMessage* message);
+CERBERUS_DECLARE_MESSAGE(CerberusPir, pir)
 
 G_END_DECLS

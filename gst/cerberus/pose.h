@@ -59,9 +59,6 @@ struct _CerberusPose {
 #define CERBERUS_POSE_META_API_TYPE (cerberus_pose_meta_api_get_type())
 
 /**
- * cerberus_pose_init: (skip)
- */
-/**
  * cerberus_pose_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusPose, cerberus_pose)
@@ -94,34 +91,6 @@ gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_t
                                 gdouble* tilt);
 
 /**
- * cerberus_event_new_pose:
- * @pose: a pose
- *
- * Returns: (transfer full): a new %CERBERUS_EVENT_POSE.
- */
-CERBERUS_API
-GstEvent* cerberus_event_new_pose(const CerberusPose* pose);
-
-/**
- * cerberus_event_is_pose:
- * @event: an event
- *
- * Returns: %TRUE if @event is a %CERBERUS_EVENT_POSE.
- */
-CERBERUS_API
-gboolean cerberus_event_is_pose(GstEvent* event);
-
-/**
- * cerberus_event_parse_pose:
- * @event: an event
- *
- * Returns: (transfer full) (nullable): the pose; %NULL if @event is no well-formed %CERBERUS_EVENT_POSE (a number
- *     missing, not finite or beyond any head, a span that ends before it begins).
- */
-CERBERUS_API
-CerberusPose* cerberus_event_parse_pose(GstEvent* event);
-
-/**
  * cerberus_buffer_set_pose:
  * @buffer: a writable buffer
  * @pose: (nullable): where the head looked when the frame was taken, copied; %NULL removes
@@ -133,21 +102,7 @@ CerberusPose* cerberus_event_parse_pose(GstEvent* event);
 CERBERUS_API
 gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose);
 
-/**
- * cerberus_buffer_get_pose:
- * @buffer: a buffer
- *
- * Returns: (transfer full) (nullable): a copy of the pose at the time when the frame was taken; %NULL if there is none.
- */
-CERBERUS_API
-CerberusPose* cerberus_buffer_get_pose(GstBuffer* buffer);
-
-/**
- * cerberus_buffer_peek_pose: (skip)
- */
-CERBERUS_API
-const CerberusPose* cerberus_buffer_peek_pose(GstBuffer* buffer);
-CERBERUS_API
-GType cerberus_pose_meta_api_get_type(void);
+CERBERUS_DECLARE_EVENT(CerberusPose, pose)
+CERBERUS_DECLARE_META(CerberusPose, pose)
 
 G_END_DECLS

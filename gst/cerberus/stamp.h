@@ -43,9 +43,6 @@ struct _CerberusStamp {
 #define CERBERUS_STAMP_META_API_TYPE (cerberus_stamp_meta_api_get_type())
 
 /**
- * cerberus_stamp_init: (skip)
- */
-/**
  * cerberus_stamp_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusStamp, cerberus_stamp)
@@ -80,21 +77,6 @@ CerberusStamp* cerberus_message_parse_stamp(GstMessage* message);
 CERBERUS_API
 gboolean cerberus_buffer_set_stamp(GstBuffer* buffer, const CerberusStamp* stamp);
 
-/**
- * cerberus_buffer_get_stamp:
- * @buffer: a buffer
- *
- * Returns: (transfer full) (nullable): a copy of when and by which camera @buffer was taken.
- */
-CERBERUS_API
-CerberusStamp* cerberus_buffer_get_stamp(GstBuffer* buffer);
-
-/**
- * cerberus_buffer_peek_stamp: (skip)
- */
-CERBERUS_API
-const CerberusStamp* cerberus_buffer_peek_stamp(GstBuffer* buffer);
-CERBERUS_API
-GType cerberus_stamp_meta_api_get_type(void);
+CERBERUS_DECLARE_META(CerberusStamp, stamp)
 
 G_END_DECLS

@@ -16,10 +16,14 @@ exported = {line.split()[-1] for line in symbols.splitlines()}
 declared = set()
 for header in headers:
     code = re.sub(r"/\*.*?\*/", "", pathlib.Path(header).read_text("utf-8"), flags=re.S)
+    code = re.sub(r"#define(.*\\\n)*.*", "", code)
     declared |= set(re.findall(r"CERBERUS_API\s[^;]*?\b(cerberus_\w+)\s*\(", code))
-    for kind, prefix in re.findall(r"CERBERUS_DECLARE_(\w+)\(\w+,\s*(cerberus_\w+)\)", code):
-        functions = {"BOXED": "get_type init new copy free", "ENUM": "get_type get_nick"}[kind].split()
-        declared |= {f"{prefix}_{function}" for function in functions}
+    for kind, name in re.findall(r"^CERBERUS_DECLARE_(\w+)\(\w+,\s*(\w+)\)", code, flags=re.M):
+        functions = {"BOXED": "X_get_type X_init X_new X_copy X_free", "ENUM": "X_get_type X_get_nick",
+                     "META": "buffer_get_X buffer_peek_X X_meta_api_get_type", "MESSAGE": "message_is_X message_parse_X",
+                     "EVENT": "event_new_X event_is_X event_parse_X"}[kind]
+        short = name.removeprefix("cerberus_")
+        declared |= {"cerberus_" + function.replace("X", short) for function in functions.split()}
 for name in sorted(exported - declared):
     print(f"exported but not declared: {name}")
 for name in sorted(declared - exported):
