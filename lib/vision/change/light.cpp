@@ -15,13 +15,17 @@ namespace {
 
 constexpr int kBand = LightSamples::kBandRows *
                       LightSamples::kRowStep;  // rows; flicker at 100 Hz has a period of 70 rows and more
-constexpr int kMaximumBands = 512;             // more are not looked for
-constexpr int kBandReach = 64;                 // a band may be this much brighter or darker, 1/256
-constexpr int kFullWeight = 64;                // grey levels from which a sample says all it can of a gain
-constexpr int kLeastOfThird = 8;               // of a third of a band that tells of an object
-constexpr int kLeastSamples = 12;              // of a band that tells of its light
-constexpr double kLeastBand = 1.0;             // grey levels: weaker bands are left alone
-constexpr double kLeastGlobal = 0.7;           // the same for the picture as a whole
+constexpr int kMaximumBands = 512;             // pictures of more bands are not searched for them
+constexpr int kBandReach = 64;                 // 1/256: largest excess of a band's gain
+
+// Origin unknown: kept from the first version. Guard of all: unit-light, and flicker and bands in unit-foreground_mask.
+constexpr struct Parameters {
+  int full_weight = 64;       // grey levels from which a sample counts fully for a gain
+  int least_of_third = 8;     // samples of a third of a band that counts
+  int least_samples = 12;     // samples of a band that counts
+  double least_band = 1.0;    // grey levels: weaker bands are not compensated
+  double least_global = 0.7;  // grey levels: the same for the picture as a whole
+} kParameters;
 
 // 1/256 of a gain that half a grey level is, 8 bits of fraction, by the level it is added to.
 constexpr auto kInverse = [] {
@@ -31,11 +35,11 @@ constexpr auto kInverse = [] {
 }();
 
 // A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter,
-// or mostly darker. No median is as far from 0 as kLeastBand otherwise.
+// or mostly darker. No median is as far from 0 as kParameters.least_band otherwise.
 bool has_one_direction(const LightSums& sums) {
   int thirds = 0, up = 0, down = 0;
   for (std::size_t i = 0; i < 3; ++i) {
-    if (sums.number[i] < kLeastOfThird) continue;  // white
+    if (sums.number[i] < kParameters.least_of_third) continue;  // white
     ++thirds;
     up += 2 * sums.brighter[i] > sums.number[i];
     down += 2 * sums.darker[i] > sums.number[i];
@@ -138,13 +142,13 @@ bool LightChange::estimate_global(const LightSamples& samples) {
     if (number[k] * 100 < total) continue;
     const double a = static_cast<double>(sum[k]) / number[k],
                  e = median_of_levels(counts[k], number[k], -kReach);
-    if (a + e > kNearWhite || a + e < 4 || a > kNearWhite) continue;  // clipped: says nothing about gain
+    if (a + e > kNearWhite || a + e < 4 || a > kNearWhite)
+      continue;  // clipped: no information about the gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
   // e = offset + slope (a - mean), by least squares whose weights fall with the distance from the line
-  // (Cauchy, scale one grey level). With a narrow range of brightness only a gain can be told, which
-  // is what exposures and lamps make.
-  // Where all is clipped, nothing can be told, and none is what either agrees with or not.
+  // (Cauchy, scale one grey level). A narrow range of brightness determines only a gain, which is what
+  // exposure and lamps change. A picture that is clipped everywhere determines nothing: no change is assumed.
   double slope = 0, offset = 0, mean = 0;
   std::array<double, kClasses> w;
   for (int i = 0; i < used; ++i) w[i] = points[i].weight;
@@ -158,7 +162,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
       saa += w[i] * da * da;
       sae += w[i] * da * (points[i].e - offset);
     }
-    // As if black were known to stay black to within the noise: a ridge of 10 levels.
+    // A prior that black stays black to within the noise: a ridge of 10 levels.
     slope = (sae + 100 * sw * offset / std::max(mean, 16.0)) / (saa + 100 * sw);
     for (int i = 0; i < used; ++i) {
       const double r = points[i].e - offset - slope * (points[i].a - mean);
@@ -176,7 +180,8 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   }
   agreement_ = static_cast<double>(agree) / total;
   // What is hardly visible between dark grey and light grey is not worth a correction.
-  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kLeastGlobal) return false;
+  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kParameters.least_global)
+    return false;
   const double gain = std::clamp(1 + slope, 0.25, 4.0);
   const auto relit = [&](RowLight row) {
     return RowLight{round_to_int(row.gain * gain), round_to_int(row.offset * gain + 256 * at_zero)};
@@ -200,15 +205,15 @@ double LightChange::misfit(const LightSamples& samples) const {
   return number ? static_cast<double>(sum) / number : 0;
 }
 
-// The median of what a band's samples say of its gain, less 1. In the dark they say little; and whole levels make steps
-// there, so half of each is counted half a level either way.
+// The median of the gains of a band's samples, less 1. Dark samples weigh little, and whole levels make steps there, so
+// half of each sample is counted half a level lower and half of it half a level higher.
 double LightChange::excess_of_band(const LightSamples& samples, int band) const {
   std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
   std::int64_t weights = 0;
   for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row)
     samples.for_each(row, light_of(row), [&](int level, int now, int value) {
       if (level >= kWhite || now >= kNearWhite) return;
-      const int weight = std::min(now, kFullWeight), inverse = kInverse[now];
+      const int weight = std::min(now, kParameters.full_weight), inverse = kInverse[now];
       for (const int half : {-1, 1}) {
         const int excess = ((2 * (value - now) + half) * inverse) >> 8;
         counts[std::clamp(excess, -kBandReach, kBandReach) + kBandReach] += weight;
@@ -228,13 +233,14 @@ bool LightChange::estimate_bands(const LightSamples& samples) {
   for (int band = 0; band < bands; ++band) {
     const LightSums sums = samples.sums_of_band(band, rows_);
     const int number = number_of(sums);
-    known[band] = number >= kLeastSamples && sums.level > 0 && std::ranges::max(sums.number) >= kLeastOfThird;
+    known[band] = number >= kParameters.least_samples && sums.level > 0 &&
+                  std::ranges::max(sums.number) >= kParameters.least_of_third;
     if (!known[band]) continue;
     excess[band] = has_one_direction(sums) ? excess_of_band(samples, band) : 0;
     strongest = std::max(strongest, std::abs(excess[band]) * sums.level / number);
   }
-  if (strongest < kLeastBand) return false;
-  // Where all is white or hidden, the bands next to it tell, but no more than that it is light like theirs.
+  if (strongest < kParameters.least_band) return false;
+  // A band without usable samples takes the light of its neighbours, within the range of the measured bands.
   double least = 1, most = -1;
   for (int band = 0; band < bands; ++band)
     if (known[band]) least = std::min(least, excess[band]), most = std::max(most, excess[band]);

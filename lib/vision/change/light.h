@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Light that changes between two pictures of the same scene: exposure and gain steps (global), mains flicker
-// seen through a rolling shutter (bands of rows). Robust against moving objects, so that it can be taken out
-// before pictures are compared.
+// sampled by a rolling shutter (bands of rows). The estimate is robust against moving objects and is compensated before
+// pictures are compared.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ namespace cerberus::vision {
 class LightChange {
  public:
   // present ~ gain * reference + offset over the samples, and a further gain for each band of 8 rows. The line goes
-  // robustly through the median differences of 16 brightness classes; a band's gain is the median of what its samples
-  // say. Either can be taken for the other where bright and dark lie apart: if the camera is still both orders are
-  // tried, and what leaves less is kept; else registration's errors would be what is told apart. Changes too small to
-  // tell from noise are not made.
+  // robustly through the median differences of 16 brightness classes; a band's gain is the median of its samples'
+  // gains. The two can be confused where bright and dark areas lie apart. For a still camera both orders are tried and
+  // the one with the smaller residual is kept; for a moving one misregistration would decide. Changes within the noise
+  // are not made.
   void estimate(const LightSamples& samples, bool still);
   void clear();
 
@@ -31,9 +31,8 @@ class LightChange {
   // Share of the sampled pixels that agree with the model to within a few levels: low when the picture as a
   // whole cannot be explained by a change of light.
   double agreement() const { return agreement_; }
-  // out := row y of the reference under the present light. What was too bright for the sensor there may have been
-  // brighter than the reference says: in less light it may be anything from there on, and what `present` shows is as
-  // good.
+  // out := row y of the reference under the present light. Saturated pixels of the reference were possibly
+  // brighter than recorded: under less light any value from there on is possible, and that of `present` is taken.
   void relight(const std::uint8_t* reference, const std::uint8_t* present, int y, int count,
                std::uint8_t* out) const;
   RowLight row(int y) const { return y < static_cast<int>(rows_.size()) ? rows_[y] : RowLight{}; }

@@ -7,11 +7,11 @@
 
 namespace cerberus::vision {
 
-constexpr int kWhite = 245;  // grey levels from which a scene may have been brighter than its picture says
-// Grey levels from which noise makes white. To choose by the present itself would leave out what noise brightens.
+constexpr int kWhite = 245;  // grey levels from which the sensor was possibly saturated
+// Grey levels from which noise makes white. A choice by the present picture would exclude pixels that noise brightens.
 constexpr int kNearWhite = 235;
 
-// What a row of the reference has to become to be compared with the present: (value * gain + offset) / 256.
+// The light of a row relative to the reference: (value * gain + offset) / 256.
 struct RowLight {
   std::int32_t gain = 256;
   std::int32_t offset = 0;
@@ -20,26 +20,25 @@ struct RowLight {
 
 // out := the row of the reference under the present light, clamped to 0..255. `out` may be `reference`.
 void relight_row(const std::uint8_t* reference, RowLight light, int count, std::uint8_t* out);
-// The same, where what is near white in either light lies anywhere between what it is in the two, or beyond white:
-// pictures are blurred after the sensor has cut off what is too bright for it, and nobody knows how much of it there
-// was. As `present` has it, as far as that lies there.
+// The same, but a pixel near white in either light takes the value of `present` as far as that lies between its values
+// under the two lights, or beyond white: pictures are blurred after saturation, so its true value is undetermined.
 void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* present, RowLight light,
                             int count, std::uint8_t* out);
 void relight_row_with_white_reference(const std::uint8_t* reference, const std::uint8_t* present,
                                       RowLight light, int count, std::uint8_t* out);
 
-// What samples of a reference and of the present say of the light, by thirds of the picture's width. Only samples count
-// that are no white: below kWhite in the reference, below kNearWhite under the light.
+// Statistics of the light over samples of the reference and the present picture, by thirds of the picture's width. White
+// samples do not count: below kWhite in the reference, below kNearWhite under the light.
 struct LightSums {
   static constexpr int kMost = 16;  // grey levels
   std::array<std::int32_t, 3> number{}, brighter{}, darker{};
   std::int32_t level = 0;   // of the reference under the light, all together
-  std::int32_t misfit = 0;  // what remains of the difference, at most kMost each
+  std::int32_t misfit = 0;  // remaining differences, at most kMost each
   bool operator==(const LightSums&) const = default;
 };
 constexpr int kSampleLanes = 16;
-// Samples are in rows of three thirds, each `third` long: a multiple of kSampleLanes, at most 255 of them; what is no
-// sample is white in the reference. One light for each row.
+// Samples are in rows of three thirds, each `third` long: a multiple of kSampleLanes, at most 255 of them; padding
+// is white in the reference. One light for each row.
 LightSums sum_samples(const std::uint8_t* reference, const std::uint8_t* present, const RowLight* lights,
                       int rows, int third);
 LightSums sum_samples_reference(const std::uint8_t* reference, const std::uint8_t* present,

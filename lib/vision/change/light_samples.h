@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The samples of two pictures that a change of light is estimated from, close together: the estimate goes through them
+// Samples of two pictures for the estimate of a change of light, stored contiguously because the estimate reads them
 // several times.
 #pragma once
 
@@ -22,14 +22,14 @@ class LightSamples {
   static constexpr int kColumnStep = 8, kRowStep = 2;
   static constexpr int kBandRows = 4;  // rows of samples in a band: 8 of the picture
 
-  // Of the valid spans; empty: everywhere.
+  // Samples the valid spans; empty: everywhere.
   void take(GrayView reference, GrayView present, std::span<const RowSpan> spans);
   int height() const { return height_; }  // of the pictures
   int rows() const { return static_cast<int>(rows_.size()); }
   int bands() const { return (rows() + kBandRows - 1) / kBandRows; }
   static int picture_row(int row) { return row * kRowStep; }
 
-  // What the band's samples say, under the lights of the picture's rows.
+  // Statistics of the band's samples under the lights of the picture's rows.
   LightSums sums_of_band(int band, std::span<const RowLight> lights) const;
   int first_row(int band) const { return std::min(band * kBandRows, rows()); }
   // Calls each(level in the reference, the same under the light, level in the present) for a row's samples.

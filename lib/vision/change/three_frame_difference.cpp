@@ -58,14 +58,14 @@ void ThreeFrameDifference::State::preallocate(Size to, bool both) {
     relit.resize({to.width, 1});
     spans.assign(static_cast<std::size_t>(to.height), {});
     forget();
-    size = to;  // last: what threw is tried again
+    size = to;  // last: an allocation that threw is tried again with the next frame
   }
   if (both == !ring[1].empty()) return;
   ring[1] = both ? Image<std::uint8_t>(to) : Image<std::uint8_t>();
   has_older = false;
 }
 
-// previous := D(k-1), of both pictures where frame k sees them. It knows its light since frame k-1.
+// previous := D(k-1) of both pictures where frame k covers them. Its light was estimated in frame k-1.
 void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView second, MutableGrayView previous) {
   for (int y = 0; y < size.height; ++y) {
     const RowSpan span = spans[static_cast<std::size_t>(y)];
