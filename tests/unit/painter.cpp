@@ -153,9 +153,32 @@ START_TEST(a_trail_lies_where_the_points_were_and_fades) {
 }
 END_TEST
 
+// The line is translucent: where two patches drew the same pixel it would be darker.
+START_TEST(no_pixel_of_a_trail_is_drawn_twice) {
+  Stage stage;
+  stage.scene.system = {};
+  std::vector<Trails::Trail> trails(1);
+  trails[0].id = 1;
+  for (int k = 0; k <= 100; ++k)
+    trails[0].points.push_back({{100 + 4.0 * k, 400 + 60 * std::sin(0.1 * k)}, 0.02 * k});
+  stage.scene.trails = trails;
+  stage.scene.time = 2;
+  const auto patches = stage.paint();
+  ck_assert_uint_gt(patches.size(), 3);
+  for (int y = 300; y < 500; ++y)
+    for (int x = 80; x < 520; ++x) {
+      int drawn = 0;
+      for (const Patch& p : patches)
+        if (!p.area.intersection({x, y, 1, 1}).empty())
+          drawn += p.pixels->view().at(x - p.area.x, y - p.area.y) != 0;
+      ck_assert_msg(drawn <= 1, "%d times at %d, %d", drawn, x, y);
+    }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "painter", {what_stays_as_it_is_keeps_its_pictures, a_picture_that_is_held_is_not_used_again,
                   each_state_has_its_line, the_steady_state_allocates_nothing,
-                  a_trail_lies_where_the_points_were_and_fades});
+                  a_trail_lies_where_the_points_were_and_fades, no_pixel_of_a_trail_is_drawn_twice});
 }

@@ -12,6 +12,7 @@ namespace cerberus::overlay {
 namespace {
 
 constexpr float kFar = -1e6f;
+constexpr float kOthers = -1;  // the age of a stretch of another patch
 
 // Of a step of age: 1 fresh, 0 faded.
 double freshness(int step, int steps) {
@@ -65,9 +66,7 @@ void TrailLine::draw(const Trails::Trail& trail, const Style& style, Area frame,
     }
     if (const Area area = Area::around(left, top, right, bottom, margin).intersection(frame); !area.empty()) {
       const PicturePtr picture = pool.take(area.width, area.height);
-      // One neighbour on either side too: else the casing would cut through the line where patches meet.
-      draw_part(trail.id, style, area, first > 0 ? first - 1 : 0, std::min(last + 1, points_.size() - 1),
-                picture->view());
+      draw_part(trail.id, style, area, first, last, picture->view());
       patches.push_back({area, picture});
     }
     first = last;
@@ -104,18 +103,22 @@ void TrailLine::measure(Area area, vision::Point from, vision::Point to, float h
   }
 }
 
-// The smoothed points first..last: a dark casing, and on it the line in steps of age.
+// The smoothed points first..last: a dark casing, and on it the line in steps of age. The stretches before and after
+// them are measured, too, and a pixel that is nearer to one of those is left to their patch: the line is translucent, so
+// a pixel that two patches drew would be darker.
 void TrailLine::draw_part(std::uint32_t id, const Style& style, Area area, std::size_t first,
                           std::size_t last, vision::View<std::uint32_t> picture) {
   const std::size_t pixels = static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height);
   depth_.assign(pixels, kFar);
   step_.assign(pixels, 0);
   const auto casing = static_cast<float>(std::max(1.0, 0.7 * style.line) / 2);
-  for (std::size_t i = first; i < last; ++i) {
+  const std::size_t begin = first > 0 ? first - 1 : 0, end = std::min(last + 1, points_.size() - 1);
+  for (std::size_t i = begin; i < end; ++i) {
     const int age = step(points_[i].time, style);
     const double width = style.line * (0.5 + 0.7 * freshness(age, kSteps));
+    const bool own = i >= first && i < last;
     measure(area, points_[i].position, points_[i + 1].position, static_cast<float>(width / 2),
-            static_cast<float>(age), casing);
+            own ? static_cast<float>(age) : kOthers, casing);
   }
   std::array<Premultiplied, kSteps> lines, casings;
   for (int age = 0; age < kSteps; ++age) {
@@ -128,7 +131,7 @@ void TrailLine::draw_part(std::uint32_t id, const Style& style, Area area, std::
     const float* steps = step_.data() + static_cast<std::ptrdiff_t>(y) * area.width;
     std::uint32_t* row = picture.row(y);
     for (int x = 0; x < area.width; ++x) {
-      if (depth[x] + casing <= -0.5f) continue;
+      if (depth[x] + casing <= -0.5f || steps[x] == kOthers) continue;
       const auto age = static_cast<std::size_t>(steps[x]);
       const float outer = std::clamp(depth[x] + casing + 0.5f, 0.0f, 1.0f),
                   inner = std::clamp(depth[x] + 0.5f, 0.0f, 1.0f);

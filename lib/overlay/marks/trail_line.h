@@ -35,7 +35,7 @@ class TrailLine {
 
   std::vector<TrailPoint> points_;  // smoothed
   std::vector<float> depth_;        // a pixel's depth inside the nearest stretch, and
-  std::vector<float> step_;         // the age of that, of the patch at hand
+  std::vector<float> step_;         // the age of that; of the patch at hand
 };
 
 }  // namespace cerberus::overlay
