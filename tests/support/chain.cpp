@@ -44,8 +44,13 @@ void Chain::run_stage(std::size_t stage) {
                                    .current = current_.view(),
                                    .histogram = &histogram_,
                                    .frames = difference_result_.frames,
-                                   .seconds = seconds_},
+                                   .seconds = seconds_,
+                                   .excluded = burnt_in_.boxes()},
                                   mask_.view());
+      if (burnt_in_on_ && burnt_in_.update({luma_.view(), current_.view(), area_result_.threshold,
+                                            motion_result_.transform, motion_result_.still, seconds_},
+                                           mask_.view()))
+        if (!motion_result_.still) area_.reset();
       break;
     case 4: {
       found_ = regions_.update(mask_.view(), {}, motion_result_.transform);
@@ -76,6 +81,7 @@ void Chain::forget() {
   difference_.reset();
   area_.reset();
   regions_.reset();
+  burnt_in_.reset();
   tracker_.reset();
 }
 

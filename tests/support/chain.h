@@ -10,6 +10,7 @@
 
 #include "vision/background/foreground_mask.h"
 #include "vision/change/three_frame_difference.h"
+#include "vision/detection/burnt_in.h"
 #include "vision/detection/regions.h"
 #include "vision/ego_motion/camera_motion.h"
 #include "vision/image/luma.h"
@@ -31,12 +32,15 @@ class Chain {
   void reset();
   // Default 320; 0: the frame's own size.
   void set_analysis_width(int width) { analysis_width_ = width; }
+  // Whether what the camera writes into its pictures is learnt; default: no.
+  void set_burnt_in(bool on) { burnt_in_on_ = on; }
 
   vision::Size analysis_size() const { return luma_.size(); }
   vision::GrayView mask() const { return mask_.view(); }
   const vision::CameraMotionResult& motion() const { return motion_result_; }
   const vision::ForegroundMaskResult& area() const { return area_result_; }
-  std::span<const vision::Region> regions() const { return scaled_; }  // frame pixels
+  std::span<const vision::Box> burnt_in() const { return burnt_in_.boxes(); }  // analysis pixels
+  std::span<const vision::Region> regions() const { return scaled_; }          // frame pixels
   std::span<const vision::Track> tracks() const { return tracks_; }
   // Bytes that all stages hold, planes included.
   std::size_t bytes() const;
@@ -49,10 +53,12 @@ class Chain {
   vision::LumaSource frame_;
   double seconds_ = 0;
   int analysis_width_ = 320;
+  bool burnt_in_on_ = false;
   vision::LumaScaler scaler_;
   vision::CameraMotion motion_;
   vision::ThreeFrameDifference difference_;
   vision::ForegroundMask area_;
+  vision::BurntIn burnt_in_;
   vision::RegionFinder regions_;
   vision::Tracker tracker_;
   vision::Image<std::uint8_t> luma_, current_, mask_;

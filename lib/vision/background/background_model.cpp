@@ -26,10 +26,11 @@ constexpr struct Parameters {
   double realign = 1;    // pixels: a smaller correction takes effect with the next frame
   double shift = 0.75;   // pixels the centre may be off before the model moves by whole pixels
   int standing = 5;      // frames after which the model of a standing camera is resampled to fit exactly
-  double usual_period = 0.04;  // seconds from frame to frame where that is unknown
-  double period_rate = 0.1;    // share by which the smoothed period follows a frame's
-  int block_step = 2;          // every so many rows of a block are measured
-  int block_quiet = 3;         // frames without motion from which a pixel counts for the registration error
+  double usual_period = 0.04;      // seconds from frame to frame where that is unknown
+  double period_rate = 0.1;        // share by which the smoothed period follows a frame's
+  int block_step = 2;              // every so many rows of a block are measured
+  std::size_t most_excluded = 16;  // boxes that are excluded; the others are scene
+  int block_quiet = 3;  // frames without motion from which a pixel counts for the registration error
 } kParameters;
 
 // 64 bits of a row from x on, zeros outside the row.
@@ -81,6 +82,10 @@ struct BackgroundModel::State {
   ForegroundClassification classification;
   int columns = 0, rows = 0;  // of blocks
   std::vector<BlockSums> blocks;
+  struct Excluded {
+    int left, top, right, bottom;
+  };
+  std::vector<Excluded> excluded;
 
   BackgroundPixels pixels() { return {mean.view(), spread.view(), age.view(), quiet.view()}; }
   void prepare(Size to);
@@ -89,10 +94,13 @@ struct BackgroundModel::State {
   void follow_camera(const BackgroundInput& in);
   void resample();
   bool warp_frame(const BackgroundInput& in, GrayView blurred);
+  void exclude(std::span<const Box> boxes);
+  template <typename Each>
+  void for_excluded(int y, Each&& each) const;
   void measure_blocks();
   void align(const BackgroundInput& in, GrayView blurred);
   void classify(const BackgroundInput& in);
-  void learn(bool still);
+  void learn(const BackgroundInput& in);
 };
 
 BackgroundModel::BackgroundModel() : state_(std::make_unique<State>()) {}
@@ -116,6 +124,7 @@ void BackgroundModel::State::prepare(Size to) {
     columns = (to.width + kBackgroundBlock - 1) / kBackgroundBlock;
     rows = (to.height + kBackgroundBlock - 1) / kBackgroundBlock;
     blocks.assign(static_cast<std::size_t>(columns) * rows, {});
+    excluded.reserve(kParameters.most_excluded);
     frames = 0;
     size = to;  // last: an allocation that threw is tried again with the next frame
   }
@@ -182,13 +191,44 @@ void BackgroundModel::State::resample() {
   standing = 0;
 }
 
-// frame := F(k) in the model's coordinates. False for a perspective whose inverse is not sane.
+// What the frame excludes, in the model's coordinates.
+void BackgroundModel::State::exclude(std::span<const Box> boxes) {
+  excluded.clear();
+  if (boxes.empty()) return;
+  const Transform to_model = to_frame.inverse();
+  for (const Box& b : boxes.first(std::min(boxes.size(), excluded.capacity()))) {
+    const Point first = to_model.apply({b.x, b.y}), last = to_model.apply({b.right() - 1, b.bottom() - 1});
+    const auto from = [](double a, double c) {
+      return std::max(static_cast<int>(std::floor(std::min(a, c))), 0);
+    };
+    const auto end = [](double a, double c, int most) {
+      return std::min(static_cast<int>(std::ceil(std::max(a, c))) + 1, most);
+    };
+    excluded.push_back({from(first.x, last.x), from(first.y, last.y), end(first.x, last.x, size.width),
+                        end(first.y, last.y, size.height)});
+  }
+}
+
+// Calls each(left, right) with the columns of a row of the model that are excluded.
+template <typename Each>
+void BackgroundModel::State::for_excluded(int y, Each&& each) const {
+  for (const Excluded& e : excluded)
+    if (y >= e.top && y < e.bottom && e.left < e.right) each(e.left, e.right);
+}
+
+// frame := F(k) in the model's coordinates, and the background where it is excluded. False for a perspective whose inverse is not sane.
 bool BackgroundModel::State::warp_frame(const BackgroundInput& in, GrayView blurred) {
   if (!warp.prepare(to_frame.inverse(), size)) return false;
   if (warp.is_identity())
     blur3(in.picture, 3, frame.view());
   else
     warp.bilinear(blurred, frame.view());
+  exclude(in.excluded);
+  for (int y = 0; y < size.height; ++y)
+    for_excluded(y, [&](int left, int right) {
+      std::copy(light.background().row(y) + left, light.background().row(y) + right,
+                frame.view().row(y) + left);
+    });
   return true;
 }
 
@@ -237,7 +277,7 @@ void BackgroundModel::State::classify(const BackgroundInput& in) {
 
 // The model keeps the light that it was learnt in, but for a moving camera the measured change of light is half
 // registration error, and the frame is learnt as it is.
-void BackgroundModel::State::learn(bool still) {
+void BackgroundModel::State::learn(const BackgroundInput& in) {
   LearnRow row;
   row.width = size.width;
   row.phase = frames % 2 ? 15 : 0;
@@ -245,11 +285,12 @@ void BackgroundModel::State::learn(bool still) {
   for (int y = 0; y < size.height; ++y) {
     row.frame = frame.view().row(y), row.background = light.background().row(y),
     row.quiet = quiet.view().row(y);
-    row.taken = still ? light.in_background_light(y, row.frame) : row.frame;
+    row.taken = in.still ? light.in_background_light(y, row.frame) : row.frame;
     row.keep = classification.foreground().row(y), row.absorb = absorb.view().row(y);
     const RowSpan span = warp.spans()[static_cast<std::size_t>(y)];
     covered.fill_bytes(0);
     set_bits(covered.view().data, span.begin, span.end);
+    for_excluded(y, [&](int left, int right) { clear_bits(covered.view().data, left, right); });
     row.mean = mean.view().row(y), row.spread = spread.view().row(y), row.age = age.view().row(y);
     learn_row(row);
   }
@@ -285,11 +326,13 @@ void BackgroundModel::update(const BackgroundInput& in, MutableGrayView mask) {
     binarise(in.difference, in.threshold, s.absorb.view());
     map_bits(s.absorb.view(), s.to_frame, s.mask.view(), s.size.width);
   }
+  for (int y = 0; y < s.size.height; ++y)
+    s.for_excluded(y, [&](int left, int right) { clear_bits(s.mask.view().row(y), left, right); });
   if (step && in.still)
     s.light.suppress_step(s.pixels(), s.frame.view(), s.classification.foreground(), s.classification.noise(),
                           s.mask.view());
   s.classify(in);
-  s.learn(in.still);
+  s.learn(in);
   if (s.to_frame.is_identity()) {
     unpack(s.mask.view(), mask);
   } else {

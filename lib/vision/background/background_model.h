@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 
+#include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
 
@@ -18,6 +20,8 @@ struct BackgroundInput {
   Transform motion;     // frame k-1 to k
   bool still = false;   // the camera stands
   double seconds = 0;   // since frame k-1; 0: unknown
+  // Analysis pixels of frame k that show no scene (burnt_in.h): they are no foreground and are not learnt.
+  std::span<const Box> excluded{};
 };
 
 // A pixel takes 5 bytes: mean (8.8 fixed point), spread, age (frames learnt) and quiet (frames since it moved). The

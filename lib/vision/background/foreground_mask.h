@@ -4,8 +4,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "vision/change/fuzzy_threshold.h"
+#include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
 
@@ -27,8 +29,9 @@ struct ForegroundMaskInput {
   GrayView current{};   // D(k)
   GrayView previous{};  // D(k-1); empty: missing, only area=all works without
   const Histogram* histogram = nullptr;
-  int frames = 0;      // DifferenceResult::frames
-  double seconds = 0;  // since frame k-1; 0: unknown
+  int frames = 0;                   // DifferenceResult::frames
+  double seconds = 0;               // since frame k-1; 0: unknown
+  std::span<const Box> excluded{};  // see BackgroundInput
 };
 
 struct ForegroundMaskResult {
