@@ -12,20 +12,21 @@ double CameraOrientation::magnification(const Direction& d) const {
   return std::pow(std::clamp(ahead, 0.26, 1.0), -1.5);
 }
 
-bool OrientationEstimate::update(const std::optional<CameraOrientation>& told, const Transform& motion,
+bool OrientationEstimate::update(const std::optional<CameraOrientation>& reported, const Transform& motion,
                                  Size frame) {
-  const bool speaks = told && told->lens.known() && std::isfinite(told->pan) && std::isfinite(told->tilt);
+  const bool usable =
+      reported && reported->lens.known() && std::isfinite(reported->pan) && std::isfinite(reported->tilt);
   const bool anew =
-      !gaze_ || frame.width != frame_.width || frame.height != frame_.height || (speaks && !told_);
-  told_ = speaks;
+      !gaze_ || frame.width != frame_.width || frame.height != frame_.height || (usable && !reported_);
+  reported_ = usable;
   frame_ = frame;
-  if (speaks) {
-    gaze_ = *told;
+  if (usable) {
+    gaze_ = *reported;
     return anew;
   }
   if (anew) gaze_ = CameraOrientation{Lens(kUnknownFov, frame), 0, 0};
   if (anew || motion.is_identity()) return anew;
-  // What was in the middle lies at q now: the camera turned away from it.
+  // q is the new place of the point that was in the middle: the camera turned by the angle between them.
   const Point middle{0.5 * (frame.width - 1), 0.5 * (frame.height - 1)}, q = motion.apply(middle);
   if (!std::isfinite(q.x) || !std::isfinite(q.y)) return false;
   const double f = gaze_->lens.focal_length();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From pixels to the room: a pinhole lens with square pixels, turned by pan and tilt, mounted above a flat
-// floor.
+// Converts pixels to directions and places in the room: a pinhole lens with square pixels, turned by pan and tilt,
+// mounted above a flat floor.
 //
 // Angles in radians; pan positive = to the right, tilt and elevation positive = up. Picture coordinates are
 // those of boxes: (0, 0) is the top left corner of the top left pixel, the optical axis meets the picture in
@@ -25,7 +25,7 @@ struct Direction {
   double elevation = 0;  // -pi/2 .. pi/2
 };
 
-// Where an object stands, as far as lens and floor tell. NaN = unknown.
+// The place of an object, as far as lens and floor determine it. NaN = unknown.
 struct Placement {
   double bearing;           // of the middle of the box, radians
   double distance;          // along the floor from below the camera to the feet, metres
@@ -36,34 +36,35 @@ struct Placement {
 class Lens {
  public:
   // horizontal_fov: radians, over the whole width of the frame, more than 0 and less than pi. Anything else
-  // (0 is the usual way to say "unknown") makes a lens of which known() is false and every angle NaN.
+  // (usually 0 for "unknown") makes a lens of which known() is false and every angle NaN.
   Lens() = default;
   Lens(double horizontal_fov, Size frame);
 
   bool known() const { return focal_ > 0; }
   double focal_length() const { return focal_; }  // pixels
 
-  // Where a point of the picture lies when the camera looks to (pan, tilt).
+  // Returns the direction of a point of the picture when the camera points to (pan, tilt).
   Direction direction(Point p, double pan, double tilt) const;
 
-  // The point of the picture, which may lie far outside of it, where a direction is seen: direction()'s inverse.
-  // Nothing for what is not ahead of the camera, or an unknown lens.
+  // Returns the point of the picture, which may lie far outside of it, that shows a direction: direction()'s inverse.
+  // Returns nullopt for a direction that is not ahead of the camera, and for an unknown lens.
   std::optional<Point> project(const Direction& d, double pan, double tilt) const;
 
-  // Where the picture of what is far goes when the camera turns from one pose to another (radians): a point of the
-  // picture before to its place after, in pixels as a Transform counts them. Identity for an unknown lens.
+  // Returns the transform of the picture of a distant scene when the camera turns from one pose to another (radians):
+  // from a point's place before to its place after, in the pixel coordinates of Transform. Identity for an unknown
+  // lens.
   //   K R(pan after, tilt after)^T R(pan before, tilt before) K^-1,  R = turn to the right by pan x turn up by tilt
   Transform turn(double pan_before, double tilt_before, double pan_after, double tilt_after) const;
 
-  // Distance along the floor of a point of the floor seen at p. NaN on and above the horizon or for a
-  // mounting height that is not positive.
+  // Returns the distance along the floor, in the unit of the mounting height, of the point of the floor seen at p. NaN
+  // on and above the horizon or for a mounting height that is not positive.
   double floor_distance(Point p, double tilt, double mounting_height) const;
 
-  // Everything about a box whose lower edge stands on the floor:
+  // Returns the placement of a box whose lower edge stands on the floor:
   //   depth = mounting height / -up(foot)      distance along the optical axis, from the ray with ahead = 1
   //   metres per pixel = depth / f,  width = box width x metres per pixel
   //   height = mounting height + distance tan(elevation of the upper edge)              (a vertical object)
-  // All but the bearing are NaN where the feet are not seen: at the picture's lower border or above the
+  // All but the bearing are NaN where the foot point is not visible: at the picture's lower border or above the
   // horizon.
   Placement place(const Box& box, double pan, double tilt, double mounting_height) const;
 

@@ -21,7 +21,8 @@ struct Transform {
 
   bool is_identity() const;
   bool is_affine() const { return m[6] == 0 && m[7] == 0 && m[8] == 1; }  // last row is 0 0 1
-  // All numbers finite, orientation kept and not degenerate: the Jacobian at the picture's corners is positive.
+  // Returns whether all numbers are finite and the map keeps the orientation and is not degenerate: the determinant of
+  // its Jacobian is positive at the picture's corners.
   bool is_sane(Size picture) const;
   Point apply(Point p) const {
     const double x = m[0] * p.x + m[1] * p.y + m[2], y = m[3] * p.x + m[4] * p.y + m[5];
@@ -29,7 +30,7 @@ struct Transform {
     const double w = m[6] * p.x + m[7] * p.y + m[8];
     return {x / w, y / w};
   }
-  // The singular transform's inverse is identity: callers ask is_sane() first.
+  // Returns identity for a singular transform: check is_sane() first.
   Transform inverse() const;
   // The same motion in a picture scaled from `from` to `to` pixels, pixel areas aligned at the top left corner
   // (x_to = (x_from + 0.5) * to / from - 0.5): analysis pixels to frame pixels and back.

@@ -15,7 +15,7 @@ constexpr int kStepBits = 16, kPositionBits = 7;
 constexpr int kRoundShift = kStepBits - kPositionBits;
 constexpr std::int64_t kHalf = 1 << (kRoundShift - 1);
 
-// Far outside any picture is far enough.
+// Converts to fixed point. The value is limited to 1e9 pixels, far outside any picture, so that it does not overflow.
 std::int64_t fixed(double v) {
   return static_cast<std::int64_t>(std::floor(std::clamp(v, -1e9, 1e9) * (1 << kStepBits) + 0.5));
 }
@@ -56,7 +56,7 @@ bool Warp::prepare(const Transform& motion, Size size) {
   if (size_ != size) {
     spans_.resize({size.height, 1});
     positions_.resize({size.width, 2});
-    size_ = size;  // last: what threw is tried again
+    size_ = size;  // assigned last: after a failed allocation the next call tries again
   }
   kind_ = Kind::nothing;
   for (int y = 0; y < size.height; ++y) spans_.view().at(y, 0) = {};
@@ -76,7 +76,7 @@ bool Warp::prepare(const Transform& motion, Size size) {
     kind_ = Kind::affine;
   } else {
     kind_ = Kind::projective;
-    // Transform's scale may have either sign; here the third coordinate is positive where the picture is.
+    // The scale of a Transform may have either sign; here the third coordinate is made positive inside the picture.
     const Point centre = motion.apply({0.5 * (size.width - 1), 0.5 * (size.height - 1)});
     if (m[6] * centre.x + m[7] * centre.y + m[8] < 0)
       for (double& v : inverse_.m) v = -v;
@@ -143,7 +143,7 @@ void Warp::find_positions(int y) {
   const auto& m = inverse_.m;
   const int count = span.end - span.begin;
   if (kind_ == Kind::affine) {
-    // Inside the span the positions are inside the picture: 32 bits hold them.
+    // Inside the span the positions lie inside the picture and fit in 32 bits.
     const std::int64_t du = fixed(m[0]), dv = fixed(m[3]);
     const std::int64_t u0 = fixed(m[1] * y + m[2]) + du * span.begin + kHalf;
     const std::int64_t v0 = fixed(m[4] * y + m[5]) + dv * span.begin + kHalf;
@@ -179,7 +179,7 @@ namespace {
 auto bilinear_sampler(GrayView source) {
   return [source](const std::int32_t* u, const std::int32_t* v, int count, std::uint8_t* out) {
     if (source.width >= 2 && source.height >= 2) return sample_bilinear(source, u, v, count, out);
-    // One row or column of pixels: its valid positions lie on it in the other direction.
+    // The source is a single row or column: interpolate along it only.
     const int one = 1 << kPositionBits;
     for (int i = 0; i < count; ++i) {
       const int x = u[i] / one, y = v[i] / one, f = u[i] % one + v[i] % one;

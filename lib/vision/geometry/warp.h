@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Registration: a picture of frame k-1 redrawn where frame k sees it.
+// Registration: redraws a picture of frame k-1 in the coordinates of frame k.
 #pragma once
 
 #include <cstdint>
@@ -17,19 +17,19 @@ struct RowSpan {
   bool operator==(const RowSpan&) const = default;
 };
 
-// Inverse mapping: target(p) = source(motion^-1 p), for pictures of one size. `prepare` does what depends on
-// the motion alone, so that several planes can follow the same motion for the price of their pixels.
+// Inverse mapping: target(p) = source(motion^-1 p), for pictures of one size. `prepare` does the work that depends on
+// the motion alone, so that several planes can be warped by the same motion.
 //
 // A target pixel is valid when its source position lies inside the rectangle of source pixel centres (0 <= x
 // <= w - 1, 0 <= y <= h - 1; positions are rounded to 1/128 pixel). The source rectangle is convex and the
 // motions are not degenerate, so the valid pixels of a row are one span. All methods write every pixel of the
 // target: `fill` outside the spans. Source and target must not overlap.
 //
-// Identity is a copy, a shift by whole pixels is a copy of spans, both exact for every method.
+// Identity is done as a copy and a shift by whole pixels as a copy of spans; both are exact for every method.
 class Warp {
  public:
-  // motion: source (frame k-1) to target (frame k). False when the motion is not sane for this size: no pixel
-  // is valid and the methods only fill. Allocates only when the size changes.
+  // motion: source (frame k-1) to target (frame k), pixels. Returns false when the motion is not sane for this size: no
+  // pixel is valid and the methods only fill. Allocates only when the size changes.
   bool prepare(const Transform& motion, Size size);
 
   bool is_identity() const { return kind_ == Kind::identity; }
@@ -64,8 +64,8 @@ class Warp {
   Image<std::int32_t> positions_;  // source positions of the row at hand, 1/128 pixel: row 0 x, row 1 y
 };
 
-// The same by definition, one pixel at a time in floating point, no fast path: what the tests hold Warp
-// against.
+// The same by definition, one pixel at a time in floating point, without a fast path: the reference for the tests of
+// Warp.
 void warp_bilinear_reference(const Transform& motion, GrayView source, MutableGrayView target,
                              std::uint8_t fill);
 

@@ -67,10 +67,10 @@ HWY_INLINE hn::Vec<D> blend(D, hn::Vec<D> p00, hn::Vec<D> p01, hn::Vec<D> p10, h
   return hn::ShiftRight<14>(hn::Add(sum, hn::Set(D(), 1 << 13)));
 }
 
-// A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly always neighbours in
-// the source: then whole vectors are read. Where a column or a row is left out or comes twice, or the next one begins,
-// the first part of the vector is as its first lane says and the rest as its last one does. Otherwise one pixel at a
-// time: no gather instruction is needed.
+// Samples one vector. A camera turns and zooms little from frame to frame, so that neighbours in the target are nearly
+// always neighbours in the source, and whole vectors are read. Where a column or a row is skipped or repeated, or the
+// next one begins, the first part of the vector is read at the offset of its first lane and the rest at that of its
+// last lane. In all other cases pixels are read one at a time: no gather instruction is needed.
 template <class D>
 HWY_INLINE void sample_vector(D d, GrayView source, const std::int32_t* x, const std::int32_t* y,
                               std::uint8_t* out) {

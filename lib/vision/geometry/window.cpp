@@ -19,7 +19,7 @@ double centred(double angle) {
   return std::isnan(angle) ? 0 : std::clamp(angle, -1.5, 1.5);
 }
 
-// Position of target sample i in 1/128 source sample, held inside.
+// Position of target sample i in 1/128 source sample, limited to the source.
 int position(double start, double scale, int i, int size) {
   const double p = start + (i + 0.5) * scale - 0.5;
   return static_cast<int>(std::clamp(std::floor(p * kOne + 0.5), 0.0, (size - 1.0) * kOne));
@@ -40,7 +40,7 @@ WindowGeometry::WindowGeometry(double wide_fov, Size picture, Size window, doubl
   middle_y_ = 0.5 * picture.height;
   half_x_ = 0.5 * scale_ * window.width;
   half_y_ = 0.5 * scale_ * window.height;
-  // A hair of tolerance for a window that is meant to see all of the picture.
+  // Tolerance in pixels for rounding, so that a window as large as the whole picture fits.
   constexpr double kHair = 1.0 / 256;
   fits_ = half_x_ <= middle_x_ + kHair && half_y_ <= middle_y_ + kHair;
 }
@@ -96,7 +96,7 @@ void WindowResampler::draw(const Samples<const std::uint8_t>& source, const Samp
   const bool regular = find_columns(source.width, target.width, grid.left, grid.scale_x, channels);
   const bool dense = source.step == channels && target.step == channels;
   const int wide = (end_ - begin_) * channels, across = target.width * channels;
-  // One sample more, so that the regular loop may read the neighbour that it does not need.
+  // The line has one sample more, because the regular loop also reads the right neighbour of the last sample.
   line_.resize(static_cast<std::size_t>(std::max(wide, across) + channels));
   std::uint16_t* line = line_.data();
   for (int j = 0; j < target.height; ++j) {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A window that moves over a wide picture as a camera on a pan-tilt head would over the scene: where it lies for a
-// pose, and its pixels.
+// A window that moves over a wide picture as a camera on a pan-tilt head moves over the scene: its place for a pose,
+// and its pixels.
 //
-// The wide picture is a pinhole camera's that looks straight ahead (vision/lens.h without pan and tilt). A head that
-// looks along (pan, tilt) has in its middle what the wide picture shows at
+// The wide picture is that of a pinhole camera pointing straight ahead (vision/geometry/lens.h without pan and tilt).
+// The middle of the view of a head at (pan, tilt) is the point of the wide picture
 //   x = W / 2 + F tan(pan),   y = H / 2 - F tan(tilt) / cos(pan),   F = (W / 2) / tan(wide field of view / 2)
-// (corner coordinates, as those of boxes). The window is an upright rectangle round that point: near the edges a real
-// camera would see the scene a little sheared, this one does not.
+// (corner coordinates, like those of boxes). The window is an upright rectangle around that point: the slight shear
+// that a real camera shows near the edges is left out.
 #pragma once
 
 #include <cstddef>
@@ -19,11 +19,12 @@ namespace cerberus::vision {
 
 class WindowGeometry {
  public:
-  // Angles in radians. fov: what the window sees over its width; 0: a pixel of the picture is a pixel of the window.
+  // Angles in radians. fov: field of view over the window's width; 0: a pixel of the picture is a pixel of the window.
   WindowGeometry() = default;
   WindowGeometry(double wide_fov, Size picture, Size window, double fov = 0);
 
-  // False: the window is larger than the picture, or an angle is none of a pinhole's. Nothing else may be called then.
+  // Returns false when the window is larger than the picture or an angle is impossible for a pinhole camera. No other
+  // method may be called then.
   bool fits() const { return fits_; }
   double scale() const { return scale_; }  // picture pixels a window pixel
   double fov() const;                      // radians, over the window's width
@@ -33,10 +34,10 @@ class WindowGeometry {
 
   struct Place {
     double left = 0, top = 0;  // of the window's corner in the picture, corner coordinates
-    double pan = 0, tilt = 0;  // where it really looks, radians
-    bool limited = false;      // the picture ends before the pose that was asked for
+    double pan = 0, tilt = 0;  // the pose that the window shows, radians
+    bool limited = false;      // the picture's edge limited the requested pose
   };
-  // NaN is straight ahead.
+  // Returns the window's place for a pose in radians. NaN means straight ahead.
   Place at(double pan, double tilt) const;
 
  private:
@@ -46,8 +47,8 @@ class WindowGeometry {
   bool fits_ = false;
 };
 
-// Some of a picture's samples: a plane, or one component of packed pixels. Sample (x, y), byte c of `channels` adjacent
-// ones, is data[y stride + x step + c].
+// Samples of a picture: a plane, or one component of packed pixels. Byte c of the `channels` adjacent bytes of sample
+// (x, y) is data[y stride + x step + c].
 template <typename Byte>
 struct Samples {
   Byte* data = nullptr;
@@ -58,9 +59,9 @@ struct Samples {
 
 // Bilinear resampling on a grid of equal steps:
 //   target(i, j) = source(left + (i + 1/2) scale_x - 1/2, top + (j + 1/2) scale_y - 1/2)
-// Positions are rounded to 1/128 sample and held at the picture's edges; values are rounded to nearest. On whole
-// positions it is a copy. Scales far above 1 skip samples. Both have as many channels. Allocates only for a wider
-// target.
+// Positions are rounded to 1/128 sample and limited to the picture; values are rounded to nearest. At whole positions
+// the result is a copy. Scales far above 1 skip samples. Source and target have the same number of channels. Allocates
+// only for a wider target.
 class WindowResampler {
  public:
   struct Grid {

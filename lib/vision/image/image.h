@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pictures as the stages see them: a view (borrowed, with stride) and an image (owned, sized once).
+// The two kinds of picture that the stages use: a view (borrowed, with stride) and an image (owned, sized once).
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,8 @@ struct Size {
 };
 
 // A borrowed picture of `width` x `height` samples; `stride` is the distance between rows in samples
-// and may be larger than the width. Never owns, never checks: callers hand in what is mapped.
+// and may be larger than the width. A view does not own the samples and checks no bounds: the caller passes mapped
+// memory.
 template <typename T>
 struct View {
   T* data = nullptr;
@@ -42,7 +43,7 @@ struct View {
 using GrayView = View<const std::uint8_t>;
 using MutableGrayView = View<std::uint8_t>;
 
-// Rows are padded to a multiple of so many samples: kernels that look at whole vectors take no more at a row's end.
+// Rows are padded to a multiple of kRowSamples, so that kernels read whole vectors up to a row's end.
 inline constexpr int kRowSamples = 16;
 
 constexpr int padded_row(int width, int step = kRowSamples) {
@@ -57,7 +58,8 @@ class Image {
   Image() = default;
   explicit Image(Size size) { resize(size); }
 
-  // Returns true when the memory is new (and zeroed). Where there is none, std::bad_alloc, and all is as before.
+  // Returns true when the memory is new (and zeroed). Throws std::bad_alloc when memory runs out; the image is then
+  // unchanged.
   bool resize(Size size) {
     if (size == size_) return false;
     const int stride = padded_row(size.width, kStep);
@@ -86,7 +88,7 @@ class Image {
 
  private:
   static_assert(std::is_trivially_copyable_v<T>);
-  static constexpr std::size_t kAlign = 64;  // of the first row: a line of the cache
+  static constexpr std::size_t kAlign = 64;  // alignment of the first row in bytes: a cache line
   struct Free {
     void operator()(T* p) const { ::operator delete(p, std::align_val_t{kAlign}); }
   };

@@ -14,15 +14,15 @@ namespace {
 
 constexpr std::size_t kMost = std::numeric_limits<std::uint16_t>::max();
 
-// One run for 32 pixels and one component for 256: at 320x240, ten runs in every row, and 300 components. One run a row
-// there must be: opening goes no further.
+// Limits of one run for 32 pixels and one component for 256: at 320x240, ten runs a row and 300 components. There is
+// room for at least one run a row, because opening cannot reduce a row below one run.
 Labeller::Limits usual_limits(Size picture) {
   const auto area = static_cast<std::size_t>(picture.area()), rows = static_cast<std::size_t>(picture.height);
   return {std::min(std::max<std::size_t>({area / 32, rows, 256}), kMost),
           std::clamp<std::size_t>(area / 256, 64, kMost)};
 }
 
-// The first column from x on whose bit is (not) set, 64 * words if there is none.
+// Returns the first column from x on whose bit is set (or clear), 64 * words if there is none.
 template <bool set>
 int search(const std::uint64_t* row, int words, int x) {
   for (int i = x / 64, skip = x % 64; i < words; ++i, skip = 0) {
@@ -40,7 +40,7 @@ void Labeller::preallocate(Size picture) {
   vision::preallocate(runs_, limits_.runs);
   vision::preallocate(forest_, limits_.runs);
   vision::preallocate(components_, limits_.components);
-  size_ = picture;  // last: what threw is tried again
+  size_ = picture;  // assigned last: after a failed allocation the next call tries again
 }
 
 std::int32_t Labeller::root(std::int32_t i) {
@@ -51,7 +51,7 @@ std::int32_t Labeller::root(std::int32_t i) {
   return i;
 }
 
-// False where there are more than `most` runs.
+// Appends the runs of one row. Returns false when there would be more than `most` runs.
 bool Labeller::cut_row(const std::uint64_t* row, int words, int y, std::size_t most) {
   const int width = 64 * words;
   for (int x = search<true>(row, words, 0); x < width; x = search<true>(row, words, x)) {
@@ -78,8 +78,8 @@ bool Labeller::cut(BitView bits, std::size_t most) {
   return true;
 }
 
-// Runs [above, here) are the row above, [here, end) this one; both sorted by column. Touching, diagonals
-// included, means first <= other.end and other.first <= end (ends are exclusive).
+// Joins the runs [here, end) of this row with the runs [above, here) of the row above; both are sorted by column. Two
+// runs touch, diagonals included, when first <= other.end and other.first <= end (ends are exclusive).
 void Labeller::join_rows(std::size_t above, std::size_t here, std::size_t end) {
   std::size_t a = above;
   for (std::size_t b = here; b < end; ++b) {
@@ -112,8 +112,8 @@ std::span<const Component> Labeller::find(MutableBitView bits, int width, std::u
   for (least = std::max(least, 1u); !fits(); least *= 2) {
   }
 
-  // A root is its component's first run, so it is met before the others and numbers are given in reading order. Its
-  // area has then been read: in the forest, the component's number takes its place.
+  // A root is the first run of its component, so the loop meets it before the others and numbers the components in
+  // reading order. The component's number then replaces the area in the forest, which is no longer needed.
   constexpr std::int32_t gone = std::numeric_limits<std::int32_t>::min();
   std::size_t kept = 0;
   for (std::size_t i = 0; i < forest_.size(); ++i) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Connected components of a mask with their boxes and areas, by runs.
+// Connected components of a mask with their boxes and areas, found by runs.
 //
-// A row is cut into runs of moving pixels; a run joins every run of the row above that it touches
-// (8-connected) in a union-find forest whose root is always the earliest run, so that labels come out in
-// reading order of the components' first pixels whatever the shape (L. He, Y. Chao, K. Suzuki, "A run-based
-// two-scan labeling algorithm", IEEE Trans. Image Processing 17(5), 2008, is the idea). Areas are sums over
-// runs, not over pixels.
+// The labeller cuts each row into runs of moving pixels and joins a run with every run of the row above that it
+// touches (8-connected) in a union-find forest. The root of a tree is always its earliest run, so that labels are in
+// reading order of the components' first pixels for every shape. Areas are sums over runs, not over pixels. Source of
+// the idea: L. He, Y. Chao, K. Suzuki, "A run-based two-scan labeling algorithm", IEEE Trans. Image Processing 17(5),
+// 2008.
 #pragma once
 
 #include <cstdint>
@@ -27,17 +27,17 @@ struct Component {
   int height() const { return bottom - top; }
 };
 
-// How far two extents (columns or rows) lie apart; below 0 where they overlap.
+// Distance between two extents (columns or rows) in pixels; below 0 where they overlap.
 constexpr int gap(int a_from, int a_to, int b_from, int b_to) {
   return (a_from > b_from ? a_from : b_from) - (a_to < b_to ? a_to : b_to);
 }
 
-// Whether two components lie less than so many pixels apart, across and down.
+// Returns whether two components lie less than `pixels` apart, both across and down.
 constexpr bool are_within(double pixels, const Component& a, const Component& b) {
   return gap(a.left, a.right, b.left, b.right) < pixels && gap(a.top, a.bottom, b.top, b.bottom) < pixels;
 }
 
-// One horizontal stretch of moving pixels. 16 bits: no picture here is wider or higher than 65535.
+// One horizontal stretch of moving pixels. 16 bits suffice: analysed pictures are at most 65535 wide and high.
 struct Run {
   std::uint16_t row = 0;
   std::uint16_t first = 0, end = 0;  // columns, end is one past the last
@@ -46,23 +46,23 @@ struct Run {
 
 class Labeller {
  public:
-  // What there is room for; at most 65535 of each.
+  // The largest numbers of runs and components that the labeller stores; at most 65535 of each.
   struct Limits {
     std::size_t runs = 0, components = 0;
   };
-  // By the picture's size: several times what the busiest street gives.
+  // Derives the limits from the picture's size: several times the runs and components of a busy street.
   Labeller() = default;
   explicit Labeller(const Limits& limits) : fixed_(limits) {}
 
-  // What find() does first: takes the memory for pictures of this size.
+  // Allocates the memory for pictures of this size; find() calls it first.
   void preallocate(Size picture);
 
-  // Finds the components of the set bits (8-connected) that have at least `least` pixels; the others' bits are cleared.
-  // Component i carries label i + 1. width: the picture's, pixels.
-  // Memory is bounded and taken at the first picture of a size. What does not fit is clutter (rain, a failing sensor),
-  // and loses its small parts until it fits: by openings with growing squares while there are too many runs, by
-  // doubling `least` while there are too many components. The bits always show what was found. The spans live until the
-  // next call.
+  // Finds the components of the set bits (8-connected) that have at least `least` pixels and clears the bits of smaller
+  // ones. Component i has the label i + 1. width: the picture's width in pixels.
+  // Memory is bounded and allocated at the first picture of a size. A mask beyond the limits is clutter (rain, a
+  // failing sensor): small parts are removed until it fits, by openings with growing squares while there are too many
+  // runs, by doubling `least` while there are too many components. On return the set bits are exactly the pixels of the
+  // returned components. The spans are valid until the next call.
   std::span<const Component> find(MutableBitView bits, int width, std::uint32_t least = 1);
 
   const Limits& limits() const { return limits_; }
@@ -70,7 +70,7 @@ class Labeller {
   // In reading order.
   std::span<const Run> runs() const { return runs_; }
 
-  // labels := label of each pixel, 0 where nothing moves. Size as the mask's.
+  // labels := the label of each pixel, 0 for background. labels has the mask's size.
   void write(View<std::uint16_t> labels) const;
 
   std::size_t bytes() const;
@@ -85,7 +85,7 @@ class Labeller {
   Size size_;
   Limits limits_;
   std::vector<Run> runs_;
-  std::vector<std::int32_t> forest_;  // over runs: the parent, or of a root minus its area
+  std::vector<std::int32_t> forest_;  // for each run its parent; for a root minus the component's area
   std::vector<Component> components_;
 };
 

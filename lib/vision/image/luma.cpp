@@ -35,7 +35,7 @@ int first_source(int j, int source, int target) {
   return static_cast<int>(std::int64_t{j} * source / target);
 }
 
-// Behind the last source sample with a share in target sample j.
+// Returns one past the last source sample that overlaps target sample j.
 int end_source(int j, int source, int target) {
   return static_cast<int>((std::int64_t{j + 1} * source + target - 1) / target);
 }
@@ -70,7 +70,7 @@ bool same_layout(const LumaSource& a, const LumaSource& b) {
          a.r == b.r && a.g == b.g && a.b == b.b && (a.word_shift > 0) == (b.word_shift > 0);
 }
 
-// Samples of a row of vertical averages between one pixel and the next: bytes, or one a word.
+// Distance between two pixels in a row of vertical averages, in samples: the pixel stride for bytes, 1 for words.
 int sum_stride(const LumaSource& s) {
   return s.word_shift > 0 ? 1 : s.pixel_stride;
 }
@@ -93,7 +93,7 @@ Size analysis_size(Size frame, int analysis_width) {
 
 void LumaScaler::prepare_rows(int source_height, int target_height) {
   rows_.resize({target_height, 1});
-  // As many fraction bits as leave the weighted sum in 16 bits: the weights add up to (128, 256], +1 by
+  // Uses as many fraction bits as keep the weighted sum within 16 bits: the weights add up to (128, 256], plus 1 by
   // rounding.
   const double ratio = static_cast<double>(source_height) / target_height;
   shift_ = 0;
@@ -158,7 +158,7 @@ void LumaScaler::prepare(const LumaSource& source, Size target) {
 void LumaScaler::scale(const LumaSource& source, MutableGrayView target) {
   if (target.empty() || source.width <= 0 || source.height <= 0) return;
   if (source.width == target.width && source.height == target.height) return copy(source, target);
-  // Beyond 16 bits of vertical sums; no real video comes here.
+  // The vertical sums would exceed 16 bits: use the reference. No real video has this ratio.
   if (source.height / 256 >= target.height) return scale_luma_reference(source, target);
   prepare(source, target.size());
   for (int y = 0; y < target.height; ++y) {

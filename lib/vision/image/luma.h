@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From a mapped video frame to the small grey picture that is analysed: no copy of the frame, one pass over
-// it.
+// Reduces a mapped video frame to the small grey picture that is analysed, in one pass and without a copy of the
+// frame.
 #pragma once
 
 #include <cstddef>
@@ -10,15 +10,15 @@
 
 namespace cerberus::vision {
 
-// Where the brightness of a frame is. One luma sample every `pixel_stride` bytes (planar 1, YUY2 and UYVY 2); or
-// packed RGB of 3 or 4 bytes a pixel, whose luma is computed: (77 R + 150 G + 29 B) / 256, the BT.601 weights; or
-// one luma sample in every word of 16 bits, of which the upper 8 significant bits count (P010, I420_10LE and kin):
-// what is cut off is less than one grey level, and the same in every frame.
+// Describes where a frame holds its luma. One of three layouts: one luma sample every `pixel_stride` bytes (planar 1,
+// YUY2 and UYVY 2); packed RGB of 3 or 4 bytes a pixel, whose luma is computed as (77 R + 150 G + 29 B) / 256, the
+// BT.601 weights; one luma sample in every word of 16 bits, of which the upper 8 significant bits are used (P010,
+// I420_10LE and similar). The truncation is below one grey level and equal in every frame.
 struct LumaSource {
   const std::uint8_t* data = nullptr;  // first luma sample, or first byte of the first RGB pixel
   int width = 0;                       // pixels
   int height = 0;
-  std::ptrdiff_t stride = 0;  // bytes between rows; may be far above the width, or negative
+  std::ptrdiff_t stride = 0;  // bytes between rows; may be far larger than a row, or negative
   int pixel_stride = 1;       // bytes between pixels
   bool rgb = false;
   int r = 0, g = 0, b = 0;  // byte offsets inside an RGB pixel
@@ -26,19 +26,19 @@ struct LumaSource {
   bool swapped = false;     // those words have the other byte order than this machine
 };
 
-// The most that is analysed: counters of 32 bits and coordinates of 16 bits are laid out for it.
+// The largest analysed picture: 32-bit counters and 16-bit coordinates do not overflow up to this size.
 inline constexpr int kMaximumAnalysisSide = 3840;
 inline constexpr long kMaximumAnalysisArea = 3840L * 2160;
 
 // The analysis size for a frame: `analysis_width` wide with the frame's aspect, at least 16 rows; never
-// larger than the frame (a small frame is analysed as it is). analysis_width 0: the frame's own size. What would be
-// wider or higher than kMaximumAnalysisSide, or larger than kMaximumAnalysisArea, is made smaller with its aspect kept.
+// larger than the frame (a small frame is analysed at its own size). analysis_width 0: the frame's own size. A result
+// beyond kMaximumAnalysisSide in either direction, or beyond kMaximumAnalysisArea, is reduced with its aspect kept.
 Size analysis_size(Size frame, int analysis_width);
 
-// Area averaging reduction: every source pixel counts with the share of it that lies in the target pixel.
-// Never reads a byte behind the last sample of a row. Tables are kept: no allocation while the source's
-// layout and the target's size stay the same. The target must not be larger than the source; equal sizes copy
-// (or convert RGB).
+// Reduces by area averaging: every source pixel is weighted by the share of it that lies in the target pixel.
+// Never reads a byte behind the last sample of a row. The tables are reused: no allocation while the source's
+// layout and the target's size stay the same. The target must not be larger than the source; at equal sizes the
+// scaler copies (or converts RGB).
 //
 // Fixed point (16 bits vertically, 32 horizontally): the result is within one grey level of the exact
 // average; equal sizes and a constant picture are exact.
@@ -70,8 +70,8 @@ class LumaScaler {
   Size target_;
 };
 
-// The exact area average rounded to nearest, in integers, sample by sample: what the tests hold LumaScaler
-// against.
+// The exact area average rounded to nearest, in integers, sample by sample: the reference for the tests of
+// LumaScaler.
 void scale_luma_reference(const LumaSource& source, MutableGrayView target);
 
 }  // namespace cerberus::vision

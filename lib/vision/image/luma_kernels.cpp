@@ -13,7 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-// One vector of columns, all rows. load(row) gives the samples of one row as 16 bits of at most 255.
+// Averages one vector of columns over all rows. load(row) returns the samples of one row as 16 bits of at most 255.
 template <class D, class Load>
 HWY_INLINE hn::Vec<D> average_vector(D d, const RowAverage& t, const std::uint8_t* p, const Load& load) {
   auto total = hn::Mul(load(p), hn::Set(d, t.first_weight));

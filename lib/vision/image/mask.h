@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Masks with one bit a pixel: 64 pixels a machine word, so that set algebra, morphology and flood filling of
-// a whole picture cost a few microseconds.
+// Masks with one bit a pixel, 64 pixels in a machine word, so that set algebra, morphology and flood filling of
+// a whole picture take a few microseconds.
 #pragma once
 
 #include <bit>

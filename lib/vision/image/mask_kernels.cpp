@@ -46,7 +46,7 @@ void binarise_row(const std::uint8_t* row, int width, std::uint8_t limit, std::u
   for (; x + lanes <= width; x += lanes) store(row + x, x);
   const int end = (width + 63) / 64 * 64;
   if (x == end) return;
-  std::uint8_t rest[64] = {};  // 0 is above nothing
+  std::uint8_t rest[64] = {};  // the padding 0 exceeds no limit
   std::memcpy(rest, row + x, static_cast<std::size_t>(width - x));
   for (const int begin = x; x < end; x += lanes) store(rest + (x - begin), x);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Inner loops of masks of bits, chosen for the processor at run time. What they are held against: the definitions in
-// morphology.h, one pixel at a time, and the bits themselves.
+// Inner loops of bit masks, chosen for the processor at run time. The tests compare them with the references in
+// morphology.h, one pixel at a time, and with single bits.
 #pragma once
 
 #include <cstddef>

@@ -8,9 +8,10 @@
 
 namespace cerberus::vision {
 
-// The median of `total` > 0 values of which counts[i] were rounded to the level first + i: a level stands for all
-// values within half a level of it, spread evenly. `folded`: they are absolute values, so that level 0 is only half as
-// wide. 0 where counts are fewer than said. Of 64-bit elements the lower 32 bits count.
+// Returns the median of `total` > 0 values, in grey levels, of which counts[i] were rounded to the level first + i: the
+// values of a level are assumed to be spread evenly within half a level of it. `folded`: the values are absolute, so
+// that level 0 is only half as wide. Returns 0 if the counts add up to less than half of `total`. Of 64-bit elements
+// only the lower 32 bits are used.
 template <typename Counts>
 double median_of_levels(const Counts& counts, std::int64_t total, int first = 0, bool folded = false) {
   std::int64_t below = 0;
@@ -27,8 +28,8 @@ double median_of_levels(const Counts& counts, std::int64_t total, int first = 0,
   return 0;
 }
 
-// Standard deviation of what was counted by its absolute value, if it is normal: 1.4826 x the median (median absolute
-// deviation). 0 for no counts.
+// Returns the standard deviation, in grey levels, of normally distributed values from the histogram of their absolute
+// values: 1.4826 x the median (median absolute deviation). 0 for no counts.
 template <typename Counts>
 double noise_sigma(const Counts& counts) {
   return 1.4826 *

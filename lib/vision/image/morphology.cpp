@@ -13,10 +13,11 @@ namespace {
 
 using Word = std::uint64_t;
 
-// One row united with itself moved by -radius .. +radius, radius at most 64: the reach doubles with every step. What a
-// neighbouring word moves in needs to be right only as far as it reaches. Most words are all alike.
+// Unites a row with itself moved by -radius .. +radius, radius at most 64; the reach doubles with every step. Bits
+// shifted in from a neighbouring word need to be correct only as far as the reach. Most words
+// are full, or empty between empty neighbours, and are skipped.
 void spread_row(Word* row, int words, int radius) {
-  Word before = 0;  // the word to the left, as it was
+  Word before = 0;  // the word to the left before it was changed
   for (int i = 0; i < words; ++i) {
     const Word here = row[i], after = i + 1 < words ? row[i + 1] : 0;
     if (~here && (here | before | after)) {
@@ -35,7 +36,7 @@ void spread_row(Word* row, int words, int radius) {
   }
 }
 
-// Rows united with their neighbours up to `radius` rows away, the reach doubling: first upwards, then downwards.
+// Unites rows with their neighbours up to `radius` rows away, the reach doubling: first upwards, then downwards.
 void spread_columns(MutableBitView bits, int radius) {
   const auto words = [&](int rows) { return static_cast<std::size_t>(rows) * bits.width; };
   const auto spread = [&](auto&& unite) {
@@ -59,12 +60,12 @@ void invert(MutableBitView bits, int width) {
   clear_beyond(bits, width);
 }
 
-// Every run of `within` that holds a seed becomes seeded: adding the seed to the run carries a 1 through its
-// rest, and the changed bits are the run from the seed upwards. The mirrored direction is done by shifting.
-// Returns whether the row grew.
+// Seeds every run of `within` that holds a seed: the sum of seed and run carries a 1 through the rest of the run, and
+// the changed bits are the run from the seed upwards. The other direction is done by shifting. Returns whether the row
+// grew.
 bool fill_runs(Word* seeds, const Word* within, int words) {
   bool grew = false;
-  Word carry = 0;  // a run seeded in the word below goes on
+  Word carry = 0;  // 1 when a seeded run continues from the word below
   for (int i = 0; i < words; ++i) {
     const Word mask = within[i];
     Word seed = (seeds[i] | carry) & mask;
@@ -95,7 +96,7 @@ bool fill_runs(Word* seeds, const Word* within, int words) {
   return grew;
 }
 
-// Seeds of a row := seeds | the neighbouring row's reach (8-connected), inside `within`.
+// Adds to a row's seeds the pixels of `within` that touch the neighbouring row's seeds (8-connected).
 bool take_over(Word* row, const Word* neighbour, const Word* within, Word* scratch, int words) {
   Word any = 0;
   for (int i = 0; i < words; ++i) {
@@ -158,14 +159,14 @@ void Morphology::vote(MutableBitView bits, int width, int least) {
   const auto copy = [&](int y, Word* to) {
     std::memcpy(to, bits.row(y), static_cast<std::size_t>(bits.width) * sizeof(Word));
   };
-  // The row above and this one, as they were.
+  // The row above and this one before they were changed.
   Word *above = scratch_.view().row(0), *here = scratch_.view().row(1);
   copy(0, here);
   for (int y = 0; y < bits.height; ++y) {
     const Word* const rows[] = {here, y > 0 ? above : nullptr,
                                 y + 1 < bits.height ? bits.row(y + 1) : nullptr};
     for (int i = 0; i < bits.width; ++i) {
-      if (here[i] == 0) continue;  // most of a mask; only what is set can be kept
+      if (here[i] == 0) continue;  // most words are empty; vote() only keeps pixels that are set
       Word ones = 0, twos = 0, fours = 0, eights = 0;
       const auto add = [&](Word value) {
         Word carry = ones & value;

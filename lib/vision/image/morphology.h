@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Mathematical morphology of masks with square elements, and what is built on it: closing, opening, reconstruction. A
-// 320x240 closing of 11 takes a few microseconds.
+// Mathematical morphology of masks with square structuring elements: dilation, erosion, closing, opening, vote and
+// reconstruction. A 320x240 closing of side 11 takes a few microseconds.
 #pragma once
 
 #include "vision/image/image.h"
@@ -8,13 +8,14 @@
 
 namespace cerberus::vision {
 
-// `side` is the square's side in pixels; even sides count as the next odd one, below 2 nothing happens.
-// Outside the picture nothing is set for a dilation and everything for an erosion: closing never removes and
-// opening never adds a pixel, at the border as inside. All work in place and keep their scratch: no
-// allocation at one picture size.
+// `side` is the square's side in pixels; an even side is rounded up to the next odd one, a side below 2 changes
+// nothing. Pixels outside the picture count as clear for a dilation and as set for an erosion: closing never removes
+// and opening never adds a pixel, at the border too. All methods work in place and reuse the scratch memory: no
+// allocation while the picture's size stays the same.
 class Morphology {
  public:
-  // `width` is the picture's width in pixels (a BitView knows words only). Masks are whole ones: no words between rows.
+  // `width` is the picture's width in pixels (the width of a BitView is in words). Masks are contiguous: the stride
+  // equals the row's words.
   void dilate(MutableBitView bits, int width, int side);
   void erode(MutableBitView bits, int width, int side);
   void close(MutableBitView bits, int width, int side);
@@ -30,7 +31,7 @@ class Morphology {
   BitMask scratch_;
 };
 
-// The definitions, one pixel at a time: what the tests hold the fast ones against.
+// The same results by definition, one pixel at a time: the references for the tests.
 void dilate_reference(GrayView mask, int side, MutableGrayView out);
 void erode_reference(GrayView mask, int side, MutableGrayView out);
 

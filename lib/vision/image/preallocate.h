@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Vectors whose memory is taken once, for the most they may ever hold at one size of picture.
+// Vectors whose memory is allocated once for the largest content at one size of picture.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace cerberus::vision {
 
-// Empties `v` and makes room for `most`, no more: what an earlier, larger picture needed is given back.
+// Empties `v` and reserves exactly `most` elements: memory of an earlier, larger picture is freed.
 template <typename T>
 void preallocate(std::vector<T>& v, std::size_t most) {
   std::vector<T> fresh;

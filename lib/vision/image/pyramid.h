@@ -14,13 +14,13 @@ class Pyramid {
  public:
   static constexpr int kMaxLevels = 8;
 
-  // Level 0 is the picture itself: it has to stay what and where it is for as long as it is looked at here. `levels` at
-  // most kMaxLevels; stops earlier at an empty level. Nothing here allocates but when the size changes.
+  // Level 0 refers to the picture itself, which must stay valid and unchanged for as long as the pyramid is used.
+  // `levels` at most kMaxLevels; stops earlier at an empty level. Allocates only when the size changes.
   void borrow(GrayView picture, int levels);
-  // More levels of the same picture.
+  // Adds levels of the same picture.
   void extend(int levels);
-  // Becomes what `other` is from level 1 on, with the size but not the pixels of its level 0. The other one has
-  // to borrow anew.
+  // Takes the levels of `other` from level 1 on, with the size but not the pixels of its level 0. `other` must
+  // borrow again before its next use.
   void take(Pyramid& other);
   int levels() const { return levels_; }
   GrayView level(int l) const { return l > 0 ? smaller_[l - 1].view() : picture_; }

@@ -11,7 +11,7 @@
 
 namespace cerberus::vision {
 
-// Moves the content of a picture inside it by whole pixels; what comes in is `fill`.
+// Moves the content of a picture by (dx, dy) whole pixels; uncovered pixels are set to `fill`.
 template <typename T>
 void shift_content(View<T> v, int dx, int dy, T fill) {
   static_assert(std::is_trivially_copyable_v<T>);
