@@ -15,15 +15,15 @@ namespace cerberus::vision {
 namespace {
 
 constexpr int kLeastSide = 16;                // smaller pictures are not estimated
-constexpr int kReferenceAge = 16;             // frames after which a standing camera's reference is renewed
+constexpr int kReferenceAge = 16;             // frames after which the reference of a still camera is renewed
 constexpr double kMajority = 0.6;             // share of the patches that no other motion can outvote
-constexpr double kBent = 0.2;                 // pixels: less is nothing
+constexpr double kBent = 0.2;                 // pixels: a smaller bend of the prior is neglected
 constexpr int kFewParts = 5, kManyParts = 8;  // of MotionSamples::kRegions
-constexpr int kWideColumns = 3;               // of the four: what shows in as many parts beside one another
-constexpr float kWide = 0.25f;                // of the picture: who is as wide is seen in many parts
-constexpr int kGoesOn = 50;                   // frames that a turn past a wall with nothing on it takes
-constexpr double kBentAtOnce = 1;     // pixels of the level: the bend of a smaller turn is nothing there
-constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a camera that stood still does
+constexpr int kWideColumns = 3;    // of the four: a motion seen in as many adjacent columns is the camera's
+constexpr float kWide = 0.25f;     // of the picture: a moving object as wide is seen in many parts
+constexpr int kGoesOn = 50;        // frames: duration of a turn past a wall without texture
+constexpr double kBentAtOnce = 1;  // pixels of the level: the bend of a smaller turn is negligible there
+constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a still camera remains still below it
 
 int search_level(Size size) {
   int level = 0;
@@ -31,12 +31,12 @@ int search_level(Size size) {
   return level;
 }
 
-// The coarsest one on which patches are looked for.
+// Returns the coarsest level on which patches are searched.
 int top_level(Size size) {
   return std::max(0, search_level(size) - 1);
 }
 
-// RMS motion over a grid of the picture: what a shift of that many pixels would give.
+// Returns the RMS displacement over a grid of the picture, pixels: the length of an equivalent shift.
 double mean_motion(const Transform& t, Size size) {
   constexpr int kGrid = 4;
   double squares = 0;
@@ -48,7 +48,7 @@ double mean_motion(const Transform& t, Size size) {
   return std::sqrt(squares / (kGrid * kGrid));
 }
 
-// By how many pixels, at most, a homography bends the picture: what a simpler model cannot follow.
+// Returns by how many pixels, at most, a homography bends the picture, which a simpler model cannot follow.
 double bend(const Transform& t, Size size) {
   return 0.25 * (std::abs(t.m[6]) * size.width + std::abs(t.m[7]) * size.height) *
          std::max(size.width, size.height);
@@ -56,11 +56,11 @@ double bend(const Transform& t, Size size) {
 
 }  // namespace
 
-// The reference is frame k-1 while the camera moves. While it stands, the reference stays for a while: a motion too
-// slow to be seen from frame to frame adds up until it is seen, instead of being snapped away for ever.
+// The reference is frame k-1 while the camera moves. While the camera is still, the reference is kept for kReferenceAge
+// frames, so that a motion too slow to be measured from frame to frame accumulates until it is measured.
 struct CameraMotion::State {
   CameraMotionOptions options;
-  Pyramid reference, current;  // current: of the caller's picture, only as long as that is there
+  Pyramid reference, current;  // current: of the caller's picture, valid only during update()
   Relief reference_relief, current_relief;
   PatchSites sites;  // of the reference
   Image<std::int32_t> scratch;
@@ -70,7 +70,7 @@ struct CameraMotion::State {
   LensBend lens;
   double noise = 1;  // standard deviation of a pixel
   bool still = false;
-  // Frames for which a camera that moves is taken to do so where the picture says too little.
+  // Remaining frames for which a moving camera is assumed to keep moving although the picture has too few matches.
   int on_its_way = 0;
   int scene_age = 0;
 
@@ -134,8 +134,8 @@ CameraMotionResult CameraMotion::State::start_scene() {
   return result;
 }
 
-// Follows every patch on the coarsest level. Guesses: standing still, the last motion, the coarse search, the head's
-// pose.
+// Matches every patch on the coarsest level. Guesses: no motion, the last motion, the coarse search, the prior from the
+// head's pose.
 Transform CameraMotion::State::first_guess(PatchMatches& matches, int level,
                                            const std::array<Shift, 2>& shifts,
                                            const std::optional<Transform>& prior) const {
@@ -161,9 +161,10 @@ MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
                                       std::span<const Transform> guesses, const LensBend& known) const {
   const Size size = reference.size();
   const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
-  const bool top = level == top_level(size);  // finer ones begin with what was found there
+  const bool top = level == top_level(size);  // finer levels start from its result
   const MotionFit fit = fit_motion(samples, model, size, guesses, top ? 96 : 24, top ? 24 : 0, known);
-  // On a coarse level only what would put the finer ones off: a patch is found a few of its pixels away.
+  // On a coarse level a turn is fitted only if its bend would mislead the finer levels: their search covers a few
+  // pixels around the guess.
   const bool turns =
       model == MotionModel::similarity && (level == 0 || !fit.transform.is_affine() ||
                                            mean_motion(fit.transform, size) > kBentAtOnce * (1 << level));
@@ -173,8 +174,8 @@ MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
   return turned;
 }
 
-// What is left to be found when the head's turn is taken out first: a turned picture is bent (a homography), and a
-// simple model then only has to follow by how much the head's word is wrong.
+// Fits the motion that remains after the prior from the head's pose is removed. A turn bends the picture (a
+// homography); a simple model then only has to describe the error of the prior.
 MotionFit CameraMotion::State::fit_beyond(const Transform& prior, int level, const MotionSamples& samples,
                                           const Transform& guess) const {
   MotionSamples beyond = samples;
@@ -186,25 +187,27 @@ MotionFit CameraMotion::State::fit_beyond(const Transform& prior, int level, con
   return rate_motion(samples, fit_on(level, beyond, guesses, {}).transform * prior);
 }
 
-// A cut: hardly anything of the earlier picture is well found again wherever it is looked for, and the pictures at
-// large are appearance_distance. From a picture without texture: texture where there was none. Measured: 1440 pairs of unrelated
-// real pictures, share.well at most .20, difference at least .77; 2309 pairs of successive ones, share.well at least
-// .32; half the picture replaced: share.well at least .26 in 95 of 100.
+// Returns whether the current picture starts a new scene: hardly any patch of the reference is well matched at any
+// guess, and the pictures as a whole differ. After a reference without texture: the current picture has texture.
+// Measured: 1440 pairs of unrelated real pictures, share.well at most .20, difference at least .77; 2309 pairs of
+// successive ones, share.well at least .32; half the picture replaced: share.well at least .26 in 95 of 100.
 bool CameraMotion::State::is_cut(const Shift& shift) const {
   const double before = reference_relief.contrast(), now = current_relief.contrast();
   if (sites.count < PatchMatches::kLeast) return now > 3 * before + 1;
   return share.well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
 }
 
-// What was looked for at the end of a motion is not found where it was.
+// Matches every patch at its own place on the finest level. The matches of estimate() do not suffice: they were
+// searched at the end of a motion, and a patch that has not moved is not found there.
 PatchMatches CameraMotion::State::found_in_place() const {
   PatchMatches matches(sites);
   matches.follow(reference, current, 0, Transform{});
   return matches;
 }
 
-// How well standing explains the picture, if the camera stands. One that stood is asked anew before it moves: boards of
-// a floor look alike wherever they are looked for, and go along with whoever walks over them.
+// Returns the rating of no motion if the camera stands, else nullopt. For a camera that was still, the patches are
+// matched again in place before a larger motion is accepted: repeated texture, such as floor boards, matches at
+// several places and seems to follow a person walking over it.
 std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samples,
                                                        const MotionFit& fit) const {
   if (options.model == MotionModel::none) return rate_motion(samples, {});
@@ -214,24 +217,25 @@ std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samp
   const MotionFit none = anew ? rate_motion(found_in_place().samples(), {}) : rate_motion(samples, {});
   const auto stands = [&] {
     if (motion < (still ? kStillMotion : 0.1)) return true;
-    // A large and lively object: the rest of the picture, in many places, says that nothing moves.
+    // For a large motion the regions that agree are compared: if a large object moves, the rest of the picture supports
+    // no motion in many places.
     const bool contested = fit.rival.has_value();
     const double here = contested ? none.ground : none.support, there = contested ? fit.ground : fit.support;
     if (motion > 1) return here > (still ? 0.6 : 0.85) * there;
-    // A camera that stood is not set in motion by so little of which so few know: what moves on adds up, as the
-    // reference stays.
+    // Leaving "still" needs strong support; slow motion accumulates against the kept reference.
     if (still && (contested || share.all < 0.5)) return true;
-    // Too little to tell: the fit explains the samples hardly better than standing still does.
+    // A small motion counts as none if it explains the samples hardly better than no motion does.
     const double unexplained = fit.agreeing > 1 ? fit.cost / fit.agreeing : 1;
     return none.support > 0.9 * fit.support && none.cost - fit.cost < 12 * std::max(1.0, unexplained);
   };
   return stands() ? std::optional(none) : std::nullopt;
 }
 
-// A motion of the camera shows in many parts of the picture; what moves in a few is an object before a blank wall. A
-// camera that stood needs more to be set in motion, or what is wider than somebody who would not show in as many parts:
-// the few things on a bare wall. Nothing of those must stay behind then. One that moves shows it also in few parts
-// beside one another.
+// Returns whether enough parts of the picture follow `fit` for it to be the camera's motion. The camera's motion shows
+// in many parts of the picture; a motion in a few parts is that of an object before a blank wall. A moving camera needs
+// kFewParts parts, or kWideColumns columns of parts. A still camera needs kManyParts parts; between kFewParts and
+// kManyParts the followers must be spread wider than an object seen in so few parts (the few objects on a bare wall),
+// and no patch may be left behind.
 bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit& fit) const {
   std::bitset<MotionSamples::kRegions> seen;
   std::array<float, MotionSamples::kMax> across;
@@ -245,7 +249,7 @@ bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit
     return parts >= kFewParts || columns.count() >= kWideColumns;
   }
   if (parts < kFewParts || parts >= kManyParts) return parts >= kManyParts;
-  // The middle four fifths of them, as one may err.
+  // The width of the middle four fifths of the followers, because single matches may be wrong.
   const int tenth = following / 10;
   const auto place = [&](int rank) {
     std::nth_element(across.begin(), across.begin() + rank, across.begin() + following);
@@ -255,7 +259,7 @@ bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit
   return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(fit);
 }
 
-// Whether patches are found where they were, and not where `fit` says they went. One may err.
+// Returns whether more than one patch is found in its old place and does not follow `fit`. A single one may be wrong.
 bool CameraMotion::State::leaves_behind(const MotionFit& fit) const {
   const PatchMatches matches = found_in_place();
   const MotionSamples& samples = matches.samples();
@@ -265,9 +269,9 @@ bool CameraMotion::State::leaves_behind(const MotionFit& fit) const {
   return count > 1;
 }
 
-// A camera that stood mostly stands: where most patches are found again in their places, on the finest level alone,
-// nothing else can come out of the search, which costs five times as much. None where that is not so, or the reference
-// is due.
+// Returns the result for a camera that remains still, or nullopt if the full search is needed. A still camera mostly
+// remains still: if most patches are found in their places on the finest level, the full search, which costs five
+// times as much, cannot give another result. Returns nullopt also when the reference is due for renewal.
 std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   if (!still || reference_age == 0 || sites.count < PatchMatches::kLeast ||
       reference_age + 1 >= kReferenceAge)
@@ -291,8 +295,8 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   return result;
 }
 
-// Where the picture says too little: what the head says, or that it stands or goes on, whichever the little there is
-// speaks for.
+// Returns the motion for a picture with too few matches: the prior if there is one; else no motion or, for a camera
+// that was moving, its last motion, whichever has more support.
 MotionFit CameraMotion::State::best_without(const MotionSamples& samples,
                                             const std::optional<Transform>& prior) const {
   if (prior) return rate_motion(samples, *prior);
@@ -308,10 +312,10 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   Transform motion = first_guess(matches, top, shifts, prior);
   const bool bent = prior && bend(*prior, size) > kBent;
   MotionFit fit;
-  std::optional<Transform> rival;  // patches are looked for on its way, too
+  std::optional<Transform> rival;  // second guess for the patches of the next level
   share = {};
   for (int level = top; level >= 0; --level) {
-    // Where the coarsest level agreed, the finest one finds its patches without those in between.
+    // After agreement on the coarsest level the levels in between are skipped: the finest one finds its patches.
     if (level < top && level > 0 && share.all > kMajority) continue;
     if (level < top && rival)
       matches.follow(reference, current, level, std::array{motion, *rival});

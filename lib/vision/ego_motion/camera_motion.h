@@ -18,15 +18,17 @@ struct CameraMotionOptions {
 
 struct CameraMotionResult {
   Transform transform;  // frame k-1 to frame k, analysis pixels; identity at the first frame of a scene
-  // Share of the picture's usable patches that follow the transform, 0..1; 0 where too few parts of the picture say
-  // anything (the transform then is the prior's, or identity).
+  // Share of the picture's usable patches that follow the transform, 0..1; 0 where too few parts of the picture have
+  // matches (the transform is then the prior, the previous motion or identity).
   double confidence = 0;
-  double residual = 0;  // RMS distance of those patches from it, analysis pixels
+  double residual = 0;  // RMS distance of those patches from the transform, analysis pixels
   bool still = false;   // the camera stands: the transform is exactly identity
-  int scene_age = 0;  // frames of this scene seen, this one included: 1 = no predecessor (start, reset, cut)
+  int scene_age =
+      0;  // number of frames of this scene, this one included: 1 = no predecessor (start, reset, cut)
 };
 
-// Feeds on one analysis picture a frame. Keeps a copy of what it needs of the previous one (a small pyramid).
+// Estimates the camera's motion from one analysis picture a frame. Keeps a small pyramid of an earlier picture, and no
+// reference to the caller's pictures.
 class CameraMotion {
  public:
   CameraMotion();
@@ -35,13 +37,14 @@ class CameraMotion {
   CameraMotion& operator=(CameraMotion&&) noexcept;
 
   void set_options(const CameraMotionOptions& options);
-  // Forget the previous frame: the next one starts a scene.
+  // Discards the previous frame: the next one starts a scene.
   void reset();
-  // `prior`: where the head's pose says the picture went (frame k-1 to k, analysis pixels). A first guess; and where
-  // the turned picture is bent, a simple model is laid over it if that explains the picture better than the model
-  // alone. A change of picture size resets by itself. A cut is recognised here and starts a scene (scene_age 1).
+  // `prior`: the motion of the picture that follows from the head's poses (frame k-1 to k, analysis pixels). It serves
+  // as a first guess; where the turn bends the picture (a homography), the model is also fitted on top of the prior,
+  // and the better of both fits is used. A change of picture size resets by itself. A cut is recognised here and starts
+  // a scene (scene_age 1).
   CameraMotionResult update(GrayView picture, const std::optional<Transform>& prior = std::nullopt);
-  // Bytes held, for the memory budget.
+  // Bytes in use, for the memory budget.
   std::size_t bytes() const;
 
  private:

@@ -11,8 +11,8 @@ namespace cerberus::vision {
 
 namespace {
 
-// Relief values are 128 +- 64, the border 255 against padding 0 or relief: any pixel without a partner counts as
-// exactly kLimit, which can be taken off again.
+// Relief values are 128 +- 64, the border 255 against padding 0 or relief: any pixel without a partner adds
+// exactly kLimit, which is subtracted afterwards.
 constexpr int kMiddle = 128, kRange = 64, kLimit = 63;
 constexpr int kStride = 96, kBorder = 16;  // of the later picture: 16 columns left and right of 64
 constexpr double kMeanRelief = 24, kMaxGain = 12;
@@ -20,7 +20,7 @@ constexpr double kMeanRelief = 24, kMaxGain = 12;
 }  // namespace
 
 void Relief::build(GrayView picture) {
-  // A very long and narrow picture cannot be made that small: it has no relief, and no shift is found.
+  // A very long and narrow picture cannot be reduced to kMaxSide: it has no relief, and no shift is found.
   const bool fits = picture.width <= kMaxSide && picture.height <= kMaxSide;
   const Size size = fits ? picture.size() : Size{};
   values_.resize(size);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the whole picture went, roughly: the first guess for pans too fast for patches to be followed.
+// The approximate shift of the whole picture: the first guess for pans too fast to match patches without one.
 #pragma once
 
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace cerberus::vision {
 
-// A small picture (at most 64 pixels a side) freed of brightness and contrast: what a pixel stands out of its 5 x 5
-// surroundings, scaled to a common mean.
+// A small picture (at most 64 pixels a side) normalised for brightness and contrast: the difference of each pixel from
+// its 5 x 5 neighbourhood, scaled to a common mean.
 class Relief {
  public:
   static constexpr int kMaxSide = 64;
 
   void build(GrayView picture);
   Size size() const { return values_.size(); }
-  double contrast() const { return contrast_; }  // mean distance from the surroundings, grey levels
+  double contrast() const { return contrast_; }  // mean difference from the neighbourhood, grey levels
   std::size_t bytes() const { return values_.bytes(); }
 
  private:
@@ -32,8 +32,8 @@ struct Shift {
   double difference = 1;  // mean difference over the overlap, 0 (equal) to about 1 (unrelated)
 };
 
-// The best shift of up to a quarter of the picture either way, to a fraction of a pixel; and the best one that is
-// not next to it.
+// Finds the best shift of up to a quarter of the picture in each direction, to a fraction of a pixel, and the best
+// other one that is not adjacent to it.
 struct ShiftSearch {
   std::array<Shift, 2> run(const Relief& earlier, const Relief& later);
 };

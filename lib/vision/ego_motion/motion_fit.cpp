@@ -12,8 +12,8 @@ namespace cerberus::vision {
 
 namespace {
 
-// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, as the start is a guess, and wider for a
-// model that starts from a similarity.
+// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, because the start is a guess, and wider
+// for a model that starts from a similarity.
 constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f}, kRicherGates{50.0f, 12.0f, 3.0f, 1.5f, 1.5f};
 
 double support_of(const Agreement& agreement) {
@@ -22,28 +22,29 @@ double support_of(const Agreement& agreement) {
   return support;
 }
 
-// With everything within the gate.
+// Returns the support that a motion would have with all samples within the gate.
 double greatest_support(const MotionSamples& s) {
   Agreement agreement;
   for (int i = 0; i < s.count; ++i) agreement.of_region[s.region[i]] += s.evidence[i];
   return support_of(agreement);
 }
 
-// Who is near fills the middle and reaches the lower edge; what surrounds him is ground (the prior of Wei, Wen, Zhu,
-// Sun, Geodesic saliency using background priors, ECCV 2012). What the six parts in the middle say counts a quarter.
+// Weights of the parts of the picture for MotionFit::ground: the six parts in the middle weigh a quarter. A near person
+// fills the middle and reaches the lower edge, and the background surrounds the person (the prior of Wei, Wen, Zhu,
+// Sun, Geodesic saliency using background priors, ECCV 2012).
 constexpr double kInside = 0.25;
 constexpr std::array<double, MotionSamples::kRegions> kGround{1, 1,       1,       1,  //
                                                               1, kInside, kInside, 1,  //
                                                               1, kInside, kInside, 1,  //
                                                               1, kInside, kInside, 1};
 
-// Whether two motions mean the same: most of what follows the one that fewer follow goes along with the other.
+// Returns whether two motions are equivalent: most followers of the one with fewer followers also follow the other.
 bool alike(const Followers& a, const Followers& b) {
   return 2 * a.common(b) > std::min(a.count(), b.count());
 }
 
-// The similarity that takes sample i's and j's points of frame k-1 to those of frame k; false if it is no camera
-// motion.
+// Computes the similarity that maps the points of samples i and j in frame k-1 to those in frame k; returns false if it
+// is impossible as a camera motion.
 bool similarity_through(const MotionSamples& s, int i, int j, double least_distance, Transform& t) {
   const double px = s.x[j] - s.x[i], py = s.y[j] - s.y[i], qx = s.u[j] - s.u[i], qy = s.v[j] - s.v[i];
   const double square = px * px + py * py;
@@ -54,7 +55,7 @@ bool similarity_through(const MotionSamples& s, int i, int j, double least_dista
   return true;
 }
 
-// The few best hypotheses that mean different motions.
+// The few best hypotheses that are different motions.
 class Contenders {
  public:
   struct Entry {
@@ -70,7 +71,7 @@ class Contenders {
     const double support = support_of(agreement);
     if (count_ == kMost && support <= entries_[kMost - 1].support) return;
     const Followers& followers = agreement.followers;
-    int place = 0;  // of the entry it takes over: its like, or the weakest
+    int place = 0;  // index of the entry that is replaced: the equivalent one, or the weakest
     while (place < count_ && !alike(entries_[place].followers, followers)) ++place;
     if (place < count_ && support <= entries_[place].support) return;
     if (place == count_) place = count_ < kMost ? count_++ : kMost - 1;
@@ -127,7 +128,8 @@ Rated refined(const SampleRows& rows, MotionModel model, Size picture, Transform
   return rate(rows, motion);
 }
 
-// A turning camera's picture is bent, by what its lens alone decides; `motion` is what to begin with.
+// Fits a turn: the similarity with the bend of a turning camera's picture, which depends on the lens alone. `motion` is
+// the initial value.
 Rated turned(const SampleRows& rows, Size picture, Shutter shutter, const LensBend& known, Transform motion) {
   const MotionLeastSquares squares(picture);
   LensBend seen;
@@ -143,7 +145,7 @@ Rated turned(const SampleRows& rows, Size picture, Shutter shutter, const LensBe
   return fit;
 }
 
-// A turn without its bend, which is nothing in the middle of the picture.
+// Returns a turn without its bend, which is zero in the middle of the picture.
 Transform unbent(const Transform& turn, Size picture) {
   const double x = 0.5 * (picture.width - 1), y = 0.5 * (picture.height - 1);
   Transform centred = Transform::translation(-x, -y) * turn * Transform::translation(x, y);
@@ -152,11 +154,12 @@ Transform unbent(const Transform& turn, Size picture) {
   return Transform::translation(x, y) * centred * Transform::translation(-x, -y);
 }
 
-// Whether the richer model explains more than chance gives its extra unknowns: an F test on the truncated cost, at
-// about one in a thousand. What it does not earn it would spend on swinging the corners of the picture about.
+// Thresholds of the F test on the truncated cost that decides whether the richer model explains more than chance does
+// with its additional unknowns, at a level of about one in a thousand. A model that fails it would only follow noise
+// in the corners of the picture.
 constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 6.9,
                  kHomographyEarns = 4 * 4.6;  // F(1), F(2), F(4), many
-// What honest samples leave of the cost, each direction.
+// Returns the cost that inliers leave unexplained, for each direction.
 double unexplained(const MotionFit& fit) {
   return std::max(fit.agreeing > 1 ? fit.cost / (2 * fit.agreeing) : 1, 0.2);
 }
@@ -197,7 +200,7 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     random = random * 1664525u + 1013904223u;
     return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
   };
-  // Chance need not be asked where the guesses explain nearly everything (honest noise costs the last tenth).
+  // Skip the random hypotheses once the support exceeds 85 % of the possible one (inlier noise costs the last tenth).
   const double enough = 0.85 * greatest_support(s);
   for (int h = 0; h < hypotheses && contenders.most() < enough; ++h) {
     const int i = draw(), j = draw();
@@ -205,8 +208,8 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     const bool shift = model == MotionModel::translation || h % 4 == 0;
     if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t);
   }
-  // What a wide lens bends is too far from any similarity to be found from one: turns through the lens that is known,
-  // or of 50, 65, 80 and 100 degrees, each of one sample.
+  // The bend of a wide lens is too far from any similarity to be reached by refinement: add turns from one sample each,
+  // through the known lens or through lenses of 50, 65, 80 and 100 degrees.
   constexpr std::array kLenses{0.3, 0.6, 1.2, 2.4};
   const bool may_bend = model == MotionModel::similarity || model == MotionModel::homography;
   const MotionLeastSquares squares(picture);
@@ -216,7 +219,7 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
     const Transform t = squares.turn({s.x[i], s.y[i]}, {s.u[i], s.v[i]}, bend);
     if (t.is_sane(picture)) contenders.add(t);
   }
-  // A hypothesis from two samples carries their errors; only refined ones can be compared.
+  // A hypothesis from two samples has their errors; hypotheses are refined before they are compared.
   constexpr double kHopeless = 0.4;
   const MotionModel simple = std::min(model, MotionModel::similarity);
   Rated fit, rival;
@@ -255,7 +258,7 @@ MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& found,
   bent.lens.earned = earned(bent, similarity);
   const bool bends = is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kBendEarns;
   MotionFit fit = bends ? bent : similarity;
-  // Sheared, it is bent, too: both have to be earned.
+  // The sheared motion is also bent: it must pass the F test for both.
   const MotionFit rolled = turned(rows, picture, Shutter::rolling, known, bent.transform);
   const double earns = kRollingEarns + (bends ? 0 : kBendEarns);
   if (is_as_supported(rolled, fit) && earned(rolled, fit) > earns) fit = rolled;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One motion of the whole picture from many small ones, of which half may belong to moving objects.
+// Fits one motion of the whole picture to many patch displacements, of which half may belong to moving objects.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace cerberus::vision {
 
-// What may be found of the camera's motion: a similarity is shift, roll and zoom.
+// The models of the camera's motion: a similarity is shift, roll and zoom.
 enum class MotionModel { none, translation, similarity, affine, homography };
 
-// Where patches of frame k-1 were found in frame k, with what each is worth.
+// The places of matched patches in frame k-1 and in frame k, with their weights.
 struct MotionSamples {
   static constexpr int kMax = 192;
   static constexpr int kRegions = 16;
@@ -23,59 +23,62 @@ struct MotionSamples {
   std::array<float, kMax> x, y;           // frame k-1, pixels
   std::array<float, kMax> u, v;           // frame k
   std::array<float, kMax> wxx, wxy, wyy;  // inverse covariance of (u, v), 1 / pixel^2
-  std::array<float, kMax> evidence;       // 0..1: how much it says about both directions
-  std::array<std::uint8_t, kMax> region;  // which of kRegions parts of the picture it lies in
+  std::array<float, kMax> evidence;       // 0..1: how well it determines both directions
+  std::array<std::uint8_t, kMax> region;  // index of the part of the picture that it lies in, below kRegions
 };
 
-// What is known of the lens of a camera that turns.
+// Estimate of the lens of a turning camera.
 struct LensBend {
   double bend = 0;         // (half diagonal of the picture / focal length)^2
-  double information = 0;  // 1 / variance of that
-  double earned = 0;       // F statistic: how much better the samples are explained with it than without
+  double information = 0;  // 1 / variance of the bend
+  double earned = 0;       // F statistic of the fit with the bend against the fit without
 
-  // What one more picture says of it. A lens may zoom and a robot drive: what is old counts less, and what is
-  // contradicted is forgotten.
+  // Updates the estimate with that of one more picture. A lens may zoom and a robot may drive: older estimates weigh
+  // less, and a contradicted one is discarded.
   void learn(const LensBend& seen);
 };
 
 struct MotionFit {
   Transform transform;
-  double support = 0;   // sum over regions of the square root of their evidence that agrees
-  double ground = 0;    // the same with what the middle of the picture says counted less
+  double support = 0;   // sum over regions of the square root of their evidence within the gate
+  double ground = 0;    // the same with a lower weight for the middle of the picture
   double cost = 0;      // sum of evidence times the squared Mahalanobis distance, cut off at kGate
   double agreeing = 0;  // evidence of the samples within the gate
   double residual = 0;  // RMS distance of those, pixels
-  LensBend lens;        // what these samples say by themselves; of a turn only
-  // Another motion that others of the samples follow, with nearly as much support; of fit_motion() only.
+  LensBend lens;        // the estimate from these samples alone; set for a turn only
+  // Another motion, with nearly as much support, that other samples follow; set by fit_motion() only.
   std::optional<Transform> rival;
 };
 
-// Squared Mahalanobis distance (two degrees of freedom: 1 % of honest samples are beyond) at which a sample disagrees.
+// Validation gate: squared Mahalanobis distance (two degrees of freedom: 1 % of the inliers are beyond) from which a
+// sample is an outlier.
 constexpr float kGate = 9.0f;
 
-// Whether sample i lies within the gate of `transform`.
+// Returns whether sample i lies within the gate of `transform`.
 bool follows(const MotionSamples& samples, int i, const Transform& transform);
 
-// How well `transform` explains the samples. Agreement in many parts of the picture counts for more than the same
-// number in one: objects are compact, the background is everywhere.
+// Rates how well `transform` explains the samples. Inliers spread over many parts of the picture give more support than
+// the same number in one part, because objects are compact and the background is everywhere.
 MotionFit rate_motion(const MotionSamples& samples, const Transform& transform);
 
-// Consensus over `hypotheses` random pairs of samples (a fixed sequence: the same input gives the same output), over
-// `guesses`, and over as many `turns` through the lens that is `known`, or through lenses of all kinds; then least
-// squares with Tukey's weights over what agrees. Where motions with different followers compete, that of the ground is
-// taken: who is near stands in the middle, and what surrounds him is the background. The model is reduced where the
-// samples cannot carry it. Returns the guess with most support where there are no samples at all (identity without
-// guesses). A similarity comes out bent where a turn is the best: fit_turn() says whether it is worth it.
+// Fits a motion by consensus over `hypotheses` random pairs of samples (a fixed sequence: the same input gives the same
+// output), over `guesses`, and over `turns` turns through the `known` lens or, if none is known, through four usual
+// lenses; then by least squares with Tukey's weights over the inliers. If motions with different inliers compete, the
+// one with the higher `ground` is taken: a near object mostly fills the middle of the picture, and the background
+// surrounds it. The model is reduced where the samples do not determine it. Without samples, returns the guess with the
+// most support (identity without guesses). Where a turn is the best, the result for a similarity is bent; fit_turn()
+// decides whether the bend is kept. picture: size in pixels. Allocates nothing.
 MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses, int turns = 0,
                      const LensBend& known = {});
 
-// What a camera that turns adds to a similarity, where the samples show it: the bend of its picture (a lens of 60
-// degrees shifts its edges by a third more), and the shear of a rolling shutter. `found`: by fit_motion(). `known`:
-// what earlier pictures said of the lens; it needs to earn its place only once.
+// Extends a similarity by the effects of a turning camera if the samples show them: the bend of the picture (a lens of
+// 60 degrees shifts the edges by a third more), and the shear of a rolling shutter. `found`: the result of
+// fit_motion(). `known`: the estimate of the lens from earlier pictures; a bend that passed the F test once need not pass
+// it again.
 MotionFit fit_turn(const MotionSamples& samples, Size picture, const MotionFit& found, const LensBend& known);
 
-// Only the least squares part: improves `motion`, returns its support.
+// The least squares part alone: improves `motion` and returns its support.
 double refine_motion(const MotionSamples& samples, MotionModel model, Size picture, Transform& motion);
 
 }  // namespace cerberus::vision

@@ -23,7 +23,7 @@ void add_normal(const SampleRows& samples, const Transform& motion, float gate, 
 }
 #else
 
-// A motion's numbers in every lane, and how far samples are from it.
+// The elements of a motion in every lane, and the distance of samples from it.
 template <typename D, bool kAffine>
 struct Motion {
   using V = hn::Vec<D>;
@@ -54,7 +54,7 @@ HWY_INLINE void agree_with(const SampleRows& samples, const Transform& t, Agreem
   const Motion<hn::CappedTag<float, SampleRows::kLanes>, kAffine> motion(t);
   const V gate = hn::Set(d, kGate), per_gate = hn::Set(d, 1 / kGate), one = hn::Set(d, 1.0f);
   V cost = hn::Zero(d), agreeing = hn::Zero(d), squares = hn::Zero(d);
-  // Returns what the samples add to their regions.
+  // Returns the evidence that the samples add to their regions.
   const auto add = [&](int row, int lane) {
     const SampleRows::Row& s = samples.row[row];
     V dx, dy, distance;
@@ -216,7 +216,7 @@ SampleRows::SampleRows(const MotionSamples& s) {
   int surplus = 0;
   for (int& d : depth) surplus += std::max(d - deep, 0), d = 0;
   count = deep + (surplus + kLanes - 1) / kLanes;
-  // Elsewhere than any sample a motion may have no value.
+  // Fill empty places with the first sample's point: at another place a motion may be undefined.
   for (int r = 0; r < count; ++r) {
     std::fill_n(row[r].x, kLanes, s.x[0]), std::fill_n(row[r].y, kLanes, s.y[0]);
     std::fill_n(row[r].u, kLanes, s.u[0]), std::fill_n(row[r].v, kLanes, s.v[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Inner loops of the motion's fit, chosen for the processor at run time. Each has an obvious reference beside it.
+// Inner loops of the motion fit, chosen for the processor at run time. Each has a scalar reference.
 #pragma once
 
 #include <array>
@@ -11,11 +11,11 @@
 
 namespace cerberus::vision {
 
-// Samples in rows of one of each region, so that sums over regions are sums over lanes. What a region has too many of
-// goes into rows of its own. Places without a sample say nothing: their evidence and weights are 0.
+// Samples in rows with one sample of each region, so that sums over regions are sums over lanes. Surplus samples of a
+// region are stored in additional rows of mixed regions. Places without a sample have evidence and weights of 0.
 struct SampleRows {
   static constexpr int kLanes = MotionSamples::kRegions;
-  // Of a region: as many as the picture's grid of patches gives, and some more.
+  // Samples of one region: as many as the picture's grid of patches gives, and some more.
   static constexpr int kDeep = 16;
   static constexpr int kMixed = MotionSamples::kMax / kLanes;
   static constexpr int kMost = kDeep + kMixed;
@@ -31,7 +31,7 @@ struct SampleRows {
   std::array<Row, kMost> row;
 };
 
-// Which samples lie within the gate of a motion, by their places in the same SampleRows.
+// The set of samples within the gate of a motion, by their places in the same SampleRows.
 class Followers {
  public:
   void set(int row, int lane, std::uint64_t bits) {
@@ -40,7 +40,7 @@ class Followers {
   int count() const { return common(*this); }
   int common(const Followers& other) const {
     int sum = 0;
-    for (std::size_t i = 0; i < words_.size(); ++i)  // few have more than three words' worth of rows
+    for (std::size_t i = 0; i < words_.size(); ++i)  // most need three words or fewer
       if (const std::uint64_t both = words_[i] & other.words_[i]) sum += std::popcount(both);
     return sum;
   }
@@ -50,11 +50,11 @@ class Followers {
   std::array<std::uint64_t, (SampleRows::kMost + 3) / 4> words_{};
 };
 
-// How samples agree with a motion. MotionFit says what the sums are.
+// The agreement of samples with a motion. MotionFit documents the sums.
 struct Agreement {
-  // Evidence within the gate, falling towards it.
+  // Evidence of the samples within the gate, weighted by a factor that falls to 0 at the gate.
   alignas(64) std::array<float, MotionSamples::kRegions> of_region{};
-  // Squares: evidence times squared distance, of what is within the gate.
+  // squares: evidence times squared distance, of the samples within the gate.
   float cost = 0, agreeing = 0, squares = 0;
   Followers followers;
 };

@@ -18,13 +18,13 @@ struct PatchTemplate {
   float xx, xy, yy, xv, yv,
       vv;  // sums over the patch of gx gx, gx gy, gy gy, gx value, gy value, value value
 };
-// Top left corner at (x, y); needs one more pixel on every side.
+// Makes the template of the patch whose top left corner is (x, y); reads one more pixel on every side.
 void make_template(GrayView picture, int x, int y, PatchTemplate& patch);
 
 // Inner products of the template with the later picture's patch at (x, y), bilinear.
 struct PatchProducts {
   float x, y, value;   // with gx, gy, value
-  float sum, squares;  // of the picture's patch itself
+  float sum, squares;  // of the later picture's patch itself
 };
 // Needs 0 <= x <= width - kPatch - 1, the same for y.
 PatchProducts match_patch(GrayView picture, float x, float y, const PatchTemplate& patch);

@@ -9,13 +9,14 @@ namespace cerberus::vision {
 
 namespace {
 
-// Priors, standard deviations over the half diagonal: shift free, linear part 10 %, perspective 3 %, what a rolling
-// shutter makes of a jerk 2 %.
+// Priors, standard deviations over the half diagonal: shift free, linear part 10 %, perspective 3 %, effect of a
+// rolling shutter under acceleration 2 %.
 constexpr double kFree = 10, kLinear = 0.1, kPerspective = 0.03, kRolling = 0.02;
 
 }  // namespace
 
-// One unknown of a model as the direction among a homography's along which it goes, and its prior's deviation.
+// One unknown of a model: its direction in the space of a homography's unknowns, and the standard deviation of its
+// prior.
 struct MotionLeastSquares::Unknown {
   double sigma;
   std::size_t first;
@@ -93,7 +94,7 @@ Transform MotionLeastSquares::turn(Point from, Point to, double bend) const {
   return in_pixels({{1, 0, tx, 0, 1, ty, -bend * tx, -bend * ty, 1}});
 }
 
-// The unknowns come out over the half diagonal.
+// Returns the transform of solved unknowns, which are relative to the half diagonal.
 template <std::size_t N>
 Transform MotionLeastSquares::composed(std::span<const Unknown, N> unknowns,
                                        const std::array<double, N>& values) const {
@@ -143,8 +144,8 @@ bool MotionLeastSquares::step(MotionModel model, const MotionNormal& normal, Tra
   return false;
 }
 
-// The bend is the last unknown: what remains in its row of Cholesky's factor is what is known of it when the others are
-// not.
+// Solves for a turned motion. The bend is the last unknown: the diagonal element of its row in Cholesky's factor is its
+// information with the other unknowns marginalised.
 template <std::size_t N>
 bool MotionLeastSquares::step_turned(std::span<const Unknown, N> unknowns, const MotionNormal& all,
                                      LensBend& lens, Transform& t) const {

@@ -11,7 +11,7 @@
 
 namespace cerberus::vision {
 
-// Whether all rows of a picture are taken at one time or one after another.
+// Whether the camera exposes all rows of a picture at one time or one after another.
 enum class Shutter { global, rolling };
 
 // Unknowns are displacements in pixels at the picture's edge, so that one weak prior fits all of them: X, Y are pixels
@@ -24,19 +24,20 @@ class MotionLeastSquares {
   // (half diagonal / focal length)^2 of a lens of 110 degrees: wider ones are no longer plane.
   static constexpr double kMostBend = 3.2;
 
-  // The turn, through a lens of this bend, that takes `from` to `to`.
+  // Returns the turn, through a lens of this bend, that maps `from` to `to`.
   Transform turn(Point from, Point to, double bend) const;
 
-  // The motion of least squares, of normal equations in this scale(). False where the samples do not determine it.
+  // Solves the normal equations, which are in this scale(), for the motion. Returns false where the samples do not
+  // determine it.
   MotionScale scale() const { return {cx_, cy_, 1 / scale_}; }
   bool step(MotionModel model, const MotionNormal& normal, Transform& motion) const;
 
   // The same for a similarity and the bend of a camera that turns about its own centre, H = K R K^-1 (Hartley,
   // Zisserman, Multiple View Geometry, 2nd ed., 8.4): to first order in the angle it adds (t . x) x / f^2 to every
-  // point, with the shift t of the middle and the focal length f, one unknown more. t is that of `motion`, in and out.
-  // With a rolling shutter the lower rows see more of a turn that becomes faster: to first order a shear and a stretch
-  // along the columns (Forssen, Ringaby, Rectifying rolling shutter video from hand-held devices, CVPR 2010), two
-  // unknowns more. `lens`: in, what is known of it; out, what the samples by themselves say.
+  // point, with the shift t of the middle and the focal length f, one more unknown. t is taken from `motion` and
+  // returned in it. With a rolling shutter an accelerating turn displaces the lower rows more: to first order a shear
+  // and a stretch along the columns (Forssen, Ringaby, Rectifying rolling shutter video from hand-held devices, CVPR
+  // 2010), two more unknowns. `lens`: in, the estimate so far; out, the estimate from the samples alone.
   bool step_turned(const MotionNormal& normal, Shutter shutter, LensBend& lens, Transform& motion) const;
 
  private:

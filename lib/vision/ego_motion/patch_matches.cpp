@@ -11,7 +11,7 @@ namespace {
 constexpr float kFound = 0.7f;  // correlation of a patch that was found again
 constexpr float kFoundWell = 0.95f;
 
-// Looks for one patch where `guess` says it went.
+// Matches one patch, starting at the place given by `guess`.
 PatchMatch look(const PatchFollower& patch, const Pyramid& current, int level, const PatchSite& site,
                 const Transform& guess, int rounds) {
   const float scale = 1.0f / static_cast<float>(1 << level);
@@ -67,7 +67,7 @@ Transform PatchMatches::follow(const Pyramid& reference, const Pyramid& current,
 // Turns the matches of one level into samples in level 0 pixels.
 void PatchMatches::collect(Size picture, int level) {
   const float scale = static_cast<float>(1 << level), shift = 0.5f * (scale - 1);
-  // What a good match is off even without noise: a sixteenth of a pixel of a picture 320 wide.
+  // Error of a good match without noise: a sixteenth of a pixel of a picture 320 wide.
   const float placement = 0.06f * scale * std::max(1.0f, static_cast<float>(picture.width) / 320);
   samples_.count = 0;
   for (int i = 0; i < sites_.count; ++i) {
@@ -78,8 +78,8 @@ void PatchMatches::collect(Size picture, int level) {
     samples_.u[n] = (m.x + m.dx) * scale + shift, samples_.v[n] = (m.y + m.dy) * scale + shift;
     correlations_[n] = m.correlation;
     samples_.region[n] = sites_.site[i].region;
-    // Covariance of the match: noise over gradient information, plus placement, plus what a simple model of the
-    // picture's motion cannot follow (it grows with the motion).
+    // Covariance of the match: noise over gradient information, plus placement, plus the part of the picture's
+    // motion that a simple model cannot describe (it grows with the motion).
     const float dx = samples_.u[n] - samples_.x[n], dy = samples_.v[n] - samples_.y[n];
     const float floor = placement * placement + 0.02f * 0.02f * (dx * dx + dy * dy);
     const float ridge = 0.01f * (m.hxx + m.hyy) + 1;
@@ -115,7 +115,7 @@ std::optional<double> PatchMatches::noise() const {
     if (matches_[i].correlation >= kFound) variances[count++] = matches_[i].noise2;
   if (count < kLeast) return std::nullopt;
   std::nth_element(variances.begin(), variances.begin() + count / 3, variances.begin() + count);
-  return std::sqrt(0.5 * variances[count / 3]);  // both pictures have it
+  return std::sqrt(0.5 * variances[count / 3]);  // the residual contains the noise of both pictures
 }
 
 }  // namespace cerberus::vision

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which patches of one picture are found again in another, and where: what the camera's motion is estimated from.
+// The matches of the patches of one picture in another one, from which the camera's motion is estimated.
 #pragma once
 
 #include <array>
@@ -11,35 +11,37 @@
 
 namespace cerberus::vision {
 
-// Of one frame, and large: made for it on the stack. Transforms and samples are in pixels of level 0. Allocates
-// nothing.
+// The matches of one frame; a large object that is created on the stack for each frame. Transforms and samples are in
+// pixels of level 0. Allocates nothing.
 class PatchMatches {
  public:
   static constexpr std::size_t kMostGuesses = 5;
 
-  // Of these patches, which live as long.
+  // `sites` must outlive the matches.
   explicit PatchMatches(const PatchSites& sites) : sites_(sites) {}
-  int count() const { return sites_.count; }  // of those to be looked for
+  int count() const { return sites_.count; }  // number of patches to match
 
-  // Looks for every patch on one level, first where `guess` says. Of the reference, level 0 is not looked at.
+  // Matches every patch on one level, starting at the place given by `guess`. Level 0 of the reference is not read.
   void follow(const Pyramid& reference, const Pyramid& current, int level, const Transform& guess);
-  // The same, first where the best of up to kMostGuesses guesses for the whole picture says, or where another one fits
-  // this patch clearly better: the background must be found even if a large object rates higher, and the consensus
-  // decides later. Returns that best guess; when in doubt it is the first one.
+  // The same, starting at the best of up to kMostGuesses guesses for the whole picture, or at another guess that fits
+  // the patch clearly better: the background must be found even if a large object rates higher, and the consensus
+  // decides later. Returns that best guess; in doubt the first one.
   Transform follow(const Pyramid& reference, const Pyramid& current, int level,
                    std::span<const Transform> guesses);
-  // Those that were found, with what each is worth.
+  // The patches that were found, with their weights.
   const MotionSamples& samples() const { return samples_; }
 
   struct Share {
-    double all = 0;   // of the patches whose place can be seen, those that were found and follow a motion
-    double well = 0;  // the same with each counted by how well it was found
+    double all =
+        0;  // of the patches whose place is in the picture: share that was found and follows the motion
+    double well = 0;  // the same, each patch weighted by the quality of its match
   };
   Share share_of(const MotionFit& fit) const;
-  // Standard deviation of a pixel, from what the calmer matches leave unexplained; none where they are too few.
+  // Returns the standard deviation of a pixel in grey levels, from the residuals of the third with the lowest ones;
+  // nullopt with too few matches.
   std::optional<double> noise() const;
 
-  static constexpr int kLeast = 8;  // patches: fewer say nothing about the whole picture
+  static constexpr int kLeast = 8;  // patches: fewer do not determine a motion of the whole picture
 
  private:
   PatchFollower follower(const Pyramid& reference, int level, int i) const;

@@ -19,16 +19,16 @@ constexpr int kMargin = 1;  // blocks start one pixel inside, so that every pixe
 void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch) {
   count = 0;
   const Size size = pyramid.size();
-  // Half size where there is enough of it: half the noise, a quarter of the work.
+  // Half size for pictures that are large enough: half the noise, a quarter of the work.
   const int level = pyramid.levels() > 1 && std::min(size.width, size.height) >= 64 ? 1 : 0;
   const GrayView picture = pyramid.level(level);
   const int across = (picture.width - 2 * kMargin) / kBlock, down = (picture.height - 2 * kMargin) / kBlock;
   if (across < 2 || down < 2) return;
-  // Cells of 20 pixels; small pictures have smaller ones, so that several parts of them speak.
+  // Cells of 20 pixels; small pictures have smaller ones, so that several parts of them have patches.
   const int cells_x = std::clamp(size.width / 20, std::clamp(size.width / 8, 1, 4), 16);
   const int cells_y = std::clamp(size.height / 20, std::clamp(size.height / 8, 1, 4), 12);
-  // Three planes beside one another, of the rows that one row of cells looks at: one more than it has, and the last of
-  // the row before.
+  // Three planes beside one another, each with the rows of blocks that one row of cells reads: its own, one more, and
+  // the last of the row before.
   const int depth = down / cells_y + 3;
   scratch.resize({3 * across, depth});
   const auto blocks = [&, view = scratch.view()](int plane, int y) {
@@ -61,7 +61,7 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
           const double spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
           const double large = 0.5 * (a + c) + spread, small = 0.5 * (a + c) - spread;
           if (large < least) continue;
-          const double score = small + 0.05 * large;  // corners before edges, edges before nothing
+          const double score = small + 0.05 * large;  // prefers corners to edges, and edges to no texture
           if (score > best) best = score, best_x = x, best_y = y;
         }
       }
@@ -112,7 +112,7 @@ void PatchFollower::begin(GrayView part, const Corner& corner) {
   gain_x_ = patch_.xv * per_value_, gain_y_ = patch_.yv * per_value_;
   match_.hxx = patch_.xx - gain_x_ * patch_.xv, match_.hyy = patch_.yy - gain_y_ * patch_.yv;
   match_.hxy = patch_.xy - gain_x_ * patch_.yv;
-  // A little stiffness: a patch that shows only an edge stays put along it.
+  // Adds a small stiffness, so that a patch with an edge only does not move along it.
   const float stiff = 0.01f * (patch_.xx + patch_.yy) + kPatch * kPatch * 0.5f;
   const float xx = match_.hxx + stiff, yy = match_.hyy + stiff;
   const float per_determinant = 1 / (xx * yy - match_.hxy * match_.hxy);
@@ -135,12 +135,13 @@ PatchMatch PatchFollower::follow(GrayView later, float dx, float dy, int rounds)
     const float bx = p.x - gain_x_ * p.value, by = p.y - gain_y_ * p.value;
     const float ex = ixx_ * bx + ixy_ * by, ey = ixy_ * bx + iyy_ * by;  // times the gain
     const float gain = (p.value - patch_.xv * ex - patch_.yv * ey) * per_value_;
-    if (!(gain > 0.15f)) break;  // nothing of the patch here
+    if (!(gain > 0.15f)) break;  // the patch is not at this place
     const float per_gain = 1 / gain;
     const float step_x = std::max(-2.0f, std::min(2.0f, ex * per_gain));
     const float step_y = std::max(-2.0f, std::min(2.0f, ey * per_gain));
     dx -= step_x, dy -= step_y;
-    if (step_x * step_x + step_y * step_y < kEnough * kEnough) break;  // what was measured here holds there
+    if (step_x * step_x + step_y * step_y < kEnough * kEnough)
+      break;  // converged: the products of this place remain valid after the step
   }
   const float spread = p.squares - p.sum * p.sum / kPixels;
   match.inside = true;

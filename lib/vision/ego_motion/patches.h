@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Small pieces of the picture that can be found again: choosing them and following them.
+// Selection and matching of patches: small parts of the picture with enough texture to be found again.
 #pragma once
 
 #include <array>
@@ -19,55 +19,56 @@ struct PatchSite {
   std::uint8_t region;  // of MotionSamples::kRegions, 4 x 4 over the picture
 };
 
-// What following one patch gave.
+// The result of matching one patch.
 struct PatchMatch {
   float dx = 0, dy = 0;  // displacement, pixels of the level; of its centre (x, y) on that level
   float x = 0, y = 0;
-  float correlation = 0;            // of the two patches, -1..1; 0 where it left the picture
-  bool inside = false;              // the place looked at lies in the later picture
-  float noise2 = 0;                 // variance of what the match leaves unexplained, grey levels^2
+  float correlation = 0;            // of the two patches, -1..1; 0 where the patch left the picture
+  bool inside = false;              // the searched place lies in the later picture
+  float noise2 = 0;                 // variance of the residual, grey levels^2
   float hxx = 0, hxy = 0, hyy = 0;  // gradient information, gain taken out, grey levels^2 / pixel^2
 };
 
-// Follows one patch on one level: inverse compositional Gauss-Newton (Baker and Matthews, IJCV 56(3), 2004) with gain
-// and offset as further unknowns, so that light may change. Template and gradients come from the earlier picture and
-// are the same wherever it is looked for.
+// Matches one patch on one level by inverse compositional Gauss-Newton (Baker and Matthews, IJCV 56(3), 2004) with gain
+// and offset as further unknowns, so that the light may change. Template and gradients come from the earlier picture
+// and are computed once for all places of the search.
 class PatchFollower {
  public:
-  static constexpr int kSide = kPatch + 2;  // of what is looked at: the patch, and a pixel around it
+  static constexpr int kSide =
+      kPatch + 2;  // side of the pixels that are read: the patch and a pixel around it
   struct Corner {
     int x, y;  // upper left pixel of the patch
   };
-  // Where the patch lies on a level of that size; nowhere on one that is too small for it.
+  // Returns the patch's corner on a level of that size; nullopt if the level is too small for it.
   static std::optional<Corner> corner_on(Size size, int level, const PatchSite& site);
 
   PatchFollower(GrayView earlier, int level, const PatchSite& site);
-  // The same of a part of the earlier picture, kSide x kSide pixels, with the patch in its middle.
+  // The same from a part of the earlier picture, kSide x kSide pixels, with the patch in its middle.
   PatchFollower(GrayView part, const Corner& corner) { begin(part, corner); }
-  // Looks around displacement (dx, dy), pixels of the level, for at most `rounds` steps; 0 only rates the given place.
+  // Searches from displacement (dx, dy), pixels of the level, for at most `rounds` steps; 0 only rates the given place.
   PatchMatch follow(GrayView later, float dx, float dy, int rounds) const;
 
  private:
   void begin(GrayView part, const Corner& corner);
 
   PatchTemplate patch_;
-  PatchMatch match_;  // what does not depend on the later picture
+  PatchMatch match_;  // the fields that do not depend on the later picture
   int corner_x_ = 0, corner_y_ = 0;
   float per_value_ = 0;
-  float gain_x_ = 0, gain_y_ = 0;      // gradients' share that a change of gain explains
+  float gain_x_ = 0, gain_y_ = 0;      // share of the gradients that a change of gain explains
   float ixx_ = 0, ixy_ = 0, iyy_ = 0;  // inverse of the stiffened gradient information
   bool textured_ = false;
 };
 
-// The most telling patch of every cell of a grid of at most 16 x 12 cells; cells without texture give none.
+// The patch with the best texture of every cell of a grid of at most 16 x 12 cells; cells without texture have none.
 struct PatchSites {
   int count = 0;
   std::array<PatchSite, MotionSamples::kMax> site;
 
-  // noise: standard deviation of a pixel of level 0; texture must stand out of it. Allocates only when the size
-  // changes.
+  // noise: standard deviation of a pixel of level 0, grey levels; the texture of a patch must exceed it. Allocates only
+  // when the size changes.
   void choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch);
-  // On level 0, which need not be there any more: what a follower looks at of it was kept.
+  // Returns the follower on level 0. The pixels that it needs were copied: the picture may be gone.
   PatchFollower follower(int i) const;
   std::size_t bytes() const { return kept_.bytes(); }  // beside the object itself
 
