@@ -6,7 +6,7 @@
 #include "cerberus/private/messages.hpp"
 #include "drivers/head/head_lease.h"
 #include "shared/choices.hpp"
-#include "shared/pose_feed.hpp"
+#include "shared/poses.hpp"
 
 namespace cerberus::plugin {
 

@@ -44,8 +44,8 @@
  *
  * Since: 0.1
  */
-// This file only connects with GStreamer: when a pose is known is pose_feed.hpp, when frames are taken frame_times.hpp,
-// and what is drawn window_view.hpp.
+// This file only connects with GStreamer: lib/motion/pose_feed.h says when a pose is known, lib/motion/frame_times.h
+// when frames are taken; window_view.hpp draws.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/video-overlay-composition.h>
@@ -57,9 +57,10 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/video.hpp"
-#include "frame_times.hpp"
+#include "motion/frame_times.h"
+#include "motion/pose_feed.h"
 #include "shared/complaint.hpp"
-#include "shared/pose_feed.hpp"
+#include "shared/poses.hpp"
 #include "shared/single_fields.hpp"
 #include "shared/times.hpp"
 #include "text/numbers.h"
@@ -83,12 +84,9 @@ GstStaticPadTemplate sink_template = GST_STATIC_PAD_TEMPLATE(
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(WINDOW_CAPS));
 
-// What can be read only: beyond the ids of window_properties().
-enum { PROP_PAN_MIN = 100, PROP_PAN_MAX, PROP_TILT_MIN, PROP_TILT_MAX, PROP_WINDOW_FOV };
-
 struct State {  // streaming thread, and state changes while it does not run
   WindowView view;
-  FrameTimes times;
+  motion::FrameTimes times;
   WindowSettings settings;
   std::optional<bool> live;  // nothing: not asked yet
   Complaint complaint;       // about the caps
@@ -99,7 +97,7 @@ struct State {  // streaming thread, and state changes while it does not run
 struct Private {
   Adjustable<WindowSettings> settings;
   State state;
-  PoseFeed feed;
+  motion::PoseFeed feed;
   std::atomic<double> pan_reach = 0, tilt_reach = 0, window_fov = 0;  // degrees
 };
 
@@ -235,20 +233,29 @@ void attach_base(GstBuffer* in, GstBuffer* out) {
 // the last frame may have been lost on its way to the head.
 constexpr Time kLost = std::chrono::milliseconds(500);
 
+// Tells the head that no frame is taken from running time `begin` until `in`.
+void push_gap(GstBaseTransform* trans, std::optional<Time> begin, GstBuffer* in) {
+  const GstClockTime until = GST_BUFFER_PTS(in);
+  if (!begin || !GST_CLOCK_TIME_IS_VALID(until)) return;
+  const GstSegment& segment = trans->segment;
+  guint64 from = gst_segment_position_from_running_time(&segment, GST_FORMAT_TIME, clock_time(*begin));
+  if (!GST_CLOCK_TIME_IS_VALID(from)) from = segment.start;  // it was in the segment before
+  if (from < until)
+    gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(trans), gst_event_new_gap(from, until - from));
+}
+
 // Until the head's way is known up to `time`, when `in` was taken.
 GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* in, Time time) {
   const WindowSettings& s = self.state.settings;
-  const auto tell = [trans](GstEvent* gap) {
-    if (gap) gst_pad_push_event(GST_BASE_TRANSFORM_SRC_PAD(trans), gap);
-  };
-  tell(self.state.times.gap_before(trans->segment, in));
+  push_gap(trans, self.state.times.gap_begin(time), in);
   const Time patience = time_of(s.lockstep_timeout);
   const Time least(1);  // none at all would be for ever
   const Time lost_after = s.lockstep_timeout > 0 ? std::clamp(patience / 2, least, kLost) : kLost;
+  using motion::PoseFeed;
   PoseFeed::Answer answer = self.feed.wait(time, lost_after);
   if (answer == PoseFeed::Answer::silent) {
     // A head that has had the last frame drops this gap as old, however late it comes to it: the result stays the same.
-    tell(self.state.times.gap_from_last(trans->segment, in));
+    push_gap(trans, self.state.times.last(), in);
     answer = self.feed.wait(time, s.lockstep_timeout > 0 ? std::max(patience - lost_after, least) : patience);
   }
   switch (answer) {
@@ -294,10 +301,12 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   Private& self = *cerberus_virtual_ptz_self(trans)->priv;
   State& state = self.state;
   apply_settings(trans, self);
-  const Time time = state.times.taken(trans->segment, in);
+  const GstClockTime running = running_time_of(trans->segment, in);
+  const Time time =
+      state.times.taken(GST_CLOCK_TIME_IS_VALID(running) ? std::optional(time_of(running)) : std::nullopt);
   if (wants_lockstep(trans, state))
     if (const GstFlowReturn flow = wait_for_head(trans, self, in, time); flow != GST_FLOW_OK) return flow;
-  state.times.add(trans->segment, state.view.picture(), in);
+  state.times.add(time, running_length(GST_BUFFER_DURATION(in), state.view.picture(), trans->segment));
   const motion::Pose pose = self.feed.at(time);
   const auto place = state.view.geometry().at(pose.pan.position, pose.tilt.position);
   GST_LOG_OBJECT(trans, "%" GST_TIME_FORMAT ": pan %.3f tilt %.3f, window at %.2f %.2f%s",
@@ -333,7 +342,7 @@ gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
   if (pose) {
     Private& self = *cerberus_virtual_ptz_self(trans)->priv;
     const std::string head = self.settings.snapshot().head;
-    if (head.empty() || head == pose->head) self.feed.tell(from_c(*pose));
+    if (head.empty() || head == pose->head) self.feed.add(from_c(*pose));
   }
   return cerberus_virtual_ptz_parent_class()->src_event(trans, event);
 }
@@ -387,22 +396,34 @@ void set_property(GObject* object, guint id, const GValue* value, GParamSpec* sp
   if (name == "width" || name == "height") gst_base_transform_reconfigure_src(GST_BASE_TRANSFORM(object));
 }
 
+// What can only be read: degrees, 0 before the first frame.
+struct Reach {
+  const char* name;
+  double low, high;
+  const char* blurb;
+  std::atomic<double> Private::* value;
+};
+constexpr guint kFirstReach = 100;  // beyond the ids of window_properties()
+constexpr Reach kReaches[] = {
+    {"pan-min", -90, 0, "How far to the left the window reaches, degrees; 0 before the first frame",
+     &Private::pan_reach},
+    {"pan-max", 0, 90, "How far to the right the window reaches, degrees; 0 before the first frame",
+     &Private::pan_reach},
+    {"tilt-min", -90, 0, "How far down the window reaches, degrees; 0 before the first frame",
+     &Private::tilt_reach},
+    {"tilt-max", 0, 90, "How far up the window reaches, degrees; 0 before the first frame",
+     &Private::tilt_reach},
+    {"window-fov", 0, 180,
+     "Angle that the window shows over its width, degrees: the horizontal-fov of those behind; 0 before "
+     "the first frame",
+     &Private::window_fov}};
+
 void get_property(GObject* object, guint id, GValue* value, GParamSpec*) {
   Private& self = *cerberus_virtual_ptz_self(object)->priv;
-  switch (id) {
-    case PROP_PAN_MIN:
-      return g_value_set_double(value, -self.pan_reach);
-    case PROP_PAN_MAX:
-      return g_value_set_double(value, self.pan_reach);
-    case PROP_TILT_MIN:
-      return g_value_set_double(value, -self.tilt_reach);
-    case PROP_TILT_MAX:
-      return g_value_set_double(value, self.tilt_reach);
-    case PROP_WINDOW_FOV:
-      return g_value_set_double(value, self.window_fov);
-    default:
-      self.settings.get(window_properties(), id, value);
-  }
+  if (id < kFirstReach) return self.settings.get(window_properties(), id, value);
+  const Reach& reach = kReaches[id - kFirstReach];
+  const double degrees = self.*reach.value;
+  g_value_set_double(value, reach.high > 0 ? degrees : -degrees);
 }
 
 void cerberus_virtual_ptz_init(CerberusVirtualPtz*) {}
@@ -412,24 +433,11 @@ void cerberus_virtual_ptz_class_init(CerberusVirtualPtzClass* klass) {
   object->set_property = set_property;
   object->get_property = get_property;
   Adjustable<WindowSettings>::install(object, window_properties());
-  const auto readable = [&](guint id, const char* name, double low, double high, const char* blurb) {
+  for (guint i = 0; i < std::size(kReaches); ++i)
     g_object_class_install_property(
-        object, id,
-        g_param_spec_double(name, nullptr, blurb, low, high, 0,
-                            GParamFlags(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
-  };
-  readable(PROP_PAN_MIN, "pan-min", -90, 0,
-           "How far to the left the window reaches, degrees; 0 before the first frame");
-  readable(PROP_PAN_MAX, "pan-max", 0, 90,
-           "How far to the right the window reaches, degrees; 0 before the first frame");
-  readable(PROP_TILT_MIN, "tilt-min", -90, 0,
-           "How far down the window reaches, degrees; 0 before the first frame");
-  readable(PROP_TILT_MAX, "tilt-max", 0, 90,
-           "How far up the window reaches, degrees; 0 before the first frame");
-  readable(
-      PROP_WINDOW_FOV, "window-fov", 0, 180,
-      "Angle that the window shows over its width, degrees: the horizontal-fov of those behind; 0 before "
-      "the first frame");
+        object, kFirstReach + i,
+        g_param_spec_double(kReaches[i].name, nullptr, kReaches[i].blurb, kReaches[i].low, kReaches[i].high,
+                            0, GParamFlags(G_PARAM_READABLE | G_PARAM_STATIC_STRINGS)));
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   element->change_state = change_state;

@@ -5,7 +5,7 @@
 
 #include "cerberus/private/video.hpp"
 #include "sensing/angles.h"
-#include "text/numbers.h"
+#include "vision/geometry/window_misfit.h"
 
 namespace cerberus::plugin {
 
@@ -14,12 +14,8 @@ using vision::Samples;
 
 namespace {
 
-std::string angle_text(double degrees) {
-  return text::significant(degrees, 4).string() + " degrees";
-}
-
-std::string size_text(const GstVideoInfo& info) {
-  return std::to_string(GST_VIDEO_INFO_WIDTH(&info)) + " x " + std::to_string(GST_VIDEO_INFO_HEIGHT(&info));
+vision::Size size_of(const GstVideoInfo& info) {
+  return {GST_VIDEO_INFO_WIDTH(&info), GST_VIDEO_INFO_HEIGHT(&info)};
 }
 
 Samples<guint8> samples(GstVideoFrame& frame, guint component, bool pixels) {
@@ -53,18 +49,12 @@ std::string WindowView::begin(const GstVideoInfo& picture, const GstVideoInfo& w
 }
 
 std::string WindowView::set_angles(const WindowSettings& s) {
-  const vision::WindowGeometry geometry(
-      radians(s.wide_fov), {GST_VIDEO_INFO_WIDTH(&picture_), GST_VIDEO_INFO_HEIGHT(&picture_)},
-      {GST_VIDEO_INFO_WIDTH(&window_), GST_VIDEO_INFO_HEIGHT(&window_)}, radians(s.horizontal_fov));
-  if (geometry.fits()) {
-    geometry_ = geometry;
-    return {};
-  }
-  const bool natural = s.horizontal_fov == 0;
-  return "A window of " + size_text(window_) + " pixels" +
-         (natural ? std::string() : " that sees " + angle_text(s.horizontal_fov)) +
-         " does not fit into the picture of " + size_text(picture_) + " pixels" +
-         (natural ? "" : " that sees " + angle_text(s.wide_fov)) + ".";
+  const vision::WindowGeometry geometry(radians(s.wide_fov), size_of(picture_), size_of(window_),
+                                        radians(s.horizontal_fov));
+  if (!geometry.fits())
+    return vision::window_misfit(size_of(picture_), s.wide_fov, size_of(window_), s.horizontal_fov);
+  geometry_ = geometry;
+  return {};
 }
 
 bool WindowView::draw(GstBuffer* picture, const Place& place, bool with_inset, GstBuffer* window) {

@@ -12,6 +12,7 @@
 #include "support/pictures.h"
 #include "support/suite.h"
 #include "vision/geometry/lens.h"
+#include "vision/geometry/window_misfit.h"
 
 using namespace cerberus::vision;
 using namespace cerberus::tests;
@@ -197,11 +198,20 @@ START_TEST(beyond_the_edge_the_edge_is_repeated) {
 }
 END_TEST
 
+START_TEST(the_text_about_a_misfit_names_sizes_and_angles) {
+  ck_assert(window_misfit({320, 240}, 60, {640, 480}, 0) ==
+            "A window of 640 x 480 pixels does not fit into the picture of 320 x 240 pixels.");
+  ck_assert(window_misfit({320, 240}, 60, {160, 120}, 75.5) ==
+            "A window of 160 x 120 pixels that sees 75.5 degrees does not fit into the picture of 320 x 240 "
+            "pixels that sees 60 degrees.");
+}
+END_TEST
+
 int main() {
   return run_suite(
       "window",
-      {straight_ahead_is_the_middle_of_the_picture, fov_and_reach_are_those_worked_out_by_hand,
-       pan_to_the_right_moves_to_the_right_and_tilt_up_moves_up,
+      {the_text_about_a_misfit_names_sizes_and_angles, straight_ahead_is_the_middle_of_the_picture,
+       fov_and_reach_are_those_worked_out_by_hand, pan_to_the_right_moves_to_the_right_and_tilt_up_moves_up,
        the_window_has_in_its_middle_what_the_head_looks_at, the_window_ends_at_the_pictures_edges_and_says_so,
        a_field_of_view_scales_the_window, a_window_that_does_not_fit_is_refused, a_whole_position_is_a_copy,
        every_layout_is_drawn_as_the_definition_says, beyond_the_edge_the_edge_is_repeated});
