@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-// Degrees as a person writes them: 6 digits hide what radians did to them.
+// Formats degrees with 6 digits, which hides the rounding of the conversion to radians.
 std::string degrees(double radians) {
   return text::significant(sensing::degrees(radians), 6).string();
 }
@@ -61,7 +61,7 @@ Reach reach(double bearing, double position, const AxisLimits& limits) {
   const double here = limits.clamp(position);
   if (!std::isfinite(bearing)) return {here, false};
 
-  // The candidate nearest to the head, moved into the stops by whole turns if it lies beyond them.
+  // The candidate nearest to the head is moved between the stops by whole turns if it lies beyond them.
   double candidate = here + sensing::wrap(bearing - here);
   if (candidate < limits.from) candidate += kTurn * std::ceil((limits.from - candidate) / kTurn);
   if (candidate > limits.to) candidate -= kTurn * std::ceil((candidate - limits.to) / kTurn);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a head may do, axis by axis. Radians and seconds; pan positive to the right, tilt positive up. Positions are a
-// line: nothing wraps on it. Zero, straight ahead, always lies between the stops.
+// Limits of a head for each axis. Radians and seconds; pan positive to the right, tilt positive up. Positions lie on a
+// line: they do not wrap. Zero, straight ahead, always lies between the stops.
 #pragma once
 
 #include <chrono>
@@ -34,26 +34,28 @@ struct Limits {
   bool operator==(const Limits&) const = default;
 };
 
-// No head turns further (ten turns of cable) or faster than this; who asks for more mistyped.
+// Largest accepted limits: no head turns further (ten turns of cable) or faster, so that larger values are typing
+// errors.
 constexpr double kMostPosition = sensing::radians(3600);
 constexpr double kMostSpeed = sensing::radians(3600);
 constexpr double kMostAcceleration = sensing::radians(1e6);
 
-// Empty, or what is wrong in words for a user, with the numbers in degrees: limits that exclude zero or are in the
-// wrong order, a speed or an acceleration that is not above 0, anything that is not a number or absurd.
+// Returns an empty string, or an error text for the user, with the numbers in degrees: limits that exclude zero or are
+// in the wrong order, a speed or an acceleration that is not above 0, a value that is not finite or beyond the
+// constants above.
 std::string check(const Limits& limits);
-// Empty, or which of these positions lies beyond the stops, as above.
+// Returns an empty string, or an error text as above that names the position (radians) beyond the stops.
 std::string check_start(const Limits& limits, double pan, double tilt);
 
 struct Reach {
   double position = 0;   // between the stops
-  bool limited = false;  // the bearing itself lies beyond them
+  bool limited = false;  // the bearing lies beyond the stops
 };
 
-// Where to turn to so as to look along `bearing` (any angle, it wraps): among the positions
-// bearing + n 2 pi between the stops the one nearest to `position`; where there is none,
-// the stop nearest to the bearing (equally near: the one nearest to `position`). So the
-// limits decide the way round, not the shorter arc. A bearing that is not a number: stay.
+// Returns the position at which the head points along `bearing` (any angle, it wraps): of the positions
+// bearing + n 2 pi between the stops the one nearest to `position`; if there is none, the stop nearest to the bearing
+// (equally near: the one nearest to `position`). The limits, not the shorter arc, decide the direction of the turn. A
+// bearing that is not a number returns the present position.
 Reach reach(double bearing, double position, const AxisLimits& limits);
 
 }  // namespace cerberus::motion

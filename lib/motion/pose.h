@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where a head looks, and where it looked when a frame was taken.
+// The pose of a head, and its pose at the time of a frame.
 #pragma once
 
 #include <array>
@@ -8,16 +8,16 @@
 
 namespace cerberus::motion {
 
-// One piece of a head's way: constant acceleration from `from` until `until`.
+// One piece of a head's trajectory: constant acceleration from `from` until `until`.
 struct Pose {
   Time from{};
   Time until = kNever;
   AxisState pan, tilt;    // at `from`
-  bool settled = true;    // stands where it was sent, nothing else is on the way
-  bool measured = false;  // the head said so; else it is what it was told
+  bool settled = true;    // the head rests at its setpoint and no command is pending
+  bool measured = false;  // from the head's position feedback; false: from the commands
 
   bool moving() const { return pan.moving() || tilt.moving(); }
-  // The same piece seen from `time` on; held at its ends.
+  // Returns the same piece with its state at `time`, which is limited to the piece.
   Pose at(Time time) const;
 };
 
@@ -26,10 +26,10 @@ class PoseHistory {
  public:
   void clear() { count_ = 0; }
   bool empty() const { return count_ == 0; }
-  // Replaces what was known from pose.from on: a newer plan overrides an older one.
+  // Adds a piece and drops the stored ones from pose.from on: a newer plan overrides an older one.
   void add(const Pose& pose);
-  // Where the head looked at `time`: by the last piece that had begun; before the first one, as it began. Of an empty
-  // history: straight ahead.
+  // Returns the pose at `time` from the last piece that had begun; before the first piece, its initial pose; for an
+  // empty history, straight ahead.
   Pose at(Time time) const;
 
  private:

@@ -8,10 +8,11 @@ namespace cerberus::motion {
 
 namespace {
 
-// Shorter than a nanosecond is nothing that anybody could ask for.
+// Seconds: shorter pieces are dropped, since times have a resolution of a nanosecond.
 constexpr double kInstant = 1e-9;
 
-// The multiple of `step` nearest to `position`; with a direction, the nearest one that is not before it.
+// Returns the multiple of `step` nearest to `position`; with a direction, the nearest one that does not lie before
+// `position` in that direction.
 double on_grid(double position, double step, double direction, const AxisLimits& limits) {
   if (!(step > 0)) return position;
   const double count = position / step;
@@ -57,7 +58,8 @@ void Plan::travel(double position, double speed, double target, double most, dou
     return;
   }
   const double peak = std::min(most, std::sqrt(std::max(0.0, acceleration * distance + u * u / 2)));
-  if (u < 0) {  // no piece turns round: what drags behind an axis may look at their ends alone
+  if (u <
+      0) {  // split at the reversal: the speed of a piece keeps its sign, so that backlash needs the ends only
     add(-u / acceleration, s * acceleration, position, speed);
     speed = 0;
   }
@@ -74,7 +76,7 @@ Plan Plan::make(Time start, const AxisState& state, const AxisCommand& command, 
   plan.low_ = std::min(limits.from, position);
   plan.high_ = std::max(limits.to, position);
 
-  // What the stops leave no room for any more: brake harder.
+  // Brake harder than permitted if there is not enough room before the stop.
   const double room = speed > 0 ? limits.to - position : position - limits.from;
   if (speed != 0 && !(room > 0)) speed = 0;
   if (speed != 0 && speed * speed > 2 * limits.acceleration * room * (1 + 1e-9)) {
@@ -86,7 +88,8 @@ Plan Plan::make(Time start, const AxisState& state, const AxisCommand& command, 
   }
 
   double target = position + speed * std::abs(speed) / (2 * limits.acceleration);
-  double direction = speed;  // a grid point that lies behind would mean to turn back
+  double direction =
+      speed;  // rounds the target forward, because a grid point behind it would reverse the axis
   double most = limits.speed;
   const bool sane = std::isfinite(command.value) && std::isfinite(command.speed);
   if (command.kind == AxisCommand::Kind::position && sane && command.speed > 0) {
@@ -122,7 +125,7 @@ AxisState Plan::at(Time time) const {
   if (time < start_) return {piece.position, 0, 0};
   const double dt = std::min(elapsed - piece.seconds, piece.length);
   const double position = piece.position + (piece.speed + 0.5 * piece.acceleration * dt) * dt;
-  return {std::clamp(position, low_, high_),  // rounding is no reason to be beyond a stop
+  return {std::clamp(position, low_, high_),  // rounding must not lead beyond a stop
           piece.speed + piece.acceleration * dt, piece.acceleration};
 }
 

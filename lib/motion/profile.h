@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The way of one axis from where it is and how fast it is to rest somewhere else: at most four pieces of constant
-// acceleration, known for every time from its start on.
+// The trajectory of one axis from its position and speed to rest at a target: at most four pieces of constant
+// acceleration, which can be evaluated for every time from the start on.
 //
 //   speed  ^    ____            accelerate, cruise, brake: the fastest way under a limit of speed and acceleration
 //          |   /    \.          (a trapezoid; a triangle where there is no room to cruise)
 //          |  /      \.
 //          +-/--------\---> time
 //
-// A velocity is the same thing: the way to the stop in its direction, at that speed. So whatever is commanded, and if
-// nothing is ever commanded again, the axis ends at rest between its stops.
+// A velocity command is planned as a position command to the stop in its direction, at that speed. After every command,
+// even without another one, the axis therefore comes to rest between its stops.
 #pragma once
 
 #include <array>
@@ -26,7 +26,7 @@ struct AxisState {
   bool moving() const { return speed != 0 || acceleration != 0; }
 };
 
-// What an axis is told.
+// A command to an axis.
 struct AxisCommand {
   enum class Kind : std::uint8_t {
     hold,      // brake, and stay
@@ -41,26 +41,27 @@ struct AxisCommand {
 
 class Plan {
  public:
-  // At rest, for ever.
+  // A plan at rest.
   Plan() : Plan(0.0) {}
   explicit Plan(double position, Time start = Time{0})
       : start_(start), target_(position), low_(position), high_(position) {}
 
-  // From `state` at `start` according to `command`. Numbers that are none are taken as hold; a speed above the limit as
-  // the limit; a target beyond a stop as the stop. The end is a multiple of `step` (0: any position) where one lies
-  // between the stops. A state that cannot be stopped before the stop at the permitted acceleration (the limits have
-  // changed) is braked harder, in no time if need be: no plan leads further out than where it begins.
+  // Plans from `state` at `start` according to `command`. A command that is not finite is planned as hold; a speed
+  // above the limit is reduced to the limit, a target beyond a stop to the stop. The end is a multiple of `step`
+  // (radians; 0: any position) if one lies between the stops. If the axis cannot brake before a stop at the permitted
+  // acceleration (the limits have changed), it brakes harder, if necessary at once: no plan leads further beyond a stop
+  // than its start.
   static Plan make(Time start, const AxisState& state, const AxisCommand& command, const AxisLimits& limits,
                    double step = 0);
 
-  // At rest before start() and after end().
+  // Returns the state at `time`; at rest before start() and after end().
   AxisState at(Time time) const;
-  // When the piece that holds at `time` ends; kNever: not at all.
+  // Returns the end of the piece at `time`; kNever if it does not end.
   Time piece_end(Time time) const;
 
   Time start() const { return start_; }
   Time end() const;
-  double target() const { return target_; }  // where it comes to rest
+  double target() const { return target_; }  // position of rest, radians
 
  private:
   struct Piece {

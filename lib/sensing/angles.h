@@ -8,8 +8,8 @@
 
 namespace cerberus::sensing {
 
-// One way of converting, used for rule edges and for the pan angle alike: an angle written as the same number of
-// degrees is the same double in radians, so that "at the edge" means what it says.
+// The only conversion, used for rule edges and for the pan angle alike: angles written as the same number of degrees
+// are the same double in radians, so that a comparison at an edge is exact.
 constexpr double radians(double degrees) {
   return degrees * (std::numbers::pi / 180);
 }
@@ -17,7 +17,7 @@ constexpr double degrees(double radians) {
   return radians * (180 / std::numbers::pi);
 }
 
-// The same direction in [-pi, pi). NaN and infinity become NaN.
+// Returns the same direction in [-pi, pi). NaN and infinity become NaN.
 inline double wrap(double radians) {
   if (radians >= -std::numbers::pi && radians < std::numbers::pi) return radians;
   const double wrapped =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// PIR sensors that tell volts instead of yes or no: a threshold makes a line's level of them, and a PirModel, as of any
-// line, makes presence of that.
+// PIR sensors with an analogue output: a threshold converts volts to a line's level, and a PirModel converts the level
+// to presence as for any line.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ struct LevelOptions {
   double threshold = 1.65, hysteresis = 0.3;  // volts; hysteresis < 0 counts as 0
 };
 
-// A voltage as a line's level. Between the two edges it stays, and NaN changes nothing.
+// Converts a voltage to a line's level. The level does not change between the two edges, nor at NaN.
 class LevelSwitch {
  public:
   explicit LevelSwitch(const LevelOptions& options = {})
@@ -40,12 +40,12 @@ class LevelSwitch {
 // All sensors of a stream of voltages. Time passes as in PirModel. Allocates in begin() only.
 class LevelSensors {
  public:
-  // Begins (again): nothing is known of any sensor.
+  // Begins (again) with all sensors in their initial state.
   void begin(std::size_t sensors, const LevelOptions& levels, const PirOptions& options = {});
-  // What was measured at `time`, one number of volts a sensor; one that is missing or no number makes the sensor's
-  // reading invalid. What is due before should have been asked for first: poll(deadline()).
+  // Processes the voltages measured at `time`, one number of volts a sensor; a missing or NaN value makes the sensor's
+  // reading invalid. Call poll(deadline()) first for changes that are due before `time`.
   void measure(Time time, std::span<const float> volts);
-  // Lets time pass; deadline(): when something changes next if nothing is measured, or kNever.
+  // Advances the time. deadline(): the time of the next change if nothing is measured, or kNever.
   void poll(Time time);
   Time deadline() const;
 

@@ -15,7 +15,7 @@ using std::chrono::seconds;
 constexpr Time kMostDebounce = milliseconds(50);
 constexpr Time kLongAgo = Time::min();
 
-// Later by a duration that is not negative; what lies beyond all time is kNever.
+// Returns time + duration for a duration of at least 0; kNever if the sum overflows.
 constexpr Time later(Time time, Time duration) {
   return time > Time::zero() && duration > kNever - time ? kNever : time + duration;
 }
@@ -24,8 +24,8 @@ constexpr Time not_negative(Time time) {
   return std::max(time, Time::zero());
 }
 
-// Not in any data sheet at hand, so assumed as modules of that kind have it: warm-up of AM312 and SK-11, the
-// AM312's angle. stuck_after is far beyond the longest hold of any of them.
+// The warm-up of AM312 and SK-11 and the angle of the AM312 are assumed from similar modules: the data sheets do not
+// state them. stuck_after is far longer than the longest hold of any module.
 constexpr PirPreset kPresets[] = {
     {.name = "hc-sr501",
      .options = {.warm_up = seconds(60)},
@@ -129,24 +129,24 @@ void PirModel::advance(Time until) {
 }
 
 void PirModel::rise(Time now) {
-  // A gap shorter than the debounce time is no break of a line that is stuck.
+  // A gap shorter than the debounce time does not interrupt the active time of a stuck line.
   if (rise_count_ == 0 || later(last_fall_, options_.debounce) <= now) active_since_ = now;
   rises_[rise_count_++ % kRises] = now;
   if (rise_count_ == 2 * kRises) rise_count_ = kRises;  // only "at least kRises" matters; never wraps to 0
   if (detecting_ && options_.retrigger) hold_until_ = std::max(hold_until_, later(now, options_.hold));
 }
 
-// The time of the n-th last rise, n >= 1; kLongAgo: there were not so many.
+// Returns the time of the n-th last rise, n >= 1; kLongAgo if there were fewer rises.
 Time PirModel::past_rise(unsigned n) const {
   return rise_count_ >= n ? rises_[(rise_count_ - n) % kRises] : kLongAgo;
 }
 
-// Fewer rises than half of what makes the fault are left in the window.
+// Returns the time from which fewer rises than half of chatter_edges are left in the window.
 Time PirModel::calm_time() const {
   return later(past_rise(std::max(1U, options_.chatter_edges / 2)), options_.chatter_window);
 }
 
-// When the detection ends as things are; kNever: not before the line falls.
+// Returns the time at which the detection ends if no edge comes; kNever: not before the line falls.
 Time PirModel::end_time() const {
   if (!options_.retrigger && options_.hold > Time::zero()) return hold_until_;
   return line_ ? kNever : std::max(later(last_fall_, options_.debounce), hold_until_);
@@ -170,7 +170,7 @@ Time PirModel::deadline() const {
   return due;
 }
 
-// Brings everything to where it stands at `now`. Each deadline that has come is used up here.
+// Updates the state to `now` and clears each deadline that has passed.
 void PirModel::settle(Time now) {
   if (warming_ && now >= warm_until_) warming_ = false;
 

@@ -12,9 +12,9 @@ namespace cerberus::sensing {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
-constexpr double kTouch = 1e-6;  // rad; bearings come as decimal degrees, rounding must not decide
+constexpr double kTouch = 1e-6;  // rad: tolerance for the rounding of bearings given in decimal degrees
 
-// How far clockwise from the arc's start a direction lies, [0, 2 pi); just before the start counts as at it.
+// Returns the clockwise angle from the arc's start to a direction, [0, 2 pi); 0 also for kTouch before the start.
 double offset(const Arc& arc, double direction) {
   double clockwise = wrap(direction - arc.from);
   if (clockwise < 0) clockwise += kTurn;
@@ -53,7 +53,7 @@ Arc Geometry::sector(int sensor) const {
   return {wrap(bearing(sensor) - width / 2), width};
 }
 
-// A part of the intersection begins where some sector begins, and there only: so each sector's start is tried.
+// Every part of the intersection begins at the start of a sector, so each sector's start is tried.
 Arcs overlap(const Geometry& geometry, SensorBits fired) {
   Arcs found;
   for (int i = 0; i < geometry.count(); ++i) {

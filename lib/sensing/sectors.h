@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What PIR sensors cover: arcs of the full circle.
+// The sectors of PIR sensors: arcs of the full circle.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct Arc {
   double width = 0;  // 0 .. 2 pi; 0 = one direction, 2 pi = the whole circle
 };
 
-// A closed interval of pan angles, radians, from <= to: a part of a line, nothing wraps.
+// A closed interval of pan angles, radians, from <= to. Pan angles lie on a line: they do not wrap.
 struct Interval {
   double from = 0;
   double to = 0;
@@ -26,11 +26,11 @@ struct Interval {
   double width() const { return to - from; }
   double middle() const { return (from + to) / 2; }
   bool holds(double x) const { return x >= from && x <= to; }
-  // 0 inside; else how far x is away, always positive.
+  // Returns 0 inside, else the positive distance of x.
   double distance(double x) const { return x < from ? from - x : x > to ? x - to : 0; }
 };
 
-// A list without allocation; what does not fit is dropped, which the sizes below rule out.
+// A list without allocation. Surplus items are dropped; the sizes below are large enough that there are none.
 template <typename T, int N>
 struct FixedList {
   std::array<T, N> items{};
@@ -46,13 +46,13 @@ struct FixedList {
   const T* end() const { return items.data() + count; }
 };
 
-// Where the sensors look. As pirsrc's caps give it: nothing is configured twice.
+// The directions and fields of view of the sensors, as published in pirsrc's caps, so that nothing is configured twice.
 class Geometry {
  public:
   // The paper's: ahead, left, right, 120 degrees each (II.A): 0, -120, +120 degrees.
   Geometry();
   // bearings: radians, 1 .. 16 of them, finite (wrapped here). field_of_view: radians, in (0, 2 pi].
-  // Returns false and changes nothing when they are not that.
+  // Returns false and changes nothing for other values.
   bool set(std::span<const double> bearings, double field_of_view);
   // The same for sensors of different make: as many fields of view as bearings.
   bool set(std::span<const double> bearings, std::span<const double> fields_of_view);
@@ -73,8 +73,8 @@ class Geometry {
 constexpr int kMaxOverlaps = kMaxSensors + 1;
 using Arcs = FixedList<Arc, kMaxOverlaps>;
 
-// What all sensors of `fired` cover together; empty when there is nothing. Sectors that only touch (nearer than
-// 1e-6 rad) meet in an arc of width 0: somebody on the border trips both.
+// Returns the arcs that all sensors of `fired` cover together; empty if there is none. Sectors that only touch (nearer
+// than 1e-6 rad) meet in an arc of width 0: a person on the border triggers both.
 Arcs overlap(const Geometry& geometry, SensorBits fired);
 
 }  // namespace cerberus::sensing

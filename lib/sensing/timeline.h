@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Values by running time, for "the newest one not later than this time": for poses the time of the frame, for PIR readings
-// of a live stream the time at which the frame arrived.
+// Stores values by running time and returns the newest one not later than a given time: for poses the time of the
+// frame, for PIR readings of a live stream the time at which the frame arrived.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +19,13 @@ class Timeline {
     Time time;
     T value;
   };
-  // Entries that come late by less than this are put where they belong. By more: running time began anew (a seek of a
-  // live pipeline), and what seems to lie in the future is of the time before.
+  // Entries that come late by at most this are inserted in order of time. A larger step back means that running
+  // time began anew (a seek of a live pipeline): the stored entries are dropped.
   static constexpr Time kDisorder = std::chrono::seconds(1);
-  // Of more entries the oldest is dropped.
+  // Largest number of entries: beyond it the oldest is dropped.
   static constexpr std::size_t kMost = 4096;
 
-  // Of two entries of one time the later call counts.
+  // Inserts an entry; it replaces an entry of the same time.
   void insert(Time time, T value) {
     if (!entries_.empty() && time < entries_.back().time - kDisorder) entries_.clear();
     const auto after = std::upper_bound(entries_.begin(), entries_.end(), time,
@@ -38,7 +38,7 @@ class Timeline {
     if (entries_.size() > kMost) entries_.pop_front();
   }
 
-  // The newest entry not later than `time`; nullptr: there is none.
+  // Returns the newest entry not later than `time`; nullptr if there is none.
   const Entry* entry_at(Time time) const {
     const auto after = std::upper_bound(entries_.begin(), entries_.end(), time,
                                         [](Time t, const Entry& entry) { return t < entry.time; });
@@ -49,11 +49,11 @@ class Timeline {
     return entry ? &entry->value : nullptr;
   }
   const T* first() const { return entries_.empty() ? nullptr : &entries_.front().value; }
-  // The last entry, or one that many before it.
+  // Returns the last entry, or the one `before` entries before it; nullptr if there is none.
   const Entry* last(std::size_t before = 0) const {
     return entries_.size() > before ? &entries_[entries_.size() - 1 - before] : nullptr;
   }
-  // The last entry came again, later.
+  // Moves the last entry to a later time, at which it was repeated.
   void postpone_last(Time time) { entries_.back().time = time; }
 
   // Drops the entries that at(`time`) and later times cannot return.

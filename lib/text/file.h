@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file of text that a user names, as a whole. What is named by mistake keeps nobody waiting: not a pipe that nobody
-// writes to, nor a device or a video that goes on for ever.
+// Reads a whole text file that a user names. A wrong name never blocks the caller: pipes, devices and files larger
+// than a limit are refused.
 #pragma once
 
 #include <fcntl.h>
@@ -26,15 +26,15 @@ struct File {
   int error = 0;  // errno
 };
 
-// At most `most` bytes.
+// Reads a regular file of at most `most` bytes. On failure `fault` gives the cause; never blocks.
 inline File read_file(const std::string& path, std::size_t most) {
   File file;
   const auto failed = [&file] {
     file.fault = File::Fault::failed;
     file.error = errno;
   };
-  // O_NONBLOCK: a pipe is opened though nobody writes to it. O_NOCTTY: nor
-  // does a terminal become that of a daemon, whom its Ctrl-C would end.
+  // O_NONBLOCK: open() does not wait for a pipe's writer. O_NOCTTY: a terminal does not become the controlling terminal
+  // of a daemon, which its Ctrl-C would end.
   const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd < 0) {
     failed();

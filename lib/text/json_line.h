@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One line of JSON, written in order into one string that is used again: no tree, no locale, no allocation
-// once warm.
+// Writes one line of JSON in order into one reused string: no tree, no locale, no allocation in the steady state.
 #pragma once
 
 #include <charconv>
@@ -20,7 +19,7 @@ class JsonLine {
     text_.clear();
     comma_ = false;
   }
-  // A complete line, newline included.
+  // Returns the complete line, newline included.
   std::string_view finish() {
     text_ += '\n';
     return text_;
@@ -37,7 +36,7 @@ class JsonLine {
     comma_ = true;
     return *this;
   }
-  // Keys are literals of ours: they need no escapes.
+  // Writes a key. Keys are literals of this program and are not escaped.
   JsonLine& key(std::string_view name) {
     separate();
     text_ += '"';
@@ -53,15 +52,15 @@ class JsonLine {
     char digits[24];
     return raw({digits, std::to_chars(digits, digits + sizeof digits, value).ptr});
   }
-  // Rounded to `decimals` places, then the shortest form that reads back as that number. NaN, infinity: null.
+  // Writes a number rounded to `decimals` places in the shortest form that reads back as it. NaN, infinity: null.
   JsonLine& fixed(double value, int decimals) {
     return std::isfinite(value) ? raw(rounded(value, decimals)) : null();
   }
-  // Up to `digits` significant digits. NaN, infinity: null.
+  // Writes a number with up to `digits` significant digits. NaN, infinity: null.
   JsonLine& significant(double value, int digits) {
     return std::isfinite(value) ? raw(cerberus::text::significant(value, digits)) : null();
   }
-  // A literal of ours, too.
+  // Writes a string literal of this program, which is not escaped either.
   JsonLine& string(std::string_view literal) {
     separate();
     text_ += '"';
@@ -70,7 +69,7 @@ class JsonLine {
     comma_ = true;
     return *this;
   }
-  // Any UTF-8.
+  // Writes any UTF-8 text, escaped.
   JsonLine& text(std::string_view words) {
     separate();
     text_ += '"';

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Numbers as text: the same in every locale (gst-launch sets the user's,
-// and printf() then writes 1,5), never "-0", without an allocation.
+// Formats numbers: the same text in every locale (gst-launch sets the user's, and printf() then writes 1,5), never
+// "-0", without an allocation.
 #pragma once
 
 #include <algorithm>
@@ -13,16 +13,16 @@
 
 namespace cerberus::text {
 
-// Up to so many decimals are kept, where a double has them.
+// Rounds to `decimals` decimals, as far as a double has them.
 inline double round_to(double value, int decimals) {
   const double unit = std::pow(10.0, decimals);
-  return std::abs(value) < 1e15 ? std::round(value * unit) / unit : value;  // also what is no number
+  return std::abs(value) < 1e15 ? std::round(value * unit) / unit : value;  // NaN and infinity too
 }
 
-// One number.
+// The text of one number.
 class Digits {
  public:
-  // How, as of std::to_chars.
+  // how: format arguments of std::to_chars.
   template <typename... How>
   explicit Digits(double value, How... how) {
     char* const end = digits_.data() + digits_.size();
@@ -37,7 +37,7 @@ class Digits {
   std::string_view string_view() const { return {digits_.data(), length_}; }
 
  private:
-  // As it was written: what is rounded to 0 is one, too.
+  // Checks the written text: a negative number rounded to 0 is one, too.
   bool is_negative_zero() const {
     return digits_[0] == '-' && string_view().find_first_not_of("-0.") == std::string_view::npos;
   }
@@ -46,19 +46,19 @@ class Digits {
   std::size_t length_;
 };
 
-// The shortest that reads back as this number.
+// The shortest text that reads back as this number.
 inline Digits exact(double value) {
   return Digits(value);
 }
-// Up to so many digits: 27.05, 80, 1e+06.
+// Up to `digits` significant digits: 27.05, 80, 1e+06.
 inline Digits significant(double value, int digits) {
   return Digits(value, std::chars_format::general, digits);
 }
-// Up to so many decimals: 12.5, 12.
+// Up to `decimals` decimals: 12.5, 12.
 inline Digits rounded(double value, int decimals) {
   return Digits(round_to(value, decimals));
 }
-// So many decimals: 12.5, 12.0.
+// Exactly `decimals` decimals: 12.5, 12.0.
 inline Digits fixed(double value, int decimals) {
   return Digits(value, std::chars_format::fixed, decimals);
 }

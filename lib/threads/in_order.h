@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Several threads have something to tell, and it is told in the order in which it was put in. One at a time tells,
-// without a lock, for whoever is told may take his time or come back: so what one put in may be told by another, a
-// moment after the first one has gone on. Thread-safe; allocates when it is made and never again.
+// A queue through which several threads publish items in the order in which they were put in. One thread at a time
+// delivers, without holding a lock, because a callback may take long or call back. An item may therefore be delivered
+// by another thread, after tell() has returned to the thread that put it in. Thread-safe; allocates only in the
+// constructor.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +12,13 @@
 
 namespace cerberus::threads {
 
-// T has a default value. kMost: as many wait at most, while one who is told keeps the one who tells; the usual number
-// is that of the poses of a moving head in five seconds. Of more the oldest goes that a younger one replaces, so that
-// what is said rarely outlasts what is said all the time; if none is replaced, the oldest of all.
+// T has a default value. kMost: the largest number of waiting items while a callback blocks the delivery; the default
+// is that of the poses of a moving head in five seconds. A full queue drops the oldest item that a newer one replaces,
+// so that rare items are not displaced by frequent ones; if no item is replaced, it drops the oldest of all.
 template <typename T, std::size_t kMost = 256>
 class InOrder {
  public:
-  // Who has heard the newer one misses nothing without the older one. Called with the lock held.
+  // Returns whether the older item is superfluous once the newer one is delivered. Called with the lock held.
   using Replaces = bool (*)(const T& newer, const T& older);
 
   explicit InOrder(Replaces replaces = [](const T&, const T&) { return true; }) : replaces_(replaces) {}
@@ -27,12 +28,13 @@ class InOrder {
     if (waiting_ == kMost) drop_one(thing);
     things_[(first_ + waiting_++) % kMost] = std::move(thing);
   }
-  // What was not told yet is told by nobody.
+  // Discards the items that were not delivered yet.
   void clear() {
     const std::lock_guard guard(lock_);
     while (waiting_ > 0) take();
   }
-  // Whoever has put something in calls this behind it, with no lock held that others need. tell(const T&).
+  // Delivers the waiting items by tell(const T&), unless another thread is delivering. Call it after put(), without a
+  // lock that other threads need.
   template <typename Tell>
   void tell(Tell&& tell) {
     std::unique_lock guard(lock_);
@@ -47,7 +49,7 @@ class InOrder {
   }
 
  private:
-  // Ends also when somebody who is told throws.
+  // Marks the delivery as in progress; the mark is also removed when a callback throws.
   class Turn {
    public:
     Turn(InOrder& order, std::unique_lock<std::mutex>& guard) : order_(order), guard_(guard) {
@@ -64,7 +66,7 @@ class InOrder {
     std::unique_lock<std::mutex>& guard_;
   };
 
-  // The oldest that waits, of which nothing stays. With the lock held.
+  // Removes and returns the oldest waiting item; its place is reset. Called with the lock held.
   T take() {
     T thing = std::exchange(things_[first_], T{});
     first_ = (first_ + 1) % kMost;
@@ -74,7 +76,7 @@ class InOrder {
 
   T& at(std::size_t place) { return things_[(first_ + place) % kMost]; }
 
-  // Makes room for `next`. With the lock held, and all places taken.
+  // Makes room for `next`. Called with the lock held and all places taken.
   void drop_one(const T& next) {
     const auto is_replaced = [&](std::size_t place) {
       if (replaces_(next, at(place))) return true;
@@ -91,7 +93,7 @@ class InOrder {
 
   const Replaces replaces_;
   std::mutex lock_;
-  std::vector<T> things_ = std::vector<T>(kMost);  // its owner may have no room for them
+  std::vector<T> things_ = std::vector<T>(kMost);  // on the heap, so that the owner stays small
   std::size_t first_ = 0, waiting_ = 0;
   bool telling_ = false;
 };
