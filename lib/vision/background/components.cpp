@@ -30,7 +30,7 @@ constexpr struct Parameters {
   double clear = 2, certain = 5;
   double certain_share = 0.1;      // of the outline that is an edge of the frame only, of a certain object
   double least_ghost = 1 / 8.0;    // of an object's area that its ghost has, and the other way round
-  double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component says nothing
+  double least_area = 1 / 1280.0;  // of the picture: the outline of a smaller component is no evidence
 
   // Neighbours. Gaps are shares of the taller one's height.
   double gap = 0.2;             // between two of similar size
@@ -92,7 +92,7 @@ void ForegroundComponents::measure(const ComponentInput& input, const FrameWindo
   const int w = f.width;
   // A background that had to be registered is less reliable: only present motion counts.
   const int recent_window = input.still ? windows.recent : windows.moving;
-  // A person whom the camera follows has left his place in the picture within a frame or two.
+  // A person followed by the camera leaves the place in the picture within a frame or two.
   const int moving_window = input.still ? windows.moving : windows.fresh;
   for (const Run& r : labeller_.runs()) {
     Evidence& evidence = evidence_[r.component];
@@ -182,7 +182,7 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
   // the start and stopped has an object's outline.
   evidence.doubtful = evidence.ghost || (input.still && (newest || (young && !evidence.object)));
   // A moving camera has learnt a young background for moments only: a component at rest is an object only by its
-  // outline. The outline of a small component says nothing.
+  // outline. The outline of a small component is no evidence.
   const bool rests = !input.still && young && evidence.moving_pixels < p.least_moved &&
                      area >= p.least_area * static_cast<double>(size.area());
   // Before a turning camera a ghost is soon far from its object, beyond the reach of merge_neighbours().
@@ -193,7 +193,7 @@ void ForegroundComponents::decide(const ComponentInput& input, const Component& 
 // The model shows an object that has stood there since the model's start. When the object leaves, its ghost stays. A
 // component at rest is a ghost if another one of the same origin moves nearby, unless its outline is certain. The
 // outline of a ghost's fragment alone is weak: it ends where the object and the background behind it happen to be
-// alike. That of a small fragment says nothing.
+// alike. That of a small fragment is no evidence.
 void ForegroundComponents::find_ghosts() {
   const Parameters& p = kParameters;
   const auto components = labeller_.components();

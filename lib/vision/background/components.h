@@ -71,7 +71,7 @@ class ForegroundComponents {
     ComponentOrigins::Overlap overlap;
     ComponentOrigins::Origin origin = ComponentOrigins::Origin::outside;
     bool moved_recently = false, moving = false;
-    bool object = false, ghost = false;  // as the outline says; both false: undecided
+    bool object = false, ghost = false;  // decided by the outline; both false: undecided
     bool doubtful = false;               // stays only while it moves
     bool kept = false;                   // is an object
     bool merged = false;                 // with a neighbour

@@ -102,8 +102,8 @@ void ForegroundClassification::classify(const ClassificationInput& in, MutableBi
   decide(in, mask, absorb);
 }
 
-// In the first frames the noise of the model and that of the frame cannot be told apart in their difference. D(k)
-// stands in: sqrt(1/2) of its sigma, times sqrt(1 + 1 / age) for a mean of that many frames.
+// In the first frames the noise of the model and that of the frame cannot be separated in their difference. D(k) is
+// used instead: sqrt(1/2) of its sigma, times sqrt(1 + 1 / age) for a mean of that many frames.
 void ForegroundClassification::measure_noise(const ClassificationInput& in, BitView moved) {
   const Parameters& p = kParameters;
   const bool start = in.frames < p.noise_start;

@@ -34,8 +34,8 @@ constexpr auto kInverse = [] {
   return inverse;
 }();
 
-// A band of light goes through the whole row, an object rarely does: whether two thirds of a band are mostly brighter,
-// or mostly darker. No median is as far from 0 as kParameters.least_band otherwise.
+// Returns whether two thirds of a band are mostly brighter, or mostly darker: a band of light covers the whole row, an
+// object rarely does. Without such thirds, no median can be as far from 0 as kParameters.least_band.
 bool has_one_direction(const LightSums& sums) {
   int thirds = 0, up = 0, down = 0;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -86,8 +86,8 @@ void LightChange::estimate(const LightSamples& samples, bool still) {
   const bool line = estimate_global(samples);
   const bool bands = estimate_bands(samples);
   if (still && line && bands) {
-    // Where bright and dark things lie in different bands, the line through all of the picture takes the bands for
-    // something that brightness does. Then the bands come first. Which is right shows in what remains.
+    // If bright and dark areas lie in different bands, the global line fits the bands as an effect of brightness; the
+    // bands must then be estimated first. Both orders are tried, and the one with the smaller residual is kept.
     const double remains = misfit(samples), agreement = agreement_;
     std::array<RowLight, kMaximumBands * kBand> line_first;
     std::ranges::copy(rows_, line_first.begin());
@@ -107,7 +107,8 @@ void LightChange::estimate(const LightSamples& samples, bool still) {
   none_ = std::ranges::all_of(rows_, [](const RowLight& r) { return r == RowLight{}; });
 }
 
-// Samples by brightness of the reference under the light so far (16 levels a class) and by what the present differs by.
+// Counts samples by the brightness of the reference under the current estimate (16 levels a class) and by the
+// difference of the present picture.
 LightChange::Counts LightChange::count_differences(const LightSamples& samples) const {
   Counts counts{};
   for (int row = 0; row < samples.rows(); ++row)
@@ -118,7 +119,7 @@ LightChange::Counts LightChange::count_differences(const LightSamples& samples) 
   return counts;
 }
 
-// True if there was any.
+// Estimates the global change of light. Returns true if there is one.
 bool LightChange::estimate_global(const LightSamples& samples) {
   const auto counts = count_differences(samples);
   std::array<int, kClasses> number{};
@@ -179,14 +180,14 @@ bool LightChange::estimate_global(const LightSamples& samples) {
       agree += static_cast<int>(counts[k][d + kReach]);
   }
   agreement_ = static_cast<double>(agree) / total;
-  // What is hardly visible between dark grey and light grey is not worth a correction.
+  // A change that is small from dark grey to light grey is not compensated.
   if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kParameters.least_global)
     return false;
   const double gain = std::clamp(1 + slope, 0.25, 4.0);
   const auto relit = [&](RowLight row) {
     return RowLight{round_to_int(row.gain * gain), round_to_int(row.offset * gain + 256 * at_zero)};
   };
-  RowLight before, after = relit(before);  // most rows are alike
+  RowLight before, after = relit(before);  // reused, because most rows have the same light
   for (RowLight& row : rows_) {
     if (row != before) before = row, after = relit(row);
     row = after;
@@ -194,7 +195,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   return true;
 }
 
-// What remains of the difference, grey levels a sample; objects count little.
+// Returns the mean residual difference, grey levels a sample; large differences, as of objects, are limited.
 double LightChange::misfit(const LightSamples& samples) const {
   std::int64_t sum = 0, number = 0;
   for (int band = 0; band < samples.bands(); ++band) {
@@ -223,7 +224,7 @@ double LightChange::excess_of_band(const LightSamples& samples, int band) const 
   return median_of_levels(counts, weights, -kBandReach) / 256;
 }
 
-// True if there were any.
+// Estimates the bands. Returns true if there are any.
 bool LightChange::estimate_bands(const LightSamples& samples) {
   const int bands = samples.bands();
   if (bands < 4 || bands > kMaximumBands) return false;

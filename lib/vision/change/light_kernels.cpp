@@ -35,8 +35,8 @@ struct Relit {
   }
 };
 
-// Calls each(begin, bytes) for the pieces of a row. What a piece holds is copied, as `out` may be `reference`:
-// compilers would have to go pixel by pixel there.
+// Calls each(begin, bytes) for the pieces of a row. The caller copies each piece first, because `out` may be
+// `reference` and possible aliasing would prevent vectorisation.
 constexpr int kPiece = 32;
 template <typename Each>
 HWY_INLINE void in_pieces(int count, Each&& each) {
@@ -87,8 +87,8 @@ void relight_row_with_white(const std::uint8_t* reference, const std::uint8_t* p
       const std::uint8_t then = levels[x], seen = now_seen[x], now = relit(then);
       const std::uint8_t low = then < now ? then : now, high = then < now ? now : then;
       const std::uint8_t most = then >= kWhite ? 255 : high;
-      const std::uint8_t told = seen < low ? low : seen > most ? most : seen;
-      levels[x] = high >= kNearWhite ? told : now;
+      const std::uint8_t limited = seen < low ? low : seen > most ? most : seen;
+      levels[x] = high >= kNearWhite ? limited : now;
     }
     copy(out + at, levels, bytes);
   });

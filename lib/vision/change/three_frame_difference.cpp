@@ -58,14 +58,14 @@ void ThreeFrameDifference::State::preallocate(Size to, bool both) {
     relit.resize({to.width, 1});
     spans.assign(static_cast<std::size_t>(to.height), {});
     forget();
-    size = to;  // last: an allocation that threw is tried again with the next frame
+    size = to;  // assigned last: after a failed allocation the next frame tries again
   }
   if (both == !ring[1].empty()) return;
   ring[1] = both ? Image<std::uint8_t>(to) : Image<std::uint8_t>();
   has_older = false;
 }
 
-// previous := D(k-1) of both pictures where frame k covers them. Its light was estimated in frame k-1.
+// previous := D(k-1) of both pictures where frame k covers them, with the light that was estimated in frame k-1.
 void ThreeFrameDifference::State::subtract_before(GrayView first, GrayView second, MutableGrayView previous) {
   for (int y = 0; y < size.height; ++y) {
     const RowSpan span = spans[static_cast<std::size_t>(y)];
@@ -118,15 +118,14 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     clear(current);
     clear(previous);
     s.before = motion;
-    if (s.frames > 1) {  // the camera's motion is not to be trusted: begin again
+    if (s.frames > 1) {  // the camera's motion is invalid: the history is discarded
       s.forget();
       s.frames = 1;
     }
     result.frames = s.frames;
     return result;
   }
-  // Both previous pictures where frame k sees them; the outputs hold them until the differences overwrite
-  // them.
+  // Both previous pictures in the coordinates of frame k; the outputs hold them until the differences overwrite them.
   GrayView first = s.ring[0].view(), second = s.ring[1].view();
   std::ranges::copy(s.warp.spans(), s.spans.begin());
   const bool still = s.warp.is_identity();
@@ -148,8 +147,8 @@ DifferenceResult ThreeFrameDifference::update(GrayView picture, const Transform&
     s.subtract_before(first, second, previous);
   else
     clear(previous);
-  // F(k-1) lies in `current` if it was warped, else it may have no other place than that of F(k), which then has to
-  // wait.
+  // F(k-1) is in `current` if it was warped. Otherwise its only copy may be where F(k) is stored, and F(k) is stored
+  // later.
   const bool waits = still && !both_wanted;
   if (waits)
     blur3(picture, s.options.blur, current);

@@ -60,7 +60,7 @@ class PeopleFinder {
   // call.
   std::span<const Person> find(BitView pixels, const Bounds& window, const HeightPrior& prior,
                                bool was_wide_block = false);
-  // In the last find(): a block that is wide enough to be told from people, or the rest of one.
+  // Returns whether the last find() found a block that is too wide for people, or the rest of one.
   bool found_wide_block() const { return wide_block_; }
 
   std::size_t bytes() const;

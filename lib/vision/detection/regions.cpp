@@ -20,17 +20,19 @@ namespace cerberus::vision {
 namespace {
 
 constexpr double kLeastShare = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
-constexpr double kTallest = 2.2;      // heights of a person: what is taller is something else
-constexpr double kSameBlock = 0.5;    // of what two blocks cover: they are one, a frame apart
+constexpr double kTallest = 2.2;      // heights of a person: a taller component is something else
+constexpr double kSameBlock = 0.5;    // overlap of two blocks, a frame apart, that are the same
 constexpr double kSkirt = 0.3;        // columns lower than this share of the highest are a shadow
-constexpr int kYoung = 60;  // frames of a scene in which nobody knows yet what stood there when it began
-constexpr double kRim = 2;  // pixels at 320 columns by which a box goes beyond what moves in them
+constexpr int kYoung =
+    60;  // frames of a scene in which its first objects may still be part of the background model
+constexpr double kRim =
+    2;  // pixels at 320 columns by which a box is larger than its moving pixels in that time
 constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
-constexpr std::size_t kMostWalkers = 32;  // who walk alone, at a time
+constexpr std::size_t kMostWalkers = 32;  // isolated walking persons, at a time
 constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
-constexpr std::size_t kMostRegions = 2 * kMostParts;  // of people and what they do not explain
+constexpr std::size_t kMostRegions = 2 * kMostParts;  // persons and the components that they do not explain
 
-// One person seen alone is upright and reasonably filled.
+// Returns whether a component may be one person: upright, reasonably filled, and not cut by the picture's edge.
 bool looks_like_one_person(const Component& c, const Bounds& body, Size picture) {
   const double aspect = static_cast<double>(body.height()) / body.width();
   return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * body.width() * body.height() &&
@@ -54,7 +56,7 @@ struct RegionFinder::State {
   PeopleFinder people;
   TwoFrameConfirmation newcomers;
   struct Walker {      // a blob that looks like one person
-    Point foot, from;  // now, and where it was first seen, in today's pixels
+    Point foot, from;  // its present place and the first one, both in pixels of the present frame
     double height;
     int looks;
   };
@@ -94,7 +96,7 @@ void RegionFinder::State::preallocate(Size picture) {
   vision::preallocate(bodies, parts);
   vision::preallocate(columns, static_cast<std::size_t>(picture.width) + 1);
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
-  size = picture;  // last: what threw is tried again
+  size = picture;  // assigned last: after a failed allocation the next call tries again
 }
 
 // A shadow on the floor is wide and low: a component's box ends where its columns become low.
@@ -179,8 +181,8 @@ void RegionFinder::State::add_plain(std::size_t i, bool person) {
   if (regions.size() == regions.capacity()) return;
   Box box = box_of(bodies[i]);
   const double filled = c.area / box.area();
-  // An object that was there when the scene began uncovers its place: the foreground edge has the object on one side and
-  // the place on the other, and in a young scene they cannot be distinguished. The box takes in both.
+  // An object that was there when the scene began uncovers its place: the foreground edge has the object on one side
+  // and the place on the other, and in a young scene they cannot be distinguished. The box takes in both.
   if (options.people && !person && seen <= kYoung) {
     const double rim = std::max(1.0, std::round(kRim * size.width / 320));
     const double left = std::max(box.x - rim, 0.0), top = std::max(box.y - rim, 0.0);
@@ -267,7 +269,7 @@ void RegionFinder::State::explain(int g) {
   for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
     regions.push_back({fit(found[k].box, window, k, found), 0,
                        std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1});
-  // What no person explains stays what it is.
+  // Components that no person explains remain regions of their own.
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (group[i] != g) continue;
     const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});

@@ -20,12 +20,12 @@ struct RegionOptions {
 };
 
 struct Region {
-  // Analysis pixels. In the first 60 frames of a scene what nobody knows as a person is given two more (of 320) on
-  // every side: the edge that moves is between the object and the place it leaves.
+  // Analysis pixels. In the first 60 frames of a scene the box of a region that is not recognised as a person is two
+  // pixels (of 320) larger on every side: the moving edge lies between the object and the place that it uncovers.
   Box box;
   double area = 0;  // moving pixels inside, of the cleaned mask
-  // How sure it is that this is one whole object, 0..1. From 0.5: one person, whose extent can be trusted. Below:
-  // moving pixels that hang together and may be a piece of an object or several objects.
+  // Confidence that this is one whole object, 0..1. From 0.5: one person with a reliable extent. Below: connected
+  // moving pixels, which may be a fragment of an object or several objects.
   double confidence = 0;
   int label = 0;  // value in the label picture (several regions may share one after a split)
 };

@@ -74,8 +74,8 @@ MotionFit fit_motion(const MotionSamples& samples, MotionModel model, Size pictu
 
 // Extends a similarity by the effects of a turning camera if the samples show them: the bend of the picture (a lens of
 // 60 degrees shifts the edges by a third more), and the shear of a rolling shutter. `found`: the result of
-// fit_motion(). `known`: the estimate of the lens from earlier pictures; a bend that passed the F test once need not pass
-// it again.
+// fit_motion(). `known`: the estimate of the lens from earlier pictures; a bend that passed the F test once need not
+// pass it again.
 MotionFit fit_turn(const MotionSamples& samples, Size picture, const MotionFit& found, const LensBend& known);
 
 // The least squares part alone: improves `motion` and returns its support.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Appearance model of an object in 32 bytes: the brightness of its upper and of its lower half. Enough to tell apart two
-// people who pass each other closely, where their positions cannot; not enough to find a person again in a crowd.
+// Appearance model of an object in 32 bytes: the brightness of its upper and of its lower half. Enough to distinguish
+// two people who pass each other closely, where their positions do not; not enough to find a person in a crowd.
 //
 // Either half has a histogram of the logarithm of the brightness under the foreground mask (or of the whole box, where
 // there is no mask). A change of exposure is a factor, a shift of the logarithm, and is taken out by BrightnessLevel.
@@ -20,8 +20,8 @@ namespace cerberus::vision {
 // Origins: chosen by hand where no other stands. Guard: tests/unit (appearance_model, coats), MOTA 56 on PETS09-S2L1.
 struct AppearanceParameters {
   double dark = 8;  // grey levels added before the logarithm: noise in the dark is no difference
-  int darkest = 12, brightest = 243;  // grey levels between which a pixel tells the brightness level
-  int least_pairs = 24;               // grid points that must tell it
+  int darkest = 12, brightest = 243;  // grey levels between which a pixel is used for the brightness level
+  int least_pairs = 24;               // grid points that the level needs
   double keep =
       1 - 1.0 / 2000;   // of the level, each frame: small errors decay. derived: models live for seconds
   double rebin = 0.02;  // log2 by which the level changes before the bins are computed again

@@ -270,7 +270,7 @@ void TrackHypothesis::adopt(const Box& seen) {
 //   cut by the picture's edge: yes, the object comes or goes.
 //   person-like: after whole_misfit.
 //   larger: soon. Only a part was seen before, or the object runs off and its region stretches from the place where it
-//     stood, which stays foreground until the background model knows it. Later if the region jumped: it may be a group.
+//     stood, which stays foreground until the background model has learnt it. Later if the region jumped: it may be a group.
 //   smaller: a fragment (an arm) of a standing object, as long as it stays in place. Yes if the object moved, if its
 //     extent was never well known, or if the fragment walks away on its own.
 bool TrackHypothesis::outgrown(const Box& seen, bool whole, bool cut, double seconds) {

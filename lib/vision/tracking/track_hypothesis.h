@@ -126,7 +126,7 @@ struct TrackHypothesis {
   static TrackHypothesis first_seen(const Region& region,
                                     const TrackParameters& parameters = kTrackParameters);
 
-  // Transitions; each says in which state it may be called.
+  // Transitions; the comment of each names the states in which it may be called.
   void confirm(std::uint32_t identity);         // tentative
   void stop();                                  // coasted
   void leave(const CameraOrientation& camera);  // any but tentative: the camera has turned away from it
@@ -178,7 +178,7 @@ struct TrackHypothesis {
   void learn_place(const AppearanceModel& all, double seconds);
   // Contact: another track shares the region, or covers a part of it.
   void touch();
-  // The appearance model tells the object from others.
+  // Returns whether the appearance model distinguishes the object from others.
   bool has_appearance() const;
   // The same for the appearance since the last contact.
   bool has_recent_appearance() const;

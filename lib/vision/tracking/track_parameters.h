@@ -15,7 +15,7 @@ struct TrackParameters {
   double birth_speed = 3.0;         // S/s, standard deviation of the unknown first velocity
   double position_noise = 0.05;     // S, standard deviation of a region's centre
   double grain = 1.0 / 320;  // of the frame's width. derived: a pixel of the analysed picture, 320 wide
-  double blob_noise = 6;     // times: variance of a position that a blob of another extent tells
+  double blob_noise = 6;     // times: variance of a position from a blob of another extent
   double size_noise = 0.15;  // of the logarithm, standard deviation of a region's extent
   double size_wander = 0.15 * 0.15;  // 1/s. derived: a person's extent changes by 15 % in a second
   double border_wander = 1.5 * 1.5;  // 1/s, of an extent that the picture's edge cuts
@@ -81,7 +81,7 @@ struct TrackParameters {
 
   // Position of a track within a group by its appearance.
   double found_noise = 0.1;  // S, standard deviation of that position
-  double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance says little about height
+  double found_brake = 0.5;  // s, time constant of the vertical velocity: appearance determines height poorly
 };
 
 }  // namespace cerberus::vision
