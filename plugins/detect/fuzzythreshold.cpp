@@ -8,6 +8,9 @@
  * three frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the
  * other areas need of the third frame is not kept for `all`.
  *
+ * What the camera writes into its own pictures is learnt and left out (`burnt-in`). An info message with the boxes in
+ * frame pixels says what was found.
+ *
  * ## Example
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! threeframediff ! fuzzythreshold area=leading ! fakesink
@@ -23,7 +26,13 @@
 // registered memory of the scene completes what two neighbouring frames cannot
 // see (`memory`, of D(k) alone: M(k) and M(k-1) are sets of the two differences).
 
+#include <cmath>
+#include <cstdio>
+#include <span>
+#include <string>
+
 #include "analysis_element.hpp"
+#include "cerberus/private/messages.hpp"
 #include "elements.hpp"
 #include "shared/enums.hpp"
 #include "shared/stages.hpp"
@@ -42,6 +51,7 @@ struct Settings {
   int area = static_cast<int>(vision::ForegroundMaskOptions{}.area);
   bool noise_floor = vision::ForegroundMaskOptions{}.noise_floor;
   bool memory = vision::ForegroundMaskOptions{}.background_model;
+  bool burnt_in = true;
 };
 
 const Property<Settings> kProperties[] = {
@@ -69,6 +79,10 @@ const Property<Settings> kProperties[] = {
     property("memory", &Settings::memory,
              "Use a memory of the scene, moved along with the camera, where it knows better than two "
              "neighbouring frames; with area=all only"),
+    property(
+        "burnt-in", &Settings::burnt_in,
+        "Leave out what the camera writes into its own pictures (clock, name, logo), learnt within seconds "
+        "from what keeps its place while the scene moves and from what changes in place"),
 };
 
 vision::ForegroundMaskOptions options(const Settings& s) {
@@ -90,17 +104,38 @@ bool spares_previous(const Settings& s) {
 struct Private final : StatefulAnalyser<Settings, MaskStage> {
   Answer<bool> answer;
 
+  void tell_burnt_in(std::span<const vision::Box> boxes);
+
   bool spares_previous() override { return answer.give(plugin::spares_previous(settings.snapshot())); }
   Planes planes() override { return spares_previous() ? Planes::as_asked : Planes::wanted; }
   bool analyse(Frame& frame) override {
     if (const auto changed = settings.changes()) {
       state->set_options(options(*changed));
+      state->learn_burnt_in(changed->burnt_in);
       if (answer.outdated_by(plugin::spares_previous(*changed))) cerberus_analysis_answer_anew(base);
     }
     state->luma().set_analysis_width(cerberus_analysis_width(base));
-    return state->run(frame);
+    const bool ran = state->run(frame);
+    tell_burnt_in(state->burnt_in_news());
+    return ran;
   }
 };
+
+void Private::tell_burnt_in(std::span<const vision::Box> boxes) {
+  if (boxes.empty()) return;
+  std::string text;
+  for (const vision::Box& b : boxes) {
+    char box[80];
+    std::snprintf(box, sizeof box, "%s%ldx%ld+%ld+%ld", text.empty() ? "" : ", ", std::lround(b.width),
+                  std::lround(b.height), std::lround(b.x), std::lround(b.y));
+    text += box;
+  }
+  CERBERUS_ELEMENT_INFO(
+      base, STREAM, DECODE,
+      ("The camera writes into its pictures; left out: %s (frame pixels, width x height + left + top).",
+       text.c_str()),
+      ("burnt-in=false turns this off"));
+}
 
 constexpr AnalysisInfo kInfo{"CerberusFuzzyThreshold", "Fuzzy threshold",
                              "Moving area by a threshold that the indices of fuzziness choose"};

@@ -81,6 +81,7 @@ constexpr Taken kTaken[] = {
     {"area", THRESHOLD},
     {"noise-floor", THRESHOLD},
     {"memory", THRESHOLD},
+    {"burnt-in", THRESHOLD},
     {"closing", REGIONS},
     {"people", REGIONS},
     {"minimum-area", REGIONS},
@@ -128,6 +129,7 @@ constexpr PresetValue kPresets[] = {
     {PRESET_PAPER, "area", "leading"},
     {PRESET_PAPER, "noise-floor", "false"},
     {PRESET_PAPER, "memory", "false"},
+    {PRESET_PAPER, "burnt-in", "false"},
     {PRESET_PAPER, "people", "false"},
     // Vehicles are no people: no learnt height, no human gate.
     {PRESET_TRAFFIC, "people", "false"},

@@ -108,7 +108,10 @@ bool MaskStage::run(Frame& frame) {
   MappedPlane histogram = read(frame.buffer, CERBERUS_PLANE_HISTOGRAM);
   const vision::Size size = picture.size();
   if (!area_) area_.emplace().set_options(options_);
-  if (sequence_.broken_by(frame) || size != size_) area_->reset();
+  if (sequence_.broken_by(frame) || size != size_) {
+    area_->reset();
+    burnt_in_.reset();
+  }
   size_ = size;
 
   HistogramRecord record;
@@ -129,7 +132,18 @@ bool MaskStage::run(Frame& frame) {
   input.frames = std::clamp(record.frames, 0, 3);
 
   MappedPlane mask = acquire(pool_, size);
+  input.excluded = burnt_in_.boxes();
   const vision::ForegroundMaskResult result = area_->update(input, mask.writable<std::uint8_t>());
+  news_.clear();
+  if (learns_burnt_in_ && burnt_in_.update({input.picture, input.current, result.threshold, input.motion,
+                                            input.still, input.seconds},
+                                           mask.writable<std::uint8_t>())) {
+    // A turning camera has written over the scene that the model learnt meanwhile.
+    if (!input.still) area_->reset();
+    const double sx = 1.0 * frame.size().width / size.width, sy = 1.0 * frame.size().height / size.height;
+    for (const vision::Box& b : burnt_in_.boxes())
+      news_.push_back({b.x * sx, b.y * sy, b.width * sx, b.height * sy});
+  }
   mask.publish(frame.buffer, CERBERUS_PLANE_MASK);
 
   CerberusThreshold threshold{};

@@ -7,11 +7,13 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "cerberus/private/plane_pool.hpp"
 #include "frame.hpp"
 #include "vision/background/foreground_mask.h"
 #include "vision/change/three_frame_difference.h"
+#include "vision/detection/burnt_in.h"
 #include "vision/detection/limits.h"
 #include "vision/detection/regions.h"
 #include "vision/detection/zones.h"
@@ -76,6 +78,12 @@ class MaskStage {
     options_ = options;
     if (area_) area_->set_options(options);
   }
+  void learn_burnt_in(bool on) {
+    if (!on) burnt_in_.reset();
+    learns_burnt_in_ = on;
+  }
+  // What the camera writes into its pictures, if that is news since the frame before: frame pixels.
+  std::span<const vision::Box> burnt_in_news() const { return news_; }
   bool ensure(Frame& frame);
   bool run(Frame& frame);
 
@@ -84,6 +92,9 @@ class MaskStage {
   DifferenceStage before_;
   vision::ForegroundMaskOptions options_;
   std::optional<vision::ForegroundMask> area_;
+  vision::BurntIn burnt_in_;
+  bool learns_burnt_in_ = true;
+  std::vector<vision::Box> news_;
   vision::Size size_;
   Sequence sequence_;
   PlanePool pool_, histogram_pool_;

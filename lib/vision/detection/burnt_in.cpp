@@ -106,7 +106,7 @@ void BurntIn::note_change(Block& b) {
 }
 
 void BurntIn::note_changes(const BurntInInput& in) {
-  binarise(in.difference, in.threshold, bits_.view());
+  binarise(in.difference, std::max(in.threshold, parameters_.least_step), bits_.view());
   std::size_t count = 0;
   for (int row = 0; row < rows_; ++row) {
     std::uint8_t* counts = changed_.data() + static_cast<std::size_t>(row) * columns_;

@@ -60,6 +60,9 @@ class BurntIn {
     // Share of looks in which a block beside static ones is foreground, to belong to them; and in which blocks above
     // or below are, to show that the static part is a part of something larger.
     double belongs = 0.3, continues = 0.3;
+    // Grey levels by which a pixel must change to count, Th at least. Derived: digits have far more contrast; somebody
+    // who sways by a pixel, in time, changes the picture by less.
+    int least_step = 32;
     // Pixels of a block (of 32) that must have changed. Derived: above single pixels of noise.
     int least_changed = 3;
     // Changes at once, each followed by rest, before a block counts. Derived: a clock's seconds within 5 s.
