@@ -10,10 +10,7 @@
 #include <cerberus/message.h>
 #include <cerberus/pantilt.h>
 #include <cerberus/pir.h>
-#include <cerberus/plane.h>
 #include <cerberus/pose.h>
-#include <cerberus/query.h>
 #include <cerberus/region.h>
 #include <cerberus/stamp.h>
-#include <cerberus/threshold.h>
 #include <cerberus/version.h>

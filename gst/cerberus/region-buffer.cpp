@@ -168,6 +168,35 @@ const GstMetaInfo* region_meta_info() {
   return info;
 }
 
+// Says that a detector has looked, also where it found nothing. It goes where a region's record goes, so that the two
+// are lost together.
+GstMeta* find_known(GstBuffer* buffer);
+void record_known(GstBuffer* buffer);
+
+gboolean known_transform(GstBuffer* to, GstMeta*, GstBuffer*, GQuark type, gpointer) {
+  if (!GST_META_TRANSFORM_IS_COPY(type) && !GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
+  record_known(to);
+  return TRUE;
+}
+
+const GstMetaInfo* known_meta_info() {
+  static const GstMetaInfo* const info = [] {
+    const GType api = cerberus::register_meta_api("CerberusRegionsKnownMetaAPI", GST_META_TAG_VIDEO_STR,
+                                                  GST_META_TAG_VIDEO_SIZE_STR);
+    return cerberus::register_meta<GstMeta>(
+        api, "CerberusRegionsKnownMeta", [](GstMeta*, gpointer, GstBuffer*) -> gboolean { return TRUE; },
+        nullptr, known_transform);
+  }();
+  return info;
+}
+
+GstMeta* find_known(GstBuffer* buffer) {
+  return gst_buffer_get_meta(buffer, known_meta_info()->api);
+}
+void record_known(GstBuffer* buffer) {
+  if (!find_known(buffer)) gst_buffer_add_meta(buffer, known_meta_info(), nullptr);
+}
+
 guint count_analytics(GstBuffer* buffer) {
   guint total = 0;
   gpointer state = nullptr;
@@ -193,7 +222,26 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
   meta->id = static_cast<gint>(region->id);
   add_params(meta, *region);
   record(buffer, *region, analytics);
+  record_known(buffer);
   return TRUE;
+}
+
+gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
+  if (!gst_buffer_is_writable(buffer)) return FALSE;
+  cerberus_buffer_remove_regions(buffer);
+  if (!regions) return TRUE;
+  record_known(buffer);
+  gboolean all = TRUE;
+  for (guint i = 0; i < regions->len; ++i)
+    all &=
+        cerberus_buffer_add_region(buffer, static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
+  return all;
+}
+
+gboolean cerberus_buffer_regions_known(GstBuffer* buffer) {
+  g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
+  return find_known(buffer) != nullptr;
 }
 
 GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer) {
@@ -212,7 +260,9 @@ void cerberus_buffer_remove_regions(GstBuffer* buffer) {
   gst_buffer_foreach_meta(
       buffer,
       [](GstBuffer*, GstMeta** meta, gpointer) -> gboolean {
-        if ((*meta)->info->api == region_meta_info()->api || is_ours(*meta)) *meta = nullptr;
+        const GType api = (*meta)->info->api;
+        if (api == region_meta_info()->api || api == known_meta_info()->api || is_ours(*meta))
+          *meta = nullptr;
         return TRUE;
       },
       nullptr);

@@ -14,6 +14,7 @@ constexpr CerberusRegion kEmpty = {
     .id = 0,
     .tracked = FALSE,
     .person = FALSE,
+    .kind = CERBERUS_REGION_KIND_PERSON_LIKE,
     .x = 0,
     .y = 0,
     .width = 0,
@@ -55,6 +56,9 @@ bool read(const GstStructure* structure, CerberusRegion& region) {
   gst_structure_get_clock_time(structure, "age", &region.age);
   for (const Field& field : kNumbers)
     gst_structure_get_double(structure, field.name, &(region.*field.member));
+  const gchar* kind = gst_structure_get_string(structure, "kind");
+  for (const auto k : {CERBERUS_REGION_KIND_GROUP, CERBERUS_REGION_KIND_PART, CERBERUS_REGION_KIND_THING})
+    if (g_strcmp0(kind, cerberus_region_kind_to_string(k)) == 0) region.kind = k;
   const gchar* state = gst_structure_get_string(structure, "state");
   for (const auto s : {CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_STOPPED})
     if (g_strcmp0(state, cerberus_region_state_to_string(s)) == 0) region.state = s;
@@ -64,6 +68,20 @@ bool read(const GstStructure* structure, CerberusRegion& region) {
 }  // namespace
 
 G_DEFINE_BOXED_TYPE(CerberusRegion, cerberus_region, cerberus_region_copy, cerberus_region_free)
+
+GType cerberus_region_kind_get_type(void) {
+  static const GType type = [] {
+    static const GEnumValue values[] = {
+        {CERBERUS_REGION_KIND_PERSON_LIKE, "CERBERUS_REGION_KIND_PERSON_LIKE", "person-like"},
+        {CERBERUS_REGION_KIND_GROUP, "CERBERUS_REGION_KIND_GROUP", "group"},
+        {CERBERUS_REGION_KIND_PART, "CERBERUS_REGION_KIND_PART", "part"},
+        {CERBERUS_REGION_KIND_THING, "CERBERUS_REGION_KIND_THING", "thing"},
+        {0, nullptr, nullptr},
+    };
+    return g_enum_register_static("CerberusRegionKind", values);
+  }();
+  return type;
+}
 
 GType cerberus_region_state_get_type(void) {
   static const GType type = [] {
@@ -95,6 +113,11 @@ void cerberus_region_free(CerberusRegion* region) {
   g_free(region);
 }
 
+const gchar* cerberus_region_kind_to_string(CerberusRegionKind kind) {
+  static constexpr const gchar* kNames[] = {"person-like", "group", "part", "thing"};
+  return kNames[kind >= 0 && kind < G_N_ELEMENTS(kNames) ? kind : CERBERUS_REGION_KIND_PERSON_LIKE];
+}
+
 const gchar* cerberus_region_state_to_string(CerberusRegionState state) {
   switch (state) {
     case CERBERUS_REGION_COASTED:
@@ -111,8 +134,9 @@ GstStructure* cerberus_region_to_structure(const CerberusRegion* region) {
   g_return_val_if_fail(region, nullptr);
   GstStructure* structure = gst_structure_new(
       CERBERUS_REGION_STRUCTURE, "id", G_TYPE_UINT, region->id, "tracked", G_TYPE_BOOLEAN,
-      region->tracked != FALSE, "person", G_TYPE_BOOLEAN, region->person != FALSE, "age", GST_TYPE_CLOCK_TIME,
-      region->age, "state", G_TYPE_STRING, cerberus_region_state_to_string(region->state), nullptr);
+      region->tracked != FALSE, "person", G_TYPE_BOOLEAN, region->person != FALSE, "kind", G_TYPE_STRING,
+      cerberus_region_kind_to_string(region->kind), "age", GST_TYPE_CLOCK_TIME, region->age, "state",
+      G_TYPE_STRING, cerberus_region_state_to_string(region->state), nullptr);
   for (const Field& field : kNumbers) {
     const double value = region->*field.member;
     if (std::isfinite(value)) gst_structure_set(structure, field.name, G_TYPE_DOUBLE, value, nullptr);

@@ -28,15 +28,35 @@ G_BEGIN_DECLS
 typedef enum { CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_STOPPED } CerberusRegionState;
 
 /**
+ * CerberusRegionKind:
+ * @CERBERUS_REGION_KIND_PERSON_LIKE: one whole object of the size of a person (or of what else is looked for): its box
+ *   can be trusted
+ * @CERBERUS_REGION_KIND_GROUP: as high as a person and wider: several people, or one with something
+ * @CERBERUS_REGION_KIND_PART: too low for a person: a piece of one
+ * @CERBERUS_REGION_KIND_THING: neither: much larger, solid, or in a scene whose people's height is not known yet
+ *
+ * What a region is, as far as its size and the people of the scene say. Nothing is verified by it.
+ *
+ * Since: 0.1
+ */
+typedef enum {
+  CERBERUS_REGION_KIND_PERSON_LIKE,
+  CERBERUS_REGION_KIND_GROUP,
+  CERBERUS_REGION_KIND_PART,
+  CERBERUS_REGION_KIND_THING
+} CerberusRegionKind;
+
+/**
  * CerberusRegion:
  * @id: identity of the track (from 1, stable over frames) if @tracked, else a number within the frame
  * @tracked: @id, @vx, @vy, @age and @state come from a tracker
  * @person: verified to be a person; reserved: no element sets it yet
+ * @kind: what it is by its size
  * @x: left edge, frame pixels
  * @y: top edge, frame pixels
  * @width: frame pixels
  * @height: frame pixels
- * @confidence: 0 to 1
+ * @confidence: that it is one whole object, 0 to 1
  * @vx: speed to the right, frame pixels a second, the camera's motion taken out
  * @vy: speed downwards, frame pixels a second, the camera's motion taken out; both as the video is played: backwards
  *     they are the other way round
@@ -60,6 +80,7 @@ struct _CerberusRegion {
   guint id;
   gboolean tracked;
   gboolean person;
+  CerberusRegionKind kind;
   gdouble x;
   gdouble y;
   gdouble width;
@@ -77,10 +98,14 @@ struct _CerberusRegion {
 };
 
 #define CERBERUS_TYPE_REGION (cerberus_region_get_type())
+#define CERBERUS_TYPE_REGION_KIND (cerberus_region_kind_get_type())
 #define CERBERUS_TYPE_REGION_STATE (cerberus_region_state_get_type())
 
 CERBERUS_API
 GType cerberus_region_get_type(void) G_GNUC_CONST;
+
+CERBERUS_API
+GType cerberus_region_kind_get_type(void) G_GNUC_CONST;
 
 CERBERUS_API
 GType cerberus_region_state_get_type(void) G_GNUC_CONST;
@@ -142,6 +167,17 @@ CERBERUS_API
 const gchar* cerberus_region_state_to_string(CerberusRegionState state);
 
 /**
+ * cerberus_region_kind_to_string:
+ * @kind: a kind
+ *
+ * Returns: (transfer none): `person-like`, `group`, `part` or `thing`.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+const gchar* cerberus_region_kind_to_string(CerberusRegionKind kind);
+
+/**
  * cerberus_region_to_structure:
  * @region: a region
  *
@@ -187,10 +223,41 @@ CERBERUS_API
 gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* region);
 
 /**
+ * cerberus_buffer_set_regions:
+ * @buffer: a writable buffer
+ * @regions: (element-type CerberusRegion) (nullable): the result of a detector, copied: an empty array says that it
+ *   found nothing; %NULL says that no detector has looked
+ *
+ * Replaces all regions of @buffer.
+ *
+ * Returns: %TRUE if @buffer now carries @regions; %FALSE if @buffer is not writable, or if
+ *   cerberus_buffer_add_region() would refuse one of @regions (the others are attached).
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions);
+
+/**
+ * cerberus_buffer_regions_known:
+ * @buffer: a buffer
+ *
+ * Tells a frame on which nothing was found from one on which no detector has looked. The knowledge goes where regions
+ * go: it survives copying, converting, scaling and encoding, and is lost where a picture is cropped.
+ *
+ * Returns: %TRUE if a detector upstream has looked at @buffer, whether it found something or not.
+ *
+ * Since: 0.1
+ */
+CERBERUS_API
+gboolean cerberus_buffer_regions_known(GstBuffer* buffer);
+
+/**
  * cerberus_buffer_get_regions:
  * @buffer: a buffer
  *
- * Reads all regions, in the order in which they were attached. Where the picture was scaled since, positions and speeds
+ * Reads all regions, in the order in which they were attached; cerberus_buffer_regions_known() says what it means that
+ * there are none. Where the picture was scaled since, positions and speeds
  * follow it, to fractions of a pixel. Regions of interest that others attached are not returned.
  *
  * Returns: (transfer container) (element-type CerberusRegion): copies of the regions, possibly none; release with
@@ -205,7 +272,8 @@ GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer);
  * cerberus_buffer_remove_regions:
  * @buffer: a writable buffer
  *
- * Removes all regions that cerberus_buffer_add_region() attached; regions of interest of others stay.
+ * Removes all regions that cerberus_buffer_add_region() attached, and the knowledge that a detector has looked; regions
+ * of interest of others stay.
  *
  * Since: 0.1
  */

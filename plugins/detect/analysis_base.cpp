@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "cerberus/private/query.hpp"
 #include "cerberus/private/video.hpp"
 #include "history.hpp"
 #include "shared/camera_mount.hpp"
@@ -16,8 +15,8 @@
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
+#include "shared/record.hpp"
 #include "shared/single_fields.hpp"
-#include "shared/stages.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
 #define GST_CAT_DEFAULT cerberus_analysis_debug
@@ -28,7 +27,7 @@ namespace {
 constexpr int kLeastAnalysisWidth = 48;  // of less, people are a pixel or none
 
 struct Settings {
-  int analysis_width = kDefaultAnalysisWidth;
+  int analysis_width = vision::DetectorOptions{}.analysis_width;
 };
 
 const Property<Settings> kProperties[] = {
@@ -54,7 +53,7 @@ struct AnalysisPrivate {
   Analyser* analyser = nullptr;
   GstVideoInfo info{};
   bool have_info = false;
-  bool planes_wanted = false, previous_wanted = true, sight_wanted = false;
+  guint wanted = 0;              // of the record, downstream
   std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
   History history;
   guint64 number = 0;  // analysed frames
@@ -75,42 +74,16 @@ AnalysisPrivate& priv_of(gpointer instance) {
 
 GstBaseTransformClass* parent_class();
 
-// Among ourselves only, queries to which an element answers yes by answering at all; others let them pass. Is there a
-// motiontrack downstream? And is who takes the differences content without D(k-1)?
-constexpr char kSightQuery[] = "cerberus-sight", kNoPreviousQuery[] = "cerberus-no-previous";
-
-bool peer_says_yes(GstPad* pad, const char* question) {
-  g_autoptr(GstQuery) query = gst_query_new_custom(GST_QUERY_CUSTOM, gst_structure_new_empty(question));
-  return gst_pad_peer_query(pad, query);
-}
-
 // By the first frame after caps or RECONFIGURE everybody downstream knows the caps.
 void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
   if (!priv.ask.exchange(false)) return;
-  GstPad* pad = GST_BASE_TRANSFORM_SRC_PAD(trans);
-  priv.planes_wanted = cerberus_pad_peer_wants_planes(pad);
-  priv.previous_wanted = priv.planes_wanted || !peer_says_yes(pad, kNoPreviousQuery);
-  priv.sight_wanted = peer_says_yes(pad, kSightQuery);
+  priv.wanted = ask_for_record(GST_BASE_TRANSFORM_SRC_PAD(trans));
 }
 
-// Whether the query is answered; nothing: by those downstream, if at all. A no is no answer to it: a tee upstream goes
-// on to its other branches, and an answer would speak for them.
-std::optional<bool> answer(Analyser& analyser, GstQuery* query) {
-  if (cerberus_query_is_planes(query)) {
-    const Planes planes = analyser.planes();
-    if (planes == Planes::as_asked) return std::nullopt;
-    return planes == Planes::wanted && cerberus_query_set_planes_wanted(query, TRUE);
-  }
-  if ((is_custom_query(query, kSightQuery) && analyser.reads_sight()) ||
-      (is_custom_query(query, kNoPreviousQuery) && analyser.spares_previous()))
-    return true;
-  return std::nullopt;
-}
-
-// Nobody upstream has analysed this frame.
-bool is_first_stage(GstBuffer* buffer) {
-  return !cerberus_buffer_get_camera_motion_meta(buffer) && !regions_known(buffer) &&
-         !cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_LUMA);
+// No element upstream has analysed this frame.
+bool is_first_stage(GstBuffer* buffer, vision::Size frame) {
+  return !cerberus_buffer_get_camera_motion_meta(buffer) && !cerberus_buffer_regions_known(buffer) &&
+         !record_of(buffer, frame);
 }
 
 // Once a stream. Twice is nothing: a file that is played in a loop, a clock that is set.
@@ -139,11 +112,12 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   Frame& frame = begun.frame;
   frame.buffer = buffer;
   frame.info = &priv.info;
+  frame.size = {GST_VIDEO_INFO_WIDTH(&priv.info), GST_VIDEO_INFO_HEIGHT(&priv.info)};
   frame.running_time = running_time_of(trans->segment, buffer);
   const bool measures = priv.analyser->measures_camera();
   const CerberusCameraMotionMeta* meta = measures ? nullptr : cerberus_buffer_get_camera_motion_meta(buffer);
   const CameraFollower::Step camera =
-      priv.camera.next(meta ? &meta->motion : nullptr, priv.history.previous(), frame.size());
+      priv.camera.next(meta ? &meta->motion : nullptr, priv.history.previous(), frame.size);
 
   const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
   const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
@@ -155,16 +129,14 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   const History::Step step = priv.history.next(frame.running_time, nominal);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
-  frame.planes_wanted = priv.planes_wanted;
-  frame.previous_wanted = priv.previous_wanted;
-  frame.sight_wanted = priv.sight_wanted;
-  frame.look = look_of(buffer, frame.running_time);
+  frame.wanted = priv.wanted;
+  if (const auto look = look_of(buffer, frame.running_time)) frame.look = {look->pan, look->tilt};
   if (!frame.fresh) {
     frame.seconds = step.seconds;
     frame.previous = step.previous;
     frame.motion = camera.motion;
   }
-  const bool first = is_first_stage(buffer);
+  const bool first = is_first_stage(buffer, frame.size);
   begun.cut = marked && camera.link != Link::lost;
   begun.broken = camera.link == Link::lost || (first && (marked || step.broken));
   begun.backwards = first && step.backwards;
@@ -302,8 +274,8 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* incaps, GstCaps*) {
 
 gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* query) {
   if (direction == GST_PAD_SINK) {
-    const auto ask = [&] { return answer(*priv_of(trans).analyser, query); };
-    if (const std::optional<bool> answered = guarded(trans, std::nullopt, ask)) return *answered;
+    const auto ends = [&] { return is_record_query(query) && priv_of(trans).analyser->answer(query); };
+    if (guarded(trans, false, ends)) return FALSE;  // not for the other branches of a tee
   }
   return parent_class()->query(trans, direction, query);
 }

@@ -16,7 +16,6 @@
 #include <gst/base/gstbasetransform.h>
 
 #include <atomic>
-#include <cstdint>
 #include <optional>
 
 #include "cerberus/private/element.hpp"
@@ -24,7 +23,7 @@
 
 namespace cerberus::plugin {
 
-// What was answered to those upstream, and whether it is so no more: then cerberus_analysis_answer_anew().
+// What was answered to elements upstream, and whether that has changed: then cerberus_analysis_answer_anew().
 template <typename T>
 class Answer {
  public:
@@ -36,13 +35,6 @@ class Answer {
 
  private:
   std::atomic<std::optional<T>> given_{std::nullopt};
-};
-
-// The stages' planes, which somebody upstream makes.
-enum class Planes : std::uint8_t {
-  as_asked,  // downstream
-  wanted,    // here, or they stay on the frame for others
-  unwanted,  // whoever asks for them downstream: they end here
 };
 
 // An element's private struct implements this; all calls come from the streaming thread or a state change, never two
@@ -59,12 +51,8 @@ class Analyser {
   virtual void end_of_stream() {}
   // An event on its way upstream, which goes on whatever is done here. From any thread.
   virtual void upstream_event(GstEvent*) {}
-  // True for the one element that looks at the people: see Frame::sight_wanted.
-  virtual bool reads_sight() const { return false; }
-  // Answers to those upstream, from any thread.
-  virtual Planes planes() { return Planes::as_asked; }
-  // True: the differences end here, and D(k-1) is of no use.
-  virtual bool spares_previous() { return false; }
+  // The query of record.hpp, from any thread: adds what this element wants; true: elements downstream are not asked.
+  virtual bool answer(GstQuery*) { return false; }
   // True for the one element that measures the camera itself.
   virtual bool measures_camera() const { return false; }
 };
@@ -79,7 +67,7 @@ struct CerberusAnalysisClass {
 GType cerberus_analysis_get_type();
 // In type_init: `analyser` lives as long as the element.
 void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser);
-// Those upstream are to ask again.
+// Elements upstream are to ask again.
 void cerberus_analysis_answer_anew(CerberusAnalysis* self);
 // The property analysis-width.
 int cerberus_analysis_width(const CerberusAnalysis* self);

@@ -1,33 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // An analysing element from three things: an Analyser, a table of properties, and what it is called.
 //
-//   struct Private final : StatefulAnalyser<Settings, State> { bool analyse(Frame& frame) override; };
+//   struct Private final : Analyser { CerberusAnalysis* base; Adjustable<Settings> settings; ... };
 //   constexpr AnalysisInfo kInfo{"CerberusThing", "Thing", "What it does"};
 //   GType thing_get_type() { return analysis_type<Private, kProperties, kInfo>(); }
 //   CERBERUS_REGISTER_ELEMENT(thing, GST_RANK_NONE, cerberus::plugin::thing, thing_debug, "what it does")
 #pragma once
 
-#include <optional>
-
 #include "analysis_base.hpp"
 #include "shared/properties.hpp"
 
 namespace cerberus::plugin {
-
-// Holds its State, which is what it learns of a stream, from start to stop.
-template <typename Settings, typename State>
-struct StatefulAnalyser : Analyser {
-  CerberusAnalysis* base = nullptr;
-  Adjustable<Settings> settings;
-  std::optional<State> state;  // streaming thread
-
-  bool start() override {
-    state.emplace();
-    settings.refresh();
-    return true;
-  }
-  void stop() override { state.reset(); }
-};
 
 struct AnalysisInfo {
   const char* type;  // of the GType

@@ -91,7 +91,7 @@ HeadMotionMonitor::Head HeadMotionMonitor::head_of(GstElement* element, Frame& f
                                                    const std::string& head) {
   if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
     if (!head.empty() && head != carried->head) return {.look = kStrange, .name = carried->head};
-    return {frame.look.value_or(kStrange), carried->head};
+    return {frame.look ? PanTilt{frame.look->pan, frame.look->tilt} : kStrange, carried->head};
   }
   if (!GST_CLOCK_TIME_IS_VALID(frame.running_time) || !pose_thread_.poses_count(element)) return {};
   const Time time = time_of(frame.running_time);
@@ -141,8 +141,8 @@ void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision:
   const PanTilt from = known ? before_.look.value_or(PanTilt{}) : kStrange;
   const PanTilt to = known ? now_.look.value_or(PanTilt{}) : kStrange;
   control::Turn turn{kUnknown, kUnknown};
-  if (confidence >= kConfident && motion.is_sane(frame.size()))
-    turn = control::base_turn(motion, lens, frame.size(), from, to);
+  if (confidence >= kConfident && motion.is_sane(frame.size))
+    turn = control::base_turn(motion, lens, frame.size, from, to);
   const double pan = to.pan - from.pan, tilt = to.tilt - from.tilt;
 
   // What a faulty head really did is not known.

@@ -21,10 +21,7 @@
 // there, never an old difference), a 3x3 blur goes before (`blur`), a change of light of the whole picture is taken out
 // (`compensate-light`), and what is not visible in all three frames does not move. See
 // lib/vision/change/three_frame_difference.h.
-
-#include "analysis_element.hpp"
-#include "elements.hpp"
-#include "shared/stages.hpp"
+#include "detection.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(threeframediff_debug);
 #define GST_CAT_DEFAULT threeframediff_debug
@@ -32,34 +29,13 @@ GST_DEBUG_CATEGORY_STATIC(threeframediff_debug);
 namespace cerberus::plugin {
 namespace {
 
-struct Settings {
-  bool blur = vision::DifferenceOptions{}.blur > 1;
-  bool compensate_light = vision::DifferenceOptions{}.compensate_light;
-};
-
-const Property<Settings> kProperties[] = {
-    property("blur", &Settings::blur,
-             "Average 3 x 3 pixels before the difference is taken: quieter, and blind to single pixels"),
-    property(
-        "compensate-light", &Settings::compensate_light,
-        "Take a change of brightness and contrast of the whole picture out before the difference is taken"),
-};
-
-struct Private final : StatefulAnalyser<Settings, DifferenceStage> {
-  bool analyse(Frame& frame) override {
-    if (const auto s = settings.changes()) state->set_options({s->blur ? 3 : 1, s->compensate_light});
-    state->luma().set_analysis_width(cerberus_analysis_width(base));
-    return state->run(frame, frame.previous_wanted);
-  }
-};
-
 constexpr AnalysisInfo kInfo{"CerberusThreeFrameDiff", "Three-frame difference",
                              "Differences of three consecutive frames with the camera's motion taken out"};
 
 }  // namespace
 
 GType threeframediff_get_type() {
-  return analysis_type<Private, kProperties, kInfo>();
+  return analysis_type<StageElement<vision::Stage::differences>, kOwnOfDifferences, kInfo>();
 }
 
 }  // namespace cerberus::plugin

@@ -15,7 +15,7 @@
  * A line (in one row):
  * |[
  * {"pts":1966666666,"frame":59,"width":320,"height":240,"threshold":14,"camera":[1,0,-3.25,0,1,0,0,0,1],
- *  "confidence":0.871,"objects":[{"id":4,"type":"motion","state":"seen","x":101.5,"y":60,"w":22,"h":58.5,"vx":-31.2,
+ *  "confidence":0.871,"objects":[{"id":4,"type":"motion","kind":"person-like","state":"seen","x":101.5,"y":60,"w":22,"h":58.5,"vx":-31.2,
  *  "vy":0.4,"confidence":0.93,"bearing":-12.25,"distance":null}]}
  * ]|
  *
@@ -24,9 +24,10 @@
  * - `threshold`: grey levels; null while there is none (no `fuzzythreshold` upstream, or fewer than three frames
  *   of the scene).
  * - `camera`: where the picture went from the previous frame to this one, a homography in row-major order, in
- *   pixels of this frame; identity where nothing upstream measured it, and `confidence` is null then, else 0 to 1.
- * - `objects`: `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion`
- *   (`person` is reserved: nothing verifies that yet); `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
+ *   pixels of this frame; `confidence`: 0 to 1. Both are null where no element upstream measured it.
+ * - `objects`: null where no detector upstream looked at the frame, [] where one found nothing. `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion`
+ *   (`person` is reserved: nothing verifies that yet); `kind` is `person-like`, `group`, `part` or `thing`, by
+ *   its size and the people of the scene; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
  *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and
  *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, wherever the head looks, positive to
  *   the right; `distance`: metres.
@@ -70,7 +71,6 @@
 #include <gst/base/gstbasetransform.h>
 
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "cerberus/private/element.hpp"
@@ -79,6 +79,7 @@
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
+#include "shared/record.hpp"
 #include "shared/stamps.hpp"
 #include "text/json_line.h"
 #include "text/utc.h"
@@ -130,6 +131,7 @@ void write_object(cerberus::text::JsonLine& line, const CerberusRegion& region) 
   else
     line.null();
   line.key("type").string(region.person ? "person" : "motion");
+  line.key("kind").string(cerberus_region_kind_to_string(region.kind));
   line.key("state").string(cerberus_region_state_to_string(region.state));
   line.key("x").fixed(region.x, kPixelDecimals).key("y").fixed(region.y, kPixelDecimals);
   line.key("w").fixed(region.width, kPixelDecimals).key("h").fixed(region.height, kPixelDecimals);
@@ -186,28 +188,31 @@ std::string_view write_line(State& state, GstBuffer* buffer, const CerberusStamp
   line.key("width").integer(state.width).key("height").integer(state.height);
 
   line.key("threshold");
-  const auto* threshold = cerberus_buffer_get_threshold_meta(buffer);
-  if (threshold && threshold->threshold.ready)
-    line.integer(threshold->threshold.threshold);
+  const auto* facts = cerberus::plugin::threshold_facts_of(buffer);
+  if (facts && facts->result.ready)
+    line.integer(facts->result.threshold);
   else
     line.null();
 
-  static constexpr std::array<double, 9> kIdentity{1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const auto* camera = cerberus_buffer_get_camera_motion_meta(buffer);
-  const double* matrix = camera ? camera->motion.matrix : kIdentity.data();
-  line.key("camera").open('[');
-  for (std::size_t i = 0; i < kIdentity.size(); ++i) line.significant(matrix[i], kCameraDigits);
-  line.close(']').key("confidence");
-  if (camera)
-    line.fixed(camera->motion.confidence, kShareDecimals);
-  else
-    line.null();
+  line.key("camera");
+  if (const auto* camera = cerberus_buffer_get_camera_motion_meta(buffer)) {
+    line.open('[');
+    for (const double n : camera->motion.matrix) line.significant(n, kCameraDigits);
+    line.close(']').key("confidence").fixed(camera->motion.confidence, kShareDecimals);
+  } else {
+    line.null().key("confidence").null();
+  }
 
-  line.key("objects").open('[');
-  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-  for (guint i = 0; i < regions->len; ++i)
-    write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
-  line.close(']');
+  line.key("objects");
+  if (cerberus_buffer_regions_known(buffer)) {
+    line.open('[');
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+    for (guint i = 0; i < regions->len; ++i)
+      write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
+    line.close(']');
+  } else {
+    line.null();
+  }
   write_system(line, buffer, stamp.running_time);
   return line.close('}').finish();
 }

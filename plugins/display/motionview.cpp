@@ -43,23 +43,20 @@
 #include <cstring>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/plane_pool.hpp"
 #include "cerberus/private/video.hpp"
 #include "overlay/plane_view.h"
 #include "overlay/threshold_figure.h"
 #include "shared/complaint.hpp"
 #include "shared/enums.hpp"
 #include "shared/properties.hpp"
+#include "shared/record.hpp"
 #include "shared/single_fields.hpp"
-#include "shared/stages.hpp"
-#include "vision/image/luma.h"
+#include "vision/detector.h"
 
 namespace {
 
-using cerberus::MappedPlane;
 using cerberus::plugin::Adjustable;
 using cerberus::plugin::Complaint;
-using cerberus::plugin::HistogramRecord;
 using cerberus::plugin::Property;
 using cerberus::plugin::property;
 namespace overlay = cerberus::overlay;
@@ -136,11 +133,21 @@ bool is_colour(int stage) {
   return stage == STAGE_LABELS || stage == STAGE_HISTOGRAM;
 }
 
-CerberusPlaneKind plane_kind(int stage) {
-  static constexpr CerberusPlaneKind kinds[] = {
-      CERBERUS_PLANE_LUMA, CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_PREVIOUS_DIFFERENCE,
-      CERBERUS_PLANE_MASK, CERBERUS_PLANE_LABELS,     CERBERUS_PLANE_HISTOGRAM};
-  return kinds[stage];
+// The picture of the record that a grey stage shows; an empty view where it is not there.
+vision::GrayView picture_of(const vision::Analysis& record, int stage) {
+  const auto view = [](const vision::GrayPicture& picture) {
+    return picture ? vision::GrayView(picture->view()) : vision::GrayView{};
+  };
+  switch (stage) {
+    case STAGE_LUMA:
+      return view(*record.luma);
+    case STAGE_DIFFERENCE:
+      return view(record.differences->current);
+    case STAGE_PREVIOUS_DIFFERENCE:
+      return view(record.differences->previous);
+    default:
+      return record.mask();
+  }
 }
 
 const char* stage_nick(int stage) {
@@ -163,31 +170,16 @@ overlay::Canvas canvas_of(GstVideoFrame* frame) {
           GST_VIDEO_FRAME_FORMAT(frame) == GST_VIDEO_FORMAT_GRAY8};
 }
 
-// As fuzzythreshold was set, where it has chosen; what does not say so was made by a stranger, or is not that far yet.
-vision::FuzzyThresholdOptions options_of(const HistogramRecord& record) {
-  vision::FuzzyThresholdOptions options;
-  if (!record.chosen) return options;
-  options.weighting = record.weighting ? vision::Weighting::log : vision::Weighting::linear;
-  options.extremes = record.extremes ? vision::Extremes::image : vision::Extremes::subset;
-  options.order = std::clamp(record.order, 1, 16);
-  options.clip = record.clip != 0;
-  return options;
-}
-
-bool show_histogram(const MappedPlane& plane, GstBuffer* buffer, const overlay::Canvas& canvas) {
-  HistogramRecord record{};
-  vision::Histogram histogram;
-  if (plane.width() < static_cast<int>(histogram.size())) return false;
-  std::memcpy(&record, plane.view<std::uint32_t>().row(0),
-              std::min(sizeof record, plane.width() * sizeof(std::uint32_t)));
-  std::copy_n(record.count, histogram.size(), histogram.begin());
+bool show_histogram(const vision::Analysis& record, const overlay::Canvas& canvas) {
+  if (!record.differences) return false;
+  const vision::FuzzyThresholdOptions options =
+      record.foreground ? record.foreground->chosen_with : vision::FuzzyThresholdOptions{};
   overlay::ThresholdFigure figure;
-  figure.histogram = &histogram;
-  figure.fuzzy_threshold = vision::fuzzy_threshold(histogram, options_of(record), &figure.curves);
-  if (const auto* meta = cerberus_buffer_get_threshold_meta(buffer); meta && meta->threshold.ready) {
-    figure.threshold = static_cast<int>(std::min(meta->threshold.threshold, 255u));
-    figure.fuzzy_threshold = static_cast<int>(std::min(meta->threshold.fuzzy_threshold, 255u));
-    figure.noise = meta->threshold.noise;
+  figure.histogram = &record.differences->histogram;
+  figure.fuzzy_threshold = vision::fuzzy_threshold(*figure.histogram, options, &figure.curves);
+  if (record.foreground && record.foreground->result.ready) {
+    figure.threshold = std::min(record.foreground->result.threshold, 255);
+    figure.noise = record.foreground->result.sigma;
   }
   return overlay::draw_threshold_figure(figure, canvas);
 }
@@ -198,7 +190,7 @@ bool show_own_luma(State& state, GstBuffer* in, const overlay::Canvas& canvas) {
   if (!frame) return false;
   const vision::LumaSource source = cerberus::luma_source(*frame.get());
   state.luma.resize(
-      vision::analysis_size({source.width, source.height}, cerberus::plugin::kDefaultAnalysisWidth));
+      vision::analysis_size({source.width, source.height}, vision::DetectorOptions{}.analysis_width));
   state.scaler.scale(source, state.luma.view());
   state.enlarger.show(state.luma.view(), 1, canvas);
   return true;
@@ -206,22 +198,21 @@ bool show_own_luma(State& state, GstBuffer* in, const overlay::Canvas& canvas) {
 
 // False where there is nothing to show.
 bool show(State& state, const Settings& settings, GstBuffer* in, const overlay::Canvas& canvas) {
-  const MappedPlane plane = MappedPlane::read(in, plane_kind(settings.stage));
-  if (!plane) return settings.stage == STAGE_LUMA && show_own_luma(state, in, canvas);
-  switch (settings.stage) {
-    case STAGE_LABELS:
-      state.enlarger.show_labels(plane.view<std::uint16_t>(), canvas);
-      return true;
-    case STAGE_HISTOGRAM:
-      return show_histogram(plane, in, canvas);
-    case STAGE_DIFFERENCE:
-    case STAGE_PREVIOUS_DIFFERENCE:
-      state.enlarger.show(plane.view<std::uint8_t>(), settings.gain, canvas);
-      return true;
-    default:
-      state.enlarger.show(plane.view<std::uint8_t>(), 1, canvas);
-      return true;
+  const int stage = settings.stage;
+  const vision::Record record =
+      cerberus::plugin::record_of(in, {GST_VIDEO_INFO_WIDTH(&state.in), GST_VIDEO_INFO_HEIGHT(&state.in)});
+  if (!record) return stage == STAGE_LUMA && show_own_luma(state, in, canvas);
+  if (stage == STAGE_HISTOGRAM) return show_histogram(*record, canvas);
+  if (stage == STAGE_LABELS) {
+    if (!record->regions || !record->regions->labels) return false;
+    state.enlarger.show_labels(record->regions->labels->view(), canvas);
+    return true;
   }
+  const vision::GrayView picture = picture_of(*record, stage);
+  if (picture.empty()) return false;
+  const bool difference = stage == STAGE_DIFFERENCE || stage == STAGE_PREVIOUS_DIFFERENCE;
+  state.enlarger.show(picture, difference ? settings.gain : 1, canvas);
+  return true;
 }
 
 gboolean cerberus_motion_view_start(GstBaseTransform* transform) {
@@ -305,8 +296,10 @@ gboolean cerberus_motion_view_transform_meta(GstBaseTransform*, GstBuffer*, GstM
 }
 
 gboolean cerberus_motion_view_query(GstBaseTransform* transform, GstPadDirection direction, GstQuery* query) {
-  if (direction == GST_PAD_SINK && cerberus_query_is_planes(query))
-    return cerberus_query_set_planes_wanted(query, TRUE);
+  if (direction == GST_PAD_SINK && cerberus::plugin::is_record_query(query)) {
+    cerberus::plugin::add_wanted(query, cerberus::plugin::kRecordForReaders);
+    return FALSE;  // the record ends here, but another branch of a tee may want it too
+  }
   return cerberus_motion_view_parent_class()->query(transform, direction, query);
 }
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "records.h"
+
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 #include <gst/video/video.h>
@@ -81,16 +83,13 @@ inline GstBuffer* frame_with_everything(gsize bytes = kWidth * kHeight * 3 / 2) 
   motion.path[5] = -14;
   cerberus_buffer_add_camera_motion_meta(frame, &motion);
 
-  CerberusThreshold threshold{};
-  threshold.threshold = 12;
-  threshold.fuzzy_threshold = 30;
-  threshold.noise = 1.5;
-  threshold.ready = TRUE;
-  cerberus_buffer_add_threshold_meta(frame, &threshold);
+  cerberus::plugin::ThresholdFacts facts;
+  facts.result = {12, 30, 1.5, true};
+  facts.chosen_with.order = 3;
+  cerberus::plugin::set_threshold_facts(frame, facts);
 
-  GstBuffer* plane = gst_buffer_new_allocate(nullptr, 64 * 6, nullptr);
-  gst_buffer_memset(plane, 0, 255, 64 * 6);
-  cerberus_buffer_add_plane_meta(frame, CERBERUS_PLANE_MASK, plane, 8, 6, 64);
+  records::on(frame, {kWidth, kHeight})->regions.write().mask =
+      records::picture<guint8>({8, 6}, [](int, int) { return 255; });
 
   gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);  // a stranger's
 

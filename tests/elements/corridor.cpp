@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What holds for every element of the corridor, cameramotion to motiontrack and motiondetect: frames go through whole
 // and uncopied, every format gives the same answer, and what cannot be analysed is refused in one clear sentence.
+#include <algorithm>
 #include <set>
 
 #include "scene.h"
@@ -8,6 +9,7 @@
 
 namespace {
 
+using cerberus::vision::Stage;
 using scene::kElementCount;
 using scene::kElements;
 using scene::Line;
@@ -239,19 +241,18 @@ GST_END_TEST
 GST_START_TEST(a_stage_alone_does_the_missing_steps_itself) {
   struct Promise {
     const char* element;
-    std::vector<CerberusPlaneKind> planes;
+    std::vector<Stage> fields;
     bool motion, threshold, regions;
   };
   const Promise promises[] = {
-      {"cameramotion", {CERBERUS_PLANE_LUMA}, true, false, false},
-      {"threeframediff",
-       {CERBERUS_PLANE_LUMA, CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_PREVIOUS_DIFFERENCE,
-        CERBERUS_PLANE_HISTOGRAM},
+      {"cameramotion", {Stage::luma, Stage::camera}, true, false, false},
+      {"threeframediff", {Stage::luma, Stage::differences}, false, false, false},
+      {"fuzzythreshold", {Stage::luma, Stage::differences, Stage::foreground}, false, true, false},
+      {"motionregions keep-planes=always",
+       {Stage::luma, Stage::differences, Stage::foreground, Stage::regions},
        false,
-       false,
-       false},
-      {"fuzzythreshold", {CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_MASK}, false, true, false},
-      {"motionregions keep-planes=always", {CERBERUS_PLANE_MASK, CERBERUS_PLANE_LABELS}, false, true, true},
+       true,
+       true},
       {"motiontrack confirm-time=0", {}, false, true, true},
       {"motiondetect confirm-time=0", {}, true, true, true},
   };
@@ -259,13 +260,14 @@ GST_START_TEST(a_stage_alone_does_the_missing_steps_itself) {
   // A capsfilter makes a launch line of the single element.
   Line line(std::string(promise.element) + " ! identity");
   line.run(World{}, 0, 20, [&](int k, GstBuffer* out) {
-    for (const CerberusPlaneKind kind : promise.planes)
-      fail_unless(cerberus_buffer_get_plane_meta(out, kind) != nullptr, "frame %d has no plane %d", k, kind);
-    if (promise.planes.empty())
-      fail_unless(cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_MASK) == nullptr,
-                  "planes were left behind");
+    const cerberus::vision::Record record = records::record_of(out);
+    fail_unless_equals_int(static_cast<bool>(record), !promise.fields.empty());
+    for (int s = 0; record && s <= static_cast<int>(Stage::tracks); ++s) {
+      const auto stage = static_cast<Stage>(s);
+      fail_unless_equals_int(record->has(stage), std::ranges::count(promise.fields, stage));
+    }
     fail_unless((cerberus_buffer_get_camera_motion_meta(out) != nullptr) == promise.motion);
-    fail_unless((cerberus_buffer_get_threshold_meta(out) != nullptr) == promise.threshold);
+    fail_unless((records::threshold_facts_of(out) != nullptr) == promise.threshold);
     if (k < 15) return;
     fail_unless((Regions(out).size() > 0) == promise.regions, "frame %d has %u regions", k,
                 Regions(out).size());
@@ -273,17 +275,18 @@ GST_START_TEST(a_stage_alone_does_the_missing_steps_itself) {
 }
 GST_END_TEST
 
-// A frame that waits in a queue holds none of our memory, and no plane is allocated per frame.
-GST_START_TEST(planes_are_used_again) {
+// A frame that waits in a queue holds none of our memory, and no picture is allocated per frame.
+GST_START_TEST(pictures_are_used_again) {
   Line line(std::string(kElements[__i__]) + " ! identity");
-  std::set<const GstMemory*> memories;
+  std::set<const void*> memories;
   line.run(World{}, 0, 60, [&](int, GstBuffer* out) {
-    gpointer position = nullptr;
-    while (GstMeta* meta = gst_buffer_iterate_meta(out, &position))
-      if (meta->info->api == CERBERUS_PLANE_META_API_TYPE)
-        memories.insert(gst_buffer_peek_memory(reinterpret_cast<CerberusPlaneMeta*>(meta)->buffer, 0));
+    const cerberus::vision::Record record = records::record_of(out);
+    if (!record) return;
+    for (const auto* picture :
+         {&*record->luma, &record->differences->current, &record->foreground->mask, &record->regions->mask})
+      if (*picture) memories.insert((*picture)->view().data);
   });
-  fail_unless(memories.size() <= 8, "%zu different planes in 60 frames", memories.size());
+  fail_unless(memories.size() <= 8, "%zu different pictures in 60 frames", memories.size());
 }
 GST_END_TEST
 
@@ -310,7 +313,7 @@ Suite* corridor_suite() {
   tcase_add_loop_test(tests, two_instances_do_not_know_of_each_other, 0, kElementCount);
   tcase_add_loop_test(tests, no_latency_is_added_and_quality_of_service_is_off, 0, kElementCount);
   tcase_add_loop_test(tests, a_stage_alone_does_the_missing_steps_itself, 0, kElementCount);
-  tcase_add_loop_test(tests, planes_are_used_again, 0, kElementCount);
+  tcase_add_loop_test(tests, pictures_are_used_again, 0, kElementCount);
   return suite;
 }
 

@@ -47,8 +47,8 @@ GST_START_TEST(the_motion_is_in_frame_pixels_whatever_the_analysis_width) {
     world.pan = 6;
     Line line(launch);
     line.run(world, 0, 10, [&](int k, GstBuffer* out) {
-      const CerberusPlaneMeta* plane = cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_LUMA);
-      fail_unless_equals_int(plane->width, strstr(launch, "160") ? 160 : 320);
+      fail_unless_equals_int((*records::record_of(out)->luma)->size().width,
+                             strstr(launch, "160") ? 160 : 320);
       const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
       if (k > 0) fail_unless(std::abs(meta->motion.matrix[2] + 6) < 0.4, "%.2f", meta->motion.matrix[2]);
     });
@@ -77,7 +77,7 @@ GST_START_TEST(the_area_changes_while_playing) {
   line.run(world, 10, 11, [&](int, GstBuffer* out) { all = moving_pixels(out); });
   gst_util_set_object_arg(G_OBJECT(threshold), "area", "leading");
   // What they need of the third frame was not kept so far: two frames without an answer, not with a wrong one.
-  const auto ready = [](GstBuffer* out) { return cerberus_buffer_get_threshold_meta(out)->threshold.ready; };
+  const auto ready = [](GstBuffer* out) { return records::threshold_facts_of(out)->result.ready; };
   line.run(world, 11, 13, [&](int k, GstBuffer* out) {
     fail_unless_equals_int(ready(out), own && k == 12);
     if (!ready(out)) fail_unless_equals_int(moving_pixels(out), 0);
@@ -100,14 +100,25 @@ GST_START_TEST(the_analysis_width_changes_while_playing) {
     g_object_set(detect, "analysis-width", width, nullptr);
     guint found = 0;
     line.run(world, k, k + 10, [&](int, GstBuffer* out) {
-      fail_unless_equals_int(cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_MASK)->width,
-                             width > 0 ? width : 320);
+      fail_unless_equals_int(records::mask_of(out).width, width > 0 ? width : 320);
       found += Regions(out).size();
     });
     fail_unless(found > 0, "nothing found at width %d", width);
     k += 10;
   }
   gst_object_unref(detect);
+}
+GST_END_TEST
+
+// A crop loses the regions, and with them the knowledge that somebody has looked: they are found again in what is left.
+GST_START_TEST(behind_a_crop_the_regions_are_found_again) {
+  Line line("motiondetect confirm-time=0 ! videocrop left=16 ! motiontrack confirm-time=0 ! identity");
+  guint found = 0;
+  line.run(World{}, 0, 30, [&](int, GstBuffer* out) {
+    fail_unless(cerberus_buffer_regions_known(out));
+    found += Regions(out).size();
+  });
+  fail_unless(found > 10, "%u regions", found);
 }
 GST_END_TEST
 
@@ -341,6 +352,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, model_none_says_that_the_camera_stands);
   tcase_add_loop_test(tests, the_area_changes_while_playing, 0, 2);
   tcase_add_test(tests, the_analysis_width_changes_while_playing);
+  tcase_add_test(tests, behind_a_crop_the_regions_are_found_again);
   tcase_add_test(tests, zones_change_while_playing_and_a_typo_keeps_the_old_ones);
   tcase_add_test(tests, limits_of_size_drop_what_is_outside);
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);

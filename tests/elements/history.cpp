@@ -251,8 +251,8 @@ GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen)
     const Regions regions(out);
     if (k < 2) {
       fail_unless_equals_int(regions.size(), 0);
-      const CerberusThresholdMeta* threshold = cerberus_buffer_get_threshold_meta(out);
-      fail_unless(threshold && !threshold->threshold.ready, "%s: frame %d after %s is ready", launch, k,
+      const auto* threshold = records::threshold_facts_of(out);
+      fail_unless(threshold && !threshold->result.ready, "%s: frame %d after %s is ready", launch, k,
                   kBreakNames[kind]);
     }
     for (guint i = 0; i < regions.size(); ++i)

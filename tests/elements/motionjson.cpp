@@ -3,6 +3,8 @@
 #include <cmath>
 #include <limits>
 
+#include "records.h"
+
 #include "../support/german.h"
 #include "outputs.h"
 
@@ -51,10 +53,9 @@ GstBuffer* full_frame() {
   motion.matrix[6] = 1.25e-7;
   motion.confidence = 0.87149;
   cerberus_buffer_add_camera_motion_meta(buffer, &motion);
-  CerberusThreshold threshold{};
-  threshold.threshold = 14;
-  threshold.ready = TRUE;
-  cerberus_buffer_add_threshold_meta(buffer, &threshold);
+  cerberus::plugin::ThresholdFacts facts;
+  facts.result = {14, 14, 1, true};
+  cerberus::plugin::set_threshold_facts(buffer, facts);
   CerberusRegion first = region(4, 10, 20, 12, 18);
   first.vx = -31.204999;
   first.vy = 0.4;
@@ -65,6 +66,7 @@ GstBuffer* full_frame() {
   CerberusRegion second = region(5, 0, 0, 8, 9);
   second.state = CERBERUS_REGION_STOPPED;
   second.person = TRUE;
+  second.kind = CERBERUS_REGION_KIND_GROUP;
   second.vx = kNaN;
   second.vy = -kInfinity;
   second.confidence = 1;
@@ -79,18 +81,18 @@ GstBuffer* full_frame() {
 const char* const kFullLine =
     R"({"pts":120000000,"frame":0,"width":64,"height":48,"threshold":14,)"
     R"("camera":[0.999998745,-0.25,-3.5,0,1,0,1.25e-07,0,1],"confidence":0.871,"objects":[)"
-    R"({"id":4,"type":"motion","state":"seen","x":10,"y":20,"w":12,"h":18,"vx":-31.2,"vy":0.4,"confidence":0.931,)"
+    R"({"id":4,"type":"motion","kind":"person-like","state":"seen","x":10,"y":20,"w":12,"h":18,"vx":-31.2,"vy":0.4,"confidence":0.931,)"
     R"("bearing":-12.25,"distance":4.5},)"
-    R"({"id":5,"type":"person","state":"stopped","x":0,"y":0,"w":8,"h":9,"vx":null,"vy":null,"confidence":1,)"
+    R"({"id":5,"type":"person","kind":"group","state":"stopped","x":0,"y":0,"w":8,"h":9,"vx":null,"vy":null,"confidence":1,)"
     R"("bearing":null,"distance":null},)"
-    R"({"id":null,"type":"motion","state":"coasted","x":30,"y":30,"w":5,"h":5,"vx":0,"vy":0,"confidence":0.5,)"
+    R"({"id":null,"type":"motion","kind":"person-like","state":"coasted","x":30,"y":30,"w":5,"h":5,"vx":0,"vy":0,"confidence":0.5,)"
     R"("bearing":null,"distance":null}]})"
     "\n";
 
 std::string empty_line(const char* pts, int number, int width = 64, int height = 48) {
   return std::string(R"({"pts":)") + pts + R"(,"frame":)" + std::to_string(number) + R"(,"width":)" +
          std::to_string(width) + R"(,"height":)" + std::to_string(height) +
-         R"(,"threshold":null,"camera":[1,0,0,0,1,0,0,0,1],"confidence":null,"objects":[]})" + "\n";
+         R"(,"threshold":null,"camera":null,"confidence":null,"objects":null})" + "\n";
 }
 
 }  // namespace
@@ -148,12 +150,24 @@ GST_START_TEST(a_locale_with_a_decimal_comma_changes_nothing) {
 }
 GST_END_TEST
 
+// Nothing was found, and no detector has looked: a program that reads the lines must be able to tell them apart.
+GST_START_TEST(nothing_found_is_not_nobody_looked) {
+  Harness h = started();
+  GstBuffer* buffer = frame(info_of(kCaps));
+  g_autoptr(GPtrArray) none = g_ptr_array_new();
+  fail_unless(cerberus_buffer_set_regions(buffer, none));
+  std::string line = empty_line("0", 0);
+  line.replace(line.find(R"("objects":null)"), 14, R"("objects":[])");
+  expect(line_of(h.get(), buffer), line);
+}
+GST_END_TEST
+
 GST_START_TEST(a_threshold_that_is_not_ready_is_none) {
   Harness h = started();
   GstBuffer* buffer = frame(info_of(kCaps));
-  CerberusThreshold threshold{};
-  threshold.threshold = 14;
-  cerberus_buffer_add_threshold_meta(buffer, &threshold);
+  cerberus::plugin::ThresholdFacts facts;
+  facts.result.threshold = 14;
+  cerberus::plugin::set_threshold_facts(buffer, facts);
   expect(line_of(h.get(), buffer), empty_line("0", 0));
 }
 GST_END_TEST
@@ -342,6 +356,7 @@ static Suite* motionjson_suite() {
   tcase_add_test(tc, pose_sensors_and_decision_are_there_where_somebody_told);
   tcase_add_test(tc, a_locale_with_a_decimal_comma_changes_nothing);
   tcase_add_test(tc, a_threshold_that_is_not_ready_is_none);
+  tcase_add_test(tc, nothing_found_is_not_nobody_looked);
   tcase_add_test(tc, a_frame_without_a_time_has_a_null_pts);
   tcase_add_test(tc, a_line_has_the_time_of_its_frame);
   tcase_add_test(tc, numbers_that_are_not_finite_are_null);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <functional>
 
+#include "records.h"
+
 #include "outputs.h"
 #include "scene.h"
 
@@ -52,16 +54,40 @@ Harness started(const std::string& line, const std::string& caps, const char* si
   return h;
 }
 
-// A plane of width x height samples, rows `padding` samples apart more than needed, made by value(x, y).
+enum Plane { LUMA, DIFFERENCE, PREVIOUS, MASK, LABELS };
+
+namespace vision = cerberus::vision;
+vision::Size last_frame;
+
+GstBuffer* new_frame(const GstVideoInfo& info, int number = 0) {
+  last_frame = {info.width, info.height};
+  return outputs::frame(info, number);
+}
+
 template <typename T>
-void add_plane(GstBuffer* buffer, CerberusPlaneKind kind, int width, int height,
-               const std::function<int(int, int)>& value, int padding = 5) {
-  const std::size_t stride = (static_cast<std::size_t>(width) + padding) * sizeof(T);
-  std::vector<T> samples(stride / sizeof(T) * height, T(99));
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) samples[y * (stride / sizeof(T)) + x] = static_cast<T>(value(x, y));
-  GstBuffer* plane = gst_buffer_new_memdup(samples.data(), samples.size() * sizeof(T));
-  fail_unless(cerberus_buffer_add_plane_meta(buffer, kind, plane, width, height, static_cast<int>(stride)));
+T& open(vision::Field<T>& field) {
+  return field ? field.stored() : field.write();
+}
+
+// A picture of width x height samples in the record of the frame made last, by value(x, y).
+void add_plane(GstBuffer* buffer, Plane kind, int width, int height,
+               const std::function<int(int, int)>& value) {
+  const vision::Record record = records::on(buffer, last_frame);
+  if (kind == LABELS) {
+    open(record->regions).labels = records::picture<guint16>({width, height}, value);
+    return;
+  }
+  (kind == LUMA         ? open(record->luma)
+   : kind == DIFFERENCE ? open(record->differences).current
+   : kind == PREVIOUS   ? open(record->differences).previous
+                        : open(record->regions).mask) = records::picture<guint8>({width, height}, value);
+}
+
+void add_histogram(GstBuffer* buffer, const std::function<int(int)>& count, int threshold = 0) {
+  const vision::Record record = records::on(buffer, last_frame);
+  for (int x = 0; x < 256; ++x)
+    open(record->differences).histogram[static_cast<std::size_t>(x)] = static_cast<guint32>(count(x));
+  if (threshold > 0) record->foreground.write().result = {threshold, threshold, 1, true};
 }
 
 int sample_at(int pixel, int pixels, int samples) {
@@ -84,8 +110,8 @@ GST_START_TEST(the_mask_is_enlarged_by_nearest_neighbour) {
     for (const auto& [w, h] : {std::pair{32, 24}, {5, 3}, {64, 48}, {320, 240}, {1, 1}}) {
       const std::string caps = caps_string("I420", width, height);
       Harness harness = started("motionview stage=mask", caps);
-      GstBuffer* in = frame(info_of(caps));
-      add_plane<guint8>(in, CERBERUS_PLANE_MASK, w, h, checkers);
+      GstBuffer* in = new_frame(info_of(caps));
+      add_plane(in, MASK, w, h, checkers);
       const Picture p = shown(harness.get(), in);
       fail_unless(p.gray());
       fail_unless_equals_int(p.width(), width);
@@ -98,18 +124,15 @@ GST_START_TEST(the_mask_is_enlarged_by_nearest_neighbour) {
 GST_END_TEST
 
 GST_START_TEST(grey_stages_show_their_plane_in_grey_and_in_colour_pixels) {
-  const std::pair<const char*, CerberusPlaneKind> stages[] = {
-      {"luma", CERBERUS_PLANE_LUMA},
-      {"difference", CERBERUS_PLANE_DIFFERENCE},
-      {"previous-difference", CERBERUS_PLANE_PREVIOUS_DIFFERENCE},
-      {"mask", CERBERUS_PLANE_MASK}};
+  const std::pair<const char*, Plane> stages[] = {
+      {"luma", LUMA}, {"difference", DIFFERENCE}, {"previous-difference", PREVIOUS}, {"mask", MASK}};
   const std::string caps = caps_string("NV12", 66, 50);
   for (const auto& [stage, kind] : stages)
     for (const char* out : {"video/x-raw,format=GRAY8", "video/x-raw,format=BGRx"}) {
       Harness harness = started(std::string("motionview stage=") + stage, caps, out);
-      GstBuffer* in = frame(info_of(caps));
+      GstBuffer* in = new_frame(info_of(caps));
       for (const auto& other : stages)
-        add_plane<guint8>(in, other.second, 33, 25, other.second == kind ? ramp : checkers);
+        add_plane(in, other.second, 33, 25, other.second == kind ? ramp : checkers);
       const Picture p = shown(harness.get(), in);
       for (int y = 0; y < 50; ++y)
         for (int x = 0; x < 66; ++x)
@@ -121,8 +144,8 @@ GST_END_TEST
 GST_START_TEST(gain_brightens_the_differences_and_stops_at_white) {
   const std::string caps = caps_string("GRAY8", 64, 4);
   Harness harness = started("motionview stage=difference gain=2.5", caps);
-  GstBuffer* in = frame(info_of(caps));
-  add_plane<guint8>(in, CERBERUS_PLANE_DIFFERENCE, 64, 4, [](int x, int) { return x * 4; });
+  GstBuffer* in = new_frame(info_of(caps));
+  add_plane(in, DIFFERENCE, 64, 4, [](int x, int) { return x * 4; });
   const Picture p = shown(harness.get(), in);
   for (int x = 0; x < 64; ++x)
     fail_unless_equals_int(p.at(x, 2), std::min<long>(255, std::lround(x * 4 * 2.5)));
@@ -133,8 +156,8 @@ GST_START_TEST(equal_pictures_are_equal_bytes_between_the_rows_too) {
   const std::string caps = caps_string("I420", 33, 35);  // rows of 36 bytes
   Harness harness = started("motionview stage=mask", caps);
   for (int k = 0; k < 4; ++k) {
-    GstBuffer* in = frame(info_of(caps), k);
-    add_plane<guint8>(in, CERBERUS_PLANE_MASK, 33, 35, checkers);
+    GstBuffer* in = new_frame(info_of(caps), k);
+    add_plane(in, MASK, 33, 35, checkers);
     const Picture p = shown(harness.get(), in);
     fail_unless_equals_int(p.info.stride[0], 36);
     for (int y = 0; y < 35; ++y)
@@ -146,8 +169,8 @@ GST_END_TEST
 GST_START_TEST(every_label_has_a_colour_and_the_background_none) {
   const std::string caps = caps_string("I420", 64, 32);
   Harness harness = started("motionview stage=labels", caps);
-  GstBuffer* in = frame(info_of(caps));
-  add_plane<guint16>(in, CERBERUS_PLANE_LABELS, 8, 1, [](int x, int) { return x == 7 ? 65535 : x; });
+  GstBuffer* in = new_frame(info_of(caps));
+  add_plane(in, LABELS, 8, 1, [](int x, int) { return x == 7 ? 65535 : x; });
   const Picture p = shown(harness.get(), in);
   fail_if(p.gray());
   std::vector<guint32> colors;
@@ -177,13 +200,8 @@ static int threshold_column(const Picture& p) {
 }
 
 static GstBuffer* with_histogram(const GstVideoInfo& info, guint threshold) {
-  GstBuffer* in = frame(info);
-  add_plane<guint32>(in, CERBERUS_PLANE_HISTOGRAM, 256, 1,
-                     [](int x, int) { return x < 60 ? 4000 / (1 + x * x) : 0; });
-  CerberusThreshold t{};
-  t.threshold = t.fuzzy_threshold = threshold;
-  t.ready = TRUE;
-  cerberus_buffer_add_threshold_meta(in, &t);
+  GstBuffer* in = new_frame(info);
+  add_histogram(in, [](int x) { return x < 60 ? 4000 / (1 + x * x) : 0; }, static_cast<int>(threshold));
   return in;
 }
 
@@ -297,11 +315,11 @@ GST_START_TEST(the_histogram_is_drawn_at_every_size) {
     Harness harness = started("motionview stage=histogram", caps);
     const Picture p = shown(harness.get(), with_histogram(info_of(caps), 10));
     fail_if(p.all(0));
-    GstBuffer* empty = frame(info_of(caps), 1);
-    add_plane<guint32>(empty, CERBERUS_PLANE_HISTOGRAM, 256, 1, [](int, int) { return 0; });
+    GstBuffer* empty = new_frame(info_of(caps), 1);
+    add_histogram(empty, [](int) { return 0; });
     shown(harness.get(), empty);
-    GstBuffer* full = frame(info_of(caps), 2);
-    add_plane<guint32>(full, CERBERUS_PLANE_HISTOGRAM, 256, 1, [](int, int) { return -1; });  // 2^32 - 1 each
+    GstBuffer* full = new_frame(info_of(caps), 2);
+    add_histogram(full, [](int) { return -1; });  // 2^32 - 1 each
     shown(harness.get(), full);
   }
 }
@@ -313,7 +331,7 @@ GST_START_TEST(a_missing_plane_is_black_and_told_once) {
     Harness harness = started(std::string("motionview stage=") + stage, caps);
     Bus bus(harness.get());
     for (int start = 0; start < 2; ++start) {
-      for (int k = 0; k < 3; ++k) fail_unless(shown(harness.get(), frame(info_of(caps), k)).all(0));
+      for (int k = 0; k < 3; ++k) fail_unless(shown(harness.get(), new_frame(info_of(caps), k)).all(0));
       std::string text;
       fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING, &text), 1);
       fail_unless(text.find(std::string("stage=") + stage) != std::string::npos, "%s", text.c_str());
@@ -364,19 +382,17 @@ GST_END_TEST
 
 GST_START_TEST(somebody_who_asks_for_planes_is_told_yes) {
   Harness harness = started("motionview ! identity", caps_string("I420", 64, 48));
-  fail_unless(cerberus_pad_peer_wants_planes(harness->srcpad));
+  fail_unless(cerberus::plugin::ask_for_record(harness->srcpad) == records::kRecordForReaders);
 }
 GST_END_TEST
 
 GST_START_TEST(what_was_found_stays_on_the_picture_but_planes_do_not) {
   const std::string caps = caps_string("I420", 64, 48);
   Harness harness = started("motionview stage=mask", caps);
-  GstBuffer* in = frame(info_of(caps), 5);
-  add_plane<guint8>(in, CERBERUS_PLANE_MASK, 32, 24, checkers);
+  GstBuffer* in = new_frame(info_of(caps), 5);
+  add_plane(in, MASK, 32, 24, checkers);
   add(in, region(3, 10, 12, 20, 16));
-  CerberusThreshold threshold{};
-  threshold.threshold = 14;
-  cerberus_buffer_add_threshold_meta(in, &threshold);
+  cerberus::plugin::set_threshold_facts(in, {});
   CerberusCameraMotion motion;
   cerberus_camera_motion_init(&motion);
   motion.matrix[2] = 2;
@@ -385,8 +401,8 @@ GST_START_TEST(what_was_found_stays_on_the_picture_but_planes_do_not) {
   GstBuffer* out = gst_harness_pull(harness.get());
   fail_unless_equals_uint64(GST_BUFFER_PTS(out), 200 * GST_MSECOND);
   fail_unless_equals_uint64(GST_BUFFER_DURATION(out), 40 * GST_MSECOND);
-  fail_if(cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_MASK));
-  fail_unless(cerberus_buffer_get_threshold_meta(out));
+  fail_if(static_cast<bool>(records::record_of(out)));
+  fail_unless(records::threshold_facts_of(out));
   fail_unless(cerberus_buffer_get_camera_motion_meta(out)->motion.matrix[2] == 2);
   GPtrArray* regions = cerberus_buffer_get_regions(out);
   fail_unless_equals_int(regions->len, 1);
@@ -406,15 +422,15 @@ GST_START_TEST(the_stage_changes_while_playing_and_the_format_with_it) {
     for (int k = 0; k < 2; ++k) {
       GstBuffer* in = with_histogram(info_of(caps), 9);
       GST_BUFFER_PTS(in) = number++ * 40 * GST_MSECOND;
-      for (const auto kind : {CERBERUS_PLANE_MASK, CERBERUS_PLANE_DIFFERENCE, CERBERUS_PLANE_LUMA})
-        add_plane<guint8>(in, kind, 32, 24, [&](int, int) { return 10 + kind; });
-      add_plane<guint16>(in, CERBERUS_PLANE_LABELS, 32, 24, [](int, int) { return 1; });
+      for (const auto kind : {MASK, DIFFERENCE, LUMA})
+        add_plane(in, kind, 32, 24, [&](int, int) { return 10 + kind; });
+      add_plane(in, LABELS, 32, 24, [](int, int) { return 1; });
       const Picture p = shown(harness.get(), in);
       const std::string name = stage;
       fail_unless_equals_int(p.gray(), name != "labels" && name != "histogram");
-      if (name == "mask") fail_unless(p.all(10 + CERBERUS_PLANE_MASK));
-      if (name == "difference") fail_unless(p.all(10 + CERBERUS_PLANE_DIFFERENCE));
-      if (name == "luma") fail_unless(p.all(10 + CERBERUS_PLANE_LUMA));
+      if (name == "mask") fail_unless(p.all(10 + MASK));
+      if (name == "difference") fail_unless(p.all(10 + DIFFERENCE));
+      if (name == "luma") fail_unless(p.all(10 + LUMA));
       fail_if(p.all(0));
     }
   }
@@ -426,8 +442,8 @@ GST_START_TEST(every_format_is_taken) {
   for (const char* format : kFormats) {
     const std::string caps = caps_string(format, 33, 35);
     Harness harness = started("motionview stage=mask", caps);
-    GstBuffer* in = frame(info_of(caps));
-    add_plane<guint8>(in, CERBERUS_PLANE_MASK, 33, 35, checkers);
+    GstBuffer* in = new_frame(info_of(caps));
+    add_plane(in, MASK, 33, 35, checkers);
     const Picture p = shown(harness.get(), in);
     for (int y = 0; y < 35; ++y)
       for (int x = 0; x < 33; ++x) fail_unless_equals_int(p.at(x, y), checkers(x, y));
@@ -438,13 +454,13 @@ GST_END_TEST
 GST_START_TEST(the_output_keeps_size_rate_and_pixel_aspect) {
   Harness harness = started("motionview stage=mask",
                             caps_string("I420", 64, 48, ",pixel-aspect-ratio=8/9,colorimetry=bt709"));
-  GstBuffer* in = frame(info_of(caps_string("I420", 64, 48)));
-  add_plane<guint8>(in, CERBERUS_PLANE_MASK, 32, 24, checkers);
+  GstBuffer* in = new_frame(info_of(caps_string("I420", 64, 48)));
+  add_plane(in, MASK, 32, 24, checkers);
   const Picture p = shown(harness.get(), in);
   fail_unless_equals_int(p.info.par_n * 9, p.info.par_d * 8);
   fail_unless_equals_int(p.info.fps_n, 25);
   Harness still = started("motionview", "video/x-raw,format=I420,width=64,height=48,framerate=0/1");
-  shown(still.get(), frame(info_of(caps_string("I420", 64, 48))));
+  shown(still.get(), new_frame(info_of(caps_string("I420", 64, 48))));
 }
 GST_END_TEST
 
@@ -456,8 +472,8 @@ GST_START_TEST(interlaced_video_is_refused_naming_deinterlace) {
     Bus bus(harness.get());
     gst_harness_set_src_caps_str(harness.get(), caps.c_str());
     for (int start = 0; start < 2; ++start) {
-      fail_unless_equals_int(gst_harness_push(harness.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
-      fail_unless_equals_int(gst_harness_push(harness.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+      fail_unless_equals_int(gst_harness_push(harness.get(), new_frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+      fail_unless_equals_int(gst_harness_push(harness.get(), new_frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
       std::string text;
       fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
       fail_unless(text.find("deinterlace") != std::string::npos, "%s", text.c_str());
@@ -477,8 +493,8 @@ GST_START_TEST(a_new_frame_size_a_flush_and_eos) {
     if (k == 2) push_flush(harness.get());
     if (k == 4) gst_harness_set_src_caps_str(harness.get(), odd.c_str());
     const GstVideoInfo info = info_of(k < 4 ? caps : odd);
-    GstBuffer* in = frame(info, k);
-    add_plane<guint8>(in, CERBERUS_PLANE_MASK, 32, 24, [](int, int) { return 255; });
+    GstBuffer* in = new_frame(info, k);
+    add_plane(in, MASK, 32, 24, [](int, int) { return 255; });
     const Picture p = shown(harness.get(), in);
     fail_unless_equals_int(p.width(), info.width);
     fail_unless(p.all(255));
@@ -491,7 +507,7 @@ GST_END_TEST
 GST_START_TEST(upstream_may_use_any_stride_and_nothing_is_delayed) {
   const std::string text = caps_string("I420", 64, 48);
   Harness harness = started("motionview", text);
-  shown(harness.get(), frame(info_of(text)));
+  shown(harness.get(), new_frame(info_of(text)));
   GstCaps* caps = gst_caps_from_string(text.c_str());
   GstQuery* query = gst_query_new_allocation(caps, TRUE);
   fail_unless(gst_pad_peer_query(harness->srcpad, query));

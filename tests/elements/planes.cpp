@@ -14,18 +14,8 @@ using scene::Line;
 using scene::moving_pixels;
 using scene::World;
 
-int planes_of(GstBuffer* buffer) {
-  int count = 0;
-  for (int kind = CERBERUS_PLANE_LUMA; kind <= CERBERUS_PLANE_LABELS; ++kind)
-    count += cerberus_buffer_get_plane_meta(buffer, static_cast<CerberusPlaneKind>(kind)) != nullptr;
-  return count;
-}
-
-GstPadProbeReturn want_planes(GstPad*, GstPadProbeInfo* info, gpointer) {
-  GstQuery* query = GST_PAD_PROBE_INFO_QUERY(info);
-  if (!cerberus_query_is_planes(query)) return GST_PAD_PROBE_OK;
-  cerberus_query_set_planes_wanted(query, TRUE);
-  return GST_PAD_PROBE_HANDLED;
+bool has_record(GstBuffer* buffer) {
+  return static_cast<bool>(records::record_of(buffer));
 }
 
 GST_START_TEST(planes_stay_only_where_somebody_asks_for_them) {
@@ -44,14 +34,12 @@ GST_START_TEST(planes_stay_only_where_somebody_asks_for_them) {
   };
   const Case& c = cases[__i__];
   GstHarness* harness = gst_harness_new_parse(c.launch);
-  if (c.asked)
-    gst_pad_add_probe(harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr, nullptr);
+  if (c.asked) records::want_record(harness->sinkpad);
   gst_harness_set_src_caps_str(harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight).c_str());
   for (int k = 0; k < 10; ++k) {
     gst_harness_push(harness, scene::grey_buffer(World{}, k));
     GstBuffer* out = gst_harness_pull(harness);
-    fail_unless((planes_of(out) > 0) == c.kept, "%s, %s: %d planes", c.launch,
-                c.asked ? "asked" : "not asked", planes_of(out));
+    fail_unless(has_record(out) == c.kept, "%s, %s", c.launch, c.asked ? "asked" : "not asked");
     gst_buffer_unref(out);
   }
   gst_harness_teardown(harness);
@@ -61,14 +49,12 @@ GST_END_TEST
 // Somebody is linked later and asks upstream to reconfigure.
 GST_START_TEST(planes_stay_after_a_reconfigure_event_when_they_are_wanted_then) {
   Line line("motiondetect ! identity");
-  line.run(World{}, 0, 5, [](int, GstBuffer* out) { fail_unless_equals_int(planes_of(out), 0); });
-  gst_pad_add_probe(line.harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr,
-                    nullptr);
+  line.run(World{}, 0, 5, [](int, GstBuffer* out) { fail_if(has_record(out)); });
+  records::want_record(line.harness->sinkpad);
   gst_harness_push_upstream_event(line.harness, gst_event_new_reconfigure());
   line.run(World{}, 5, 8, [](int k, GstBuffer* out) {
-    if (k > 5) fail_unless(planes_of(out) > 0);
-    fail_unless(k < 5 || cerberus_buffer_get_threshold_meta(out)->threshold.ready,
-                "the scene ended with a question");
+    if (k > 5) fail_unless(has_record(out));
+    fail_unless(k < 5 || records::threshold_facts_of(out)->result.ready, "the scene ended with a question");
   });
 }
 GST_END_TEST
@@ -125,8 +111,8 @@ GST_START_TEST(who_is_who_is_told_by_the_planes) {
         pad, GST_PAD_PROBE_TYPE_BUFFER,
         [](GstPad*, GstPadProbeInfo* info, gpointer) {
           GstBuffer* buffer = gst_buffer_make_writable(GST_PAD_PROBE_INFO_BUFFER(info));
-          fail_unless_equals_int(planes_of(buffer), 2);  // picture and mask
-          cerberus_buffer_remove_plane_metas(buffer);
+          fail_unless(has_record(buffer));
+          records::set_record(buffer, {});
           GST_PAD_PROBE_INFO_DATA(info) = buffer;
           return GST_PAD_PROBE_OK;
         },
@@ -134,7 +120,7 @@ GST_START_TEST(who_is_who_is_told_by_the_planes) {
   guint before[2] = {};
   for (int k = 0; k < Meeting::kFrames; ++k) {
     GstBuffer* out = line.through(Meeting::frame(k));
-    fail_unless_equals_int(planes_of(out), 0);
+    fail_if(has_record(out));
     const scene::Regions found(out);
     for (int who = 0; who < 2 && (k == 40 || k == Meeting::kFrames - 1); ++who) {
       guint id = 0;
@@ -158,9 +144,7 @@ void count_previous(Line& line, int& made) {
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,
       [](GstPad*, GstPadProbeInfo* info, gpointer count) {
-        *static_cast<int*>(count) +=
-            cerberus_buffer_get_plane_meta(GST_PAD_PROBE_INFO_BUFFER(info),
-                                           CERBERUS_PLANE_PREVIOUS_DIFFERENCE) != nullptr;
+        *static_cast<int*>(count) += records::has_previous(GST_PAD_PROBE_INFO_BUFFER(info));
         return GST_PAD_PROBE_OK;
       },
       &made, nullptr);
@@ -173,7 +157,7 @@ GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
     bool asked, made;
   };
   const Case cases[] = {
-      {"threeframediff name=d ! identity", false, true},  // nobody says that it may be left out
+      {"threeframediff name=d ! identity", false, false},
       {"threeframediff name=d ! fuzzythreshold ! identity", false, false},
       {"threeframediff name=d ! queue ! fuzzythreshold memory=false ! identity", false, false},
       {"threeframediff name=d ! fuzzythreshold ! identity", true, true},
@@ -190,9 +174,7 @@ GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
   };
   const Case& c = cases[__i__];
   Line line(c.launch);
-  if (c.asked)
-    gst_pad_add_probe(line.harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr,
-                      nullptr);
+  if (c.asked) records::want_record(line.harness->sinkpad);
   int made = 0;
   count_previous(line, made);
   for (int k = 0; k < 10; ++k) gst_harness_push(line.harness, scene::grey_buffer(World{}, k));
@@ -203,8 +185,7 @@ GST_END_TEST
 
 GST_START_TEST(who_asks_behind_keep_planes_never_is_heard_again_when_that_changes) {
   Line line("threeframediff name=d ! fuzzythreshold ! motionregions name=r ! identity");
-  gst_pad_add_probe(line.harness->sinkpad, GST_PAD_PROBE_TYPE_QUERY_DOWNSTREAM, want_planes, nullptr,
-                    nullptr);
+  records::want_record(line.harness->sinkpad);
   g_autoptr(GstElement) regions = gst_bin_get_by_name(GST_BIN(line.harness->element), "r");
   int made = 0, k = 0;
   count_previous(line, made);
@@ -227,11 +208,11 @@ GST_START_TEST(planes_come_and_go_with_the_property_while_frames_flow) {
     gst_util_set_object_arg(G_OBJECT(regions), "keep-planes", keep);
     const bool kept = std::string(keep) == "always";
     line.run(World{}, k, k + 6, [&](int frame, GstBuffer* out) {
-      fail_unless_equals_int(planes_of(out) > 0, kept);
+      fail_unless_equals_int(has_record(out), kept);
       // Upstream is asked with the next frame.
-      const bool previous = cerberus_buffer_get_plane_meta(out, CERBERUS_PLANE_PREVIOUS_DIFFERENCE);
+      const bool previous = records::has_previous(out);
       if (frame > k) fail_unless_equals_int(previous, kept);
-      fail_unless_equals_int(cerberus_buffer_get_threshold_meta(out)->threshold.ready, frame >= 2);
+      fail_unless_equals_int(records::threshold_facts_of(out)->result.ready, frame >= 2);
     });
     k += 6;
   }

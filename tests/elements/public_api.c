@@ -15,14 +15,14 @@
   } while (0)
 
 static int boxed_types_copy_and_compare(void) {
-  const GType types[] = {CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_THRESHOLD, CERBERUS_TYPE_REGION,
+  const GType types[] = {CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_REGION,
                          CERBERUS_TYPE_POSE,          CERBERUS_TYPE_FUSION,    CERBERUS_TYPE_BASE,
                          CERBERUS_TYPE_PIR,           CERBERUS_TYPE_PANTILT,   CERBERUS_TYPE_MOTION,
                          CERBERUS_TYPE_TRACK,         CERBERUS_TYPE_STAMP};
   guint i;
 
   for (i = 0; i < G_N_ELEMENTS(types); ++i) CHECK(G_TYPE_IS_BOXED(types[i]));
-  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_REGION_STATE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_PLANE_KIND));
+  CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_REGION_STATE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_REGION_KIND));
   CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_UTC_SOURCE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_PANTILT_STATE));
   CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_MOTION_STATE) && G_TYPE_IS_ENUM(CERBERUS_TYPE_TRACK_STATE));
   CHECK(G_TYPE_IS_ENUM(CERBERUS_TYPE_BASE_SOURCE));
@@ -41,8 +41,6 @@ static int boxed_types_copy_and_compare(void) {
 
 static int a_buffer_carries_it_all(void) {
   g_autoptr(GstBuffer) buffer = gst_buffer_new();
-  g_autoptr(CerberusThreshold) threshold = cerberus_threshold_new();
-  g_autoptr(CerberusThreshold) threshold_back = NULL;
   g_autoptr(CerberusCameraMotion) motion_back = NULL;
   g_autoptr(GPtrArray) regions = NULL;
   CerberusCameraMotion motion;
@@ -51,17 +49,14 @@ static int a_buffer_carries_it_all(void) {
   cerberus_camera_motion_init(&motion);
   CHECK(motion.matrix[0] == 1 && motion.from == GST_CLOCK_TIME_NONE);
   CHECK(cerberus_buffer_set_camera_motion(buffer, &motion));
-  threshold->threshold = 12;
-  CHECK(cerberus_buffer_set_threshold(buffer, threshold));
   cerberus_region_init(&region);
   region.width = region.height = 10;
-  CHECK(cerberus_buffer_add_region(buffer, &region));
+  CHECK(!cerberus_buffer_regions_known(buffer));
+  CHECK(cerberus_buffer_add_region(buffer, &region) && cerberus_buffer_regions_known(buffer));
 
   motion_back = cerberus_buffer_get_camera_motion(buffer);
-  threshold_back = cerberus_buffer_get_threshold(buffer);
   regions = cerberus_buffer_get_regions(buffer);
   CHECK(motion_back != NULL && memcmp(motion_back->matrix, motion.matrix, sizeof motion.matrix) == 0);
-  CHECK(threshold_back != NULL && threshold_back->threshold == 12);
   CHECK(regions->len == 1);
   return 0;
 }

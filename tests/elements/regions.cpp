@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Regions on buffers. (In structures and messages: motion_messages.cpp.)
+// C++ first: check's macros (fail) bite standard headers.
+#include "records.h"
+
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 #include <gst/check/gstharness.h>

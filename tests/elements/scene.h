@@ -12,6 +12,8 @@
 #include <tuple>
 #include <vector>
 
+#include "records.h"
+
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 #include <gst/check/gstharness.h>
@@ -128,20 +130,17 @@ inline GstBuffer* grey_buffer(const World& world, int frame) {
   return buffer("GRAY8", world.width, world.height, world.picture(frame), frame * kStep);
 }
 
-// Pixels of the moving area in a plane of the buffer.
+// Pixels of the moving area in the record on the buffer.
 inline long moving_pixels(GstBuffer* buffer) {
-  const CerberusPlaneMeta* plane = cerberus_buffer_get_plane_meta(buffer, CERBERUS_PLANE_MASK);
-  fail_unless(plane != nullptr);
-  GstMapInfo map;
-  fail_unless(gst_buffer_map(plane->buffer, &map, GST_MAP_READ));
+  const cerberus::vision::Record record = records::record_of(buffer);
+  fail_unless(record && !record->mask().empty());
+  const cerberus::vision::GrayView mask = record->mask();
   long pixels = 0, neither = 0;  // counted: an assertion for each pixel costs more than the detection
-  for (int y = 0; y < plane->height; ++y)
-    for (int x = 0; x < plane->width; ++x) {
-      const guint8 value = map.data[y * plane->stride + x];
-      pixels += value != 0;
-      neither += value != 0 && value != 255;
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x) {
+      pixels += mask.at(x, y) != 0;
+      neither += mask.at(x, y) != 0 && mask.at(x, y) != 255;
     }
-  gst_buffer_unmap(plane->buffer, &map);
   fail_unless_equals_int(neither, 0);
   return pixels;
 }

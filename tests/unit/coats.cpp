@@ -88,7 +88,7 @@ START_TEST(equal_appearances_are_associated_by_position_alone) {
   for (int k = 0; k < 30; ++k) {
     const std::vector<Person> row{{60.0 + 4 * k, 120, kBlack, kBlack}, {100.0 + 4 * k, 120, kBlack, kBlack}};
     std::vector<Region> regions;
-    for (const Person& p : row) regions.push_back({p.box(), 1000, 0.4, 1});
+    for (const Person& p : row) regions.push_back({p.box(), 1000, 0.4, 1, RegionKind::part});
     looking.step(row, 0, regions);
     blind.step(row, 0, regions);
     ck_assert_uint_eq(looking.tracks.size(), blind.tracks.size());
@@ -111,7 +111,8 @@ START_TEST(appearance_decides_where_positions_would_swap_two_persons) {
       a.x = k < 20 ? 60 + 4 * k : 168;
       b.x = k < 20 ? 260 - 4 * k : 154;
 
-      std::vector<Region> regions{{a.box(), 1000, 0.9, 1}, {b.box(), 1000, 0.9, 1}};
+      std::vector<Region> regions{{a.box(), 1000, 0.9, 1, RegionKind::person_like},
+                                  {b.box(), 1000, 0.9, 1, RegionKind::person_like}};
       if (k >= 18 && k < 22) regions.clear();
       if (k < 18 || k >= 22)
         place.step({a, b}, 0, regions);
@@ -135,8 +136,9 @@ START_TEST(an_occluded_person_keeps_the_identity) {
     Person front = kLight, back = kDark;
     front.x = 90 + 2.0 * std::min(k, 25);  // walks to 140 and stands there
     x = back.x = k < 25 ? 290 - 6 * k : k < 44 ? 140 : 140 + 6 * (k - 44);
-    std::vector<Region> regions{{front.box(), 1000, 0.9, 1}};
-    if (std::abs(front.x - back.x) > 18) regions.push_back({back.box(), 1000, 0.9, 1});
+    std::vector<Region> regions{{front.box(), 1000, 0.9, 1, RegionKind::person_like}};
+    if (std::abs(front.x - back.x) > 18)
+      regions.push_back({back.box(), 1000, 0.9, 1, RegionKind::person_like});
     place.step({front, back}, 0, regions);
     if (k == 15) standing = place.at(front.x), walking = place.at(back.x);
     // Whoever is not seen has no box.
@@ -156,8 +158,9 @@ START_TEST(an_occluded_person_who_does_not_reappear_leaves_no_track) {
     Person front = kLight, back = kDark;
     front.x = 90 + 2.0 * std::min(k, 25);
     back.x = k < 25 ? 290 - 6 * k : 140;
-    std::vector<Region> regions{{front.box(), 1000, 0.9, 1}};
-    if (std::abs(front.x - back.x) > 18) regions.push_back({back.box(), 1000, 0.9, 1});
+    std::vector<Region> regions{{front.box(), 1000, 0.9, 1, RegionKind::person_like}};
+    if (std::abs(front.x - back.x) > 18)
+      regions.push_back({back.box(), 1000, 0.9, 1, RegionKind::person_like});
     place.step({front, back}, 0, regions);
     if (k == 15) ck_assert_uint_eq(place.tracks.size(), 2);
     if (k >= 30) ck_assert_uint_eq(place.tracks.size(), 1);
@@ -174,7 +177,7 @@ START_TEST(a_region_of_another_appearance_does_not_take_the_identity) {
       Person p = kDark;
       p.x = 60 + 5 * k;
       const bool gone = k >= 20;
-      std::vector<Region> regions{{p.box(), 1000, 0.9, 1}};
+      std::vector<Region> regions{{p.box(), 1000, 0.9, 1, RegionKind::person_like}};
       std::vector<Person> people{p};
       if (gone) {
         people[0].x = p.x + 4;
@@ -246,9 +249,9 @@ START_TEST(three_persons_in_one_blob_for_a_moment_are_three_afterwards) {
     std::vector<Region> regions;
     for (int i = 0; i < 3; ++i) {
       people[i].x = 50 + 90 * i + 2 * k;
-      regions.push_back({people[i].box(), 1000, 0.4, 1});
+      regions.push_back({people[i].box(), 1000, 0.4, 1, RegionKind::part});
     }
-    if (k == 8) regions = {{{40, 20, 270, 200}, 9000, 0.2, 1}};
+    if (k == 8) regions = {{{40, 20, 270, 200}, 9000, 0.2, 1, RegionKind::part}};
     place.step(people, 0, regions);
     if (k == 7)
       for (const Person& p : people) ids.push_back(place.at(p.x));
@@ -264,7 +267,7 @@ END_TEST
 START_TEST(appearance_allocates_nothing) {
   Place place;
   turn_back(place, kDark, kLight);
-  const std::vector<Region> regions{{{125, 80, 55, 80}, 1000, 0.4, 1}};
+  const std::vector<Region> regions{{{125, 80, 55, 80}, 1000, 0.4, 1, RegionKind::part}};
   const Sight sight{place.luma.view(), place.mask.view()};
   const std::size_t before = cerberus::tests::allocations();
   for (int k = 0; k < 10; ++k) place.tracker.update(regions, {}, 0.1, kFrame, {}, sight);

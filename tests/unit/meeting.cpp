@@ -24,7 +24,7 @@ START_TEST(two_persons_who_meet_in_one_blob_keep_their_identities) {
       seen = {person(a, 240, 0.4), person(b, 250, 0.4, 44, 110)};
     } else {
       const double from = std::min(a - 20, b - 22), to = std::max(a + 20, b + 22);
-      seen = {{{from, 190, to - from, 115}, 4000, 0.4, 1}};
+      seen = {{{from, 190, to - from, 115}, 4000, 0.4, 1, RegionKind::part}};
     }
     const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
     if (k == 10) {
@@ -56,7 +56,7 @@ START_TEST(three_persons_who_meet_in_a_mostly_empty_blob_stay_three) {
     if (out > 110)
       for (const Point& p : at) seen.push_back(person(p.x, p.y));
     else
-      seen = {{{300 - out, std::min(150.0, 150 + far), 40 + 2 * out, 100 + out}, 8000, 0.2, 1}};
+      seen = {{{300 - out, std::min(150.0, 150 + far), 40 + 2 * out, 100 + out}, 8000, 0.2, 1, RegionKind::part}};
     const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
     if (k < 5) continue;
     ck_assert_uint_eq(tracks.size(), 3);
@@ -98,7 +98,7 @@ START_TEST(a_track_in_a_group_does_not_follow_the_person_who_leaves_it) {
     // Two walk in and stand beside each other, first apart, then in one blob; from behind them a third walks away.
     const double a = 200 - 8.0 * std::max(0, 12 - k), b = 240 - 8.0 * std::max(0, 12 - k);
     std::vector<Region> seen = {person(a, 240), person(b, 240)};
-    if (k >= 25) seen = {{{a - 20, 190, b - a + 40, 100}, 5000, 0.3, 1}};
+    if (k >= 25) seen = {{{a - 20, 190, b - a + 40, 100}, 5000, 0.3, 1, RegionKind::part}};
     if (k >= 35) seen.push_back(person(295 + 8.0 * (k - 35), 240));
     const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
     if (k < 5) continue;

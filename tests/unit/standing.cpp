@@ -16,7 +16,7 @@ constexpr double kTop = kHeight / 2 - 1;  // the head at the picture's edge
 constexpr Person kMan{0, kTop, kBlack, kJeans};
 
 Region piece(double x, double y, double width, double height) {
-  return {{x, y, width, height}, 0.6 * width * height, 0.35, 1};
+  return {{x, y, width, height}, 0.6 * width * height, 0.35, 1, RegionKind::part};
 }
 
 // The upper share of a person at the top edge.

@@ -81,7 +81,11 @@ Shares watch(Way way, double speed, const Clothes& clothes) {
 constexpr double kStep = 0.1;  // s between frames with regions
 
 Region piece(double x, double y, double width, double height, double confidence = 0.3) {
-  return {{x, y, width, height}, 0.7 * width * height, confidence, 1};
+  return {{x, y, width, height},
+          0.7 * width * height,
+          confidence,
+          1,
+          confidence < 0.5 ? RegionKind::part : RegionKind::person_like};
 }
 
 std::vector<Track> update(Tracker& tracker, const std::vector<Region>& regions,

@@ -15,7 +15,11 @@ inline constexpr vision::Size kFrame{640, 480};
 // A person, 100 pixels tall if nothing else is said.
 inline vision::Region person(double x, double y, double confidence = 0.9, double width = 40,
                              double height = 100) {
-  return {{x - width / 2, y - height / 2, width, height}, width * height / 2, confidence, 1};
+  return {{x - width / 2, y - height / 2, width, height},
+          width * height / 2,
+          confidence,
+          1,
+          confidence < 0.5 ? vision::RegionKind::group : vision::RegionKind::person_like};
 }
 
 inline const vision::Track* with_id(std::span<const vision::Track> tracks, std::uint32_t id) {

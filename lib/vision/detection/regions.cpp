@@ -21,8 +21,11 @@ namespace {
 
 constexpr double kLeastShare = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
 constexpr double kTallest = 2.2;      // heights of a person: a taller component is something else
-constexpr double kSameBlock = 0.5;    // overlap of two blocks, a frame apart, that are the same
-constexpr double kSkirt = 0.3;        // columns lower than this share of the highest are a shadow
+constexpr struct {
+  double least = 0.8, most = 1.2;
+} kUsual;                           // heights of a person by the prior: so high is one whole person
+constexpr double kSameBlock = 0.5;  // overlap of two blocks, a frame apart, that are the same
+constexpr double kSkirt = 0.3;      // columns lower than this share of the highest are a shadow
 constexpr int kYoung =
     60;  // frames of a scene in which its first objects may still be part of the background model
 constexpr double kRim =
@@ -77,7 +80,8 @@ struct RegionFinder::State {
   void learn(const Transform& motion);
   void group_components();
   void explain(int group);
-  void add_plain(std::size_t component, bool person = false);
+  void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
+  RegionKind kind_of(const Component& unexplained) const;
   Box fit(const Box& expected, const Bounds& window, std::size_t self, std::span<const Person> all) const;
   long moving_in(const Box& box) const;
 };
@@ -176,7 +180,15 @@ void RegionFinder::State::group_components() {
   }
 }
 
-void RegionFinder::State::add_plain(std::size_t i, bool person) {
+// What no person explains, where no block was found.
+RegionKind RegionFinder::State::kind_of(const Component& c) const {
+  const double expected = prior.height(c.bottom);
+  if (expected <= 0 || c.height() > kTallest * expected) return RegionKind::thing;
+  return c.height() < kUsual.least * expected ? RegionKind::part : RegionKind::group;
+}
+
+void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
+  const bool person = kind == RegionKind::person_like;
   const Component& c = labeller.components()[i];
   if (regions.size() == regions.capacity()) return;
   Box box = box_of(bodies[i]);
@@ -190,7 +202,7 @@ void RegionFinder::State::add_plain(std::size_t i, bool person) {
            std::min(box.bottom() + rim, static_cast<double>(size.height)) - top};
   }
   regions.push_back({box, 0, person ? std::min(1.0, 0.5 + 0.5 * filled) : std::min(1.0, 0.45 * filled),
-                     static_cast<int>(i) + 1});
+                     static_cast<int>(i) + 1, kind});
 }
 
 // Pulls the edges of an expected box to the moving pixels around it that no other person explains better, a quarter
@@ -253,11 +265,11 @@ void RegionFinder::State::explain(int g) {
   }
   const double expected = prior.height(window.bottom);
   const double aspect = static_cast<double>(body.height()) / body.width();
-  const bool usual =
-      expected > 0 && window.height() > 0.8 * expected && window.height() < 1.2 * expected && aspect > 1.8;
+  const bool usual = expected > 0 && window.height() > kUsual.least * expected &&
+                     window.height() < kUsual.most * expected && aspect > 1.8;
   if (expected <= 0 || window.height() > kTallest * expected || (members == 1 && usual)) {
     for (std::size_t i = 0; i < parts.size(); ++i)
-      if (group[i] == g) add_plain(i, usual);
+      if (group[i] == g) add_plain(i, usual ? RegionKind::person_like : RegionKind::thing);
     return;
   }
   const Box whole = box_of(window);
@@ -268,14 +280,16 @@ void RegionFinder::State::explain(int g) {
   if (people.found_wide_block() && blocks.size() < kMostBlocks) blocks.push_back(whole);
   for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
     regions.push_back({fit(found[k].box, window, k, found), 0,
-                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1});
+                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1,
+                       RegionKind::person_like});
   // Components that no person explains remain regions of their own.
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (group[i] != g) continue;
     const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});
     double covered = 0;
     for (const Person& p : found) covered += overlap_area(p.box, box);
-    if (covered < 0.4 * box.area()) add_plain(i);
+    if (covered < 0.4 * box.area())
+      add_plain(i, people.found_wide_block() ? RegionKind::thing : kind_of(parts[i]));
   }
 }
 

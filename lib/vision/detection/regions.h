@@ -19,16 +19,27 @@ struct RegionOptions {
   double minimum_area = 0;  // analysis pixels; 0: chosen from the picture's size
 };
 
+// What a region is, as far as its size and the people of the scene say.
+enum class RegionKind {
+  person_like,  // one whole person, whose extent can be trusted
+  group,        // as high as a person and wider: several people, or one with something
+  part,         // too low for a person: a piece of one
+  thing,        // neither: much larger, solid, or in a scene whose people's height is not known yet
+};
+
 struct Region {
   // Analysis pixels. In the first 60 frames of a scene the box of a region that is not recognised as a person is two
   // pixels (of 320) larger on every side: the moving edge lies between the object and the place that it uncovers.
   Box box;
-  double area = 0;  // moving pixels inside, of the cleaned mask
-  // Confidence that this is one whole object, 0..1. From 0.5: one person with a reliable extent. Below: connected
-  // moving pixels, which may be a fragment of an object or several objects.
-  double confidence = 0;
-  int label = 0;  // value in the label picture (several regions may share one after a split)
+  double area = 0;        // moving pixels inside, of the cleaned mask
+  double confidence = 0;  // that this is one whole object, 0..1
+  int label = 0;          // value in the label picture (several regions may share one after a split)
+  RegionKind kind = RegionKind::thing;
 };
+
+inline bool is_person_like(const Region& region) {
+  return region.kind == RegionKind::person_like;
+}
 
 class RegionFinder {
  public:

@@ -40,6 +40,7 @@ TrackHypothesis TrackHypothesis::first_seen(const Region& region, const TrackPar
   b.origin = {b.x.position, b.y.position};
   b.hits = b.frames = 1;
   b.confidence = 0.5 * region.confidence;
+  b.kind = region.kind;
   return b;
 }
 
@@ -342,7 +343,7 @@ void TrackHypothesis::correct(const Region& r, bool alone, double seconds, Size 
       if (!ry.same_extent) y.velocity *= brake;
     }
   }
-  if (alone) last = seen;
+  if (alone) last = seen, kind = r.kind;
   // A track is not larger than a region that it shares, if the region holds all of the object.
   if (!alone && !match.occluded && !stays_there) {
     if (seen.width < width()) w.value = std::log(seen.width);

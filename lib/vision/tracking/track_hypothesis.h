@@ -29,12 +29,6 @@ namespace cerberus::vision {
 
 inline constexpr TrackParameters kTrackParameters;
 
-// A region of this confidence or a higher one is one person with the true extent.
-constexpr double kPersonConfidence = 0.5;
-inline bool is_person_like(const Region& region) {
-  return region.confidence >= kPersonConfidence;
-}
-
 // One axis of a region against one axis of a track. Where the extents agree the centres are compared. Where they do
 // not (a fragment of the object, or a blob of several) the smaller extent lies inside the larger, no more is known.
 struct Residual {
@@ -112,6 +106,7 @@ struct TrackHypothesis {
   Point free_velocity;   // frame pixels a second, when last seen away from the picture's edges
   bool leaving = false;  // the picture's edge cut it when last seen
   Misfit misfit;
+  RegionKind kind = RegionKind::thing;  // of the region that it was last seen in alone
   double confidence = 0;
   double age = 0, unseen = 0;  // s since first and since last seen
   int hits = 0, frames = 0;    // frames with a region, frames in all

@@ -373,7 +373,8 @@ void Tracker::State::publish() {
                          std::clamp(t.confidence, 0.0, 1.0),
                          t.state == TrackPhase::stopped ? TrackState::stopped
                          : t.match.region >= 0          ? TrackState::seen
-                                                        : TrackState::coasted});
+                                                        : TrackState::coasted,
+                         t.kind});
   }
   std::sort(published.begin(), published.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
 }

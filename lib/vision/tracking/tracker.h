@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -34,6 +35,11 @@ struct Track {
   double age = 0;  // s since first seen
   double confidence = 0;  // 0..1
   TrackState state = TrackState::seen;
+  RegionKind kind = RegionKind::person_like;  // of the region it was last seen in alone
+  // Of the middle of the box from the camera's axis, radians, and along the floor, metres. NaN: not known; filled by
+  // Detector.
+  double bearing = std::numeric_limits<double>::quiet_NaN();
+  double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
 class Tracker {

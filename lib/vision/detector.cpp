@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/detector.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace cerberus::vision {
+
+void Detector::set_options(const DetectorOptions& options) {
+  options_ = options;
+  camera_.set_options(options.camera);
+  if (differences_) differences_->set_options(options.differences);
+  if (foreground_) foreground_->set_options(options.foreground);
+  regions_.set_options(options.regions);
+  tracker_.set_options(options.tracks);
+}
+
+void Detector::reset() {
+  camera_.reset();
+  if (differences_) differences_->reset();
+  if (foreground_) foreground_->reset();
+  burnt_in_.reset();
+  regions_.reset();
+  tracker_.reset();
+}
+
+GrayPicture Detector::gray(Size size) {
+  GrayPicture picture = pictures_.take();
+  picture->resize(size);
+  return picture;
+}
+
+Record Detector::blank(Size frame) {
+  Record record = records_.take();
+  record->frame = frame;
+  return record;
+}
+
+Record Detector::begin(const LumaSource& picture) {
+  const Size frame{picture.width, picture.height};
+  Record record = blank(frame);
+  GrayPicture luma = gray(vision::analysis_size(frame, options_.analysis_width));
+  scaler_.scale(picture, luma->view());
+  record->luma.write() = std::move(luma);
+  return record;
+}
+
+Record Detector::copy(const Analysis& record, Stage end) {
+  Record own = records_.take();
+  *own = record;
+  own->clear_from(end);
+  return own;
+}
+
+void Detector::measure_camera(Analysis& record, DetectorFrame& frame, const std::optional<Transform>& prior) {
+  const Size size = (*record.luma)->size();
+  if (frame.fresh) camera_.reset();
+  CameraMotionResult& result = record.camera.write();
+  result = camera_.update((*record.luma)->view(),
+                          prior ? std::optional(prior->rescaled(frame.size, size)) : std::nullopt);
+  result.transform = result.still ? Transform{} : result.transform.rescaled(size, frame.size);
+  result.residual *= static_cast<double>(frame.size.width) / size.width;
+  frame.motion = {result.transform, result.still};
+  if (result.scene_age > 1 && frame.motion.transform.is_sane(frame.size)) return;
+  frame.fresh = true;
+  frame.seconds = 0;
+  frame.motion = {};
+}
+
+void Detector::find_differences(Analysis& record, const DetectorFrame& frame) {
+  if (!differences_) differences_.emplace().set_options(options_.differences);
+  if (differences_sequence_.broken_by(frame)) differences_->reset();
+  const GrayView luma = (*record.luma)->view();
+  const bool previous = frame.everything || options_.foreground.area != Area::all;
+  Differences& out = record.differences.write();
+  out.current = gray(luma.size());
+  if (previous) out.previous = gray(luma.size());
+  out.result = differences_->update(luma, frame.motion.in(luma.size(), frame.size), out.current->view(),
+                                    previous ? out.previous->view() : MutableGrayView{}, out.histogram);
+}
+
+void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
+  const GrayView luma = (*record.luma)->view();
+  if (!foreground_) foreground_.emplace().set_options(options_.foreground);
+  if (foreground_sequence_.broken_by(frame) || luma.size() != foreground_size_) {
+    foreground_->reset();
+    burnt_in_.reset();
+  }
+  foreground_size_ = luma.size();
+  const Differences& differences = *record.differences;
+  ForegroundMaskInput input;
+  input.picture = luma;
+  input.motion = frame.motion.in(luma.size(), frame.size);
+  input.still = frame.motion.still;
+  input.current = differences.current->view();
+  if (options_.foreground.area != Area::all && differences.result.previous && differences.previous)
+    input.previous = differences.previous->view();
+  input.histogram = &differences.histogram;
+  input.seconds = frame.seconds;
+  input.frames = differences.result.frames;
+  input.excluded = burnt_in_.boxes();
+  Foreground& out = record.foreground.write();
+  out.mask = gray(luma.size());
+  out.result = foreground_->update(input, out.mask->view());
+  out.chosen_with = options_.foreground.threshold;
+  if (options_.burnt_in &&
+      burnt_in_.update({luma, input.current, out.result.threshold, input.motion, input.still, frame.seconds},
+                       out.mask->view()))
+    if (!input.still) foreground_->reset();
+}
+
+void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
+  GrayPicture& foreground = record.foreground.stored().mask;
+  const Size size = foreground->size();
+  if (regions_sequence_.broken_by(frame) || size != regions_size_) regions_.reset();
+  regions_size_ = size;
+  FoundRegions& out = record.regions.write();
+  if (foreground.is_sole()) {
+    out.mask = std::move(foreground);
+  } else {
+    out.mask = gray(size);
+    std::memcpy(out.mask->view().data, foreground->view().data, foreground->bytes());
+  }
+  zones_.apply(out.mask->view());
+  if (frame.everything) {
+    out.labels = labels_.take();
+    out.labels->resize(size);
+  }
+  const std::span<const Region> found =
+      regions_.update(out.mask->view(), out.labels ? out.labels->view() : View<std::uint16_t>{},
+                      frame.motion.in(size, frame.size));
+  out.regions.reserve(static_cast<std::size_t>(size.area() / 256) + 256);  // more than there are
+  if (!record.foreground->result.ready) return;
+  const double sx = static_cast<double>(frame.size.width) / size.width;
+  const double sy = static_cast<double>(frame.size.height) / size.height;
+  const Lens lens(options_.field_of_view, frame.size);
+  const double tilt = frame.look ? frame.look->tilt : options_.tilt;
+  for (Region region : found) {
+    region.box = {region.box.x * sx, region.box.y * sy, region.box.width * sx, region.box.height * sy};
+    if (passes(options_.size, region.box, lens.place(region.box, 0, tilt, options_.mounting_height)))
+      out.regions.push_back(region);
+  }
+}
+
+void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<const Region> regions) {
+  if (frame.fresh) tracker_.reset();
+  const Lens lens(options_.field_of_view, frame.size);
+  std::optional<CameraOrientation> orientation;
+  if (frame.look && lens.known()) orientation = {lens, frame.look->pan, frame.look->tilt};
+  const Sight sight{record.luma ? GrayView((*record.luma)->view()) : GrayView{}, record.mask()};
+  const double tilt = frame.look ? frame.look->tilt : options_.tilt;
+  std::vector<Track>& out = record.tracks.write();
+  for (Track track :
+       tracker_.update(regions, frame.motion.transform, frame.seconds, frame.size, orientation, sight)) {
+    const Placement place = lens.place(track.box, 0, tilt, options_.mounting_height);
+    if (!passes(options_.speed, std::hypot(track.vx, track.vy), track.top_speed, place)) continue;
+    track.bearing = place.bearing;
+    track.distance = place.distance;
+    out.push_back(track);
+  }
+}
+
+void Detector::complete(Analysis& record, const DetectorFrame& frame, Stage last) {
+  if (last >= Stage::differences && !record.differences && !record.foreground && !record.regions)
+    find_differences(record, frame);
+  if (last >= Stage::foreground && !record.foreground && !record.regions) find_foreground(record, frame);
+  if (last >= Stage::regions && !record.regions) find_regions(record, frame);
+}
+
+void Detector::run(Analysis& record, DetectorFrame& frame, const std::optional<Transform>& prior) {
+  measure_camera(record, frame, prior);
+  complete(record, frame, Stage::regions);
+  track(record, frame, record.regions->regions);
+}
+
+std::size_t Detector::bytes() const {
+  const auto pixels = [](const auto& image) { return image.bytes(); };
+  return scaler_.bytes() + camera_.bytes() + (differences_ ? differences_->bytes() : 0) +
+         (foreground_ ? foreground_->bytes() : 0) + regions_.bytes() +
+         (options_.burnt_in ? burnt_in_.bytes() : 0) + pictures_.bytes(pixels) + labels_.bytes(pixels) +
+         records_.bytes(
+             [](const Analysis& r) { return r.bytes() - threads::Pool<Analysis>::object_bytes(); });
+}
+
+}  // namespace cerberus::vision

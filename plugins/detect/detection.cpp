@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "detection.hpp"
+
+#include <algorithm>
+#include <iterator>
+
+#include "cerberus/private/messages.hpp"
+#include "cerberus/private/video.hpp"
+#include "shared/clock_times.hpp"
+
+GST_DEBUG_CATEGORY_STATIC(detection_debug);
+#define GST_CAT_DEFAULT detection_debug
+
+namespace cerberus::plugin {
+
+using vision::MotionEvents;
+using vision::Stage;
+
+namespace {
+
+// What is seen for so long is no motion.
+constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
+
+// With the flags of the record's query: the elements downstream are not asked.
+constexpr guint kNothingFurther = 1u << 31;
+
+constexpr std::optional<MotionEvents::Time> known(GstClockTime time) {
+  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
+  return time_of(time);
+}
+
+static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
+              static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED &&
+              static_cast<int>(vision::RegionKind::thing) == CERBERUS_REGION_KIND_THING);
+
+// What region and track have in common.
+template <typename Found>
+CerberusRegion region_of(const Found& found) {
+  CerberusRegion out;
+  cerberus_region_init(&out);
+  out.kind = static_cast<CerberusRegionKind>(found.kind);
+  out.x = found.box.x;
+  out.y = found.box.y;
+  out.width = found.box.width;
+  out.height = found.box.height;
+  out.confidence = found.confidence;
+  return out;
+}
+
+// Of a vector that outlives the array.
+GPtrArray* array_of(std::vector<CerberusRegion>& regions) {
+  GPtrArray* array = g_ptr_array_sized_new(static_cast<guint>(regions.size()));
+  for (CerberusRegion& region : regions) g_ptr_array_add(array, &region);
+  return array;
+}
+
+}  // namespace
+
+bool Detection::start() {
+  GST_DEBUG_CATEGORY_INIT(detection_debug, "cerberusdetection", 0, "the stages of detection");
+  State& state = state_.emplace();
+  carrier_.forget();
+  refresh();
+  // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
+  state.zones = snapshot().zones;
+  const std::string wrong = state.detector.zones().parse(state.zones);
+  if (!wrong.empty())
+    CERBERUS_ELEMENT_ERROR(base, RESOURCE, SETTINGS, (wrong), ("the property zones cannot be used"));
+  return wrong.empty();
+}
+
+void Detection::stop() {
+  end_of_stream();
+  state_.reset();
+}
+
+void Detection::end_of_stream() {
+  if (!state_) return;
+  const auto last = state_->events.last();
+  announce(state_->events.end(), last ? clock_time(*last) : GST_CLOCK_TIME_NONE);
+}
+
+void Detection::upstream_event(GstEvent* event) {
+  if (measures_camera()) carrier_.hear(event, snapshot().head);
+}
+
+// What this element wants of records from upstream.
+guint Detection::wants(const DetectSettings& s) const {
+  if (measures_camera()) return kNothingFurther;  // it makes its own
+  if (has(Stage::foreground))
+    return s.area == static_cast<int>(vision::Area::all) ? 0u : guint{kRecordForReaders};
+  if (has(Stage::tracks)) return kRecordForTracks;
+  if (!has(Stage::regions) || s.keep_planes == KEEP_PLANES_AUTO) return 0;
+  return kNothingFurther | (s.keep_planes == KEEP_PLANES_ALWAYS ? guint{kRecordForReaders} : 0u);
+}
+
+// From any thread.
+bool Detection::answer(GstQuery* query) {
+  const guint wanted = answer_.give(wants(snapshot()));
+  add_wanted(query, wanted & ~kNothingFurther);
+  return wanted & kNothingFurther;
+}
+
+void Detection::apply(const DetectSettings& settings) {
+  State& state = *state_;
+  state.settings = settings;
+  state.options = detector_options(settings, cerberus_analysis_width(base));
+  if (!has(Stage::regions)) state.options.size = {};  // the limits of another element
+  state.judge = true;
+  if (answer_.outdated_by(wants(settings))) cerberus_analysis_answer_anew(base);
+  if (settings.zones != state.zones) {
+    state.zones = settings.zones;
+    if (const std::string wrong = state.detector.zones().parse(state.zones); !wrong.empty())
+      CERBERUS_ELEMENT_WARNING(base, RESOURCE, SETTINGS, (wrong), ("the zones that were there stay"));
+  }
+  if (has(Stage::camera)) carrier_.begin_comparison();
+  if (has(Stage::tracks)) state.no_tracks.tell(GST_ELEMENT(base), why_no_tracks());
+}
+
+// A record that this element may write. None: the buffer does not hold the picture that its caps promise.
+vision::Record Detection::obtain(const Frame& frame, bool regions_known) {
+  vision::Detector& detector = state_->detector;
+  vision::Record record;
+  if (!measures_camera()) record = record_of(frame.buffer, frame.size);
+  set_record(frame.buffer, {});
+  if (record) return record.is_sole() && !record->has(last_) ? record : detector.copy(*record, last_);
+  if (regions_known) return detector.blank(frame.size);
+  const VideoFrame mapped(*frame.info, frame.buffer, GST_MAP_READ);
+  return mapped ? detector.begin(luma_source(*mapped.get())) : record;
+}
+
+bool Detection::analyse(Frame& frame) {
+  State& state = *state_;
+  const auto changed = changes();
+  if (changed) apply(*changed);
+  if (const int width = cerberus_analysis_width(base); changed || width != state.options.analysis_width) {
+    state.options.analysis_width = width;
+    state.detector.set_options(state.options);
+  }
+  const bool known =
+      !has(Stage::regions) && has(Stage::tracks) && cerberus_buffer_regions_known(frame.buffer);
+  const vision::Record record = obtain(frame, known);
+  if (!record) return false;
+
+  bool keep = true;
+  frame.everything = (frame.wanted & kRecordForReaders) != 0;
+  if (has(Stage::regions)) {
+    const int how = state.settings.keep_planes;
+    frame.everything = how == KEEP_PLANES_ALWAYS || (how == KEEP_PLANES_AUTO && frame.everything);
+    keep = frame.everything || (last_ == Stage::regions && (frame.wanted & kRecordForTracks));
+  }
+  if (has(Stage::camera)) measure_camera(*record, frame);
+  if (!known) state.detector.complete(*record, frame, last_);
+  publish_threshold(frame.buffer, *record);
+  if (last_ == Stage::regions) publish_regions(frame.buffer, *record);
+  if (has(Stage::regions)) judge_regions(frame.size, record->mask().size());
+  if (has(Stage::tracks)) {
+    if (known) read_regions(frame.buffer);
+    state.detector.track(*record, frame, known ? state.found : record->regions->regions);
+    publish_tracks(frame.buffer, *record);
+    const bool present = !state.published.empty();
+    if (present) state.last = state.published;
+    announce(state.events.update(present, plugin::known(frame.running_time),
+                                 time_of(clock_time(frame.seconds)), time_of(state.settings.hold_time)),
+             frame.running_time);
+    keep = record->regions && record->regions->labels;  // made only for readers downstream
+  }
+  if (keep) set_record(frame.buffer, record);
+  return true;
+}
+
+void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
+  State& state = *state_;
+  const vision::Lens lens(state.options.field_of_view, frame.size);
+  const auto prior = carrier_.look(GST_ELEMENT(base), frame, state.settings.head, lens);
+  Frame seen = frame;  // the head goes on through a cut of the picture
+  state.detector.measure_camera(record, frame, prior);
+
+  const vision::CameraMotionResult& result = *record.camera;
+  CerberusCameraMotion motion;
+  cerberus_camera_motion_init(&motion);
+  std::copy(result.transform.m.begin(), result.transform.m.end(), std::begin(motion.matrix));
+  motion.from = result.scene_age > 1 ? frame.previous : GST_CLOCK_TIME_NONE;
+  motion.confidence = result.confidence;
+  motion.residual = result.residual;
+  motion.still = result.still;
+  motion.scene_age = static_cast<guint>(std::max(result.scene_age, 1));
+  state.path.extend(motion, frame.size);
+  cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
+  GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
+                 motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);
+  carrier_.compare(GST_ELEMENT(base), seen, lens, result.transform,
+                   result.scene_age > 1 ? result.confidence : 0);
+}
+
+void Detection::publish_threshold(GstBuffer* buffer, const vision::Analysis& record) {
+  if (!record.foreground || last_ < Stage::foreground) return;
+  ThresholdFacts facts{record.foreground->result, record.foreground->chosen_with};
+  facts.gain = record.differences->result.gain;
+  facts.offset = record.differences->result.offset;
+  set_threshold_facts(buffer, facts);
+}
+
+void Detection::attach_published(GstBuffer* buffer) {
+  g_autoptr(GPtrArray) regions = array_of(state_->published);
+  cerberus_buffer_set_regions(buffer, regions);
+}
+
+void Detection::publish_regions(GstBuffer* buffer, const vision::Analysis& record) {
+  state_->published.clear();
+  for (const vision::Region& region : record.regions->regions) {
+    const auto number = static_cast<guint>(state_->published.size());
+    state_->published.push_back(region_of(region));
+    state_->published.back().id = number;
+  }
+  attach_published(buffer);
+}
+
+void Detection::publish_tracks(GstBuffer* buffer, const vision::Analysis& record) {
+  state_->published.clear();
+  for (const vision::Track& track : *record.tracks) {
+    CerberusRegion& out = state_->published.emplace_back(region_of(track));
+    out.id = track.id;
+    out.tracked = TRUE;
+    out.vx = track.vx;
+    out.vy = track.vy;
+    out.age = clock_time(track.age);
+    out.state = static_cast<CerberusRegionState>(track.state);
+    out.bearing = degrees(track.bearing);
+    out.distance = track.distance;
+  }
+  attach_published(buffer);
+}
+
+void Detection::read_regions(GstBuffer* buffer) {
+  state_->found.clear();
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    vision::Region& r = state_->found.emplace_back();
+    r.box = {region->x, region->y, region->width, region->height};
+    r.confidence = region->confidence;
+    r.kind = static_cast<vision::RegionKind>(region->kind);
+  }
+}
+
+std::string Detection::why_no_regions(vision::Size frame, vision::Size mask) {
+  if (state_->nowhere)
+    return "The property zones leaves no part of the picture: nothing can be found. Make what it includes "
+           "larger, or what it excludes smaller.";
+  const vision::SizeLimits& limits = state_->options.size;
+  std::string why = contradiction("width", limits.width, frame.width);
+  if (why.empty()) why = contradiction("height", limits.height, frame.height);
+  if (why.empty())
+    why = contradiction("area", {state_->settings.minimum_area, 0}, 1.0 * mask.width * mask.height);
+  if (state_->settings.horizontal_fov <= 0) return why;
+  if (why.empty()) why = contradiction("width-metres", limits.metres_wide);
+  if (why.empty()) why = contradiction("height-metres", limits.metres_high);
+  return why;
+}
+
+void Detection::judge_regions(vision::Size frame, vision::Size mask) {
+  State& state = *state_;
+  const bool nowhere = state.detector.zones().nowhere();
+  if (!state.judge && frame == state.frame && mask == state.mask && nowhere == state.nowhere) return;
+  state.judge = false;
+  state.frame = frame;
+  state.mask = mask;
+  state.nowhere = nowhere;
+  state.no_regions.tell(GST_ELEMENT(base), why_no_regions(frame, mask));
+}
+
+std::string Detection::why_no_tracks() const {
+  const DetectSettings& s = state_->settings;
+  if (s.confirm_time > kLongestConfirmTime)
+    return "confirm-time is longer than an hour: nothing can be found. Make it shorter.";
+  // The lower limit is for the highest speed ever, the upper one for the speed now.
+  constexpr char kResult[] = "only who was as fast once and is slower now is found";
+  std::string why = contradiction("speed", state_->options.speed.pixels, 0, kResult);
+  if (why.empty() && s.horizontal_fov > 0)
+    why = contradiction("speed-metres", state_->options.speed.metres, 0, kResult);
+  return why;
+}
+
+void Detection::announce(MotionEvents::Change change, GstClockTime running_time) {
+  if (change == MotionEvents::Change::none) return;
+  CerberusStamp stamp;
+  cerberus_stamp_init(&stamp);
+  stamp.running_time = running_time;
+  g_autoptr(GPtrArray) objects = array_of(state_->last);
+  CerberusMotion motion{};
+  motion.state = change == MotionEvents::Change::started ? CERBERUS_MOTION_STARTED : CERBERUS_MOTION_ENDED;
+  motion.regions = objects;
+  gst_element_post_message(GST_ELEMENT(base), cerberus_message_new_motion(GST_OBJECT(base), &stamp, &motion));
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// An element of detection: vision::Detector's stages from `first` to `last` on the record of each frame. What is missing
+// of the record before `first` is made with the defaults; what was found goes on the buffer.
+#pragma once
+
+#include <cerberus/cerberus.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analysis_element.hpp"
+#include "detect_settings.hpp"
+#include "elements.hpp"
+#include "head_motion_monitor.hpp"
+#include "settings_conflict.hpp"
+#include "shared/camera_path.hpp"
+#include "shared/record.hpp"
+#include "vision/detector.h"
+#include "vision/tracking/motion_events.h"
+
+namespace cerberus::plugin {
+
+class Detection : public Analyser {
+ public:
+  Detection(vision::Stage first, vision::Stage last) : first_(first), last_(last) {}
+  CerberusAnalysis* base = nullptr;
+
+  bool start() override;
+  void stop() override;
+  bool analyse(Frame& frame) override;
+  void end_of_stream() override;
+  void upstream_event(GstEvent* event) override;
+  bool measures_camera() const override { return has(vision::Stage::camera); }
+  bool answer(GstQuery* query) override;
+
+ protected:
+  virtual DetectSettings snapshot() const = 0;
+  virtual std::optional<DetectSettings> changes() = 0;
+  virtual void refresh() = 0;
+
+ private:
+  // What is learnt of a stream, from start to stop.
+  struct State {
+    vision::Detector detector;
+    DetectSettings settings;
+    vision::DetectorOptions options;
+    CameraPath path;
+    std::vector<vision::Region> found;  // by another element upstream
+    std::vector<CerberusRegion> published;
+    std::vector<CerberusRegion> last;  // of the last frame with any
+    vision::MotionEvents events;
+    std::string zones;  // as last read
+    NothingFound no_regions, no_tracks;
+    vision::Size frame, mask;  // for which no_regions was judged last
+    bool nowhere = false, judge = true;
+  };
+
+  guint wants(const DetectSettings& settings) const;
+  bool has(vision::Stage stage) const { return first_ <= stage && stage <= last_; }
+  void apply(const DetectSettings& settings);
+  vision::Record obtain(const Frame& frame, bool regions_known);
+  void measure_camera(vision::Analysis& record, Frame& frame);
+  void publish_threshold(GstBuffer* buffer, const vision::Analysis& record);
+  void publish_regions(GstBuffer* buffer, const vision::Analysis& record);
+  void publish_tracks(GstBuffer* buffer, const vision::Analysis& record);
+  void attach_published(GstBuffer* buffer);
+  void read_regions(GstBuffer* buffer);
+  void judge_regions(vision::Size frame, vision::Size mask);
+  std::string why_no_regions(vision::Size frame, vision::Size mask);
+  std::string why_no_tracks() const;
+  void announce(vision::MotionEvents::Change change, GstClockTime running_time);
+
+  const vision::Stage first_, last_;
+  std::optional<State> state_;
+  HeadMotionMonitor carrier_;  // hears poses from any thread, so not part of the state
+  Answer<guint> answer_;
+};
+
+template <vision::Stage kFirst, vision::Stage kLast = kFirst, typename Settings = Adjustable<DetectSettings>>
+struct StageElement final : Detection {
+  StageElement() : Detection(kFirst, kLast) {}
+  Settings settings;
+
+ protected:
+  DetectSettings snapshot() const override { return settings.snapshot(); }
+  std::optional<DetectSettings> changes() override { return settings.changes(); }
+  void refresh() override { settings.refresh(); }
+};
+
+}  // namespace cerberus::plugin
