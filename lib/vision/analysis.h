@@ -64,8 +64,9 @@ struct Differences {
 };
 
 struct Foreground {
-  GrayPicture mask;             // 0 or 255; none once the regions stage has taken it over, see FoundRegions
-  ForegroundMaskResult result;  // threshold and noise
+  GrayPicture mask;               // 0 or 255; none once the regions stage has taken it over, see FoundRegions
+  bool burnt_in_changed = false;  // Detector::burnt_in() is worth a report since this frame
+  ForegroundMaskResult result;    // threshold and noise
   FuzzyThresholdOptions chosen_with;  // how the threshold was chosen from the histogram
 };
 

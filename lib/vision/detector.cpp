@@ -10,6 +10,7 @@ namespace cerberus::vision {
 
 void Detector::set_options(const DetectorOptions& options) {
   options_ = options;
+  if (!options.burnt_in) burnt_in_.reset();
   camera_.set_options(options.camera);
   if (differences_) differences_->set_options(options.differences);
   if (foreground_) foreground_->set_options(options.foreground);
@@ -105,10 +106,11 @@ void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
   out.mask = gray(luma.size());
   out.result = foreground_->update(input, out.mask->view());
   out.chosen_with = options_.foreground.threshold;
-  if (options_.burnt_in &&
-      burnt_in_.update({luma, input.current, out.result.threshold, input.motion, input.still, frame.seconds},
-                       out.mask->view()))
-    if (!input.still) foreground_->reset();
+  out.burnt_in_changed = options_.burnt_in && burnt_in_.update({luma, input.current, out.result.threshold,
+                                                                input.motion, input.still, frame.seconds},
+                                                               out.mask->view());
+  // A turning camera has written over the scene that the background model learnt meanwhile.
+  if (out.burnt_in_changed && !input.still) foreground_->reset();
 }
 
 void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {

@@ -16,6 +16,7 @@ vision::DetectorOptions detector_options(const DetectSettings& s, int analysis_w
   options.foreground.area = static_cast<vision::Area>(s.area);
   options.foreground.noise_floor = s.noise_floor;
   options.foreground.background_model = s.memory;
+  options.burnt_in = s.burnt_in;
   options.regions = {s.closing, s.people, s.minimum_area};
   options.size.width = {s.minimum_width, s.maximum_width};
   options.size.height = {s.minimum_height, s.maximum_height};

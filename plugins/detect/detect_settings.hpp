@@ -29,6 +29,7 @@ struct DetectSettings {
   int area = static_cast<int>(vision::ForegroundMaskOptions{}.area);
   bool noise_floor = vision::ForegroundMaskOptions{}.noise_floor;
   bool memory = vision::ForegroundMaskOptions{}.background_model;
+  bool burnt_in = true;
   int closing = vision::RegionOptions{}.closing;
   bool people = vision::RegionOptions{}.people;
   double minimum_area = vision::RegionOptions{}.minimum_area;
@@ -102,6 +103,10 @@ inline constexpr std::array kOwnOfThreshold{
     property("memory", &DetectSettings::memory,
              "Use a memory of the scene, moved along with the camera, where it knows better than two "
              "neighbouring frames; with area=all only"),
+    property(
+        "burnt-in", &DetectSettings::burnt_in,
+        "Leave out what the camera writes into its own pictures (clock, name, logo), learnt within seconds "
+        "from what keeps its place while the scene moves and from what changes in place"),
 };
 inline constexpr std::array kOwnOfRegions{
     property("closing", &DetectSettings::closing, 0, 63,

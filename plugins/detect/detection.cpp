@@ -2,6 +2,8 @@
 #include "detection.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <iterator>
 
 #include "cerberus/private/messages.hpp"
@@ -199,6 +201,26 @@ void Detection::publish_threshold(GstBuffer* buffer, const vision::Analysis& rec
   facts.gain = record.differences->result.gain;
   facts.offset = record.differences->result.offset;
   set_threshold_facts(buffer, facts);
+  if (has(Stage::foreground) && record.foreground->burnt_in_changed) report_burnt_in(record);
+}
+
+void Detection::report_burnt_in(const vision::Analysis& record) {
+  const vision::Size size = (*record.luma)->size();
+  const double sx = static_cast<double>(record.frame.width) / size.width;
+  const double sy = static_cast<double>(record.frame.height) / size.height;
+  std::string text;
+  for (const vision::Box& b : state_->detector.burnt_in()) {
+    char box[80];
+    std::snprintf(box, sizeof box, "%s%ldx%ld+%ld+%ld", text.empty() ? "" : ", ", std::lround(b.width * sx),
+                  std::lround(b.height * sy), std::lround(b.x * sx), std::lround(b.y * sy));
+    text += box;
+  }
+  if (text.empty()) return;
+  CERBERUS_ELEMENT_INFO(
+      base, STREAM, DECODE,
+      ("The camera writes into its pictures; left out: %s (frame pixels, width x height + left + top).",
+       text.c_str()),
+      ("burnt-in=false turns this off"));
 }
 
 void Detection::attach_published(GstBuffer* buffer) {

@@ -61,6 +61,7 @@ class Detection : public Analyser {
   void apply(const DetectSettings& settings);
   vision::Record obtain(const Frame& frame, bool regions_known);
   void measure_camera(vision::Analysis& record, Frame& frame);
+  void report_burnt_in(const vision::Analysis& record);
   void publish_threshold(GstBuffer* buffer, const vision::Analysis& record);
   void publish_regions(GstBuffer* buffer, const vision::Analysis& record);
   void publish_tracks(GstBuffer* buffer, const vision::Analysis& record);

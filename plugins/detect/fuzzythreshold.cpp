@@ -8,6 +8,9 @@
  * three frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the
  * other areas need of the third frame is not kept for `all`.
  *
+ * What the camera writes into its own pictures is learnt and left out (`burnt-in`). An info message with the boxes in
+ * frame pixels says what was found.
+ *
  * ## Example
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 pattern=ball ! threeframediff ! fuzzythreshold area=leading ! fakesink

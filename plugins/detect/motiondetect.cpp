@@ -47,7 +47,7 @@ DetectSettings settings_of(int preset) {
   switch (preset) {
     case PRESET_PAPER:
       // The literal method: Eq. 1 to 10 as printed, the moving area M(k), no background model, no noise floor.
-      s.blur = s.compensate_light = s.clip = s.noise_floor = s.memory = s.people = false;
+      s.blur = s.compensate_light = s.clip = s.noise_floor = s.memory = s.burnt_in = s.people = false;
       s.weighting = static_cast<int>(vision::Weighting::linear);
       s.extremes = static_cast<int>(vision::Extremes::subset);
       s.order = 1;
