@@ -23,14 +23,14 @@ void look_ahead(const std::uint8_t* row, std::ptrdiff_t bytes) {
   __builtin_prefetch(row + bytes - 1, 1);
 }
 
-constexpr int kTile = 64;  // samples that are weighed, and skipped where they are transparent, at once
+constexpr int kTile = 64;  // samples that are weighed, or skipped if all are transparent, at once
 
 std::int32_t fixed(double weight) {
   return static_cast<std::int32_t>(std::lround(weight * 65536));
 }
 
-// The rows `top` and, where a sample stands for two, `bottom` of the drawing on one row of samples. `left`: the column of
-// the sample at `to` at which the drawing begins, of the pixels that it stands for.
+// The rows `top` and, where a sample stands for two, `bottom` of the drawing on one row of samples. `left`: the column
+// of the sample at `to` at which the drawing begins, of the pixels that it stands for.
 struct SampleRow {
   WeightedRow weights;
   int count = 1, left = 0, width = 0;  // pixels side by side a sample stands for; of the drawing
@@ -149,7 +149,8 @@ class WordBlender {
   std::int64_t red_, green_, blue_, alpha_;
 };
 
-// Which byte of a pixel each component is, where all are bytes of pixels of four that take one colour each.
+// Returns the byte of a pixel for each component if pixels have four bytes, each of which takes one colour; else
+// nullopt.
 std::optional<PackedLayout> packed_layout(std::span<const BlendComponent> picture) {
   if (picture.empty() || !picture[0].pixel) return std::nullopt;
   PackedLayout layout;

@@ -75,7 +75,7 @@ HWY_INLINE void store_weighed(D d, const WeightedRow& row, Channels<hn::Vec<D>> 
   hn::StoreU(hn::Sub(hn::Set(s, row.full), alpha), s, rest);
 }
 
-// The words from x on that make whole vectors; returns where they end.
+// Processes the words from x on that fill whole vectors; returns their end.
 template <class D>
 HWY_INLINE int weigh_vectors(D d, const WeightedRow& row, int x, int words, std::int32_t* value,
                              std::int32_t* rest) {
@@ -104,7 +104,7 @@ bool weigh_rows(const WeightedRow& row, std::int32_t* value, std::int32_t* rest)
   for (const std::uint32_t* from : {row.top, row.bottom})
     for (int i = 0; from && i < words; ++i) seen |= from[i];
   if (seen == 0) return false;
-  // Sides of boxes are a dozen pixels wide: vectors of eight and of four leave little over.
+  // The sides of boxes are about twelve pixels wide: vectors of eight and of four leave few words over.
   int x = weigh_vectors(hn::CappedTag<std::uint32_t, 8>(), row, 0, words, value, rest);
   x = weigh_vectors(hn::CappedTag<std::uint32_t, 4>(), row, x, words, value, rest);
   for (; x < words; x += step)

@@ -7,8 +7,8 @@
 
 namespace cerberus::overlay {
 
-// A row of samples of one component. A sample stands for one pixel of `top`, for two (`pairs`), or, where there is a
-// `bottom` row, for twice as many: sums of weighted words, of which the caller takes the mean.
+// A row of samples of one component. A sample stands for one pixel of `top`, for two (`pairs`), or, with a `bottom`
+// row, for twice as many: the kernels sum the weighted words, and the caller divides.
 struct WeightedRow {
   const std::uint32_t* top = nullptr;
   const std::uint32_t* bottom = nullptr;  // null: no second row
@@ -18,11 +18,12 @@ struct WeightedRow {
   std::int32_t full = 255;  // alpha of a sample that is covered wholly: 255 a pixel
 };
 
-// value = weighted sum of the words, 16.16; rest = full - alpha. Returns false where every word is transparent; value
-// and rest are not written then.
+// value = weighted sum of the words, 16.16; rest = full - alpha. Returns false if every word is transparent; value and
+// rest are not written then.
 bool weigh(const WeightedRow& row, std::int32_t* value, std::int32_t* rest);
 
-// The same of one sample whose pixels are `count` words each of two rows: the reference, and for what vectors leave over.
+// The same for one sample whose pixels are `count` words of each of two rows: the reference, also used for the samples
+// that do not fill a vector.
 void weigh_sample(const WeightedRow& row, const std::uint32_t* top, const std::uint32_t* bottom, int count,
                   std::int32_t& value, std::int32_t& rest);
 
@@ -31,8 +32,8 @@ void weigh_sample(const WeightedRow& row, const std::uint32_t* top, const std::u
 void mix(const std::int32_t* value, const std::int32_t* rest, int shift, int samples, std::uint8_t* to);
 std::uint8_t mix_sample(std::int32_t value, std::int32_t rest, int shift, std::uint8_t sample);
 
-// A pixel of four bytes: for each the byte of a word (as it lies in memory) that is its colour, kKept where the byte is
-// none.
+// A pixel of four bytes: for each the index of the word's byte (in memory order) with its colour, kKept for a byte that
+// is no colour.
 struct PackedLayout {
   static constexpr std::uint8_t kKept = 0x80;
   std::uint8_t color[4] = {kKept, kKept, kKept, kKept};

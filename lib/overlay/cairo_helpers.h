@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is drawn with cairo draws with these: text, and shapes that seldom change.
+// Helpers for drawing with cairo, which draws text and shapes that seldom change.
 #pragma once
 
 #include <cairo.h>
@@ -33,7 +33,7 @@ inline void select_font(cairo_t* cr, double size, bool bold = false) {
   cairo_set_font_size(cr, size);
 }
 
-// Width that the context's font gives `text`, pixels.
+// Returns the width of `text` in the context's font, pixels.
 inline double text_width(cairo_t* cr, const char* text) {
   cairo_text_extents_t extents;
   cairo_text_extents(cr, text, &extents);
@@ -57,8 +57,8 @@ inline void rounded_rectangle(cairo_t* cr, double x, double y, double w, double 
   cairo_close_path(cr);
 }
 
-// The part of `area` within the frame, drawn by `draw` in the frame's coordinates; without pixels where nothing is left,
-// or where cairo fails.
+// Returns the part of `area` within the frame, drawn by `draw` in the frame's coordinates; a patch without pixels if
+// the part is empty or cairo fails.
 template <typename Draw>
 Patch drawn_patch(PicturePool& pool, Area frame, Area area, Draw draw) {
   area = area.intersection(frame);

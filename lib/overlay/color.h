@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Colours of identities, and their words.
+// Colours of identities, and colours as premultiplied words.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@ struct Color {
   bool operator==(const Color&) const = default;
 };
 
-// Eight colours that are told apart with any colour vision (Okabe and Ito, 2008, its black left out for white): 0 = no
-// identity is white, every other identity takes the next of the seven.
+// Returns the colour of an identity: 0 = no identity is white, every other identity takes the next of seven colours.
+// The eight colours can be distinguished with any colour vision (Okabe and Ito, 2008, with white instead of black).
 Color identity_color(std::uint32_t id);
 
 // A colour times its alpha, 0 to 1 each.
@@ -26,7 +26,7 @@ struct Premultiplied {
         g(static_cast<float>(color.g * alpha)),
         b(static_cast<float>(color.b * alpha)) {}
 
-  // Covered to a share of 0 to 1.
+  // The colour of a pixel that is covered to a share of 0 to 1.
   Premultiplied operator*(float share) const {
     Premultiplied p = *this;
     p.a *= share, p.r *= share, p.g *= share, p.b *= share;
@@ -37,7 +37,7 @@ struct Premultiplied {
     p.a += other.a, p.r += other.r, p.g += other.g, p.b += other.b;
     return p;
   }
-  // This one on `below` (Porter and Duff, SIGGRAPH 1984).
+  // This colour over `below` (Porter and Duff, SIGGRAPH 1984).
   Premultiplied over(const Premultiplied& below) const { return *this + below * (1 - a); }
   // Alpha, red, green, blue from the highest byte down.
   std::uint32_t word() const {

@@ -8,7 +8,7 @@ namespace cerberus::overlay {
 
 namespace {
 
-// Of [at, at + 1), the share that lies in [low, high).
+// Returns the share of [at, at + 1) that lies in [low, high).
 double share(int at, double low, double high) {
   return std::clamp(std::min(at + 1.0, high) - std::max(static_cast<double>(at), low), 0.0, 1.0);
 }

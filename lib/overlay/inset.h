@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A small picture of a whole scene, with the place in it at which a window looks.
+// A small picture of a whole scene in which the place of a window is marked.
 #pragma once
 
 #include <cstdint>
@@ -13,17 +13,16 @@ struct InsetPlace {
   double left = 0, top = 0, right = 0, bottom = 0;
 };
 
-// How large the picture of a scene is that stands in the corner of a frame: the scene's shape, within 0.3 of the
-// frame's width and 0.4 of its height. {0, 0} where nobody could make anything of it (less than 24 pixels wide or 16
-// high).
+// Returns the size, in pixels, of the picture of a scene in the corner of a frame: with the scene's aspect, within 0.3
+// of the frame's width and 0.4 of its height. Returns {0, 0} if it would be too small to be recognised (less than 24
+// pixels wide or 16 high).
 vision::Size inset_size(vision::Size scene, vision::Size frame);
 
-// Outside `place` the picture is dimmed, inside it is as it was, and round it runs a white line, `line` pixels wide.
-// Samples are words of alpha, red, green, blue from the highest byte down; alpha becomes 255. With a = the share of a
-// pixel that lies in the place, and b = the share that lies in the place grown by the line to all sides, a colour
-// becomes
+// Dims the picture outside `place` and draws a white line, `line` pixels wide, around the place. Samples are words of
+// alpha, red, green, blue from the highest byte down; alpha becomes 255. With a = the share of a pixel in the place,
+// and b = the share in the place enlarged by the line on all sides, a colour becomes
 //   c (a + (1 - b) kInsetDimming) + 255 (b - a)
-// so that the rectangle moves by less than a pixel, too.
+// so that the rectangle can move by less than a pixel.
 inline constexpr double kInsetDimming = 0.65;
 void mark_place(vision::View<std::uint32_t> picture, const InsetPlace& place, double line);
 

@@ -14,11 +14,11 @@ namespace cerberus::overlay {
 
 namespace {
 
-// Longest label in widths of its box: numbers do not hide a crowd of small people.
+// Longest label in widths of its box, so that labels do not hide a crowd of small people.
 constexpr double kLongestLabel = 3;
 constexpr double kCrosshairCasing = 0.6;  // opacity
 
-// The part of the object inside the frame: coordinates of other elements may lie far outside, beyond what integers hold.
+// Returns the part of the object inside the frame: coordinates from other elements may exceed the range of integers.
 std::optional<Object> clipped(Object object, Area frame) {
   const double right = std::min<double>(object.x + object.width, frame.width),
                bottom = std::min<double>(object.y + object.height, frame.height);
@@ -106,7 +106,7 @@ void Painter::draw_box(const Object& object, std::vector<Patch>& patches) {
   const double rim = outline.corner() + reach;  // the corners lie in the upper and lower strip
   const Area all = Area::around(object.x, object.y, object.x + object.width, object.y + object.height, reach);
   if (object.width < 4 * rim || object.height < 4 * rim) return add(all);
-  // Only the rim: a tall person in 4K would otherwise be megabytes of transparency.
+  // Only the rim is a patch: the inside of a tall person's box in 4K would be megabytes of transparent pixels.
   const int thick = static_cast<int>(std::ceil(rim + reach)),
             thin = static_cast<int>(std::ceil(2 * reach)) + 1;
   const int middle = all.height - 2 * thick;
@@ -122,8 +122,8 @@ bool Painter::is_free(const Area& area) const {
                       [&](const Area& t) { return !t.intersection(area).empty(); });
 }
 
-// Above the box, below it, or inside its top: the first place in the frame that no other label has; a long label gives
-// way to a short one.
+// Places the label above the box, below it, or inside its top: the first place in the frame that overlaps no other
+// label. If there is none for the long label, the short one is tried.
 void Painter::paint_label(const Object& object, std::vector<Patch>& patches) {
   const int gap =
       static_cast<int>(std::ceil(scene_->boxes && object.target ? (kTargetRoom + 1) * line_ : line_));

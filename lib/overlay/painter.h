@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Draws a scene in patches, one or a few an object: the cost follows what is drawn and not the size of the frame. Labels,
-// boxes and the panel that stay as they are keep their pictures from frame to frame.
+// Draws a scene in patches, one or a few for each object: the cost is that of the drawn pixels, whatever the size of
+// the frame. The pictures of unchanged labels, boxes and of the unchanged panel are reused from frame to frame.
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@
 
 namespace cerberus::overlay {
 
-// Line width that reads well in a frame of this size, pixels: 1.3 at 240 rows, 6 at 2160.
+// Returns a readable line width for a frame of this size, pixels: 1.3 at 240 rows, 6 at 2160.
 double automatic_line_width(vision::Size frame);
 
 class Painter {
  public:
-  // Appends the scene's patches, those to be drawn first in front.
+  // Appends the scene's patches in the order of drawing.
   void paint(const Scene& scene, std::vector<Patch>& patches);
-  // Forgets all that was kept of earlier frames.
+  // Drops all pictures of earlier frames.
   void reset();
 
  private:

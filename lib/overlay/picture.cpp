@@ -31,7 +31,7 @@ PicturePtr PicturePool::take(int width, int height) {
     if (own.pictures[own.next].use_count() == 1) found = own.pictures[own.next];
   }
   if (found) {
-    // What another thread read of the picture before it let go comes before what is written now.
+    // Orders reads of the picture by the thread that released it before the writes that follow.
     std::atomic_thread_fence(std::memory_order_acquire);
   } else {
     found = std::make_shared<Picture>();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Small drawings and where they go in the frame. Pictures are taken from a pool and return to it when the last patch (or
-// the buffer downstream that holds one) lets go: the steady state allocates nothing.
+// Small drawings and their places in the frame. Pictures are taken from a pool and return to it when the last reference
+// (of a patch or of a buffer downstream) is released: the steady state allocates nothing.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +17,7 @@ struct Area {
   bool operator==(const Area&) const = default;
   bool empty() const { return width <= 0 || height <= 0; }
   Area intersection(const Area& other) const;
-  // The pixels that a shape between these corner coordinates and `margin` pixels round it touches.
+  // Returns the pixels touched by a shape between these corner coordinates, enlarged by `margin` pixels on all sides.
   static Area around(double left, double top, double right, double bottom, double margin);
 };
 
@@ -32,7 +32,7 @@ struct Picture {
 };
 using PicturePtr = std::shared_ptr<Picture>;
 
-// Where a picture goes; within the frame. Its pixels are not changed any more.
+// A picture and its place, within the frame. Its pixels do not change any more.
 struct Patch {
   Area area;
   std::shared_ptr<const Picture> pixels;
@@ -40,13 +40,13 @@ struct Patch {
 
 class PicturePool {
  public:
-  // Transparent; nobody else holds it. Memory is kept in classes of powers of two.
+  // Returns a transparent picture that has no other reference. Memory is reused in classes of powers of two.
   PicturePtr take(int width, int height);
 
  private:
   struct Class {
     std::vector<PicturePtr> pictures;
-    std::size_t next = 0;  // where the search for a free one goes on
+    std::size_t next = 0;  // index at which the search for a free one continues
   };
   std::vector<Class> classes_;
 };

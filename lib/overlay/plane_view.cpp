@@ -47,7 +47,7 @@ const std::vector<int>& Enlarger::columns(int from, int to) {
   return columns_;
 }
 
-// write(row of the plane, columns, row of the canvas) for every new row; those that repeat are copied.
+// Calls write(row of the plane, columns, row of the canvas) for every new row; repeated rows are copied.
 template <typename T, typename Write>
 void Enlarger::walk(vision::View<const T> plane, const Canvas& canvas, Write write) {
   const std::vector<int>& column = columns(plane.width, canvas.width);

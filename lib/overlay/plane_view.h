@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Small planes as large pictures, for motionview: knows no GStreamer.
+// Enlarges small planes to large pictures, for motionview.
 #pragma once
 
 #include <cstddef>
@@ -20,18 +20,18 @@ struct Canvas {
   std::uint8_t* row(int y) const { return data + y * stride; }
   std::size_t row_bytes() const { return static_cast<std::size_t>(width) * (gray ? 1 : 4); }
   void fill_black() const;
-  // What lies between the end of a row and the next one is written to files too: equal pictures, equal bytes. `bytes`:
-  // from data to the end of its memory.
+  // Clears the bytes between the end of each row and the next one, because they are written to files too: equal
+  // pictures have equal bytes. `bytes`: from data to the end of its memory.
   void clear_padding(std::size_t bytes) const;
 };
 
-// Fills a canvas with a plane of another size by nearest neighbour: a pixel shows the sample that covers its centre,
-// the areas of both being the same. Keeps its table from frame to frame.
+// Fills a canvas with a plane of another size by nearest neighbour: a pixel shows the sample that covers its centre
+// when both are scaled to the same area. Reuses its table from frame to frame.
 class Enlarger {
  public:
-  // Grey levels times gain, up to white.
+  // Shows grey levels times gain, limited to white.
   void show(vision::GrayView plane, double gain, const Canvas& canvas);
-  // A colour a label, black for none; only on a canvas of colours.
+  // Shows each label in its colour, 0 as black; only on a canvas of colours.
   void show_labels(vision::View<const std::uint16_t> plane, const Canvas& canvas);
 
  private:
@@ -39,7 +39,7 @@ class Enlarger {
   template <typename T, typename Write>
   void walk(vision::View<const T> plane, const Canvas& canvas, Write write);
 
-  std::vector<int> columns_;  // where a canvas' columns lie in a plane `columns_from_` wide
+  std::vector<int> columns_;  // for each column of a canvas its column in a plane `columns_from_` wide
   int columns_from_ = 0;
 };
 

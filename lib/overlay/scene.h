@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the overlay shows of one frame.
+// The content of the overlay for one frame.
 #pragma once
 
 #include <cstdint>
@@ -25,13 +25,13 @@ struct Object {
 
 struct Light {
   int sensor = 0;            // its number, from 1
-  std::uint8_t reading = 2;  // 0 nothing, 1 somebody, else invalid
+  std::uint8_t reading = 2;  // 0 no detection, 1 detection, else invalid
   bool operator==(const Light&) const = default;
 };
 
 // The head's direction, and the last decision of the fusion.
 struct System {
-  bool pose = false, decision = false;  // what of the following is known
+  bool pose = false, decision = false;  // whether the following values are valid
   double pan = 0, tilt = 0;             // degrees
   std::string rule, action;
   std::vector<Light> lights;  // from left to right

@@ -42,7 +42,8 @@ struct Panel {
   double y(double share) const { return top + height * (1 - std::clamp(share, 0.0, 1.0)); }
 };
 
-// Levels along x: all that are there, in a few fixed ranges so that the axis does not dance.
+// Returns the number of levels along x: all levels present, rounded up to a few fixed ranges so that the axis is
+// steady.
 int shown_levels(const ThresholdFigure& figure) {
   const int highest = std::max({figure.curves.highest, figure.threshold, figure.fuzzy_threshold});
   for (const int levels : {32, 64, 128, 192})
@@ -82,8 +83,7 @@ void draw_histogram(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
     if (labels && decade > 0 && decade <= 10)
       text(cr, panel.left - 0.4 * font, y, 1, 0.5, kNames[decade], kText);
   }
-  // Bars: the colour says which seed subset a level belongs to (B up to j, W from r), grey is the fuzzy
-  // region.
+  // Bars: the colour shows the seed subset of a level (B up to j, W from r); grey is the fuzzy region.
   const double step = panel.width / panel.levels, gap = step >= 3 ? 1 : 0;
   for (int level = 0; level < panel.levels && level < 256; ++level) {
     if (!counts[level]) continue;
@@ -115,7 +115,7 @@ void draw_fuzziness(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
                     bool labels) {
   const auto& c = figure.curves;
   draw_levels_axis(cr, panel, font, labels);
-  // The curves run close together: the axis covers what they cover, in tenths.
+  // The curves are close together: the axis covers their range, rounded to tenths.
   double least = 1, most = 0;
   for (int x = c.seed_low + 1; x < c.seed_high; ++x) {
     least = std::min({least, c.beta[x], c.omega[x]});
@@ -145,7 +145,7 @@ void draw_fuzziness(cairo_t* cr, const Panel& panel, const ThresholdFigure& figu
   }
 }
 
-// A level's upright line through a panel: what lies right of it moves (Eq. 3: above Th).
+// Draws the vertical line of a level through a panel: levels to its right are motion (Eq. 3: above Th).
 void draw_threshold(cairo_t* cr, const Panel& panel, int level, bool dashed, double font) {
   if (level < 0 || level >= panel.levels) return;
   const double dashes[] = {0.5 * font, 0.35 * font};
@@ -157,7 +157,8 @@ void draw_threshold(cairo_t* cr, const Panel& panel, int level, bool dashed, dou
   cairo_set_dash(cr, nullptr, 0, 0);
 }
 
-// Names with their colours, from the right edge to the left; what finds no room is left out.
+// An entry of the legend, a name in its colour. Entries are drawn from the right edge to the left; those without room
+// are left out.
 struct Entry {
   std::string name;
   Color color;
@@ -177,7 +178,7 @@ void draw_legend(cairo_t* cr, double left, double right, double y, double font,
 void draw_figure(cairo_t* cr, int width, int height, const ThresholdFigure& figure) {
   set_color(cr, kPaper);
   cairo_paint(cr);
-  const bool labels = width >= 200 && height >= 150;  // below that no letter could be read
+  const bool labels = width >= 200 && height >= 150;  // smaller text is not readable
   const double font = std::max(9.0, 9.5 * std::pow(std::min(width * 0.75, double(height)) / 240, 0.75));
   select_font(cr, font);
 

@@ -22,7 +22,7 @@ void Trails::update(double time, double duration, const vision::Transform& motio
     auto& points = trail.points;
     if (moved)
       for (TrailPoint& p : points) p.position = motion.apply(p.position);
-    // What follows the last point that is too old or too far is the trail.
+    // Only the points after the last one that is too old or too far are kept.
     const auto bad = std::find_if(points.rbegin(), points.rend(), [&](const TrailPoint& p) {
       return p.time < time - duration || !near_picture(p.position, frame);
     });

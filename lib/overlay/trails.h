@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where objects have been, kept on the scene while the camera turns: every past point moves with the picture.
+// The trails of objects, which stay on the scene while the camera turns: every past point moves with the picture.
 #pragma once
 
 #include <cstddef>
@@ -28,11 +28,11 @@ class Trails {
     std::vector<TrailPoint> points;  // oldest first
   };
 
-  // Points a trail at most: beyond it the oldest go, however long the duration.
+  // Largest number of points of a trail: beyond it the oldest are dropped, whatever the duration.
   static constexpr std::size_t kMostPoints = 1024;
-  // Trails at most: beyond it those go whose last point is oldest.
+  // Largest number of trails: beyond it those with the oldest last point are dropped.
   static constexpr std::size_t kMostTrails = 256;
-  // A point that went this many picture widths astray (camera transforms add up) is dropped with all before
+  // A point this many picture widths away (errors of camera transforms accumulate) is dropped with all points before
   // it.
   static constexpr double kFarAway = 4;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Letters of one font, drawn by cairo once each and kept: text that changes with every frame costs no rasterising.
+// Letters of one font, each drawn by cairo once and stored: text that changes with every frame needs no rasterising.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@ namespace cerberus::overlay {
 
 class Glyphs {
  public:
-  // A sans-serif face at `size` pixels. The letters that were kept are those of the font before: they go.
+  // Selects a sans-serif face at `size` pixels. Stored letters of another font are dropped.
   void select(double size, bool bold);
-  // Sum of the letters' advances, pixels. ASCII only: other bytes take no room.
+  // Returns the sum of the letters' advances, pixels. ASCII only: other bytes have no width.
   double width(std::string_view text);
   // Writes the text into a picture, its base line beginning at (x, base), rounded to pixels.
   void draw(std::string_view text, double x, double base, Color color, vision::View<std::uint32_t> picture);

@@ -22,7 +22,7 @@ void append_number(std::string& text, double value) {
 struct Pill {
   float left, top, right, bottom, radius;
 
-  // Share of the pixel that is inside.
+  // Returns the share of the pixel that lies inside.
   float covered(int x, int y) const {
     const float px = static_cast<float>(x) + 0.5f, py = static_cast<float>(y) + 0.5f;
     const float dx = std::max({left + radius - px, px - right + radius, 0.0f}),
@@ -33,7 +33,7 @@ struct Pill {
   }
 };
 
-// Two pills, one on the other: rows are of one colour but at their ends.
+// Draws two pills, one on the other: except at their ends, rows have one colour.
 void fill(vision::View<std::uint32_t> picture, const Pill& rim, const Premultiplied& rim_color,
           const Pill& body, const Premultiplied& body_color) {
   const int round = static_cast<int>(std::ceil(rim.radius)) + 2;
@@ -50,7 +50,7 @@ void fill(vision::View<std::uint32_t> picture, const Pill& rim, const Premultipl
   }
 }
 
-// An upright bar on opaque or nearly opaque pixels.
+// Draws an upright bar on opaque or nearly opaque pixels.
 void draw_bar(vision::View<std::uint32_t> picture, double left, double top, double width, double height,
               Color color) {
   const auto share = [](int at, double low, double high) {

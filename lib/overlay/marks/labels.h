@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The labels of objects: a pill in the colour of the identity, with the identity, two bars for an object that stands,
-// speed and distance. A label is kept as long as it is shown, and drawn again only when its text changes.
+// speed and distance. A label is stored as long as it is shown, and drawn again only when its text changes.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ class Labels {
  public:
   // Begins a frame. font: size of the text, pixels.
   void begin(double font, PicturePool& pool);
-  // The label of an object; `detailed`: with speed (if `speeds`) and distance where they are known. Null where there is
-  // nothing to write. Numbers are as a glance takes them in: 3.2, 45.
+  // Returns the label of an object; `detailed`: with speed (if `speeds`) and distance if they are known. Null if the
+  // label would be empty. Numbers have about two digits: 3.2, 45.
   std::shared_ptr<const Picture> label(const Object& object, bool detailed, bool speeds);
-  // Forgets the labels that were not shown since begin().
+  // Drops the labels that were not shown since begin().
   void end();
   void clear() { labels_.clear(); }
 

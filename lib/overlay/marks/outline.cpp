@@ -15,7 +15,7 @@ float covered(float depth) {
   return std::clamp(depth + 0.5f, 0.0f, 1.0f);
 }
 
-// From the nearest multiple of the period; `walked` at least minus half a period.
+// Returns the distance from the nearest multiple of the period; `walked` at least minus half a period.
 float from_nearest(float walked, float period) {
   return walked - period * static_cast<float>(static_cast<int>(walked / period + 0.5f));
 }
@@ -67,19 +67,19 @@ inline Outline::Place Outline::place(float x, float y) const {
   return {distance, 4 * bend_ + 2 * high + wide + x - left_ - radius_};
 }
 
-// Share of a pixel that dashes cover along the line.
+// Returns the share of a pixel that dashes cover along the line.
 inline float Outline::along(float walked) const {
   return covered(on_ / 2 - std::abs(from_nearest(walked - on_ / 2, period_)));
 }
 
-// Line on casing, each with its share of the pixel.
+// Returns the colour of line over casing, each weighted by its share of the pixel.
 inline Premultiplied Outline::shade(float distance, float casing, float line) const {
   const float off = std::abs(distance);
   return (line_color_ * (line * covered(half_ - off)))
       .over(casing_color_ * (casing * covered(casing_ - off)));
 }
 
-// Of a line without gaps: only at its edges pixels are mixed.
+// Returns the pixel of a line without gaps: colours are mixed only at its edges.
 inline std::uint32_t Outline::word_at(float distance) const {
   const float off = std::abs(distance);
   if (off >= casing_ + 0.5f) return 0;
@@ -99,7 +99,7 @@ inline std::uint32_t Outline::word(Place at) const {
   return word_at(std::sqrt(to_dot * to_dot + at.distance * at.distance));
 }
 
-// Pixels of `part`, one by one.
+// Draws the pixels of `part` one by one.
 void Outline::draw_exactly(Area area, vision::View<std::uint32_t> picture, Area part) const {
   for (int y = part.y; y < part.y + part.height; ++y) {
     std::uint32_t* row = picture.row(y - area.y) - area.x;
@@ -108,7 +108,8 @@ void Outline::draw_exactly(Area area, vision::View<std::uint32_t> picture, Area 
   }
 }
 
-// Pixels of `part`, which lies beside one straight side: lines along the side are of one colour, or of one with gaps.
+// Draws the pixels of `part`, which lies beside one straight side: lines along the side have one colour, with or
+// without gaps.
 void Outline::draw_run(Area area, vision::View<std::uint32_t> picture, Area part, bool upright) const {
   const int across = upright ? part.width : part.height, along_side = upright ? part.height : part.width;
   const std::ptrdiff_t step = upright ? picture.stride : 1;
@@ -138,7 +139,7 @@ void Outline::draw_run(Area area, vision::View<std::uint32_t> picture, Area part
 }
 
 void Outline::draw(Area area, vision::View<std::uint32_t> picture) const {
-  // Beyond the corners a side is straight: `from` to `to` of a side, whole pixels.
+  // Returns the straight part of a side between the corners, from `from` to `to`, whole pixels.
   const auto inner = [&](float low, float high) {
     const int from = static_cast<int>(std::ceil(low + radius_ + reach_)),
               to = static_cast<int>(std::floor(high - radius_ - reach_));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The line round a box: a rounded rectangle with a dark casing, solid, dashed or dotted, drawn from the distance of each
-// pixel's centre to the line. A pixel's coverage is its distance inside the edge of the line + 1/2, within 0 and 1: exact
-// along the sides, within a few percent in the corners. No path is built and nothing is allocated.
+// The line round a box: a rounded rectangle with a dark casing, solid, dashed or dotted, drawn from the distance of
+// each pixel's centre to the line. A pixel's coverage is its distance inside the edge of the line + 1/2, within 0 and
+// 1: exact along the sides, within a few percent in the corners. No path is built and nothing is allocated.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ class Outline {
   // 4; dots are 1.3 lines wide and 2.6 lines apart.
   Outline(double x, double y, double width, double height, double line, LineStyle style, Color color);
 
-  // How far the drawing reaches from the box to both sides of its line.
+  // Returns the distance, in pixels, that the drawing extends from the box to both sides of its line.
   double reach() const { return reach_; }
   // Radius of the corners.
   double corner() const { return radius_; }
-  // Draws what lies in `area` (of the frame) into a transparent picture of the area's size.
+  // Draws the part in `area` (of the frame) into a transparent picture of the area's size.
   void draw(Area area, vision::View<std::uint32_t> picture) const;
 
  private:
@@ -45,7 +45,7 @@ class Outline {
   float on_ = 0, period_ = 0;    // of dashes and dots
   LineStyle style_;
   Premultiplied line_color_, casing_color_;
-  std::uint32_t line_word_ = 0, casing_word_ = 0;  // where nothing else shares the pixel
+  std::uint32_t line_word_ = 0, casing_word_ = 0;  // of pixels that are covered wholly
 };
 
 }  // namespace cerberus::overlay

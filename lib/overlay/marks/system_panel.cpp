@@ -12,7 +12,7 @@ namespace cerberus::overlay {
 
 namespace {
 
-// Numbers that are no angles of a head become a question mark: they would not fit in either.
+// Appends an angle. Values beyond any head's angles become a question mark: they would not fit in the panel.
 void append_degrees(std::string& text, double value) {
   if (std::abs(value) <= 1e4)
     text += text::fixed(value, 1).string_view();

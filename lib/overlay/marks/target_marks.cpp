@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kCasingOpacity = 0.6;
 
-// The share of [at, at + 1) that lies in [low, high).
+// Returns the share of [at, at + 1) that lies in [low, high).
 double share(int at, double low, double high) {
   return std::clamp(std::min(at + 1.0, high) - std::max(static_cast<double>(at), low), 0.0, 1.0);
 }

@@ -10,11 +10,11 @@
 
 namespace cerberus::overlay {
 
-// How far the brackets lie outside the box, in widths of its line.
+// Distance of the brackets from the box, in widths of its line.
 inline constexpr double kTargetRoom = 2.5;
 
-// Appends a patch a corner: thicker than the box's line, `line` pixels wide, and round the box; within the frame where
-// that ends there.
+// Appends a patch for each corner: outside the box and thicker than its line, which is `line` pixels wide; clipped to
+// the frame.
 void draw_target_marks(const Object& object, double line, Area frame, PicturePool& pool,
                        std::vector<Patch>& patches);
 

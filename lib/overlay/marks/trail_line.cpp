@@ -14,7 +14,7 @@ namespace {
 constexpr float kFar = -1e6f;
 constexpr float kOthers = -1;  // the age of a stretch of another patch
 
-// Of a step of age: 1 fresh, 0 faded.
+// Returns the freshness of a step of age: 1 fresh, 0 faded.
 double freshness(int step, int steps) {
   return 1 - (step + 0.5) / steps;
 }
@@ -104,8 +104,8 @@ void TrailLine::measure(Area area, vision::Point from, vision::Point to, float h
 }
 
 // The smoothed points first..last: a dark casing, and on it the line in steps of age. The stretches before and after
-// them are measured, too, and a pixel that is nearer to one of those is left to their patch: the line is translucent, so
-// a pixel that two patches drew would be darker.
+// them are measured, too, and a pixel that is nearer to one of those is left to their patch: the line is translucent,
+// so a pixel that two patches drew would be darker.
 void TrailLine::draw_part(std::uint32_t id, const Style& style, Area area, std::size_t first,
                           std::size_t last, vision::View<std::uint32_t> picture) {
   const std::size_t pixels = static_cast<std::size_t>(area.width) * static_cast<std::size_t>(area.height);

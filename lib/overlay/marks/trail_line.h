@@ -19,8 +19,8 @@ class TrailLine {
     double line = 1;      // width at the newest end, pixels
   };
 
-  // Appends the patches of the trail within `frame`. The foot of a measured box trembles by pixels: the line follows a
-  // centred mean over up to seven points (the ends stay), and leaves out points that are closer than it is wide.
+  // Appends the patches of the trail within `frame`. The foot of a measured box jitters by pixels: the line follows a
+  // centred mean over up to seven points (the ends stay), and skips points that are closer than its width.
   void draw(const Trails::Trail& trail, const Style& style, Area frame, PicturePool& pool,
             std::vector<Patch>& patches);
 
