@@ -16,7 +16,7 @@ using sensing::wrap;
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr double kSame = 1e-9;  // rad
 
-// A place with what decides its rank.
+// A place with the values that decide its rank.
 struct Candidate {
   Place place;
   bool reachable = true;
@@ -36,7 +36,7 @@ double clockwise(double from, double to) {
   return angle < 0 ? angle + kTurn : angle;
 }
 
-// The stop that comes nearest to an arc which no pan angle within the limits reaches.
+// Returns the stop nearest to an arc that no pan angle within the limits reaches.
 double nearest_stop(const Arc& arc, const Interval& limits, double pan) {
   const double to_right = clockwise(limits.to, arc.from);
   const double to_left = clockwise(arc.from + arc.width, limits.from);
@@ -44,9 +44,8 @@ double nearest_stop(const Arc& arc, const Interval& limits, double pan) {
   return std::abs(pan - limits.to) < std::abs(pan - limits.from) ? limits.to : limits.from;
 }
 
-// Where a head that stands at `pan` looks for what lies in an arc: the arc's
-// positions on the pan axis (it repeats every turn; those more than a turn away say
-// nothing new), cut to the limits. Calls take(place, whether pan can get there).
+// Finds the places of an arc for a head at `pan`: the arc's positions on the pan axis (it repeats every turn; positions
+// more than a turn away add nothing), cut to the limits. Calls take(place, whether it is reachable).
 template <typename Take>
 void for_each_place(const Arc& arc, SensorBits sensors, double pan, double lens, const Interval& limits,
                     Take&& take) {
@@ -106,7 +105,7 @@ Places places(const Geometry& geometry, SensorBits fired, double pan,
   for (const Arc& arc : overlap(geometry, fired)) add(arc, fired, 0);
   flush();
   if ((fired & (fired - 1)) == 0 && result.count > 0)
-    return result;  // one sensor: its sector is all there is
+    return result;  // one sensor: its sector is the only place
   for (int i = 0; i < geometry.count(); ++i)
     if (fired >> i & 1)
       add(geometry.sector(i), static_cast<SensorBits>(1U << i), order[static_cast<unsigned>(i)]);
@@ -117,7 +116,7 @@ Places places(const Geometry& geometry, SensorBits fired, double pan,
 Action approach(const Place& place, double pan, bool inside, double hysteresis) {
   const Interval& wanted = place.wanted;
   const double away = wanted.distance(pan);
-  // Nobody stops a motor on a point.
+  // A motor does not stop exactly on a point: a narrow place is widened by the hysteresis.
   const double enter = wanted.width() < 2 * hysteresis ? hysteresis : kSame;
   if (!(away > (inside ? enter + hysteresis : enter))) return Action::search;  // also where pan is not known
   return pan < wanted.from ? Action::turn_right : Action::turn_left;

@@ -20,8 +20,9 @@ int rank(TrackState state) {
   return 2;
 }
 
-// Is a better than b as somebody to follow? One who is seen before one who stands, before one who may be gone; then as
-// asked. Distance, where it is not known, is judged by the feet: lower in the picture is nearer on a floor.
+// Returns whether a is a better target than b: a seen track precedes a stopped one, and that a coasted one; then
+// `choice` decides. Without known distances the lower edges of the boxes are compared: lower in the picture is nearer
+// on a floor.
 bool better(const Track& a, const Track& b, TargetChoice choice) {
   if (rank(a.state) != rank(b.state)) return rank(a.state) < rank(b.state);
   const double size_a = a.width * a.height, size_b = b.width * b.height;
@@ -66,7 +67,8 @@ void Follower::watch(std::span<const Track> tracks, Time time, TargetChoice choi
       tired_[tired_next_++ % tired_.size()] = kept->id;
       followed_ = 0;
       stopped_ = kLongAgo;
-      return watch(tracks, time, choice, hold_stopped);  // once a tired one: it is not looked at again
+      return watch(tracks, time, choice,
+                   hold_stopped);  // at most once for each given-up track, which is then skipped
     }
   } else if (best != nullptr) {
     followed_ = best->id;

@@ -14,14 +14,14 @@ namespace cerberus::fusion {
 
 namespace {
 
-// Heads stop a little before an edge (dead band, steps): as good as there.
+// Tolerance at the edges of a sweep: heads stop a little before them (dead band, steps).
 constexpr double kEdge = sensing::radians(2);
 
 SensorBits bit(int sensor) {
   return static_cast<SensorBits>(1U << sensor);
 }
 
-// Both unknown counts as the same.
+// Returns whether two values are equal; two unknown ones (NaN) are.
 bool same(double a, double b) {
   return a == b || (std::isnan(a) && std::isnan(b));
 }
@@ -51,7 +51,7 @@ struct Fuser::State {
   Geometry geometry;
   RuleTable table = paper_rules();
 
-  // Everything that reset() forgets.
+  // The state that reset() clears.
   struct Memory {
     bool begun = false;
     Time time{}, heard = kLongAgo;
@@ -60,29 +60,29 @@ struct Fuser::State {
 
     // Sensors.
     SensorBits ones = 0, fired = 0, invalid = 0, doubtful = 0;
-    SensorBits tainted = 0;  // said 1 while the base turned
+    SensorBits tainted = 0;  // read 1 while the base turned
     bool turning = false;
     Time turned = kLongAgo;
     std::array<int, kMaxSensors> order{};  // the higher, the later it fired
     int fire_count = 0;
     Time detected{};  // last time camera or sensors found something; before that the first frame's
 
-    // complete: the places to look at, in the order in which they were found when the sensors last changed.
+    // complete: the places to search, in their order when the sensors last changed.
     Places places;
-    SensorBits asked = 0;   // the sensors they answer
-    bool outdated = false;  // lens or limits are others than when they were found
+    SensorBits asked = 0;   // the sensors that gave these places
+    bool outdated = false;  // lens or limits have changed since
     int place = 0;
     bool inside = false, seen_left = false, seen_right = false;
     Time arrived{};
 
-    // table: the band that is being followed, for hysteresis.
+    // table: the band in force, for hysteresis.
     RuleTable::Match match;
     bool match_camera = false;
     SensorBits match_fired = 0;
   } memory;
 
   Decision decision;
-  std::string old_name;  // of its rule, when the table has gone in which that stood
+  std::string old_name;  // name of the decision's rule after its table was replaced
 
   void read_sensors(const Input& input);
   Decision decide(const Input& input);
@@ -106,9 +106,9 @@ void Fuser::State::read_sensors(const Input& input) {
     if (value > 1) m.invalid |= bit(i);
   }
 
-  // A turning body trips its own sensors, and a module holds that for a while after the turn.
+  // A turning base triggers its own sensors, and a module holds its output for a while after the turn.
   const bool turning = std::abs(input.base_yaw_rate) > sensing::kDoubtfulTurn;  // false for NaN
-  if (turning || m.turning) m.tainted |= ones;  // also what came between two frames
+  if (turning || m.turning) m.tainted |= ones;  // also detections between two frames
   if (m.turning && !turning) m.turned = input.heard;
   m.turning = turning;
   if (!turning && !within(sensing::kDoubtLinger, m.turned, input.heard)) m.tainted = 0;
@@ -135,8 +135,8 @@ void Fuser::State::forget_places() {
   memory.outdated = false;
 }
 
-// A place that has been swept from edge to edge without success gives way to the next one: two people in two sectors,
-// or a sector that the stops cut in two, would else be looked at by half for ever.
+// Selects the next place after the present one was swept from edge to edge without success. Without this, of two people
+// in two sectors, or of a sector that the stops cut in two, only one half would ever be searched.
 void Fuser::State::watch_sweep(const Input& input) {
   Memory& m = memory;
   const Interval& sweep = m.places[m.place].sweep;
@@ -176,7 +176,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     next.limited = !options.limits.holds(0);
     return say(Action::zero, 7, "zero");
   }
-  if (m.places.count == 0) return say(Action::hold, 0, "return");  // the camera had somebody a moment ago
+  if (m.places.count == 0) return say(Action::hold, 0, "return");  // the camera lost its target a moment ago
 
   if (m.inside) watch_sweep(input);
   const Place& place = m.places[m.place];
@@ -208,7 +208,7 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
   m.match = match;
   m.match_camera = next.camera_found;
   m.match_fired = m.fired;
-  if (match.rule == nullptr) return next;  // pan not known, or a table that was not checked: hold
+  if (match.rule == nullptr) return next;  // hold: pan is unknown, or the table was not checked
 
   next.rule = match.rule->number;
   next.rule_name = match.rule->name;
@@ -217,7 +217,7 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
   switch (next.action) {
     case Action::track:
       next.target = m.follower.target();
-      if (next.target == 0) next.action = Action::hold;  // "Camera Tracking" of nothing is standing still
+      if (next.target == 0) next.action = Action::hold;  // "Camera Tracking" without a target is hold
       break;
     case Action::turn_left:
       next.limited = input.pan <= limits.from;
@@ -261,7 +261,7 @@ Decision Fuser::State::decide(const Input& input) {
   if (next.camera_found || m.fired != 0) m.detected = input.heard;
   next = options.rules == RuleSet::table ? by_table(input, next) : complete(input, next);
 
-  // Somebody who stopped is blind to camera and PIR alike, yet there: rule 7 waits.
+  // A person who stopped is detected neither by the camera nor by the PIR sensors, but is still there: rule 7 waits.
   if (next.action == Action::zero && m.follower.stands(options.hold_stopped, input.time)) {
     next.action = Action::hold;
     next.rule = 0;
@@ -280,7 +280,7 @@ void Fuser::set_options(const FuserOptions& options) {
   const FuserOptions old = std::exchange(state_->options, sane(options));
   const FuserOptions& now = state_->options;
   if (now.rules != old.rules) state_->forget_places();
-  // A search goes on, elsewhere if need be.
+  // A search continues, with new places.
   if ((now.lens != old.lens || now.limits != old.limits) && state_->memory.places.count > 0)
     state_->memory.outdated = true;
 }
@@ -314,7 +314,9 @@ const Decision& Fuser::update(const Input& input) {
   const bool first = !state.memory.begun;
   Input now = input;
   now.heard = std::max({input.heard, input.time, state.memory.heard});
-  if (first) state.memory.detected = now.heard;  // nobody knows who was there a moment ago
+  if (first)
+    state.memory.detected =
+        now.heard;  // a detection before the first frame is possible, so return_delay starts here
   state.memory.begun = true;
   state.memory.time = now.time;
   state.memory.heard = now.heard;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Camera and PIR sensors in, one action out, frame by frame: the state machine of sensor fusion.
+// The state machine of sensor fusion: decides one action for each frame from the camera's tracks and the PIR sensors.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@ enum class TargetChoice : std::uint8_t { nearest, largest, newest };
 
 struct FuserOptions {
   RuleSet rules = RuleSet::complete;
-  TargetChoice choice = TargetChoice::nearest;        // when none is followed yet
-  Time camera_hold = std::chrono::milliseconds(500);  // camera found is kept this long after the last track
+  TargetChoice choice = TargetChoice::nearest;        // for a new target
+  Time camera_hold = std::chrono::milliseconds(500);  // "camera found" lasts this long after the last track
   Time return_delay = std::chrono::seconds(5);        // without any detection before the head returns to zero
-  Time hold_stopped = std::chrono::seconds(30);  // a followed person who stopped is held at least this long
+  Time hold_stopped = std::chrono::seconds(30);       // a target that stopped is held at least this long
   double hysteresis = sensing::radians(2);
   double lens = sensing::radians(60);    // horizontal field of view; 0: not known
   Interval limits = kDefaultLimits;      // of pan
   Time dwell = std::chrono::seconds(2);  // least time at a place before the next one is tried
 };
-// What the paper says and no more: its table, no return delay, no hysteresis.
+// The options of the paper: its table, no return delay, no hysteresis.
 FuserOptions paper_options();
 
 enum class TrackState : std::uint8_t { seen, coasted, stopped };
@@ -48,8 +48,8 @@ struct Track {
 };
 
 struct Input {
-  Time time{};                            // running time of the frame, which the tracks are of
-  Time heard = Time::min();               // of sensors, pan and base, if that is later
+  Time time{};                            // running time of the frame and its tracks
+  Time heard = Time::min();               // running time of sensors, pan and base, if that is later
   std::span<const Track> tracks;          // any order
   std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
   double pan = kUnknown;                  // radians
@@ -61,17 +61,18 @@ struct Decision {
   int rule = 0;  // number of the table's rule; complete: 1 (camera) and 7 (zero), 0 for the rest
   std::string_view
       rule_name;  // of the table's rule; complete: "camera", "overlap", "sector", "return", "zero";
-                  // "stopped", "return": what defers rule 7. Valid until the fuser's next change of rules.
+      // "stopped", "return": the reason for deferring rule 7. Valid until the next change of rules.
   std::uint32_t target = 0;  // id of the track to follow; 0: none
   Interval sector{
-      kUnknown, kUnknown};  // turn: where to; search: sweep from edge to edge (already within the limits and
-                            // pulled in by half a lens: a head just goes there and back). Else NaN.
-  double pan = kUnknown;    // as used
-  bool limited = false;     // what is wanted lies (partly) beyond the pan limits
+      kUnknown,
+      kUnknown};  // turn: the destination; search: the sweep from edge to edge, already within the limits
+                  // and moved in by half a field of view: the head turns to and fro. Else NaN.
+  double pan = kUnknown;  // as used
+  bool limited = false;   // the wanted place lies (partly) beyond the pan limits
   bool camera_found = false;
-  SensorBits fired = 0;     // sensors that counted
-  SensorBits doubtful = 0;  // said 1 while the base turned (or just after): not counted
-  SensorBits invalid = 0;   // said 2: not counted
+  SensorBits fired = 0;     // sensors that detect and count
+  SensorBits doubtful = 0;  // read 1 while the base turned (or just after): not counted
+  SensorBits invalid = 0;   // read 2: not counted
   bool changed =
       false;  // rule, action, target, sector, limited, camera_found, or a sensor differs from last frame
 };
@@ -84,19 +85,19 @@ class Fuser {
   Fuser(Fuser&&) noexcept;
   Fuser& operator=(Fuser&&) noexcept;
 
-  // May be called at any time, also between frames of a running stream; what is known of tracks and sensors stays,
-  // and so does a search unless the rule set is another one.
+  // May be called at any time, also between frames of a running stream. The state of tracks and sensors is kept, and so
+  // is a search unless the rule set changes.
   void set_options(const FuserOptions& options);
   const FuserOptions& options() const;
-  // From the PIR caps; the default is the paper's three.
+  // Sets the sensors from the PIR caps; the default is the paper's three.
   void set_geometry(const Geometry& geometry);
-  // The table that RuleSet::table follows; the default is paper_rules(). Must have passed check().
+  // Sets the table of RuleSet::table; the default is paper_rules(). It must have passed check().
   void set_table(RuleTable table);
 
-  // Forget tracks, detections and timers (flush, DISCONT, new segment). Options, geometry and table stay.
+  // Clears tracks, detections and timers (flush, DISCONT, new segment). Options, geometry and table are kept.
   void reset();
-  // Time that goes back resets first; `heard` alone does not go back. Long gaps let timers expire as if frames had
-  // come. The same frame may come again, with what was heard since.
+  // Decides for one frame. A time before that of the last frame resets first; an earlier `heard` is raised to the last
+  // one. Timers expire during long gaps as with frames. The same frame may be passed again with newer sensor readings.
   const Decision& update(const Input& input);
 
  private:

@@ -19,7 +19,7 @@ using Kind = RuleProblem::Kind;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A piece of the pan axis on which no band begins or ends: one edge, or what lies between two of them.
+// A piece of the pan axis on which no band begins or ends: one edge, or the interval between two edges.
 struct Piece {
   double from, to;
   bool from_included, to_included;
@@ -87,7 +87,7 @@ bool same_answer(const Band& a, const Band& b) {
   return a.action != Action::search || (a.search.from == b.search.from && a.search.to == b.search.to);
 }
 
-// A band, the number of its answer (alike for all bands that say the same), and whether it decides anything.
+// A band, the number of its answer (the same for all bands with the same action), and whether it decides any case.
 struct Entry {
   const Band* band;
   int answer;
@@ -147,7 +147,7 @@ class Checker {
       bad("a search needs two pan angles to sweep between, the lower one first");
   }
 
-  // Every case is looked at, and somebody waits for that.
+  // Refuses tables whose enumeration would take too long.
   void check_size() {
     constexpr double kMostSteps = 2e9, kMostPlaces = 4e6;  // some seconds, some megabytes
     for (const Rule& rule : table_.rules) named_ |= rule.all | rule.any | rule.none;
@@ -164,7 +164,7 @@ class Checker {
                                 " sensors, with " + std::to_string(pieces_.size() / 2) + " edges of bands");
   }
 
-  // Which band of each rule holds in each piece, and which answers are the same.
+  // Finds the band of each rule in each piece, and numbers the different answers.
   void look_up() {
     for (const Rule& rule : table_.rules)
       for (const Band& band : rule.bands) {
@@ -183,13 +183,13 @@ class Checker {
     }
   }
 
-  // Of a rule, by its number in the table; nullptr: no band of it holds in that piece.
+  // Returns the entry of a rule, given by its number in the table, in a piece; nullptr if no band of it holds there.
   Entry* entry(int rule, std::size_t piece) {
     const int place = places_[static_cast<std::size_t>(rule) * pieces_.size() + piece];
     return place < 0 ? nullptr : &entries_[static_cast<std::size_t>(place)];
   }
 
-  // Limited bands of one rule must agree where they overlap; a band without limits is the rest.
+  // Limited bands of one rule must agree where they overlap; a band without limits covers the rest.
   void check_bands(const Rule& rule) {
     for (std::size_t i = 0; i < rule.bands.size(); ++i)
       for (std::size_t j = i + 1; j < rule.bands.size(); ++j) {
@@ -206,7 +206,7 @@ class Checker {
       }
   }
 
-  // After every case was looked at.
+  // Finds unused rules and bands; called after all cases were checked.
   void check_use() {
     for (auto of_rule = entries_.begin(); const Rule& rule : table_.rules) {
       const std::span bands(std::exchange(of_rule, of_rule + static_cast<std::ptrdiff_t>(rule.bands.size())),
@@ -229,7 +229,7 @@ class Checker {
     for (int i = 0; i < count; ++i)
       if (table_.rules[static_cast<unsigned>(i)].matches(camera_found, fired)) matching_.push_back(i);
 
-    // What is wrong with a piece: 0 nothing, 1 no rule, else 2 + (a * rules + b): these two rules disagree.
+    // Returns the problem of a piece: 0 none, 1 no rule, else 2 + (a * rules + b): rules a and b disagree.
     const auto verdict = [&](std::size_t piece) {
       int first = -1, said = -1;
       for (const int i : matching_) {
@@ -255,7 +255,7 @@ class Checker {
     });
   }
 
-  // Joins neighbouring pieces of the same verdict (by the piece's number) and tells those that are not 0.
+  // Joins neighbouring pieces with the same verdict and calls tell(joined piece, verdict) for each verdict except 0.
   template <typename Verdict, typename Tell>
   void for_each_run(const Verdict& verdict, const Tell& tell) {
     Piece run = pieces_.front();
@@ -278,7 +278,7 @@ class Checker {
   int most_;
   std::vector<Piece> pieces_;
   std::vector<RuleProblem> problems_;
-  SensorBits named_ = 0;        // the others make no difference
+  SensorBits named_ = 0;        // sensors that some rule names; the others make no difference
   std::vector<Entry> entries_;  // of all rules, in order
   std::vector<int> places_;     // in entries_, by rule and piece; -1: none
   std::vector<int> matching_;

@@ -10,10 +10,10 @@
 #include "sensing/angles.h"
 #include "text/file.h"
 
-// toml++ states what it takes for granted about its input by assertions (an abort) or, with NDEBUG, by assumptions
-// (undefined behaviour), and some malformed files break them: "[&", or "]" where a value belongs
-// (marzer/tomlplusplus issues 294 and 301; seen here with 3.3). A mistyped rule file must not end a process: here they
-// throw, like its other errors, and everything is caught in parse().
+// toml++ checks some properties of its input by assertions (an abort) or, with NDEBUG, assumes them (undefined
+// behaviour), and some malformed files violate them: "[&", or "]" where a value belongs (marzer/tomlplusplus issues 294
+// and 301, in 3.3). A mistyped rule file must not end a process: here the assertions throw, like its other errors, and
+// parse() catches all of them.
 namespace cerberus::fusion {
 namespace {
 struct ParserLost {};
@@ -33,7 +33,7 @@ namespace cerberus::fusion {
 
 namespace {
 
-// A rule file has a page or two; what is larger (a video, say) was named by mistake.
+// Largest rule file in bytes. A rule file has a page or two; a larger file (a video, say) was named by mistake.
 constexpr std::size_t kMostBytes = 1 << 20;
 
 constexpr std::array kActions{Action::track,  Action::turn_left, Action::turn_right,
@@ -132,7 +132,7 @@ class Reader {
     return band;
   }
 
-  // action and sweep, of a band or of a rule that has only one.
+  // Reads action and sweep of a band, or of a rule with only one band.
   Band read_action(const toml::table& from, const std::string& rule) {
     Band band;
     const std::string wanted = text(from, "action", "");
@@ -215,7 +215,7 @@ class Reader {
   std::string errors_;
 };
 
-// Nothing and a complaint where the text is not TOML.
+// Parses the text; reports an error and returns nullopt if it is not TOML.
 std::optional<toml::table> parse(std::string_view text, std::string_view source, Reader& reader) {
   try {
     return toml::parse(text, source);

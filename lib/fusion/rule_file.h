@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Rule tables that users write: TOML, documented in docs/manual/rules.md. Never throws.
+// Reads rule tables written by users: TOML, documented in docs/manual/rules.md. Never throws.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@
 namespace cerberus::fusion {
 
 struct RuleFile {
-  std::optional<RuleTable> table;  // nothing: `error` says why
+  std::optional<RuleTable> table;  // nullopt: `error` has the reason
   std::string error;  // "rules.toml:12: unknown action \"left\" (track, turn-left, ...)", one a line
 };
 
-// Reads, parses and checks: a table that is returned has been found free of gaps and contradictions.
+// Reads, parses and checks a file: a returned table has no gaps and no contradictions.
 RuleFile load_rules(const std::string& path);
 // The same from text; `source` stands for the file's name in errors.
 RuleFile parse_rules(std::string_view toml, std::string_view source);

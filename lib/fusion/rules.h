@@ -19,7 +19,7 @@ enum class Action : std::uint8_t { track, turn_left, turn_right, search, zero, h
 // "track", "turn-left", "turn-right", "search", "zero", "hold": as in files, messages and JSON.
 std::string_view name(Action action);
 
-// A band of pan angles (radians) and what to do there. No limits: every angle, and an unknown one (NaN).
+// A band of pan angles (radians) and its action. Without limits it holds every angle, and an unknown one (NaN).
 struct Band {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
@@ -34,8 +34,9 @@ struct Band {
 
 enum class Camera : std::uint8_t { any, found, missing };
 
-// Applies when the camera is as asked, all sensors of `all`, at least one of `any` (if it names some) and none of
-// `none` detect, and one of the bands holds the pan angle. Bands are if / else-if / else: the first one counts.
+// A rule applies when the camera has the required state, all sensors of `all`, at least one of `any` (if it is not
+// empty) and none of `none` detect, and one of the bands holds the pan angle. Bands are if / else-if / else: the first
+// one that holds the angle decides.
 struct Rule {
   int number = 0;
   std::string name{};
@@ -55,7 +56,7 @@ enum class Precedence : std::uint8_t {
 
 struct RuleTable {
   std::string name{};
-  int sensors = 0;  // how many it speaks of; detections of further sensors are not looked at
+  int sensors = 0;  // number of sensors of the table; detections of further sensors are ignored
   Precedence precedence = Precedence::exact;
   std::vector<Rule> rules{};  // in order of precedence
 
@@ -64,13 +65,13 @@ struct RuleTable {
     const Rule* rule = nullptr;  // nullptr: no rule applies (an unchecked table)
     const Band* band = nullptr;
   };
-  // pan: radians; NaN (unknown) meets unlimited bands only.
+  // Returns the rule and the band that apply. pan: radians; NaN (unknown) matches unlimited bands only.
   Match evaluate(bool camera_found, SensorBits fired, double pan) const;
 };
 
-// The paper's seven rules, literally: by number whatever the bearings, in the order 1, 5, 6, 2, 3, 4, 7, first match
-// wins, rules 2-4 turn at their edge and 5-6 track at it. infer2 + infer3 falls to rule 3 and all three to rule 5:
-// the paper has no rule for these two cells, this order is ours.
+// Returns the paper's seven rules, literally: by sensor number whatever the bearings, in the order 1, 5, 6, 2, 3, 4, 7,
+// first match wins; rules 2-4 turn at their edge and 5-6 track at it. infer2 + infer3 selects rule 3 and all three
+// select rule 5: the paper has no rule for these two cases, so this order is a choice of this project.
 const RuleTable& paper_rules();
 
 }  // namespace cerberus::fusion

@@ -16,7 +16,7 @@ void SensorHistory::append(Time time, std::span<const std::uint8_t> values) {
   const auto* last = readings_.last();
   if (last && time < last->time - sensing::Timeline<Reading>::kDisorder)
     covered_ = Time::min();  // time began anew
-  // Heartbeats repeat what is known: of equal readings in a row the first and the last are kept.
+  // Heartbeats repeat the last reading: of equal readings in a row the first and the last are kept.
   const auto* before = readings_.last(1);
   if (before && time >= last->time && last->value == reading && before->value == reading)
     readings_.postpone_last(time);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The readings of one group of PIR sensors by running time, and the time up to which they are complete. A stream that is
-// not live waits until covers(frame's running time) and reads at that time; a live one reads at the time when the frame
-// arrived, which may be later. Not thread-safe.
+// The readings of one group of PIR sensors by running time, and the time up to which they are complete. A stream that
+// is not live waits until covers(frame's running time) and reads at that time; a live one reads at the time when the
+// frame arrived, which may be later. Not thread-safe.
 #pragma once
 
 #include <array>
@@ -33,30 +33,30 @@ struct Reading {
 
 class SensorHistory {
  public:
-  // The sensors of the readings to come; those that are there keep theirs.
+  // Sets the sensors of readings to come; stored readings keep theirs.
   void set_array(std::shared_ptr<const SensorArray> array) { array_ = std::move(array); }
-  // A reading of `time`: the truth from then on. Values that are missing are invalid.
+  // Appends a reading, which is valid from `time` on. Missing values are invalid.
   void append(Time time, std::span<const std::uint8_t> values);
-  // Nothing changes before `until` (a GAP event).
+  // Records that nothing changes before `until` (a GAP event).
   void cover(Time until);
-  // Nothing more will come (EOS). append() and cover() take it back.
+  // Records that no more readings come (EOS). append() and cover() revoke it.
   void end() { ended_ = true; }
   bool ended() const { return ended_; }
   void clear();
 
-  // True when no reading that matters at `time` can still come (from a stream in order).
+  // Returns true when no reading that is valid at `time` can still come (from a stream in order).
   bool covers(Time time) const { return ended_ || covered_ > time; }
-  // The newest reading not later than `time`; all invalid where there is none.
+  // Returns the newest reading not later than `time`; all invalid if there is none.
   Reading at(Time time) const;
   void forget_before(Time time) { readings_.forget_before(time); }
-  // Where a reading without a time belongs: as late as the newest one.
+  // Returns the time for a reading that has none: that of the newest reading.
   Time newest() const { return readings_.last() ? readings_.last()->time : Time::zero(); }
   std::size_t size() const { return readings_.size(); }
 
  private:
   sensing::Timeline<Reading> readings_;
   std::shared_ptr<const SensorArray> array_;
-  Time covered_ = Time::min();  // everything before it is known
+  Time covered_ = Time::min();  // the readings are complete up to this time
   bool ended_ = false;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What is known beside the tracks when a frame is fused: the sensors of all groups in their order, the head's pan and the
-// base's rate of turn.
+// The inputs beside the tracks when a frame is fused: the sensors of all groups in their order, the head's pan and the
+// base's yaw rate.
 #pragma once
 
 #include <array>

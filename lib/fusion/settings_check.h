@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Settings that do not fit the sensors or the head that are there: nothing fails, and nothing does what was meant. Each
-// finding is returned once, in words for a user; empty: it fits, or was returned before.
+// Checks settings against the sensors and the head that are present: a mismatch causes no failure, but the settings
+// have no effect. Each finding is returned once, as a text for the user; empty: no mismatch, or it was returned before.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace cerberus::fusion {
 
 class SettingsCheck {
  public:
-  // `rules` that speak of `wanted` sensors (0: of any number).
+  // Compares the number of sensors with that of `rules` for `wanted` sensors (0: any number).
   std::string sensors(const std::string& rules, int wanted, const SensorSnapshot& snapshot) {
     const auto there = static_cast<int>(snapshot.count);
     if (wanted == 0 || there == 0 || there == wanted || !snapshot.told) return {};
@@ -25,7 +25,7 @@ class SettingsCheck {
            (there < wanted ? "the others never detect anything." : "what the others say does not count.");
   }
 
-  // Only another head than `head` tells its pose.
+  // Checks whether for 2 s poses were received only from another head than `head`.
   std::string head(const std::string& head, Time time, const SensorSnapshot& snapshot) {
     constexpr Time kPatience = std::chrono::seconds(2);
     if (!snapshot.stranger || !std::isnan(snapshot.pan_degrees)) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The track that an application chose itself: it is the target while it lives, whatever the usual choice would be.
+// The track that the application chose: it is the target while it lives, whatever the automatic choice would be.
 //
-// A chosen track that is on no frame is waited for, because a person who leaves the picture while the camera turns
-// comes back with the same identity (vision::TrackOptions::away_time). After kPatience the override ends, also for a
+// A chosen track that is on no frame is awaited, because a person who leaves the picture while the camera turns
+// reappears with the same identity (vision::TrackOptions::away_time). After kPatience the override ends, also for a
 // track that has never been on a frame.
 #pragma once
 
