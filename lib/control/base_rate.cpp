@@ -15,7 +15,7 @@ namespace cerberus::control {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-// Above this a head that is 30 ms late looks like a base of 3 degrees a second.
+// Above this acceleration a head's lag of 30 ms appears as a base rate of 3 degrees a second.
 constexpr double kAbrupt = sensing::radians(100);  // a second squared
 
 }  // namespace

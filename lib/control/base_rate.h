@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Yaw rate of the base that carries the head: the turn of the picture less the turn of the head.
+// Yaw rate of the base that carries the head: the turn of the picture minus the turn of the head.
 #pragma once
 
 #include <array>
@@ -16,30 +16,30 @@ struct Turn {
   double yaw = 0, pitch = 0;
 };
 
-// The turn of the base: `motion` (frame k-1 to k, pixels of a picture of this size, seen through `lens`) less the head's
-// turn from `before` to `after`.
+// Returns the turn of the base: `motion` (frame k-1 to k, pixels of a picture of this size, seen through `lens`) minus
+// the head's turn from `before` to `after`.
 //   mean over a grid of the picture of  direction(p, before) - direction(motion p, after)
-// A mean over bearings, because a simple model's shift is one over pixels: at the border of a 60 degree lens a degree
-// has a third more of them than in the middle. NaN for an unknown lens or pose.
+// The mean is taken over bearings, because the shift of a simple model is a mean over pixels: at the border of a 60
+// degree lens a degree has a third more pixels than in the middle. NaN for an unknown lens or pose.
 Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision::Size picture,
                const motion::PanTilt& before, const motion::PanTilt& after);
 
-// Turns of single frames as a rate: the mean of their middle half over kSpan, so that neither a frame that was
-// measured wrongly nor a shaking camera counts as a turn.
+// Converts the turns of single frames to a rate: the mean of their middle half over kSpan, so that neither a wrong
+// measurement nor a shaking camera counts as a turn.
 class BaseRate {
  public:
   static constexpr motion::Time kSpan = std::chrono::milliseconds(300);
-  static constexpr int kLeast = 3;  // frames, however long they take
+  static constexpr int kLeast = 3;  // frames, whatever their duration
   static constexpr motion::Time kStale =
       std::chrono::milliseconds(700);  // without a frame: the rate is unknown
-  static constexpr motion::Time kSettle = std::chrono::milliseconds(150);  // a head may lag by so much
+  static constexpr motion::Time kSettle = std::chrono::milliseconds(150);  // longest assumed lag of a head
 
   void reset();
-  // A frame taken at `time`, `seconds` after the one before. `turn`: of the base since then, radians; NaN: unknown.
-  // `head_rate`: the head's mean speed since then, radians a second. Frames at and just after an abrupt change of it do
-  // not count: there a head that lags a little looks like a base that turns.
+  // Adds a frame taken at `time`, `seconds` after the one before. `turn`: of the base since then, radians; NaN:
+  // unknown. `head_rate`: the head's mean speed since then, radians a second. Frames at and just after an abrupt change
+  // of it are ignored: there the lag of the head appears as a turn of the base.
   void add(motion::Time time, double seconds, double turn, double head_rate);
-  // Radians a second, positive to the right. NaN: not known.
+  // Returns the rate in radians a second, positive to the right. NaN: unknown.
   double at(motion::Time time) const;
 
  private:

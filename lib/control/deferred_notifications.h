@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a head controller reports, as data: poses for the elements upstream, states and faults for the application. A
-// controller writes them while it holds its lock; they are sent later, without any lock, in the order of their writing.
+// The reports of a head controller as data: poses for the elements upstream, states and faults for the application. A
+// controller queues them while it holds its lock; they are sent later, without any lock, in the order of queueing.
 #pragma once
 
 #include <atomic>
@@ -39,14 +39,14 @@ struct Fault {  // the head begins to fail: a warning
   std::string what;
   bool operator==(const Fault&) const = default;
 };
-struct Lost {  // the track that was chosen is on no frame any more: a warning
+struct Lost {  // the chosen track is on no frame any more: a warning
   std::uint32_t id = 0;
   bool operator==(const Lost&) const = default;
 };
 using Notice = std::variant<Status, Refusal, Fault, Lost>;
 
-// What all threads have written and none has sent yet. Each entry names its head, because the sender may drive another
-// one by now.
+// The notifications of all threads that were not sent yet. Each entry names its head, because the sender may drive
+// another one when it sends.
 struct NotificationQueue {
   template <typename T>
   struct Of {
@@ -67,10 +67,10 @@ struct NotificationQueue {
   threads::InOrder<Of<Notice>> notices{replaces};
 };
 
-// What one call of the controller reports.
+// The reports of one call of the controller.
 class DeferredNotifications {
  public:
-  // head: of what is written at that moment; it is set before the controller opens that head.
+  // head: the present head's name; it is set before the controller opens that head.
   DeferredNotifications(NotificationQueue& queue, const std::atomic<const char*>& head)
       : queue_(queue), head_(head) {}
   // With the controller's lock held.
@@ -82,7 +82,8 @@ class DeferredNotifications {
     queue_.notices.put({head_, std::move(notice)});
     notices_ = true;
   }
-  // With no lock held. send_pose(head, pose), then send_notice(head, notice), for everything that waits in the queue.
+  // Calls send_pose(head, pose), then send_notice(head, notice), for all waiting entries of the queue. Call it with no
+  // lock held.
   template <typename SendPose, typename SendNotice>
   void send(SendPose send_pose, SendNotice send_notice) const {
     if (poses_) queue_.poses.tell([&](const auto& pose) { send_pose(pose.head, pose.thing); });

@@ -12,16 +12,16 @@ using drivers::HeadCommand;
 using motion::Pose;
 using std::chrono::milliseconds;
 
-// The head's plan is read so far ahead: the next command changes it sooner.
+// The head's plan is read this far ahead; the next command changes it sooner.
 constexpr motion::Time kAhead = std::chrono::seconds(1);
 constexpr motion::Time kWhileMoving = milliseconds(20), kAtRest = milliseconds(200);
-// A driver is asked every 20 ms; without an answer for so long it is at fault.
+// The driver is queried every 20 ms; without an answer for this time it is at fault.
 constexpr motion::Time kSilence = std::chrono::seconds(1);
 constexpr char kSilent[] = "the head does not answer";
-// A decision between frames counts if it was made at most so long after, or before, now.
+// A decision between frames is used if its time is at most kEarly after and at most kStale before now.
 constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds(1);
 constexpr auto kTickPatience = milliseconds(10);
-// Results must not depend on the load of the machine, so this is long; a state change interrupts the wait.
+// This is long because results must not depend on the load of the machine; a state change interrupts the wait.
 constexpr auto kFramePatience = std::chrono::seconds(10);
 
 HeadState state_of(const Command& command) {
@@ -115,7 +115,7 @@ void HeadController::forget() {
   ended_ = false;
 }
 
-// A running time that went back (a flush, another base time) does not turn the head's time back.
+// Converts running time to the head's time, which does not go back when running time does (a flush, another base time).
 HeadController::Time HeadController::head_time(Time running) {
   constexpr Time kJitter = milliseconds(100);
   if (running + epoch_ + kJitter < latest_) epoch_ = latest_ - running;
@@ -123,7 +123,7 @@ HeadController::Time HeadController::head_time(Time running) {
   return latest_;
 }
 
-// When a new command takes effect at the earliest, in the head's time: published poses stay valid.
+// Returns the earliest time for a new command, in the head's time: published poses stay valid.
 HeadController::Time HeadController::earliest(std::optional<Time> at) {
   latest_ = at && clock_driven_ ? head_time(*at) : std::max(latest_, published_ - setup_.latency);
   return latest_;
@@ -177,7 +177,7 @@ void HeadController::report_fault(const std::string& failure, Time head, Deferre
   if (!known) out.add(Fault{failure});
 }
 
-// A head that cannot be opened is an error and not a fault.
+// Reports a head that cannot be opened, which is an error and not a fault.
 void HeadController::report_refusal(Time head, DeferredNotifications& out) {
   std::string why = runner_->refusal();
   if (why.empty()) return;
@@ -186,7 +186,7 @@ void HeadController::report_refusal(Time head, DeferredNotifications& out) {
   out.add(Refusal{std::move(why)});
 }
 
-// After an answer of the driver: whether the head is at fault, still or no longer.
+// Updates the fault state of the head after an answer of the driver.
 void HeadController::check(const std::string& failure, Time head, DeferredNotifications& out) {
   if (!runner_ || !runner_->healthy()) {
     if (runner_) report_refusal(head, out);
@@ -203,7 +203,7 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
   const Time head = head_time(at);
   const Time from = fresh_ ? head : std::max(head, published_);
   const Time until = clock_driven_ ? motion::kNever : std::max(from, head + setup_.latency);
-  // Live nothing waits here, and tick() publishes the rest soon.
+  // With a clock-driven head this call does not wait long: tick() publishes the rest soon.
   const drivers::HeadRunner::Patience patience = clock_driven_ ? kTickPatience : kFramePatience;
   guard.unlock();
   std::vector<Pose> poses;
@@ -211,7 +211,7 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
   guard.lock();
   if (answer == Answer::interrupted) return answer;
   fresh_ = false;
-  // Without an answer of the driver: the last known pose.
+  // Without an answer of the driver, publishes the last known pose.
   if (answer != Answer::done) poses.assign(1, history_.at(from));
   if (answer != Answer::done) poses[0].from = from;
   remember(poses);
@@ -255,7 +255,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
     return Answer::done;
   }
 
-  if (silent_ && !runner->idle()) {  // blocked since a frame before: nothing is caught up with
+  if (silent_ && !runner->idle()) {  // blocked since an earlier frame: this frame is skipped
     newest_ = frame.running;
     report_fault(kSilent, latest_, out);
     return Answer::late;
@@ -264,7 +264,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   const Time now = std::max(head_time(frame.running), published_ - setup_.latency);
   const Time horizon = now + std::max(setup_.latency, frame.length) + kAhead;
   std::vector<Pose> poses;
-  // Until here at least no frame came: until the one before this one could have come, or until the end of the gap.
+  // Time until which at least no frame came: the expected time of the frame before this one, or the end of the gap.
   const Time unseen = frame.seen ? now - frame.length : now + frame.length;
   if (const Time deadline = watchdog_.deadline(); deadline < unseen) {
     const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}};
@@ -354,7 +354,8 @@ void HeadController::halt(const char* reason, std::optional<Time> at, drivers::H
   if (answer == Answer::done && clock_driven_) runner->ask({}, now, motion::kNever, poses, kTickPatience);
   guard.lock();
   remember(poses);
-  for (const Pose& pose : poses) out.add(running(pose));  // until it rests: in PAUSED it is not asked again
+  for (const Pose& pose : poses)
+    out.add(running(pose));  // up to its rest: in PAUSED the driver is not queried again
   if (answer == Answer::late) report_fault("the head does not answer: it may not have stopped", now, out);
   if (!faulty_) report(HeadState::stopped, reason, now, out);
 }
@@ -370,7 +371,7 @@ void HeadController::end(std::optional<Time> at, drivers::HeadRunner::Patience p
   halt("end of the stream", at, patience, out);
 }
 
-// The watchdog has expired.
+// Reports the expiry of the watchdog.
 void HeadController::on_timeout(Time head, DeferredNotifications& out) {
   manual_.expire("its order was over when no frame came");
   report(HeadState::stopped, "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head,
@@ -397,7 +398,7 @@ std::optional<HeadController::Time> HeadController::newest() const {
   return newest_;
 }
 
-// The command of the application goes to the head at once where the clock drives it, else with the next frame.
+// Sends the application's command to a clock-driven head at once, else with the next frame.
 void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications& out) {
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
@@ -423,7 +424,7 @@ bool HeadController::stop(std::optional<Time> at, DeferredNotifications& out) {
   return true;
 }
 
-// From the application back to the decisions.
+// Ends the manual override: decisions drive the head again.
 void HeadController::end_manual(const char* reason, std::optional<Time> at, DeferredNotifications& out) {
   if (!manual_.end()) return;
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Drives one head: takes frames, decisions and the application's commands, decides, commands the driver, keeps the
-// history of poses, and reports. Thread-safe. Reports are written into the caller's DeferredNotifications with the lock
-// held and sent by the caller without it.
+// history of poses, and reports. Thread-safe. The controller adds reports to the caller's DeferredNotifications with
+// the lock held, and the caller sends them without it.
 //
-// All times that are passed are running times. The head's own time never goes back: where running time does (a flush),
-// it goes on. clock-driven: the head moves while the clock runs; otherwise its time is that of the frames.
+// All times that are passed are running times. The head's own time never goes back: when running time does (a flush),
+// head time continues. clock-driven: the head moves while the clock runs; otherwise its time is that of the frames.
 #pragma once
 
 #include <cstdint>
@@ -29,55 +29,56 @@ class HeadController {
   using Answer = drivers::HeadRunner::Answer;
   using Patience = drivers::HeadRunner::Patience;
 
-  // The head is open or being opened. The controller is halted until resume().
+  // Takes over a head that is open or being opened. The controller is halted until resume().
   void open(std::unique_ptr<drivers::HeadRunner> runner, const drivers::HeadSetup& setup);
-  // The driver said, at any time, that the head cannot be opened.
+  // Reports that the driver cannot open the head, which may happen at any time.
   void on_refusal(DeferredNotifications& out);
-  // Gives the driver the rest of its patience, then abandons it.
+  // Waits for the driver for at most `patience`, then abandons it.
   void close(Patience patience);
 
-  // At once, or when a halt ends. Returns what is wrong with the limits, for a user; then the old ones stay.
+  // Applies the limits at once, or when a halt ends. Returns an error text for the user if they are invalid; the old
+  // limits then stay in force.
   std::string set_limits(const motion::Limits& limits, std::optional<Time> now);
   // The limits of `law` are ignored: set_limits() sets them.
   void set_options(const LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
   void set_clock_driven(bool on);
-  // Forgets the frames and the end of the stream (a flush): the next frame begins anew.
+  // Clears the frames and the end of the stream (a flush): the next frame begins anew.
   void forget();
-  // Publishes where the head looks at the start, valid until its latency allows something else. interrupted: call again.
+  // Publishes the pose at the start, which is valid until the head's latency has passed. interrupted: call again.
   Answer announce(Time running, DeferredNotifications& out);
 
   struct Frame {
-    std::optional<Observation> seen;  // nothing: a gap
-    Time running;                     // when it was taken
-    Time length{};                    // until the next one, as far as known
+    std::optional<Observation> seen;  // nullopt: a gap
+    Time running;                     // time at which it was taken
+    Time length{};                    // duration until the next one, if known
     Time now{};                       // clock-driven: running time by the clock
     vision::Lens lens;
-    std::optional<motion::Pose> capture;  // where the head looked then, if the frame carries it
+    std::optional<motion::Pose> capture;  // the head's pose at that time, if the frame carries it
   };
-  // interrupted: call again. With any other answer the frame is done with.
+  // Processes a frame. interrupted: call again with the same frame; after any other answer the frame is processed.
   Answer frame(const Frame& frame, DeferredNotifications& out);
 
-  // A decision between two frames, which counts if the clock drives the head and frames come.
+  // Processes a decision between two frames; it is used only if the clock drives the head and frames come.
   void on_decision(const FusionDecision& decision, Time now, DeferredNotifications& out);
 
-  // Clock-driven: publishes the pose, checks the watchdog. Returns when it is to be called again.
+  // Clock-driven: publishes the pose, checks the watchdog. Returns the time of the next call.
   Time tick(Time now, DeferredNotifications& out);
   // Brakes, within `patience`. Frames are ignored until resume(). now: by the clock, if there is one.
   void halt(const char* reason, std::optional<Time> now, Patience patience, DeferredNotifications& out);
   void resume(std::optional<Time> now, DeferredNotifications& out);
-  // The stream is over: a halt that only forget() and open() end. A manual command expires.
+  // Ends the stream: a halt that only forget() and open() end. A manual command expires.
   void end(std::optional<Time> now, Patience patience, DeferredNotifications& out);
 
   // Manual override until automatic(). Radians; now: as for halt(). False: not possible.
   bool move(double pan, double tilt, bool relative, std::optional<Time> now, DeferredNotifications& out);
   bool stop(std::optional<Time> now, DeferredNotifications& out);
   bool automatic(std::optional<Time> now, DeferredNotifications& out);
-  // The track to be followed while it lives; ends a manual override. 0 is refused.
+  // Chooses the track to follow while it lives; ends a manual override. 0 is refused.
   bool follow(std::uint32_t id, std::optional<Time> now, DeferredNotifications& out);
 
-  // As of the runner.
+  // Interrupts waiting calls, as HeadRunner::interrupt().
   void interrupt(bool on);
-  // Running time of the last frame that counted.
+  // Returns the running time of the last processed frame.
   std::optional<Time> newest() const;
 
  private:

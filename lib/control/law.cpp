@@ -9,10 +9,11 @@ namespace cerberus::control {
 
 namespace {
 
-// As good as there.
+// A position within this distance counts as reached.
 constexpr double kThere = sensing::radians(0.05);
-// Somebody beyond the stop is watched from it until the other side would see them by this much: going round takes
-// seconds, and on the edge it would never end.
+// A target beyond a stop is watched from that stop until it is this far beyond it. Only then does the head turn all the
+// way round, if the target is reachable from the other side: the turn takes seconds, and a target near the edge would
+// cause it repeatedly.
 constexpr double kGoRound = sensing::radians(10);
 
 double positive(double value, double otherwise) {
@@ -107,7 +108,9 @@ Command Law::update(const Goal& goal, const vision::Lens& lens, const motion::Po
   using fusion::Action;
   Command command;
   if (goal.action == Action::track && goal.target) {
-    if (last_ != Action::track) pan_moving_ = tilt_moving_ = true;  // somebody new is brought into the middle
+    if (last_ != Action::track)
+      pan_moving_ = tilt_moving_ =
+          true;  // a new target is centred: the start of the dead band does not apply
     command = track(*goal.target, lens, capture, ahead);
   } else if (goal.action == Action::turn_left || goal.action == Action::turn_right) {
     command = turn(goal.action == Action::turn_right ? 1 : -1, ahead);

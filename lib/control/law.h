@@ -2,12 +2,12 @@
 // The control law: from a goal (an action, a point of the picture) to the commands of the two axes.
 //
 // Here the law is proportional:
-//   target  = the pose when the frame was taken, turned by the angle under which the lens saw the point
-//   error   = target - where the head will be when the command reaches it, which is known: it only executes commands
+//   target  = the pose when the frame was taken, turned by the angle of the point from the optical axis
+//   error   = target - the position when the command takes effect, which follows from the commands given so far
 //   command = go to the target, at no more than gain x |error|
-// so the delay of the loop is not in the loop, and a head without further commands ends at the target. An axis at rest
-// starts when the error exceeds the dead band's start and rests again when it is below its stop: with one threshold for
-// both, noise on the boxes makes a head hunt (the test in tests/unit/law.cpp counts the reversals).
+// The prediction removes the dead time from the loop, and a head without further commands ends at the target. An axis
+// at rest starts when the error exceeds the start of the dead band and rests again when it is below its stop: with one
+// threshold for both, noise on the boxes makes a head hunt (the test in tests/unit/law.cpp counts the reversals).
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct LawOptions {
   double dead_band_stop = sensing::radians(0.7);  // radians
 };
 
-// What one frame asks of the head.
+// The goal of the head for one frame.
 struct Goal {
   fusion::Action action = fusion::Action::hold;
   std::optional<vision::Point> target;  // of Action::track, frame pixels; none: hold
@@ -40,18 +40,19 @@ enum class State : std::uint8_t { holding, tracking, turning, searching, zeroing
 struct Command {
   motion::AxisCommand pan, tilt;
   State state = State::holding;
-  bool limited = false;  // the goal lies beyond a stop, and the head is (or goes) as near as it can
+  bool limited = false;  // the goal lies beyond a stop; the head goes to the nearest position
 };
 
 class Law {
  public:
   void set_options(const LawOptions& options);
   const LawOptions& options() const { return options_; }
-  // Forgets the state.
+  // Clears the state.
   void reset();
 
-  // capture: where the head looked when the frame was taken. ahead: where it will be when this command reaches it.
-  // Without a known lens nothing can be tracked: hold. The same calls give the same commands; nothing is allocated.
+  // Computes the command for one frame. capture: the pose when the frame was taken. ahead: the pose when this command
+  // takes effect. Without a known lens, tracking is impossible and the command is hold. Deterministic; allocates
+  // nothing.
   Command update(const Goal& goal, const vision::Lens& lens, const motion::Pose& capture,
                  const motion::Pose& ahead);
 

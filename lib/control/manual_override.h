@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The command that the application gave itself: it goes before every decision until the application gives the head back.
+// The application's manual command: it takes precedence over every decision until the application ends the override.
 #pragma once
 
 #include "drivers/head/head.h"
@@ -13,16 +13,16 @@ class ManualOverride {
   const drivers::HeadCommand& command() const { return command_; }
   const char* reason() const { return reason_; }  // for a user
 
-  // To pan, tilt in radians, as far as the limits allow. relative: from the position that was commanded last, or from
-  // `here` without one. False, and nothing changes: a number is not finite.
+  // Commands a position, radians, within the limits. relative: from the last commanded position, or from `here` without
+  // one. Returns false and changes nothing if a number is not finite.
   bool move(double pan, double tilt, bool relative, const motion::Pose& here, const motion::Limits& limits);
-  // The head brakes and stays.
+  // Commands the head to brake and stay.
   void stop() { set("told to stop", {}); }
-  // The command has expired: the head stands still, and no decision moves it.
+  // Replaces an expired command: the head stays at rest, and no decision moves it.
   void expire(const char* reason) {
     if (active_) set(reason, {});
   }
-  // The decisions count again. True: they did not before.
+  // Ends the override. Returns true if it was active.
   bool end();
 
  private:

@@ -16,12 +16,13 @@ constexpr double kMostGain = 1.4, kLeastGain = 0.7;       // a head that follows
 constexpr double kSlipGain = 0.2, kReversedGain = -0.45;  // at most
 constexpr double kSameScale = 0.15;                       // gains of one fault differ by this share at most
 constexpr double kStirs = radians(1);                     // a second: a picture that jerks
-constexpr double kStirsOfChange = 0.05;     // how much it may stir more when head and picture change more
-constexpr double kLongestFrame = 0.5;       // seconds: between frames further apart too much can happen
-constexpr double kMostTurn = radians(360);  // of a head between two frames; what is more is no number
-constexpr int kLongestEpisode = 5;          // pairs: a speed that changes all the time is several episodes
-constexpr double kRounding = 1e-3;          // seconds, of a sum of frame distances
-constexpr double kSeenShare = 0.5;          // of a bin, that it counts
+constexpr double kStirsOfChange =
+    0.05;                              // additional stir allowed for each unit of change of head and picture
+constexpr double kLongestFrame = 0.5;  // seconds: frames further apart are not compared
+constexpr double kMostTurn = radians(360);  // of a head between two frames; larger values are invalid
+constexpr int kLongestEpisode = 5;  // pairs: a speed that keeps changing is split into several episodes
+constexpr double kRounding = 1e-3;  // seconds, of a sum of frame distances
+constexpr double kSeenShare = 0.5;  // of a bin: the measured share that it needs
 
 }  // namespace
 
@@ -50,7 +51,8 @@ double SlipWatch::Episode::stir(unsigned lag) const {
   return highest - lowest;
 }
 
-// Only those count in whose time the head changed its speed as well: in the others there is nothing to divide by.
+// Returns the lag with the least stir. Lags at which the head's speed hardly changes are skipped: their gain is
+// undetermined.
 unsigned SlipWatch::Episode::lag() const {
   const auto most = std::ranges::max_element(ee);
   auto best = static_cast<unsigned>(most - ee.begin());
@@ -69,15 +71,15 @@ void SlipWatch::forget_frames() {
   episode_ = {};
   span_ = seen_ = picture_ = travel_ = 0;
   head_ = {};
-  told_count_ = 1;
-  told_[newest_] = {};
+  commanded_count_ = 1;
+  commanded_[newest_] = {};
 }
 
-// Between frames as straight as between two points; before the oldest one as there.
-double SlipWatch::told_at(double time) const {
-  Told after = told_[newest_];
-  for (unsigned n = 0; n < told_count_; ++n) {
-    const Told& before = told_[(newest_ + kTold - n) % kTold];
+// Interpolates linearly between frames; before the oldest frame, returns its value.
+double SlipWatch::commanded_at(double time) const {
+  Commanded after = commanded_[newest_];
+  for (unsigned n = 0; n < commanded_count_; ++n) {
+    const Commanded& before = commanded_[(newest_ + kCommanded - n) % kCommanded];
     if (before.time < time && after.time > before.time)
       return before.head + (after.head - before.head) * (time - before.time) / (after.time - before.time);
     after = before;
@@ -90,17 +92,17 @@ std::optional<SlipFinding> SlipWatch::add(double seconds, double picture, double
     forget_frames();
     return std::nullopt;
   }
-  const Told before = told_[newest_];
+  const Commanded before = commanded_[newest_];
   const double now = before.time + seconds;
-  newest_ = (newest_ + 1) % kTold;
-  told_[newest_] = {now, before.head + head};
-  told_count_ = std::min(told_count_ + 1, kTold);
+  newest_ = (newest_ + 1) % kCommanded;
+  commanded_[newest_] = {now, before.head + head};
+  commanded_count_ = std::min(commanded_count_ + 1, kCommanded);
   span_ += seconds;
   if (std::isfinite(picture)) {
     seen_ += seconds;
     picture_ += picture;
     for (unsigned i = 0; i < kLags; ++i)
-      head_[i] += told_at(now - i * kLag) - told_at(before.time - i * kLag);
+      head_[i] += commanded_at(now - i * kLag) - commanded_at(before.time - i * kLag);
     travel_ += std::abs(head);
   }
   if (span_ < kBin - kRounding) return std::nullopt;
@@ -124,7 +126,7 @@ std::optional<SlipFinding> SlipWatch::close_bin() {
   for (unsigned i = 0; i < kLags; ++i)
     changes = changes || std::abs(bins_[0].head[i] - bins_[2].head[i]) >= kLeastChange;
   if (!changes && episode_.pairs == 0) return std::nullopt;
-  if (episode_.pairs == 0)  // with what was before it
+  if (episode_.pairs == 0)  // an episode includes the bins before it
     for (int i = bin_count_ - 1; i > 0; --i) episode_.see(bins_[static_cast<unsigned>(i)]);
   episode_.see(bins_[0]);
   if (changes) episode_.add(bins_[0], bins_[2]);
@@ -132,7 +134,7 @@ std::optional<SlipFinding> SlipWatch::close_bin() {
   return close_episode();
 }
 
-// Nothing: cannot be told.
+// Returns the fault of an episode; nullopt if it is no evidence.
 std::optional<SlipFault> SlipWatch::judge(const Episode& e, unsigned lag) {
   const double gain = e.gain(lag);
   if (gain >= kLeastGain && gain <= kMostGain) return SlipFault::none;

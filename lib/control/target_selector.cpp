@@ -31,8 +31,8 @@ TargetSelector::Selection selection_of(const fusion::Decision& decision,
 
 }  // namespace
 
-// The usual selection is made all the same: it goes on when the override ends, and sensors may know where a person went
-// whom the camera has lost.
+// Replaces the automatic selection by the chosen track. The automatic selection is made first in any case: it continues
+// when the override ends, and while the chosen track is awaited its turn towards a sensor's detection is useful.
 void TargetSelector::apply_override(const Observation& frame, motion::Time time, Selection& selection) {
   const std::uint32_t id = override_.id();
   following_ = false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From one frame to a goal of the head. The goal comes from the fusion decision on the frame; without one it is decided
-// here by the two rules that need no sensors (rule 1: track what the camera sees; rule 7: nothing seen, return to zero).
-// The track that the application chose goes before both.
+// Selects the goal of the head for each frame. The goal comes from the fusion decision on the frame; without one the
+// selector applies the two rules that need no sensors (rule 1: follow a track; rule 7: without a track return to zero).
+// The track chosen by the application takes precedence over both.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +15,13 @@
 
 namespace cerberus::control {
 
-// A decision of sensor fusion as it comes with a frame or between two of them. `made.rule_name` must stay valid.
+// A decision of sensor fusion, received with a frame or between two frames. `made.rule_name` must stay valid.
 struct FusionDecision {
   fusion::Decision made;
-  std::optional<fusion::Time> decided;  // running time until which sensors were read; nothing: not known
+  std::optional<fusion::Time> decided;  // running time until which sensors were read; nullopt: unknown
 };
 
-// What a frame carries.
+// The tracks and the decision that a frame carries.
 struct Observation {
   std::span<const fusion::Track> tracks;
   std::optional<FusionDecision> fusion;
@@ -32,18 +32,18 @@ class TargetSelector {
   struct Selection {
     Goal goal;
     std::string reason;      // for a user
-    std::uint32_t lost = 0;  // the chosen track that was given up with this frame; 0: none
+    std::uint32_t lost = 0;  // the chosen track that is given up with this frame; 0: none
   };
   void set_options(const fusion::FuserOptions& options) { fuser_.set_options(options); }
-  // Forgets time and tracks: another stream begins. The chosen track stays.
+  // Clears time and tracks for a new stream. The chosen track stays.
   void reset();
-  // Chooses the track to be followed; 0: the usual choice.
+  // Chooses the track to follow; 0: the automatic choice.
   void follow(std::uint32_t id) { override_.choose(id); }
-  // time: running time of the frame; pan: radians, when it was taken.
+  // Returns the selection for a frame. time: its running time; pan: the head's pan when it was taken, radians.
   Selection on_frame(const Observation& frame, motion::Time time, double pan);
-  // A decision between two frames counts as if the last frame had carried it, and goes before frames that were decided
-  // earlier (they come late, through queues). Nothing: it is not newer than the last one, the last frame carried none,
-  // or it is about a point of a picture and takes effect with the next frame.
+  // Processes a decision between two frames as if the last frame had carried it. It takes precedence over frames that
+  // were decided earlier (they arrive late, through queues). Returns nullopt if it is not newer than the last one, if
+  // the last frame carried none, or if it follows a track and takes effect with the next frame.
   std::optional<Selection> on_decision(const FusionDecision& decision);
 
  private:
@@ -52,9 +52,8 @@ class TargetSelector {
   fusion::Fuser fuser_;
   fusion::TargetOverride override_;
   std::optional<FusionDecision> between_;  // newer than the last frame's
-  std::optional<fusion::Time>
-      decided_;             // of the last decision that counted; nothing: the last frame had none
-  bool following_ = false;  // the chosen track was on the last frame
+  std::optional<fusion::Time> decided_;    // of the last decision in force; nullopt: the last frame had none
+  bool following_ = false;                 // the chosen track was on the last frame
 };
 
 }  // namespace cerberus::control

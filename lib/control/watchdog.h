@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head stops when commands stop coming. motion::Time is a parameter.
+// Expires when no input has fed it for a time; the head is then stopped. The time is a parameter of every call.
 #pragma once
 
 #include "motion/head_limits.h"
@@ -8,23 +8,23 @@ namespace cerberus::control {
 
 class Watchdog {
  public:
-  // timeout: zero or less never bites.
+  // timeout: with zero or less the watchdog never expires.
   void set_timeout(motion::Time timeout) { timeout_ = timeout; }
-  // Somebody who knows what the head is to do was heard at `now`.
+  // Restarts the timeout: a frame or a command was received at `now`.
   void feed(motion::Time now) {
     fed_ = now;
     alive_ = true;
   }
-  // Nobody is expected to speak (the head stands still).
+  // Suspends the watchdog: no input is expected (the head is at rest).
   void rest() { alive_ = false; }
-  // It was fed, and has not bitten since.
+  // Returns whether it was fed and has not expired since.
   bool alive() const { return alive_; }
-  // When it will bite; motion::kNever while it rests.
+  // Returns the time of expiry; motion::kNever while it is suspended.
   motion::Time deadline() const {
     return alive_ && timeout_ > motion::Time::zero() && fed_ < motion::kNever - timeout_ ? fed_ + timeout_
                                                                                          : motion::kNever;
   }
-  // True once, when the deadline is reached; then it rests until it is fed again.
+  // Returns true once, when the deadline is reached; it is then suspended until it is fed again.
   bool bites(motion::Time now) {
     if (now < deadline() || deadline() == motion::kNever) return false;
     rest();
