@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Lines of one GPIO chip: the part of libgpiod that the sensors need, alike for libgpiod 1.6 (gpio_lines_v1.cpp) and
-// 2.x (gpio_lines_v2.cpp), which differ in every call. The build takes one of the two by the library's version.
-// Functions that can fail return errno, 0 = good.
+// Lines of one GPIO chip: one interface to the part of libgpiod that the sensors need, for libgpiod 1.6
+// (gpio_lines_v1.cpp) and 2.x (gpio_lines_v2.cpp), which differ in every call. The build selects one of the two by the
+// library's version. Functions that can fail return errno, 0 = no error.
 #pragma once
 
 #include <memory>
@@ -25,16 +25,16 @@ class GpioLines {
   ~GpioLines();
 
   int open(const std::string& path);
-  void close() noexcept;  // everything free again; safe at any time and any number of times
+  void close() noexcept;  // releases everything; safe at any time and any number of times
 
-  // Of the open chip.
+  // Properties of the open chip.
   std::string name() const;   // "gpiochip0"
   std::string label() const;  // the kernel driver's label
   unsigned count() const;
-  int find(const std::string& line) const;  // offset of a line by its name; -1: no such
+  int find(const std::string& line) const;  // offset of a line by its name; -1: no such line
   std::string user(unsigned offset) const;  // the line's consumer; empty: none, or unknown
 
-  // Once each. Inputs report both edges, outputs begin low.
+  // May be called once each. Inputs report both edges, outputs begin low.
   int request_inputs(std::span<const unsigned> offsets, LineBias bias);
   int request_outputs(std::span<const unsigned> offsets);
 

@@ -36,7 +36,7 @@ int last_error() {
 bool readable(int fd) {
   pollfd waiting{fd, POLLIN, 0};
   return ::poll(&waiting, 1, 0) > 0 &&
-         waiting.revents != 0;  // a chip that is gone shows as an error: reading says which
+         waiting.revents != 0;  // a removed chip also wakes poll; reading then returns the error
 }
 
 }  // namespace

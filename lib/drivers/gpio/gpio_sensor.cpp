@@ -28,7 +28,7 @@ std::vector<std::string> chip_paths() {
   return paths;
 }
 
-// A path, a name or a number as a path; empty: none of them.
+// Converts a path, a name or a number to a path; empty: none of them.
 std::string path_of(const std::string& wanted) {
   unsigned number = 0;
   if (wanted.starts_with('/')) return wanted;
@@ -88,7 +88,7 @@ SensorError GpioSensor::offsets_of(const std::vector<std::string>& names,
                                    std::vector<unsigned>& offsets) const {
   for (const std::string& name : names) {
     unsigned offset = 0;
-    // A name goes first: it may consist of digits.
+    // A name takes precedence, because it may consist of digits.
     if (const int found = lines_.find(name); found >= 0) {
       offset = static_cast<unsigned>(found);
     } else if (!number_of(name, offset)) {
@@ -107,9 +107,9 @@ SensorError GpioSensor::offsets_of(const std::vector<std::string>& names,
   return {};
 }
 
-// Why the chip does not give these lines. Lets go of all that it gave.
+// Returns the error for lines that the chip refuses. Releases all lines that it gave.
 SensorError GpioSensor::refused(int error, std::span<const unsigned> offsets) {
-  lines_.open(chip_);  // what is taken now, is taken by others
+  lines_.open(chip_);  // reopened: lines in use now have other consumers
   std::string list;
   for (const unsigned offset : offsets) {
     const std::string user = lines_.user(offset);
@@ -185,7 +185,7 @@ void GpioSensor::close() noexcept {
 void GpioSensor::stop() noexcept {
   if (!open_ || leds_.empty()) return;
   std::fill(leds_.begin(), leds_.end(), false);
-  lines_.set(leds_);  // a chip that is gone keeps what it has: nobody can do more
+  lines_.set(leds_);  // an error is ignored: the LEDs of a removed chip cannot be changed
 }
 
 SensorError GpioSensor::gone(int error) const {
@@ -195,14 +195,14 @@ SensorError GpioSensor::gone(int error) const {
       errno_text(error)};
 }
 
-// The levels that open() found, from before the first edge.
+// Reports the levels that open() found, at a time not later than the first edge.
 void GpioSensor::begin(Time now, std::vector<SensorEdge>& edges) {
   for (const GpioEdge& edge : waiting_) now = std::min(now, edge.time);
   for (std::size_t i = 0; i < levels_.size(); ++i) edges.push_back({now, static_cast<int>(i), levels_[i]});
   begun_ = true;
 }
 
-// Edges that the kernel holds, in order of time.
+// Takes the edges that the kernel holds, in order of time.
 SensorError GpioSensor::take(std::vector<SensorEdge>& edges, Time now) {
   waiting_.clear();
   if (const int error = lines_.read(waiting_)) return gone(error);
@@ -220,7 +220,7 @@ SensorError GpioSensor::read(Time now, std::vector<SensorEdge>& edges) {
   if (SensorError error = take(edges, now)) return error;
   if (const int error = lines_.levels(asked_)) return gone(error);
   if (!waiting_.empty() || asked_ == levels_) return {};
-  // Either an edge came just now, or one was lost.
+  // The levels differ without an edge: either an edge came after take(), or the kernel lost one.
   if (SensorError error = take(edges, now)) return error;
   if (!waiting_.empty()) return {};
   for (std::size_t i = 0; i < levels_.size(); ++i) {

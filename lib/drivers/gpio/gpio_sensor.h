@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors on lines of a GPIO chip, with the kernel's time stamps; edges are not polled. LEDs on output lines of the same
-// chip. read() also reads the lines' levels: so a sensor recovers from an edge that the kernel dropped, and a removed
-// chip is noticed although kernels before 6.5 do not wake a poll on it.
+// Sensors on lines of a GPIO chip, with the kernel's time stamps; edges are not polled. LEDs on output lines of the
+// same chip. read() also reads the lines' levels, so that a sensor recovers from an edge that the kernel dropped, and a
+// removed chip is detected although kernels before 6.5 do not wake a poll on it.
 #pragma once
 
 #include "drivers/gpio/gpio_lines.h"

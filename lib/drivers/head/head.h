@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The interface to a pan-tilt head: a driver executes, it does not think. One thread calls at a time; calls may block
-// (a serial line), except close() and stop(), which only do what is in their power. Texts are for a user and name the
-// device; empty = good. Time is a parameter: running time of the pipeline, never going back.
+// The interface to a pan-tilt head. A driver executes commands and makes no decisions. One thread calls at a time;
+// calls may block (a serial line), except close() and stop(), which only try. Returned texts are errors for the user
+// and name the device; empty = no error. Time is a parameter: running time of the pipeline, never going back.
 #pragma once
 
 #include <memory>
@@ -15,12 +15,12 @@ using motion::Time;
 
 struct HeadSetup {
   motion::Limits limits;     // have passed motion::check()
-  Time latency{};            // from a command until the head obeys
-  double step = 0;           // radians; it rests at multiples of it. 0: anywhere
+  Time latency{};            // from a command until it takes effect
+  double step = 0;           // radians; the head rests at multiples of it. 0: anywhere
   double backlash = 0;       // radians of play between motor and camera
-  double noise = 0;          // radians, standard deviation of what it says of its own position
+  double noise = 0;          // radians, standard deviation of the position feedback
   unsigned seed = 0;         // of the noise
-  double pan = 0, tilt = 0;  // where it looks at the start
+  double pan = 0, tilt = 0;  // radians, position at the start
   std::string script;        // of scripted_head.h
   std::string command;       // of the driver external: the helper, run by /bin/sh
   std::string helper;        // the program that drives real heads
@@ -30,7 +30,7 @@ struct HeadSetup {
 };
 
 struct HeadCommand {
-  Time time{};  // when it was given; earlier than the last one: stale, refused
+  Time time{};  // time of the command; one earlier than the last one is stale and refused
   motion::AxisCommand pan, tilt;
 };
 
@@ -41,19 +41,19 @@ class Head {
   virtual void close() noexcept = 0;         // stops; safe at any time and any number of times
   virtual void stop(Time now) noexcept = 0;  // brakes as hard as permitted and stays; as close()
   virtual std::string command(const HeadCommand& command) = 0;
-  // From `now` on (as a command) other limits, which have passed motion::check(): what was commanded last goes on
-  // within them. Who is beyond them returns, and goes no further out.
+  // Sets other limits, which have passed motion::check(), from `now` on (a time as of a command): the last command
+  // continues within them. A head beyond them returns, and turns no further out.
   virtual std::string limit(Time now, const motion::Limits& limits) = 0;
-  // Where it looks (or will look, as far as it is known: until the latency has passed nothing new can change it).
-  // `pose` is the piece that holds at `time`: pose.from = time.
+  // Returns in `pose` the piece of the trajectory at `time`, with pose.from = time. A time ahead by up to the latency
+  // is final: a new command cannot change it.
   virtual std::string state(Time time, motion::Pose& pose) = 0;
-  // True: it has no clock of its own and lives in the time that it is told, however slow or fast that runs.
+  // True: the head has no clock of its own and follows the times that are passed, whatever their rate.
   virtual bool simulated() const { return false; }
-  // False: every call returns at once, so that it needs no thread of its own.
+  // False: every call returns at once, and the head needs no thread of its own.
   virtual bool blocks() const { return true; }
 };
 
-// "simulated", "scripted", "external", "visca", "pelco-d"; nullptr for a name that is no driver's.
+// "simulated", "scripted", "external", "visca", "pelco-d"; nullptr for an unknown name.
 std::unique_ptr<Head> make_head(std::string_view driver);
 // All names, for error messages: "simulated, scripted, external, visca, pelco-d".
 std::string head_drivers();

@@ -8,8 +8,8 @@ namespace cerberus::drivers {
 
 namespace {
 
-// The one thing that elements of a process must share. Never destroyed: a driver that blocks may give its lease back
-// while the process ends.
+// The names in use, the only state that the elements of a process share. Never destroyed: a driver that blocks may
+// return its lease while the process ends.
 struct Taken {
   std::mutex lock;
   std::set<std::string> names;

@@ -23,13 +23,13 @@ struct Question {
 
 }  // namespace
 
-// Shared by owner and worker; whoever is last destroys it. `lock` guards
-// what is below it; where there is a worker, the head is its own.
+// The state shared by owner and worker; the last reference destroys it. `lock` guards the members below it; if there is
+// a worker, only the worker uses the head.
 struct HeadRunner::Core {
   std::unique_ptr<Head> head;
   bool blocks = true;               // the head has a worker
-  std::vector<motion::Pose> found;  // as the head
-  std::optional<Limiting> owed;     // as the head: limits that it has refused so far
+  std::vector<motion::Pose> found;  // used like the head
+  std::optional<Limiting> owed;     // used like the head: limits that it has refused so far
   std::shared_ptr<void> lease;
   Bell moved, refused;
 
@@ -42,17 +42,17 @@ struct HeadRunner::Core {
     std::optional<Time> stop;
     std::optional<Question> question;
     bool quit = false;
-    // Leads to another way of the head.
+    // Returns whether the batch may change the head's trajectory.
     bool moves() const { return open || limiting || command || stop; }
     bool any() const { return moves() || question || quit; }
   } todo;
   unsigned long asked = 0, answered = 0;  // tickets
   unsigned interrupts = 0;
   bool ended = false, obeys = true, speaks = true;
-  std::string failure;           // not yet told
-  std::string unopened;          // as the head: why
-  std::string refusal;           // the same, not yet told
-  bool asking = false;           // somebody waits in ask()
+  std::string failure;           // not reported yet
+  std::string unopened;          // used like the head: why it could not be opened
+  std::string refusal;           // the same, not reported yet
+  bool asking = false;           // a call of ask() waits
   bool failed = false;           // the last batch
   bool question_failed = false;  // that of the last question, whose answer is in `poses`
   std::vector<motion::Pose> poses;
@@ -73,7 +73,7 @@ std::string HeadRunner::Core::carry_out(const Batch& batch) {
   if (batch.open) owed.reset();
   if (batch.limiting) owed = batch.limiting;
   if (owed && (batch.limiting || batch.command)) {
-    // The command may be older than the limits, and must not be stale for it.
+    // The limits take the earlier time of both, so that a command older than the limits is not stale.
     const Time now = batch.command ? std::min(owed->now, batch.command->time) : owed->now;
     failed = head->limit(now, owed->limits);
     if (failed.empty())
@@ -98,7 +98,7 @@ std::string HeadRunner::Core::carry_out(const Batch& batch) {
   return failed;
 }
 
-// Does what is to be done; `guard` holds the lock before and after.
+// Executes the pending batch; `guard` holds the lock before and after.
 void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   const Batch batch = std::exchange(todo, {});
   const unsigned long ticket = asked;
@@ -139,7 +139,7 @@ void HeadRunner::Core::run() {
   }
 }
 
-// Something is to be done. Returns its ticket.
+// Starts the execution of the pending batch. Returns its ticket.
 unsigned long HeadRunner::Core::hand_over(std::unique_lock<std::mutex>& guard) {
   const unsigned long ticket = ++asked;
   if (blocks)
@@ -209,7 +209,7 @@ HeadRunner::Answer HeadRunner::ask(const std::optional<HeadCommand>& command, Ti
                                    std::vector<motion::Pose>& poses, Patience patience) {
   const auto deadline = std::chrono::steady_clock::now() + patience;
   std::unique_lock guard(core_->lock);
-  // One at a time, or the answer would be another's. Who interrupts the one interrupts the next.
+  // One call at a time, so that it receives its own answer. An interruption applies to the waiting calls, too.
   if (!core_->answer.wait_until(guard, deadline, [this] { return !core_->asking; })) return Answer::late;
   if (core_->blocks && core_->interrupts > 0) return Answer::interrupted;
   core_->asking = true;

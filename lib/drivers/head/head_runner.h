@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head on a thread of its own: whoever drives it waits as long as he wants to and not as long as the driver does. A
-// head that never blocks has no thread: its answer is there at once, whatever else the machine does.
+// Runs a head on a thread of its own, so that the caller's wait is bounded by its patience and not by the driver. A
+// head that never blocks has no thread and answers within the call, whatever the load of the machine.
 //
-// Requests do not queue up. Of what was asked for while the driver was busy the newest command
-// counts, and a stop beats the commands before it: nothing is caught up with. A driver that
-// blocks for ever keeps its thread, its device and its lease (whatever they are) until it
-// returns, then stops, closes and ends by itself; the runner's owner may be long gone.
+// Requests do not queue up. Of the requests made while the driver was busy only the newest command is executed, and a
+// stop cancels the commands before it. A driver that blocks for ever keeps its thread, its device and its lease until
+// it returns; then it stops, closes and ends by itself, even if the runner was destroyed before.
 #pragma once
 
 #include <functional>
@@ -23,12 +22,12 @@ class HeadRunner {
   using Patience = drivers::Patience;
   enum class Answer : std::uint8_t {
     done,
-    failed,       // the driver said no; failure() tells why
-    late,         // no answer yet; it goes on
-    interrupted,  // somebody called interrupt(true)
+    failed,       // the driver reported an error; failure() returns it
+    late,         // no answer yet; the request continues
+    interrupted,  // interrupt(true) was called
   };
-  // moved: called when the head was opened, stopped or commanded; refused: when it cannot be opened, however late. On
-  // the worker's thread if there is one; must not block nor call the runner.
+  // moved: called when the head was opened, stopped or commanded; refused: called when it cannot be opened, even if
+  // that is found late. Both are called on the worker's thread if there is one, and must not block nor call the runner.
   HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> moved = {},
              std::function<void()> refused = {});
   // Gives the driver close_patience to stop and close.
@@ -40,26 +39,26 @@ class HeadRunner {
   bool simulated() const { return simulated_; }
   Answer open(const HeadSetup& setup, Patience patience);
   Answer stop(Time now, Patience patience);
-  // Hands over and returns.
+  // Passes the command to the driver and returns without waiting.
   void command(const HeadCommand& command);
-  // As command(). A command that waits is carried out within the new limits, and none without them: a head that refuses
-  // them is stopped, and asked again before each command.
+  // Passes limits as command() does. A waiting command is executed within the new limits only: a head that refuses them
+  // is stopped, and the limits are passed again before each command.
   void limit(Time now, const motion::Limits& limits);
-  // Carries out `command`, if there is one, then asks for the pieces of the way from `from` until `until` (one piece at
-  // least, 64 at most). Two who ask at once are answered one after the other.
+  // Executes `command`, if there is one, then returns in `poses` the pieces of the trajectory from `from` until `until`
+  // (at least one, at most 64). Simultaneous calls are served one after the other.
   Answer ask(const std::optional<HeadCommand>& command, Time from, Time until,
              std::vector<motion::Pose>& poses, Patience patience);
 
-  // true: who waits in ask() returns at once, and so do all later calls of it, until as many calls with false came.
+  // true: waiting and later calls of ask() return at once, until interrupt(false) was called as often.
   void interrupt(bool on);
-  // What the driver complained of since the last call; empty: nothing.
+  // Returns the driver's error since the last call; empty: none.
   std::string failure();
-  // Why the head could not be opened, which is what everything
-  // else fails of then; once. Empty: it is open, or being opened.
+  // Returns, once, why the head could not be opened; all other requests then fail for this reason. Empty: it is open,
+  // or being opened.
   std::string refusal();
-  // The driver carried out the last command, and told its state when last asked.
+  // Returns whether the driver executed the last command and answered the last query of its state.
   bool healthy() const;
-  // False while a request is on its way.
+  // Returns false while a request is in progress.
   bool idle() const;
 
  private:

@@ -2,7 +2,7 @@
 // The line protocol between a pipeline and the helper process that drives a head, version 1. A line is ASCII text with
 // a line feed at its end and at most kMostLine bytes. Angles are degrees (pan positive to the right, tilt positive up),
 // speeds degrees a second, accelerations degrees a second squared, times seconds; numbers have a point in every locale.
-// docs/manual/head-protocol.md describes it for those who write a helper.
+// docs/manual/head-protocol.md describes it for authors of a helper.
 //
 //   pipeline -> helper
 //     cerberus-head 1 timeout T limits PAN-MIN PAN-MAX TILT-MIN TILT-MAX speed PAN TILT acceleration PAN TILT start PAN TILT

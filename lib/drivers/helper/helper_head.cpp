@@ -128,7 +128,7 @@ void HelperHead::Core::lose(const std::string& why) {
 void HelperHead::Core::send(const std::string& line) {
   if (!process.running() || process.send(line)) return;
   const bool full = errno == EAGAIN || errno == EWOULDBLOCK;
-  read_lines();  // it may have said why
+  read_lines();  // the last lines may contain the reason
   lose(!fault.empty() ? fault : full ? "it does not read its input" : "it ended");
 }
 

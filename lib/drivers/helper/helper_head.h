@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head that a helper process drives (head_lines.h). The driver `external` runs HeadSetup::command by /bin/sh; a driver
-// of a real head runs `HeadSetup::helper DRIVER --device=... OPTIONS`.
+// A head that a helper process drives (head_lines.h). The driver `external` runs HeadSetup::command by /bin/sh; a
+// driver of a real head runs `HeadSetup::helper DRIVER --device=... OPTIONS`.
 //
 // The process of the pipeline may die at any moment; the helper then sees the end of its input and stops the head. It
 // stops it as well when no line has come for helper-timeout. A thread here sends `alive` four times in that time.
@@ -23,7 +23,7 @@ namespace cerberus::drivers {
 
 class HelperHead final : public Head {
  public:
-  // driver: "external", or a name that the helper program knows.
+  // driver: "external", or the name of a driver of the helper program.
   explicit HelperHead(std::string driver) : driver_(std::move(driver)) {}
   ~HelperHead() override;
 

@@ -39,7 +39,7 @@ std::string channels_of(const iio_device* device) {
   return list.empty() ? "It has no voltage channels." : "It has: " + list + ".";
 }
 
-// Returns errno, 0: good, or the channel has no such attribute.
+// Returns errno; 0: no error, or the channel has no such attribute.
 int read_if_there(const iio_channel* channel, const char* attribute, double& value) {
   if (!iio_channel_find_attr(channel, attribute)) return 0;
   const int result = iio_channel_attr_read_double(channel, attribute, &value);
@@ -60,7 +60,7 @@ int start_timer(Time interval) {
 
 }  // namespace
 
-// The input's voltage now. Returns errno, 0: good.
+// Measures the input's voltage. Returns errno; 0: no error.
 int IioSensor::volts(const Input& input, double& volts) {
   double raw = 0;
   if (const int error = iio_channel_attr_read_double(input.channel, "raw", &raw); error < 0) return -error;
@@ -82,7 +82,7 @@ SensorError IioSensor::find_channels(const SensorSetup& setup) {
               "IIO device " + device_ + " (" + name_of(device) + ") has no channel " + id + " to read. " +
                   channels_of(device),
               ""};
-    // A converter without a scale counts in millivolts.
+    // The raw values of a converter without a scale are millivolts.
     inputs_.push_back({channel, 1, 0, sensing::LevelSwitch(setup.level)});
     Input& input = inputs_.back();
     double ignored = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head that speaks Pelco-D, over a serial line or a converter on TCP or UDP. The protocol acknowledges nothing: what is
-// in force is sent again kRepeats times a second, so that a lost frame costs a fifth of a second, and a stop
-// kStops times. Positions are asked for where the head is said to answer.
+// A head that speaks Pelco-D, over a serial line or a converter on TCP or UDP. The protocol acknowledges nothing: what
+// is in force is sent again kRepeats times a second, so that a lost frame costs a fifth of a second, and a stop
+// kStops times. Positions are queried only if the options declare that the head answers.
 #pragma once
 
 #include <optional>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Common base of replay and scripted sensors: plays a Recording.
+// The common base of replay and scripted sensors, which plays a Recording.
 #pragma once
 
 #include <cstddef>

@@ -38,7 +38,7 @@ bool from_decimal(std::string_view text, double& number) {
   return error == std::errc() && end == text.data() + text.size();
 }
 
-// Each returns what is wrong, for a user; empty: good.
+// These functions return an error text for the user; empty: no error.
 std::string add_volts(Row& row, double volts, const std::string& text) {
   if (!(std::abs(volts) <= kMostVolts)) return "\"" + text + "\" is no voltage";
   if (row.count < row.volts.size()) row.volts[row.count] = static_cast<float>(volts);
@@ -117,7 +117,7 @@ bool parse_seconds(std::string_view text, Time& time) {
 
 SensorError parse_recording(std::string_view text, std::string_view name, int sensors, Recording& recording) {
   recording = {};
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // some spreadsheets begin so
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";  // written by some spreadsheet programs
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
   std::size_t number = 0;
   bool begun = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors played from a file (format: recording.h). The whole file is read and checked when it is opened.
+// Plays sensors from a file (format: recording.h). The whole file is read and checked when it is opened.
 #pragma once
 
 #include "drivers/recorded/recorded_sensor.h"

@@ -43,7 +43,7 @@ SensorError ScriptedSensor::open(const SensorSetup& setup) {
   for (std::string_view script = setup.script; !script.empty();) {
     const std::string_view line = next_line(script);
     if (line.starts_with(kWait) && parse_wait(line.substr(kWait.size()))) {
-      levels.append("\n");  // lines are counted
+      levels.append("\n");  // keeps the line numbers of errors
       continue;
     }
     int gate = -1;

@@ -8,9 +8,9 @@
 //          | SECONDS "fail" TEXT               from then on reading fails
 //          | "show fail" TEXT                  the LEDs fail
 //          | "wait" FD FD                      not a recording but a device that blocks, for a live source: its first
-//                                              read() gives what the script says of 0 s, its second writes
-//                                              a byte to the second descriptor, waits for something to
-//                                              read, or the end, at the first, and gives the rest
+//                                              read() returns the levels at 0 s; its second writes a byte
+//                                              to the second descriptor, waits until the first is readable
+//                                              or closed, and returns the rest
 #pragma once
 
 #include "drivers/recorded/recorded_sensor.h"
@@ -35,7 +35,7 @@ class ScriptedSensor final : public RecordedSensor {
   void block();
   Time fails_at_ = sensing::kNever;
   std::string failure_, led_failure_;
-  int gate_ = -1, bell_ = -1;  // to wait for, to tell of it
+  int gate_ = -1, bell_ = -1;  // descriptors to wait at, and to write to before
   int device_ = -1;            // readable until the second read()
   int reads_ = 0;              // of the device
 };

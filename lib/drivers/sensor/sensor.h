@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The interface to a set of PIR sensors: a driver tells what its lines do, it does not think
-// (polarity, debounce and the rest are sensing::PirModel's). One thread calls at a time. A
-// default SensorError = good. Calls may block, so a device has a thread of its own
-// (sensor_runner.h), and so has the opening of a recording, which from then on answers at once.
+// The interface to a set of PIR sensors. A driver reports the edges of its lines; sensing::PirModel does polarity,
+// debounce and the rest. One thread calls at a time. A default SensorError = no error. Calls may block, so a device has
+// a thread of its own (sensor_runner.h), and so has the opening of a recording, whose other calls do not block.
 //
-// A device has a clock of its own, CLOCK_MONOTONIC: wait for fd(), then read(). A recording lives in the time that it
-// is told, 0 = its begin, however slow or fast that runs: read() when next() has come.
+// A device has a clock of its own, CLOCK_MONOTONIC: wait for fd(), then read(). A recording follows the times that are
+// passed, 0 = its begin, whatever their rate: read() when next() has come.
 #pragma once
 
 #include <limits>
@@ -51,11 +50,11 @@ class Sensor {
   virtual bool recorded() const { return false; }        // what it is before open() may change with that
   virtual Time next() const { return sensing::kNever; }  // of a recording: time of the next edge
   virtual void rewind() {}                               // a recording begins again
-  virtual Time end() const { return sensing::kNever; }   // of a recording: nothing is known of later times
+  virtual Time end() const { return sensing::kNever; }   // of a recording: the end of its data
 };
 
-// "gpio", "iio", "replay", "scripted"; nullptr for a name that is no driver's. One that was left out of the build is
-// there, and says so when it is opened.
+// "gpio", "iio", "replay", "scripted"; nullptr for an unknown name. A driver that was left out of the build exists,
+// and its open() returns that as an error.
 std::unique_ptr<Sensor> make_sensor(std::string_view driver);
 std::string sensor_drivers();             // all names, for error messages
 bool is_device(std::string_view driver);  // it reads hardware, so it is live

@@ -58,7 +58,7 @@ bool SensorArray::opened() {
 void SensorArray::begin(std::unique_ptr<Sensor> sensor) {
   sensor_ = std::move(sensor);
   recorded_ = sensor_->recorded();
-  // What the last line of a recording says shows only after the debounce time.
+  // The last line of a recording takes effect only after the debounce time.
   end_ = sensor_->end();
   if (end_ < kNever) end_ += models_.front().options().debounce;
   if (recorded_) seek(start_);
@@ -92,7 +92,7 @@ void SensorArray::close() noexcept {
 
 namespace {
 
-// A sensor of which nothing is known. Whoever says when it is valid again has waited for its warm-up.
+// Returns a model in its initial state without warm-up: the caller that makes the sensor valid again has waited for it.
 sensing::PirModel begin_again(const sensing::PirModel& model) {
   sensing::PirOptions options = model.options();
   options.warm_up = {};
@@ -150,7 +150,7 @@ bool SensorArray::look(Time time, SensorReading& reading) {
   return reading.changed;
 }
 
-// Of sensors that cannot be read nothing is known: whoever looked where one fired must not do so for ever.
+// Reports all sensors as invalid after a read error, so that a head does not search a sector for ever.
 SensorArray::Step SensorArray::fail(SensorError error, Time now, SensorReading& reading) {
   error_ = std::move(error);
   if (!begun_) return Step::failed;
@@ -168,7 +168,7 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
   if (open)
     if (SensorError error = sensor_->read(now, edges_)) return fail(std::move(error), now, reading);
   if (!begun_) {
-    let_pass(now);  // what was before is nobody's business
+    let_pass(now);  // edges before the first reading are not reported
     beat_ = now;
   }
   for (;;) {

@@ -17,9 +17,10 @@ namespace cerberus::drivers {
 
 namespace {
 
-constexpr std::size_t kMost = 1024;  // edges that nobody takes; then the oldest go
+constexpr std::size_t kMost =
+    1024;  // largest number of edges that wait to be taken; beyond it the oldest are dropped
 constexpr auto kClosePatience = std::chrono::milliseconds(30);
-// Sensors are read now and then whatever happens: not every device that goes away wakes who waits for it.
+// Interval at which sensors are read without an event: the removal of a device does not always wake a poll on it.
 constexpr int kLookMs = 100;
 
 Time now() {
@@ -37,12 +38,12 @@ struct Leds {
 
 }  // namespace
 
-// Shared by owner and worker; whoever is last destroys it. `lock` guards what is below it; `sensor` is the worker's, a
-// recording until it is `opened`.
+// The state shared by owner and worker; the last reference destroys it. `lock` guards the members below it. Only the
+// worker uses `sensor`, or a recording until it is `opened`.
 struct SensorRunner::Core {
   std::unique_ptr<Sensor> sensor;
-  const int news = new_event();   // readable: they are open, there are edges, or an error
-  const int hints = new_event();  // to the worker: there are LEDs to be lit, or it is time to go
+  const int news = new_event();   // readable when the sensors are open, or edges or an error are available
+  const int hints = new_event();  // wakes the worker to set LEDs or to end
   Bell refused;
 
   std::mutex lock;

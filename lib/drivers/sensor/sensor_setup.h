@@ -50,7 +50,7 @@ enum class SensorFault : std::uint8_t {
 
 struct SensorError {
   SensorFault fault = SensorFault::none;
-  std::string text;    // for a user: names the thing and says what to do
+  std::string text;    // for a user: names the device and the remedy
   std::string detail;  // for a developer
   explicit operator bool() const { return fault != SensorFault::none; }
 };

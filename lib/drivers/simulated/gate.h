@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A file descriptor that scripted drivers block on.
+// Waiting at a file descriptor, by which scripted drivers block.
 #pragma once
 
 #include <fcntl.h>
@@ -10,7 +10,8 @@
 
 namespace cerberus::drivers {
 
-// Until descriptor `fd` has something to read, or is closed by its writer. (Its number may be another's by then.)
+// Blocks until descriptor `fd` is readable or closed by its writer. It waits at a duplicate, because the number may be
+// reused meanwhile.
 inline void wait_at(int fd) {
   pollfd gate{::fcntl(fd, F_DUPFD_CLOEXEC, 0), POLLIN, 0};
   if (gate.fd < 0) return;

@@ -52,7 +52,7 @@ void write_all(int fd, std::string_view text) {
   while (!text.empty()) {
     const ssize_t written = ::write(fd, text.data(), text.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return;  // nobody listens any more
+    if (written <= 0) return;  // the reader has closed the descriptor
     text.remove_prefix(static_cast<std::size_t>(written));
   }
 }
@@ -130,7 +130,7 @@ std::string ScriptedHead::open(const HeadSetup& setup) {
   calls_ = {};
   if (std::string failure = play(kOpen, {}); !failure.empty()) return failure;
   setup_ = setup;
-  told_ = {};
+  commanded_ = {};
   last_ = {};
   pan_ = setup.pan;
   tilt_ = setup.tilt;
@@ -140,14 +140,14 @@ std::string ScriptedHead::open(const HeadSetup& setup) {
 
 void ScriptedHead::close() noexcept {
   if (!open_) return;
-  play(kClose, told_);
+  play(kClose, commanded_);
   open_ = false;
 }
 
 void ScriptedHead::stop(Time now) noexcept {
   if (!open_) return;
-  told_ = std::max(told_, now);
-  play(kStop, told_);
+  commanded_ = std::max(commanded_, now);
+  play(kStop, commanded_);
   last_ = {};
 }
 
@@ -158,12 +158,12 @@ void ScriptedHead::obey() {
 
 std::string ScriptedHead::command(const HeadCommand& command) {
   if (!open_) return "the scripted head is not open";
-  if (command.time < told_) return "a stale command: it was given before the last one";
+  if (command.time < commanded_) return "a stale command: it was given before the last one";
   std::string details;
   append(details, command.pan);
   append(details, command.tilt);
   if (std::string failure = play(kCommand, command.time, details); !failure.empty()) return failure;
-  told_ = command.time;
+  commanded_ = command.time;
   last_ = command;
   obey();
   return {};
@@ -171,11 +171,11 @@ std::string ScriptedHead::command(const HeadCommand& command) {
 
 std::string ScriptedHead::limit(Time now, const motion::Limits& limits) {
   if (!open_) return "the scripted head is not open";
-  told_ = std::max(told_, now);
+  commanded_ = std::max(commanded_, now);
   std::string details;
   for (const double stop : {limits.pan.from, limits.pan.to, limits.tilt.from, limits.tilt.to})
     append(details, stop);
-  if (std::string failure = play(kLimit, told_, details); !failure.empty()) return failure;
+  if (std::string failure = play(kLimit, commanded_, details); !failure.empty()) return failure;
   setup_.limits = limits;
   obey();
   return {};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head for tests: writes down what it is told, and fails or blocks on
-// request. At rest it looks where the last command sent it, at once.
+// A head for tests: it records its calls, and fails or blocks on request. It reaches the commanded position at once.
 //
 //   script = part {";" part}
 //   part   = "record" FD | call [NUMBER] "fail" TEXT | call [NUMBER] "wait" FD
@@ -33,21 +32,21 @@ class ScriptedHead final : public Head {
   enum Call : unsigned { kOpen, kCommand, kState, kStop, kClose, kLimit, kCalls };
   struct Part {
     Call call;
-    unsigned from;     // the how-manieth
+    unsigned from;     // number of the call from which the part applies, from 1
     int wait_fd;       // -1: fail
     std::string text;  // of the failure
   };
   void obey();
   std::string parse(std::string_view script);
   std::string parse_part(std::string_view part);
-  // details: what a record says behind the time.
+  // details: the text of a record after the time.
   std::string play(Call call, Time time, const std::string& details = {});
 
   std::vector<Part> parts_;
   std::array<unsigned, kCalls> calls_{};
   int record_fd_ = -1;
   bool open_ = false;
-  Time told_{};
+  Time commanded_{};
   HeadCommand last_;
   HeadSetup setup_;
   double pan_ = 0, tilt_ = 0;

@@ -21,7 +21,7 @@ using motion::Plan;
 
 constexpr motion::Time kMostLatency = std::chrono::seconds(5);  // see kKept
 
-// splitmix64 (Steele, Lea, Flood, OOPSLA 2014): a good number for every number.
+// The hash function of splitmix64 (Steele, Lea, Flood, OOPSLA 2014).
 std::uint64_t scramble(std::uint64_t x) {
   x += 0x9e3779b97f4a7c15U;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -29,22 +29,23 @@ std::uint64_t scramble(std::uint64_t x) {
   return x ^ (x >> 31);
 }
 
-// (0, 1]
+// Converts to (0, 1].
 double uniform(std::uint64_t x) {
   return (static_cast<double>(x >> 11) + 1) * 0x1p-53;
 }
 
-// The camera after the motor went monotonously to `motor`.
+// Returns the camera's position after the motor moved monotonically to `motor`.
 double dragged(double camera, double motor, double play) {
   return std::clamp(camera, motor - play, motor + play);
 }
 
-// What the head says of its position: nothing that lies beyond a stop, unless it is there (the stops were moved).
+// Returns the measured position, which is never beyond a stop unless the head is (the stops were moved).
 double noisy(double position, double noise, const AxisLimits& limits) {
   return std::clamp(position + noise, std::min(limits.from, position), std::max(limits.to, position));
 }
 
-// When the motor of a piece at `state` first stands at `position`, seconds from now; infinite: not in this piece.
+// Returns the time at which the motor, in a piece from `state`, first reaches `position`, seconds from now; infinite:
+// not in this piece.
 //   position - p = v t + a t^2 / 2
 double arrival(const AxisState& state, double position) {
   const double way = position - state.position, v = state.speed, a = state.acceleration;
@@ -73,7 +74,7 @@ std::string SimulatedHead::open(const HeadSetup& setup) {
   if (std::string wrong = motion::check_start(setup.limits, setup.pan, setup.tilt); !wrong.empty())
     return wrong;
   setup_ = setup;
-  told_ = Time::zero();
+  commanded_ = Time::zero();
   next_ = count_ = 1;
   chapters_[0] = {Time::min(), {Plan(setup.pan), setup.pan}, {Plan(setup.tilt), setup.tilt}, {}};
   return {};
@@ -84,16 +85,16 @@ void SimulatedHead::close() noexcept {
 }
 
 void SimulatedHead::stop(Time now) noexcept {
-  if (count_ > 0) obey({std::max(now, told_), {}, {}});
+  if (count_ > 0) obey({std::max(now, commanded_), {}, {}});
 }
 
 std::string SimulatedHead::command(const HeadCommand& command) {
   if (count_ == 0) return "the simulated head is not open";
-  if (command.time < told_) return "a stale command: it was given before the last one";
+  if (command.time < commanded_) return "a stale command: it was given before the last one";
   return obey(command);
 }
 
-// The chapter that holds at `time`, and when the next one begins.
+// Returns the chapter at `time`, and in `end` the begin of the next one.
 const SimulatedHead::Chapter& SimulatedHead::chapter_at(Time time, Time& end) const {
   end = kNever;
   unsigned n = 0;
@@ -112,23 +113,24 @@ SimulatedHead::Leg SimulatedHead::follow(const Leg& leg, Time from, const AxisCo
 }
 
 std::string SimulatedHead::obey(const HeadCommand& command) {
-  told_ = command.time;
+  commanded_ = command.time;
   const Chapter& last = nth_last(0);
-  if (command.pan == last.command.pan && command.tilt == last.command.tilt) return {};  // it is doing so
+  if (command.pan == last.command.pan && command.tilt == last.command.tilt)
+    return {};  // the command is already being executed
   return begin(command);
 }
 
 std::string SimulatedHead::limit(Time now, const motion::Limits& limits) {
   if (count_ == 0) return "the simulated head is not open";
   HeadCommand again = nth_last(0).command;
-  again.time = told_ = std::max(told_, now);
+  again.time = commanded_ = std::max(commanded_, now);
   const motion::Limits before = std::exchange(setup_.limits, limits);
   std::string wrong = begin(again);
   if (!wrong.empty()) setup_.limits = before;
   return wrong;
 }
 
-// A new way from where the head will be when the command reaches it.
+// Begins a new trajectory from the head's position at the time when the command takes effect.
 std::string SimulatedHead::begin(const HeadCommand& command) {
   const Time from = command.time + setup_.latency;
   if (count_ == kKept && nth_last(kKept - 2).from > command.time)
@@ -137,7 +139,7 @@ std::string SimulatedHead::begin(const HeadCommand& command) {
   const Chapter& before = chapter_at(from, end);
   Chapter next{from, follow(before.pan, from, command.pan, setup_.limits.pan),
                follow(before.tilt, from, command.tilt, setup_.limits.tilt), command};
-  if (before.from == from) {  // given at the same time: the later one counts
+  if (before.from == from) {  // of two commands of one time the later one counts
     nth_last(0) = next;
     return {};
   }
@@ -147,7 +149,8 @@ std::string SimulatedHead::begin(const HeadCommand& command) {
   return {};
 }
 
-// The camera behind the play. No piece of a plan turns round, so the extremes of the way so far lie at their ends.
+// Returns the state of the camera behind the play. No piece of a plan reverses, so that the extremes of the motor's
+// trajectory lie at the ends of pieces.
 AxisState SimulatedHead::camera(const Leg& leg, Time time, Time& until) const {
   const AxisState motor = leg.plan.at(time);
   until = leg.plan.piece_end(time);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head made of numbers: speed, acceleration, steps, play, latency, a noisy position sensor. Deterministic: the same
-// commands with the same times give the same way, and the noise is a function of seed and time alone.
+// A simulated head with limited speed and acceleration, steps, play, latency and a noisy position sensor.
+// Deterministic: the same commands with the same times give the same trajectory, and the noise is a function of seed
+// and time alone.
 //
 //   command at t -> from t + latency on the motors follow motion::Plan -> the camera follows the motor with play:
 //   while the motor turns to the right, camera = max(camera, motor - backlash / 2),
@@ -25,7 +26,7 @@ class SimulatedHead final : public Head {
   bool blocks() const override { return false; }
 
  private:
-  // One axis from a moment on: what the motor does, and where the camera was then.
+  // One axis from a time on: the motor's plan, and the camera's position at that time.
   struct Leg {
     motion::Plan plan;
     double camera = 0;
@@ -35,7 +36,7 @@ class SimulatedHead final : public Head {
     Leg pan, tilt;
     HeadCommand command;
   };
-  // As many commands as may be on their way: 5 s of latency at 50 a second.
+  // Largest number of commands that have not taken effect: 5 s of latency at 50 a second.
   static constexpr unsigned kKept = 256;
 
   Chapter& nth_last(unsigned n) { return chapters_[(next_ + kKept - 1 - n) % kKept]; }
@@ -50,7 +51,7 @@ class SimulatedHead final : public Head {
   HeadSetup setup_;
   std::array<Chapter, kKept> chapters_{};
   unsigned next_ = 0, count_ = 0;  // count 0: closed
-  Time told_{};                    // time of the last command
+  Time commanded_{};               // time of the last command
 };
 
 }  // namespace cerberus::drivers
