@@ -16,6 +16,7 @@ namespace {
 
 using control::SlipFault;
 using motion::PanTilt;
+using motion::Time;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // Numbers that are none, or another head's: there is a head, and where it looks is not known.
@@ -84,7 +85,7 @@ void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
   if (counts)
     poses_.insert(time_of(pose->valid_from), *pose);
   else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
-    told_base_.hear(time_of(base->valid_from), base->yaw_rate);
+    told_base_.add(time_of(base->valid_from), base->yaw_rate);
 }
 
 HeadMotionMonitor::Head HeadMotionMonitor::head_of(GstElement* element, Frame& frame,

@@ -11,9 +11,9 @@
 
 #include "control/base_rate.h"
 #include "control/slip.h"
+#include "sensing/base_rates.h"
 #include "shared/frame.hpp"
 #include "shared/pose_thread.hpp"
-#include "shared/told_base.hpp"
 
 namespace cerberus::plugin {
 
@@ -53,8 +53,8 @@ class HeadMotionMonitor {
 
   PoseThread pose_thread_;
   std::mutex lock_;  // of what was told
-  Timeline<CerberusPose> poses_;
-  ToldBase told_base_;
+  sensing::Timeline<CerberusPose> poses_;
+  sensing::BaseRates told_base_;
 };
 
 }  // namespace cerberus::plugin

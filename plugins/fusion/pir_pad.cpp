@@ -17,8 +17,8 @@ CERBERUS_DEFINE_TYPE(CerberusPirPad, cerberus_pir_pad, GstPad, GST_TYPE_PAD, Pir
 void cerberus_pir_pad_init(CerberusPirPad*) {}
 void cerberus_pir_pad_class_init(CerberusPirPadClass*) {}
 
-std::shared_ptr<const SensorArray> sensor_array(const CerberusPirInfo& info) {
-  auto array = std::make_shared<SensorArray>();
+std::shared_ptr<const fusion::SensorArray> sensor_array(const CerberusPirInfo& info) {
+  auto array = std::make_shared<fusion::SensorArray>();
   array->count = static_cast<int>(info.sensors);
   array->field_of_view = sensing::radians(info.field_of_view);
   for (guint i = 0; i < info.sensors; ++i) array->bearings[i] = sensing::radians(info.bearings[i]);
@@ -104,7 +104,7 @@ void gap_event(GstElement* element, PirPad& pir, GstEvent* event) {
   const Time spoken = now_or(element, until);
   const std::lock_guard guard(pir.inputs->lock());
   pir.history.cover(until);
-  pir.inputs->tell(pir, spoken);
+  pir.inputs->add_reading(pir, spoken);
 }
 
 void end(PirPad& pir) {
@@ -165,7 +165,7 @@ struct Sample {
 Sample sample_of(GstElement* element, GstPad* pad, GstBuffer* buffer) {
   PirPad& pir = pir_pad(pad);
   Sample sample;
-  sample.presence.fill(kInvalid);
+  sample.presence.fill(fusion::kInvalid);
   sample.volts.fill(std::numeric_limits<float>::quiet_NaN());
   const gsize size = gst_buffer_get_size(buffer);
   const bool volts = pir.info.format == CERBERUS_PIR_LEVEL;
@@ -239,7 +239,7 @@ GstFlowReturn take_reading(GstElement* element, GstPad* pad, GstBuffer* buffer) 
       append_levels(pir, time, std::span(sample.volts).first(pir.info.sensors));
     else
       pir.history.append(time, std::span(sample.presence).first(pir.info.sensors));
-    pir.inputs->tell(pir, std::max(time, now));
+    pir.inputs->add_reading(pir, std::max(time, now));
   }
   if (pir.live.value_or(true) && pir.inputs->on_reading) pir.inputs->on_reading();
   report_faults(element, pad);
@@ -279,20 +279,21 @@ GstIterator* no_internal_links(GstPad*, GstObject*) {
 }  // namespace
 
 void PirPad::reset() {
-  history = {};
-  sensors = 0;
-  given_up = complained = refused = false;
-  live.reset();
-  spoken.reset();
+  forget();
+  complained = refused = false;
   gst_segment_init(&segment, GST_FORMAT_UNDEFINED);
   cerberus_pir_info_init(&info);
   info.sensors = 0;
 }
 
-GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template, Inputs* inputs) {
-  auto* pad = GST_PAD(g_object_new(cerberus_pir_pad_get_type(), "name", name, "direction", GST_PAD_SINK,
-                                   "template", pad_template, nullptr));
+GstPad* pir_pad_new(unsigned number, GstPadTemplate* pad_template, Inputs* inputs) {
+  const std::string name = "pir_" + std::to_string(number);
+  auto* pad = GST_PAD(g_object_new(cerberus_pir_pad_get_type(), "name", name.c_str(), "direction",
+                                   GST_PAD_SINK, "template", pad_template, nullptr));
   pir_pad(pad).inputs = inputs;
+  pir_pad(pad).pad = pad;
+  pir_pad(pad).name = name;
+  pir_pad(pad).index = number;
   gst_pad_set_chain_function(pad, chain_function);
   gst_pad_set_event_function(pad, event_function);
   gst_pad_set_link_function(pad, link_function);

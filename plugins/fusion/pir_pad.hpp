@@ -14,18 +14,9 @@
 
 namespace cerberus::plugin {
 
-struct PirPad {
+struct PirPad : fusion::SensorSource {  // guarded by the inputs' lock
   Inputs* inputs = nullptr;
-
-  // Guarded by the inputs' lock.
-  SensorHistory history;
-  guint index = 0;  // of its name
-  int sensors = 0;  // of its caps
-  bool linked = false;
-  bool flushing = true;        // also while it is not active
-  bool given_up = false;       // silent for too long: invalid, and not waited for, until it speaks
-  std::optional<Time> spoken;  // it was heard of until then; nothing: not since the video began
-  std::optional<bool> live;    // of what it is linked to; nothing: not known. Its own thread alone changes it
+  GstPad* pad = nullptr;
 
   // Of the pad's own streaming thread.
   GstSegment segment;
@@ -40,7 +31,7 @@ struct PirPad {
   void reset();  // READY
 };
 
-GstPad* pir_pad_new(const char* name, GstPadTemplate* pad_template, Inputs* inputs);  // floating
+GstPad* pir_pad_new(unsigned number, GstPadTemplate* pad_template, Inputs* inputs);  // floating
 // Of a pad that pir_pad_new() made.
 inline PirPad& pir_pad(GstPad* pad) {
   return *reinterpret_cast<detail::Instance<GstPad, PirPad>*>(pad)->priv;

@@ -68,7 +68,7 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
-#include "decisions.hpp"
+#include "fusion/decisions.h"
 #include "fusion/rule_check.h"
 #include "fusion/rule_file.h"
 #include "fusion/settings_check.h"
@@ -78,7 +78,9 @@
 #include "settings.hpp"
 #include "shared/pose_thread.hpp"
 #include "shared/stamps.hpp"
+#include "shared/tracks.hpp"
 #include "text/numbers.h"
+#include "translation.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(pirfusion_debug);
 #define GST_CAT_DEFAULT pirfusion_debug
@@ -112,7 +114,7 @@ struct Private {
   std::unique_ptr<State> state = std::make_unique<State>();
   Stamps stamps;
   Inputs inputs;
-  Decisions decisions{inputs};
+  fusion::Decisions decisions{inputs};
   PoseThread pose_thread;
 
   std::mutex lock;
@@ -158,7 +160,7 @@ void apply_settings(CerberusPirFusion* self) {
     const std::lock_guard guard(self->priv->lock);
     table = self->priv->table;
   }
-  Decisions& decisions = self->priv->decisions;
+  fusion::Decisions& decisions = self->priv->decisions;
   fusion::FuserOptions options = fuser_options(s, table != nullptr);
   if (!limits_fault(s).empty())
     options.limits = decisions.limits();  // set_property() is about to set them back
@@ -174,9 +176,9 @@ Time heard_until(CerberusPirFusion* self, Time time, bool live) {
   return live ? std::max(time, clock_now(self).value_or(time)) : time;
 }
 
-void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guint64 patience) {
+void warn_of(CerberusPirFusion* self, const std::vector<fusion::SilentSource>& silent, guint64 patience) {
   const std::string seconds = text::significant(static_cast<double>(patience) / GST_SECOND, 3).string();
-  for (const SilentPad& pad : silent) {
+  for (const fusion::SilentSource& pad : silent) {
     const char* what = pad.ended ? "The PIR readings have ended at" : "No PIR reading comes to";
     CERBERUS_ELEMENT_WARNING(
         self, RESOURCE, READ,
@@ -187,7 +189,8 @@ void warn_of(CerberusPirFusion* self, const std::vector<SilentPad>& silent, guin
 }
 
 void tell_changes(CerberusPirFusion* self) {
-  self->priv->decisions.tell([self](Time time, const CerberusFusion& fusion) {
+  self->priv->decisions.publish_changes([self](Time time, const fusion::Decisions::Outcome& outcome) {
+    const CerberusFusion fusion = as_fusion(outcome);
     const CerberusStamp stamp = self->priv->stamps.at(clock_time(time));
     gst_element_post_message(GST_ELEMENT(self),
                              cerberus_message_new_fusion(GST_OBJECT(self), &stamp, &fusion));
@@ -201,10 +204,14 @@ void decide_between_frames(CerberusPirFusion* self) {
   if (!now) return;
   Private& priv = *self->priv;
   const std::string head = priv.settings.snapshot().head;
-  auto told = priv.decisions.between(*now, head);
-  if (!told) return;
-  cerberus_fusion_set_head(&told->fusion, head.c_str());
-  gst_pad_push_event(priv.src, cerberus_event_new_fusion(&told->fusion));
+  const auto outcome =
+      priv.decisions.between(*now, [&](Time heard, Time frame_time, SensorSnapshot& snapshot) {
+        priv.inputs.listen(heard, frame_time, head, snapshot);
+      });
+  if (!outcome) return;
+  CerberusFusion fusion = as_fusion(*outcome);
+  cerberus_fusion_set_head(&fusion, head.c_str());
+  gst_pad_push_event(priv.src, cerberus_event_new_fusion(&fusion));
   tell_changes(self);
 }
 
@@ -259,24 +266,28 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     state.time = running_time(state.segment, GST_BUFFER_PTS(buffer.get())).value_or(state.time);
     if (!state.live) state.live = is_live(pad);
 
-    std::vector<SilentPad> silent;
-    // Not by ?: with nullopt, which GCC 12 gets wrong here under the sanitizers.
-    std::optional<guint64> max_wait;
-    if (state.live == false) max_wait = settings.max_wait;
-    if (!priv.inputs.frame_came(state.time, max_wait, silent)) return GST_FLOW_FLUSHING;
+    std::vector<fusion::SilentSource> silent;
+    const bool waits = state.live == false;
+    const Time max_wait = settings.max_wait == GST_CLOCK_TIME_NONE ? Time::max() : time_of(settings.max_wait);
+    if (!priv.inputs.frame_came(state.time, waits ? max_wait : Time::zero(), silent))
+      return GST_FLOW_FLUSHING;
     const Time heard = heard_until(self, state.time, state.live == true);
-    if (state.live != false && settings.lost_after > 0)
+    if (!waits && settings.lost_after > 0)
       priv.inputs.give_up_silent(heard, time_of(settings.lost_after), silent);
-    warn_of(self, silent, max_wait ? *max_wait : settings.lost_after);
+    warn_of(self, silent, waits ? settings.max_wait : settings.lost_after);
     const CerberusPose* carried = cerberus_buffer_peek_pose(buffer.get());
     const bool by_event = !(carried && is_named(*carried, settings.head)) &&
                           (state.live == true || priv.pose_thread.poses_count(GST_ELEMENT(self)));
-    const Decisions::Told told =
-        priv.decisions.frame(buffer.get(), state.time, heard, settings.head, state.live == true, by_event);
-    pass_base_on(self, state.time, told.moment);
-    warn_of_misfits(self, settings, told.moment);
+    const auto outcome = priv.decisions.frame(
+        state.time, heard, state.live == true, [&](Time until, std::vector<fusion::Track>& tracks) {
+          read_tracks(buffer.get(), tracks);
+          return priv.inputs.at(state.time, until, settings.head, by_event, buffer.get());
+        });
+    const CerberusFusion fusion = as_fusion(outcome);
+    pass_base_on(self, state.time, outcome.snapshot);
+    warn_of_misfits(self, settings, outcome.snapshot);
     buffer.reset(gst_buffer_make_writable(buffer.release()));
-    cerberus_buffer_set_fusion(buffer.get(), &told.fusion);
+    cerberus_buffer_set_fusion(buffer.get(), &fusion);
     priv.stamps.mark(pad, buffer.get(), clock_time(state.time), settings.camera_name);
     tell_changes(self);
     return gst_pad_push(priv.src, buffer.release());
@@ -344,11 +355,11 @@ void listen(Private& priv, GstEvent* event) {
   const std::string head = priv.settings.snapshot().head;
   if (pose && is_named(*pose, head)) {
     priv.pose_thread.on_pose(pose->head);
-    priv.inputs.hear(*pose);
+    priv.inputs.add_pose(*pose);
   } else if (pose)
-    priv.inputs.hear_stranger(*pose);
+    priv.inputs.add_stranger(*pose);
   else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
-    priv.inputs.hear_base(base->yaw_rate, time_of(base->valid_from));
+    priv.inputs.add_base(base->yaw_rate, time_of(base->valid_from));
 }
 
 gboolean src_event(GstPad* pad, GstObject* parent, GstEvent* event) {

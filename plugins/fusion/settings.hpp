@@ -11,7 +11,7 @@
 
 namespace cerberus::plugin {
 
-using Time = std::chrono::nanoseconds;
+using fusion::Time;
 
 enum Rules { RULES_COMPLETE, RULES_PAPER };
 

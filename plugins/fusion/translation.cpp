@@ -4,33 +4,27 @@
 #include <algorithm>
 
 #include "sensing/angles.h"
-#include "settings.hpp"
 #include "shared/choices.hpp"
+#include "shared/clock_times.hpp"
 #include "text/numbers.h"
 
 namespace cerberus::plugin {
 
 namespace {
 
-// As somebody would write it: -30, not -29.999999999999986.
+// Rounded to a millionth of a degree: -30, not -29.999999999999986.
 double degrees_told(double radians) {
   return text::round_to(sensing::degrees(radians), 6);
 }
 
 }  // namespace
 
-const gchar* RuleName::of(std::string_view name) {
-  if (!interned_ || name_ != name) {
-    name_ = name;
-    interned_ = g_intern_string(name_.c_str());
-  }
-  return interned_;
-}
-
-CerberusFusion as_fusion(const fusion::Decision& decision, const SensorSnapshot& moment, RuleName& name) {
+CerberusFusion as_fusion(const fusion::Decisions::Outcome& outcome) {
+  const fusion::Decision& decision = outcome.decision;
+  const fusion::SensorSnapshot& moment = outcome.snapshot;
   CerberusFusion fusion;
   cerberus_fusion_init(&fusion);
-  if (!decision.rule_name.empty()) fusion.rule_name = name.of(decision.rule_name);
+  if (!decision.rule_name.empty()) fusion.rule_name = g_intern_string(decision.rule_name.data());
   fusion.rule = decision.rule;
   fusion.action = told(decision.action);
   fusion.target = decision.target;
@@ -44,6 +38,7 @@ CerberusFusion as_fusion(const fusion::Decision& decision, const SensorSnapshot&
   std::transform(moment.bearings.begin(), moment.bearings.begin() + static_cast<std::ptrdiff_t>(moment.count),
                  std::begin(fusion.bearings), degrees_told);
   fusion.doubtful = decision.doubtful;
+  fusion.decided = clock_time(outcome.decided);
   return fusion;
 }
 

@@ -4,24 +4,10 @@
 
 #include <cerberus/cerberus.h>
 
-#include <string>
-#include <string_view>
-
-#include "fusion/fuser.h"
-#include "inputs.hpp"
+#include "fusion/decisions.h"
 
 namespace cerberus::plugin {
 
-// The name of the last rule, interned: looked up again only when it is another one.
-class RuleName {
- public:
-  const gchar* of(std::string_view name);
-
- private:
-  std::string name_;
-  const gchar* interned_ = nullptr;
-};
-
-CerberusFusion as_fusion(const fusion::Decision& decision, const SensorSnapshot& moment, RuleName& name);
+CerberusFusion as_fusion(const fusion::Decisions::Outcome& outcome);
 
 }  // namespace cerberus::plugin

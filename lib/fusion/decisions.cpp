@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fusion/decisions.h"
+
+#include <algorithm>
+
+namespace cerberus::fusion {
+namespace {
+
+// Tracks that are older than this decide nothing between two frames.
+constexpr Time kBetween = std::chrono::seconds(1);
+
+}  // namespace
+
+bool Decisions::Change::replaces(const Change& newer, const Change& older) {
+  const Decision &a = newer.outcome.decision, &b = older.outcome.decision;
+  return a.rule == b.rule && a.rule_name == b.rule_name && a.action == b.action;
+}
+
+void Decisions::configure(const FuserOptions& options, const RuleTable& table) {
+  const std::lock_guard guard(lock_);
+  fuser_.set_table(table);
+  fuser_.set_options(options);
+}
+
+Interval Decisions::limits() const {
+  const std::lock_guard guard(lock_);
+  return fuser_.options().limits;
+}
+
+void Decisions::restart() {
+  fuser_.reset();
+  last_.reset();
+  heard_ = Time::zero();
+}
+
+void Decisions::begin_anew() {
+  const std::lock_guard guard(lock_);
+  restart();
+}
+
+void Decisions::end() {
+  const std::lock_guard guard(lock_);
+  last_.reset();
+}
+
+void Decisions::forget() {
+  const std::lock_guard guard(lock_);
+  restart();
+  fuser_ = {};
+  changes_.clear();
+}
+
+Decisions::Outcome Decisions::decide(const Frame& frame, Time at) {
+  const SensorSnapshot& snapshot = frame.snapshot;
+  if (snapshot.count > 0) {
+    sensing::Geometry geometry;
+    geometry.set(std::span(snapshot.bearings).first(snapshot.count),
+                 std::span(snapshot.fields_of_view).first(snapshot.count));
+    fuser_.set_geometry(geometry);
+  }
+  Outcome outcome{fuser_.update({.time = frame.time,
+                                 .heard = heard_,
+                                 .tracks = tracks_,
+                                 .sensors = std::span(snapshot.sensors).first(snapshot.count),
+                                 .pan = sensing::radians(snapshot.pan_degrees),
+                                 .base_yaw_rate = sensing::radians(snapshot.base_degrees)}),
+                  snapshot, heard_};
+  // The name outlives the rule table.
+  auto name = names_.find(outcome.decision.rule_name);
+  if (name == names_.end()) name = names_.emplace(outcome.decision.rule_name).first;
+  outcome.decision.rule_name = *name;
+  if (outcome.decision.changed) changes_.put({at, outcome});
+  return outcome;
+}
+
+// A decision between two frames may have used later readings than this frame's: they stay in use. Where the difference
+// is larger than any disorder, running time began anew.
+Time Decisions::not_before_last(Time heard, bool live) const {
+  const bool later = heard < heard_ && heard_ - heard < sensing::Timeline<Reading>::kDisorder;
+  return live && later ? heard_ : heard;
+}
+
+bool Decisions::may_follow(Time heard) const {
+  return last_ && heard - last_->heard <= kBetween;
+}
+
+Decisions::Outcome Decisions::decide_frame(const Frame& frame, bool live) {
+  Outcome outcome = decide(frame, frame.time);
+  last_.reset();
+  if (live && !inputs_.flushing()) last_ = frame;
+  return outcome;
+}
+
+std::optional<Decisions::Outcome> Decisions::decide_between(const Frame& frame, Time heard) {
+  const auto same = [&](auto part) {
+    return std::ranges::equal(std::span(frame.snapshot.*part).first(frame.snapshot.count),
+                              std::span(last_->snapshot.*part).first(last_->snapshot.count));
+  };
+  // Other sensors are for the next frame.
+  if (!same(&SensorSnapshot::bearings) || !same(&SensorSnapshot::fields_of_view)) return std::nullopt;
+  if (same(&SensorSnapshot::sensors)) return std::nullopt;
+  heard_ = std::max(heard, heard_ + Time(1));
+  last_ = frame;
+  return decide(frame, heard_);
+}
+
+}  // namespace cerberus::fusion
