@@ -8,7 +8,7 @@ G_BEGIN_DECLS
 
 /**
  * CerberusCameraMotion:
- * @matrix: (array fixed-size=9): where the picture went from the previous frame to this one: a homography in row-major
+ * @matrix: (array fixed-size=9): motion of the picture from the previous frame to this one: a homography in row-major
  *     order, in pixels of the frame that it is attached to, pixel centres at whole numbers. A point (x, y) of the
  *     previous frame is found at ((m0 x + m1 y + m2) / w, (m3 x + m4 y + m5) / w), w = m6 x + m7 y + m8, in this one.
  * @from: running time of the previous frame, %GST_CLOCK_TIME_NONE where there is none
@@ -16,11 +16,11 @@ G_BEGIN_DECLS
  * @residual: RMS distance of that share from @matrix, in frame pixels
  * @still: the camera stands: @matrix is exactly identity
  * @scene_age: frames of this scene so far, this one included: 1 is the first frame after the start, a cut, a seek or a
- *     gap (it has no predecessor, and everybody drops history); 0 is unknown
+ *     gap (it has no predecessor, and all elements drop their history); 0 is unknown
  * @path_id: the same for all frames that @path connects; 0 is none
- * @path: (array fixed-size=9): where the picture went from the frame at which the path began to this one, as @matrix.
- *     Who missed frames in between learns from two frames of one path how the camera moved from one to the other: the
- *     later one's path times the inverse of the earlier one's
+ * @path: (array fixed-size=9): motion of the picture from the frame at which the path began to this one, as @matrix.
+ *     The motion between any two frames of one path, also with dropped frames in between, is the later one's path times
+ *     the inverse of the earlier one's
  *
  * The camera's own motion between two consecutive frames.
  *
@@ -47,7 +47,7 @@ struct _CerberusCameraMotion {
  * @motion: the camera's motion
  *
  * Carries a #CerberusCameraMotion on a video buffer. Scaled with the picture, lost where it is cropped; videoflip keeps
- * it as it is, which is wrong, and gives nobody a chance to notice. At most one a buffer.
+ * it unchanged, which is wrong and cannot be detected. At most one a buffer.
  *
  * Since: 0.1
  */
@@ -142,7 +142,7 @@ void cerberus_camera_motion_set_matrix(CerberusCameraMotion* motion, const gdoub
  * @out_x: (out) (optional): column in this frame, pixels
  * @out_y: (out) (optional): row in this frame, pixels
  *
- * Tells where a point of the previous frame that stands in the scene is found in this frame.
+ * Computes the place in this frame of a point of the previous frame that is at rest in the scene.
  *
  * Returns: %FALSE if the point lies on the transform's horizon (nothing is written then).
  *

@@ -21,7 +21,7 @@ G_BEGIN_DECLS
  * @CERBERUS_REGION_COASTED: carried on by its velocity, nothing was measured in this frame
  * @CERBERUS_REGION_STOPPED: it stopped moving and is held where it was
  *
- * How a region's place is known.
+ * How a region's place was determined.
  *
  * Since: 0.1
  */
@@ -29,13 +29,13 @@ typedef enum { CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_ST
 
 /**
  * CerberusRegionKind:
- * @CERBERUS_REGION_KIND_PERSON_LIKE: one whole object of the size of a person (or of what else is looked for): its box
- *   can be trusted
+ * @CERBERUS_REGION_KIND_PERSON_LIKE: one whole object of the size of a person (or of other objects looked for): its box
+ *   is reliable
  * @CERBERUS_REGION_KIND_GROUP: as high as a person and wider: several people, or one with something
  * @CERBERUS_REGION_KIND_PART: too low for a person: a piece of one
  * @CERBERUS_REGION_KIND_THING: neither: much larger, solid, or in a scene whose people's height is not known yet
  *
- * What a region is, as far as its size and the people of the scene say. Nothing is verified by it.
+ * What a region is, judged by its size and by the people of the scene. It is not verified.
  *
  * Since: 0.1
  */
@@ -61,7 +61,7 @@ typedef enum {
  * @vy: speed downwards, frame pixels a second, the camera's motion taken out; both as the video is played: backwards
  *     they are the other way round
  * @age: time since the object was first seen
- * @state: how its place is known
+ * @state: how its place was determined
  * @bearing: direction of its centre from the camera's axis (the head's
  *     pan is not in it), degrees, positive to the right; NaN if unknown
  * @distance: metres from the camera; NaN if unknown
@@ -70,8 +70,8 @@ typedef enum {
  * which other elements and tools read.
  *
  * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do
- * not turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them as
- * they are, which is wrong, and gives nobody a chance to notice.
+ * not turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them
+ * unchanged, which is wrong and cannot be detected.
  *
  * Since: 0.1
  */
@@ -225,8 +225,8 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
 /**
  * cerberus_buffer_set_regions:
  * @buffer: a writable buffer
- * @regions: (element-type CerberusRegion) (nullable): the result of a detector, copied: an empty array says that it
- *   found nothing; %NULL says that no detector has looked
+ * @regions: (element-type CerberusRegion) (nullable): the result of a detector, copied: an empty array if it found
+ *   nothing; %NULL if no detector has analysed @buffer
  *
  * Replaces all regions of @buffer.
  *
@@ -242,10 +242,10 @@ gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions);
  * cerberus_buffer_regions_known:
  * @buffer: a buffer
  *
- * Tells a frame on which nothing was found from one on which no detector has looked. The knowledge goes where regions
- * go: it survives copying, converting, scaling and encoding, and is lost where a picture is cropped.
+ * Distinguishes a frame on which nothing was found from one that no detector has analysed. The mark follows the picture
+ * as regions do: it survives copying, converting, scaling and encoding, and is lost where a picture is cropped.
  *
- * Returns: %TRUE if a detector upstream has looked at @buffer, whether it found something or not.
+ * Returns: %TRUE if a detector upstream has analysed @buffer, with or without a result.
  *
  * Since: 0.1
  */
@@ -256,9 +256,9 @@ gboolean cerberus_buffer_regions_known(GstBuffer* buffer);
  * cerberus_buffer_get_regions:
  * @buffer: a buffer
  *
- * Reads all regions, in the order in which they were attached; cerberus_buffer_regions_known() says what it means that
- * there are none. Where the picture was scaled since, positions and speeds
- * follow it, to fractions of a pixel. Regions of interest that others attached are not returned.
+ * Reads all regions, in the order in which they were attached; if there are none, cerberus_buffer_regions_known()
+ * returns whether a detector has analysed @buffer. If the picture was scaled since, positions and speeds follow it, to
+ * fractions of a pixel. Regions of interest that other elements attached are not returned.
  *
  * Returns: (transfer container) (element-type CerberusRegion): copies of the regions, possibly none; release with
  *     g_ptr_array_unref(), which frees the regions too.
@@ -272,8 +272,8 @@ GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer);
  * cerberus_buffer_remove_regions:
  * @buffer: a writable buffer
  *
- * Removes all regions that cerberus_buffer_add_region() attached, and the knowledge that a detector has looked; regions
- * of interest of others stay.
+ * Removes all regions that cerberus_buffer_add_region() attached, and the mark that a detector has analysed @buffer;
+ * regions of interest of other elements stay.
  *
  * Since: 0.1
  */

@@ -23,9 +23,9 @@ typedef enum { CERBERUS_UTC_UNKNOWN, CERBERUS_UTC_REFERENCE_TIMESTAMP, CERBERUS_
  * @utc_source: where @utc comes from
  * @camera_name: the camera's name; interned, not to be freed; %NULL if it has none
  *
- * When and by which camera something was seen. Each message carries one in the fields `running-time` (uint64), and
+ * The time and the camera of an observation. Each message carries one in the fields `running-time` (uint64), and
  * where they are known `utc` (uint64), `utc-source` (string: `reference-timestamp` or `clock`) and `camera-name`
- * (string). The first element that knows more than the running time attaches one to the buffer for the others.
+ * (string). The first element that has more than the running time attaches one to the buffer for the others.
  */
 typedef struct _CerberusStamp CerberusStamp;
 struct _CerberusStamp {

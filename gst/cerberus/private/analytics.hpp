@@ -3,8 +3,8 @@
 // entry where the region is tracked. Nothing happens where GStreamer has none.
 //
 // Entries cannot be taken out of a relation meta again, so ours come out only as a whole: `ours` is the
-// number of entries that our regions on the buffer stand for, and a meta that holds more belongs to somebody
-// else too.
+// number of entries that our regions on the buffer stand for, and a meta that holds more also has entries of
+// other elements.
 #pragma once
 
 #include "compat.hpp"
@@ -30,8 +30,8 @@ struct Detection {
 
 #if CERBERUS_ANALYTICS
 
-// Returns how many entries were added. A meta shared with strangers gets tracked regions only: those that a
-// tracker is going to replace would stay for ever.
+// Returns how many entries were added. To a meta that also has entries of other elements only tracked regions are
+// added: regions that a tracker is going to replace could not be removed.
 inline guint add(GstBuffer* buffer, const Detection& d, guint ours) {
   GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(buffer);
   if (!meta) meta = gst_buffer_add_analytics_relation_meta(buffer);
@@ -54,7 +54,8 @@ inline guint add(GstBuffer* buffer, const Detection& d, guint ours) {
   return 2;
 }
 
-// Only detections of our types in `meta`? A meta may have been lost on the way (scaling, 1.24) and another one added.
+// Returns whether `meta` holds only detections of our types. A meta may have been lost (scaling, 1.24) and another
+// added.
 inline bool looks_like_ours(GstAnalyticsRelationMeta* meta) {
   gpointer state = nullptr;
   GstAnalyticsODMtd detection;

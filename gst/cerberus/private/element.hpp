@@ -71,8 +71,7 @@ class TypeBuilder {
     g_assert(G_OBJECT_CLASS(klass)->finalize == finalize);  // Private's destructor is the finalizer
   }
 
-  // A constructor that throws ends the program here, as GLib does when memory runs out: nobody
-  // can tell g_object_new() of a failure.
+  // A constructor that throws ends the program here, as GLib does when memory runs out: g_object_new() cannot fail.
   static void init(Self* self) noexcept {
     self->priv = ::new (G_STRUCT_MEMBER_P(self, private_offset)) Private();
     Traits::init(self);

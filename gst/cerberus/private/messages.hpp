@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Errors, warnings and information for the application, as by GStreamer's macros of these names (which nobody else
-// uses). This is the one place where words of a user's, a file's or a driver's enter them: whoever writes a message
-// quotes them as they are. A text is (format, arguments...), (a whole string), which may hold anything, or (nullptr).
+// Errors, warnings and information for the application, as by GStreamer's macros of these names, which are used only
+// here. Texts of users, files and drivers are made printable only here: callers quote them unchanged. A text is
+// (format, arguments...), (a whole string), which may hold anything, or (nullptr).
 //
 //   CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS, ("No driver \"%s\".", name.c_str()), (error.detail));
 #pragma once
@@ -25,12 +25,12 @@ inline std::string words(const std::string& whole) noexcept {
 G_GNUC_PRINTF(1, 2) inline std::string words(const char* format, ...) noexcept {
   va_list arguments;
   va_start(arguments, format);
-  g_autofree gchar* text = gst_info_strdup_vprintf(format, arguments);  // it knows GST_PTR_FORMAT
+  g_autofree gchar* text = gst_info_strdup_vprintf(format, arguments);  // supports GST_PTR_FORMAT
   va_end(arguments);
   return printable(text);
 }
 
-// Where the message comes from.
+// The source of the message.
 struct Origin {
   GstDebugCategory* category;
   const char* file;

@@ -22,7 +22,7 @@ GType register_meta_api(const char* name, Tags... tags) {
 }
 
 // A meta that carries one plain C structure, at most one a buffer. kValue: the member of the meta that it is; kInit
-// makes it one that says nothing; kInfo: the meta's info, which comes from register_as().
+// sets its empty value; kInfo: the meta's info, which comes from register_as().
 template <auto kValue, auto kInit, const GstMetaInfo* (*kInfo)()>
 class ValueMeta;
 

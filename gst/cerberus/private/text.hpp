@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Words of a user's or of a file's, on their way into a message.
+// Makes texts of users and files fit for messages.
 #pragma once
 
 #include <glib.h>
@@ -9,8 +9,8 @@
 
 namespace cerberus {
 
-// A message is UTF-8 or whoever reads it fails, and ends at the first NUL: bytes that are no UTF-8, and control
-// characters but the line feed, are written as \xNN. noexcept: as where GLib has no memory left, the program ends.
+// Messages must be UTF-8 without NUL: other bytes, and control characters except the line feed, are written as \xNN.
+// noexcept: without memory the program ends, as in GLib.
 inline std::string printable(std::string_view text) noexcept {
   constexpr char kDigits[] = "0123456789abcdef";
   std::string result;

@@ -11,7 +11,7 @@
 
 namespace cerberus {
 
-// What is said where gst_video_info_from_caps() fails.
+// The error text when gst_video_info_from_caps() fails.
 constexpr char kCapsIncomplete[] =
     "The video's caps are incomplete: they need a format, a width and a height.";
 
@@ -30,8 +30,8 @@ inline guint8* component_data(const GstVideoFrame* frame, guint component) {
 }
 
 // A mapped frame, unmapped at the end of its life. False where the buffer cannot be mapped or is too small
-// for its caps (truncated files). Where a GstVideoCropMeta says that the picture is a part of what is in memory, as
-// `videocrop` writes it for sinks that crop themselves, that part is the frame.
+// for its caps (truncated files). If a GstVideoCropMeta declares a part of the memory as the picture, as `videocrop`
+// does for sinks that crop themselves, that part is the frame.
 class VideoFrame {
  public:
   VideoFrame(const GstVideoInfo& info, GstBuffer* buffer, GstMapFlags flags) {
