@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Objects that several threads hold, and that are used again once no holder is left: the steady state allocates nothing.
+// Objects shared by several threads and reused once the last reference is dropped: the steady state allocates nothing.
 #pragma once
 
 #include <atomic>
@@ -65,7 +65,8 @@ class Pool {
     node->holders = 1;
     return Shared<T>(node.release());
   }
-  // Bytes of the objects that wait to be used again; bytes_of(object) says what one holds outside itself.
+  // Returns the bytes of the objects that wait to be reused; bytes_of(object): bytes that an object owns outside
+  // itself.
   template <typename BytesOf>
   std::size_t bytes(BytesOf&& bytes_of) const {
     const std::lock_guard guard(store_->lock);

@@ -52,12 +52,12 @@ struct DetectorFrame {
   struct Look {
     double pan = 0, tilt = 0;  // radians
   };
-  std::optional<Look> look;  // of the camera when the frame was taken, where a head's pose says it
+  std::optional<Look> look;  // of the camera when the frame was taken, if a head's pose gives it
   bool everything = false;   // D(k-1) and the labels are made too: an element reads them
 };
 
-// Each stage function writes its own field and needs those before it, but for the camera: `frame.motion` says what is
-// known of it, whether it was measured here or elsewhere. Memory of a stage is taken when it runs first; the steady
+// Each stage function writes its own field and needs those before it, except the camera: `frame.motion` holds its
+// motion, whether it was measured here or elsewhere. Memory of a stage is allocated when it runs first; the steady
 // state allocates nothing.
 class Detector {
  public:
@@ -74,8 +74,8 @@ class Detector {
   Record begin(const LumaSource& picture);
   Record copy(const Analysis& record, Stage end);
 
-  // Writes `camera` and sets frame.motion to it; where a cut begins a new scene, frame.fresh too. prior: where the head
-  // says that the picture went since the previous frame, frame pixels.
+  // Writes `camera` and sets frame.motion to it; where a cut begins a new scene, frame.fresh too. prior: the motion
+  // of the picture since the previous frame that follows from the head's poses, frame pixels.
   void measure_camera(Analysis& record, DetectorFrame& frame, const std::optional<Transform>& prior = {});
   void find_differences(Analysis& record, const DetectorFrame& frame);
   void find_foreground(Analysis& record, const DetectorFrame& frame);
