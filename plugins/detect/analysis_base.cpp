@@ -74,7 +74,7 @@ AnalysisPrivate& priv_of(gpointer instance) {
 
 GstBaseTransformClass* parent_class();
 
-// By the first frame after caps or RECONFIGURE everybody downstream knows the caps.
+// Queries at the first frame after caps or RECONFIGURE, when all elements downstream have received the caps.
 void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
   if (!priv.ask.exchange(false)) return;
   priv.wanted = ask_for_record(GST_BASE_TRANSFORM_SRC_PAD(trans));
@@ -101,8 +101,8 @@ void complain_of_times(GstBaseTransform* trans, AnalysisPrivate& priv, bool back
 // A frame, and what is wrong with its place in the stream.
 struct Begun {
   Frame frame;
-  bool cut = false;        // it says itself that it does not continue the stream
-  bool broken = false;     // this stage, and none before, must begin anew though no picture says so
+  bool cut = false;        // the frame itself is marked as not continuing the stream
+  bool broken = false;     // this stage, and none before, must begin anew although the picture shows no cut
   bool backwards = false;  // so do the timestamps; likewise
 };
 
@@ -121,8 +121,8 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
 
   const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
   const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
-  // A mark of DISCONT may be a cut or dropped frames. Who measures
-  // the camera sees a cut among dropped frames, and tells the others.
+  // A mark of DISCONT may be a cut or dropped frames. The element that
+  // measures the camera detects a cut among dropped frames, and publishes it.
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
                       !(measures && priv.history.misses_frames(frame.running_time, nominal));
   if (marked) priv.history.drop();
@@ -143,8 +143,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   return begun;
 }
 
-// A scene that ends before anybody in it can be confirmed blinds a stage; who does not know sees nothing at all, and no
-// reason.
+// Warns of scenes that end before a track can be confirmed: the stage then finds nothing, without a visible cause.
 void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, const Begun& begun) {
   constexpr int kMany = 8;          // such scenes in a row
   constexpr int kFrames = 5;        // as many it takes, the first regions are the third one's,
@@ -181,7 +180,7 @@ void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
 GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
   AnalysisPrivate& priv = priv_of(trans);
   return guarded(trans, GST_FLOW_ERROR, [&] {
-    // A buffer that says itself that it is a placeholder: nothing to see, and no scene ends with it.
+    // A buffer marked as a placeholder has no picture and ends no scene.
     if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
     ask_downstream(trans, priv);
     check_settings(trans, priv);
@@ -194,8 +193,8 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
       return GST_FLOW_OK;
     }
 
-    // The picture is not there: the frame goes on as it came, and whoever follows is told by the flag. The next frame
-    // is compared with the last one that was seen.
+    // The buffer has no valid picture: the frame is passed on unchanged, marked by a flag. The next frame is compared
+    // with the last valid one.
     priv.history = history;
     priv.camera = camera;
     --priv.number;
@@ -281,7 +280,7 @@ gboolean query(GstBaseTransform* trans, GstPadDirection direction, GstQuery* que
 }
 
 gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
-  // Sent, among others, when somebody is linked downstream.
+  // Sent, among others, when an element is linked downstream.
   if (GST_EVENT_TYPE(event) == GST_EVENT_RECONFIGURE) priv_of(trans).ask = true;
   guarded(trans, [&] { priv_of(trans).analyser->upstream_event(event); });
   return parent_class()->src_event(trans, event);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What every analysing element shares: frames go through untouched, in place and never copied; one of them at a time is
-// handed to the element's Analyser with all that is known about it.
+// The base of every analysing element: frames pass unchanged, in place and without a copy; one at a time is passed to
+// the element's Analyser with its context.
 //
-// The base decides what is not thinking: caps (progressive, 32 x 32 to 8192 x 8192: the pad templates), when history ends (see History and
-// below), the camera's motion as found on the buffer, buffers that hold no picture, the property analysis-width, and
-// that no exception leaves.
+// The base decides what is not thinking: caps (progressive, 32 x 32 to 8192 x 8192: the pad templates), when history
+// ends (see History and below), the camera's motion as found on the buffer, buffers that hold no picture, the property
+// analysis-width, and that no exception leaves.
 //
 // A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new
 // segment, DISCONT, a gap in time, a step back as wide as one, several buffers in a row without a
@@ -23,7 +23,7 @@
 
 namespace cerberus::plugin {
 
-// What was answered to elements upstream, and whether that has changed: then cerberus_analysis_answer_anew().
+// The last answer to elements upstream; if the answer changes, cerberus_analysis_answer_anew() is called.
 template <typename T>
 class Answer {
  public:
@@ -42,18 +42,18 @@ class Answer {
 class Analyser {
  public:
   virtual ~Analyser() = default;
-  // READY to PAUSED: begin with a clean slate; false after posting an error. stop(): give back memory.
+  // READY to PAUSED: begins in the initial state; returns false after posting an error. stop(): releases memory.
   virtual bool start() { return true; }
   virtual void stop() {}
-  // Looks at one frame and attaches what it found. False: the buffer does not hold the picture its caps promise.
+  // Analyses one frame and attaches the results. Returns false if the buffer does not hold the picture of its caps.
   virtual bool analyse(Frame& frame) = 0;
-  // The last frame of the stream was seen.
+  // No further frame of the stream comes.
   virtual void end_of_stream() {}
-  // An event on its way upstream, which goes on whatever is done here. From any thread.
+  // Processes an event on its way upstream, which is passed on in any case. From any thread.
   virtual void upstream_event(GstEvent*) {}
-  // The query of record.hpp, from any thread: adds what this element wants; true: elements downstream are not asked.
+  // Answers the query of record.hpp, from any thread: adds this element's flags; true: it is not passed downstream.
   virtual bool answer(GstQuery*) { return false; }
-  // True for the one element that measures the camera itself.
+  // Returns true for the one element that measures the camera itself.
   virtual bool measures_camera() const { return false; }
 };
 
@@ -67,7 +67,7 @@ struct CerberusAnalysisClass {
 GType cerberus_analysis_get_type();
 // In type_init: `analyser` lives as long as the element.
 void cerberus_analysis_init_with(CerberusAnalysis* self, Analyser* analyser);
-// Elements upstream are to ask again.
+// Makes elements upstream query again.
 void cerberus_analysis_answer_anew(CerberusAnalysis* self);
 // The property analysis-width.
 int cerberus_analysis_width(const CerberusAnalysis* self);

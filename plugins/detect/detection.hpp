@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// An element of detection: vision::Detector's stages from `first` to `last` on the record of each frame. What is missing
-// of the record before `first` is made with the defaults; what was found goes on the buffer.
+// An element of detection: runs vision::Detector's stages from `first` to `last` on the record of each frame. Missing
+// fields of the record before `first` are computed with the defaults; the results are attached to the buffer.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -74,7 +74,7 @@ class Detection : public Analyser {
 
   const vision::Stage first_, last_;
   std::optional<State> state_;
-  HeadMotionMonitor carrier_;  // hears poses from any thread, so not part of the state
+  HeadMotionMonitor carrier_;  // receives poses in any thread, so not part of the state
   Answer<guint> answer_;
 };
 

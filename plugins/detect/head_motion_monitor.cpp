@@ -115,7 +115,7 @@ std::optional<vision::Transform> HeadMotionMonitor::look(GstElement* element, Fr
   return lens.turn(before_.look->pan, before_.look->tilt, now_.look->pan, now_.look->tilt);
 }
 
-// What the frame carries goes before what was heard, that before what is seen.
+// Priority: meta on the frame, then upstream event, then image estimate.
 void HeadMotionMonitor::tell_base(Frame& frame, double seen) {
   if (cerberus_buffer_peek_base(frame.buffer)) return;
   CerberusBase base;
@@ -137,7 +137,7 @@ void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision:
                                 const vision::Transform& motion, double confidence) {
   if (frame.fresh) base_.reset();
   if (!lens.known()) return tell_base(frame, kUnknown);
-  // A camera without a head, and one whose head has not told yet, is as one on a head that stands.
+  // Without a head, or before its first pose, the head is assumed to stand.
   const bool known = before_.look.has_value() == now_.look.has_value();
   const PanTilt from = known ? before_.look.value_or(PanTilt{}) : kStrange;
   const PanTilt to = known ? now_.look.value_or(PanTilt{}) : kStrange;

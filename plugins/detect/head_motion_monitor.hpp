@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What carries the camera: a head, as far as its poses are told, and below it a body. Puts on each frame where the head
-// looked and how fast the body turned, and compares what the head was told with what the picture shows.
+// Monitors what carries the camera: a head, by its published poses, and the base below it. Attaches the head's pose and
+// the base's yaw rate to each frame, and compares the commanded turn of the head with the turn of the picture.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -19,30 +19,30 @@ namespace cerberus::plugin {
 
 class HeadMotionMonitor {
  public:
-  // Everything, poses and rates too.
+  // Clears all state, poses and rates too.
   void forget();
-  // Another lens, another head: what was compared so far says nothing.
+  // Begins the comparison anew, for another lens or another head.
   void begin_comparison();
 
-  // An event that travels upstream, from any thread. `head`: whose poses count, empty: any.
+  // Processes an upstream event, from any thread. `head`: the head whose poses are used, empty: any.
   void hear(GstEvent* event, const std::string& head);
 
-  // For each frame look() and then compare(), in the streaming thread.
-  // Where the head looked, from the frame's own pose, else by what was heard; that is put on the frame. Returns where
-  // the picture went since the previous frame as far as the head says, frame pixels.
+  // Call look() and then compare() for each frame, in the streaming thread.
+  // Takes the head's pose from the frame or, without one, from the events, and attaches it to the frame. Returns the
+  // motion of the picture since the previous frame that follows from the poses, frame pixels.
   std::optional<vision::Transform> look(GstElement* element, Frame& frame, const std::string& head,
                                         const vision::Lens& lens);
-  // `motion` since the previous frame, frame pixels, and how sure it is. Puts the body's turning on the frame where it
-  // is known, and warns in the name of `element` of a head that does not do what it was told.
+  // `motion`: measured since the previous frame, frame pixels, with its confidence. Attaches the base's yaw rate to the
+  // frame if it is known, and posts a warning of `element` if the head does not execute its commands.
   void compare(GstElement* element, Frame& frame, const vision::Lens& lens, const vision::Transform& motion,
                double confidence);
 
  private:
-  // The head when a frame was taken; no look: nobody told.
+  // The head when a frame was taken; no look: unknown.
   struct Head {
     std::optional<motion::PanTilt> look;
     const gchar* name = nullptr;  // interned
-    bool commanded = false;       // it was heard; else who made the frame attached it, and knows
+    bool commanded = false;  // from a pose event; else attached by the source of the frame, which is exact
   };
   Head head_of(GstElement* element, Frame& frame, const std::string& head);
   void tell_base(Frame& frame, double seen);
@@ -52,7 +52,7 @@ class HeadMotionMonitor {
   control::SlipWatch pan_, tilt_;
 
   PoseThread pose_thread_;
-  std::mutex lock_;  // of what was told
+  std::mutex lock_;  // of the members below
   sensing::Timeline<CerberusPose> poses_;
   sensing::BaseRates told_base_;
 };

@@ -50,8 +50,8 @@ History::Step History::next(GstClockTime time, double nominal) {
 }
 
 // A stream without timestamps, one that loses them, and one whose stamps step back a little are taken as evenly spaced:
-// nothing says otherwise. After a step back the clock goes on by what was taken, so that the steps add up to the time
-// that the stamps tell once they are in order again.
+// there is no other information. After a step back the clock advances by the assumed steps, so that they add up to the
+// time of the stamps once these are in order again.
 void History::follow(Step& step, GstClockTime time, bool timed, double rhythm) {
   const double even = (1 + lost_) * rhythm;
   step.fresh = false;

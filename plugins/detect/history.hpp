@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// When a frame continues the ones before it, and when a new scene begins: the one place that decides it for every
-// analysing element. Knows nothing of pixels.
+// Decides whether a frame continues the ones before it or begins a new scene, for every analysing element, by times and
+// marks alone.
 #pragma once
 
 #include <gst/gst.h>
@@ -11,7 +11,8 @@ class History {
  public:
   // The next frame starts a scene: caps, segment, flush, DISCONT.
   void drop() { any_ = false; }
-  // A frame came without its picture. The next one follows the last that had one, unless too many are lost in a row.
+  // Records a frame without its picture. The next one follows the last with a picture, unless too many are lost in a
+  // row.
   void lose();
 
   // Running time of the last frame, or NONE.
@@ -19,16 +20,16 @@ class History {
 
   struct Step {
     bool fresh = true;       // no predecessor: everything learnt from earlier frames is dropped
-    bool broken = false;     // for the time alone: there was one
-    bool backwards = false;  // older than the frame before; if only a little, as if its time was not known
+    bool broken = false;     // there was a predecessor, but the time ended the scene
+    bool backwards = false;  // older than the frame before; if only a little, its time counts as unknown
     double seconds = 0;      // since the previous frame; 0: none, or not known
     GstClockTime previous = GST_CLOCK_TIME_NONE;  // running time of the previous frame, where it has one
   };
 
   // time: running time of the frame, or NONE. nominal: frame distance of the caps in seconds, 0 = variable.
   Step next(GstClockTime time, double nominal);
-  // Whether frames are missing between the last one and this:
-  // what a queue that leaks marks DISCONT, as others mark a cut.
+  // Returns whether frames are missing between the last one and this: a leaky queue marks the gap by DISCONT, as a cut
+  // is marked.
   bool misses_frames(GstClockTime time, double nominal) const;
 
  private:
@@ -38,7 +39,7 @@ class History {
   int lost_ = 0;      // since the last frame
   GstClockTime previous_ = GST_CLOCK_TIME_NONE;
   GstClockTime stamp_ = GST_CLOCK_TIME_NONE;  // of the last frame of this scene that had a time at all
-  GstClockTime clock_ = GST_CLOCK_TIME_NONE;  // what it was believed to be
+  GstClockTime clock_ = GST_CLOCK_TIME_NONE;  // the time that was assumed for it
   int late_ = 0;                              // frames in a row that were older than that
   double usual_ = 0;                          // smoothed distance between frames, s
 };

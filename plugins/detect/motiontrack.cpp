@@ -24,8 +24,8 @@
  *
  * Since: 0.1
  */
-// The paper tracks one target and says no more; see lib/vision/tracking/tracker.h for the method. Its limits of speed, 0.1 to 4
-// m/s (III), are the defaults in metres a second and count only while `horizontal-fov` is known.
+// The paper tracks one target without details; see lib/vision/tracking/tracker.h for the method. Its limits of speed,
+// 0.1 to 4 m/s (III), are the defaults in metres a second and count only while `horizontal-fov` is known.
 #include "detection.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(motiontrack_debug);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Settings with which nothing can ever be found: whoever made them is told, instead of waiting for ever.
+// Warns of settings with which nothing can ever be found.
 #pragma once
 
 #include <gst/gst.h>
@@ -12,8 +12,8 @@
 
 namespace cerberus::plugin {
 
-// Limits between which nothing lies; empty: something may. `what`: as in the properties minimum-... and maximum-...
-// possible: none is larger, 0 = not known. result: what comes of the two.
+// Returns a warning for limits that exclude every value, else an empty string. `what`: as in the properties minimum-...
+// and maximum-...; possible: the largest possible value, 0 = unknown; result: the consequence of the limits.
 inline std::string contradiction(const char* what, const vision::Range& range, double possible = 0,
                                  const char* result = "nothing can be found") {
   if (range.most > 0 && range.least > range.most)
@@ -25,7 +25,7 @@ inline std::string contradiction(const char* what, const vision::Range& range, d
   return {};
 }
 
-// Says each thing when it begins to be so, and not with every frame.
+// Posts each warning when its cause begins, and not with every frame.
 class NothingFound {
  public:
   void tell(GstElement* element, const std::string& why) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From patches to GStreamer: attached as a composition, or blended into a frame.
+// Passes patches to GStreamer: attached as a composition, or blended into a frame.
 #pragma once
 
 #include <gst/video/video-overlay-composition.h>
@@ -23,8 +23,8 @@ struct RectangleDeleter {
 };
 using RectanglePtr = std::unique_ptr<GstVideoOverlayRectangle, RectangleDeleter>;
 
-// Patches as rectangles of a composition. A patch that stays as it was keeps its rectangle: a sink that has uploaded it
-// needs not do so again.
+// Patches as rectangles of a composition. An unchanged patch keeps its rectangle, so that a sink that has uploaded it
+// need not do so again.
 class Composer {
  public:
   // The patches below the rectangles of `before` (may be null), which is not changed. Pixels are not copied.
@@ -40,7 +40,7 @@ class Composer {
 };
 
 // Draws the patches into a frame of CERBERUS_VIDEO_FORMATS, mapped for reading and writing.
-// gst_video_overlay_composition_blend() knows every format, but converts each row that a rectangle touches over the
+// gst_video_overlay_composition_blend() supports every format, but converts each row that a rectangle touches over the
 // frame's whole width, once a rectangle (measured on 768x576 I420 with 7 people: 0.9 ms a frame against 0.3).
 void blend(std::span<const overlay::Patch> patches, GstVideoFrame* frame);
 

@@ -141,7 +141,7 @@ void write_object(cerberus::text::JsonLine& line, const CerberusRegion& region) 
   line.key("distance").fixed(region.distance, kPixelDecimals).close('}');
 }
 
-// Facts that only a system with a head and sensors knows.
+// Writes the fields of a system with a head and sensors.
 void write_system(cerberus::text::JsonLine& line, GstBuffer* buffer, GstClockTime time) {
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
     const auto look =

@@ -162,8 +162,8 @@ GstCaps* both_ways(const GstCaps* caps) {
   return gst_caps_merge(with, without);
 }
 
-// Many accept any caps and know nothing of compositions (a file sink would lose the drawing): who really
-// draws them says so in the answer to the allocation query.
+// Returns whether an element downstream draws compositions, by its answer to the allocation query. Caps do not suffice:
+// many elements accept any caps without drawing compositions (a file sink would lose the drawing).
 bool downstream_draws(GstBaseTransform* transform, GstCaps* caps) {
   GstQuery* query = gst_query_new_allocation(caps, FALSE);
   const bool draws =
@@ -257,8 +257,8 @@ gboolean cerberus_motion_overlay_set_caps(GstBaseTransform* transform, GstCaps* 
 }
 
 // Before the first frame, and whenever downstream changes (another sink was linked, a window was opened): the caps may
-// stay the same while who draws does not. The base class asks nobody for memory where it works in place, so its
-// decide_allocation would not come.
+// stay the same while the drawing element changes. The base class sends no allocation query where it works in place, so
+// its decide_allocation would not be called.
 void decide(GstBaseTransform* transform, State& state) {
   GstCaps* caps = gst_pad_get_current_caps(transform->srcpad);
   if (!caps) return;
@@ -276,7 +276,7 @@ gboolean cerberus_motion_overlay_src_event(GstBaseTransform* transform, GstEvent
 gboolean cerberus_motion_overlay_sink_event(GstBaseTransform* transform, GstEvent* event) {
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_FLUSH_STOP:
-      cerberus_motion_overlay_self(transform)->priv->undecided = true;  // nobody answers while flushing
+      cerberus_motion_overlay_self(transform)->priv->undecided = true;  // queries fail while flushing
       [[fallthrough]];
     case GST_EVENT_SEGMENT:
     case GST_EVENT_STREAM_START:
@@ -352,7 +352,7 @@ std::string rule_text(const CerberusFusion& fusion) {
   return number.empty() || name.empty() ? number + name : number + " " + name;
 }
 
-// From the left behind to the right behind, as somebody in the robot's place would point at them.
+// Orders the sensors by bearing, from behind on the left to behind on the right.
 std::vector<overlay::Light> lights_of(const CerberusFusion& fusion) {
   std::vector<overlay::Light> lights;
   for (guint i = 0; i < fusion.n_sensors; ++i) lights.push_back({static_cast<int>(i) + 1, fusion.sensors[i]});

@@ -27,7 +27,7 @@ std::shared_ptr<const fusion::SensorArray> sensor_array(const CerberusPirInfo& i
 
 // ---- caps and segment
 
-// What cannot be used comes again with the next buffer: said once.
+// Posts the error once: unusable caps or segments come again with the next buffer.
 bool refuse(GstElement* element, GstPad* pad, const std::string& fault) {
   if (!std::exchange(pir_pad(pad).refused, true))
     CERBERUS_ELEMENT_ERROR(element, CORE, NEGOTIATION, ("Pad %s: %s", GST_PAD_NAME(pad), fault.c_str()),
@@ -89,7 +89,7 @@ bool segment_event(GstElement* element, GstPad* pad, GstEvent* event) {
 
 // ---- what covers time without a reading
 
-// Whoever speaks is there now, however old what he says is.
+// Returns the later of `time` and the clock's time: a source that sends is alive now, however old its data is.
 Time now_or(GstElement* element, Time time) {
   return std::max(time, clock_now(element).value_or(time));
 }
@@ -197,7 +197,7 @@ void append_levels(PirPad& pir, Time time, std::span<const float> volts) {
   append(time);
 }
 
-// A sensor that tells volts is watched here, as pirsrc watches its own.
+// Reports faults of sensors that send volts, as pirsrc does for its own.
 void report_faults(GstElement* element, GstPad* pad) {
   PirPad& pir = pir_pad(pad);
   for (std::size_t i = 0; i < pir.levels.presence().size(); ++i) {

@@ -230,8 +230,8 @@ void push_to_pirs(CerberusPirFusion* self, GstEvent* event) {
   }
 }
 
-// The sensors' sources see no frames: they are told how the base turns when that has changed enough to matter, and
-// before they forget it; that it stands is what they take silence for.
+// Sends the base's rate to the sensors' sources, which receive no frames: when it has changed enough to matter, and
+// before it expires there. Without events the sources assume that the base stands.
 void pass_base_on(CerberusPirFusion* self, Time time, const SensorSnapshot& moment) {
   constexpr double kMatters = 1;  // degrees a second
   const auto doubtful = [](double rate) { return std::abs(sensing::radians(rate)) > sensing::kDoubtfulTurn; };
@@ -315,7 +315,7 @@ gboolean video_event(GstPad* pad, GstObject* parent, GstEvent* event) {
     }
     case GST_EVENT_FLUSH_START:
       priv.inputs.set_flushing(true);
-      priv.decisions.end();  // whoever decides on a frame just now leaves none behind
+      priv.decisions.end();  // a decision that is in progress does not become the last one
       break;
     case GST_EVENT_FLUSH_STOP:
       priv.decisions.begin_anew();

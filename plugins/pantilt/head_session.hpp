@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Connects a head controller with the states, the clock and the bus of its sink: opens and closes the head by the
-// settings, calls tick() where the clock drives the head, and sends what the controller reports. Thread-safe where not
-// said otherwise.
+// settings, calls tick() where the clock drives the head, and sends the controller's reports. Thread-safe unless noted
+// otherwise.
 #pragma once
 
 #include <cerberus/fusion.h>
@@ -34,7 +34,7 @@ struct HeadSession {
   std::atomic<bool> watched = true;  // false: the head needs a ticker and the system has no thread for it
   std::mutex changing;               // keeps the ticker waiting
 
-  // From READY to PAUSED and back. False: an error message says why.
+  // From READY to PAUSED and back. Returns false after posting an error.
   bool open();
   void close();
   // Applies the settings. Limits that are refused are a warning, and the properties are set back to those in force.

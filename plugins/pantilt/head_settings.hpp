@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The properties of pantiltsink, and what they mean to lib/.
+// The properties of pantiltsink, and their conversion for lib/.
 #pragma once
 
 #include <span>

@@ -183,7 +183,7 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
   while (!session.playing)
     if (const GstFlowReturn flow = gst_base_sink_wait_preroll(session.sink); flow != GST_FLOW_OK) return flow;
   ask_whether_live(self);
-  if (!session.watched) return GST_FLOW_ERROR;  // which was said
+  if (!session.watched) return GST_FLOW_ERROR;  // an error message was posted before
   const GstVideoInfo& info = self.state.info;
   const Time length = running_length(duration, info, session.sink->segment);
   const auto newest = session.controller.newest();
@@ -273,9 +273,9 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   return done;
 }
 
-// The base class interrupts who waits with its lock held before each change of state but this one. `playing` changes
-// under the lock too: a frame that comes in the middle waits until the change is through. The head obeys nobody before
-// the base class plays and there is a thread that watches over it, which begins when all is said.
+// The base class interrupts waiting threads, with its lock held, before each change of state but this one. `playing`
+// changes under the lock too: a frame that arrives meanwhile waits until the change is complete. The head executes no
+// command before the base class plays and a thread runs its watchdog, which starts after all notifications were sent.
 GstStateChangeReturn play(HeadSession& session) {
   GstElement* element = GST_ELEMENT(session.sink);
   GstElementClass* base = GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class());
@@ -303,7 +303,7 @@ GstStateChangeReturn play(HeadSession& session) {
   if (changing) changing.unlock();
   guarded(element, [&] {
     session.send(out);
-    if (unwatched) session.halt_unwatched();  // last: whoever is told may change the state again
+    if (unwatched) session.halt_unwatched();  // last: a receiver of the message may change the state again
   });
   return done;
 }

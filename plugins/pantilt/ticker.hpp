@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The thread that lets the clock's time pass in a clock-driven element.
+// The thread that calls a clock-driven element at the clock's times.
 #pragma once
 
 #include <gst/gst.h>
@@ -12,7 +12,7 @@ namespace cerberus::plugin {
 
 class Ticker {
  public:
-  // Does what is due at the clock's time, returns that of the next call.
+  // Called with the clock's time; returns the time of the next call.
   using Tick = std::function<GstClockTime(GstClockTime)>;
 
   ~Ticker() { stop(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sleeps until a device has something to read, or as long as one likes; whoever unlocks the source ends that.
+// Sleeps until a device is readable or a time has passed; unlocking the source ends the sleep.
 #pragma once
 
 #include <gst/gst.h>
@@ -15,7 +15,7 @@ class DeviceWait {
   DeviceWait(const DeviceWait&) = delete;
   DeviceWait& operator=(const DeviceWait&) = delete;
 
-  // The device's descriptor, which may be another one each time; -1: there is none. While nobody sleeps.
+  // Sets the device's descriptor, which may change; -1: none. Must not be called during sleep().
   void watch(int fd) {
     if (fd == device_.fd) return;
     if (device_.fd >= 0) gst_poll_remove_fd(poll_, &device_);

@@ -140,7 +140,7 @@ void apply_preset(PirSettings& settings, const PirChosen& chosen) {
     settings.active_low = preset ? preset->options.active_low : defaults.active_low;
   if (!chosen[id_of("warm-up")])
     settings.warm_up = preset ? clock_time(preset->options.warm_up) : defaults.warm_up;
-  if (!chosen[id_of("field-of-view")])  // as somebody would write it: no 119.99999999999999
+  if (!chosen[id_of("field-of-view")])  // rounded: not 119.99999999999999
     settings.field_of_view =
         preset ? text::round_to(sensing::degrees(preset->field_of_view), 6) : defaults.field_of_view;
 }

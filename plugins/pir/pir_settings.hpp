@@ -49,11 +49,11 @@ struct PirSettings {
 std::span<const Property<PirSettings>> pir_properties();
 using PirChosen = std::bitset<64>;  // by property id: what the application set itself
 
-// Gives everything that a preset speaks of, and the application did not set, the preset's value.
+// Sets every property of the preset that the application did not set itself.
 void apply_preset(PirSettings& settings, const PirChosen& chosen);
 bool is_preset_property(guint id);
 
-// What the stream's caps say; the empty text, or what is wrong, for a user.
+// Writes the stream's caps into `info`. Returns an empty text, or an error for the user.
 std::string pir_info(const PirSettings& settings, CerberusPirInfo& info);
 drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors);
 sensing::PirOptions pir_options(const PirSettings& settings);

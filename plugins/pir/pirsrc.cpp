@@ -41,7 +41,8 @@
  *
  * Since: 0.1
  */
-// The sensors are lib/drivers', the model of each is sensing::PirModel, what is told when is drivers::SensorArray's.
+// lib/drivers reads the sensors, sensing::PirModel models each, drivers::SensorArray decides which reading is published
+// when.
 // Live, the element sleeps on the sensors' fd until the next thing that can happen (an edge, a deadline of a model, a
 // heartbeat). A device's stamps are monotonic time: the distance from the stamp to now is taken off the clock's now.
 // Not live, the stream is made as fast as it is taken, from the recording alone.
@@ -88,7 +89,7 @@ struct Private {
   bool live = false;
   bool late = false;      // the sensors were still being opened when the source began
   bool reported = false;  // what they failed of
-  int reporting = 0;      // who is just doing so
+  int reporting = 0;      // number of threads that report a failure
   bool flushing = false;
   std::condition_variable news;  // of these two
   SensorArray sensors;
@@ -99,7 +100,7 @@ CERBERUS_DEFINE_TYPE(CerberusPirSrc, cerberus_pir_src, GstPushSrc, GST_TYPE_PUSH
 
 // ---- time
 
-// What the sensors' clock says; lock held.
+// Returns the time of the sensors' clock; lock held.
 Time sensors_now(CerberusPirSrc* self) {
   const Private& priv = *self->priv;
   if (!priv.live) return priv.sensors.due();
@@ -118,7 +119,7 @@ GstClockTime running_time(CerberusPirSrc* self, Time time) {
 void report_failure(CerberusPirSrc* self) {
   Private& priv = *self->priv;
   std::unique_lock guard(priv.lock);
-  if (!priv.running) return;  // it is told otherwise, or nobody wants to know any more
+  if (!priv.running) return;  // open() returns the error itself, or the element stops
   const drivers::SensorError error = priv.sensors.error();
   if (!error || std::exchange(priv.reported, true)) return;
   ++priv.reporting;
@@ -129,7 +130,7 @@ void report_failure(CerberusPirSrc* self) {
   priv.news.notify_all();
 }
 
-// The end of the stream behind that: whoever hears of the end first would take it for a good one.
+// Ends the stream after a failure was reported: an EOS before the error would look like a regular end.
 GstFlowReturn end_of_failure(CerberusPirSrc* self) {
   report_failure(self);
   Private& priv = *self->priv;
@@ -138,8 +139,8 @@ GstFlowReturn end_of_failure(CerberusPirSrc* self) {
   return priv.flushing ? GST_FLOW_FLUSHING : GST_FLOW_EOS;
 }
 
-// At once: in PAUSED a live source makes no buffer that could end in an error. On a thread of GStreamer's, since a
-// message may keep whoever posts it.
+// Reports the failure at once: in PAUSED a live source makes no buffer that could end in an error. It is done on a
+// thread of GStreamer's, since posting a message may block.
 void refused(CerberusPirSrc* self) {
   gst_element_call_async(
       GST_ELEMENT(self),
@@ -397,7 +398,7 @@ gboolean event(GstBaseSrc* base, GstEvent* event) {
 }
 
 gboolean query(GstBaseSrc* base, GstQuery* query) {
-  // A reading leaves when it is made; whoever waits for slower streams may keep as many as it likes.
+  // A reading is pushed when it is made (latency 0); elements that wait for slower streams may queue any number.
   if (GST_QUERY_TYPE(query) == GST_QUERY_LATENCY) {
     gst_query_set_latency(query, gst_base_src_is_live(base), 0, GST_CLOCK_TIME_NONE);
     return TRUE;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What sensors say and what is wrong with them, as buffers and messages of an element.
+// Publishes the readings and the faults of sensors as buffers and messages of an element.
 #pragma once
 
 #include <cerberus/pir.h>
@@ -13,11 +13,11 @@
 namespace cerberus::plugin {
 
 void report_error(GstElement* element, const drivers::SensorError& error);
-// A warning that names the sensor (counted from 0) by its number and place; that it works again, for no fault.
+// Posts a warning that names the sensor (index from 0) by its number and place; without a fault, that it works again.
 void report_fault(GstElement* element, int sensor, sensing::PirFault fault, double bearing,
                   const std::string& place);
 
-// What a step of the sensors left to be said, outside the lock.
+// The results of one step of the sensors, to be published without the lock.
 struct News {
   drivers::SensorReading reading;
   GstClockTime time = 0;

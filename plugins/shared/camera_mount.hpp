@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How the camera stands in the room: the properties that motionregions and motiontrack share.
+// The mounting of the camera in the room: the properties that motionregions and motiontrack share.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -29,15 +29,15 @@ inline constexpr char kTiltBlurb[] =
 using sensing::degrees;
 using sensing::radians;
 
-// Where `pose` says that the head looked at `running_time`; nothing where
-// its numbers are none of a camera's: a stranger's may be anything.
+// Returns the head's direction at `running_time` from `pose`; nullopt if not finite or beyond 90 degrees of tilt: poses
+// from other elements are not trusted.
 inline std::optional<motion::PanTilt> look_of(const CerberusPose& pose, GstClockTime running_time) {
   double pan = 0, tilt = 0;
   cerberus_pose_evaluate(&pose, running_time, &pan, &tilt);
   if (!std::isfinite(pan) || !(std::abs(tilt) <= kMaximumTilt)) return std::nullopt;
   return motion::PanTilt{radians(pan), radians(tilt)};
 }
-// The same of the pose on a frame; nothing where it has none.
+// The same from the pose on a frame; nullopt without one.
 inline std::optional<motion::PanTilt> look_of(GstBuffer* frame, GstClockTime running_time) {
   const CerberusPose* pose = cerberus_buffer_peek_pose(frame);
   return pose ? look_of(*pose, running_time) : std::nullopt;

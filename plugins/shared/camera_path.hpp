@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the camera went since the last frame seen here, however many frames were dropped on the way: `cameramotion`
-// adds up what it measures (CameraPath), and two points of one path tell the rest of the corridor the way from one to
-// the other (CameraFollower). Where there is a path no time stamps are needed: whoever drops frames may have written them
-// anew.
+// The camera's motion since the last frame that reached this element, whatever number of frames was dropped in between:
+// `cameramotion` accumulates its measurements (CameraPath), and the other elements compute the motion between two
+// points of one path (CameraFollower). A path needs no time stamps, which an element that drops frames may have
+// rewritten.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -13,10 +13,10 @@
 
 namespace cerberus::plugin {
 
-// Of the one who measures.
+// The path as written by the measuring element.
 class CameraPath {
  public:
-  // Writes path and path_id; the rest of `motion` is known.
+  // Writes path and path_id; the other fields of `motion` are set already.
   void extend(CerberusCameraMotion& motion, vision::Size frame);
 
  private:
@@ -24,19 +24,19 @@ class CameraPath {
   guint id_ = 0;
 };
 
-// Of the others.
+// The path as read by the other elements.
 class CameraFollower {
  public:
   enum class Link {
-    unmeasured,  // nobody upstream measures the camera: it stands still
-    follows,     // the way from the last frame is known
+    unmeasured,  // no element upstream measures the camera: it is assumed to stand
+    follows,     // the motion since the last frame is known
     cut,         // cameramotion itself began a scene
-    lost         // it is not
+    lost         // the motion since the last frame is unknown
   };
   struct Step {
     Link link = Link::unmeasured;
     Motion motion;
-    bool connected = false;  // by its path, whatever times and marks of a break say
+    bool connected = false;  // by its path, whatever times and DISCONT marks indicate
   };
 
   void forget() { last_.reset(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GStreamer's times and lib's, and who goes by a clock.
+// Converts GStreamer's times to lib's and back; queries clock and liveness.
 #pragma once
 
 #include <gst/gst.h>
@@ -13,7 +13,7 @@ namespace cerberus::plugin {
 constexpr GstClockTime clock_time(std::chrono::nanoseconds time) {
   return static_cast<GstClockTime>(time.count());
 }
-// At most a quarter of what fits, 73 years: sums of some times stay times.
+// Limited to a quarter of the range, 73 years, so that sums of some times do not overflow.
 constexpr std::chrono::nanoseconds time_of(GstClockTime time) {
   return std::chrono::nanoseconds(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
 }
@@ -31,8 +31,8 @@ inline std::optional<std::chrono::nanoseconds> clock_now(gpointer element) {
   return time_of(time);
 }
 
-// Whether the source upstream of a sink pad is live; nothing where nobody answers (v4l2src without a frame rate): then
-// nobody may wait, and may ask again.
+// Returns whether the source upstream of a sink pad is live; nullopt without an answer (v4l2src without a frame rate):
+// the caller then must not wait, and may query again.
 inline std::optional<bool> is_live(GstPad* sinkpad) {
   g_autoptr(GstQuery) query = gst_query_new_latency();
   std::optional<bool> live;

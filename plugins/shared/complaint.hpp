@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One message a failure: upstream tries again with every frame what has failed.
+// Posts one message for each failure: upstream repeats with every frame what has failed.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@ namespace cerberus::plugin {
 
 class Complaint {
  public:
-  // What is wrong now; empty: nothing. True where that is to be told: it was not so, or otherwise, before.
+  // `wrong`: the present failure; empty: none. Returns true if it is to be posted: it is new or has changed.
   bool is_new(std::string_view wrong) {
     if (wrong == told_) return false;
     told_ = wrong;
     return !told_.empty();
   }
-  // Who begins anew is told anew.
+  // Begins anew: the next failure is posted again.
   void forget() { told_.clear(); }
 
  private:

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whether pose events count for the frames of a stream. Without a queue between this element and the head, the head
-// answers each frame in the thread that pushes it: every run has the same poses for the same frame. Through a queue the
-// answer arrives some frames later, and how many depends on the load of the machine. Live that is as good as it gets; in
-// a stream that is not live such poses are ignored, so that equal runs give equal results.
+// Decides whether pose events are used for the frames of a stream. Without a queue between this element and the head,
+// the head answers each frame in the thread that pushes it: every run has the same poses for the same frame. Through a
+// queue the answer arrives some frames later, and how many depends on the load of the machine. Live that is as good as
+// it gets; in a stream that is not live such poses are ignored, so that equal runs give equal results.
 #pragma once
 
 #include <gst/gst.h>
@@ -19,7 +19,7 @@ namespace cerberus::plugin {
 
 class PoseThread {
  public:
-  // A pose of the head that counts came, in any thread.
+  // A pose of the element's head was received, in any thread.
   void on_pose(const char* head) {
     const std::lock_guard guard(lock_);
     last_ = std::this_thread::get_id();

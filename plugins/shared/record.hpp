@@ -27,8 +27,8 @@ struct ThresholdFacts {
 const ThresholdFacts* threshold_facts_of(GstBuffer* buffer);
 void set_threshold_facts(GstBuffer* buffer, const ThresholdFacts& facts);
 
-// Does any element downstream want the record kept? Every element that does adds its flag, in each branch of a tee; so
-// the query is passed on, and whether it is answered says nothing.
+// Queries whether an element downstream needs the record. Every such element adds its flag, in each branch of a tee;
+// the query is therefore passed on, and its result is the flags, not the return value.
 enum : guint {
   kRecordForTracks = 1,   // as it is, as far as the motiontrack that takes it off
   kRecordForReaders = 2,  // with D(k-1) and the labels

@@ -62,7 +62,7 @@ class Stamps {
     return last_ = stamp;
   }
 
-  // frame(), and `buffer`, which is writable, carries it where it says more than the running time.
+  // As frame(), and attaches the stamp to `buffer`, which is writable, if it has more than the running time.
   CerberusStamp mark(GstPad* sink, GstBuffer* buffer, GstClockTime running_time, const std::string& name) {
     const CerberusStamp stamp = frame(sink, buffer, running_time, name);
     if (stamp.camera_name || GST_CLOCK_TIME_IS_VALID(stamp.utc)) cerberus_buffer_set_stamp(buffer, &stamp);

@@ -12,8 +12,8 @@
 
 namespace cerberus::plugin {
 
-// How long a frame or a gap of `duration` (none: as the rate of frames says) lasts in running time; 0: nobody knows.
-// Who waits for a head and who drives it count alike.
+// Returns the running time that a frame or a gap of `duration` (none: from the frame rate) lasts; 0: unknown. The
+// element that waits for a head and the one that drives it use the same values.
 inline motion::Time running_length(GstClockTime duration, const GstVideoInfo& info,
                                    const GstSegment& segment) {
   if (!GST_CLOCK_TIME_IS_VALID(duration))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The tracks on a frame as lib/fusion knows them: for whoever decides with a frame in hand.
+// Reads the tracks on a frame as those of lib/fusion, for elements that decide by frames.
 #pragma once
 
 #include <cerberus/cerberus.h>

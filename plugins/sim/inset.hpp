@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The whole scene, small, in the upper right corner of what virtualptz shows of it: attached to the frame as an overlay
-// composition. The frame's own pixels stay as they are, for those who look for motion in them; motionoverlay draws it,
-// and so does any sink that draws compositions.
+// composition. The frame's own pixels do not change, because motion is detected in them; motionoverlay draws the
+// composition, and so does any sink that draws compositions.
 #pragma once
 
 #include <gst/video/video.h>

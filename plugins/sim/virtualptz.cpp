@@ -44,7 +44,7 @@
  *
  * Since: 0.1
  */
-// This file only connects with GStreamer: lib/motion/pose_feed.h says when a pose is known, lib/motion/frame_times.h
+// This file only connects with GStreamer: lib/motion/pose_feed.h decides when a pose is known, lib/motion/frame_times.h
 // when frames are taken; window_view.hpp draws.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
@@ -219,8 +219,9 @@ void attach_pose(const State& state, motion::Pose pose, const vision::WindowGeom
   cerberus_buffer_set_pose(out, &meta);
 }
 
-// The wide camera stands, unless somebody upstream says otherwise: that the window moves a little otherwise than a head
-// turns (see lib/vision/geometry/window.h) must not look like a robot that does.
+// Attaches a base rate of 0, unless an element upstream has attached one: the wide camera stands. Without it, the small
+// difference between the window's motion and a head's turn (see lib/vision/geometry/window.h) would appear as a turn of
+// the base.
 void attach_base(GstBuffer* in, GstBuffer* out) {
   CerberusBase base;
   cerberus_base_init(&base);
@@ -317,7 +318,7 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   attach_base(in, out);
   if (state.view.draw(in, place, state.settings.inset, out)) return GST_FLOW_OK;
 
-  // The picture is not there: whoever follows is told by the flag.
+  // The buffer has no valid picture: the output is black and marked by a flag.
   const bool told = GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_CORRUPTED) || state.warned;
   gst_buffer_memset(out, 0, 0, gst_buffer_get_size(out));
   GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_CORRUPTED);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What virtualptz shows of a wide picture, frame by frame.
+// Draws virtualptz's window over a wide picture, frame by frame.
 #pragma once
 
 #include <gst/video/video.h>
@@ -17,14 +17,14 @@ class WindowView {
   using Place = vision::WindowGeometry::Place;
 
   WindowView();
-  // A window of this size into a picture of that one. Returns what is wrong, for people; empty: nothing.
+  // A window of this size into a picture of that one. Returns an error text for the user; empty: none.
   std::string begin(const GstVideoInfo& picture, const GstVideoInfo& window, const WindowSettings& settings);
-  // Other angles. Where something is wrong the old ones stay.
+  // Sets other angles. On an error the old ones stay in force.
   std::string set_angles(const WindowSettings& settings);
 
   const GstVideoInfo& picture() const { return picture_; }
   const vision::WindowGeometry& geometry() const { return geometry_; }
-  // False: a buffer does not hold the picture that its caps promise.
+  // Returns false if a buffer does not hold the picture of its caps.
   bool draw(GstBuffer* picture, const Place& place, bool with_inset, GstBuffer* window);
 
  private:
