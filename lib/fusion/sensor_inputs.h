@@ -38,8 +38,8 @@ class SensorInputs {
  public:
   // ---- video thread
   // A frame of `time` has come. It waits until every linked group covers `time`, for `max_wait` of real time at most
-  // (Time::max(): without end, zero: not at all); groups that are still missing then are given up and added to `silent`.
-  // False: the video was flushed meanwhile.
+  // (Time::max(): without end, zero: not at all); groups that are still missing then are given up and added to
+  // `silent`. False: the video was flushed meanwhile.
   bool frame_came(Time time, Time max_wait, std::vector<SilentSource>& silent);
   // For a video that does not wait: gives up the linked groups without a reading in the last `patience` before `heard`,
   // but for recordings, whose last reading stays true.
@@ -53,15 +53,15 @@ class SensorInputs {
   std::mutex& lock() { return lock_; }
   void set(bool& flag, bool value);  // and wakes the threads that wait
   // With the lock held:
-  void add_reading(SensorSource& source, Time until);  // it was heard of up to this time
+  void add_reading(SensorSource& source, Time until);  // the group is complete up to this time
   void end(SensorSource& source);                      // nothing more comes from it
-  // Waits while a recorded group is so far ahead of the video that its reading can be stored later; false: the video has
-  // ended.
+  // Waits while a recorded group is so far ahead of the video that its reading can be stored later; false: the video
+  // has ended.
   bool wait_for_video(std::unique_lock<std::mutex>& guard, const SensorSource& source, Time time);
 
   // ---- the groups by their places, with the lock held
-  // Rules know sensors by their places: a group whose number of sensors is not known keeps the place of one sensor, and so
-  // does a place without a group below one that has a group.
+  // Rules know sensors by their places: a group whose number of sensors is not known keeps the place of one sensor, and
+  // so does a place without a group below one that has a group.
   // The place that is asked for, or the first free one; nothing: it is taken, or kMaxSensors or more.
   std::optional<unsigned> free_place(std::optional<std::uint64_t> wanted) const;
   void add(SensorSource& source);
@@ -69,8 +69,8 @@ class SensorInputs {
   int places_besides(const SensorSource& source) const;
 
  protected:
-  // Puts the readings at `heard` in place of the snapshot's sensors, and forgets what no later frame can ask for. With the
-  // lock held.
+  // Puts the readings at `heard` in place of the snapshot's sensors, and forgets what no later frame can ask for. With
+  // the lock held.
   void read(Time heard, SensorSnapshot& snapshot);
   void forget();  // all but the groups' places; with the lock held
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A request pad of pirfusion: takes caps, segments and buffers of PIR readings and keeps what it heard. Nothing of it
-// goes anywhere else; what cannot be used is an error message of the element, which names the pad.
+// A request pad of pirfusion: receives caps, segments and buffers of PIR readings and stores the readings. Nothing is
+// passed on; unusable data is an error message of the element, which names the pad.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -23,7 +23,7 @@ struct PirPad : fusion::SensorSource {  // guarded by the inputs' lock
   CerberusPirInfo info;          // without sensors: no caps
   sensing::LevelSensors levels;  // what a stream of volts means
   sensing::LevelOptions level;
-  std::array<sensing::PirFault, sensing::kMaxSensors> faults{};  // of those sensors, as they were told
+  std::array<sensing::PirFault, sensing::kMaxSensors> faults{};  // of those sensors, as last reported
   bool complained = false;                                       // of buffers of the wrong size
   bool refused = false;  // its caps or segment: they come again with the next buffer
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What pirfusion can be told, and what that means to the fuser.
+// The properties of pirfusion, and their conversion for the fuser.
 #pragma once
 
 #include <string>
@@ -35,9 +35,9 @@ struct Settings {
 
 extern const std::span<const Property<Settings>> kProperties;
 
-// Why these cannot be; empty: they can.
+// Returns an error text for invalid limits; empty: they are valid.
 std::string limits_fault(const Settings& settings);
-// `own_table`: a table of the user's goes before `rules`.
+// `own_table`: a table of the user has priority over `rules`.
 fusion::FuserOptions fuser_options(const Settings& settings, bool own_table);
 
 }  // namespace cerberus::plugin

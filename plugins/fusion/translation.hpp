@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The decisions of the fuser as they ride on buffers.
+// Converts the decisions of the fuser to those on buffers.
 #pragma once
 
 #include <cerberus/cerberus.h>

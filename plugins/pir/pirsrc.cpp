@@ -119,7 +119,7 @@ GstClockTime running_time(CerberusPirSrc* self, Time time) {
 void report_failure(CerberusPirSrc* self) {
   Private& priv = *self->priv;
   std::unique_lock guard(priv.lock);
-  if (!priv.running) return;  // open() returns the error itself, or the element stops
+  if (!priv.running) return;  // start() posts the error itself, or the element was stopped
   const drivers::SensorError error = priv.sensors.error();
   if (!error || std::exchange(priv.reported, true)) return;
   ++priv.reporting;

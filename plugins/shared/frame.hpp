@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What an analysing element knows of the frame that it works on, besides its metas.
+// The context of the frame that an analysing element works on, besides its metas.
 #pragma once
 
 #include <gst/video/video.h>

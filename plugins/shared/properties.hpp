@@ -94,7 +94,7 @@ class Adjustable {
     changed_ = false;
     return settings_;
   }
-  // Next changes() tells all again: somebody begins anew.
+  // Makes the next changes() return all settings again, for a new start.
   void refresh() {
     const std::lock_guard guard(lock_);
     changed_ = true;
