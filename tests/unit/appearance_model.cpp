@@ -86,7 +86,7 @@ START_TEST(background_pixels_do_not_count) {
   wide.width += 20;
   ck_assert_double_lt(appearance_distance(alone, look_of(street, {}, wide)), 0.01);
   ck_assert(!look_of(street, {}, {100, 20, 20, 50}).known());
-  // Half a person tells as much as there is.
+  // Half a person gives as much evidence as is visible.
   Street cut(60, 20, 1, 0, {0, 20, 10, 50});
   ck_assert_double_lt(appearance_distance(alone, look_of(cut, {}, {-10, 20, 20, 50})), 0.01);
   ck_assert(!look_of(cut, {}, {-40, 20, 20, 50}).known());

@@ -96,7 +96,7 @@ START_TEST(a_mean_shift_is_taken_as_the_mean_angle) {
 }
 END_TEST
 
-START_TEST(an_unknown_lens_or_look_tells_nothing) {
+START_TEST(an_unknown_lens_or_pose_gives_no_turn) {
   ck_assert(std::isnan(base_turn({}, {}, kSize, {}, {}).yaw));
   ck_assert(std::isnan(base_turn({}, kLens, kSize, {kNan, 0}, {}).yaw));
 }
@@ -151,7 +151,7 @@ END_TEST
 START_TEST(while_a_head_starts_or_brakes_nothing_new_is_believed) {
   Frames frames;
   frames.run(10, 0);
-  // A head that is three frames late, 90 degrees a second: the picture stands, though the head was told to go.
+  // A head that is three frames late, 90 degrees a second: the picture stands although the head was commanded to turn.
   frames.run(3, -90, 90);
   frames.run(10, 0, 90);
   ck_assert_double_eq_tol(frames.rate(), 0, 1e-9);
@@ -186,7 +186,7 @@ int main() {
       "base_rate",
       {a_picture_that_goes_left_is_a_base_that_turns_right,
        a_heads_own_turn_leaves_nothing_and_a_bases_turn_remains, a_mean_shift_is_taken_as_the_mean_angle,
-       an_unknown_lens_or_look_tells_nothing, a_steady_turn_is_known_after_three_frames,
+       an_unknown_lens_or_pose_gives_no_turn, a_steady_turn_is_known_after_three_frames,
        a_frame_measured_wrongly_and_a_shaking_camera_are_no_turn, the_rate_is_the_mean_of_the_middle_half,
        time_that_does_not_go_on_begins_anew, while_a_head_starts_or_brakes_nothing_new_is_believed,
        what_was_seen_grows_stale_and_is_forgotten});

@@ -167,7 +167,7 @@ START_TEST(a_logo_that_blinks_is_no_foreground_five_seconds_after_the_start) {
 }
 END_TEST
 
-START_TEST(it_says_once_where_it_is) {
+START_TEST(its_place_is_reported_once) {
   World world;
   Box clock;
   int said = 0;
@@ -185,7 +185,7 @@ START_TEST(it_says_once_where_it_is) {
 }
 END_TEST
 
-START_TEST(somebody_who_comes_and_stands_waving_is_not_learnt) {
+START_TEST(a_person_who_comes_and_stands_waving_is_not_learnt) {
   World world;
   std::mt19937 random(5);
   int arm = 0, leg = 0;
@@ -206,7 +206,7 @@ START_TEST(somebody_who_comes_and_stands_waving_is_not_learnt) {
 END_TEST
 
 // Head and trunk keep their place to the pixel, which no head can do; arms and legs swing.
-START_TEST(somebody_whom_the_head_follows_is_not_learnt) {
+START_TEST(a_person_followed_by_the_head_is_not_learnt) {
   World world;
   while (world.seconds < 30) {
     const int swing = static_cast<int>(std::lround(7 * std::sin(8 * world.seconds)));
@@ -236,7 +236,7 @@ START_TEST(it_is_forgotten_when_it_vanishes) {
 END_TEST
 
 // What is foreground above and below the writing is so behind it, and nothing else there.
-START_TEST(somebody_behind_the_writing_stays_in_one_piece) {
+START_TEST(a_person_behind_the_writing_stays_in_one_piece) {
   World world;
   while (world.seconds < 8)
     world.see(0,
@@ -288,8 +288,8 @@ int main() {
   return cerberus::tests::run_suite(
       "burnt_in",
       {a_clock_is_no_foreground_five_seconds_after_the_start_the_camera_standing_or_turning,
-       a_logo_that_blinks_is_no_foreground_five_seconds_after_the_start, it_says_once_where_it_is,
-       somebody_who_comes_and_stands_waving_is_not_learnt, somebody_whom_the_head_follows_is_not_learnt,
-       it_is_forgotten_when_it_vanishes, somebody_behind_the_writing_stays_in_one_piece,
+       a_logo_that_blinks_is_no_foreground_five_seconds_after_the_start, its_place_is_reported_once,
+       a_person_who_comes_and_stands_waving_is_not_learnt, a_person_followed_by_the_head_is_not_learnt,
+       it_is_forgotten_when_it_vanishes, a_person_behind_the_writing_stays_in_one_piece,
        a_picture_that_flashes_teaches_nothing, it_allocates_at_the_first_frame_only});
 }

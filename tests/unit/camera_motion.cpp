@@ -68,7 +68,7 @@ START_TEST(a_real_pan_is_a_homography_and_found_without_a_word_from_the_head) {
 }
 END_TEST
 
-// A shift is off by up to 8 pixels at the corners; over the turn that the head told it need not be.
+// A shift is off by up to 8 pixels at the corners; on top of the head's reported turn it need not be.
 START_TEST(over_a_heads_turn_a_simple_model_is_as_good_as_a_homography) {
   const Lens lens(60 * M_PI / 180, kSize);
   const double pan = 3 * M_PI / 180, tilt = -0.5 * M_PI / 180;
@@ -118,12 +118,12 @@ START_TEST(objects_over_nearly_half_the_picture_do_not_move_the_camera) {
   camera.update(earlier.view());
   const CameraMotionResult r = camera.update(later.view());
   ck_assert_msg(disagreement(r.transform, truth) < 0.3, "off by %g", disagreement(r.transform, truth));
-  ck_assert_double_lt(r.confidence, 0.75);  // it says how much disagrees
+  ck_assert_double_lt(r.confidence, 0.75);  // the confidence shows how much disagrees
 }
 END_TEST
 
 // Frames in which a camera is astray by more than a pixel while it stands for 5 frames and then pans by `pan` pixels a
-// frame, 24 in all. Somebody who covers that many pixels to a side sways before it.
+// frame, 24 in all. A person who covers that many pixels to a side sways before it.
 int astray_behind(int side, double pan, double view) {
   const Scene scene(31);
   const Image<std::uint8_t> coat = picture(Scene(90, 60));
@@ -147,7 +147,7 @@ int astray_behind(int side, double pan, double view) {
   return astray;
 }
 
-START_TEST(a_pan_is_followed_behind_somebody_close) {
+START_TEST(a_pan_is_measured_behind_a_close_person) {
   for (const double view : {60.0, 95.0})
     for (const double pan : {1.0, 4.0, 10.0}) {
       const int fifth = astray_behind(120, pan, view), quarter = astray_behind(138, pan, view);
@@ -157,9 +157,9 @@ START_TEST(a_pan_is_followed_behind_somebody_close) {
 }
 END_TEST
 
-// Somebody close who stands covers a third of the picture when the camera begins to pan. On the coarse picture most
+// A close person at rest covers a third of the picture when the camera begins to pan. On the coarse picture most
 // go along with him; what the others do has to be looked for on the finer ones, too.
-START_TEST(a_pan_that_begins_behind_somebody_close_who_stands_is_found_on_finer_levels) {
+START_TEST(a_pan_that_begins_behind_a_close_person_at_rest_is_found_on_finer_levels) {
   constexpr int kStands = 3, kFrames = 7, kMostPan = 20, kWay = kMostPan * (kFrames - kStands);
   constexpr Size kPerson{180, 140};
   for (std::uint32_t seed = 0; seed < 4; ++seed) {
@@ -190,7 +190,7 @@ END_TEST
 constexpr int kPan = 4;
 
 // By how many pixels a camera is astray in each frame that pans by kPan of them past shelves, and then along a wall
-// with these things on it. It is said to stand from frame none_from on.
+// with these things on it. The model is none from frame none_from on.
 std::vector<double> pan_along_a_wall(std::initializer_list<std::array<int, 4>> things, int frames,
                                      int none_from = -1) {
   std::mt19937 random(21);
@@ -220,15 +220,15 @@ START_TEST(a_camera_that_pans_along_a_bare_wall_goes_on) {
 }
 END_TEST
 
-// Though it is on its way past a wall that says nothing.
-START_TEST(a_camera_that_moved_stands_from_the_frame_on_in_which_the_model_says_so) {
+// Although it moves past a wall without texture.
+START_TEST(a_camera_that_moved_stands_from_the_frame_on_in_which_the_model_is_none) {
   const auto astray = pan_along_a_wall({{330, 70, 50, 60}}, 90, 80);
   ck_assert_double_lt(*std::max_element(astray.begin(), astray.begin() + 79), 2);
   for (std::size_t k = 79; k < astray.size(); ++k) ck_assert_double_eq(astray[k], kPan);
 }
 END_TEST
 
-START_TEST(a_camera_that_saw_nothing_for_a_while_knows_where_it_goes_from_the_first_wide_thing) {
+START_TEST(a_camera_before_a_blank_wall_is_measured_again_from_the_first_wide_object) {
   const auto astray = pan_along_a_wall({{330, 70, 50, 60}, {720, 180, 240, 40}}, 180);
   ck_assert_double_lt(*std::max_element(astray.begin(), astray.begin() + 90),
                       2);               // one thing in view at least
@@ -329,11 +329,11 @@ int main() {
        over_a_heads_turn_a_simple_model_is_as_good_as_a_homography,
        an_affine_motion_is_found_by_the_affine_model,
        translation_alone_gives_translation_alone_and_none_gives_identity,
-       objects_over_nearly_half_the_picture_do_not_move_the_camera, a_pan_is_followed_behind_somebody_close,
-       a_pan_that_begins_behind_somebody_close_who_stands_is_found_on_finer_levels,
+       objects_over_nearly_half_the_picture_do_not_move_the_camera, a_pan_is_measured_behind_a_close_person,
+       a_pan_that_begins_behind_a_close_person_at_rest_is_found_on_finer_levels,
        a_camera_that_pans_along_a_bare_wall_goes_on,
-       a_camera_that_moved_stands_from_the_frame_on_in_which_the_model_says_so,
-       a_camera_that_saw_nothing_for_a_while_knows_where_it_goes_from_the_first_wide_thing,
+       a_camera_that_moved_stands_from_the_frame_on_in_which_the_model_is_none,
+       a_camera_before_a_blank_wall_is_measured_again_from_the_first_wide_object,
        an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy,
        the_heads_pose_finds_what_no_search_reaches_and_a_wrong_one_is_not_believed,
        odd_sizes_work_and_nothing_outside_the_picture_is_read,

@@ -17,7 +17,7 @@ namespace {
 constexpr Size kFrame{640, 480};
 constexpr double kDegree = std::numbers::pi / 180;
 const Lens kLens(60 * kDegree, kFrame);
-// What nobody told a lens of is seen as if through this one.
+// A camera of unknown lens is treated as if it had this one.
 const Lens kUnknown(OrientationEstimate::kUnknownFov, kFrame);
 
 void assert_looks(const OrientationEstimate& heading, double pan, double tilt) {
@@ -32,7 +32,7 @@ Transform turn(const Lens& lens, double pan, double tilt) {
 
 }  // namespace
 
-START_TEST(without_a_head_the_motion_of_the_picture_tells_it) {
+START_TEST(without_a_head_the_motion_of_the_picture_gives_the_orientation) {
   OrientationEstimate heading;
   ck_assert(heading.update({}, {}, kFrame));  // the first frame: straight ahead
   assert_looks(heading, 0, 0);
@@ -56,7 +56,7 @@ START_TEST(a_head_that_speaks_is_believed_and_where_it_stops_the_picture_goes_on
   // It jumps: what was placed before is nowhere.
   ck_assert(heading.update(CameraOrientation{kLens, 20 * kDegree, -5 * kDegree}, {}, kFrame));
   assert_looks(heading, 20, -5);
-  // As long as it speaks, what the picture says of it does not count.
+  // While the head reports its pose, the motion of the picture is not used.
   ck_assert(!heading.update(CameraOrientation{kLens, 21 * kDegree, -5 * kDegree}, turn(kLens, 9, 0), kFrame));
   assert_looks(heading, 21, -5);
   ck_assert(!heading.update({}, turn(kLens, 4, 0), kFrame));
@@ -105,7 +105,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite("heading",
-                                    {without_a_head_the_motion_of_the_picture_tells_it,
+                                    {without_a_head_the_motion_of_the_picture_gives_the_orientation,
                                      a_head_that_speaks_is_believed_and_where_it_stops_the_picture_goes_on,
                                      another_size_of_frame_begins_anew, what_is_no_number_turns_nothing,
                                      things_beside_the_middle_are_larger});

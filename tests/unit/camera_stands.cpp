@@ -41,7 +41,7 @@ START_TEST(a_person_walking_past_a_standing_camera_leaves_it_still) {
 }
 END_TEST
 
-START_TEST(somebody_close_who_sways_in_half_of_the_picture_leaves_the_camera_still) {
+START_TEST(a_close_person_swaying_in_half_of_the_picture_leaves_the_camera_still) {
   const Image<std::uint8_t> coat = picture(Scene(91, 60));
   std::mt19937 random(25);
   CameraMotion camera;
@@ -56,8 +56,8 @@ START_TEST(somebody_close_who_sways_in_half_of_the_picture_leaves_the_camera_sti
 }
 END_TEST
 
-// Frames, of the 39 after the first, in which a standing camera is said to move. It sees a dull room, `lamps` that
-// flicker, and somebody who covers `person` from the lower edge on, with his left edge at left(k) in frame k.
+// Frames, of the 39 after the first, in which a standing camera is reported to move. It sees a dull room, `lamps` that
+// flicker, and a person who covers `person` from the lower edge on, with the left edge at left(k) in frame k.
 int set_in_motion(std::uint32_t seed, double contrast, Light lamps, Size person,
                   const std::function<int(int)>& left) {
   const Image<std::uint8_t> room = picture(Scene(200 + seed, contrast)), coat = picture(Scene(90 + seed, 60));
@@ -76,11 +76,11 @@ int set_in_motion(std::uint32_t seed, double contrast, Light lamps, Size person,
   return moved;
 }
 
-// Bands of light and somebody who moves look like a motion of less than a pixel, which others contest or of which few
+// Bands of light and a moving person look like a motion of less than a pixel, which others contest or of which few
 // patches know. In so dull a room chance sets the camera in motion all the same, in up to 1 frame of 50. If nobody
 // asked what contests the motion, it would be 1 of 7 behind who sways; if nobody asked how many know of it, 1 of 20
 // behind who walks.
-START_TEST(bands_of_light_behind_somebody_close_who_sways_leave_the_camera_still) {
+START_TEST(bands_of_light_behind_a_close_swaying_person_leave_the_camera_still) {
   int moved = 0, frames = 0;
   for (std::uint32_t seed = 0; seed < 2; ++seed)
     for (const Size person : {Size{120, 170}, Size{140, 180}})
@@ -95,7 +95,7 @@ START_TEST(bands_of_light_behind_somebody_close_who_sways_leave_the_camera_still
 }
 END_TEST
 
-START_TEST(bands_of_light_behind_somebody_who_walks_past_leave_the_camera_still) {
+START_TEST(bands_of_light_behind_a_passing_person_leave_the_camera_still) {
   int moved = 0, frames = 0;
   for (std::uint32_t seed = 0; seed < 4; ++seed)
     for (const int width : {80, 100, 120}) {
@@ -117,7 +117,7 @@ START_TEST(a_person_before_a_blank_wall_is_not_the_camera) {
     const CameraMotionResult r = camera.update(frame.view());
     ck_assert(r.transform.is_identity());
     if (k > 2) ck_assert_double_eq(r.confidence, 0);
-    // The head knows better, if it says so.
+    // A reported pose of the head has priority.
     if (k == 19) {
       Image<std::uint8_t> last = flat(120, random);
       paste(person, last.view(), 60 + 7 * 18, 100, 60, 130);
@@ -153,7 +153,7 @@ START_TEST(a_camera_that_stood_before_a_bare_wall_is_set_in_motion_by_all_that_i
 }
 END_TEST
 
-START_TEST(what_stays_behind_on_a_bare_wall_says_that_the_camera_stands) {
+START_TEST(patches_left_behind_on_a_bare_wall_show_that_the_camera_stands) {
   const Image<std::uint8_t> car = picture(Scene(82, 60)), picture_on_the_wall = picture(Scene(83, 60));
   std::mt19937 random(23);
   CameraMotion camera;
@@ -272,12 +272,12 @@ int main() {
   return run_suite(
       "camera_stands",
       {the_first_frame_starts_a_scene, a_person_walking_past_a_standing_camera_leaves_it_still,
-       somebody_close_who_sways_in_half_of_the_picture_leaves_the_camera_still,
-       bands_of_light_behind_somebody_close_who_sways_leave_the_camera_still,
-       bands_of_light_behind_somebody_who_walks_past_leave_the_camera_still,
+       a_close_person_swaying_in_half_of_the_picture_leaves_the_camera_still,
+       bands_of_light_behind_a_close_swaying_person_leave_the_camera_still,
+       bands_of_light_behind_a_passing_person_leave_the_camera_still,
        a_person_before_a_blank_wall_is_not_the_camera,
        a_camera_that_stood_before_a_bare_wall_is_set_in_motion_by_all_that_is_on_it,
-       what_stays_behind_on_a_bare_wall_says_that_the_camera_stands,
+       patches_left_behind_on_a_bare_wall_show_that_the_camera_stands,
        a_standing_camera_is_exactly_still_under_noise_flicker_and_exposure,
        vibration_of_three_tenths_of_a_pixel_is_not_snapped_away,
        a_drift_too_slow_to_see_between_two_frames_adds_up,

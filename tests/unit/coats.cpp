@@ -141,7 +141,7 @@ START_TEST(an_occluded_person_keeps_the_identity) {
       regions.push_back({back.box(), 1000, 0.9, 1, RegionKind::person_like});
     place.step({front, back}, 0, regions);
     if (k == 15) standing = place.at(front.x), walking = place.at(back.x);
-    // Whoever is not seen has no box.
+    // A person who is not visible has no box.
     if (k == 40) ck_assert_uint_eq(place.tracks.size(), 1);
   }
   ck_assert_uint_ne(standing, 0);

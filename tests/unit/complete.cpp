@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The computed rules are proven free of gaps by enumeration: every geometry of 1 to 8 sensors below, every set of them
 // that fires, every whole degree of pan. The oracle counts directions one by one on a ring of half degrees, with whole
-// numbers, and knows nothing of arcs.
+// numbers, without arcs.
 #include "fusion/complete.h"
 
 #include <check.h>
@@ -254,7 +254,7 @@ START_TEST(equally_near_sectors_go_by_the_last_to_fire_and_then_by_number) {
 }
 END_TEST
 
-START_TEST(a_sector_behind_is_reached_from_both_stops_and_said_to_be_limited) {
+START_TEST(a_sector_behind_is_reached_from_both_stops_and_reported_as_limited) {
   const Geometry sensors = geometry({180}, 120);
   const Places found = places(sensors, 1, radians(20), kNoOrder, radians(60), kDefaultLimits);
   ck_assert_int_eq(found.count, 2);
@@ -294,7 +294,7 @@ START_TEST(what_is_out_of_reach_is_looked_at_from_the_nearest_stop) {
   const Geometry behind = geometry({165}, 10);
   assert_interval(places(behind, 1, radians(-20), kNoOrder, 0, ahead)[0].wanted, -90, -90);
   assert_interval(places(behind, 1, radians(-10), kNoOrder, 0, ahead)[0].wanted, 60, 60);
-  // Nobody stops a motor on a point: hysteresis is the width of the stop.
+  // A motor does not stop exactly on a point: hysteresis is the width of the stop.
   ck_assert(approach(right[0], radians(57.9), false, kHysteresis) == Action::turn_right);
   ck_assert(approach(right[0], radians(58.1), false, kHysteresis) == Action::search);
   ck_assert(approach(right[0], radians(56.1), true, kHysteresis) == Action::search);
@@ -346,7 +346,7 @@ int main() {
        sensors_together_ask_for_what_they_share_and_then_for_what_each_covers,
        sensors_that_contradict_each_other_are_visited_nearest_first,
        equally_near_sectors_go_by_the_last_to_fire_and_then_by_number,
-       a_sector_behind_is_reached_from_both_stops_and_said_to_be_limited, the_stops_choose_the_way_round,
+       a_sector_behind_is_reached_from_both_stops_and_reported_as_limited, the_stops_choose_the_way_round,
        what_is_out_of_reach_is_looked_at_from_the_nearest_stop,
        a_sensor_that_sees_all_around_makes_the_head_look_all_around, an_unknown_pan_angle_turns_nothing,
        no_sensor_no_place, an_edge_is_crossed_once},

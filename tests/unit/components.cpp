@@ -248,8 +248,8 @@ START_TEST(two_rims_are_one_object_over_a_young_background) {
 }
 END_TEST
 
-// The components are as high and as far from each other as the rims of one body. The gap has not changed; a brick wall or
-// a slope would have, had it moved by the rims' width, so these are two people.
+// The components are as high and as far from each other as the rims of one body. The gap has not changed; a brick wall
+// or a slope would have, had it moved by the rims' width, so these are two people.
 START_TEST(two_people_before_a_textured_background_are_not_the_rims_of_one) {
   enum Wall { even, bricks, slope };
   struct Case {
@@ -399,8 +399,8 @@ START_TEST(a_tiny_component_is_dropped_over_a_young_background) {
 }
 END_TEST
 
-// The old object was 160 on the right, the new one is 200 on the left: half of the outline is an edge of the frame, half
-// one of the background.
+// The old object was 160 on the right, the new one is 200 on the left: half of the outline is an edge of the frame,
+// half one of the background.
 void half_and_half(Scene& s, const Rect& r) {
   Scene::paint(s.frame, {r.x, r.y, r.width / 2, r.height}, 200);
   Scene::paint(s.background, {r.x + r.width / 2, r.y, r.width - r.width / 2, r.height}, 160);
@@ -475,7 +475,7 @@ START_TEST(in_clutter_ghosts_are_not_searched) {
 END_TEST
 
 START_TEST(an_object_whose_ghost_was_found_stays_an_object_where_it_stops) {
-  // Its outline says little there, and another person, in the picture from the start, walks nearby.
+  // Its outline is weak evidence there, and another person, in the picture from the start, walks nearby.
   constexpr Rect kOther{220, 80, 30, 80};
   // A component without an object's outline at its first motion may be a fragment of the ghost.
   struct Case {

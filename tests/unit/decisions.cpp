@@ -10,7 +10,7 @@ using namespace std::chrono_literals;
 
 namespace {
 
-// One sensor ahead that says `value`, and a head that looks ahead.
+// One sensor ahead that reads `value`, and a head that points ahead.
 SensorSnapshot snapshot_of(std::uint8_t value, double bearing = 0) {
   SensorSnapshot snapshot;
   snapshot.count = 1;

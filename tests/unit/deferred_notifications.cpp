@@ -12,7 +12,7 @@ using namespace cerberus::control;
 
 using Entry = NotificationQueue::Of<Notice>;
 
-START_TEST(a_status_replaces_an_older_one_of_the_same_head_whatever_it_says) {
+START_TEST(a_status_replaces_an_older_one_of_the_same_head_whatever_its_content) {
   ck_assert(NotificationQueue::replaces(Entry{"a", Status{HeadState::turning, "left", {}, {}}},
                                         Entry{"a", Status{HeadState::stopped, "", {}, {}}}));
 }
@@ -77,7 +77,7 @@ END_TEST
 int main() {
   return tests::run_suite(
       "deferred_notifications",
-      {a_status_replaces_an_older_one_of_the_same_head_whatever_it_says,
+      {a_status_replaces_an_older_one_of_the_same_head_whatever_its_content,
        another_notice_is_replaced_by_an_equal_one_only, notices_of_different_kinds_do_not_replace_each_other,
        notices_of_two_heads_do_not_replace_each_other,
        a_full_queue_loses_statuses_and_neither_a_warning_nor_another_heads_status});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Whom the fuser follows, and for how long.
+// Which track the fuser follows, and for how long.
 #include "fuser_stream.h"
 
 using namespace stream;
@@ -68,7 +68,7 @@ START_TEST(without_distances_the_lowest_feet_are_the_nearest) {
 }
 END_TEST
 
-START_TEST(one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone) {
+START_TEST(a_seen_track_precedes_a_stopped_one_and_a_coasted_one) {
   Stream stream;
   Track coasted = somebody(1, TrackState::coasted), stopped = somebody(2, TrackState::stopped),
         seen = somebody(3);
@@ -83,7 +83,7 @@ START_TEST(one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone) {
 }
 END_TEST
 
-START_TEST(who_stopped_is_tracked_for_half_a_minute_and_then_left) {
+START_TEST(a_stopped_track_is_followed_for_half_a_minute_and_then_left) {
   Stream stream;
   stream.tracks = {somebody(7)};
   const Decision& decision = stream.frame();
@@ -105,7 +105,7 @@ START_TEST(who_stopped_is_tracked_for_half_a_minute_and_then_left) {
 }
 END_TEST
 
-START_TEST(who_moves_in_between_has_another_half_minute) {
+START_TEST(a_track_that_moves_in_between_has_another_half_minute) {
   Stream stream;
   stream.tracks = {somebody(7)};
   const Decision& decision = stream.frame();
@@ -117,7 +117,7 @@ START_TEST(who_moves_in_between_has_another_half_minute) {
 }
 END_TEST
 
-START_TEST(rule_7_waits_for_who_stopped_even_when_the_track_is_gone) {
+START_TEST(rule_7_waits_for_a_stopped_person_even_when_the_track_is_gone) {
   for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
     Stream stream(options);
     stream.tracks = {somebody(7)};
@@ -145,7 +145,8 @@ int main() {
       "follower",
       {a_track_is_followed_and_kept_half_a_second, the_one_followed_is_kept_though_others_are_nearer,
        a_target_is_chosen_by_nearness_size_or_newness, without_distances_the_lowest_feet_are_the_nearest,
-       one_who_is_seen_goes_before_one_who_stands_and_one_who_may_be_gone,
-       who_stopped_is_tracked_for_half_a_minute_and_then_left, who_moves_in_between_has_another_half_minute,
-       rule_7_waits_for_who_stopped_even_when_the_track_is_gone});
+       a_seen_track_precedes_a_stopped_one_and_a_coasted_one,
+       a_stopped_track_is_followed_for_half_a_minute_and_then_left,
+       a_track_that_moves_in_between_has_another_half_minute,
+       rule_7_waits_for_a_stopped_person_even_when_the_track_is_gone});
 }

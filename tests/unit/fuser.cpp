@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What camera and sensors together decide. (Whom to follow is
+// What camera and sensors together decide. (Which track to follow is
 // asked in follower.cpp, how to search in fuser_search.cpp.)
 #include "fuser_stream.h"
 
@@ -21,7 +21,7 @@ START_TEST(nothing_anywhere_means_zero) {
 }
 END_TEST
 
-// Who was there before the first frame nobody knows: the head does not run away from somebody to whom it was sent.
+// Detections before the first frame are unknown: the head must not leave a person to whom it was sent.
 START_TEST(the_return_delay_counts_from_the_first_frame_and_from_a_reset) {
   for (FuserOptions options : {FuserOptions{}, FuserOptions{.rules = RuleSet::table}}) {
     Stream stream(options);
@@ -55,7 +55,7 @@ START_TEST(the_head_returns_five_seconds_after_the_last_detection) {
 }
 END_TEST
 
-START_TEST(limits_without_zero_are_told) {
+START_TEST(limits_without_zero_are_reported) {
   for (FuserOptions options : {FuserOptions{}, paper_options()}) {
     options.limits = {radians(20), radians(90)};
     Stream stream(options);
@@ -66,7 +66,7 @@ START_TEST(limits_without_zero_are_told) {
 }
 END_TEST
 
-START_TEST(invalid_readings_do_not_count_but_are_told) {
+START_TEST(invalid_readings_do_not_count_but_are_reported) {
   Stream stream;
   stream.sensors = {2, 0, 77};
   const Decision& decision = stream.frame();
@@ -122,7 +122,7 @@ START_TEST(a_doubtful_sensor_that_rests_is_believed_again) {
 }
 END_TEST
 
-// What was heard after the frame counts from when it was heard, though the frame comes again with its own time.
+// Readings after the frame count from their own time, although the frame is passed again with its own time.
 START_TEST(sensors_and_base_have_a_time_of_their_own) {
   Fuser fuser;
   std::vector<std::uint8_t> sensors{1, 0, 0};
@@ -137,7 +137,7 @@ START_TEST(sensors_and_base_have_a_time_of_their_own) {
   ck_assert_int_eq(hear(0s, 0s, 30).doubtful, 1);
   ck_assert_int_eq(hear(0s, 900ms, 30).doubtful, 1);
   ck_assert_int_eq(hear(0s, 0s, 0).doubtful, 1);      // it stands: at 900 ms, for nothing goes back
-  ck_assert_int_eq(hear(3500ms, 0s, 0).doubtful, 1);  // a frame that was heard of no later than it was taken
+  ck_assert_int_eq(hear(3500ms, 0s, 0).doubtful, 1);  // a frame without later readings
   ck_assert_int_eq(hear(3600ms, 3850ms, 0).doubtful, 1);
   ck_assert_int_eq(hear(3600ms, 3900ms, 0).doubtful, 0);
 
@@ -145,12 +145,12 @@ START_TEST(sensors_and_base_have_a_time_of_their_own) {
   sensors = {0, 0, 0};
   assert_says(hear(9s, 9490ms, 0), Action::search, 0, "return");
   assert_says(hear(9s, 9500ms, 0), Action::zero, 7, "zero");
-  ck_assert_int_eq(hear(1s, 1s, 30).doubtful, 0);  // anew: no sensor says anything
+  ck_assert_int_eq(hear(1s, 1s, 30).doubtful, 0);  // anew: no sensor has a reading
   assert_says(hear(2s, 2s, 0), Action::hold, 0, "return");
 }
 END_TEST
 
-START_TEST(the_paper_stands_still_where_it_tracks_nobody) {
+START_TEST(the_paper_holds_where_it_has_no_track) {
   Stream stream(paper_options());
   stream.sensors = {1, 0, 0};
   stream.pan = 0;
@@ -350,10 +350,11 @@ int main() {
   return cerberus::tests::run_suite(
       "fuser",
       {nothing_anywhere_means_zero, the_return_delay_counts_from_the_first_frame_and_from_a_reset,
-       the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_told,
-       invalid_readings_do_not_count_but_are_told, what_a_turning_base_trips_is_doubtful_and_does_not_count,
+       the_head_returns_five_seconds_after_the_last_detection, limits_without_zero_are_reported,
+       invalid_readings_do_not_count_but_are_reported,
+       what_a_turning_base_trips_is_doubtful_and_does_not_count,
        a_doubtful_sensor_that_rests_is_believed_again, sensors_and_base_have_a_time_of_their_own,
-       the_paper_stands_still_where_it_tracks_nobody, the_paper_ignores_a_fourth_sensor,
+       the_paper_holds_where_it_has_no_track, the_paper_ignores_a_fourth_sensor,
        a_table_turns_no_further_than_the_stop, a_users_table_has_hysteresis_return_delay_and_searches,
        an_unknown_pan_angle_commands_no_turn, time_that_goes_back_starts_anew,
        a_long_gap_lets_every_timer_expire, options_that_make_no_sense_are_put_right,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where the head turns when a sensor fires and nobody is in the picture.
+// Where the head turns when a sensor fires and no person is in the picture.
 #include "fuser_stream.h"
 
 #include <array>
@@ -133,7 +133,7 @@ START_TEST(the_same_rules_again_keep_the_hysteresis) {
 }
 END_TEST
 
-START_TEST(a_search_ends_when_somebody_is_found) {
+START_TEST(a_search_ends_when_a_person_is_found) {
   Stream stream;
   stream.sensors = {1, 0, 0};
   const Decision& decision = stream.frame();
@@ -171,7 +171,7 @@ START_TEST(equally_near_sectors_go_to_the_sensor_that_fired_last) {
   for (const bool left_first : {true, false}) {
     Stream stream;
     stream.fuser.set_geometry(apart);
-    stream.tracks = {somebody(1)};  // busy with somebody ahead
+    stream.tracks = {somebody(1)};  // busy with a person ahead
     stream.sensors = {left_first, !left_first};
     stream.frame();
     stream.sensors = {1, 1};
@@ -222,7 +222,7 @@ START_TEST(a_search_leaves_nothing_unseen) {
 }
 END_TEST
 
-START_TEST(a_sector_beyond_the_limits_is_approached_and_said_to_be_limited) {
+START_TEST(a_sector_beyond_the_limits_is_approached_and_reported_as_limited) {
   Stream stream(FuserOptions{.limits = {radians(-40), radians(40)}});
   stream.sensors = {0, 1, 0};
   const Decision& decision = stream.frame();
@@ -242,8 +242,8 @@ int main() {
       {a_sensor_makes_the_head_turn_and_then_sweep, another_sensor_is_a_new_question,
        a_search_outlives_its_sensor_by_the_return_delay, options_that_change_end_no_search,
        a_search_goes_on_within_other_limits_and_with_another_lens, the_same_rules_again_are_no_news,
-       the_same_rules_again_keep_the_hysteresis, a_search_ends_when_somebody_is_found,
+       the_same_rules_again_keep_the_hysteresis, a_search_ends_when_a_person_is_found,
        two_sectors_without_a_common_part_are_both_searched,
        equally_near_sectors_go_to_the_sensor_that_fired_last, a_search_leaves_nothing_unseen,
-       a_sector_beyond_the_limits_is_approached_and_said_to_be_limited});
+       a_sector_beyond_the_limits_is_approached_and_reported_as_limited});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A fuser in a stream of frames, and a head that does what it says.
+// A fuser in a stream of frames, and a head that executes its decisions.
 #pragma once
 
 #include <algorithm>
@@ -54,7 +54,7 @@ struct Stream {
     sensors.assign(seen.size(), 0);
     return decision;
   }
-  // A head that does what it is told at 40 degrees a second.
+  // A head that executes its commands at 40 degrees a second.
   void obey(const Decision& decision) {
     const double step = 40 * 0.04;
     double target = pan;

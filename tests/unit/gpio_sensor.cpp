@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// GPIO sensors on a chip that does what it is told, also what no simulated one of the kernel's does: refuses a line
+// GPIO sensors on a chip that executes a script, also what no simulated one of the kernel's does: refuses a line
 // without a reason, loses edges, goes away between two calls. (tests/hardware has the kernel's own, with libgpiod.)
 #include "drivers/gpio/gpio_sensor.h"
 
@@ -21,7 +21,7 @@ using cerberus::sensing::Presence;
 // The one chip. Errors are errno, 0: good.
 struct Chip {
   int open_error = 0, input_error = 0, output_error = 0, read_error = 0, level_error = 0, set_error = 0;
-  std::string user;  // of every line that is taken by somebody else
+  std::string user;  // of every line that another consumer holds
   std::vector<GpioEdge> edges;
   std::vector<bool> levels{false, false, false};
   std::vector<bool> lit;
@@ -126,7 +126,7 @@ void must_refuse(const SensorSetup& how, SensorFault fault, const std::string& w
 
 }  // namespace
 
-START_TEST(why_a_chip_does_not_open_is_told) {
+START_TEST(the_reason_why_a_chip_does_not_open_is_reported) {
   chip.open_error = EACCES;
   must_refuse(setup(), SensorFault::denied,
               "No permission to use GPIO chip /dev/chip: on Debian add the user");
@@ -139,7 +139,7 @@ START_TEST(why_a_chip_does_not_open_is_told) {
 }
 END_TEST
 
-START_TEST(why_a_chip_does_not_give_its_lines_is_told) {
+START_TEST(the_reason_why_a_chip_refuses_its_lines_is_reported) {
   for (const bool leds : {false, true}) {
     int& error = leds ? chip.output_error : chip.input_error;
     const std::string lines = leds ? "lines 7, 8, 9 of" : "lines 4, 5, 6 of";
@@ -166,7 +166,7 @@ START_TEST(edges_come_in_order_after_the_levels_of_the_beginning) {
   GpioSensor sensor;
   chip.levels = {true, false, false};
   ck_assert(!sensor.open(setup()));
-  // As libgpiod 1.6 tells them: line by line. They happened before the first look.
+  // As libgpiod 1.6 reports them: line by line. They happened before the first reading.
   chip.edges = {{20ms, 0, false}, {40ms, 0, true}, {30ms, 2, true}};
   chip.levels = {true, false, true};
   must_read(sensor, 50ms, "0:1@20 1:0@20 2:0@20 0:0@20 2:1@30 0:1@40 ");
@@ -202,7 +202,7 @@ START_TEST(a_chip_that_goes_away_is_named_whatever_was_asked_of_it) {
   const Presence readings[] = {Presence::detected, Presence::none, Presence::invalid};
   const SensorError error = sensor.show(readings);
   ck_assert(error.fault == SensorFault::gone && says(error.text, "/dev/chip"));
-  sensor.stop();  // nobody can do more
+  sensor.stop();  // the error is ignored
 }
 END_TEST
 
@@ -220,10 +220,10 @@ START_TEST(leds_go_out_when_it_stops_and_when_it_closes) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite(
-      "gpio_sensor", {why_a_chip_does_not_open_is_told, why_a_chip_does_not_give_its_lines_is_told,
-                      edges_come_in_order_after_the_levels_of_the_beginning,
-                      an_edge_that_was_lost_does_not_leave_a_sensor_wrong,
-                      a_chip_that_goes_away_is_named_whatever_was_asked_of_it,
-                      leds_go_out_when_it_stops_and_when_it_closes});
+  return cerberus::tests::run_suite("gpio_sensor", {the_reason_why_a_chip_does_not_open_is_reported,
+                                                    the_reason_why_a_chip_refuses_its_lines_is_reported,
+                                                    edges_come_in_order_after_the_levels_of_the_beginning,
+                                                    an_edge_that_was_lost_does_not_leave_a_sensor_wrong,
+                                                    a_chip_that_goes_away_is_named_whatever_was_asked_of_it,
+                                                    leds_go_out_when_it_stops_and_when_it_closes});
 }

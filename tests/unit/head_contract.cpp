@@ -53,7 +53,7 @@ struct Opened {
 
 }  // namespace
 
-START_TEST(a_head_starts_at_rest_where_it_is_said_to) {
+START_TEST(a_head_starts_at_rest_at_the_given_position) {
   HeadSetup there = setup();
   there.pan = 0.5;
   there.tilt = -0.25;
@@ -121,7 +121,7 @@ START_TEST(what_was_commanded_goes_on_within_other_limits) {
 }
 END_TEST
 
-START_TEST(who_stands_beyond_a_new_limit_returns_to_it) {
+START_TEST(a_head_beyond_a_new_limit_returns_to_it) {
   for (const double side : {-1.0, 1.0}) {
     Opened head(_i);
     head.command(0s, {Kind::position, side * 2, 5}, {Kind::position, side * 0.6, 5});
@@ -164,7 +164,7 @@ START_TEST(numbers_that_are_none_move_nothing) {
 }
 END_TEST
 
-START_TEST(stop_stops_and_may_be_said_again) {
+START_TEST(stop_stops_and_may_be_repeated) {
   Opened head(_i);
   head.command(0s, {Kind::velocity, 0.5, 0});
   head.head->stop(1s);
@@ -205,7 +205,7 @@ START_TEST(limits_that_exclude_zero_are_refused) {
 }
 END_TEST
 
-START_TEST(what_is_not_open_is_safe_and_says_so) {
+START_TEST(a_head_that_is_not_open_is_safe_and_returns_an_error) {
   const auto head = make_head(kDrivers[_i]);
   head->stop(0s);
   head->close();
@@ -234,12 +234,12 @@ int main() {
   Suite* suite = suite_create("head_contract");
   TCase* cases = tcase_create("each driver");
   for (const TTest* test :
-       {a_head_starts_at_rest_where_it_is_said_to, a_head_goes_where_it_is_sent_and_settles,
+       {a_head_starts_at_rest_at_the_given_position, a_head_goes_where_it_is_sent_and_settles,
         a_velocity_ends_at_the_stop_at_the_latest, no_command_leads_beyond_a_limit,
-        what_was_commanded_goes_on_within_other_limits, who_stands_beyond_a_new_limit_returns_to_it,
+        what_was_commanded_goes_on_within_other_limits, a_head_beyond_a_new_limit_returns_to_it,
         new_limits_make_no_command_stale_that_comes_with_them, numbers_that_are_none_move_nothing,
-        stop_stops_and_may_be_said_again, a_stale_command_is_refused_and_changes_nothing,
-        limits_that_exclude_zero_are_refused, what_is_not_open_is_safe_and_says_so})
+        stop_stops_and_may_be_repeated, a_stale_command_is_refused_and_changes_nothing,
+        limits_that_exclude_zero_are_refused, a_head_that_is_not_open_is_safe_and_returns_an_error})
     tcase_add_loop_test(cases, test, 0, std::size(kDrivers));
   tcase_add_test(cases, drivers_are_known_by_their_names);
   suite_add_tcase(suite, cases);

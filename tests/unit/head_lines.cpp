@@ -28,7 +28,7 @@ Line parsed(const std::string& text) {
 
 }  // namespace
 
-START_TEST(the_first_line_says_version_timeout_limits_and_start) {
+START_TEST(the_first_line_has_version_timeout_limits_and_start) {
   HeadSetup setup;
   setup.limits.pan = {radians(-170), radians(170), radians(90), radians(600)};
   setup.limits.tilt = {radians(-45), radians(30.5), radians(60), radians(300)};
@@ -172,7 +172,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "head_lines", {the_first_line_says_version_timeout_limits_and_start, a_move_has_a_command_for_each_axis,
+      "head_lines", {the_first_line_has_version_timeout_limits_and_start, a_move_has_a_command_for_each_axis,
                      numbers_that_are_none_hold, ready_lists_abilities_and_skips_those_of_later_versions,
                      a_pose_is_in_degrees, faults_keep_their_words,
                      what_is_no_line_of_the_protocol_is_refused, what_a_pipeline_writes_a_helper_reads,

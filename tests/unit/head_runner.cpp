@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head that blocks must block nobody else. The scripted head blocks on
+// A head that blocks must not block its callers. The scripted head blocks on
 // pipes, so nothing here waits for a clock but the patience that is tested.
 #include "drivers/head/head_runner.h"
 
@@ -54,7 +54,7 @@ START_TEST(questions_are_answered_with_all_pieces_of_the_way) {
 }
 END_TEST
 
-START_TEST(a_failure_is_told_once_and_healed_by_the_next_success) {
+START_TEST(a_failure_is_reported_once_and_cleared_by_the_next_success) {
   const auto runner = runner_with("command 2 fail no power");
   std::vector<Pose> poses;
   ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 10s) == Answer::done);
@@ -80,7 +80,7 @@ START_TEST(a_head_that_fails_is_stopped) {
 }
 END_TEST
 
-START_TEST(who_cannot_wait_is_not_kept) {
+START_TEST(a_caller_without_patience_is_not_blocked) {
   Pipe gate;
   const auto runner = runner_with("command wait " + gate.reader());
   std::vector<Pose> poses;
@@ -94,7 +94,7 @@ START_TEST(who_cannot_wait_is_not_kept) {
 }
 END_TEST
 
-START_TEST(interrupt_wakes_who_waits) {
+START_TEST(interrupt_wakes_a_waiting_caller) {
   Pipe gate;
   const auto runner = runner_with("command wait " + gate.reader());
   std::atomic<bool> returned = false;
@@ -115,7 +115,7 @@ START_TEST(interrupt_wakes_who_waits) {
 }
 END_TEST
 
-START_TEST(two_who_interrupt_must_both_be_done) {
+START_TEST(two_interrupts_must_both_be_revoked) {
   const auto runner = runner_with("");
   std::vector<Pose> poses;
   runner->interrupt(true);
@@ -130,7 +130,7 @@ START_TEST(two_who_interrupt_must_both_be_done) {
 }
 END_TEST
 
-START_TEST(whoever_is_refused_is_told_so_and_of_nothing_else) {
+START_TEST(a_refusal_is_reported_and_nothing_else) {
   Pipe gate;
   std::promise<void> told;
   HeadRunner runner(
@@ -149,7 +149,7 @@ END_TEST
 START_TEST(a_head_that_never_blocks_is_nobodys_but_the_callers) {
   std::vector<std::thread::id> notified;
   HeadRunner runner(make_head("simulated"), {}, [&] { notified.push_back(std::this_thread::get_id()); });
-  // No patience, and it need not have any. Nor is there anybody to interrupt.
+  // No patience is needed, and no waiting caller can be interrupted.
   ck_assert(runner.open({}, 0s) == Answer::done);
   runner.interrupt(true);
   std::vector<Pose> poses;
@@ -193,8 +193,8 @@ START_TEST(a_stop_beats_the_commands_before_it) {
 }
 END_TEST
 
-// What they are told is the answer to their own question, whoever else asks, commands and stops.
-START_TEST(two_who_ask_at_once_are_both_answered) {
+// Each caller receives the answer to its own question, whatever other threads ask, command and stop.
+START_TEST(two_callers_at_once_are_both_answered) {
   const auto runner = runner_with("");
   std::atomic<int> asking = 2;
   const auto ask = [&](Time from) {
@@ -216,7 +216,7 @@ START_TEST(two_who_ask_at_once_are_both_answered) {
 }
 END_TEST
 
-START_TEST(who_asks_second_waits_no_longer_than_patience_and_is_interrupted) {
+START_TEST(the_second_caller_waits_no_longer_than_its_patience_and_is_interrupted) {
   Pipe gate, record;
   const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
   record.line();
@@ -307,14 +307,14 @@ START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
 }
 END_TEST
 
-START_TEST(a_driver_that_does_not_open_says_why) {
+START_TEST(a_driver_that_does_not_open_returns_the_reason) {
   HeadRunner runner(make_head("scripted"), {});
   HeadSetup setup;
   setup.script = "open fail no such device";
   ck_assert(runner.open(setup, 10s) == Answer::failed);
   assert_text(runner.failure(), "no such device");
   assert_text(runner.refusal(), "no such device");
-  assert_text(runner.refusal(), "");  // told
+  assert_text(runner.refusal(), "");  // reported before
   // Nothing else fails of anything else.
   std::vector<Pose> poses;
   ck_assert(runner.ask(HeadCommand{}, {}, {}, poses, 10s) == Answer::failed);
@@ -341,14 +341,14 @@ int main() {
   return cerberus::tests::run_suite(
       "head_runner",
       {questions_are_answered_with_all_pieces_of_the_way,
-       a_failure_is_told_once_and_healed_by_the_next_success, a_head_that_fails_is_stopped,
-       who_cannot_wait_is_not_kept, interrupt_wakes_who_waits, two_who_interrupt_must_both_be_done,
-       whoever_is_refused_is_told_so_and_of_nothing_else, a_head_that_never_blocks_is_nobodys_but_the_callers,
-       two_who_ask_at_once_are_both_answered,
-       who_asks_second_waits_no_longer_than_patience_and_is_interrupted,
+       a_failure_is_reported_once_and_cleared_by_the_next_success, a_head_that_fails_is_stopped,
+       a_caller_without_patience_is_not_blocked, interrupt_wakes_a_waiting_caller,
+       two_interrupts_must_both_be_revoked, a_refusal_is_reported_and_nothing_else,
+       a_head_that_never_blocks_is_nobodys_but_the_callers, two_callers_at_once_are_both_answered,
+       the_second_caller_waits_no_longer_than_its_patience_and_is_interrupted,
        new_limits_come_before_the_command_that_waits,
        a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
        of_commands_given_meanwhile_only_the_newest_counts, a_stop_beats_the_commands_before_it,
-       a_blocked_driver_keeps_its_lease_and_closes_by_itself, a_driver_that_does_not_open_says_why,
+       a_blocked_driver_keeps_its_lease_and_closes_by_itself, a_driver_that_does_not_open_returns_the_reason,
        a_thousand_heads_come_and_go});
 }

@@ -91,7 +91,7 @@ START_TEST(the_shipped_example_goes_where_it_is_sent_and_reports_it) {
 }
 END_TEST
 
-START_TEST(a_helper_is_told_what_was_commanded) {
+START_TEST(a_helper_receives_the_command) {
   const Recorder helper("position velocity");
   HelperHead head("external");
   assert_text(head.open(setup_with(helper.command())), "");
@@ -111,7 +111,7 @@ START_TEST(a_helper_is_told_what_was_commanded) {
 }
 END_TEST
 
-START_TEST(a_head_that_only_knows_speeds_brakes_at_the_target) {
+START_TEST(a_head_with_speed_commands_only_brakes_at_the_target) {
   const Recorder helper("velocity rate 100");
   HelperHead head("external");
   assert_text(head.open(setup_with(helper.command())), "");
@@ -127,7 +127,7 @@ START_TEST(a_head_that_only_knows_speeds_brakes_at_the_target) {
 }
 END_TEST
 
-START_TEST(a_helper_hears_from_us_well_within_its_timeout) {
+START_TEST(a_helper_receives_a_line_well_within_its_timeout) {
   const Recorder helper("position");
   HelperHead head("external");
   HeadSetup setup = setup_with(helper.command());
@@ -139,7 +139,7 @@ START_TEST(a_helper_hears_from_us_well_within_its_timeout) {
 }
 END_TEST
 
-START_TEST(a_helper_that_cannot_open_its_head_says_why) {
+START_TEST(a_helper_that_cannot_open_its_head_reports_the_reason) {
   assert_text(refusal_of("sh -c 'echo fault no port /dev/ttyUSB9: permission denied; cat >/dev/null'"),
               "no port /dev/ttyUSB9: permission denied");
   assert_text(refusal_of("false"), "the head's helper `false` is gone: it ended");
@@ -191,8 +191,9 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "helper_head",
-      {the_shipped_example_goes_where_it_is_sent_and_reports_it, a_helper_is_told_what_was_commanded,
-       a_head_that_only_knows_speeds_brakes_at_the_target, a_helper_hears_from_us_well_within_its_timeout,
-       a_helper_that_cannot_open_its_head_says_why, a_helper_that_ended_is_reported_and_started_again,
+      {the_shipped_example_goes_where_it_is_sent_and_reports_it, a_helper_receives_the_command,
+       a_head_with_speed_commands_only_brakes_at_the_target, a_helper_receives_a_line_well_within_its_timeout,
+       a_helper_that_cannot_open_its_head_reports_the_reason,
+       a_helper_that_ended_is_reported_and_started_again,
        a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who tells what others have put in, in which order, and what stays of it.
+// Which thread delivers the items of others, in which order, and what stays of them.
 #include "threads/in_order.h"
 
 #include <atomic>
@@ -22,7 +22,7 @@ void put_all(InOrder<int, 4>& order, const Numbers& numbers) {
   for (const int number : numbers) order.put(number);
 }
 
-// All that is told now.
+// All items that are delivered now.
 template <typename Order>
 Numbers told(Order& order) {
   Numbers all;
@@ -30,7 +30,7 @@ Numbers told(Order& order) {
   return all;
 }
 
-START_TEST(what_was_put_in_first_is_told_first_and_once) {
+START_TEST(the_first_item_is_delivered_first_and_once) {
   InOrder<int, 4> order;
   for (int k = 0; k < 10; ++k) {  // and so it is when the places begin anew
     put_all(order, {3 * k, 3 * k + 1, 3 * k + 2});
@@ -40,14 +40,14 @@ START_TEST(what_was_put_in_first_is_told_first_and_once) {
 }
 END_TEST
 
-START_TEST(who_is_told_and_answers_is_told_the_answer_next) {
+START_TEST(an_item_put_in_by_a_listener_is_delivered_next) {
   InOrder<int, 4> order;
   Numbers all;
   const std::function<void(int)> listener = [&](int number) {
     all.push_back(number);
     if (number > 3) return;
     order.put(number + 10);
-    order.tell(listener);  // somebody tells already: nothing is told in the middle of being told
+    order.tell(listener);  // a delivery is in progress: nothing is delivered within it
     ck_assert_int_eq(all.back(), number);
   };
   put_all(order, {1, 2});
@@ -56,7 +56,7 @@ START_TEST(who_is_told_and_answers_is_told_the_answer_next) {
 }
 END_TEST
 
-START_TEST(who_is_kept_by_a_listener_tells_for_the_others_too) {
+START_TEST(a_thread_blocked_by_a_listener_delivers_for_the_others_too) {
   InOrder<int, 4> order;
   std::promise<void> kept, go;
   Numbers all;
@@ -71,14 +71,14 @@ START_TEST(who_is_kept_by_a_listener_tells_for_the_others_too) {
   });
   kept.get_future().wait();
   order.put(2);
-  ck_assert(told(order).empty());  // and nobody waits
+  ck_assert(told(order).empty());  // and no item waits
   go.set_value();
   teller.join();
   ck_assert((all == Numbers{1, 2}));
 }
 END_TEST
 
-START_TEST(of_more_than_can_wait_the_oldest_are_never_told) {
+START_TEST(of_more_items_than_can_wait_the_oldest_are_never_delivered) {
   InOrder<int, 4> order;
   put_all(order, {1, 2, 3, 4, 5, 6});
   ck_assert((told(order) == Numbers{3, 4, 5, 6}));
@@ -90,7 +90,7 @@ END_TEST
 // Ones replace ones, tens tens.
 constexpr auto kSameKind = [](const int& a, const int& b) { return (a < 10) == (b < 10); };
 
-START_TEST(of_more_than_can_wait_what_is_said_rarely_stays) {
+START_TEST(of_more_items_than_can_wait_rare_ones_stay) {
   InOrder<int, 4> order(kSameKind);
   put_all(order, {10, 1, 2, 3, 4, 5});
   ck_assert((told(order) == Numbers{10, 3, 4, 5}));
@@ -112,14 +112,14 @@ START_TEST(where_none_is_replaced_the_oldest_goes) {
 }
 END_TEST
 
-START_TEST(what_was_cleared_is_told_by_nobody) {
+START_TEST(cleared_items_are_not_delivered) {
   InOrder<int, 4> order;
   put_all(order, {1, 2, 3});
   order.clear();
   ck_assert(told(order).empty());
   put_all(order, {4, 5, 6, 7});
   Numbers all;
-  order.tell([&](int number) {  // nor by the one who tells just then
+  order.tell([&](int number) {  // nor by the delivery in progress
     all.push_back(number);
     if (number == 5) order.clear();
   });
@@ -129,7 +129,7 @@ START_TEST(what_was_cleared_is_told_by_nobody) {
 }
 END_TEST
 
-START_TEST(after_a_listener_that_throws_the_next_one_hears_the_rest) {
+START_TEST(after_a_listener_that_throws_the_next_one_receives_the_rest) {
   InOrder<int, 4> order;
   put_all(order, {1, 2});
   bool thrown = false;
@@ -143,7 +143,7 @@ START_TEST(after_a_listener_that_throws_the_next_one_hears_the_rest) {
 }
 END_TEST
 
-START_TEST(nothing_is_kept_of_what_was_told_or_has_gone) {
+START_TEST(nothing_is_kept_of_delivered_or_dropped_items) {
   InOrder<std::shared_ptr<int>, 2> order;
   const auto mine = std::make_shared<int>(1);
   order.put(mine);
@@ -199,10 +199,11 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "what several threads tell, in order",
-      {what_was_put_in_first_is_told_first_and_once, who_is_told_and_answers_is_told_the_answer_next,
-       who_is_kept_by_a_listener_tells_for_the_others_too, of_more_than_can_wait_the_oldest_are_never_told,
-       of_more_than_can_wait_what_is_said_rarely_stays, where_none_is_replaced_the_oldest_goes,
-       what_was_cleared_is_told_by_nobody, after_a_listener_that_throws_the_next_one_hears_the_rest,
-       nothing_is_kept_of_what_was_told_or_has_gone, of_each_thread_the_numbers_come_in_its_order,
+      {the_first_item_is_delivered_first_and_once, an_item_put_in_by_a_listener_is_delivered_next,
+       a_thread_blocked_by_a_listener_delivers_for_the_others_too,
+       of_more_items_than_can_wait_the_oldest_are_never_delivered, of_more_items_than_can_wait_rare_ones_stay,
+       where_none_is_replaced_the_oldest_goes, cleared_items_are_not_delivered,
+       after_a_listener_that_throws_the_next_one_receives_the_rest,
+       nothing_is_kept_of_delivered_or_dropped_items, of_each_thread_the_numbers_come_in_its_order,
        nothing_is_allocated});
 }

@@ -77,7 +77,7 @@ END_TEST
 // Rest begins below 0.7 degrees and ends above 3.
 START_TEST(the_dead_band_has_two_thresholds) {
   Law law;
-  ck_assert(!holds(law.update(person(pixel(0.8)), kLens, looking(0), looking(0)).pan));  // somebody new
+  ck_assert(!holds(law.update(person(pixel(0.8)), kLens, looking(0), looking(0)).pan));  // a new target
   ck_assert(holds(law.update(person(pixel(0.6)), kLens, looking(0), looking(0)).pan));
   ck_assert(holds(law.update(person(pixel(0.8)), kLens, looking(0), looking(0)).pan));
   ck_assert(holds(law.update(person(pixel(-2.9)), kLens, looking(0), looking(0)).pan));
@@ -87,9 +87,9 @@ START_TEST(the_dead_band_has_two_thresholds) {
 }
 END_TEST
 
-// A person who stands still, boxes with a noise of 1 degree, 33 frames a second, a minute: a plain band of 0.5 degrees
+// A standing person, boxes with a noise of 1 degree, 33 frames a second, a minute: a plain band of 0.5 degrees
 // reverses hundreds of times, this one hardly ever.
-START_TEST(a_head_before_somebody_who_stands_rests) {
+START_TEST(a_head_before_a_standing_person_rests) {
   for (const bool plain : {false, true}) {
     LawOptions options;
     if (plain) options.dead_band_start = options.dead_band_stop = radians(0.5);
@@ -176,7 +176,7 @@ START_TEST(zero_returns_both_axes_and_hold_holds_them) {
 }
 END_TEST
 
-START_TEST(tracking_nobody_or_without_a_lens_is_holding) {
+START_TEST(tracking_without_a_target_or_a_lens_is_holding) {
   Law law;
   ck_assert(holds(law.update({Action::track, {}, {}}, kLens, looking(0), looking(0)).pan));
   ck_assert(holds(law.update(person(640), Lens(), looking(0), looking(0)).pan));
@@ -186,9 +186,9 @@ START_TEST(tracking_nobody_or_without_a_lens_is_holding) {
 }
 END_TEST
 
-// At the stop of 170 degrees: somebody at 185 cannot be centred from either side and is watched from here; at 200 the
+// At the stop of 170 degrees: a target at 185 cannot be centred from either side and is watched from here; at 200 the
 // place -160 would do, the long way round.
-START_TEST(somebody_beyond_the_stop_is_watched_from_it_until_going_round_helps) {
+START_TEST(a_target_beyond_the_stop_is_watched_from_it_until_turning_round_reaches_it) {
   Law law;
   const Command near = law.update(person(pixel(15)), kLens, looking(170), looking(160));
   assert_goes(near.pan, 170, 4 * 10);
@@ -224,10 +224,10 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "law", {a_pixel_is_an_angle_from_where_the_head_looked_when_the_frame_was_taken, tilt_follows_as_well,
-              the_dead_band_has_two_thresholds, a_head_before_somebody_who_stands_rests,
+              the_dead_band_has_two_thresholds, a_head_before_a_standing_person_rests,
               turning_goes_at_turn_speed_until_the_stop, a_search_goes_from_edge_to_edge_the_nearer_one_first,
               a_search_stays_within_the_stops, zero_returns_both_axes_and_hold_holds_them,
-              tracking_nobody_or_without_a_lens_is_holding,
-              somebody_beyond_the_stop_is_watched_from_it_until_going_round_helps,
+              tracking_without_a_target_or_a_lens_is_holding,
+              a_target_beyond_the_stop_is_watched_from_it_until_turning_round_reaches_it,
               absurd_options_are_replaced, steady_state_allocates_nothing});
 }

@@ -127,7 +127,7 @@ START_TEST(what_is_far_stays_where_it_is_when_the_camera_turns) {
 }
 END_TEST
 
-START_TEST(a_lens_nobody_described_knows_nothing) {
+START_TEST(an_unset_lens_is_unknown) {
   for (const double fov : {0.0, -1.0, std::numbers::pi, 4.0, std::numeric_limits<double>::quiet_NaN()}) {
     const Lens lens(fov, {640, 480});
     ck_assert(!lens.known());
@@ -184,5 +184,5 @@ int main() {
        a_person_four_metres_away_has_the_size_it_had_when_drawn, a_tilted_camera_measures_the_same_person,
        feet_that_are_not_in_the_picture_give_no_distance, what_is_far_stays_where_it_is_when_the_camera_turns,
        a_direction_is_found_again_in_the_picture_where_it_was_seen,
-       what_is_not_ahead_of_the_camera_has_no_place_in_the_picture, a_lens_nobody_described_knows_nothing});
+       what_is_not_ahead_of_the_camera_has_no_place_in_the_picture, an_unset_lens_is_unknown});
 }

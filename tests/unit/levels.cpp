@@ -73,7 +73,7 @@ START_TEST(what_was_not_measured_is_invalid_until_it_is) {
 }
 END_TEST
 
-START_TEST(a_sensor_that_is_stuck_is_invalid_and_said_to_be) {
+START_TEST(a_stuck_sensor_is_invalid_and_reported) {
   LevelSensors sensors;
   sensors.begin(2, {}, {.stuck_after = 5s});
   sensors.measure(0s, std::array{3.0F, 0.0F});
@@ -112,8 +112,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "levels",
-      {a_voltage_switches_with_hysteresis, nothing_is_known_before_the_first_measurement,
-       a_fall_counts_when_the_debounce_time_is_over, what_was_not_measured_is_invalid_until_it_is,
-       a_sensor_that_is_stuck_is_invalid_and_said_to_be, noise_within_the_hysteresis_changes_nothing});
+      "levels", {a_voltage_switches_with_hysteresis, nothing_is_known_before_the_first_measurement,
+                 a_fall_counts_when_the_debounce_time_is_over, what_was_not_measured_is_invalid_until_it_is,
+                 a_stuck_sensor_is_invalid_and_reported, noise_within_the_hysteresis_changes_nothing});
 }

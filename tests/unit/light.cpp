@@ -79,8 +79,8 @@ START_TEST(gain_and_offset_are_found_at_every_size) {
 }
 END_TEST
 
-START_TEST(what_was_clipped_says_nothing_of_the_gain) {
-  // Most of the picture is a wall that is white in the light to come, and says less than the gain that this has.
+START_TEST(clipped_samples_do_not_determine_the_gain) {
+  // Most of the picture is a wall that is white in the light to come, and does not determine the gain.
   Image<std::uint8_t> before(kSize), after(kSize);
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x) {
@@ -122,9 +122,9 @@ START_TEST(few_columns_that_are_not_white_tell_of_bands) {
 }
 END_TEST
 
-// Below a wall all is white but for a few pixels: what light they are in nobody knows, but that it is one of those
+// Below a wall all is white but for a few pixels: their light is unknown, but is one of those
 // above.
-START_TEST(where_nobody_knows_the_light_of_a_row_it_may_be_that_of_any_other) {
+START_TEST(a_row_of_unknown_light_may_have_the_light_of_any_other) {
   Image<std::uint8_t> reference(kSize), present(kSize);
   for (int y = 0; y < kSize.height; ++y)
     for (int x = 0; x < kSize.width; ++x) {
@@ -193,13 +193,13 @@ START_TEST(white_in_less_light_may_be_anything_brighter_than_its_share) {
 END_TEST
 
 int main() {
-  return run_suite("light",
-                   {equal_pictures_have_no_change_of_light_whatever_their_size,
-                    gain_and_offset_are_found_at_every_size, what_was_clipped_says_nothing_of_the_gain,
-                    bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart,
-                    bands_go_on_where_all_is_white, few_columns_that_are_not_white_tell_of_bands,
-                    where_nobody_knows_the_light_of_a_row_it_may_be_that_of_any_other,
-                    a_picture_that_is_white_in_one_light_only_agrees_with_nothing,
-                    an_object_in_less_than_half_of_its_rows_is_no_band,
-                    white_in_less_light_may_be_anything_brighter_than_its_share});
+  return run_suite(
+      "light",
+      {equal_pictures_have_no_change_of_light_whatever_their_size, gain_and_offset_are_found_at_every_size,
+       clipped_samples_do_not_determine_the_gain,
+       bands_are_not_taken_for_brightness_where_bright_and_dark_lie_apart, bands_go_on_where_all_is_white,
+       few_columns_that_are_not_white_tell_of_bands, a_row_of_unknown_light_may_have_the_light_of_any_other,
+       a_picture_that_is_white_in_one_light_only_agrees_with_nothing,
+       an_object_in_less_than_half_of_its_rows_is_no_band,
+       white_in_less_light_may_be_anything_brighter_than_its_share});
 }

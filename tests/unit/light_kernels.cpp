@@ -45,7 +45,7 @@ START_TEST(sums_agree_with_the_reference) {
 END_TEST
 
 START_TEST(sums_leave_white_out_and_limit_what_remains) {
-  // Half the light and 10 levels more: 100 becomes 60, 20 becomes 20; 244 is 132, 245 is white and says nothing. In
+  // Half the light and 10 levels more: 100 becomes 60, 20 becomes 20; 244 is 132, 245 is white and not counted. In
   // four times the light 58 is 232 and 59 is near white.
   std::vector<std::uint8_t> reference(96, 255), present(96, 0);
   const auto put = [&](std::size_t at, int from, int to) {

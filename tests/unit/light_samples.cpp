@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Which pixels are samples, said a second time.
+// Which pixels are samples, computed a second time.
 #include "vision/change/light_samples.h"
 
 #include <check.h>

@@ -16,7 +16,7 @@ START_TEST(the_median_lies_where_half_of_the_counts_are_reached) {
   ck_assert_double_eq_tol(median_of_levels(std::array{10, 20, 10}, 40, -1), 0, 1e-12);
   // 20 of 25 into level 0.
   ck_assert_double_eq_tol(median_of_levels(std::array{0, 25, 15}, 40, -1), 0.3, 1e-12);
-  // Nobody is between: the end of the lower level.
+  // No value is between: the end of the lower level.
   ck_assert_double_eq_tol(median_of_levels(std::array{20, 0, 20}, 40, -1), -0.5, 1e-12);
   ck_assert_double_eq(median_of_levels(std::array{0, 0, 0}, 40), 0);
 }

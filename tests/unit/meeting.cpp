@@ -56,7 +56,8 @@ START_TEST(three_persons_who_meet_in_a_mostly_empty_blob_stay_three) {
     if (out > 110)
       for (const Point& p : at) seen.push_back(person(p.x, p.y));
     else
-      seen = {{{300 - out, std::min(150.0, 150 + far), 40 + 2 * out, 100 + out}, 8000, 0.2, 1, RegionKind::part}};
+      seen = {
+          {{300 - out, std::min(150.0, 150 + far), 40 + 2 * out, 100 + out}, 8000, 0.2, 1, RegionKind::part}};
     const auto tracks = tracker.update(seen, {}, 0.1, kFrame);
     if (k < 5) continue;
     ck_assert_uint_eq(tracks.size(), 3);
@@ -143,7 +144,7 @@ START_TEST(fragments_of_one_object_are_soon_one_track) {
 }
 END_TEST
 
-// They were one blob at first, so their common box holds both later regions. Nobody knows how tall people are.
+// They were one blob at first, so their common box holds both later regions. The height prior is still empty.
 START_TEST(two_persons_who_leave_a_blob_side_by_side_are_two) {
   for (const double gap : {15.0, 25.0, 45.0}) {
     Tracker tracker;

@@ -81,7 +81,7 @@ START_TEST(the_stages_hold_what_they_say_and_that_is_at_most_16_bytes_a_pixel_an
 }
 END_TEST
 
-START_TEST(a_tracker_holds_what_it_says_and_takes_more_only_when_more_come_than_ever) {
+START_TEST(a_tracker_uses_the_bytes_it_reports_and_more_only_for_more_tracks_than_ever) {
   std::mt19937 random(3);
   const std::ptrdiff_t before = held_bytes();
   Tracker tracker;
@@ -131,6 +131,6 @@ END_TEST
 
 int main() {
   return run_suite("memory", {the_stages_hold_what_they_say_and_that_is_at_most_16_bytes_a_pixel_and_40_kB,
-                              a_tracker_holds_what_it_says_and_takes_more_only_when_more_come_than_ever,
+                              a_tracker_uses_the_bytes_it_reports_and_more_only_for_more_tracks_than_ever,
                               nothing_is_taken_after_the_first_frames_whatever_moves});
 }

@@ -250,7 +250,7 @@ START_TEST(content_that_comes_back_in_another_light_is_dropped) {
     model.mosaic.verify(p, frame.view(), background.view(), shown);
     ck_assert_int_eq(p.age.at(3, 30), std::abs(change) > 20 ? 0 : Mosaic::kOldest);
   }
-  // A person who fills half of it is no reason, nor are pixels outside the frame.
+  // A person filling half of it is no reason, nor are pixels outside the frame.
   for (const bool somebody : {true, false}) {
     Model model(even_wall, 10);
     model.go_and_return(kStep, 0, 1);

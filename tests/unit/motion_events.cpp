@@ -17,14 +17,14 @@ struct Stream {
     now += step;
     return presence.update(present, now, step, hold);
   }
-  // With the first frame of a scene nobody knows how long it was since the one before.
+  // At the first frame of a scene the time since the one before is unknown.
   Change scene(bool present, MotionEvents::Time hold, MotionEvents::Time gap) {
     now += gap;
     return presence.update(present, now, 0ms, hold);
   }
 };
 
-START_TEST(nothing_is_told_before_the_first_object) {
+START_TEST(nothing_is_reported_before_the_first_object) {
   Stream stream;
   for (int k = 0; k < 100; ++k) ck_assert(stream.next(false, 100ms) == Change::none);
 }
@@ -102,7 +102,7 @@ START_TEST(without_times_the_frames_are_counted) {
 }
 END_TEST
 
-START_TEST(where_nothing_tells_the_time_there_are_25_frames_a_second) {
+START_TEST(without_any_time_there_are_25_frames_a_second) {
   for (const auto& apart :
        {std::optional<MotionEvents::Time>(), std::optional<MotionEvents::Time>(0ns),
         std::optional<MotionEvents::Time>(1ns), std::optional<MotionEvents::Time>(-40ms)}) {
@@ -118,7 +118,7 @@ START_TEST(where_nothing_tells_the_time_there_are_25_frames_a_second) {
 }
 END_TEST
 
-START_TEST(the_end_of_the_stream_ends_it_once_and_knows_when) {
+START_TEST(the_end_of_the_stream_ends_it_once_with_its_time) {
   Stream stream;
   ck_assert(stream.presence.end() == Change::none);
   stream.next(true, 1s);
@@ -140,12 +140,12 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "presence",
-      {nothing_is_told_before_the_first_object, it_starts_once_with_the_first_object,
+      {nothing_is_reported_before_the_first_object, it_starts_once_with_the_first_object,
        it_ends_once_when_the_hold_is_over,
        an_object_that_comes_back_is_the_same_motion_and_the_hold_begins_anew,
        without_a_hold_the_first_empty_frame_ends_it, a_gap_in_the_stream_counts_as_long_as_it_was,
        time_that_runs_backwards_is_no_silence_but_a_frame, what_a_frame_counts_for_is_not_what_its_stamps_say,
-       without_times_the_frames_are_counted, where_nothing_tells_the_time_there_are_25_frames_a_second,
-       the_end_of_the_stream_ends_it_once_and_knows_when,
+       without_times_the_frames_are_counted, without_any_time_there_are_25_frames_a_second,
+       the_end_of_the_stream_ends_it_once_with_its_time,
        silence_before_an_object_does_not_shorten_the_hold_after_it});
 }

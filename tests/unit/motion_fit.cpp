@@ -122,7 +122,7 @@ START_TEST(agreement_all_over_the_picture_beats_the_same_number_in_one_place) {
 }
 END_TEST
 
-// Somebody who covers nearly half of the picture, from the lower edge on, and a wall with little on it.
+// A person who covers nearly half of the picture, from the lower edge on, and a wall with little on it.
 START_TEST(what_surrounds_the_middle_of_the_picture_is_the_background) {
   std::mt19937 random(15);
   for (const Transform& camera : {Transform::translation(-6, 1), Transform{}, kTurn}) {
@@ -229,7 +229,7 @@ START_TEST(a_turn_through_a_lens_takes_one_point_to_the_other_and_bends) {
 }
 END_TEST
 
-START_TEST(a_wide_lens_that_is_known_turns_behind_somebody_close) {
+START_TEST(a_known_wide_lens_turns_behind_a_close_person) {
   std::mt19937 random(16);
   for (const double pan : {-3.0, 2.5, 3.0}) {
     const Transform truth = turn_of(95 * kDegree, pan * kDegree, 0.3 * kDegree, 0);
@@ -243,8 +243,8 @@ START_TEST(a_wide_lens_that_is_known_turns_behind_somebody_close) {
 }
 END_TEST
 
-// A similarity follows neither the whole of such a turn nor more than somebody who goes another way.
-START_TEST(a_wide_lens_that_nobody_told_of_turns_behind_somebody_close) {
+// A similarity follows neither the whole of such a turn nor more samples than a person who goes another way.
+START_TEST(an_unknown_wide_lens_turns_behind_a_close_person) {
   std::mt19937 random(19);
   for (const double view : {65.0, 80.0, 100.0})
     for (const double pan : {-4.0, 4.0}) {
@@ -382,8 +382,8 @@ int main() {
                                   what_surrounds_the_middle_of_the_picture_is_the_background,
                                   where_all_go_along_nothing_competes,
                                   a_turn_through_a_lens_takes_one_point_to_the_other_and_bends,
-                                  a_wide_lens_that_is_known_turns_behind_somebody_close,
-                                  a_wide_lens_that_nobody_told_of_turns_behind_somebody_close,
+                                  a_known_wide_lens_turns_behind_a_close_person,
+                                  an_unknown_wide_lens_turns_behind_a_close_person,
                                   a_turn_that_the_samples_do_not_show_comes_out_unbent,
                                   edges_that_know_one_direction_only_are_combined,
                                   a_richer_model_is_taken_only_where_it_earns_its_unknowns,

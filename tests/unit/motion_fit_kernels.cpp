@@ -97,7 +97,7 @@ START_TEST(normal_equations_agree_with_the_reference) {
 }
 END_TEST
 
-START_TEST(what_agrees_is_told_of_each_region) {
+START_TEST(agreement_is_summed_for_each_region) {
   MotionSamples s = one_of_each();
   s.u[3] += 0.15f;  // squared distance 2.25, a quarter of the gate's
   s.v[6] += 5;
@@ -113,7 +113,7 @@ START_TEST(what_agrees_is_told_of_each_region) {
 }
 END_TEST
 
-START_TEST(who_follows_both_is_counted_in_whichever_row_he_is) {
+START_TEST(a_follower_of_both_is_counted_in_every_row) {
   MotionSamples s = one_of_each();
   const int first = s.count;
   for (int i = first; i < MotionSamples::kMax; ++i) {  // far more than a region has room for
@@ -156,8 +156,7 @@ END_TEST
 
 int main() {
   return run_suite_on_every_target(
-      "motion_fit_kernels",
-      {agreement_agrees_with_the_reference, normal_equations_agree_with_the_reference,
-       what_agrees_is_told_of_each_region, who_follows_both_is_counted_in_whichever_row_he_is,
-       one_sample_gives_its_own_equations});
+      "motion_fit_kernels", {agreement_agrees_with_the_reference, normal_equations_agree_with_the_reference,
+                             agreement_is_summed_for_each_region, a_follower_of_both_is_counted_in_every_row,
+                             one_sample_gives_its_own_equations});
 }

@@ -38,7 +38,7 @@ START_TEST(drives_are_those_of_the_manual) {
   assert_text(hex(drive(1, 0, 0x3f)), "ff 01 00 08 00 3f 48");       // up
   assert_text(hex(drive(1, 0, -0x3f)), "ff 01 00 10 00 3f 50");      // down
   assert_text(hex(drive(10, -0x3f, 0x10)), "ff 0a 00 0c 3f 10 65");  // up left
-  assert_text(hex(drive(1, 500, -500)), "ff 01 00 12 3f 3f 91");     // no faster than the protocol knows
+  assert_text(hex(drive(1, 500, -500)), "ff 01 00 12 3f 3f 91");     // no faster than the protocol permits
   assert_text(hex(drive(1, 0, 0)), "ff 01 00 00 00 00 01");          // stop
   assert_text(hex(position_query(1, Axis::pan)), "ff 01 00 51 00 00 52");
   assert_text(hex(position_query(2, Axis::tilt)), "ff 02 00 53 00 00 55");

@@ -48,7 +48,7 @@ START_TEST(columns_outside_the_picture_cost_nothing) {
 }
 END_TEST
 
-START_TEST(random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touched) {
+START_TEST(random_boxes_score_as_in_the_reference_loop_and_nothing_else_is_touched) {
   std::mt19937 random(3);
   const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n + 1)); };
   for (int round = 0; round < 300; ++round) {
@@ -101,6 +101,6 @@ int main() {
   return run_suite_on_every_target(
       "people_kernels",
       {a_score_is_the_gain_of_core_and_sides_less_the_price, columns_outside_the_picture_cost_nothing,
-       random_boxes_score_as_the_obvious_loop_says_and_nothing_else_is_touched,
+       random_boxes_score_as_in_the_reference_loop_and_nothing_else_is_touched,
        cells_add_up_and_are_taken_away_again_unless_explained});
 }

@@ -91,7 +91,7 @@ START_TEST(bounce_does_not_show) {
 }
 END_TEST
 
-START_TEST(a_late_poll_still_tells_when_it_happened) {
+START_TEST(a_late_poll_still_reports_the_exact_time) {
   PirModel model = started(kPlain);
   model.edge(1000ms, true);
   model.edge(2000ms, false);
@@ -137,7 +137,7 @@ START_TEST(readings_are_invalid_before_the_start_and_in_warm_up) {
   ck_assert_int_eq(presence(model), 0);
   ck_assert(model.changed() == 70s);
 
-  model.start(100s, true);  // somebody stands there already
+  model.start(100s, true);  // a person stands there already
   model.poll(160s);
   ck_assert_int_eq(presence(model), 1);
 }
@@ -299,12 +299,12 @@ START_TEST(a_turning_base_makes_detections_doubtful) {
 }
 END_TEST
 
-START_TEST(a_base_of_which_nobody_speaks_any_more_is_taken_as_standing) {
+START_TEST(a_base_without_further_reports_is_taken_as_standing) {
   PirModel model = started(kPlain);
   model.edge(1s, true);
   model.base(2s, 1);
   ck_assert(model.deadline() == 3s);
-  model.base(2900ms, 1);  // said again
+  model.base(2900ms, 1);  // reported again
   ck_assert(model.deadline() == 3900ms);
   model.poll(3900ms);
   ck_assert(model.doubtful());  // the module holds what the turn did to it
@@ -313,7 +313,7 @@ START_TEST(a_base_of_which_nobody_speaks_any_more_is_taken_as_standing) {
   ck_assert(model.doubtful());
   model.poll(6900ms);
   ck_assert(!model.doubtful());
-  // Not only where somebody polls in between.
+  // Also without a poll in between.
   model.base(10s, 1);
   model.poll(14s - 1ns);
   ck_assert(model.doubtful());
@@ -335,7 +335,7 @@ START_TEST(a_time_that_goes_back_counts_as_the_last_one) {
 }
 END_TEST
 
-START_TEST(presence_is_what_its_definition_says_on_random_lines) {
+START_TEST(presence_follows_its_definition_on_random_lines) {
   std::mt19937 random(3);
   for (int round = 0; round < 300; ++round) {
     PirOptions options = kPlain;
@@ -436,14 +436,14 @@ int main() {
   return cerberus::tests::run_suite(
       "pir_model",
       {a_rise_is_reported_at_once_and_a_fall_after_the_debounce_time, bounce_does_not_show,
-       a_late_poll_still_tells_when_it_happened, the_debounce_time_is_limited_to_50_ms,
+       a_late_poll_still_reports_the_exact_time, the_debounce_time_is_limited_to_50_ms,
        an_open_collector_module_detects_while_its_line_is_low,
        readings_are_invalid_before_the_start_and_in_warm_up,
        hold_keeps_a_detection_and_a_new_rise_extends_it_where_the_module_retriggers,
        without_retrigger_a_line_that_stays_is_a_new_detection_after_the_block_time,
        nothing_triggers_in_the_block_time, a_line_that_never_rests_is_stuck_until_it_does,
        a_line_that_chatters_is_invalid_until_it_calms_down, no_module_of_the_list_chatters_by_its_own_timing,
-       a_turning_base_makes_detections_doubtful, a_base_of_which_nobody_speaks_any_more_is_taken_as_standing,
-       a_time_that_goes_back_counts_as_the_last_one, presence_is_what_its_definition_says_on_random_lines,
+       a_turning_base_makes_detections_doubtful, a_base_without_further_reports_is_taken_as_standing,
+       a_time_that_goes_back_counts_as_the_last_one, presence_follows_its_definition_on_random_lines,
        sleeping_until_the_deadline_misses_nothing, the_modules_are_there_by_name});
 }

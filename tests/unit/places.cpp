@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The complete chain, where somebody is there when a scene begins: the memory has his picture, and the place that he
-// leaves is no region.
+// The complete chain, with a person present when a scene begins: the memory has the person's picture, and the place
+// that he leaves is no region.
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -63,7 +63,7 @@ Seen watch(int frames, int from, const std::function<double(int)>& left_of) {
 
 // At 4 pixels a frame he has gone as far as two pairs of the floor's boards when nine frames are over: they look as if
 // they went along.
-START_TEST(the_place_of_somebody_who_stood_there_since_the_start_is_no_region) {
+START_TEST(the_place_of_a_person_present_since_the_start_is_no_region) {
   struct Case {
     int stood;     // frames
     double speed;  // pixels a frame at which he leaves ...
@@ -88,5 +88,5 @@ START_TEST(the_place_of_somebody_who_stood_there_since_the_start_is_no_region) {
 END_TEST
 
 int main() {
-  return run_suite("places", {the_place_of_somebody_who_stood_there_since_the_start_is_no_region}, 60);
+  return run_suite("places", {the_place_of_a_person_present_since_the_start_is_no_region}, 60);
 }

@@ -73,10 +73,10 @@ START_TEST(only_the_oldest_poses_are_forgotten) {
 }
 END_TEST
 
-START_TEST(the_watchdog_bites_once_when_nobody_speaks) {
+START_TEST(the_watchdog_bites_once_without_input) {
   Watchdog dog;
   dog.set_timeout(500ms);
-  ck_assert(!dog.bites(99s));  // nobody is expected to speak
+  ck_assert(!dog.bites(99s));  // no input is expected
   dog.feed(1s);
   ck_assert_int_eq(dog.deadline().count(), Time(1500ms).count());
   ck_assert(!dog.bites(1499ms));
@@ -103,5 +103,5 @@ int main() {
       "pose_history", {a_pose_moves_on_with_its_acceleration, a_pose_is_held_at_its_ends,
                        a_frame_gets_the_pose_of_its_own_time_not_the_latest,
                        a_newer_plan_replaces_what_was_to_come, only_the_oldest_poses_are_forgotten,
-                       the_watchdog_bites_once_when_nobody_speaks, a_watchdog_without_a_timeout_sleeps});
+                       the_watchdog_bites_once_without_input, a_watchdog_without_a_timeout_sleeps});
 }

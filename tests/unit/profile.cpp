@@ -64,7 +64,7 @@ START_TEST(the_speed_of_the_command_counts_below_the_limit) {
 }
 END_TEST
 
-// At 2 a second, told to go back to where it is: brakes in 0.5 s and 0.5 of way, then returns by a triangle of
+// At 2 a second, commanded back to where it is: brakes in 0.5 s and 0.5 of way, then returns by a triangle of
 // 2 sqrt(0.5 / 4) s.
 START_TEST(an_axis_that_goes_the_wrong_way_brakes_first) {
   const Plan plan = Plan::make(0s, {0, 2, 0}, {Kind::position, 0, 2}, kLimits);

@@ -56,7 +56,7 @@ START_TEST(a_byte_order_mark_is_no_reading) {
 }
 END_TEST
 
-START_TEST(what_is_wrong_with_a_recording_is_told_with_file_and_line) {
+START_TEST(an_error_in_a_recording_is_reported_with_file_and_line) {
   const struct {
     const char *text, *why;
     std::size_t edges;  // of what went before
@@ -163,7 +163,7 @@ START_TEST(volts_are_written_as_volts) {
 }
 END_TEST
 
-START_TEST(what_is_wrong_with_volts_is_told) {
+START_TEST(an_error_in_volts_is_reported) {
   const struct {
     const char *text, *why;
   } cases[] = {
@@ -210,8 +210,8 @@ int main() {
   return cerberus::tests::run_suite(
       "recording",
       {comma_separated_values_and_json_lines_say_the_same, a_byte_order_mark_is_no_reading,
-       what_is_wrong_with_a_recording_is_told_with_file_and_line,
+       an_error_in_a_recording_is_reported_with_file_and_line,
        files_that_cannot_be_recordings_are_refused_at_once, a_recording_that_may_not_be_read_is_named,
        a_recording_is_played_when_its_time_has_come, volts_are_written_as_volts,
-       what_is_wrong_with_volts_is_told, recorded_volts_are_compared_with_the_threshold});
+       an_error_in_volts_is_reported, recorded_volts_are_compared_with_the_threshold});
 }

@@ -188,7 +188,7 @@ START_TEST(a_region_s_area_is_the_foreground_in_its_box) {
   RegionFinder finder;
   let_people_walk_by(finder);
   Picture picture;
-  picture.person(150, 170);  // two who touch,
+  picture.person(150, 170);  // two persons that touch,
   picture.person(166, 171);
   picture.person(60, 230);           // one alone,
   picture.fill(240, 188, 258, 200);  // a dog
@@ -233,8 +233,8 @@ START_TEST(a_car_among_people_is_not_cut_into_people_nor_lost) {
 }
 END_TEST
 
-// No rectangle, so that boxes of people cut from it hold what does not move; it is recognised by its one outline. What is
-// left of it at the border is as wide as two people, one after another.
+// No rectangle, so that boxes of people cut from it hold what does not move; it is recognised by its one outline. What
+// is left of it at the border is as wide as two people, one after another.
 START_TEST(a_round_car_as_tall_as_people_is_one_region_until_it_has_left) {
   for (const int step : {-4, 4}) {
     RegionFinder finder;
@@ -373,7 +373,7 @@ START_TEST(a_mask_full_of_clutter_or_wholly_set_is_survived) {
   Picture picture;
   picture.mask.fill_bytes(255);
   ck_assert_uint_le(picture.find(finder).size(), 1);
-  // Specks everywhere, more than can be told apart, around something that can: it stays, and what is kept agrees.
+  // Specks everywhere, more than can be distinguished, around something that can: it stays, and what is kept agrees.
   finder.set_options({.closing = 1, .minimum_area = 1});
   picture.clear();
   for (int y = 0; y < 240; y += 2)

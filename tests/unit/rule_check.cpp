@@ -132,7 +132,7 @@ START_TEST(searches_of_different_places_contradict_each_other) {
 }
 END_TEST
 
-START_TEST(a_malformed_table_is_told_so_before_anything_else) {
+START_TEST(a_malformed_table_is_reported_before_anything_else) {
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   RuleTable table = sound_table();
   table.sensors = 17;
@@ -222,7 +222,7 @@ START_TEST(the_checker_finds_what_trying_every_case_finds) {
 }
 END_TEST
 
-// Whoever sets the file waits for this: 16 sensors are 131072 cases.
+// The user who sets the file waits for this: 16 sensors are 131072 cases.
 START_TEST(a_table_of_any_size_is_checked_soon_or_refused) {
   const auto table = [](int sensors, int rules, int bands) {
     RuleTable table{.name = "large", .sensors = 16, .precedence = Precedence::exact, .rules = {}};
@@ -308,7 +308,7 @@ int main() {
        the_papers_rules_contradict_each_other_unless_their_order_counts,
        two_rules_that_say_the_same_are_no_contradiction,
        bands_of_one_rule_must_agree_where_they_meet_unless_their_order_counts,
-       searches_of_different_places_contradict_each_other, a_malformed_table_is_told_so_before_anything_else,
+       searches_of_different_places_contradict_each_other, a_malformed_table_is_reported_before_anything_else,
        the_checker_finds_what_trying_every_case_finds, a_table_of_any_size_is_checked_soon_or_refused,
        what_never_applies_is_named, what_lies_beyond_the_limits_is_named});
 }

@@ -73,7 +73,7 @@ START_TEST(the_manuals_first_example_is_the_papers_table) {
 }
 END_TEST
 
-START_TEST(the_manuals_second_example_does_what_it_says) {
+START_TEST(the_manuals_second_example_works_as_described) {
   const RuleFile file = parse_rules(manual_examples().at(1), "rules.md");
   ck_assert_msg(file.table.has_value(), "%s", file.error.c_str());
   const RuleTable::Match gate = file.table->evaluate(false, 0b11, 0);
@@ -157,7 +157,7 @@ START_TEST(a_mistake_is_named_with_its_line) {
 }
 END_TEST
 
-START_TEST(all_mistakes_are_told_at_once) {
+START_TEST(all_mistakes_are_reported_at_once) {
   const RuleFile file = parse_rules("sensors = 99\nsped = 1\n[[rule]]\naction = \"go\"\n", "f.toml");
   int lines = 1;
   for (const char c : file.error) lines += c == '\n';
@@ -177,7 +177,7 @@ START_TEST(a_file_that_cannot_be_read_is_named) {
 }
 END_TEST
 
-// Nobody writes to it: whoever opened it to read would wait for ever.
+// It has no writer: a blocking open() would wait for ever.
 START_TEST(a_pipe_is_refused_at_once) {
   char folder[] = "/tmp/cerberus-rules-XXXXXX";
   ck_assert(mkdtemp(folder) != nullptr);
@@ -246,9 +246,9 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "rule_file",
-      {the_manuals_first_example_is_the_papers_table, the_manuals_second_example_does_what_it_says,
+      {the_manuals_first_example_is_the_papers_table, the_manuals_second_example_works_as_described,
        what_is_left_out_has_a_default, a_gap_and_a_contradiction_are_named, a_mistake_is_named_with_its_line,
-       all_mistakes_are_told_at_once, a_file_that_cannot_be_read_is_named, a_pipe_is_refused_at_once,
+       all_mistakes_are_reported_at_once, a_file_that_cannot_be_read_is_named, a_pipe_is_refused_at_once,
        a_file_that_may_not_be_read_is_named, a_file_is_read_as_its_text_is,
        damaged_files_are_refused_or_read_but_never_harm});
 }

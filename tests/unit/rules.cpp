@@ -109,7 +109,7 @@ START_TEST(an_unknown_pan_angle_meets_only_what_holds_everywhere) {
 }
 END_TEST
 
-START_TEST(a_band_ends_where_it_says) {
+START_TEST(a_band_ends_at_its_limits) {
   const Band closed{.lower = 1, .upper = 2},
       open{.lower = 1, .upper = 2, .lower_included = false, .upper_included = false};
   ck_assert(closed.holds(1) && closed.holds(2) && closed.holds(1.5) && !closed.holds(0.999) &&
@@ -150,6 +150,6 @@ int main() {
       "rules",
       {the_papers_rules_answer_as_its_truth_table_in_416_cases,
        sensors_beyond_the_papers_three_change_nothing, an_unknown_pan_angle_meets_only_what_holds_everywhere,
-       a_band_ends_where_it_says, a_rule_asks_for_all_for_any_and_for_none,
+       a_band_ends_at_its_limits, a_rule_asks_for_all_for_any_and_for_none,
        a_rule_without_a_band_for_the_angle_lets_the_next_one_speak});
 }

@@ -36,7 +36,7 @@ START_TEST(directions_wrap_and_keep_their_meaning) {
       ck_assert_double_eq_tol(wrap(radians(angle + 360 * turn)), radians(angle), 1e-12);
   ck_assert(std::isnan(wrap(kNan)));
   ck_assert(std::isnan(wrap(std::numeric_limits<double>::infinity())));
-  // Never pi itself nor beyond -pi, however the rounding falls and however far a stranger says a head has turned.
+  // Never pi itself nor beyond -pi, however the rounding falls and however large a pan angle from other elements is.
   ck_assert(wrap(std::nextafter(-std::numbers::pi, -4)) < std::numbers::pi);
   for (double degrees = -1e6 + 100; degrees < 1e6; degrees += 180) {  // odd and even multiples of half a turn
     const double wrapped = wrap(radians(degrees - std::fmod(degrees, 180)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// All sensors of a driver together: what is told when.
+// All sensors of a driver together: which reading is reported when.
 #include "drivers/sensor/sensor_array.h"
 
 #include <poll.h>
@@ -99,16 +99,16 @@ START_TEST(nothing_is_known_before_a_recordings_first_line) {
 }
 END_TEST
 
-START_TEST(what_a_recording_calls_invalid_is_so_until_it_says_something_else) {
+START_TEST(an_invalid_reading_of_a_recording_lasts_until_the_next_one) {
   SensorArray array;
   must_be(play(array, "0,0,1,2; 1,2,2,2; 2,2,1,1; 3,1,0,2; 4,0,0,0", {.hold = 10s, .warm_up = 500ms}, 100s),
           {{0s, "222", true},
            {500ms, "012", true},
            {1s, "222", true},
-           {2s, "211", true},  // whatever it said before
+           {2s, "211", true},  // whatever the reading before
            {3s, "112", true},
            {4s, "110", true}});  // the hold of those that go on
-  // Low when somebody is there, and no edge of before is waited for.
+  // Low during a detection, and no earlier edge is waited for.
   must_be(play(array, "0,0; 1,2; 2,1; 3,2; 4,0", {.active_low = true}, 100s, 1),
           {{0s, "1", true}, {1s, "2", true}, {2s, "0", true}, {3s, "2", true}, {4s, "1", true}});
 }
@@ -132,7 +132,7 @@ START_TEST(a_recording_goes_on_wherever_it_is_asked_to) {
 END_TEST
 
 // It is between two reads, or in one, when it is let go.
-START_TEST(a_driver_that_blocks_keeps_nobody_and_is_heard_when_it_is_through) {
+START_TEST(a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_later) {
   for (const bool late : {false, true}) {
     Pipe gate, bell;
     SensorArray array;
@@ -193,7 +193,7 @@ START_TEST(a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread) {
 }
 END_TEST
 
-START_TEST(a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well) {
+START_TEST(a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again) {
   SensorArray array;
   must_be(play(array, "0,0; 1,1; 700,0; 800,0", {}, 1000s, 1),
           {{0ms, "0", true}, {1s, "1", true}, {601s, "2!", true}, {700s + 20ms, "0!", true}});
@@ -212,7 +212,7 @@ START_TEST(a_driver_that_fails_ends_it_with_its_own_words) {
 }
 END_TEST
 
-START_TEST(what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for) {
+START_TEST(edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated) {
   SensorArray array;
   SensorSetup setup;
   setup.script = "0,0,0,0; 1,1,0,0; 2,0,1,0; 60,0,0,0";
@@ -280,12 +280,12 @@ int main() {
       "sensor_array",
       {a_reading_at_the_start_at_every_change_and_every_heartbeat,
        nothing_is_known_before_a_recordings_first_line,
-       what_a_recording_calls_invalid_is_so_until_it_says_something_else,
+       an_invalid_reading_of_a_recording_lasts_until_the_next_one,
        a_recording_goes_on_wherever_it_is_asked_to,
-       a_driver_that_blocks_keeps_nobody_and_is_heard_when_it_is_through,
+       a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_later,
        a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread,
-       a_sensor_that_is_stuck_is_told_once_and_once_more_when_it_is_well,
+       a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again,
        a_driver_that_fails_ends_it_with_its_own_words,
-       what_was_before_the_first_look_is_not_told_and_missed_heartbeats_are_not_made_up_for,
+       edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated,
        a_turning_base_makes_detections_doubtful, every_sample_is_a_reading_where_that_is_asked_for});
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors that block must block nobody else.
+// Sensors that block must not block their callers.
 #include "drivers/sensor/sensor_runner.h"
 
 #include <poll.h>
@@ -28,7 +28,7 @@ struct Wire {
   Pipe lit;  // a line for each show(), of its readings
 };
 
-// A device with one event a read, for as long as it is plugged in. Its descriptor wakes nobody.
+// A device with one event a read, for as long as it is plugged in. Its descriptor never becomes readable.
 class Device final : public Sensor {
  public:
   explicit Device(std::shared_ptr<Wire> wire) : wire_(std::move(wire)) {}
@@ -71,7 +71,7 @@ struct Rig {
     runner.begin(std::make_unique<Device>(wire), {}, {});
     ck_assert(runner.opened(60s) && !runner.error());
   }
-  // Waits until it is told what went wrong.
+  // Waits until the error is reported.
   std::string complaint() {
     std::vector<SensorEdge> edges;
     for (;;) {
@@ -92,7 +92,7 @@ SensorSetup script(const std::string& text) {
   return setup;
 }
 
-START_TEST(what_a_device_says_at_first_is_there_when_it_is_open) {
+START_TEST(the_first_levels_of_a_device_are_available_when_it_is_open) {
   Rig rig;
   std::vector<SensorEdge> edges;
   pollfd news{rig.runner.fd(), POLLIN, 0};
@@ -102,7 +102,7 @@ START_TEST(what_a_device_says_at_first_is_there_when_it_is_open) {
 }
 END_TEST
 
-START_TEST(a_device_that_wakes_nobody_is_looked_after) {
+START_TEST(a_device_that_never_wakes_poll_is_read_periodically) {
   Rig rig;
   while (rig.wire->reads < 3) usleep(1000);
   rig.wire->unplugged = true;
@@ -144,7 +144,7 @@ START_TEST(nothing_is_to_be_had_while_they_are_being_opened) {
 }
 END_TEST
 
-START_TEST(whoever_is_refused_is_told_so_while_he_is_there) {
+START_TEST(a_refusal_is_reported_while_the_runner_exists) {
   Pipe gate;
   std::promise<void> told;
   SensorRunner runner;
@@ -160,7 +160,7 @@ START_TEST(whoever_is_refused_is_told_so_while_he_is_there) {
     runner.close();
     ck_assert_int_eq(runner.fd(), -1);
   }
-  usleep(100000);  // to be told, if it were so
+  usleep(100000);  // time for a wrong report
 }
 END_TEST
 
@@ -181,8 +181,8 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "sensor_runner",
-      {what_a_device_says_at_first_is_there_when_it_is_open, a_device_that_wakes_nobody_is_looked_after,
-       leds_show_what_was_asked_for_last, nothing_is_to_be_had_while_they_are_being_opened,
-       whoever_is_refused_is_told_so_while_he_is_there,
+      {the_first_levels_of_a_device_are_available_when_it_is_open,
+       a_device_that_never_wakes_poll_is_read_periodically, leds_show_what_was_asked_for_last,
+       nothing_is_to_be_had_while_they_are_being_opened, a_refusal_is_reported_while_the_runner_exists,
        a_device_is_closed_by_its_own_thread_and_before_the_runner_is});
 }

@@ -46,7 +46,7 @@ struct Opened {
 
 }  // namespace
 
-START_TEST(what_no_head_can_have_is_told_with_its_name_and_value) {
+START_TEST(an_impossible_setting_is_reported_with_its_name_and_value) {
   const auto refusal = [](auto change) {
     HeadSetup with = setup();
     change(with);
@@ -102,7 +102,7 @@ START_TEST(a_flood_of_commands_is_refused_not_forgotten) {
   for (int k = 0; k < 1000 && !refused; ++k)
     refused = !head.head.command({6s + k * 1ms, {Kind::position, k * 0.001, 1}, {}}).empty();
   ck_assert(refused);
-  // Until the first of the flood has come, at 11 s, it does as it was told before.
+  // Until the first of the flood has come, at 11 s, it executes the earlier command.
   ck_assert_double_eq_tol(head.pan(10s), 5 * 0.1 - 0.1 * 0.1 / (2 * 2), 1e-9);
   with.latency = 100ms;
   Opened quick(with);
@@ -138,14 +138,14 @@ START_TEST(the_camera_follows_the_motor_with_play) {
   head.send(5s, {Kind::position, 0, 1});
   ck_assert_double_eq_tol(head.pan(5400ms), 0.9, 1e-9);  // 0.16 of the play
   ck_assert_double_eq_tol(head.pan(9s), 0.1, 1e-9);
-  // Back and forth within one plan: told to return while it moves.
+  // Back and forth within one plan: commanded to return while it moves.
   head.send(10s, {Kind::position, 2, 1});
   head.send(11s, {Kind::position, 0.5, 1});
   ck_assert_double_eq_tol(head.pan(60s), 0.6, 1e-9);
 }
 END_TEST
 
-// The pieces that state() tells, put together, are the way.
+// The pieces that state() returns, put together, are the trajectory.
 START_TEST(pieces_meet_and_make_the_whole_way) {
   HeadSetup with = setup();
   with.backlash = 0.05;
@@ -242,10 +242,10 @@ START_TEST(a_stop_that_is_too_near_to_brake_for_is_not_passed) {
 END_TEST
 
 // Whatever is asked for and whenever the stops are moved: no jump, and beyond a stop only inwards.
-START_TEST(moved_stops_lead_nobody_further_out) {
+START_TEST(moved_stops_lead_no_head_further_out) {
   HeadSetup with = setup();
   with.latency = 60ms;
-  with.noise = 1e-4;  // what it says of itself is not cut off at a stop that it is beyond
+  with.noise = 1e-4;  // the feedback is not limited to a stop that the head is beyond
   Opened head(with);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> number(0, 1);
@@ -273,7 +273,7 @@ START_TEST(moved_stops_lead_nobody_further_out) {
       last = position;
     }
   }
-  ck_assert_int_ge(beyond, 100);  // or this tells nothing
+  ck_assert_int_ge(beyond, 100);  // or this test is void
 }
 END_TEST
 
@@ -291,10 +291,10 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "simulated_head",
-      {what_no_head_can_have_is_told_with_its_name_and_value, a_command_counts_after_the_latency,
+      {an_impossible_setting_is_reported_with_its_name_and_value, a_command_counts_after_the_latency,
        commands_on_their_way_are_not_lost, a_flood_of_commands_is_refused_not_forgotten, it_rests_on_a_step,
        new_limits_count_after_the_latency, a_stop_that_is_too_near_to_brake_for_is_not_passed,
-       moved_stops_lead_nobody_further_out, the_camera_follows_the_motor_with_play,
+       moved_stops_lead_no_head_further_out, the_camera_follows_the_motor_with_play,
        pieces_meet_and_make_the_whole_way, equal_seeds_give_equal_noise_and_others_other,
        numbers_that_are_none_do_not_make_a_head, steady_state_allocates_nothing});
 }

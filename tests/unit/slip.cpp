@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Heads that do what they are told and heads that do not, as the picture shows it. Degrees here.
+// Heads that execute their commands and heads that do not, as the picture shows it. Degrees here.
 #include "control/slip.h"
 
 #include <check.h>
@@ -69,7 +69,7 @@ double nothing(double) {
 }
 
 struct Sight {
-  double gain = 1;       // what the head does of what it is told
+  double gain = 1;       // share of the commanded turn that the head makes
   double late = 0;       // seconds
   Speed base = nothing;  // the robot's own turning
   double noise = 0.02;   // degrees a frame
@@ -111,7 +111,7 @@ void assert_silent(const std::vector<SlipFinding>& all, const char* what, unsign
                 all.empty() ? 0 : degrees(all[0].travel));
 }
 
-// Of the robots and people that turn below a head that does what it is told. 33 are a day of them.
+// Of the robots and people that turn below a head that executes its commands. 33 are a day of them.
 unsigned seeds() {
   const char* asked = std::getenv("CERBERUS_SLIP_SEEDS");
   if (!asked) return 20;
@@ -198,7 +198,7 @@ START_TEST(a_head_that_turns_by_another_angle_is_found_once) {
 END_TEST
 
 // Every fault, by a picture as noisy as the real ones (0.03 degrees a frame; a head up to a tenth of a second late). In
-// the first 20 degrees nothing may be said; a second change of
+// the first 20 degrees nothing may be reported; a second change of
 // speed there must be, for a wrong scale a third, and then it is.
 START_TEST(a_fault_is_found_soon_after_twenty_degrees) {
   const struct {
@@ -267,7 +267,7 @@ START_TEST(twenty_degrees_of_travel_come_first) {
 }
 END_TEST
 
-START_TEST(a_steady_head_says_nothing_of_itself) {
+START_TEST(a_steady_head_is_no_evidence) {
   // One start in a hundred seconds; a robot may do anything meanwhile.
   const Speed once = [](double t) { return t < 1 ? 0.0 : 40.0; };
   assert_silent(findings(once, {.gain = 0, .noise = 0}, 90), "steady");
@@ -332,7 +332,7 @@ START_TEST(a_robot_that_turns_hides_no_fault) {
 }
 END_TEST
 
-START_TEST(a_picture_that_says_nothing_does_not_count) {
+START_TEST(a_picture_without_a_measurement_does_not_count) {
   assert_silent(findings(sweep(40, 1.3), {.gain = 0, .noise = 0, .seen = [](int) { return false; }}, 60),
                 "blank");
   // Too few of them say something.
@@ -381,10 +381,10 @@ int main() {
                a_head_that_turns_the_wrong_way_is_found_once,
                a_head_that_turns_by_another_angle_is_found_once, a_fault_is_found_soon_after_twenty_degrees,
                slow_changes_will_do, at_any_frame_rate_the_same_is_found, twenty_degrees_of_travel_come_first,
-               a_steady_head_says_nothing_of_itself, a_robot_that_turns_is_no_fault_of_its_head,
+               a_steady_head_is_no_evidence, a_robot_that_turns_is_no_fault_of_its_head,
                a_head_that_holds_a_target_on_a_turning_robot_does_not_slip,
                a_person_who_fills_the_picture_is_no_fault_of_the_head,
                a_gain_that_is_another_one_each_time_is_no_wrong_scale, a_robot_that_turns_hides_no_fault,
-               a_picture_that_says_nothing_does_not_count, a_fault_is_found_anew_after_the_head_has_followed,
-               numbers_that_are_none_do_no_harm});
+               a_picture_without_a_measurement_does_not_count,
+               a_fault_is_found_anew_after_the_head_has_followed, numbers_that_are_none_do_no_harm});
 }

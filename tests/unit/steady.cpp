@@ -52,7 +52,7 @@ struct Count {
   std::string first;
 };
 
-// 1000 frames of a scene; `light_of` says how it is lit. Frames within 3 of a step may have regions, never tracks.
+// 1000 frames of a scene; `light_of` returns its light. Frames within 3 of a step may have regions, never tracks.
 template <typename LightOf>
 Count watch(const std::vector<float>& scene, LightOf&& light_of) {
   Noise noise;
@@ -202,8 +202,8 @@ Entered enter(Walk& walk, Street& street, int start) {
   return result;
 }
 
-// Where somebody stood in the first frame of a scene, the memory has his picture, and the strip he leaves looks like a
-// thing that moves beside him. No region is that strip alone.
+// Where a person stood in the first frame of a scene, the memory has the person's picture, and the strip he leaves
+// looks like a thing that moves beside him. No region is that strip alone.
 void enter_right(Walk& walk, Street& street, int start) {
   const Entered result = enter(walk, street, start);
   ck_assert_msg(result.complete >= 45, "both seen in only %d of 60 frames", result.complete);

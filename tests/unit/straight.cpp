@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who walks straight up or down the picture, or towards the camera: only his fronts are seen to move, head, waist and
-// feet, and his middle may stay where it is.
+// A person who walks straight up or down the picture, or towards the camera: only the fronts are seen to move, head,
+// waist and feet, and his middle may stay where it is.
 #include <algorithm>
 #include <cmath>
 #include <optional>

@@ -10,7 +10,7 @@ using namespace cerberus::fusion;
 using namespace std::chrono_literals;
 using Answer = TargetOverride::Answer;
 
-START_TEST(who_is_on_the_frame_is_followed) {
+START_TEST(a_chosen_track_on_the_frame_is_followed) {
   TargetOverride target;
   ck_assert(target.watch(true, 0s) == Answer::none);  // no override
   target.choose(7);
@@ -19,7 +19,7 @@ START_TEST(who_is_on_the_frame_is_followed) {
 }
 END_TEST
 
-START_TEST(who_was_here_is_waited_for_and_followed_again_within_five_seconds) {
+START_TEST(a_missing_track_is_awaited_and_followed_again_within_five_seconds) {
   TargetOverride target;
   target.choose(7);
   ck_assert(target.watch(true, 10s) == Answer::here);
@@ -31,7 +31,7 @@ START_TEST(who_was_here_is_waited_for_and_followed_again_within_five_seconds) {
 }
 END_TEST
 
-START_TEST(who_stays_away_is_lost_once_and_for_all) {
+START_TEST(a_track_that_stays_away_is_lost_once_and_for_all) {
   TargetOverride target;
   target.choose(7);
   target.watch(true, 1s);
@@ -42,7 +42,7 @@ START_TEST(who_stays_away_is_lost_once_and_for_all) {
 }
 END_TEST
 
-START_TEST(who_never_came_is_lost_five_seconds_after_the_first_frame) {
+START_TEST(a_track_that_never_came_is_lost_five_seconds_after_the_first_frame) {
   TargetOverride target;
   target.choose(7);
   ck_assert(target.watch(false, 100s) == Answer::none);  // nothing to wait for yet
@@ -86,9 +86,10 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "target_override",
-      {who_is_on_the_frame_is_followed, who_was_here_is_waited_for_and_followed_again_within_five_seconds,
-       who_stays_away_is_lost_once_and_for_all, who_never_came_is_lost_five_seconds_after_the_first_frame,
-       the_same_frame_may_be_looked_at_twice, a_new_choice_begins_anew_and_none_ends_it,
-       when_time_begins_anew_so_does_the_waiting});
+      "target_override", {a_chosen_track_on_the_frame_is_followed,
+                          a_missing_track_is_awaited_and_followed_again_within_five_seconds,
+                          a_track_that_stays_away_is_lost_once_and_for_all,
+                          a_track_that_never_came_is_lost_five_seconds_after_the_first_frame,
+                          the_same_frame_may_be_looked_at_twice, a_new_choice_begins_anew_and_none_ends_it,
+                          when_time_begins_anew_so_does_the_waiting});
 }

@@ -74,7 +74,7 @@ START_TEST(the_chosen_track_goes_before_every_decision_while_it_is_there) {
 }
 END_TEST
 
-START_TEST(a_decision_between_frames_counts_until_a_frame_knows_as_much) {
+START_TEST(a_decision_between_frames_counts_until_a_frame_has_as_late_readings) {
   TargetSelector selector;
   ck_assert(!selector.on_decision(decision(Action::turn_left, 1s)));  // no frame carries decisions
   selector.on_frame({kTracks, decision(Action::hold, 1s)}, 1s, 0);
@@ -115,7 +115,7 @@ int main() {
                           {a_decision_on_the_frame_is_the_goal_and_its_target_the_middle_of_the_track,
                            without_a_decision_the_nearest_track_is_followed_and_then_zero,
                            the_chosen_track_goes_before_every_decision_while_it_is_there,
-                           a_decision_between_frames_counts_until_a_frame_knows_as_much,
+                           a_decision_between_frames_counts_until_a_frame_has_as_late_readings,
                            a_target_between_frames_waits_for_the_next_one,
                            another_stream_begins_without_the_decisions_before_but_with_the_chosen_track});
 }

@@ -261,7 +261,7 @@ START_TEST(steady_state_allocates_nothing) {
 }
 END_TEST
 
-// Whether D(k-1) is made or not, D(k) and all that is said of it are the same.
+// Whether D(k-1) is made or not, D(k) and all results for it are the same.
 START_TEST(without_the_difference_before_a_picture_less_is_held_and_all_else_is_the_same) {
   const Size size{96, 72};
   const Scene scene(4);

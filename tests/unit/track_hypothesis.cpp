@@ -138,7 +138,7 @@ END_TEST
 
 // One end of the region stays where he stood, as the memory does not know the place yet; or sometrack is met, who is as
 // wide. The camera stands, or pans by more than he runs.
-START_TEST(who_runs_off_stretches_and_who_meets_sometrack_jumps) {
+START_TEST(a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps) {
   constexpr double kRuns = 300;  // pixels a second
   for (const double seconds : {0.04, 0.1})
     for (const double camera : {0.0, -25.0, 25.0})
@@ -219,5 +219,5 @@ int main() {
                            a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
                            towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
                            it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,
-                           who_runs_off_stretches_and_who_meets_sometrack_jumps});
+                           a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps});
 }

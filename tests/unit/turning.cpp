@@ -22,7 +22,7 @@ struct Turning {
   static constexpr double kDegree = std::numbers::pi / 180;
   Lens lens{90 * kDegree, kFrame};
   Tracker tracker;
-  bool head = true;  // tells its pose; else the camera's motion is all there is
+  bool head = true;  // reports its pose; else only the camera's motion is known
   double pan = 0;    // degrees
   std::vector<Track> tracks;
 

@@ -38,7 +38,7 @@ START_TEST(drives_are_those_of_the_manual) {
   assert_text(hex(drive(1, -7, 0)), "81 01 06 01 07 01 01 03 ff");    // left
   assert_text(hex(drive(1, 7, 0)), "81 01 06 01 07 01 02 03 ff");     // right
   assert_text(hex(drive(2, -24, 20)), "82 01 06 01 18 14 01 01 ff");  // up left
-  assert_text(hex(drive(7, 99, -99)), "87 01 06 01 18 17 02 02 ff");  // no faster than the protocol knows
+  assert_text(hex(drive(7, 99, -99)), "87 01 06 01 18 17 02 02 ff");  // no faster than the protocol permits
   assert_text(hex(stop(1)), "81 01 06 01 01 01 03 03 ff");
 }
 END_TEST
@@ -58,7 +58,7 @@ START_TEST(other_messages_are_those_of_the_manual) {
 }
 END_TEST
 
-START_TEST(replies_are_told_apart) {
+START_TEST(replies_are_distinguished) {
   using Kind = Reply::Kind;
   const Reply ack = parse_reply(bytes({0x90, 0x42, 0xff}));
   ck_assert(ack.kind == Kind::ack && ack.address == 1 && ack.socket == 2);
@@ -150,7 +150,7 @@ int main() {
   return cerberus::tests::run_suite(
       "visca",
       {drives_are_those_of_the_manual, positions_are_four_nibbles_of_14_4_to_a_degree,
-       other_messages_are_those_of_the_manual, replies_are_told_apart,
+       other_messages_are_those_of_the_manual, replies_are_distinguished,
        speeds_become_the_nearest_step_and_slow_ones_none, a_speed_table_of_ones_own_is_read_or_refused,
        the_header_of_visca_over_ip_is_built_and_taken_off, a_stream_that_loses_bytes_is_cut_right_again,
        any_bytes_are_parsed_without_harm});

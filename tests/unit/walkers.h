@@ -12,7 +12,7 @@ namespace cerberus::tests {
 
 inline constexpr vision::Size kFrame{640, 480};
 
-// A person, 100 pixels tall if nothing else is said.
+// A person, 100 pixels tall by default.
 inline vision::Region person(double x, double y, double confidence = 0.9, double width = 40,
                              double height = 100) {
   return {{x - width / 2, y - height / 2, width, height},

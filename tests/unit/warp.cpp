@@ -176,7 +176,7 @@ END_TEST
 
 START_TEST(nearest_takes_existing_values_only_and_the_right_ones) {
   const Size size{67, 43};
-  // Each pixel tells where it is; no column or row has this number.
+  // Each pixel's value is its place; no column or row has this number.
   constexpr std::uint8_t kNowhere = 255;
   Image<std::uint8_t> columns(size), rows(size), column(size), row(size);
   for (int y = 0; y < size.height; ++y)

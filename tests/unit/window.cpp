@@ -116,7 +116,7 @@ START_TEST(the_window_has_in_its_middle_what_the_head_looks_at) {
 }
 END_TEST
 
-START_TEST(the_window_ends_at_the_pictures_edges_and_says_so) {
+START_TEST(the_window_ends_at_the_pictures_edges_and_reports_it) {
   const WindowGeometry geometry(60 * kDegree, {768, 576}, {320, 240});
   const auto right = geometry.at(80 * kDegree, -80 * kDegree);
   ck_assert(right.limited);
@@ -171,7 +171,7 @@ START_TEST(a_whole_position_is_a_copy) {
 }
 END_TEST
 
-START_TEST(every_layout_is_drawn_as_the_definition_says) {
+START_TEST(every_layout_is_drawn_as_defined) {
   std::mt19937 random(2);
   std::uniform_real_distribution<double> share(0, 1);
   WindowResampler resampler;
@@ -212,7 +212,8 @@ int main() {
       "window",
       {the_text_about_a_misfit_names_sizes_and_angles, straight_ahead_is_the_middle_of_the_picture,
        fov_and_reach_are_those_worked_out_by_hand, pan_to_the_right_moves_to_the_right_and_tilt_up_moves_up,
-       the_window_has_in_its_middle_what_the_head_looks_at, the_window_ends_at_the_pictures_edges_and_says_so,
-       a_field_of_view_scales_the_window, a_window_that_does_not_fit_is_refused, a_whole_position_is_a_copy,
-       every_layout_is_drawn_as_the_definition_says, beyond_the_edge_the_edge_is_repeated});
+       the_window_has_in_its_middle_what_the_head_looks_at,
+       the_window_ends_at_the_pictures_edges_and_reports_it, a_field_of_view_scales_the_window,
+       a_window_that_does_not_fit_is_refused, a_whole_position_is_a_copy, every_layout_is_drawn_as_defined,
+       beyond_the_edge_the_edge_is_repeated});
 }

@@ -37,7 +37,7 @@ void same_picture(const std::vector<std::string>& rows, const std::vector<std::s
   for (std::size_t y = 0; y < rows.size(); ++y) ck_assert_str_eq(rows[y].c_str(), expected[y].c_str());
 }
 
-// The error names the word, and says what to write.
+// The error names the word and the correct form.
 void refused(const char* text, std::string_view word, std::string_view advice) {
   Zones zones;
   const std::string error = zones.parse(text);
