@@ -248,9 +248,9 @@ bool BurntIn::is_writing(const Place& p, bool still) const {
   return together >= 0.6 * all;
 }
 
-// Of a running count only the outline is static, and a box behind writing is wider than its letters: what is foreground
-// all the time beside the static edges belongs to them. Above and below so does a margin of half their height: a part of
-// somebody whom the head follows has more there.
+// Grows a place by foreground that lasts beside its static edges: of a running count only the outline is static, and a
+// box behind writing is wider than its letters. Above and below, the place grows by half its height at most: a part of
+// a person followed by the head has more foreground there.
 void BurntIn::grow_foreground(Place& p) const {
   const auto is_foreground = [&](int left, int top, int right, int bottom) {
     int n = 0;

@@ -4,10 +4,11 @@
 //
 // Own method. The map has blocks of 8 x 4 analysis pixels in frame coordinates and two kinds of evidence:
 // - The camera turns: edges of the picture that lie where they lay in a reference picture of up to 1.7 s ago, while the
-//   ego-motion says that the scene has moved there (`static_edges`). What a head follows keeps its place, too, but not
-//   to the pixel, and not all of it: above and below its static parts there is foreground. Writing ends there.
-// - The camera stands: a digit or a logo changes from one frame to the next and rests until it changes again. Somebody
-//   who moves changes the picture for several frames in a row. A running count (milliseconds) changes in every frame for
+//   ego-motion says that the scene has moved there (`static_edges`). A target followed by the head keeps its place,
+//   too, but not to the pixel, and not all of it: above and below its static parts there is foreground. Writing ends
+//   there.
+// - The camera stands: a digit or a logo changes from one frame to the next and rests until it changes again. A moving
+//   person changes the picture for several frames in a row. A running count (milliseconds) changes in every frame for
 //   seconds. In both cases nothing changes above and below meanwhile.
 // Blocks with enough evidence are joined to boxes. A box grows along its row by what changes at once (the next digit).
 // It is forgotten when the evidence stops: its row moves along with the scene, or has not changed for long.
@@ -41,9 +42,9 @@ class BurntIn {
   struct Parameters {
     // Seconds between two looks at static edges and at the map. Derived: 25 looks in the 5 s that learning may take.
     double look_period = 0.2;
-    // Seconds for which a reference picture is kept at most. Derived: a scene that moves by four pixels a second is seen
-    // to move. Where it has moved enough at the next look, that becomes the reference: of a logo that blinks each second
-    // two looks in five see it in both.
+    // Seconds for which a reference picture is kept at most. Derived: a scene that moves by four pixels a second is
+    // seen to move. Where it has moved enough at the next look, that becomes the reference: of a logo that blinks each
+    // second two looks in five see it in both.
     double reference_time = 0.8;
     // Analysis pixels by which the scene must have moved against the reference. Derived: more than an edge is wide.
     double least_shift = 3;
@@ -60,8 +61,8 @@ class BurntIn {
     // Share of looks in which a block beside static ones is foreground, to belong to them; and in which blocks above
     // or below are, to show that the static part is a part of something larger.
     double belongs = 0.3, continues = 0.3;
-    // Grey levels by which a pixel must change to count, Th at least. Derived: digits have far more contrast; somebody
-    // who sways by a pixel, in time, changes the picture by less.
+    // Grey levels by which a pixel must change to count, Th at least. Derived: digits have far more contrast; a person
+    // swaying by a pixel changes the picture by less.
     int least_step = 32;
     // Pixels of a block (of 32) that must have changed. Derived: above single pixels of noise.
     int least_changed = 3;
@@ -95,8 +96,8 @@ class BurntIn {
   // Forgets all.
   void reset();
   // mask: 0 or 255, the foreground of frame k; out, without what is burnt in: a box is cleared but for the columns
-  // whose pixels above and below it are foreground. Returns true when boxes() is worth another report: one more, one less,
-  // or much larger. Allocates at a new size only.
+  // whose pixels above and below it are foreground. Returns true when boxes() is worth another report: one more, one
+  // less, or much larger. Allocates at a new size only.
   bool update(const BurntInInput& input, MutableGrayView mask);
   // What is learnt, analysis pixels. The span lives until the next call.
   std::span<const Box> boxes() const { return found_; }
