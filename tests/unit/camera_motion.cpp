@@ -177,8 +177,8 @@ START_TEST(a_pan_that_begins_behind_a_close_person_at_rest_is_found_on_finer_lev
               kPerson.width, kPerson.height);
         add_noise(frame.view(), 2, 4, random);
         const CameraMotionResult r = camera.update(frame.view());
-        // Noise costs a tenth of a pixel at the corners where all of the picture tells. Who takes him for the
-        // background is off by the whole pan.
+        // Noise costs a tenth of a pixel at the corners where all of the picture has patches. A fit that takes him for
+        // the background is off by the whole pan.
         const double off = disagreement(r.transform, Transform::translation(k < kStands ? 0 : -pan, 0));
         ck_assert_msg(off < 0.5, "seed %u, %d pixels a frame, frame %d: off by %g", seed, pan, k, off);
       }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who stands until the scene's memory has taken him for a part of it: what is seen of him gets less, the picture of his
+// A person who stands until the background model has absorbed him: what is seen of him gets less, the picture of his
 // place does not change. And the hole that he leaves there when he goes.
 #include "unit/place.h"
 

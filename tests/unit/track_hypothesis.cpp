@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the camera does to an object that notrack sees: all of its lengths go with the picture's. And what a region tells
+// The camera's effect on an object that is not seen: all of its lengths go with the picture's. And what a region tells
 // of the extent of one that is seen.
 #include "vision/tracking/track_hypothesis.h"
 
@@ -136,8 +136,8 @@ START_TEST(it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_sa
 }
 END_TEST
 
-// One end of the region stays where he stood, as the memory does not know the place yet; or sometrack is met, who is as
-// wide. The camera stands, or pans by more than he runs.
+// One end of the region stays where he stood, as the background model has not learnt the place yet; or another track is
+// met that is as wide. The camera stands, or pans by more than he runs.
 START_TEST(a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps) {
   constexpr double kRuns = 300;  // pixels a second
   for (const double seconds : {0.04, 0.1})
