@@ -57,7 +57,7 @@ struct AnalysisPrivate {
   std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
   History history;
   guint64 number = 0;  // analysed frames
-  CameraFollower camera;
+  vision::CameraFollower camera;
   Scene scene;
   int steps_back = 0;       // frames older than the one before
   Complaint complaint;      // about the caps
@@ -107,6 +107,7 @@ struct Begun {
 };
 
 Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  using vision::CameraFollower;
   using Link = CameraFollower::Link;
   Begun begun;
   Frame& frame = begun.frame;
@@ -115,9 +116,8 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   frame.size = {GST_VIDEO_INFO_WIDTH(&priv.info), GST_VIDEO_INFO_HEIGHT(&priv.info)};
   frame.running_time = running_time_of(trans->segment, buffer);
   const bool measures = priv.analyser->measures_camera();
-  const CerberusCameraMotionMeta* meta = measures ? nullptr : cerberus_buffer_get_camera_motion_meta(buffer);
   const CameraFollower::Step camera =
-      priv.camera.next(meta ? &meta->motion : nullptr, priv.history.previous(), frame.size);
+      priv.camera.next(measures ? std::nullopt : path_point(buffer), priv.history.previous(), frame.size);
 
   const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
   const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
@@ -185,7 +185,7 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     ask_downstream(trans, priv);
     check_settings(trans, priv);
     const History history = priv.history;
-    const CameraFollower camera = priv.camera;
+    const vision::CameraFollower camera = priv.camera;
     Begun begun = begin_frame(trans, priv, buffer);
     if (priv.analyser->analyse(begun.frame)) {
       complain_of_breaks(trans, priv, begun);

@@ -19,7 +19,7 @@
 #include <optional>
 
 #include "cerberus/private/element.hpp"
-#include "shared/frame.hpp"
+#include "frame.hpp"
 
 namespace cerberus::plugin {
 

@@ -187,7 +187,10 @@ void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
   motion.residual = result.residual;
   motion.still = result.still;
   motion.scene_age = static_cast<guint>(std::max(result.scene_age, 1));
-  state.path.extend(motion, frame.size);
+  vision::CameraPathPoint point = path_point(motion);
+  state.path.extend(point, frame.size);
+  std::copy(point.path.m.begin(), point.path.m.end(), std::begin(motion.path));
+  motion.path_id = point.path_id;
   cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
   GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
                  motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);

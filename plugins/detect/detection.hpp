@@ -45,7 +45,7 @@ class Detection : public Analyser {
     vision::Detector detector;
     DetectSettings settings;
     vision::DetectorOptions options;
-    CameraPath path;
+    vision::CameraPath path;
     std::vector<vision::Region> found;  // by another element upstream
     std::vector<CerberusRegion> published;
     std::vector<CerberusRegion> last;  // of the last frame with any

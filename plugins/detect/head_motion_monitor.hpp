@@ -11,8 +11,8 @@
 
 #include "control/base_rate.h"
 #include "control/slip.h"
+#include "frame.hpp"
 #include "sensing/base_rates.h"
-#include "shared/frame.hpp"
 #include "shared/pose_thread.hpp"
 
 namespace cerberus::plugin {

@@ -120,7 +120,7 @@ struct State {  // streaming thread only
   bool fresh = true;                           // the next frame has no predecessor
   bool warned = false;                         // a frame that cannot be written
   cerberus::plugin::Complaint complaint;       // about the caps
-  cerberus::plugin::CameraFollower camera;
+  cerberus::vision::CameraFollower camera;
   overlay::Trails trails;
   overlay::Painter painter;
   cerberus::plugin::Composer composer;
@@ -317,11 +317,10 @@ void read_objects(State& state, GstBuffer* buffer) {
 }
 
 void update_trails(State& state, GstBuffer* buffer, GstClockTime running, const Settings& settings) {
-  using Link = cerberus::plugin::CameraFollower::Link;
+  using Link = cerberus::vision::CameraFollower::Link;
   const cerberus::vision::Size frame{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
-  const auto* meta = cerberus_buffer_get_camera_motion_meta(buffer);
-  const CerberusCameraMotion* measured = meta ? &meta->motion : nullptr;
-  const auto camera = state.camera.next(measured, std::exchange(state.running, running), frame);
+  const auto camera =
+      state.camera.next(cerberus::plugin::path_point(buffer), std::exchange(state.running, running), frame);
   if (camera.link == Link::cut || camera.link == Link::lost) state.fresh = true;
   if (GST_BUFFER_IS_DISCONT(buffer) && !camera.connected) state.fresh = true;
   const double nominal = GST_VIDEO_INFO_FPS_N(&state.info) > 0

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Frames that somebody drops on the way (videorate, a leaky queue):
 // whatever stands where must go on seeing, and must say so where it cannot.
-#include "../../plugins/shared/camera_path.hpp"
-
 #include "../support/motions.h"
 #include "scene.h"
 #include "support.h"
@@ -125,57 +123,6 @@ GST_START_TEST(the_path_of_another_camera_is_not_followed) {
 }
 GST_END_TEST
 
-// Three times round: of a path this long the steps are still
-// right, whoever missed how many frames. The truth is a lens's.
-GST_START_TEST(a_path_of_many_turns_tells_the_steps) {
-  using namespace cerberus;
-  const vision::Size frame{320, 240};
-  const vision::Lens lens(60 * M_PI / 180, frame);
-  constexpr double kStep = 2 * M_PI / 180;
-  plugin::CameraPath path;
-  plugin::CameraFollower follower;
-  for (int k = 0; k <= 540; ++k) {
-    CerberusCameraMotion motion;
-    cerberus_camera_motion_init(&motion);
-    const vision::Transform step = lens.turn(0, -0.1, kStep, -0.1);
-    cerberus_camera_motion_set_matrix(&motion, step.m.data());
-    motion.scene_age = k + 1;
-    path.extend(motion, frame);
-    if (k % 5) continue;
-    const auto seen = follower.next(&motion, GST_CLOCK_TIME_NONE - 1, frame);
-    fail_unless(k == 0 || seen.connected, "lost at %d", k);
-    if (k == 0) continue;
-    const vision::Transform truth = lens.turn(0, -0.1, 5 * kStep, -0.1);
-    for (const vision::Point p : {vision::Point{0, 0}, {319, 0}, {0, 239}, {319, 239}}) {
-      const vision::Point is = seen.motion.transform.apply(p), should = truth.apply(p);
-      fail_unless(std::hypot(is.x - should.x, is.y - should.y) < 0.01, "%d: %f %f, not %f %f", k, is.x, is.y,
-                  should.x, should.y);
-    }
-  }
-}
-GST_END_TEST
-
-// A camera that zooms on for ever: what rounding has eaten is not told, a new path begins.
-GST_START_TEST(a_path_that_cannot_be_told_any_more_begins_anew) {
-  using namespace cerberus;
-  const vision::Size frame{320, 240};
-  plugin::CameraPath path;
-  guint first = 0, last = 0;
-  for (int k = 0; k < 2000; ++k) {
-    CerberusCameraMotion motion;
-    cerberus_camera_motion_init(&motion);
-    const vision::Transform step = tests::similarity(0.5, 0, 80, 60);
-    cerberus_camera_motion_set_matrix(&motion, step.m.data());
-    motion.scene_age = k + 1;
-    path.extend(motion, frame);
-    for (const double v : motion.path) fail_unless(std::isfinite(v));
-    last = motion.path_id;
-    if (k == 0) first = last;
-  }
-  fail_unless(first != 0 && last != first);
-}
-GST_END_TEST
-
 // A leaky queue in front: holes, each of them marked.
 GST_START_TEST(frames_dropped_in_front_blind_nobody) {
   const World world = turning(kPans[__i__]);
@@ -248,8 +195,6 @@ Suite* dropped_frames_suite() {
   tcase_add_loop_test(tests, frames_dropped_between_two_stages_blind_nobody, 0, kCutCount * kPanCount);
   tcase_add_loop_test(tests, the_camera_is_followed_across_a_dropped_frame, 0, 2);
   tcase_add_test(tests, the_path_of_another_camera_is_not_followed);
-  tcase_add_test(tests, a_path_of_many_turns_tells_the_steps);
-  tcase_add_test(tests, a_path_that_cannot_be_told_any_more_begins_anew);
   tcase_add_loop_test(tests, frames_dropped_in_front_blind_nobody, 0, kPanCount);
   tcase_add_loop_test(tests, a_stream_of_breaks_is_complained_of_once, 0, 11);
   tcase_add_test(tests, motions_that_cannot_be_followed_are_complained_of_once);
