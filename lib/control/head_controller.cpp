@@ -228,7 +228,7 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
     command.tilt = manual_.command().tilt;
     return command;
   }
-  const Time taken = frame.running + epoch_;
+  const Time taken = frame.repeats.value_or(frame.running) + epoch_;
   const Pose capture = frame.capture ? *frame.capture : history_.at(taken);
   const Pose ahead = history_.at(now + setup_.latency);
   const TargetSelector::Selection selection =

@@ -54,6 +54,7 @@ class HeadController {
     Time now{};                       // clock-driven: running time by the clock
     vision::Lens lens;
     std::optional<motion::Pose> capture;  // the head's pose at that time, if the frame carries it
+    std::optional<Time> repeats;          // the frame repeats the picture that was taken at this running time
   };
   // Processes a frame. interrupted: call again with the same frame; after any other answer the frame is processed.
   Answer frame(const Frame& frame, DeferredNotifications& out);

@@ -55,6 +55,7 @@ struct AnalysisPrivate {
   bool have_info = false;
   guint wanted = 0;              // of the record, downstream
   std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
+  bool live = false;             // upstream
   History history;
   guint64 number = 0;  // analysed frames
   vision::CameraFollower camera;
@@ -78,6 +79,7 @@ GstBaseTransformClass* parent_class();
 void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
   if (!priv.ask.exchange(false)) return;
   priv.wanted = ask_for_record(GST_BASE_TRANSFORM_SRC_PAD(trans));
+  priv.live = is_live(GST_BASE_TRANSFORM_SINK_PAD(trans)).value_or(false);
 }
 
 // No element upstream has analysed this frame.
@@ -106,21 +108,42 @@ struct Begun {
   bool backwards = false;  // so do the timestamps; likewise
 };
 
-Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
-  using vision::CameraFollower;
-  using Link = CameraFollower::Link;
-  Begun begun;
-  Frame& frame = begun.frame;
+Frame frame_of(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  Frame frame;
   frame.buffer = buffer;
   frame.info = &priv.info;
   frame.size = {GST_VIDEO_INFO_WIDTH(&priv.info), GST_VIDEO_INFO_HEIGHT(&priv.info)};
   frame.running_time = running_time_of(trans->segment, buffer);
+  frame.live = priv.live;
+  frame.wanted = priv.wanted;
+  return frame;
+}
+
+double nominal_distance(const GstVideoInfo& info) {
+  const int n = GST_VIDEO_INFO_FPS_N(&info), d = GST_VIDEO_INFO_FPS_D(&info);
+  return n > 0 ? static_cast<double>(d) / n : 0;
+}
+
+GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  Frame frame = frame_of(trans, priv, buffer);
+  const auto since = priv.history.repeat(frame.running_time, nominal_distance(priv.info));
+  if (!since) return GST_FLOW_OK;  // of nothing
+  frame.fresh = false;
+  frame.seconds = *since;
+  priv.analyser->repeat(frame);
+  return GST_FLOW_OK;
+}
+
+Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+  using vision::CameraFollower;
+  using Link = CameraFollower::Link;
+  Begun begun;
+  Frame& frame = begun.frame = frame_of(trans, priv, buffer);
   const bool measures = priv.analyser->measures_camera();
   const CameraFollower::Step camera =
       priv.camera.next(measures ? std::nullopt : path_point(buffer), priv.history.previous(), frame.size);
 
-  const int fps_n = GST_VIDEO_INFO_FPS_N(&priv.info), fps_d = GST_VIDEO_INFO_FPS_D(&priv.info);
-  const double nominal = fps_n > 0 ? static_cast<double>(fps_d) / fps_n : 0;
+  const double nominal = nominal_distance(priv.info);
   // A mark of DISCONT may be a cut or dropped frames. The element that
   // measures the camera detects a cut among dropped frames, and publishes it.
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
@@ -129,7 +152,6 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   const History::Step step = priv.history.next(frame.running_time, nominal);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
-  frame.wanted = priv.wanted;
   if (const auto look = look_of(buffer, frame.running_time)) frame.look = {look->pan, look->tilt};
   if (!frame.fresh) {
     frame.seconds = step.seconds;
@@ -180,9 +202,8 @@ void check_settings(GstBaseTransform* trans, AnalysisPrivate& priv) {
 GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
   AnalysisPrivate& priv = priv_of(trans);
   return guarded(trans, GST_FLOW_ERROR, [&] {
-    // A buffer marked as a placeholder has no picture and ends no scene.
-    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return GST_FLOW_OK;
     ask_downstream(trans, priv);
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return repeat_frame(trans, priv, buffer);
     check_settings(trans, priv);
     const History history = priv.history;
     const vision::CameraFollower camera = priv.camera;
@@ -289,6 +310,9 @@ gboolean src_event(GstBaseTransform* trans, GstEvent* event) {
 gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
   AnalysisPrivate& priv = priv_of(trans);
   switch (GST_EVENT_TYPE(event)) {
+    case GST_EVENT_FLUSH_START:
+      guarded(trans, [&] { priv.analyser->flush(); });
+      break;
     case GST_EVENT_SEGMENT:
     case GST_EVENT_FLUSH_STOP:
     case GST_EVENT_STREAM_START:
@@ -325,6 +349,12 @@ gboolean stop(GstBaseTransform* trans) {
   return TRUE;
 }
 
+GstStateChangeReturn change_state(GstElement* element, GstStateChange change) {
+  if (change == GST_STATE_CHANGE_PAUSED_TO_PLAYING || change == GST_STATE_CHANGE_PLAYING_TO_PAUSED)
+    guarded(element, [&] { priv_of(element).analyser->play(change == GST_STATE_CHANGE_PAUSED_TO_PLAYING); });
+  return GST_ELEMENT_CLASS(parent_class())->change_state(element, change);
+}
+
 void class_init(CerberusAnalysisClass* klass) {
   GST_DEBUG_CATEGORY_INIT(cerberus_analysis_debug, "cerberusanalysis", 0,
                           "what all analysing elements share");
@@ -336,6 +366,8 @@ void class_init(CerberusAnalysisClass* klass) {
       GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(ANALYSED_VIDEO_CAPS));
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &sink);
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src);
+
+  GST_ELEMENT_CLASS(klass)->change_state = change_state;
 
   GstBaseTransformClass* trans = GST_BASE_TRANSFORM_CLASS(klass);
   trans->start = start;

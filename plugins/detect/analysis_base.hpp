@@ -10,7 +10,8 @@
 // segment, DISCONT, a gap in time, a step back as wide as one, several buffers in a row without a
 // usable picture, a cut seen by `cameramotion`, and when it is not known how the camera moved since
 // the last frame seen here. Frames dropped between the stages, or in front of all, end nothing: see
-// camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only.
+// camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only. A buffer with the flag GAP, as
+// `videorate` marks duplicates, repeats the last picture: no stage looks at it, and the last result stands.
 #pragma once
 
 #include <gst/base/gstbasetransform.h>
@@ -47,6 +48,12 @@ class Analyser {
   virtual void stop() {}
   // Analyses one frame and attaches the results. Returns false if the buffer does not hold the picture of its caps.
   virtual bool analyse(Frame& frame) = 0;
+  // Attaches the last result to a frame that repeats the last picture, which came `frame.seconds` ago.
+  virtual void repeat(Frame&) {}
+  // PAUSED to PLAYING, and back.
+  virtual void play(bool) {}
+  // A flush begins. From any thread.
+  virtual void flush() {}
   // No further frame of the stream comes.
   virtual void end_of_stream() {}
   // Processes an event on its way upstream, which is passed on in any case. From any thread.

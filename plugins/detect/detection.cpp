@@ -15,7 +15,6 @@ GST_DEBUG_CATEGORY_STATIC(detection_debug);
 
 namespace cerberus::plugin {
 
-using vision::MotionEvents;
 using vision::Stage;
 
 namespace {
@@ -25,11 +24,6 @@ constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
 
 // With the flags of the record's query: the elements downstream are not asked.
 constexpr guint kNothingFurther = 1u << 31;
-
-constexpr std::optional<MotionEvents::Time> known(GstClockTime time) {
-  if (!GST_CLOCK_TIME_IS_VALID(time)) return std::nullopt;
-  return time_of(time);
-}
 
 static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
               static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED &&
@@ -62,6 +56,7 @@ bool Detection::start() {
   GST_DEBUG_CATEGORY_INIT(detection_debug, "cerberusdetection", 0, "the stages of detection");
   State& state = state_.emplace();
   carrier_.forget();
+  watch_.begin(GST_ELEMENT(base));
   refresh();
   // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
   state.zones = snapshot().zones;
@@ -77,9 +72,7 @@ void Detection::stop() {
 }
 
 void Detection::end_of_stream() {
-  if (!state_) return;
-  const auto last = state_->events.last();
-  announce(state_->events.end(), last ? clock_time(*last) : GST_CLOCK_TIME_NONE);
+  watch_.end();
 }
 
 void Detection::upstream_event(GstEvent* event) {
@@ -160,15 +153,46 @@ bool Detection::analyse(Frame& frame) {
     if (known) read_regions(frame.buffer);
     state.detector.track(*record, frame, known ? state.found : record->regions->regions);
     publish_tracks(frame.buffer, *record);
-    const bool present = !state.published.empty();
-    if (present) state.last = state.published;
-    announce(state.events.update(present, plugin::known(frame.running_time),
-                                 time_of(clock_time(frame.seconds)), time_of(state.settings.hold_time)),
-             frame.running_time);
+    watch(frame, frame.seconds > 0 ? std::max(frame.seconds - state.repeated, 1e-9) : 0);
     keep = record->regions && record->regions->labels;  // made only for readers downstream
   }
+  state.repeated = 0;
+  state.shown = frame.running_time;
   if (keep) set_record(frame.buffer, record);
   return true;
+}
+
+// The stages learn nothing from a repeated picture: the next new one is compared with the last.
+void Detection::repeat(Frame& frame) {
+  State& state = *state_;
+  if (has(Stage::camera) && state.motion.scene_age > 0) {
+    CerberusCameraMotion motion = state.motion;  // at the end of the same path, which it does not extend
+    const vision::Transform none;
+    std::copy(none.m.begin(), none.m.end(), std::begin(motion.matrix));
+    motion.from = state.shown;
+    motion.still = TRUE;
+    motion.scene_age = std::max(motion.scene_age, 2u);
+    cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
+  }
+  state.shown = frame.running_time;
+  if (state.facts) set_threshold_facts(frame.buffer, *state.facts);
+  if (last_ < Stage::regions) return;
+  const double step = std::max(frame.seconds - state.repeated, 0.0);
+  state.repeated = frame.seconds;
+  std::erase_if(state.published, [&](const CerberusRegion& region) {
+    return !vision::outlasts(static_cast<vision::TrackState>(region.state), frame.seconds,
+                             state.options.tracks);
+  });
+  if (has(Stage::tracks))
+    for (CerberusRegion& region : state.published) region.age += clock_time(step);
+  attach_published(frame.buffer);
+  if (has(Stage::tracks)) watch(frame, step);
+}
+
+void Detection::watch(const Frame& frame, double step) {
+  State& state = *state_;
+  watch_.frame(state.published, frame.running_time, time_of(clock_time(step)),
+               time_of(state.settings.hold_time), frame.live);
 }
 
 void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
@@ -191,6 +215,7 @@ void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
   state.path.extend(point, frame.size);
   std::copy(point.path.m.begin(), point.path.m.end(), std::begin(motion.path));
   motion.path_id = point.path_id;
+  state.motion = motion;
   cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
   GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
                  motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);
@@ -204,6 +229,7 @@ void Detection::publish_threshold(GstBuffer* buffer, const vision::Analysis& rec
   facts.gain = record.differences->result.gain;
   facts.offset = record.differences->result.offset;
   set_threshold_facts(buffer, facts);
+  state_->facts = facts;
   if (has(Stage::foreground) && record.foreground->burnt_in_changed) report_burnt_in(record);
 }
 
@@ -305,18 +331,6 @@ std::string Detection::why_no_tracks() const {
   if (why.empty() && s.horizontal_fov > 0)
     why = contradiction("speed-metres", state_->options.speed.metres, 0, kResult);
   return why;
-}
-
-void Detection::announce(MotionEvents::Change change, GstClockTime running_time) {
-  if (change == MotionEvents::Change::none) return;
-  CerberusStamp stamp;
-  cerberus_stamp_init(&stamp);
-  stamp.running_time = running_time;
-  g_autoptr(GPtrArray) objects = array_of(state_->last);
-  CerberusMotion motion{};
-  motion.state = change == MotionEvents::Change::started ? CERBERUS_MOTION_STARTED : CERBERUS_MOTION_ENDED;
-  motion.regions = objects;
-  gst_element_post_message(GST_ELEMENT(base), cerberus_message_new_motion(GST_OBJECT(base), &stamp, &motion));
 }
 
 }  // namespace cerberus::plugin

@@ -13,11 +13,11 @@
 #include "detect_settings.hpp"
 #include "elements.hpp"
 #include "head_motion_monitor.hpp"
+#include "motion_watch.hpp"
 #include "settings_conflict.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/record.hpp"
 #include "vision/detector.h"
-#include "vision/tracking/motion_events.h"
 
 namespace cerberus::plugin {
 
@@ -29,6 +29,9 @@ class Detection : public Analyser {
   bool start() override;
   void stop() override;
   bool analyse(Frame& frame) override;
+  void repeat(Frame& frame) override;
+  void play(bool plays) override { watch_.play(plays); }
+  void flush() override { watch_.flush(); }
   void end_of_stream() override;
   void upstream_event(GstEvent* event) override;
   bool measures_camera() const override { return has(vision::Stage::camera); }
@@ -48,9 +51,11 @@ class Detection : public Analyser {
     vision::CameraPath path;
     std::vector<vision::Region> found;  // by another element upstream
     std::vector<CerberusRegion> published;
-    std::vector<CerberusRegion> last;  // of the last frame with any
-    vision::MotionEvents events;
-    std::string zones;  // as last read
+    CerberusCameraMotion motion{};             // of the last picture
+    std::optional<ThresholdFacts> facts;       // likewise
+    double repeated = 0;                       // seconds for which it has been repeated
+    GstClockTime shown = GST_CLOCK_TIME_NONE;  // running time of the last frame, repeated or not
+    std::string zones;                         // as last read
     NothingFound no_regions, no_tracks;
     vision::Size frame, mask;  // for which no_regions was judged last
     bool nowhere = false, judge = true;
@@ -70,12 +75,13 @@ class Detection : public Analyser {
   void judge_regions(vision::Size frame, vision::Size mask);
   std::string why_no_regions(vision::Size frame, vision::Size mask);
   std::string why_no_tracks() const;
-  void announce(vision::MotionEvents::Change change, GstClockTime running_time);
+  void watch(const Frame& frame, double step);
 
   const vision::Stage first_, last_;
   std::optional<State> state_;
   HeadMotionMonitor carrier_;  // receives poses in any thread, so not part of the state
   Answer<guint> answer_;
+  MotionWatch watch_;
 };
 
 template <vision::Stage kFirst, vision::Stage kLast = kFirst, typename Settings = Adjustable<DetectSettings>>

@@ -25,6 +25,15 @@ void History::lose() {
   if (++lost_ > kLost) drop();
 }
 
+std::optional<double> History::repeat(GstClockTime time, double nominal) {
+  if (!any_) return std::nullopt;
+  ++repeats_;
+  if (GST_CLOCK_TIME_IS_VALID(time) && GST_CLOCK_TIME_IS_VALID(previous_) && time > previous_)
+    return seconds_between(previous_, time);
+  constexpr double kUsual = .04;
+  return repeats_ * (usual_ > 0 ? usual_ : nominal > 0 ? nominal : kUsual);
+}
+
 History::Step History::next(GstClockTime time, double nominal) {
   if (!any_) usual_ = 0;  // the rhythm of a new scene is learnt anew
   const bool timed = GST_CLOCK_TIME_IS_VALID(time);
@@ -41,7 +50,7 @@ History::Step History::next(GstClockTime time, double nominal) {
     late_ = 0;
   }
   any_ = true;
-  lost_ = 0;
+  lost_ = repeats_ = 0;
   previous_ = time;
   if (!timed) return step;
   stamp_ = time;

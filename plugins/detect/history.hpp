@@ -5,6 +5,8 @@
 
 #include <gst/gst.h>
 
+#include <optional>
+
 namespace cerberus::plugin {
 
 class History {
@@ -14,6 +16,9 @@ class History {
   // Records a frame without its picture. The next one follows the last with a picture, unless too many are lost in a
   // row.
   void lose();
+
+  // A frame came that repeats the last picture. Returns how long ago that was, in seconds; nothing where a scene begins.
+  std::optional<double> repeat(GstClockTime time, double nominal);
 
   // Running time of the last frame, or NONE.
   GstClockTime previous() const { return previous_; }
@@ -37,6 +42,7 @@ class History {
 
   bool any_ = false;  // a frame of this scene was seen
   int lost_ = 0;      // since the last frame
+  int repeats_ = 0;   // likewise
   GstClockTime previous_ = GST_CLOCK_TIME_NONE;
   GstClockTime stamp_ = GST_CLOCK_TIME_NONE;  // of the last frame of this scene that had a time at all
   GstClockTime clock_ = GST_CLOCK_TIME_NONE;  // the time that was assumed for it

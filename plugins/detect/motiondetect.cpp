@@ -16,6 +16,9 @@
  * whether it is backwards or forwards. A buffer without its picture is passed on with the flag CORRUPTED and one
  * warning, and ends no scene unless more than five come in a row.
  *
+ * A buffer with the flag GAP repeats the last picture, as duplicates of `videorate` do, and carries its result on: see
+ * `motiontrack`.
+ *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 8192x8192.
  *
  * ## Example

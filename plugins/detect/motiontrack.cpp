@@ -14,8 +14,12 @@
  * pose on the frame. Limits of speed that contradict each other and a `confirm-time` above an hour are warned of.
  *
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
- * none was there for `hold-time`, at the end of the stream and when
- * the element stops, with the objects of the last frame that had any.
+ * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last
+ * frame that had any. Where the source is live and frames stop coming, it is posted `hold-time` after the last one, by
+ * the pipeline's clock.
+ *
+ * A buffer with the flag GAP repeats the last picture, as duplicates of `videorate` do: it is not looked at and carries
+ * the objects of the last frame on, moving ones for `coast-time`, stopped ones for `hold-stopped`.
  *
  * ## Example
  * |[

@@ -116,6 +116,7 @@ struct State {  // streaming thread only
   GstVideoInfo in, out;
   guint warned = 0;     // one bit a stage
   Complaint complaint;  // about the caps
+  vision::Record last;  // of the last frame
   vision::LumaScaler scaler;
   vision::Image<std::uint8_t> luma;
   overlay::Enlarger enlarger;
@@ -199,8 +200,11 @@ bool show_own_luma(State& state, GstBuffer* in, const overlay::Canvas& canvas) {
 // False where there is nothing to show.
 bool show(State& state, const Settings& settings, GstBuffer* in, const overlay::Canvas& canvas) {
   const int stage = settings.stage;
-  const vision::Record record =
+  vision::Record record =
       cerberus::plugin::record_of(in, {GST_VIDEO_INFO_WIDTH(&state.in), GST_VIDEO_INFO_HEIGHT(&state.in)});
+  // A repeated picture has none of its own.
+  if (!record && GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_GAP)) record = state.last;
+  state.last = record;
   if (!record) return stage == STAGE_LUMA && show_own_luma(state, in, canvas);
   if (stage == STAGE_HISTOGRAM) return show_histogram(*record, canvas);
   if (stage == STAGE_LABELS) {
@@ -255,6 +259,7 @@ gboolean cerberus_motion_view_set_caps(GstBaseTransform* transform, GstCaps* in,
                              ("from %" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
     if (!wrong.empty()) return FALSE;
     state.warned = 0;
+    state.last = {};
     return TRUE;
   });
 }

@@ -31,18 +31,20 @@ SensorSnapshot Inputs::at(Time time, Time heard, const std::string& head, bool b
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
   snapshot.pan_on_frame = pose != nullptr;
+  // A repeated picture shows the scene as it was when the last new picture was taken.
+  if (!GST_BUFFER_FLAG_IS_SET(frame, GST_BUFFER_FLAG_GAP) || taken_ > time) taken_ = time;
   if (!pose && by_event) {
-    pose = poses_.at(time) ? poses_.at(time) : poses_.first();  // before the first one: where it begins
+    pose = poses_.at(taken_) ? poses_.at(taken_) : poses_.first();  // before the first one: where it begins
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }
-  if (pose) cerberus_pose_evaluate(pose, clock_time(time), &snapshot.pan_degrees, nullptr);
+  if (pose) cerberus_pose_evaluate(pose, clock_time(taken_), &snapshot.pan_degrees, nullptr);
   if (const auto rate = base_.at(time)) {
     snapshot.base_degrees = *rate;
     snapshot.base_heard = true;
   } else if (seen) {
     snapshot.base_degrees = seen->yaw_rate;
   }
-  poses_.forget_before(time);
+  poses_.forget_before(taken_);
   base_.forget_before(time);
   return snapshot;
 }

@@ -50,6 +50,7 @@ class Inputs : public fusion::SensorInputs {
   sensing::Timeline<CerberusPose> poses_;
   sensing::BaseRates base_;
   const char* stranger_ = nullptr;
+  Time taken_{};  // of the picture on the last frame
 };
 
 }  // namespace cerberus::plugin

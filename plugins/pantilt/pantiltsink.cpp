@@ -100,6 +100,7 @@ struct State {  // streaming thread only
   bool known = false;                 // info
   Complaint complaint;                // about the caps
   std::vector<fusion::Track> tracks;  // on the frame
+  std::optional<Time> taken;          // running time of the last frame that repeats none
   bool began_late = false;            // the stream, after the sink was set to PLAYING
   bool live_known = false;            // whether upstream is live was asked
 };
@@ -199,9 +200,14 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
       .length = length,
       .now = session.now().value_or(*taken),
       .lens = vision::Lens(radians(session.field_of_view), {info.width, info.height}),
-      .capture = std::nullopt};
+      .capture = std::nullopt,
+      .repeats = std::nullopt};
   if (buffer) {
     session.stamps.frame(GST_BASE_SINK_PAD(session.sink), buffer, clock_time(*taken), session.camera_name);
+    if (!GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP))
+      self.state.taken = taken;
+    else
+      frame.repeats = std::min(self.state.taken, taken);
     read_tracks(buffer, self.state.tracks);
     const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
     frame.seen.emplace(self.state.tracks, fusion ? std::optional(from_c(*fusion)) : std::nullopt);
@@ -262,6 +268,7 @@ gboolean cerberus_pan_tilt_sink_event(GstBaseSink* sink, GstEvent* event) {
   guarded(sink, [&] {
     if (type == GST_EVENT_FLUSH_STOP) {
       session.controller.forget();
+      self.state.taken.reset();
       if (session.playing && session.watched) session.resume();
     }
     if (type == GST_EVENT_GAP && done) on_frame(self, nullptr, from, length);

@@ -266,7 +266,7 @@ GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen)
 }
 GST_END_TEST
 
-// A placeholder is no picture: it goes through, says nothing, and the scene goes on.
+// A repeated picture is not looked at (here it is black), carries the last result, and the scene goes on.
 GST_START_TEST(gap_buffers_pass_and_end_no_scene) {
   Line line("motiondetect confirm-time=0 ! identity");
   const World world;
@@ -277,7 +277,7 @@ GST_START_TEST(gap_buffers_pass_and_end_no_scene) {
   GST_BUFFER_FLAG_SET(gap, GST_BUFFER_FLAG_GAP);
   GstBuffer* out = line.through(gap);
   fail_unless(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_GAP));
-  fail_unless_equals_int(Regions(out).size(), 0);
+  fail_unless(Regions(out).size() > 0);
   gst_buffer_unref(out);
   line.run(world, 21, 22, [](int, GstBuffer* buffer) { fail_unless(Regions(buffer).size() > 0); });
 }

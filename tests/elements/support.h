@@ -2,7 +2,6 @@
 // What element tests share.
 #pragma once
 
-#include <algorithm>
 #include <string>
 
 #include <cerberus/cerberus.h>
@@ -41,7 +40,7 @@ inline void set_sample(GstVideoFrame* f, guint component, int x, int y, int leve
             x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, component);
   const int depth = GST_VIDEO_FORMAT_INFO_DEPTH(format, component);
   const auto word = static_cast<guint16>(
-      level << (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + std::max(depth, 8) - 8));
+      level << (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + MAX(depth, 8) - 8));
   if (depth > 8) p += GST_VIDEO_FRAME_COMP_POFFSET(f, component) % 2;
   if (depth <= 8)
     *p = static_cast<guint8>(level);

@@ -137,6 +137,27 @@ START_TEST(silence_before_an_object_does_not_shorten_the_hold_after_it) {
 }
 END_TEST
 
+START_TEST(without_frames_motion_ends_when_the_rest_of_the_hold_is_over) {
+  Stream stream;
+  ck_assert(!stream.presence.ends_after(1s));
+  stream.next(true, 1s);
+  ck_assert(stream.presence.ends_after(1s) == 1s);
+  stream.next(false, 1s);
+  stream.next(false, 1s);
+  ck_assert(stream.presence.ends_after(1s) == 920ms);
+  stream.presence.end();
+  ck_assert(!stream.presence.ends_after(1s));
+}
+END_TEST
+
+START_TEST(a_frame_that_is_only_late_is_no_end) {
+  Stream stream;
+  stream.next(true, 0ms);
+  stream.next(true, 0ms);
+  ck_assert(stream.presence.ends_after(0ms) == 120ms);  // three distances of 40 ms
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "presence",
@@ -147,5 +168,6 @@ int main() {
        time_that_runs_backwards_is_no_silence_but_a_frame, what_a_frame_counts_for_is_not_what_its_stamps_say,
        without_times_the_frames_are_counted, without_any_time_there_are_25_frames_a_second,
        the_end_of_the_stream_ends_it_once_with_its_time,
-       silence_before_an_object_does_not_shorten_the_hold_after_it});
+       silence_before_an_object_does_not_shorten_the_hold_after_it,
+       without_frames_motion_ends_when_the_rest_of_the_hold_is_over, a_frame_that_is_only_late_is_no_end});
 }

@@ -390,6 +390,18 @@ START_TEST(the_same_regions_give_the_same_tracks) {
 }
 END_TEST
 
+START_TEST(while_a_picture_is_repeated_tracks_last_as_long_as_they_would_unseen) {
+  TrackOptions options;
+  options.coast_time = 1, options.hold_stopped = 30;
+  for (const TrackState moving : {TrackState::seen, TrackState::coasted}) {
+    ck_assert(outlasts(moving, 1, options));
+    ck_assert(!outlasts(moving, 1.01, options));
+  }
+  ck_assert(outlasts(TrackState::stopped, 30, options));
+  ck_assert(!outlasts(TrackState::stopped, 30.01, options));
+}
+END_TEST
+
 int main() {
   return run_suite("tracks", {a_walker_is_published_in_the_third_frame_and_keeps_its_identity_and_speed,
                               the_time_to_publish_is_a_fifth_of_a_second_at_any_frame_rate,
@@ -412,5 +424,6 @@ int main() {
                               a_limit_of_speed_keeps_the_too_fast_apart,
                               the_steady_state_allocates_nothing_and_thousands_of_regions_are_survived,
                               of_more_regions_than_there_is_room_for_the_largest_boxes_count,
+                              while_a_picture_is_repeated_tracks_last_as_long_as_they_would_unseen,
                               the_same_regions_give_the_same_tracks});
 }

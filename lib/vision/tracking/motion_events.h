@@ -25,6 +25,9 @@ class MotionEvents {
   // first frame without one ends it. The step to the first frame without an object is part of this time, because the
   // object was last detected on the frame before.
   Change update(bool present, std::optional<Time> time, Time step, Time hold);
+  // The time after the last frame at which motion ends if no further frame comes; nothing where no motion is in progress.
+  // It is what is left of `hold`, but at least three frame steps: a late frame is no end.
+  std::optional<Time> ends_after(Time hold) const;
   // Reports that no further frame comes. Returns `ended` if motion was in progress.
   Change end();
   // The last frame's time.
@@ -33,6 +36,7 @@ class MotionEvents {
  private:
   bool active_ = false;
   Time quiet_{};  // duration without any object
+  Time step_{};   // of the last frame
   std::optional<Time> last_;
 };
 

@@ -379,6 +379,10 @@ void Tracker::State::publish() {
   std::sort(published.begin(), published.end(), [](const Track& a, const Track& b) { return a.id < b.id; });
 }
 
+bool outlasts(TrackState state, double seconds, const TrackOptions& options) {
+  return seconds <= (state == TrackState::stopped ? options.hold_stopped : options.coast_time);
+}
+
 Tracker::Tracker() : state_(std::make_unique<State>()) {}
 Tracker::~Tracker() = default;
 Tracker::Tracker(Tracker&&) noexcept = default;

@@ -42,6 +42,10 @@ struct Track {
   double distance = std::numeric_limits<double>::quiet_NaN();
 };
 
+// Whether a track is still published `seconds` after the last new picture, where only repetitions of it have come since:
+// they say nothing of what moves, so the tracker does not see them, and a track ends as if nothing had been seen.
+bool outlasts(TrackState state, double seconds, const TrackOptions& options);
+
 class Tracker {
  public:
   Tracker();

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Frames that repeat the last picture (GAP, as `videorate` marks them), and frames that stop coming.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene.h"
+#include "support.h"
+
+#include <gst/check/gsttestclock.h>
+
+namespace {
+
+using scene::Line;
+using scene::Regions;
+using scene::World;
+
+const char* const kLines[] = {
+    "motiondetect confirm-time=0 ! identity",
+    "cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack confirm-time=0",
+    "motionregions ! identity", "motiontrack confirm-time=0 ! identity"};
+
+// A picture between frame k and k + 1 that says of itself that it is none; what it shows is not looked at.
+GstBuffer* repeated(int k, int part, int parts) {
+  GstBuffer* buffer = gst_buffer_new_allocate(nullptr, scene::kWidth * scene::kHeight, nullptr);
+  gst_buffer_memset(buffer, 0, 0, gst_buffer_get_size(buffer));
+  GST_BUFFER_PTS(buffer) = k * scene::kStep + part * scene::kStep / parts;
+  GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_GAP);
+  return buffer;
+}
+
+GST_START_TEST(a_repeated_frame_carries_the_regions_of_the_last_picture) {
+  Line line(kLines[__i__]), plain(kLines[__i__]);
+  const World world;
+  guint found = 0;
+  for (int k = 0; k < 25; ++k) {
+    GstBuffer* should = plain.through(scene::grey_buffer(world, k));
+    GstBuffer* out = line.through(scene::grey_buffer(world, k));
+    const std::string expected = Regions(should).text(), is = Regions(out).text();
+    ck_assert_str_eq(is.c_str(), expected.c_str());  // the pictures between change nothing of what is found
+    found += Regions(out).size();
+    for (int part = 1; part < 3; ++part) {
+      GstBuffer* again = line.through(repeated(k, part, 3));
+      fail_unless(cerberus_buffer_regions_known(again));
+      const Regions before(out), after(again);
+      fail_unless_equals_int(after.size(), before.size());
+      for (guint i = 0; i < after.size(); ++i) {
+        fail_unless(after[i].x == before[i].x);
+        fail_unless(after[i].width == before[i].width);
+        fail_unless_equals_int(after[i].id, before[i].id);
+        if (after[i].tracked)
+          fail_unless_equals_uint64(after[i].age, before[i].age + part * (scene::kStep / 3));
+      }
+      gst_buffer_unref(again);
+    }
+    gst_buffer_unref(should);
+    gst_buffer_unref(out);
+  }
+  fail_unless(found > 10, "nothing was found at all");
+}
+GST_END_TEST
+
+GST_START_TEST(the_camera_stands_still_while_a_picture_is_repeated) {
+  Line line("motiondetect ! identity");
+  World world;
+  world.pan = 2;
+  line.run(world, 0, 10);
+  GstBuffer* last = line.through(scene::grey_buffer(world, 10));
+  const CerberusCameraMotion before = cerberus_buffer_get_camera_motion_meta(last)->motion;
+  gst_buffer_unref(last);
+  fail_unless(!before.still && before.matrix[2] != 0);
+  GstBuffer* again = line.through(repeated(10, 1, 2));
+  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(again);
+  fail_unless(meta && meta->motion.still);
+  fail_unless(meta->motion.matrix[2] == 0);
+  fail_unless(meta->motion.path[2] == before.path[2]);
+  fail_unless_equals_int(meta->motion.path_id, before.path_id);
+  fail_unless_equals_uint64(meta->motion.from, 10 * scene::kStep);
+  gst_buffer_unref(again);
+}
+GST_END_TEST
+
+// coast-time 1 s, hold-time 2 s: the last picture is frame 24, at .96 s.
+GST_START_TEST(an_endless_freeze_ends_tracks_after_coast_time_and_motion_after_hold_time) {
+  Line line(std::string("motiondetect confirm-time=0 ! identity"));
+  line.run(World{}, 0, 25);
+  std::vector<std::string> states = line.messages(GST_MESSAGE_ELEMENT);
+  fail_unless(!states.empty());
+  guint gone = 0, ended = 0;
+  for (guint k = 1; k < 100; ++k) {
+    GstBuffer* again = line.through(repeated(24 + static_cast<int>(k), 0, 1));
+    if (Regions(again).size() == 0 && gone == 0) gone = k;
+    for (const std::string& state : line.messages(GST_MESSAGE_ELEMENT))
+      if (state == "ended") ended = k;
+    gst_buffer_unref(again);
+  }
+  fail_unless_equals_int(gone, 26);   // 25 frames are the second
+  fail_unless_equals_int(ended, 75);  // 50 frames without any object: 26 to 75
+}
+GST_END_TEST
+
+GST_START_TEST(a_repeated_frame_before_any_picture_carries_nothing) {
+  Line line("motiondetect ! identity");
+  GstBuffer* out = line.through(repeated(0, 0, 1));
+  fail_if(cerberus_buffer_regions_known(out));
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
+// ---- frames that stop coming
+
+// A figure that is seen until frame 24, and then nothing; a clock that goes by hand.
+struct Stopped {
+  Line line;
+  GstTestClock* clock;
+  explicit Stopped(bool live = true, const char* launch = "motiondetect confirm-time=0 ! identity")
+      : line(launch, "") {
+    gst_harness_use_testclock(line.harness);
+    gst_harness_set_live(line.harness, live);
+    clock = gst_harness_get_testclock(line.harness);
+    gst_harness_set_src_caps_str(line.harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight).c_str());
+    for (int k = 0; k < 25; ++k) {
+      gst_test_clock_set_time(clock, k * scene::kStep);
+      gst_buffer_unref(line.through(scene::grey_buffer(World{}, k)));
+    }
+    fail_unless_equals_int(count("started"), 1);
+  }
+  ~Stopped() { gst_object_unref(clock); }
+  int count(const std::string& state, GstClockTime* when = nullptr) {
+    int n = 0;
+    while (GstMessage* message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT)) {
+      const GstStructure* s = gst_message_get_structure(message);
+      if (gst_structure_has_name(s, "cerberus-motion") && state == gst_structure_get_string(s, "state")) {
+        ++n;
+        if (when) gst_structure_get_uint64(s, "running-time", when);
+      }
+      gst_message_unref(message);
+    }
+    return n;
+  }
+  // Time goes on; what waits for it until then is woken.
+  void wait_until(GstClockTime time) {
+    for (GstClockID id; gst_test_clock_peek_next_pending_id(clock, &id); gst_clock_id_unref(id)) {
+      const bool due = gst_clock_id_get_time(id) <= time;
+      if (due) gst_test_clock_crank(clock);
+      if (!due) {
+        gst_clock_id_unref(id);
+        break;
+      }
+    }
+    gst_test_clock_set_time(clock, time);
+  }
+};
+
+GST_START_TEST(live_motion_ends_by_the_clock_when_frames_stop) {
+  Stopped stream;
+  const GstClockTime last = 24 * scene::kStep;
+  stream.wait_until(last + 2 * GST_SECOND - 1);
+  fail_unless_equals_int(stream.count("ended"), 0);
+  GstClockTime when = 0;
+  stream.wait_until(last + 2 * GST_SECOND);
+  fail_unless_equals_int(stream.count("ended", &when), 1);
+  fail_unless_equals_uint64(when, last + 2 * GST_SECOND);
+  fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 0);
+  stream.wait_until(100 * GST_SECOND);
+  fail_unless_equals_int(stream.count("ended"), 0);
+}
+GST_END_TEST
+
+GST_START_TEST(there_is_one_timer_however_many_frames_come) {
+  Stopped stream;
+  fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 1);
+}
+GST_END_TEST
+
+GST_START_TEST(what_is_not_live_is_not_watched_by_the_clock) {
+  Stopped stream(false);
+  fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 0);
+  stream.wait_until(100 * GST_SECOND);
+  fail_unless_equals_int(stream.count("ended"), 0);
+}
+GST_END_TEST
+
+GST_START_TEST(a_pause_a_flush_and_the_end_of_the_stream_stop_the_timer) {
+  {
+    Stopped stream;
+    gst_element_set_state(stream.line.harness->element, GST_STATE_PAUSED);
+    fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 0);
+    gst_element_set_state(stream.line.harness->element, GST_STATE_PLAYING);
+    fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 1);
+    gst_element_set_state(stream.line.harness->element, GST_STATE_READY);
+    fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 0);
+    fail_unless_equals_int(stream.count("ended"), 1);
+  }
+  Stopped stream;
+  gst_harness_push_event(stream.line.harness, gst_event_new_flush_start());
+  fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 0);
+  gst_harness_push_event(stream.line.harness, gst_event_new_flush_stop(TRUE));
+  push_segment(stream.line.harness);
+  gst_buffer_unref(stream.line.through(scene::grey_buffer(World{}, 0)));
+  fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 1);
+  gst_harness_push_event(stream.line.harness, gst_event_new_eos());
+  fail_unless_equals_int(gst_test_clock_peek_id_count(stream.clock), 0);
+  fail_unless_equals_int(stream.count("ended"), 1);
+}
+GST_END_TEST
+
+// Whoever receives the message at once may come back to the element: no lock is held.
+GST_START_TEST(no_lock_is_held_while_the_end_is_posted) {
+  Stopped stream;
+  gst_bus_set_sync_handler(
+      stream.line.bus,
+      [](GstBus*, GstMessage* message, gpointer data) {
+        if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT)
+          gst_buffer_unref(static_cast<Stopped*>(data)->line.through(scene::grey_buffer(World{}, 25)));
+        return GST_BUS_PASS;
+      },
+      &stream, nullptr);
+  stream.wait_until(10 * GST_SECOND);
+  gst_bus_set_sync_handler(stream.line.bus, nullptr, nullptr, nullptr);
+}
+GST_END_TEST
+
+Suite* repeated_suite() {
+  Suite* suite = suite_create("repeated");
+  TCase* tests = tcase_create("all");
+  suite_add_tcase(suite, tests);
+  tcase_set_timeout(tests, 60);
+  tcase_add_checked_fixture(tests, watch_library_log, nullptr);
+  tcase_add_loop_test(tests, a_repeated_frame_carries_the_regions_of_the_last_picture, 0,
+                      G_N_ELEMENTS(kLines));
+  tcase_add_test(tests, the_camera_stands_still_while_a_picture_is_repeated);
+  tcase_add_test(tests, an_endless_freeze_ends_tracks_after_coast_time_and_motion_after_hold_time);
+  tcase_add_test(tests, a_repeated_frame_before_any_picture_carries_nothing);
+  tcase_add_test(tests, live_motion_ends_by_the_clock_when_frames_stop);
+  tcase_add_test(tests, there_is_one_timer_however_many_frames_come);
+  tcase_add_test(tests, what_is_not_live_is_not_watched_by_the_clock);
+  tcase_add_test(tests, a_pause_a_flush_and_the_end_of_the_stream_stop_the_timer);
+  tcase_add_test(tests, no_lock_is_held_while_the_end_is_posted);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(repeated);
