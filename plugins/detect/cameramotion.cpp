@@ -3,7 +3,7 @@
  * SECTION:element-cameramotion
  *
  * Measures how the camera itself moved since the previous frame, from the picture alone, and attaches the result: a
- * #CerberusCameraMotion (transform, confidence, residual, scene age) and the small luma plane that the following
+ * #CerberusCameraMotion (transform, confidence, residual, scene age) and the small luma picture that the following
  * stages analyse. The frame goes through untouched and is never copied. A cut starts a new scene (scene age 1).
  *
  * Where a head's pose is known (its meta on the buffer, else the events `cerberus-pose` that pass upstream), the pose

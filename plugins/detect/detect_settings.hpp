@@ -142,7 +142,7 @@ inline constexpr std::array kOwnOfRegions{
              "Greatest height in metres of a region as found, where horizontal-fov tells its distance; 0 = "
              "no limit"),
     property("keep-planes", &DetectSettings::keep_planes, keep_planes_type,
-             "Whether the stages' planes stay on the frame after they were read here"),
+             "Whether the record of the stages stays on the frame after it was read here"),
 };
 inline constexpr std::array kOwnOfTracks{
     property("confirm-time", &DetectSettings::confirm_time,

@@ -2,8 +2,8 @@
 /**
  * SECTION:element-fuzzythreshold
  *
- * Chooses the threshold of the registered differences by the indices of fuzziness, binarises both with it and attaches
- * the moving area as the plane `mask` (0 or 255) and a #CerberusThreshold. The frame goes through untouched. Stages
+ * Chooses the threshold of the registered differences by the indices of fuzziness, binarises both with it and adds the
+ * moving area to the frame's record, and the threshold to the frame. The frame goes through untouched. Stages
  * that are missing upstream are done here with their defaults. The mask is empty, and the threshold not `ready`, until
  * three frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the
  * other areas need of the third frame is not kept for `all`.

@@ -13,10 +13,10 @@
  * in the picture and below the horizon. The rest passes, for who cannot be measured may be somebody; limits in pixels
  * and zones are for what flies and shines up there.
  *
- * The stages' planes are taken off the frame once they are read, so that frames waiting in queues hold none, unless an
- * element downstream (motionview) asks for them. `keep-planes` says otherwise: `always` leaves them there, and with
- * `never` nobody who asks is heard. Where `motiontrack` follows, the small picture and
- * the mask stay on as far as there, whatever `keep-planes` says.
+ * The record of the stages is taken off the frame once it is read, so that frames waiting in queues hold none, unless an
+ * element downstream (motionview) asks for it. `keep-planes` says otherwise: `always` leaves it there, and with `never`
+ * an element that asks is not answered. Where `motiontrack` follows, the record stays on as far as there, whatever
+ * `keep-planes` says.
  *
  * ## Example
  * |[

@@ -2,12 +2,11 @@
 /**
  * SECTION:element-threeframediff
  *
- * Attaches what changed between three consecutive frames once the camera's own motion is taken out: the planes
- * `difference` and `previous-difference` and the histogram of the first. The frame goes through untouched. The plane
- * `previous-difference` is left out where a `fuzzythreshold` with
- * `area=all` follows and nobody asks for planes: it is not read then.
- * Without `cameramotion` upstream the camera stands still and the luma plane is made here. `difference` is zero in
- * the first frame of a scene, `previous-difference` in the first two.
+ * Adds to the frame's record what changed between three consecutive frames once the camera's own motion is taken out:
+ * the registered differences D(k) and D(k-1), and the histogram of the first. The frame goes through untouched. D(k-1)
+ * is made only where an element downstream reads it: `fuzzythreshold` with another `area` than `all`, or `motionview`.
+ * Without `cameramotion` upstream the camera stands still and the luma picture is made here. D(k) is zero in the first
+ * frame of a scene, D(k-1) in the first two.
  *
  * ## Example
  * |[

@@ -17,8 +17,8 @@
  *
  * Pads: `sink` takes raw video in every format that the stages read; `src` gives GRAY8 (or BGRx) for the grey
  * stages, BGRx for labels and histogram. Regions, threshold and camera motion stay on the buffers, so that
- * motionoverlay and motionjson work behind it. Answers the query `cerberus-planes`: with it in the pipeline the stages
- * leave their planes on the buffers. Where a plane is missing the picture is black; one warning message says so.
+ * motionoverlay and motionjson work behind it. With it in the pipeline the stages leave their record on the buffers.
+ * Where a picture is missing there the output is black; one warning message says so.
  *
  * ## Example launch lines
  * |[

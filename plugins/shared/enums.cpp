@@ -67,9 +67,9 @@ GType area_type() {
 
 GType keep_planes_type() {
   static const GEnumValue values[] = {
-      {KEEP_PLANES_AUTO, "Only when an element downstream asks for them", "auto"},
-      {KEEP_PLANES_ALWAYS, "Leave them on the buffers", "always"},
-      {KEEP_PLANES_NEVER, "Remove them always", "never"},
+      {KEEP_PLANES_AUTO, "Only when an element downstream asks for it", "auto"},
+      {KEEP_PLANES_ALWAYS, "Leave it on the buffers", "always"},
+      {KEEP_PLANES_NEVER, "Remove it always", "never"},
       {0, nullptr, nullptr}};
   static const GType type = register_enum("CerberusKeepPlanes", values);
   return type;

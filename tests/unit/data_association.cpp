@@ -16,12 +16,16 @@ constexpr Size kFrame{640, 480};
 using State = TrackHypothesis::State;
 
 Region region(double x, double y, double width, double height, double confidence = 0.4) {
-  return {{x, y, width, height}, width * height, confidence, 1};
+  return {{x, y, width, height},
+          width * height,
+          confidence,
+          1,
+          confidence < 0.5 ? RegionKind::part : RegionKind::person_like};
 }
 
 // A track at this box, seen for `age` seconds.
 TrackHypothesis track(const Box& box, State state = State::confirmed, double age = 2) {
-  TrackHypothesis t = TrackHypothesis::first_seen({box, box.area(), 0.9, 1});
+  TrackHypothesis t = TrackHypothesis::first_seen({box, box.area(), 0.9, 1, RegionKind::person_like});
   if (state != State::tentative) t.confirm(1);
   t.state = state;
   t.age = age;
