@@ -109,7 +109,7 @@ END_TEST
 START_TEST(a_person_like_region_is_neither_a_fragment_nor_completed) {
   for (const int whole : {0, 1}) {
     Scene s{{track({100, 100, 40, 100})}, {region(100, 130, 40, 70), region(110, 100, 20, 20)}, {}, {}};
-    s.regions[static_cast<std::size_t>(whole)].confidence = 0.9;
+    s.regions[static_cast<std::size_t>(whole)].kind = RegionKind::person_like;
     ck_assert_int_eq(s.associate()[0].region, 0);
     ck_assert_double_eq(s.regions[0].box.y, 130);
     ck_assert(s.association.is_new(1));
