@@ -9,6 +9,7 @@
 #include "shared/camera_mount.hpp"
 #include "shared/enums.hpp"
 #include "shared/properties.hpp"
+#include "shared/stamps.hpp"
 #include "vision/detector.h"
 
 namespace cerberus::plugin {
@@ -51,6 +52,7 @@ struct DetectSettings {
   double horizontal_fov = 0;
   double mounting_height = kDefaultMountingHeight;
   double tilt = 0;
+  std::string camera_name;
   int preset = PRESET_DEFAULT;
 };
 
@@ -171,6 +173,7 @@ inline constexpr std::array kOwnOfTracks{
     property("maximum-speed-metres", &DetectSettings::maximum_speed_metres, 0, 1000,
              "Objects faster than this, in metres a second, are not published where their distance is known "
              "(horizontal-fov); 0 = no limit"),
+    property("camera-name", &DetectSettings::camera_name, kCameraNameBlurb),
 };
 // How the camera stands.
 inline constexpr std::array kMount{

@@ -8,6 +8,7 @@
 
 #include "cerberus/private/messages.hpp"
 #include "cerberus/private/video.hpp"
+#include "region_conversion.hpp"
 #include "shared/clock_times.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(detection_debug);
@@ -24,31 +25,6 @@ constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
 
 // With the flags of the record's query: the elements downstream are not asked.
 constexpr guint kNothingFurther = 1u << 31;
-
-static_assert(static_cast<int>(vision::TrackState::coasted) == CERBERUS_REGION_COASTED &&
-              static_cast<int>(vision::TrackState::stopped) == CERBERUS_REGION_STOPPED &&
-              static_cast<int>(vision::RegionKind::thing) == CERBERUS_REGION_KIND_THING);
-
-// What region and track have in common.
-template <typename Found>
-CerberusRegion region_of(const Found& found) {
-  CerberusRegion out;
-  cerberus_region_init(&out);
-  out.kind = static_cast<CerberusRegionKind>(found.kind);
-  out.x = found.box.x;
-  out.y = found.box.y;
-  out.width = found.box.width;
-  out.height = found.box.height;
-  out.confidence = found.confidence;
-  return out;
-}
-
-// Of a vector that outlives the array.
-GPtrArray* array_of(std::vector<CerberusRegion>& regions) {
-  GPtrArray* array = g_ptr_array_sized_new(static_cast<guint>(regions.size()));
-  for (CerberusRegion& region : regions) g_ptr_array_add(array, &region);
-  return array;
-}
 
 }  // namespace
 
@@ -191,7 +167,9 @@ void Detection::repeat(Frame& frame) {
 
 void Detection::watch(const Frame& frame, double step) {
   State& state = *state_;
-  watch_.frame(state.published, frame.running_time, time_of(clock_time(step)),
+  state.stamps.mark(GST_BASE_TRANSFORM_SINK_PAD(base), frame.buffer, frame.running_time,
+                    state.settings.camera_name);
+  watch_.frame(state.published, state.stamps.at(frame.running_time), time_of(clock_time(step)),
                time_of(state.settings.hold_time), frame.live);
 }
 
@@ -269,17 +247,7 @@ void Detection::publish_regions(GstBuffer* buffer, const vision::Analysis& recor
 
 void Detection::publish_tracks(GstBuffer* buffer, const vision::Analysis& record) {
   state_->published.clear();
-  for (const vision::Track& track : *record.tracks) {
-    CerberusRegion& out = state_->published.emplace_back(region_of(track));
-    out.id = track.id;
-    out.tracked = TRUE;
-    out.vx = track.vx;
-    out.vy = track.vy;
-    out.age = clock_time(track.age);
-    out.state = static_cast<CerberusRegionState>(track.state);
-    out.bearing = degrees(track.bearing);
-    out.distance = track.distance;
-  }
+  for (const vision::Track& track : *record.tracks) state_->published.push_back(tracked(track));
   attach_published(buffer);
 }
 

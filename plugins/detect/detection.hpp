@@ -17,6 +17,7 @@
 #include "settings_conflict.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/record.hpp"
+#include "shared/stamps.hpp"
 #include "vision/detector.h"
 
 namespace cerberus::plugin {
@@ -55,7 +56,8 @@ class Detection : public Analyser {
     std::optional<ThresholdFacts> facts;       // likewise
     double repeated = 0;                       // seconds for which it has been repeated
     GstClockTime shown = GST_CLOCK_TIME_NONE;  // running time of the last frame, repeated or not
-    std::string zones;                         // as last read
+    Stamps stamps;
+    std::string zones;  // as last read
     NothingFound no_regions, no_tracks;
     vision::Size frame, mask;  // for which no_regions was judged last
     bool nowhere = false, judge = true;

@@ -4,30 +4,37 @@
 #include <optional>
 #include <utility>
 
+#include "region_conversion.hpp"
 #include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
 
 using vision::MotionEvents;
+using vision::TrackEvents;
 
 void MotionWatch::begin(GstElement* element) {
   const std::lock_guard guard(lock_);
   element_ = element;
   events_ = {};
+  track_events_ = {};
+  cerberus_stamp_init(&stamp_);
   last_.clear();
 }
 
-void MotionWatch::frame(const std::vector<CerberusRegion>& regions, GstClockTime running_time, Time step,
+void MotionWatch::frame(const std::vector<CerberusRegion>& regions, const CerberusStamp& stamp, Time step,
                         Time hold, bool live) {
   {
     const std::lock_guard guard(lock_);
     live_ = live;
     hold_ = hold;
+    stamp_ = stamp;
     if (!regions.empty()) last_ = regions;
-    const bool timed = GST_CLOCK_TIME_IS_VALID(running_time);
-    announce(events_.update(!regions.empty(), timed ? std::optional(time_of(running_time)) : std::nullopt,
-                            step, hold),
-             running_time);
+    tracks_.clear();
+    for (const CerberusRegion& region : regions) tracks_.push_back(track_of(region));
+    const bool timed = GST_CLOCK_TIME_IS_VALID(stamp.running_time);
+    const auto time = timed ? std::optional(time_of(stamp.running_time)) : std::nullopt;
+    announce(events_.update(!regions.empty(), time, step, hold),
+             track_events_.update(tracks_, time, step, hold), stamp);
     arm();
   }
   post();
@@ -37,7 +44,7 @@ void MotionWatch::end() {
   {
     const std::lock_guard guard(lock_);
     pending_.reset();
-    announce(events_.end(), events_.last() ? clock_time(*events_.last()) : GST_CLOCK_TIME_NONE);
+    end_at(clock_time(events_.last()));
   }
   post();
 }
@@ -91,23 +98,43 @@ void MotionWatch::on_clock(GstClock* clock, GstClockTime time, GstClockID id) {
     pending_.reset();
     const auto after = events_.ends_after(hold_);
     const auto last = events_.last();
-    announce(events_.end(), last && after ? clock_time(*last + *after) : GST_CLOCK_TIME_NONE);
+    end_at(last && after ? clock_time(*last + *after) : GST_CLOCK_TIME_NONE);
   }
   post();
 }
 
-void MotionWatch::announce(MotionEvents::Change change, GstClockTime running_time) {
-  if (change == MotionEvents::Change::none) return;
-  g_autoptr(GPtrArray) objects = g_ptr_array_sized_new(static_cast<guint>(last_.size()));
-  for (CerberusRegion& region : last_) g_ptr_array_add(objects, &region);
-  CerberusStamp stamp;
-  cerberus_stamp_init(&stamp);
+// Wall-clock time goes on from the last frame's.
+void MotionWatch::end_at(GstClockTime running_time) {
+  CerberusStamp stamp = stamp_;
   stamp.running_time = running_time;
-  CerberusMotion motion{};
-  motion.state = change == MotionEvents::Change::started ? CERBERUS_MOTION_STARTED : CERBERUS_MOTION_ENDED;
-  motion.regions = objects;
-  messages_.put(
-      Message(cerberus_message_new_motion(GST_OBJECT(element_), &stamp, &motion), gst_message_unref));
+  if (GST_CLOCK_TIME_IS_VALID(stamp.utc) && GST_CLOCK_TIME_IS_VALID(running_time) &&
+      GST_CLOCK_TIME_IS_VALID(stamp_.running_time))
+    stamp.utc += running_time - stamp_.running_time;
+  announce(events_.end(), track_events_.end(), stamp);
+}
+
+void MotionWatch::announce(MotionEvents::Change change, std::span<const TrackEvents::Event> tracks,
+                           const CerberusStamp& stamp) {
+  GstObject* self = GST_OBJECT(element_);
+  const auto put = [&](GstMessage* message) { messages_.put(Message(message, gst_message_unref)); };
+  const auto put_motion = [&](CerberusMotionState state) {
+    g_autoptr(GPtrArray) objects = g_ptr_array_sized_new(static_cast<guint>(last_.size()));
+    for (CerberusRegion& region : last_) g_ptr_array_add(objects, &region);
+    CerberusMotion motion{};
+    motion.state = state;
+    motion.regions = objects;
+    put(cerberus_message_new_motion(self, &stamp, &motion));
+  };
+  if (change == MotionEvents::Change::started) put_motion(CERBERUS_MOTION_STARTED);
+  for (const TrackEvents::Event& event : tracks) {
+    CerberusTrack track{};
+    track.state = static_cast<CerberusTrackState>(event.change);
+    track.region = tracked(event.track);
+    track.first = clock_time(event.first);
+    track.last = clock_time(event.last);
+    put(cerberus_message_new_track(self, &stamp, &track));
+  }
+  if (change == MotionEvents::Change::ended) put_motion(CERBERUS_MOTION_ENDED);
 }
 
 void MotionWatch::post() {

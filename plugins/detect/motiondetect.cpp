@@ -4,8 +4,8 @@
  *
  * Finds moving people (or vehicles) in video from a camera that may turn itself: `cameramotion`, `threeframediff`,
  * `fuzzythreshold`, `motionregions` and `motiontrack` in one element, with their properties and presets. The frame goes
- * through untouched and is never copied; what was found rides on it as metadata (see those elements), and
- * `cerberus-motion` messages tell when motion started and ended.
+ * through untouched and is never copied; what was found rides on it as metadata (see those elements);
+ * `cerberus-motion` messages say when motion started and ended, `cerberus-track` messages what each track did.
  *
  * Every property that the application sets wins over `preset`, whichever was set first. Settings with which nothing can
  * ever be found are warned of by the stage that they are for.

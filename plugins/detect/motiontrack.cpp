@@ -16,7 +16,10 @@
  * Posts `cerberus-motion` element messages: `state=started` with the objects when the first appears, `state=ended` when
  * none was there for `hold-time`, at the end of the stream and when the element stops, with the objects of the last
  * frame that had any. Where the source is live and frames stop coming, it is posted `hold-time` after the last one, by
- * the pipeline's clock.
+ * the pipeline's clock. Posts `cerberus-track` element messages with the object, its first and its last time:
+ * `state=appeared`; `state=updated` at most once a second while it is there; `state=left` after `hold-time` without it,
+ * at the end of the stream and when the element stops. Both have `utc`, `utc-source` and `camera-name` where they are
+ * known, and so has the frame for the elements behind.
  *
  * A buffer with the flag GAP repeats the last picture, as duplicates of `videorate` do: it is not looked at and carries
  * the objects of the last frame on, moving ones for `coast-time`, stopped ones for `hold-stopped`.

@@ -13,6 +13,9 @@ namespace cerberus::plugin {
 constexpr GstClockTime clock_time(std::chrono::nanoseconds time) {
   return static_cast<GstClockTime>(time.count());
 }
+constexpr GstClockTime clock_time(std::optional<std::chrono::nanoseconds> time) {
+  return time ? clock_time(*time) : GST_CLOCK_TIME_NONE;
+}
 // Limited to a quarter of the range, 73 years, so that sums of some times do not overflow.
 constexpr std::chrono::nanoseconds time_of(GstClockTime time) {
   return std::chrono::nanoseconds(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));

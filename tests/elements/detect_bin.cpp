@@ -13,6 +13,14 @@ using scene::Line;
 using scene::Regions;
 using scene::World;
 
+// nullptr: there is none.
+GstMessage* next_motion(GstBus* bus) {
+  GstMessage* message = nullptr;
+  while ((message = gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT)) && !cerberus_message_is_motion(message))
+    gst_message_unref(message);
+  return message;
+}
+
 // A figure that leaves the picture: frames 0 to 59 with it, the empty wall afterwards.
 GST_START_TEST(motion_starts_once_and_ends_after_hold_time) {
   Line line("motiondetect coast-time=0 hold-stopped=0 hold-time=400000000 ! identity");
@@ -26,14 +34,14 @@ GST_START_TEST(motion_starts_once_and_ends_after_hold_time) {
     until = k;
   });
   fail_unless(from > 0 && until < 60);
-  GstMessage* message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
+  GstMessage* message = next_motion(line.bus);
   g_autoptr(CerberusMotion) begin = cerberus_message_parse_motion(message);
   fail_unless(begin && begin->state == CERBERUS_MOTION_STARTED);
   fail_unless_equals_uint64(running_time_of(message), from * scene::kStep);
   fail_unless_equals_int(begin->regions->len, 1);
   const guint id = static_cast<CerberusRegion*>(g_ptr_array_index(begin->regions, 0))->id;
   gst_message_unref(message);
-  message = gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT);
+  message = next_motion(line.bus);
   g_autoptr(CerberusMotion) end = cerberus_message_parse_motion(message);
   fail_unless(end && end->state == CERBERUS_MOTION_ENDED);
   fail_unless_equals_uint64(running_time_of(message), (until + 10) * scene::kStep);
@@ -43,7 +51,7 @@ GST_START_TEST(motion_starts_once_and_ends_after_hold_time) {
   fail_unless_equals_int(gone->id, id);
   fail_unless(scene::overlaps_figure(*gone, world, until));
   gst_message_unref(message);
-  fail_unless(gst_bus_pop_filtered(line.bus, GST_MESSAGE_ELEMENT) == nullptr);
+  fail_unless(next_motion(line.bus) == nullptr);
 }
 GST_END_TEST
 

@@ -218,7 +218,7 @@ class Line {
     push_caps(caps_text);
     push_segment(harness);
   }
-  // Messages of this type posted so far (removes them).
+  // What the messages of this type posted so far say (removes them); of those of elements the states of motion.
   std::vector<std::string> messages(GstMessageType type) {
     std::vector<std::string> texts;
     while (GstMessage* message = gst_bus_pop_filtered(bus, type)) {
@@ -229,9 +229,8 @@ class Line {
         texts.emplace_back(error->message);
         g_error_free(error);
       } else {
-        const GstStructure* s = gst_message_get_structure(message);
-        const gchar* state = s ? gst_structure_get_string(s, "state") : nullptr;
-        texts.emplace_back(state ? state : "");
+        if (g_autoptr(CerberusMotion) motion = cerberus_message_parse_motion(message))
+          texts.emplace_back(cerberus_motion_state_get_nick(motion->state));
       }
       gst_message_unref(message);
     }
