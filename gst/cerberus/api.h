@@ -26,16 +26,19 @@
   CERBERUS_API GType prefix##_get_type(void) G_GNUC_CONST; \
   CERBERUS_API const gchar* prefix##_get_nick(Type value);
 
-/* A fact on a buffer, beside cerberus_buffer_set_X(): a copy of it, what the buffer itself holds, the API type of its
- * meta. NULL: there is none. */
-#define CERBERUS_DECLARE_META(Type, name)                                  \
-  CERBERUS_API Type* cerberus_buffer_get_##name(GstBuffer* buffer);        \
-  CERBERUS_API const Type* cerberus_buffer_peek_##name(GstBuffer* buffer); \
+/* A fact on a buffer: attaches a copy (NULL removes; FALSE: the buffer is not writable); returns a copy; what the buffer
+ * itself holds; the API type of its meta. NULL: there is none. */
+#define CERBERUS_DECLARE_META(Type, name)                                                \
+  CERBERUS_API gboolean cerberus_buffer_set_##name(GstBuffer* buffer, const Type* name); \
+  CERBERUS_API Type* cerberus_buffer_get_##name(GstBuffer* buffer);                      \
+  CERBERUS_API const Type* cerberus_buffer_peek_##name(GstBuffer* buffer);               \
   CERBERUS_API GType cerberus_##name##_meta_api_get_type(void);
 
-/* A message, beside cerberus_message_new_X(). Parsing returns a copy, NULL of another message or a malformed one. */
-#define CERBERUS_DECLARE_MESSAGE(Type, name)                             \
-  CERBERUS_API gboolean cerberus_message_is_##name(GstMessage* message); \
+/* A message. Parsing returns a copy, NULL of another message or a malformed one. */
+#define CERBERUS_DECLARE_MESSAGE(Type, name)                                                       \
+  CERBERUS_API GstMessage* cerberus_message_new_##name(GstObject* src, const CerberusStamp* stamp, \
+                                                       const Type* name);                          \
+  CERBERUS_API gboolean cerberus_message_is_##name(GstMessage* message);                           \
   CERBERUS_API Type* cerberus_message_parse_##name(GstMessage* message);
 
 /* An event. Parsing returns a copy, NULL of another event or a malformed one. */

@@ -15,14 +15,6 @@ void unknown(CerberusBase& base) {
   base.valid_from = GST_CLOCK_TIME_NONE;
 }
 
-CerberusBase same(const CerberusBase& base) {
-  return base;
-}
-
-bool is_any(const CerberusBase&) {
-  return true;
-}
-
 void write(GstStructure* to, const CerberusBase& base) {
   cerberus::write_fields(to, kFields, &base);
 }
@@ -38,5 +30,5 @@ CERBERUS_DEFINE_BOXED(CerberusBase, cerberus_base, unknown)
 CERBERUS_DEFINE_ENUM(CerberusBaseSource, cerberus_base_source,
                      {CERBERUS_BASE_ESTIMATED, "CERBERUS_BASE_ESTIMATED", "estimated"},
                      {CERBERUS_BASE_REPORTED, "CERBERUS_BASE_REPORTED", "reported"})
-CERBERUS_DEFINE_META(CerberusBase, base, same)
-CERBERUS_DEFINE_EVENT(CerberusBase, base, CERBERUS_EVENT_BASE, GST_EVENT_CUSTOM_UPSTREAM, is_any)
+CERBERUS_DEFINE_META(CerberusBase, base, cerberus::same, nullptr)
+CERBERUS_DEFINE_EVENT(CerberusBase, base, CERBERUS_EVENT_BASE, GST_EVENT_CUSTOM_UPSTREAM, cerberus::is_any)

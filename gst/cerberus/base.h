@@ -40,15 +40,14 @@ typedef enum { CERBERUS_BASE_ESTIMATED, CERBERUS_BASE_REPORTED } CerberusBaseSou
  *
  * How the body that carries head and sensors moves. An unknown motion is not attached.
  */
-typedef struct _CerberusBase CerberusBase;
-struct _CerberusBase {
+typedef struct _CerberusBase {
   gdouble yaw_rate;
   CerberusBaseSource source;
   GstClockTime valid_from;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusBase;
 
 #define CERBERUS_TYPE_BASE (cerberus_base_get_type())
 #define CERBERUS_TYPE_BASE_SOURCE (cerberus_base_source_get_type())
@@ -69,10 +68,8 @@ CERBERUS_DECLARE_ENUM(CerberusBaseSource, cerberus_base_source)
  *
  * Returns: %FALSE if @buffer is not writable.
  */
-CERBERUS_API
-gboolean cerberus_buffer_set_base(GstBuffer* buffer, const CerberusBase* base);
+CERBERUS_DECLARE_META(CerberusBase, base)
 
 CERBERUS_DECLARE_EVENT(CerberusBase, base)
-CERBERUS_DECLARE_META(CerberusBase, base)
 
 G_END_DECLS

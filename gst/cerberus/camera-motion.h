@@ -23,11 +23,8 @@ G_BEGIN_DECLS
  *     the inverse of the earlier one's
  *
  * The camera's own motion between two consecutive frames.
- *
- * Since: 0.1
  */
-typedef struct _CerberusCameraMotion CerberusCameraMotion;
-struct _CerberusCameraMotion {
+typedef struct _CerberusCameraMotion {
   gdouble matrix[9];
   GstClockTime from;
   gdouble confidence;
@@ -39,88 +36,15 @@ struct _CerberusCameraMotion {
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
-
-/**
- * CerberusCameraMotionMeta:
- * @meta: parent
- * @motion: the camera's motion
- *
- * Carries a #CerberusCameraMotion on a video buffer. Scaled with the picture, lost where it is cropped; videoflip keeps
- * it unchanged, which is wrong and cannot be detected. At most one a buffer.
- *
- * Since: 0.1
- */
-typedef struct _CerberusCameraMotionMeta CerberusCameraMotionMeta;
-struct _CerberusCameraMotionMeta {
-  GstMeta meta;
-  CerberusCameraMotion motion;
-};
+} CerberusCameraMotion;
 
 #define CERBERUS_TYPE_CAMERA_MOTION (cerberus_camera_motion_get_type())
 #define CERBERUS_CAMERA_MOTION_META_API_TYPE (cerberus_camera_motion_meta_api_get_type())
-#define CERBERUS_CAMERA_MOTION_META_INFO (cerberus_camera_motion_meta_get_info())
-
-CERBERUS_API
-GType cerberus_camera_motion_get_type(void) G_GNUC_CONST;
-
-CERBERUS_API
-GType cerberus_camera_motion_meta_api_get_type(void);
-
-/**
- * cerberus_camera_motion_meta_get_info: (skip)
- *
- * Returns: the registered #GstMetaInfo of #CerberusCameraMotionMeta.
- *
- * Since: 0.1
- */
-CERBERUS_API
-const GstMetaInfo* cerberus_camera_motion_meta_get_info(void);
-
-/**
- * cerberus_camera_motion_init: (skip)
- * @motion: (out caller-allocates): memory to fill
- *
- * Fills @motion with the defaults of cerberus_camera_motion_new(), for structures on the stack.
- *
- * Since: 0.1
- */
-CERBERUS_API
-void cerberus_camera_motion_init(CerberusCameraMotion* motion);
-
-/**
- * cerberus_camera_motion_new: (constructor)
- *
- * Makes an identity motion: not still, confidence 0, from %GST_CLOCK_TIME_NONE, scene age 0 (unknown).
- *
- * Returns: (transfer full): a new motion; free with cerberus_camera_motion_free().
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusCameraMotion* cerberus_camera_motion_new(void);
-
-/**
- * cerberus_camera_motion_copy:
- * @motion: a motion
- *
- * Returns: (transfer full) (nullable): a copy; %NULL only for a %NULL @motion.
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusCameraMotion* cerberus_camera_motion_copy(const CerberusCameraMotion* motion);
 
 /**
  * cerberus_camera_motion_free: (skip)
- * @motion: (transfer full) (nullable): a motion
- *
- * Frees @motion.
- *
- * Since: 0.1
  */
-CERBERUS_API
-void cerberus_camera_motion_free(CerberusCameraMotion* motion);
+CERBERUS_DECLARE_BOXED(CerberusCameraMotion, cerberus_camera_motion)
 
 /**
  * cerberus_camera_motion_set_matrix:
@@ -128,8 +52,6 @@ void cerberus_camera_motion_free(CerberusCameraMotion* motion);
  * @matrix: (array fixed-size=9): nine numbers, row-major, as in #CerberusCameraMotion
  *
  * Sets the matrix: bindings cannot write an array inside a structure.
- *
- * Since: 0.1
  */
 CERBERUS_API
 void cerberus_camera_motion_set_matrix(CerberusCameraMotion* motion, const gdouble* matrix);
@@ -145,64 +67,21 @@ void cerberus_camera_motion_set_matrix(CerberusCameraMotion* motion, const gdoub
  * Computes the place in this frame of a point of the previous frame that is at rest in the scene.
  *
  * Returns: %FALSE if the point lies on the transform's horizon (nothing is written then).
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_camera_motion_apply(const CerberusCameraMotion* motion, gdouble x, gdouble y,
                                       gdouble* out_x, gdouble* out_y);
 
 /**
- * cerberus_buffer_add_camera_motion_meta: (skip)
- * @buffer: a writable buffer
- * @motion: what to attach, copied
- *
- * Attaches @motion, replacing one that is there already.
- *
- * Returns: (transfer none) (nullable): the meta on @buffer.
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusCameraMotionMeta* cerberus_buffer_add_camera_motion_meta(GstBuffer* buffer,
-                                                                 const CerberusCameraMotion* motion);
-
-/**
  * cerberus_buffer_set_camera_motion:
  * @buffer: a writable buffer
- * @motion: (nullable): what to attach, copied; %NULL removes
+ * @camera_motion: (nullable): where the picture went, copied; %NULL removes
  *
- * Attaches @motion, replacing one that is there already: the form for bindings.
+ * Attaches the camera's motion. It is scaled with the picture and lost where that is cropped; videoflip keeps it
+ * unchanged, which is wrong and cannot be detected. At most one a buffer.
  *
- * Returns: %TRUE if @buffer now carries @motion (or none, for %NULL); %FALSE if @buffer is not writable.
- *
- * Since: 0.1
+ * Returns: %FALSE if @buffer is not writable.
  */
-CERBERUS_API
-gboolean cerberus_buffer_set_camera_motion(GstBuffer* buffer, const CerberusCameraMotion* motion);
-
-/**
- * cerberus_buffer_get_camera_motion_meta: (skip)
- * @buffer: a buffer
- *
- * Returns: (transfer none) (nullable): the meta on @buffer, without a copy.
- *
- * Since: 0.1
- */
-CERBERUS_API
-const CerberusCameraMotionMeta* cerberus_buffer_get_camera_motion_meta(GstBuffer* buffer);
-
-/**
- * cerberus_buffer_get_camera_motion:
- * @buffer: a buffer
- *
- * Returns: (transfer full) (nullable): a copy of the camera's motion, or %NULL if nothing upstream measured it.
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusCameraMotion* cerberus_buffer_get_camera_motion(GstBuffer* buffer);
-
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusCameraMotion, cerberus_camera_motion_free)
+CERBERUS_DECLARE_META(CerberusCameraMotion, camera_motion)
 
 G_END_DECLS

@@ -11,8 +11,6 @@ G_BEGIN_DECLS
  * CERBERUS_VIDEO_FORMATS_8_BIT:
  *
  * The 8-bit formats among %CERBERUS_VIDEO_FORMATS, without the braces of a list.
- *
- * Since: 0.1
  */
 #define CERBERUS_VIDEO_FORMATS_8_BIT                                                    \
   "GRAY8, I420, YV12, NV12, NV21, Y41B, Y42B, Y444, YUY2, UYVY, RGB, BGR, RGBx, BGRx, " \
@@ -24,8 +22,6 @@ G_BEGIN_DECLS
  * Every video format that the elements read, as a list for a caps string: those with a luma plane (or interleaved
  * luma) of 8 bits, or of 10 to 16 bits in words of 16, read without any conversion, and the packed RGB family, from
  * which luma is computed.
- *
- * Since: 0.1
  */
 #define CERBERUS_VIDEO_FORMATS                                                                    \
   "{ " CERBERUS_VIDEO_FORMATS_8_BIT                                                               \
@@ -38,8 +34,6 @@ G_BEGIN_DECLS
  *
  * Caps string of raw video in %CERBERUS_VIDEO_FORMATS, any size and frame
  * rate. Caps that name no frame rate at all are a subset of it too.
- *
- * Since: 0.1
  */
 #define CERBERUS_VIDEO_CAPS                                \
   "video/x-raw, format = (string) " CERBERUS_VIDEO_FORMATS \
@@ -49,8 +43,6 @@ G_BEGIN_DECLS
  * CERBERUS_JSON_LINES_CAPS:
  *
  * Caps string of JSON lines: every buffer is one JSON object in UTF-8 that ends with a line feed.
- *
- * Since: 0.1
  */
 #define CERBERUS_JSON_LINES_CAPS "application/x-json-lines"
 
@@ -59,8 +51,6 @@ G_BEGIN_DECLS
  * @format: a video format
  *
  * Returns: %TRUE if @format is one of %CERBERUS_VIDEO_FORMATS.
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_video_format_is_supported(GstVideoFormat format);

@@ -73,7 +73,7 @@ CERBERUS_DEFINE_ENUM(CerberusFusionAction, cerberus_fusion_action,
                      {CERBERUS_FUSION_SEARCH, "CERBERUS_FUSION_SEARCH", "search"},
                      {CERBERUS_FUSION_ZERO, "CERBERUS_FUSION_ZERO", "zero"},
                      {CERBERUS_FUSION_HOLD, "CERBERUS_FUSION_HOLD", "hold"})
-CERBERUS_DEFINE_META(CerberusFusion, fusion, sane)
+CERBERUS_DEFINE_META(CerberusFusion, fusion, sane, nullptr)
 CERBERUS_DEFINE_MESSAGE(CerberusFusion, fusion, CERBERUS_MESSAGE_FUSION)
 CERBERUS_DEFINE_EVENT(CerberusFusion, fusion, CERBERUS_EVENT_FUSION, GST_EVENT_CUSTOM_DOWNSTREAM_OOB,
                       is_complete)

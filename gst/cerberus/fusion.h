@@ -70,8 +70,7 @@ typedef enum {
  *
  * What camera and PIR sensors together decided for a frame.
  */
-typedef struct _CerberusFusion CerberusFusion;
-struct _CerberusFusion {
+typedef struct _CerberusFusion {
   gint rule;
   const gchar* rule_name;
   CerberusFusionAction action;
@@ -88,7 +87,7 @@ struct _CerberusFusion {
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusFusion;
 
 #define CERBERUS_TYPE_FUSION (cerberus_fusion_get_type())
 #define CERBERUS_TYPE_FUSION_ACTION (cerberus_fusion_action_get_type())
@@ -130,8 +129,7 @@ GBytes* cerberus_fusion_get_sensors(const CerberusFusion* fusion);
  *
  * Returns: %FALSE if @buffer is not writable.
  */
-CERBERUS_API
-gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fusion);
+CERBERUS_DECLARE_META(CerberusFusion, fusion)
 
 /**
  * cerberus_message_new_fusion:
@@ -141,12 +139,8 @@ gboolean cerberus_buffer_set_fusion(GstBuffer* buffer, const CerberusFusion* fus
  *
  * Returns: (transfer full): a new %CERBERUS_MESSAGE_FUSION.
  */
-CERBERUS_API
-GstMessage* cerberus_message_new_fusion(GstObject* src, const CerberusStamp* stamp,
-                                        const CerberusFusion* fusion);
+CERBERUS_DECLARE_MESSAGE(CerberusFusion, fusion)
 
 CERBERUS_DECLARE_EVENT(CerberusFusion, fusion)
-CERBERUS_DECLARE_MESSAGE(CerberusFusion, fusion)
-CERBERUS_DECLARE_META(CerberusFusion, fusion)
 
 G_END_DECLS

@@ -22,7 +22,6 @@ GPtrArray* copies(const GPtrArray* regions) {
   return all;
 }
 
-void started(CerberusMotion&) {}
 void own(CerberusMotion& motion) {
   motion.regions = copies(motion.regions);
 }
@@ -66,10 +65,8 @@ void appeared(CerberusTrack& track) {
 
 void write(GstStructure* to, const CerberusTrack& track) {
   cerberus::write_fields(to, kTrackFields, &track);
-  GValue object = G_VALUE_INIT;
-  g_value_init(&object, GST_TYPE_STRUCTURE);
-  g_value_take_boxed(&object, cerberus_region_to_structure(&track.region));
-  gst_structure_take_value(to, "object", &object);
+  g_autoptr(GstStructure) object = cerberus_region_to_structure(&track.region);
+  gst_structure_set(to, "object", GST_TYPE_STRUCTURE, object, nullptr);
 }
 
 bool read(const GstStructure* from, CerberusTrack& track) {
@@ -83,7 +80,7 @@ bool read(const GstStructure* from, CerberusTrack& track) {
 
 }  // namespace
 
-CERBERUS_DEFINE_OWNING_BOXED(CerberusMotion, cerberus_motion, started, own, release)
+CERBERUS_DEFINE_OWNING_BOXED(CerberusMotion, cerberus_motion, cerberus::zero, own, release)
 CERBERUS_DEFINE_ENUM(CerberusMotionState, cerberus_motion_state,
                      {CERBERUS_MOTION_STARTED, "CERBERUS_MOTION_STARTED", "started"},
                      {CERBERUS_MOTION_ENDED, "CERBERUS_MOTION_ENDED", "ended"})

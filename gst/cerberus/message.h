@@ -52,14 +52,13 @@ typedef enum { CERBERUS_TRACK_APPEARED, CERBERUS_TRACK_UPDATED, CERBERUS_TRACK_L
  *
  * The start or the end of motion.
  */
-typedef struct _CerberusMotion CerberusMotion;
-struct _CerberusMotion {
+typedef struct _CerberusMotion {
   CerberusMotionState state;
   GPtrArray* regions;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusMotion;
 
 /**
  * CerberusTrack:
@@ -70,15 +69,14 @@ struct _CerberusMotion {
  *
  * What happened to one track.
  */
-typedef struct _CerberusTrack CerberusTrack;
-struct _CerberusTrack {
+typedef struct _CerberusTrack {
   CerberusTrackState state;
   CerberusRegion region;
   GstClockTime first, last;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusTrack;
 
 #define CERBERUS_TYPE_MOTION (cerberus_motion_get_type())
 #define CERBERUS_TYPE_MOTION_STATE (cerberus_motion_state_get_type())
@@ -124,9 +122,7 @@ GPtrArray* cerberus_motion_get_regions(const CerberusMotion* motion);
  *
  * Returns: (transfer full): a new %CERBERUS_MESSAGE_MOTION.
  */
-CERBERUS_API
-GstMessage* cerberus_message_new_motion(GstObject* src, const CerberusStamp* stamp,
-                                        const CerberusMotion* motion);
+CERBERUS_DECLARE_MESSAGE(CerberusMotion, motion)
 
 /**
  * cerberus_message_new_track:
@@ -136,11 +132,6 @@ GstMessage* cerberus_message_new_motion(GstObject* src, const CerberusStamp* sta
  *
  * Returns: (transfer full): a new %CERBERUS_MESSAGE_TRACK.
  */
-CERBERUS_API
-GstMessage* cerberus_message_new_track(GstObject* src, const CerberusStamp* stamp,
-                                       const CerberusTrack* track);
-
-CERBERUS_DECLARE_MESSAGE(CerberusMotion, motion)
 CERBERUS_DECLARE_MESSAGE(CerberusTrack, track)
 
 G_END_DECLS

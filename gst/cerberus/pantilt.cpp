@@ -2,7 +2,6 @@
 #include <cerberus/pantilt.h>
 
 #include "cerberus/private/define.hpp"
-#include "cerberus/private/head.hpp"
 #include "cerberus/private/text.hpp"
 
 namespace {

@@ -51,15 +51,14 @@ typedef enum {
  *
  * The state of a pan-tilt head.
  */
-typedef struct _CerberusPantilt CerberusPantilt;
-struct _CerberusPantilt {
+typedef struct _CerberusPantilt {
   CerberusPantiltState state;
   gchar* reason;
   CerberusPose pose;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusPantilt;
 
 #define CERBERUS_TYPE_PANTILT (cerberus_pantilt_get_type())
 #define CERBERUS_TYPE_PANTILT_STATE (cerberus_pantilt_state_get_type())
@@ -78,10 +77,6 @@ CERBERUS_DECLARE_ENUM(CerberusPantiltState, cerberus_pantilt_state)
  *
  * Returns: (transfer full): a new %CERBERUS_MESSAGE_PANTILT.
  */
-CERBERUS_API
-GstMessage* cerberus_message_new_pantilt(GstObject* src, const CerberusStamp* stamp,
-                                         const CerberusPantilt* pantilt);
-
 CERBERUS_DECLARE_MESSAGE(CerberusPantilt, pantilt)
 
 G_END_DECLS

@@ -12,10 +12,6 @@ constexpr char kSensors[] = "sensors";
 constexpr char kBearings[] = "bearings";
 constexpr char kFieldOfView[] = "field-of-view";
 
-const char* format_name(CerberusPirFormat format) {
-  return format == CERBERUS_PIR_LEVEL ? "level" : "presence";
-}
-
 // Empty when all is well, else what is wrong, for a user.
 const char* fault(const CerberusPirInfo& info) {
   if (info.sensors < 1 || info.sensors > CERBERUS_PIR_MAX_SENSORS) return "sensors must be 1 to 16";
@@ -27,14 +23,11 @@ const char* fault(const CerberusPirInfo& info) {
 }
 
 gboolean refuse(GError** error, const GstCaps* caps, const char* why) {
-  gchar* text = gst_caps_to_string(caps);
+  g_autofree gchar* text = gst_caps_to_string(caps);
   g_set_error(error, GST_CORE_ERROR, GST_CORE_ERROR_NEGOTIATION, "PIR caps \"%s\" cannot be used: %s.", text,
               why);
-  g_free(text);
   return FALSE;
 }
-
-void none(CerberusPir&) {}
 
 void write(GstStructure* to, const CerberusPir& pir) {
   CerberusPir written = pir;
@@ -50,30 +43,26 @@ bool read(const GstStructure* from, CerberusPir& pir) {
 
 }  // namespace
 
-CERBERUS_DEFINE_BOXED(CerberusPir, cerberus_pir, none)
+CERBERUS_DEFINE_BOXED(CerberusPir, cerberus_pir, cerberus::zero)
+CERBERUS_DEFINE_ENUM(CerberusPirFormat, cerberus_pir_format,
+                     {CERBERUS_PIR_PRESENCE, "CERBERUS_PIR_PRESENCE", "presence"},
+                     {CERBERUS_PIR_LEVEL, "CERBERUS_PIR_LEVEL", "level"})
 CERBERUS_DEFINE_MESSAGE(CerberusPir, pir, CERBERUS_MESSAGE_PIR)
 
 void cerberus_pir_info_init(CerberusPirInfo* info) {
   g_return_if_fail(info);
-  *info = {};
-  info->format = CERBERUS_PIR_PRESENCE;
-  info->sensors = 3;
-  info->bearings[0] = 0;
-  info->bearings[1] = -120;
-  info->bearings[2] = 120;
-  info->field_of_view = 120;
+  *info = {CERBERUS_PIR_PRESENCE, 3, {0, -120, 120}, 120};
 }
 
 GstCaps* cerberus_pir_info_to_caps(const CerberusPirInfo* info) {
   g_return_val_if_fail(info, nullptr);
   if (fault(*info)) return nullptr;
-  GstStructure* structure = gst_structure_new(
-      "application/x-pir", "format", G_TYPE_STRING, format_name(info->format), kSensors, G_TYPE_INT,
-      static_cast<gint>(info->sensors), kFieldOfView, G_TYPE_DOUBLE, info->field_of_view, nullptr);
+  GstStructure* structure = gst_structure_new("application/x-pir", "format", G_TYPE_STRING,
+                                              cerberus_pir_format_get_nick(info->format), kSensors,
+                                              G_TYPE_INT, static_cast<gint>(info->sensors), kFieldOfView,
+                                              G_TYPE_DOUBLE, info->field_of_view, nullptr);
   cerberus::set_numbers(structure, kBearings, info->sensors, info->bearings);
-  GstCaps* caps = gst_caps_new_empty();
-  gst_caps_append_structure(caps, structure);
-  return caps;
+  return gst_caps_new_full(structure, nullptr);
 }
 
 gboolean cerberus_pir_info_from_caps(CerberusPirInfo* info, const GstCaps* caps, GError** error) {
@@ -83,12 +72,9 @@ gboolean cerberus_pir_info_from_caps(CerberusPirInfo* info, const GstCaps* caps,
   if (!s || !gst_structure_has_name(s, "application/x-pir"))
     return refuse(error, caps, "they are not application/x-pir");
   CerberusPirInfo found{};
-  const gchar* format = gst_structure_get_string(s, "format");
-  if (g_strcmp0(format, "presence") == 0)
-    found.format = CERBERUS_PIR_PRESENCE;
-  else if (g_strcmp0(format, "level") == 0)
-    found.format = CERBERUS_PIR_LEVEL;
-  else
+  constexpr cerberus::Field kFormat[] = {{"format", cerberus::Field::Type::nick,
+                                          offsetof(CerberusPirInfo, format), cerberus_pir_format_get_type}};
+  if (!cerberus::read_fields(s, kFormat, &found))
     return refuse(error, caps, "format must be presence or level");
   gint sensors = 0;
   if (!gst_structure_get_int(s, kSensors, &sensors) || sensors < 1 || sensors > CERBERUS_PIR_MAX_SENSORS)

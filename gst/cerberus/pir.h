@@ -39,10 +39,7 @@ G_BEGIN_DECLS
  *
  * What a buffer of PIR readings holds.
  */
-typedef enum {
-  CERBERUS_PIR_PRESENCE,
-  CERBERUS_PIR_LEVEL,
-} CerberusPirFormat;
+typedef enum { CERBERUS_PIR_PRESENCE, CERBERUS_PIR_LEVEL } CerberusPirFormat;
 
 /**
  * CerberusPirInfo:
@@ -53,13 +50,12 @@ typedef enum {
  *
  * What the caps of a stream of PIR readings say.
  */
-typedef struct _CerberusPirInfo CerberusPirInfo;
-struct _CerberusPirInfo {
+typedef struct _CerberusPirInfo {
   CerberusPirFormat format;
   guint sensors;
   gdouble bearings[CERBERUS_PIR_MAX_SENSORS];
   gdouble field_of_view;
-};
+} CerberusPirInfo;
 
 /**
  * cerberus_pir_info_init: (skip)
@@ -111,8 +107,7 @@ gsize cerberus_pir_info_buffer_size(const CerberusPirInfo* info);
  *
  * The readings of all sensors of a stream.
  */
-typedef struct _CerberusPir CerberusPir;
-struct _CerberusPir {
+typedef struct _CerberusPir {
   guint n_sensors;
   guint8 sensors[CERBERUS_PIR_MAX_SENSORS];
   gdouble bearings[CERBERUS_PIR_MAX_SENSORS];
@@ -120,14 +115,16 @@ struct _CerberusPir {
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusPir;
 
 #define CERBERUS_TYPE_PIR (cerberus_pir_get_type())
+#define CERBERUS_TYPE_PIR_FORMAT (cerberus_pir_format_get_type())
 
 /**
  * cerberus_pir_free: (skip)
  */
 CERBERUS_DECLARE_BOXED(CerberusPir, cerberus_pir)
+CERBERUS_DECLARE_ENUM(CerberusPirFormat, cerberus_pir_format)
 
 /**
  * cerberus_pir_get_sensors:
@@ -146,9 +143,6 @@ GBytes* cerberus_pir_get_sensors(const CerberusPir* pir);
  *
  * Returns: (transfer full): a new %CERBERUS_MESSAGE_PIR.
  */
-CERBERUS_API
-GstMessage* cerberus_message_new_pir(GstObject* src, const CerberusStamp* stamp, const CerberusPir* pir);
-
 CERBERUS_DECLARE_MESSAGE(CerberusPir, pir)
 
 G_END_DECLS

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "cerberus/private/define.hpp"
-#include "cerberus/private/head.hpp"
 
 namespace {
 
@@ -25,7 +24,7 @@ constexpr cerberus::Field kFields[] = {
 };
 
 void straight_ahead(CerberusPose& pose) {
-  pose.head = g_intern_static_string(cerberus::kHead);
+  pose.head = cerberus::head_of(pose);
   pose.valid_until = GST_CLOCK_TIME_NONE;
   pose.settled = TRUE;
 }
@@ -45,18 +44,14 @@ bool read(const GstStructure* from, CerberusPose& pose) {
          pose.valid_until >= pose.valid_from;
 }
 
-bool is_any(const CerberusPose&) {
-  return true;
-}
-
 }  // namespace
 
 CERBERUS_DEFINE_BOXED(CerberusPose, cerberus_pose, straight_ahead)
 CERBERUS_DEFINE_ENUM(CerberusPoseSource, cerberus_pose_source,
                      {CERBERUS_POSE_COMMANDED, "CERBERUS_POSE_COMMANDED", "commanded"},
                      {CERBERUS_POSE_MEASURED, "CERBERUS_POSE_MEASURED", "measured"})
-CERBERUS_DEFINE_META(CerberusPose, pose, named)
-CERBERUS_DEFINE_EVENT(CerberusPose, pose, CERBERUS_EVENT_POSE, GST_EVENT_CUSTOM_UPSTREAM, is_any)
+CERBERUS_DEFINE_META(CerberusPose, pose, named, nullptr)
+CERBERUS_DEFINE_EVENT(CerberusPose, pose, CERBERUS_EVENT_POSE, GST_EVENT_CUSTOM_UPSTREAM, cerberus::is_any)
 
 void cerberus_pose_set_head(CerberusPose* pose, const gchar* head) {
   g_return_if_fail(pose);

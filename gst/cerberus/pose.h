@@ -40,8 +40,7 @@ typedef enum { CERBERUS_POSE_COMMANDED, CERBERUS_POSE_MEASURED } CerberusPoseSou
  *
  * Where a pan-tilt head looks: one piece of its plan, of constant acceleration.
  */
-typedef struct _CerberusPose CerberusPose;
-struct _CerberusPose {
+typedef struct _CerberusPose {
   const gchar* head;
   gdouble pan, tilt;
   gdouble pan_speed, tilt_speed;
@@ -52,7 +51,7 @@ struct _CerberusPose {
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusPose;
 
 #define CERBERUS_TYPE_POSE (cerberus_pose_get_type())
 #define CERBERUS_TYPE_POSE_SOURCE (cerberus_pose_source_get_type())
@@ -99,10 +98,8 @@ gboolean cerberus_pose_evaluate(const CerberusPose* pose, GstClockTime running_t
  *
  * Returns: %FALSE if @buffer is not writable.
  */
-CERBERUS_API
-gboolean cerberus_buffer_set_pose(GstBuffer* buffer, const CerberusPose* pose);
+CERBERUS_DECLARE_META(CerberusPose, pose)
 
 CERBERUS_DECLARE_EVENT(CerberusPose, pose)
-CERBERUS_DECLARE_META(CerberusPose, pose)
 
 G_END_DECLS

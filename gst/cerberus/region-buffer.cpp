@@ -6,42 +6,38 @@
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
-#include <iterator>
 
-#include "private/analytics.hpp"
-#include "private/meta.hpp"
+#include "cerberus/private/analytics.hpp"
+#include "cerberus/private/fields.hpp"
+#include "cerberus/private/meta.hpp"
 
 namespace {
 
 using cerberus::analytics::kMotion;
 using cerberus::analytics::kPerson;
+using cerberus::analytics::Pixels;
 
 // The whole pixels nearest to a region's edges, cut at the frame's left and top (the meta holds no negative
 // numbers and the frame's size is not known here); at least one pixel.
-struct Pixels {
-  guint x, y, width, height;
-};
-
-struct Interval {
-  guint start, length;
-};
-
-Interval whole_pixels(double start, double length) {
-  const double first = std::max(std::round(start), 0.0);
-  const double last = std::max(std::round(start + length), first + 1);
-  return {static_cast<guint>(first), static_cast<guint>(last - first)};
-}
-
 Pixels whole_pixels(const CerberusRegion& region) {
-  const Interval h = whole_pixels(region.x, region.width), v = whole_pixels(region.y, region.height);
-  return {h.start, v.start, h.length, v.length};
+  const auto interval = [](double start, double length, guint& at, guint& n) {
+    const double first = std::max(std::round(start), 0.0);
+    at = static_cast<guint>(first);
+    n = static_cast<guint>(std::max(std::round(start + length), first + 1) - first);
+  };
+  Pixels p;
+  interval(region.x, region.width, p.x, p.width);
+  interval(region.y, region.height, p.y, p.height);
+  return p;
 }
 
 bool is_sane(const CerberusRegion& region) {
   constexpr double kFar = 1 << 24;  // no picture is that large, and whole numbers are exact up to here
-  const double numbers[] = {region.x, region.y, region.width, region.height};
-  return std::all_of(std::begin(numbers), std::end(numbers), [](double n) { return std::abs(n) < kFar; }) &&
-         region.width >= 0 && region.height >= 0;
+  return std::ranges::all_of(std::initializer_list{region.x, region.y, region.width, region.height},
+                             [](double n) { return std::abs(n) < kFar; }) &&
+         region.width >= 0 && region.height >= 0 &&
+         cerberus::enum_value(CERBERUS_TYPE_REGION_KIND, region.kind) &&
+         cerberus::enum_value(CERBERUS_TYPE_REGION_STATE, region.state);
 }
 
 // Our own record of a region. GStreamer's meta beside it is what others read: it holds whole pixels only, and up to
@@ -99,94 +95,70 @@ void drop_params(GstVideoRegionOfInterestMeta* meta) {
 // pixels down from pixels that were rounded before. It is there already: it stood before our record on the buffer, and
 // metas are transformed in that order.
 void update_scaled(GstBuffer* buffer, const CerberusRegion& before, const CerberusRegion& after,
-                   const GstVideoMetaTransform& scale) {
-  const Pixels old = whole_pixels(before);
+                   const cerberus::Rescaling& sizes) {
+  const Pixels old = whole_pixels(before), now = whole_pixels(after);
   const auto is_scaled = [](guint n, guint old_n, gint from, gint to) {
     const gint64 difference = gint64{n} - gint64{old_n} * to / from;
     return difference >= -1 && difference <= 1;
   };
-  const gint from_width = GST_VIDEO_INFO_WIDTH(scale.in_info),
-             to_width = GST_VIDEO_INFO_WIDTH(scale.out_info);
-  const gint from_height = GST_VIDEO_INFO_HEIGHT(scale.in_info),
-             to_height = GST_VIDEO_INFO_HEIGHT(scale.out_info);
-  const GQuark type = g_quark_from_static_string(type_of(before));
+  const auto [from, to] = sizes;
   gpointer state = nullptr;
   while (GstMeta* meta =
              gst_buffer_iterate_meta_filtered(buffer, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
     auto* roi = reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta);
-    if (roi->roi_type != type || roi->id != static_cast<gint>(before.id)) continue;
-    if (!is_scaled(roi->x, old.x, from_width, to_width) ||
-        !is_scaled(roi->w, old.width, from_width, to_width) ||
-        !is_scaled(roi->y, old.y, from_height, to_height) ||
-        !is_scaled(roi->h, old.height, from_height, to_height))
+    if (roi->roi_type != g_quark_from_static_string(type_of(before)) ||
+        roi->id != static_cast<gint>(before.id) || !is_scaled(roi->x, old.x, from.width, to.width) ||
+        !is_scaled(roi->w, old.width, from.width, to.width) ||
+        !is_scaled(roi->y, old.y, from.height, to.height) ||
+        !is_scaled(roi->h, old.height, from.height, to.height))
       continue;
-    const Pixels p = whole_pixels(after);
-    roi->x = p.x;
-    roi->y = p.y;
-    roi->w = p.width;
-    roi->h = p.height;
+    roi->x = now.x;
+    roi->y = now.y;
+    roi->w = now.width;
+    roi->h = now.height;
     drop_params(roi);
-    add_params(roi, after);
-    return;
+    return add_params(roi, after);
   }
 }
 
-gboolean meta_init(GstMeta* meta, gpointer, GstBuffer*) {
-  cerberus_region_init(&reinterpret_cast<RegionMeta*>(meta)->region);
-  reinterpret_cast<RegionMeta*>(meta)->analytics = 0;
-  return TRUE;
-}
-
-// Copies and scaling keep the region; whatever else is done to a picture makes its pixels wrong.
 gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
+  const auto sizes = cerberus::rescaling(type, data);
+  if (!sizes) return FALSE;
   const auto* own = reinterpret_cast<RegionMeta*>(meta);
   CerberusRegion region = own->region;
-  if (GST_META_TRANSFORM_IS_COPY(type)) {
-    record(to, region, own->analytics);
-    return TRUE;
-  }
-  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
-  const auto* scale = static_cast<GstVideoMetaTransform*>(data);
-  if (GST_VIDEO_INFO_WIDTH(scale->in_info) <= 0 || GST_VIDEO_INFO_HEIGHT(scale->in_info) <= 0) return FALSE;
-  const double sx =
-      static_cast<double>(GST_VIDEO_INFO_WIDTH(scale->out_info)) / GST_VIDEO_INFO_WIDTH(scale->in_info);
-  const double sy =
-      static_cast<double>(GST_VIDEO_INFO_HEIGHT(scale->out_info)) / GST_VIDEO_INFO_HEIGHT(scale->in_info);
-  for (double* n : {&region.x, &region.width, &region.vx}) *n *= sx;
-  for (double* n : {&region.y, &region.height, &region.vy}) *n *= sy;
+  const auto scale = [](double& n, int from, int by) { n *= static_cast<double>(by) / from; };
+  for (double* n : {&region.x, &region.width, &region.vx}) scale(*n, sizes->from.width, sizes->to.width);
+  for (double* n : {&region.y, &region.height, &region.vy}) scale(*n, sizes->from.height, sizes->to.height);
   record(to, region, own->analytics);
-  update_scaled(to, own->region, region, *scale);
+  if (!GST_META_TRANSFORM_IS_COPY(type)) update_scaled(to, own->region, region, *sizes);
   return TRUE;
+}
+
+template <typename Meta>
+const GstMetaInfo* registered(const char* api, const char* name, cerberus::MetaTransform transform) {
+  return cerberus::register_meta<Meta>(
+      cerberus::register_meta_api(api, GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR), name,
+      [](GstMeta*, gpointer, GstBuffer*) -> gboolean { return TRUE; }, nullptr, transform);
 }
 
 const GstMetaInfo* region_meta_info() {
-  static const GstMetaInfo* const info = [] {
-    const GType api = cerberus::register_meta_api("CerberusRegionMetaAPI", GST_META_TAG_VIDEO_STR,
-                                                  GST_META_TAG_VIDEO_SIZE_STR);
-    return cerberus::register_meta<RegionMeta>(api, "CerberusRegionMeta", meta_init, nullptr, meta_transform);
-  }();
+  static const GstMetaInfo* const info =
+      registered<RegionMeta>("CerberusRegionMetaAPI", "CerberusRegionMeta", meta_transform);
   return info;
 }
 
 // Says that a detector has looked, also where it found nothing. It goes where a region's record goes, so that the two
 // are lost together.
-GstMeta* find_known(GstBuffer* buffer);
 void record_known(GstBuffer* buffer);
 
-gboolean known_transform(GstBuffer* to, GstMeta*, GstBuffer*, GQuark type, gpointer) {
-  if (!GST_META_TRANSFORM_IS_COPY(type) && !GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return FALSE;
-  record_known(to);
-  return TRUE;
-}
-
 const GstMetaInfo* known_meta_info() {
-  static const GstMetaInfo* const info = [] {
-    const GType api = cerberus::register_meta_api("CerberusRegionsKnownMetaAPI", GST_META_TAG_VIDEO_STR,
-                                                  GST_META_TAG_VIDEO_SIZE_STR);
-    return cerberus::register_meta<GstMeta>(
-        api, "CerberusRegionsKnownMeta", [](GstMeta*, gpointer, GstBuffer*) -> gboolean { return TRUE; },
-        nullptr, known_transform);
-  }();
+  static const GstMetaInfo* const info =
+      registered<GstMeta>("CerberusRegionsKnownMetaAPI", "CerberusRegionsKnownMeta",
+                          [](GstBuffer* to, GstMeta*, GstBuffer*, GQuark type, gpointer data) -> gboolean {
+                            if (!cerberus::rescaling(type, data)) return FALSE;
+                            record_known(to);
+                            return TRUE;
+                          });
   return info;
 }
 
@@ -213,10 +185,7 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
 
   const Pixels p = whole_pixels(*region);
   const guint analytics =
-      cerberus::analytics::add(buffer,
-                               {type_of(*region), p.x, p.y, p.width, p.height, region->confidence,
-                                region->tracked != FALSE, region->id, region->age},
-                               count_analytics(buffer));
+      cerberus::analytics::add(buffer, *region, type_of(*region), p, count_analytics(buffer));
   GstVideoRegionOfInterestMeta* meta =
       gst_buffer_add_video_region_of_interest_meta(buffer, type_of(*region), p.x, p.y, p.width, p.height);
   meta->id = static_cast<gint>(region->id);

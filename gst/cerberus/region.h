@@ -10,8 +10,6 @@ G_BEGIN_DECLS
  * CERBERUS_REGION_STRUCTURE:
  *
  * Name of the structure that holds a region in messages and in the params of a #GstVideoRegionOfInterestMeta.
- *
- * Since: 0.1
  */
 #define CERBERUS_REGION_STRUCTURE "cerberus-object"
 
@@ -22,8 +20,6 @@ G_BEGIN_DECLS
  * @CERBERUS_REGION_STOPPED: it stopped moving and is held where it was
  *
  * How a region's place was determined.
- *
- * Since: 0.1
  */
 typedef enum { CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_STOPPED } CerberusRegionState;
 
@@ -36,8 +32,6 @@ typedef enum { CERBERUS_REGION_SEEN, CERBERUS_REGION_COASTED, CERBERUS_REGION_ST
  * @CERBERUS_REGION_KIND_THING: neither: much larger, solid, or in a scene whose people's height is not known yet
  *
  * What a region is, judged by its size and by the people of the scene. It is not verified.
- *
- * Since: 0.1
  */
 typedef enum {
   CERBERUS_REGION_KIND_PERSON_LIKE,
@@ -72,110 +66,33 @@ typedef enum {
  * Regions follow the picture through copying, converting, scaling and encoding, and are lost where it is cropped. Do
  * not turn or flip a picture between the elements that find regions and those that read them: videoflip keeps them
  * unchanged, which is wrong and cannot be detected.
- *
- * Since: 0.1
  */
-typedef struct _CerberusRegion CerberusRegion;
-struct _CerberusRegion {
+typedef struct _CerberusRegion {
   guint id;
   gboolean tracked;
   gboolean person;
   CerberusRegionKind kind;
-  gdouble x;
-  gdouble y;
-  gdouble width;
-  gdouble height;
+  gdouble x, y, width, height;
   gdouble confidence;
-  gdouble vx;
-  gdouble vy;
+  gdouble vx, vy;
   GstClockTime age;
   CerberusRegionState state;
-  gdouble bearing;
-  gdouble distance;
+  gdouble bearing, distance;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusRegion;
 
 #define CERBERUS_TYPE_REGION (cerberus_region_get_type())
 #define CERBERUS_TYPE_REGION_KIND (cerberus_region_kind_get_type())
 #define CERBERUS_TYPE_REGION_STATE (cerberus_region_state_get_type())
 
-CERBERUS_API
-GType cerberus_region_get_type(void) G_GNUC_CONST;
-
-CERBERUS_API
-GType cerberus_region_kind_get_type(void) G_GNUC_CONST;
-
-CERBERUS_API
-GType cerberus_region_state_get_type(void) G_GNUC_CONST;
-
-/**
- * cerberus_region_init: (skip)
- * @region: (out caller-allocates): memory to fill
- *
- * Fills @region with the defaults of cerberus_region_new(), for structures on the stack.
- *
- * Since: 0.1
- */
-CERBERUS_API
-void cerberus_region_init(CerberusRegion* region);
-
-/**
- * cerberus_region_new: (constructor)
- *
- * Makes an empty, untracked region: all zero, bearing and distance unknown.
- *
- * Returns: (transfer full): a new region; free with cerberus_region_free().
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusRegion* cerberus_region_new(void);
-
-/**
- * cerberus_region_copy:
- * @region: a region
- *
- * Returns: (transfer full) (nullable): a copy; %NULL only for a %NULL @region.
- *
- * Since: 0.1
- */
-CERBERUS_API
-CerberusRegion* cerberus_region_copy(const CerberusRegion* region);
-
 /**
  * cerberus_region_free: (skip)
- * @region: (transfer full) (nullable): a region
- *
- * Frees @region.
- *
- * Since: 0.1
  */
-CERBERUS_API
-void cerberus_region_free(CerberusRegion* region);
-
-/**
- * cerberus_region_state_to_string:
- * @state: a state
- *
- * Returns: (transfer none): `seen`, `coasted` or `stopped`.
- *
- * Since: 0.1
- */
-CERBERUS_API
-const gchar* cerberus_region_state_to_string(CerberusRegionState state);
-
-/**
- * cerberus_region_kind_to_string:
- * @kind: a kind
- *
- * Returns: (transfer none): `person-like`, `group`, `part` or `thing`.
- *
- * Since: 0.1
- */
-CERBERUS_API
-const gchar* cerberus_region_kind_to_string(CerberusRegionKind kind);
+CERBERUS_DECLARE_BOXED(CerberusRegion, cerberus_region)
+CERBERUS_DECLARE_ENUM(CerberusRegionKind, cerberus_region_kind)
+CERBERUS_DECLARE_ENUM(CerberusRegionState, cerberus_region_state)
 
 /**
  * cerberus_region_to_structure:
@@ -185,8 +102,6 @@ const gchar* cerberus_region_kind_to_string(CerberusRegionKind kind);
  * out.
  *
  * Returns: (transfer full) (nullable): a new structure; %NULL only for a %NULL @region.
- *
- * Since: 0.1
  */
 CERBERUS_API
 GstStructure* cerberus_region_to_structure(const CerberusRegion* region);
@@ -199,8 +114,6 @@ GstStructure* cerberus_region_to_structure(const CerberusRegion* region);
  * cerberus_region_new().
  *
  * Returns: (transfer full) (nullable): a new region; %NULL if @structure is not a `cerberus-object`.
- *
- * Since: 0.1
  */
 CERBERUS_API
 CerberusRegion* cerberus_region_from_structure(const GstStructure* structure);
@@ -215,9 +128,7 @@ CerberusRegion* cerberus_region_from_structure(const GstStructure* structure);
  * The meta's whole pixels are the ones nearest to @region's edges, cut at the frame's left and top.
  *
  * Returns: %TRUE if attached; %FALSE if @buffer is not writable, a number is not finite or beyond 2^24
- *   pixels, or an extent is negative.
- *
- * Since: 0.1
+ *   pixels, an extent is negative, or kind or state is none of theirs.
  */
 CERBERUS_API
 gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* region);
@@ -232,8 +143,6 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
  *
  * Returns: %TRUE if @buffer now carries @regions; %FALSE if @buffer is not writable, or if
  *   cerberus_buffer_add_region() would refuse one of @regions (the others are attached).
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions);
@@ -246,8 +155,6 @@ gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions);
  * as regions do: it survives copying, converting, scaling and encoding, and is lost where a picture is cropped.
  *
  * Returns: %TRUE if a detector upstream has analysed @buffer, with or without a result.
- *
- * Since: 0.1
  */
 CERBERUS_API
 gboolean cerberus_buffer_regions_known(GstBuffer* buffer);
@@ -262,8 +169,6 @@ gboolean cerberus_buffer_regions_known(GstBuffer* buffer);
  *
  * Returns: (transfer container) (element-type CerberusRegion): copies of the regions, possibly none; release with
  *     g_ptr_array_unref(), which frees the regions too.
- *
- * Since: 0.1
  */
 CERBERUS_API
 GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer);
@@ -274,12 +179,8 @@ GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer);
  *
  * Removes all regions that cerberus_buffer_add_region() attached, and the mark that a detector has analysed @buffer;
  * regions of interest of other elements stay.
- *
- * Since: 0.1
  */
 CERBERUS_API
 void cerberus_buffer_remove_regions(GstBuffer* buffer);
-
-G_DEFINE_AUTOPTR_CLEANUP_FUNC(CerberusRegion, cerberus_region_free)
 
 G_END_DECLS

@@ -27,8 +27,7 @@ typedef enum { CERBERUS_UTC_UNKNOWN, CERBERUS_UTC_REFERENCE_TIMESTAMP, CERBERUS_
  * where they are known `utc` (uint64), `utc-source` (string: `reference-timestamp` or `clock`) and `camera-name`
  * (string). The first element that has more than the running time attaches one to the buffer for the others.
  */
-typedef struct _CerberusStamp CerberusStamp;
-struct _CerberusStamp {
+typedef struct _CerberusStamp {
   GstClockTime running_time;
   GstClockTime utc;
   CerberusUtcSource utc_source;
@@ -36,7 +35,7 @@ struct _CerberusStamp {
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];
-};
+} CerberusStamp;
 
 #define CERBERUS_TYPE_STAMP (cerberus_stamp_get_type())
 #define CERBERUS_TYPE_UTC_SOURCE (cerberus_utc_source_get_type())
@@ -74,9 +73,6 @@ CerberusStamp* cerberus_message_parse_stamp(GstMessage* message);
  *
  * Returns: %FALSE if @buffer is not writable.
  */
-CERBERUS_API
-gboolean cerberus_buffer_set_stamp(GstBuffer* buffer, const CerberusStamp* stamp);
-
 CERBERUS_DECLARE_META(CerberusStamp, stamp)
 
 G_END_DECLS

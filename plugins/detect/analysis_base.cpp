@@ -84,7 +84,7 @@ void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
 
 // No element upstream has analysed this frame.
 bool is_first_stage(GstBuffer* buffer, vision::Size frame) {
-  return !cerberus_buffer_get_camera_motion_meta(buffer) && !cerberus_buffer_regions_known(buffer) &&
+  return !cerberus_buffer_peek_camera_motion(buffer) && !cerberus_buffer_regions_known(buffer) &&
          !record_of(buffer, frame);
 }
 

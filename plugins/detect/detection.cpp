@@ -148,7 +148,7 @@ void Detection::repeat(Frame& frame) {
     motion.from = state.shown;
     motion.still = TRUE;
     motion.scene_age = std::max(motion.scene_age, 2u);
-    cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
+    cerberus_buffer_set_camera_motion(frame.buffer, &motion);
   }
   state.shown = frame.running_time;
   if (state.facts) set_threshold_facts(frame.buffer, *state.facts);
@@ -194,7 +194,7 @@ void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
   std::copy(point.path.m.begin(), point.path.m.end(), std::begin(motion.path));
   motion.path_id = point.path_id;
   state.motion = motion;
-  cerberus_buffer_add_camera_motion_meta(frame.buffer, &motion);
+  cerberus_buffer_set_camera_motion(frame.buffer, &motion);
   GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
                  motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);
   carrier_.compare(GST_ELEMENT(base), seen, lens, result.transform,

@@ -131,8 +131,8 @@ void write_object(cerberus::text::JsonLine& line, const CerberusRegion& region) 
   else
     line.null();
   line.key("type").string(region.person ? "person" : "motion");
-  line.key("kind").string(cerberus_region_kind_to_string(region.kind));
-  line.key("state").string(cerberus_region_state_to_string(region.state));
+  line.key("kind").string(cerberus_region_kind_get_nick(region.kind));
+  line.key("state").string(cerberus_region_state_get_nick(region.state));
   line.key("x").fixed(region.x, kPixelDecimals).key("y").fixed(region.y, kPixelDecimals);
   line.key("w").fixed(region.width, kPixelDecimals).key("h").fixed(region.height, kPixelDecimals);
   line.key("vx").fixed(region.vx, kPixelDecimals).key("vy").fixed(region.vy, kPixelDecimals);
@@ -195,10 +195,10 @@ std::string_view write_line(State& state, GstBuffer* buffer, const CerberusStamp
     line.null();
 
   line.key("camera");
-  if (const auto* camera = cerberus_buffer_get_camera_motion_meta(buffer)) {
+  if (const auto* camera = cerberus_buffer_peek_camera_motion(buffer)) {
     line.open('[');
-    for (const double n : camera->motion.matrix) line.significant(n, kCameraDigits);
-    line.close(']').key("confidence").fixed(camera->motion.confidence, kShareDecimals);
+    for (const double n : camera->matrix) line.significant(n, kCameraDigits);
+    line.close(']').key("confidence").fixed(camera->confidence, kShareDecimals);
   } else {
     line.null().key("confidence").null();
   }

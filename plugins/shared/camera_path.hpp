@@ -19,8 +19,8 @@ inline vision::CameraPathPoint path_point(const CerberusCameraMotion& motion) {
 }
 // Nothing where the frame carries none.
 inline std::optional<vision::CameraPathPoint> path_point(GstBuffer* frame) {
-  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(frame);
-  return meta ? std::optional(path_point(meta->motion)) : std::nullopt;
+  const CerberusCameraMotion* motion = cerberus_buffer_peek_camera_motion(frame);
+  return motion ? std::optional(path_point(*motion)) : std::nullopt;
 }
 
 }  // namespace cerberus::plugin

@@ -81,7 +81,7 @@ inline GstBuffer* frame_with_everything(gsize bytes = kWidth * kHeight * 3 / 2) 
   motion.path_id = 4;
   motion.path[2] = 21;
   motion.path[5] = -14;
-  cerberus_buffer_add_camera_motion_meta(frame, &motion);
+  cerberus_buffer_set_camera_motion(frame, &motion);
 
   cerberus::plugin::ThresholdFacts facts;
   facts.result = {12, 30, 1.5, true};

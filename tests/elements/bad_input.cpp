@@ -278,7 +278,7 @@ GST_START_TEST(metas_from_strangers_do_no_harm) {
     motion.residual = inf;
     motion.from = k > 0 ? (k - 1) * scene::kStep : GST_CLOCK_TIME_NONE;
     motion.scene_age = k + 1;
-    cerberus_buffer_add_camera_motion_meta(in, &motion);
+    cerberus_buffer_set_camera_motion(in, &motion);
     CerberusRegion region;
     cerberus_region_init(&region);
     region.x = -1e9;
@@ -336,7 +336,7 @@ GST_START_TEST(a_camera_motion_that_none_can_be_is_not_believed) {
     cerberus_camera_motion_set_matrix(&motion, nonsense[__i__]);
     motion.from = k > 0 ? (k - 1) * scene::kStep : GST_CLOCK_TIME_NONE;
     motion.scene_age = k + 1;
-    cerberus_buffer_add_camera_motion_meta(in, &motion);
+    cerberus_buffer_set_camera_motion(in, &motion);
     GstBuffer* out = regions.through(in);
     const auto* threshold = records::threshold_facts_of(out);
     const bool stands = __i__ == G_N_ELEMENTS(nonsense) - 1;
@@ -345,7 +345,7 @@ GST_START_TEST(a_camera_motion_that_none_can_be_is_not_believed) {
     gst_buffer_unref(out);
     // And regions that were found all the same: with no way from frame to frame there is no identity.
     out = alone.through(scene::grey_buffer(world, k));
-    cerberus_buffer_add_camera_motion_meta(out, &motion);
+    cerberus_buffer_set_camera_motion(out, &motion);
     out = tracks.through(out);
     if (k >= 2) {
       const Regions found(out);

@@ -266,7 +266,7 @@ GST_START_TEST(a_stage_alone_does_the_missing_steps_itself) {
       const auto stage = static_cast<Stage>(s);
       fail_unless_equals_int(record->has(stage), std::ranges::count(promise.fields, stage));
     }
-    fail_unless((cerberus_buffer_get_camera_motion_meta(out) != nullptr) == promise.motion);
+    fail_unless((cerberus_buffer_peek_camera_motion(out) != nullptr) == promise.motion);
     fail_unless((records::threshold_facts_of(out) != nullptr) == promise.threshold);
     if (k < 15) return;
     fail_unless((Regions(out).size() > 0) == promise.regions, "frame %d has %u regions", k,

@@ -22,17 +22,17 @@ GST_START_TEST(a_turning_camera_is_measured_and_the_figure_found) {
   Line line("motiondetect confirm-time=0 ! identity");
   int found = 0;
   line.run(world, 0, 25, [&](int k, GstBuffer* out) {
-    const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
-    fail_unless(meta != nullptr);
-    fail_unless_equals_int(meta->motion.scene_age, k + 1);
+    const CerberusCameraMotion* motion = cerberus_buffer_peek_camera_motion(out);
+    fail_unless(motion != nullptr);
+    fail_unless_equals_int(motion->scene_age, k + 1);
     if (k == 0) {
-      fail_unless_equals_uint64(meta->motion.from, GST_CLOCK_TIME_NONE);
+      fail_unless_equals_uint64(motion->from, GST_CLOCK_TIME_NONE);
       return;
     }
-    fail_unless_equals_uint64(meta->motion.from, (k - 1) * scene::kStep);
-    fail_unless(std::abs(meta->motion.matrix[2] + 4) < 0.2 && std::abs(meta->motion.matrix[5]) < 0.2,
-                "frame %d: the camera is said to shift by %.2f %.2f", k, meta->motion.matrix[2],
-                meta->motion.matrix[5]);
+    fail_unless_equals_uint64(motion->from, (k - 1) * scene::kStep);
+    fail_unless(std::abs(motion->matrix[2] + 4) < 0.2 && std::abs(motion->matrix[5]) < 0.2,
+                "frame %d: the camera is said to shift by %.2f %.2f", k, motion->matrix[2],
+                motion->matrix[5]);
     const Regions regions(out);
     for (guint i = 0; i < regions.size(); ++i) found += scene::overlaps_figure(regions[i], world, k);
   });
@@ -49,8 +49,8 @@ GST_START_TEST(the_motion_is_in_frame_pixels_whatever_the_analysis_width) {
     line.run(world, 0, 10, [&](int k, GstBuffer* out) {
       fail_unless_equals_int((*records::record_of(out)->luma)->size().width,
                              strstr(launch, "160") ? 160 : 320);
-      const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
-      if (k > 0) fail_unless(std::abs(meta->motion.matrix[2] + 6) < 0.4, "%.2f", meta->motion.matrix[2]);
+      const CerberusCameraMotion* motion = cerberus_buffer_peek_camera_motion(out);
+      if (k > 0) fail_unless(std::abs(motion->matrix[2] + 6) < 0.4, "%.2f", motion->matrix[2]);
     });
   }
 }
@@ -61,8 +61,8 @@ GST_START_TEST(model_none_says_that_the_camera_stands) {
   world.pan = 6;
   Line line("cameramotion model=none ! identity");
   line.run(world, 0, 5, [&](int, GstBuffer* out) {
-    const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(out);
-    fail_unless(meta->motion.matrix[2] == 0 && meta->motion.matrix[0] == 1);
+    const CerberusCameraMotion* motion = cerberus_buffer_peek_camera_motion(out);
+    fail_unless(motion->matrix[2] == 0 && motion->matrix[0] == 1);
   });
 }
 GST_END_TEST

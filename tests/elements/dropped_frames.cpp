@@ -81,9 +81,9 @@ GST_START_TEST(the_camera_is_followed_across_a_dropped_frame) {
     // Without its path, as an application that writes the motion itself may leave it, a motion from another frame is
     // not believed.
     if (__i__ == 1) {
-      CerberusCameraMotion motion = cerberus_buffer_get_camera_motion_meta(out)->motion;
+      CerberusCameraMotion motion = *cerberus_buffer_peek_camera_motion(out);
       motion.path_id = 0;
-      cerberus_buffer_add_camera_motion_meta(out, &motion);
+      cerberus_buffer_set_camera_motion(out, &motion);
     }
     out = difference.through(out);
     const cerberus::vision::Record record = records::record_of(out);
@@ -176,7 +176,7 @@ GST_START_TEST(motions_that_cannot_be_followed_are_complained_of_once) {
     cerberus_camera_motion_init(&motion);
     motion.from = (k - 1) * scene::kStep;
     motion.scene_age = k + 2;
-    cerberus_buffer_add_camera_motion_meta(in, &motion);
+    cerberus_buffer_set_camera_motion(in, &motion);
     if (k % 2 == 0) gst_buffer_unref(stage.through(gst_buffer_copy(in)));
     if (k % 10 == 0) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
     gst_buffer_unref(sought.through(in));

@@ -20,7 +20,8 @@ for header in headers:
     declared |= set(re.findall(r"CERBERUS_API\s[^;]*?\b(cerberus_\w+)\s*\(", code))
     for kind, name in re.findall(r"^CERBERUS_DECLARE_(\w+)\(\w+,\s*(\w+)\)", code, flags=re.M):
         functions = {"BOXED": "X_get_type X_init X_new X_copy X_free", "ENUM": "X_get_type X_get_nick",
-                     "META": "buffer_get_X buffer_peek_X X_meta_api_get_type", "MESSAGE": "message_is_X message_parse_X",
+                     "META": "buffer_set_X buffer_get_X buffer_peek_X X_meta_api_get_type",
+                     "MESSAGE": "message_new_X message_is_X message_parse_X",
                      "EVENT": "event_new_X event_is_X event_parse_X"}[kind]
         short = name.removeprefix("cerberus_")
         declared |= {"cerberus_" + function.replace("X", short) for function in functions.split()}

@@ -91,7 +91,7 @@ GST_START_TEST(a_heads_turn_counts_where_the_picture_says_nothing) {
     for (int number = 0; number < 2; ++number) {
       GstBuffer* out =
           line.through(scene::buffer("GRAY8", scene::kWidth, scene::kHeight, grey, number * scene::kStep));
-      const double* m = cerberus_buffer_get_camera_motion_meta(out)->motion.matrix;
+      const double* m = cerberus_buffer_peek_camera_motion(out)->matrix;
       x = (m[0] * 159.5 + m[1] * 119.5 + m[2]) / (m[6] * 159.5 + m[7] * 119.5 + m[8]);
       gst_buffer_unref(out);
     }

@@ -55,7 +55,7 @@ class Detection {
     fail_unless_equals_int(gst_harness_push(harness_, seen), GST_FLOW_OK);
     GstBuffer* found = gst_harness_try_pull(harness_);
     fail_unless(found && GST_BUFFER_PTS(found) == time, "motiondetect kept a frame");
-    turned_ += std::abs(cerberus_buffer_get_camera_motion_meta(found)->motion.matrix[2] + world_.pan) < 0.5;
+    turned_ += std::abs(cerberus_buffer_peek_camera_motion(found)->matrix[2] + world_.pan) < 0.5;
     return found;
   }
   int turned() const { return turned_; }  // frames in which it saw the camera's turn

@@ -52,7 +52,7 @@ GstBuffer* full_frame() {
   motion.matrix[2] = -3.5;
   motion.matrix[6] = 1.25e-7;
   motion.confidence = 0.87149;
-  cerberus_buffer_add_camera_motion_meta(buffer, &motion);
+  cerberus_buffer_set_camera_motion(buffer, &motion);
   cerberus::plugin::ThresholdFacts facts;
   facts.result = {14, 14, 1, true};
   cerberus::plugin::set_threshold_facts(buffer, facts);
@@ -205,7 +205,7 @@ GST_START_TEST(numbers_that_are_not_finite_are_null) {
   motion.matrix[1] = -0.0;
   motion.matrix[2] = 1e300;
   motion.confidence = kNaN;
-  cerberus_buffer_add_camera_motion_meta(buffer, &motion);
+  cerberus_buffer_set_camera_motion(buffer, &motion);
   const std::string line = line_of(h.get(), buffer);
   fail_unless(line.find(R"("camera":[null,0,1e+300,0,1,null,0,0,1],"confidence":null,)") != std::string::npos,
               "%s", line.c_str());

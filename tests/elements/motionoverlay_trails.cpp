@@ -19,7 +19,7 @@ void set_camera(GstBuffer* buffer, double dx, guint scene_age, double way = 0) {
   motion.scene_age = scene_age;
   motion.path_id = way != 0;
   motion.path[2] = way;
-  cerberus_buffer_add_camera_motion_meta(buffer, &motion);
+  cerberus_buffer_set_camera_motion(buffer, &motion);
 }
 
 // Width of everything drawn after 30 frames in which an object went `step` pixels a frame and the camera moved the

@@ -396,14 +396,14 @@ GST_START_TEST(what_was_found_stays_on_the_picture_but_planes_do_not) {
   CerberusCameraMotion motion;
   cerberus_camera_motion_init(&motion);
   motion.matrix[2] = 2;
-  cerberus_buffer_add_camera_motion_meta(in, &motion);
+  cerberus_buffer_set_camera_motion(in, &motion);
   gst_harness_push(harness.get(), in);
   GstBuffer* out = gst_harness_pull(harness.get());
   fail_unless_equals_uint64(GST_BUFFER_PTS(out), 200 * GST_MSECOND);
   fail_unless_equals_uint64(GST_BUFFER_DURATION(out), 40 * GST_MSECOND);
   fail_if(static_cast<bool>(records::record_of(out)));
   fail_unless(records::threshold_facts_of(out));
-  fail_unless(cerberus_buffer_get_camera_motion_meta(out)->motion.matrix[2] == 2);
+  fail_unless(cerberus_buffer_peek_camera_motion(out)->matrix[2] == 2);
   GPtrArray* regions = cerberus_buffer_get_regions(out);
   fail_unless_equals_int(regions->len, 1);
   fail_unless(static_cast<CerberusRegion*>(g_ptr_array_index(regions, 0))->x == 10);

@@ -267,6 +267,9 @@ START_TEST(a_region_without_a_place_is_refused) {
   CerberusRegion region = walker();
   region.width = -1;
   fail_if(cerberus_buffer_add_region(frame, &region));
+  region = walker();
+  region.kind = static_cast<CerberusRegionKind>(CERBERUS_REGION_KIND_THING + 1);
+  fail_if(cerberus_buffer_add_region(frame, &region), "a kind that there is not");
 }
 END_TEST
 

@@ -7,6 +7,8 @@
 // other elements.
 #pragma once
 
+#include <cerberus/region.h>
+
 #include "compat.hpp"
 
 #if CERBERUS_ANALYTICS
@@ -19,36 +21,32 @@ namespace cerberus::analytics {
 inline constexpr char kMotion[] = "motion";
 inline constexpr char kPerson[] = "person";
 
-struct Detection {
-  const char* type;
-  guint x, y, width, height;  // pixels
-  double confidence;
-  bool tracked;
-  guint id;
-  GstClockTime age;
+struct Pixels {
+  guint x, y, width, height;
 };
 
 #if CERBERUS_ANALYTICS
 
 // Returns how many entries were added. To a meta that also has entries of other elements only tracked regions are
 // added: regions that a tracker is going to replace could not be removed.
-inline guint add(GstBuffer* buffer, const Detection& d, guint ours) {
+inline guint add(GstBuffer* buffer, const CerberusRegion& region, const char* kind, const Pixels& p,
+                 guint ours) {
   GstAnalyticsRelationMeta* meta = gst_buffer_get_analytics_relation_meta(buffer);
   if (!meta) meta = gst_buffer_add_analytics_relation_meta(buffer);
-  if (!d.tracked && gst_analytics_relation_get_length(meta) != ours) return 0;
+  if (!region.tracked && gst_analytics_relation_get_length(meta) != ours) return 0;
 
   GstAnalyticsODMtd detection;
-  if (!gst_analytics_relation_meta_add_od_mtd(meta, g_quark_from_string(d.type), static_cast<gint>(d.x),
-                                              static_cast<gint>(d.y), static_cast<gint>(d.width),
-                                              static_cast<gint>(d.height), static_cast<gfloat>(d.confidence),
-                                              &detection))
+  if (!gst_analytics_relation_meta_add_od_mtd(meta, g_quark_from_string(kind), static_cast<gint>(p.x),
+                                              static_cast<gint>(p.y), static_cast<gint>(p.width),
+                                              static_cast<gint>(p.height),
+                                              static_cast<gfloat>(region.confidence), &detection))
     return 0;
-  if (!d.tracked) return 1;
+  if (!region.tracked) return 1;
 
   const GstClockTime now = GST_BUFFER_PTS(buffer);
-  const GstClockTime first = GST_CLOCK_TIME_IS_VALID(now) && now >= d.age ? now - d.age : 0;
+  const GstClockTime first = GST_CLOCK_TIME_IS_VALID(now) && now >= region.age ? now - region.age : 0;
   GstAnalyticsTrackingMtd track;
-  if (!gst_analytics_relation_meta_add_tracking_mtd(meta, d.id, first, &track)) return 1;
+  if (!gst_analytics_relation_meta_add_tracking_mtd(meta, region.id, first, &track)) return 1;
   if (GST_CLOCK_TIME_IS_VALID(now)) gst_analytics_tracking_mtd_update_last_seen(&track, now);
   gst_analytics_relation_meta_set_relation(meta, GST_ANALYTICS_REL_TYPE_RELATE_TO, detection.id, track.id);
   return 2;
@@ -75,7 +73,7 @@ inline void remove(GstBuffer* buffer, guint ours) {
 
 #else
 
-inline guint add(GstBuffer*, const Detection&, guint) {
+inline guint add(GstBuffer*, const CerberusRegion&, const char*, const Pixels&, guint) {
   return 0;
 }
 inline void remove(GstBuffer*, guint) {}

@@ -3,6 +3,7 @@
 // boxed type, enumeration, meta (cerberus_buffer_set/get/peek_X), message and event (_new_X, _is_X, _parse_X).
 #pragma once
 
+#include <cerberus/pose.h>
 #include <cerberus/stamp.h>
 
 #include "cerberus/private/fields.hpp"
@@ -12,6 +13,23 @@ namespace cerberus {
 
 // The structure of a message with its stamp (may be nullptr).
 GstStructure* stamped(const char* name, const CerberusStamp* stamp);
+
+// Never NULL: an application may have left the name out, and then it is the head that is there.
+inline const gchar* head_of(const CerberusPose& pose) {
+  return pose.head ? pose.head : g_intern_static_string("head");
+}
+
+// What needs no hook.
+template <typename Value>
+Value same(const Value& value) {
+  return value;
+}
+template <typename Value>
+void zero(Value&) {}
+template <typename Value>
+bool is_any(const Value&) {
+  return true;
+}
 
 inline bool is_message(GstMessage* message, const char* name) {
   return GST_MESSAGE_TYPE(message) == GST_MESSAGE_ELEMENT && gst_message_has_name(message, name);
@@ -57,39 +75,36 @@ inline bool has_running_time(const GstStructure* structure) {
   }
 
 #define CERBERUS_DEFINE_BOXED(Type, prefix, defaults) \
-  CERBERUS_DEFINE_OWNING_BOXED(Type, prefix, defaults, [](Type&) {}, [](Type&) {})
+  CERBERUS_DEFINE_OWNING_BOXED(Type, prefix, defaults, cerberus::zero, cerberus::zero)
 
-// A fact about the moment. `sane`: Type(Type), makes what an application attaches safe to read.
-#define CERBERUS_DEFINE_META(Type, name, sane)                                                             \
-  namespace {                                                                                              \
-  struct Type##Meta {                                                                                      \
-    GstMeta meta;                                                                                          \
-    Type value;                                                                                            \
-  };                                                                                                       \
-  const GstMetaInfo* name##_meta_info();                                                                   \
-  using Type##Carried = cerberus::ValueMeta<&Type##Meta::value, cerberus_##name##_init, name##_meta_info>; \
-  const GstMetaInfo* name##_meta_info() {                                                                  \
-    static const GstMetaInfo* const info =                                                                 \
-        Type##Carried::register_as(cerberus_##name##_meta_api_get_type(), #Type "Meta");                   \
-    return info;                                                                                           \
-  }                                                                                                        \
-  }                                                                                                        \
-  GType cerberus_##name##_meta_api_get_type(void) {                                                        \
-    static const GType type = cerberus::register_meta_api(#Type "MetaAPI");                                \
-    return type;                                                                                           \
-  }                                                                                                        \
-  gboolean cerberus_buffer_set_##name(GstBuffer* buffer, const Type* value) {                              \
-    g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);                                                    \
-    if (!value) return Type##Carried::set(buffer, nullptr);                                                \
-    const Type carried = sane(*value);                                                                     \
-    return Type##Carried::set(buffer, &carried);                                                           \
-  }                                                                                                        \
-  const Type* cerberus_buffer_peek_##name(GstBuffer* buffer) {                                             \
-    g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);                                                  \
-    return Type##Carried::peek(buffer);                                                                    \
-  }                                                                                                        \
-  Type* cerberus_buffer_get_##name(GstBuffer* buffer) {                                                    \
-    return cerberus_##name##_copy(cerberus_buffer_peek_##name(buffer));                                    \
+// A fact on a buffer. `sane`: Type(Type), makes what an application attaches safe to read. `transform`: nullptr for a
+// fact about the moment. Then the tags.
+#define CERBERUS_DEFINE_META(Type, name, sane, transform, ...)                                         \
+  namespace {                                                                                          \
+  const GstMetaInfo* name##_meta_info();                                                               \
+  using Type##Carried = cerberus::ValueMeta<Type, cerberus_##name##_init, name##_meta_info>;           \
+  const GstMetaInfo* name##_meta_info() {                                                              \
+    static const GstMetaInfo* const info =                                                             \
+        Type##Carried::register_as(cerberus_##name##_meta_api_get_type(), #Type "Meta", transform);    \
+    return info;                                                                                       \
+  }                                                                                                    \
+  }                                                                                                    \
+  GType cerberus_##name##_meta_api_get_type(void) {                                                    \
+    static const GType type = cerberus::register_meta_api(#Type "MetaAPI" __VA_OPT__(, ) __VA_ARGS__); \
+    return type;                                                                                       \
+  }                                                                                                    \
+  gboolean cerberus_buffer_set_##name(GstBuffer* buffer, const Type* value) {                          \
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);                                                \
+    if (!value) return Type##Carried::set(buffer, nullptr);                                            \
+    const Type carried = sane(*value);                                                                 \
+    return Type##Carried::set(buffer, &carried);                                                       \
+  }                                                                                                    \
+  const Type* cerberus_buffer_peek_##name(GstBuffer* buffer) {                                         \
+    g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);                                              \
+    return Type##Carried::peek(buffer);                                                                \
+  }                                                                                                    \
+  Type* cerberus_buffer_get_##name(GstBuffer* buffer) {                                                \
+    return cerberus_##name##_copy(cerberus_buffer_peek_##name(buffer));                                \
   }
 
 // Messages and events are written by write(GstStructure*, const Type&) and read by bool read(const GstStructure*,

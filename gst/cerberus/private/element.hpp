@@ -103,23 +103,22 @@ inline void post_current_exception(GstElement* element) noexcept {
 // Runs `body` and returns its result; whatever it throws becomes one error message on `element`, and
 // `fallback`.
 //   return guarded(self, GST_FLOW_ERROR, [&] { ...; return GST_FLOW_OK; });
-template <typename Element, typename Fallback, typename TrackHypothesis>
-auto guarded(Element* element, Fallback fallback, TrackHypothesis&& body) noexcept
-    -> std::invoke_result_t<TrackHypothesis> {
+template <typename Element, typename Fallback, typename Body>
+auto guarded(Element* element, Fallback fallback, Body&& body) noexcept -> std::invoke_result_t<Body> {
   try {
-    return std::forward<TrackHypothesis>(body)();
+    return std::forward<Body>(body)();
   } catch (...) {
     detail::post_current_exception(reinterpret_cast<GstElement*>(element));
   }
-  return static_cast<std::invoke_result_t<TrackHypothesis>>(fallback);
+  return static_cast<std::invoke_result_t<Body>>(fallback);
 }
 
 // The same for bodies without a result.
-template <typename Element, typename TrackHypothesis>
-  requires std::is_void_v<std::invoke_result_t<TrackHypothesis>>
-void guarded(Element* element, TrackHypothesis&& body) noexcept {
+template <typename Element, typename Body>
+  requires std::is_void_v<std::invoke_result_t<Body>>
+void guarded(Element* element, Body&& body) noexcept {
   try {
-    std::forward<TrackHypothesis>(body)();
+    std::forward<Body>(body)();
   } catch (...) {
     detail::post_current_exception(reinterpret_cast<GstElement*>(element));
   }
@@ -142,21 +141,11 @@ void guarded(Element* element, TrackHypothesis&& body) noexcept {
     using Self = TypeName;                                                                               \
     using Class = TypeName##Class;                                                                       \
     using Object = PrivateType;                                                                          \
-    static const char* name() {                                                                          \
-      return #TypeName;                                                                                  \
-    }                                                                                                    \
-    static GType parent() {                                                                              \
-      return PARENT_TYPE;                                                                                \
-    }                                                                                                    \
-    static void init(Self* self) {                                                                       \
-      type_name##_init(self);                                                                            \
-    }                                                                                                    \
-    static void class_init(Class* klass) {                                                               \
-      type_name##_class_init(klass);                                                                     \
-    }                                                                                                    \
-    static void interfaces([[maybe_unused]] GType type) {                                                \
-      __VA_ARGS__;                                                                                       \
-    }                                                                                                    \
+    static constexpr auto name = [] { return #TypeName; };                                               \
+    static constexpr auto parent = []() -> GType { return PARENT_TYPE; };                                \
+    static constexpr auto init = type_name##_init;                                                       \
+    static constexpr auto class_init = type_name##_class_init;                                           \
+    static constexpr auto interfaces = []([[maybe_unused]] GType type) { __VA_ARGS__; };                 \
   };                                                                                                     \
   [[maybe_unused]] static GType type_name##_get_type() {                                                 \
     return ::cerberus::detail::TypeBuilder<TypeName##Traits>::get();                                     \

@@ -34,6 +34,9 @@ GEnumClass* enum_class(GType type) {
 
 void write(GstStructure* to, const Field& f, const void* value) {
   switch (f.type) {
+    case Field::Type::known:
+      if (!std::isfinite(get<gdouble>(value, f))) return;
+      [[fallthrough]];
     case Field::Type::number:
     case Field::Type::angle:
       return gst_structure_set(to, f.name, G_TYPE_DOUBLE, get<gdouble>(value, f), nullptr);
@@ -56,39 +59,53 @@ void write(GstStructure* to, const Field& f, const void* value) {
 }
 
 bool read(const GstStructure* from, const Field& f, void* value) {
-  gdouble number = 0;
-  guint64 time = 0;
-  gint integer = 0;
-  guint count = 0;
-  gboolean flag = FALSE;
-  const gchar* word = nullptr;
+  const auto take = [&](auto get, auto read, auto accept) {
+    return get(from, f.name, &read) && accept(read) && put(value, f, read);
+  };
+  const auto any = [](auto) { return true; };
   switch (f.type) {
+    case Field::Type::known:
     case Field::Type::number:
-      return gst_structure_get_double(from, f.name, &number) && put(value, f, number);
+      return take(gst_structure_get_double, gdouble{}, any);
     case Field::Type::angle:  // NaN is refused, too
-      return gst_structure_get_double(from, f.name, &number) && std::fabs(number) <= kMostDegrees &&
-             put(value, f, number);
+      return take(gst_structure_get_double, gdouble{},
+                  [](gdouble n) { return std::fabs(n) <= kMostDegrees; });
     case Field::Type::time:
-      return gst_structure_get_uint64(from, f.name, &time) && put(value, f, time);
+      return take(gst_structure_get_uint64, guint64{}, any);
     case Field::Type::integer:
-      return gst_structure_get_int(from, f.name, &integer) && put(value, f, integer);
+      return take(gst_structure_get_int, gint{}, any);
     case Field::Type::count:
-      return gst_structure_get_uint(from, f.name, &count) && put(value, f, count);
+      return take(gst_structure_get_uint, guint{}, any);
     case Field::Type::flag:
-      return gst_structure_get_boolean(from, f.name, &flag) && put(value, f, flag);
-    case Field::Type::choice:
-      return gst_structure_get_enum(from, f.name, f.choices(), &integer) &&
-             enum_value(f.choices(), integer) && put(value, f, integer);
+      return take(gst_structure_get_boolean, gboolean{}, any);
+    case Field::Type::choice: {
+      gint choice = 0;
+      return gst_structure_get_enum(from, f.name, f.choices(), &choice) && enum_value(f.choices(), choice) &&
+             put(value, f, choice);
+    }
     case Field::Type::nick: {
-      word = gst_structure_get_string(from, f.name);
-      const GEnumValue* found = word ? g_enum_get_value_by_nick(enum_class(f.choices()), word) : nullptr;
+      const gchar* nick = gst_structure_get_string(from, f.name);
+      const GEnumValue* found = nick ? g_enum_get_value_by_nick(enum_class(f.choices()), nick) : nullptr;
       return found && put(value, f, found->value);
     }
     case Field::Type::word:
-      word = gst_structure_get_string(from, f.name);
+      const gchar* word = gst_structure_get_string(from, f.name);
       return word && put(value, f, g_intern_string(word));
   }
   return false;
+}
+
+// set(item, i) fills the items of an array, which are of `type`.
+template <typename Set>
+void set_array(GstStructure* to, const char* field, guint count, GType type, Set set) {
+  GValue array = G_VALUE_INIT, item = G_VALUE_INIT;
+  gst_value_array_init(&array, count);
+  g_value_init(&item, type);
+  for (guint i = 0; i < count; ++i) {
+    set(&item, i);
+    gst_value_array_append_value(&array, &item);
+  }
+  gst_structure_take_value(to, field, &array);
 }
 
 }  // namespace
@@ -99,6 +116,10 @@ void write_fields(GstStructure* to, std::span<const Field> fields, const void* v
 
 bool read_fields(const GstStructure* from, std::span<const Field> fields, void* value) {
   return std::ranges::all_of(fields, [&](const Field& field) { return read(from, field, value); });
+}
+
+void read_known_fields(const GstStructure* from, std::span<const Field> fields, void* value) {
+  for (const Field& field : fields) read(from, field, value);
 }
 
 const GEnumValue* enum_value(GType type, int value) {
@@ -112,25 +133,12 @@ const gchar* nick_of(GType type, int value) {
 }
 
 void set_numbers(GstStructure* to, const char* field, guint count, const gdouble* numbers) {
-  GValue array = G_VALUE_INIT, item = G_VALUE_INIT;
-  gst_value_array_init(&array, count);
-  g_value_init(&item, G_TYPE_DOUBLE);
-  for (guint i = 0; i < count; ++i) {
-    g_value_set_double(&item, numbers[i]);
-    gst_value_array_append_value(&array, &item);
-  }
-  gst_structure_take_value(to, field, &array);
+  set_array(to, field, count, G_TYPE_DOUBLE,
+            [&](GValue* item, guint i) { g_value_set_double(item, numbers[i]); });
 }
 
 void write_sensors(GstStructure* to, guint n, const guint8* sensors, const gdouble* bearings) {
-  GValue array = G_VALUE_INIT, item = G_VALUE_INIT;
-  gst_value_array_init(&array, n);
-  g_value_init(&item, G_TYPE_INT);
-  for (guint i = 0; i < n; ++i) {
-    g_value_set_int(&item, sensors[i]);
-    gst_value_array_append_value(&array, &item);
-  }
-  gst_structure_take_value(to, "sensors", &array);
+  set_array(to, "sensors", n, G_TYPE_INT, [&](GValue* item, guint i) { g_value_set_int(item, sensors[i]); });
   set_numbers(to, "bearings", n, bearings);
 }
 

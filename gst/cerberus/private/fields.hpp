@@ -14,6 +14,7 @@ namespace cerberus {
 struct Field {
   enum class Type {
     number,   // gdouble, any value
+    known,    // gdouble, written where it is finite
     angle,    // gdouble in degrees (or their derivatives): finite, up to kMostDegrees
     time,     // GstClockTime, as uint64
     integer,  // gint
@@ -36,6 +37,9 @@ constexpr double kMostDegrees = 1e6;
 void write_fields(GstStructure* to, std::span<const Field> fields, const void* value);
 // False where a field is missing, of another type or out of its range; `value` is undefined then.
 bool read_fields(const GstStructure* from, std::span<const Field> fields, void* value);
+
+// Those that are missing or of another type keep what `value` holds.
+void read_known_fields(const GstStructure* from, std::span<const Field> fields, void* value);
 
 // nullptr: not a value of `type`.
 const GEnumValue* enum_value(GType type, int value);

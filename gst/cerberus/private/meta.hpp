@@ -3,7 +3,11 @@
 // without is not possible here.
 #pragma once
 
-#include <gst/gst.h>
+#include <gst/video/video.h>
+
+#include <optional>
+
+#include "vision/image/image.h"
 
 namespace cerberus {
 
@@ -21,42 +25,51 @@ GType register_meta_api(const char* name, Tags... tags) {
   return gst_meta_api_type_register(name, all);
 }
 
-// A meta that carries one plain C structure, at most one a buffer. kValue: the member of the meta that it is; kInit
-// sets its empty value; kInfo: the meta's info, which comes from register_as().
-template <auto kValue, auto kInit, const GstMetaInfo* (*kInfo)()>
-class ValueMeta;
+// Sizes of the picture before and after what is done to it: equal for a copy. None: what is in pixels becomes wrong.
+struct Rescaling {
+  vision::Size from{1, 1}, to{1, 1};
+};
+inline std::optional<Rescaling> rescaling(GQuark type, gpointer data) {
+  if (GST_META_TRANSFORM_IS_COPY(type)) return Rescaling{};
+  if (!GST_VIDEO_META_TRANSFORM_IS_SCALE(type)) return std::nullopt;
+  const auto size = [](const GstVideoInfo* info) {
+    return vision::Size{GST_VIDEO_INFO_WIDTH(info), GST_VIDEO_INFO_HEIGHT(info)};
+  };
+  const auto* scale = static_cast<GstVideoMetaTransform*>(data);
+  const Rescaling sizes{size(scale->in_info), size(scale->out_info)};
+  if (sizes.from.area() <= 0 || sizes.to.area() <= 0) return std::nullopt;
+  return sizes;
+}
 
-template <typename Meta, typename Value, Value Meta::* kValue, void (*kInit)(Value*),
-          const GstMetaInfo* (*kInfo)()>
-class ValueMeta<kValue, kInit, kInfo> {
+// A meta that carries one plain C structure, at most one a buffer. kInit sets its empty value; kInfo: the meta's
+// info, which comes from register_as().
+template <typename Value, void (*kInit)(Value*), const GstMetaInfo* (*kInfo)()>
+class ValueMeta {
+  struct Meta {
+    GstMeta meta;
+    Value value;
+  };
+
  public:
   // Without a transform function: true of the moment, whatever is done to the picture.
-  static const GstMetaInfo* register_as(GType api, const char* name, MetaTransform transform = carry_over) {
-    return register_meta<Meta>(api, name, init, nullptr, transform);
+  static const GstMetaInfo* register_as(GType api, const char* name, MetaTransform transform) {
+    return register_meta<Meta>(api, name, init, nullptr, transform ? transform : carry_over);
   }
-  static Value& value_of(GstMeta* meta) { return reinterpret_cast<Meta*>(meta)->*kValue; }
+  static Value& value_of(GstMeta* meta) { return reinterpret_cast<Meta*>(meta)->value; }
 
   // nullptr: there is none.
-  static Meta* find(GstBuffer* buffer) {
-    return reinterpret_cast<Meta*>(gst_buffer_get_meta(buffer, kInfo()->api));
-  }
   static const Value* peek(GstBuffer* buffer) {
-    Meta* meta = find(buffer);
-    return meta ? &(meta->*kValue) : nullptr;
+    GstMeta* meta = gst_buffer_get_meta(buffer, kInfo()->api);
+    return meta ? &value_of(meta) : nullptr;
   }
-  // `buffer` is writable.
-  static Meta* put(GstBuffer* buffer, const Value& value) {
-    Meta* meta = find(buffer);
-    if (!meta) meta = reinterpret_cast<Meta*>(gst_buffer_add_meta(buffer, kInfo(), nullptr));
-    if (meta) meta->*kValue = value;
-    return meta;
-  }
-  // The form for bindings; nullptr removes. False: it cannot be done.
+  // nullptr removes. False: it cannot be done.
   static gboolean set(GstBuffer* buffer, const Value* value) {
     if (!gst_buffer_is_writable(buffer)) return FALSE;
-    if (value) return put(buffer, *value) != nullptr;
-    if (Meta* meta = find(buffer)) gst_buffer_remove_meta(buffer, reinterpret_cast<GstMeta*>(meta));
-    return TRUE;
+    GstMeta* meta = gst_buffer_get_meta(buffer, kInfo()->api);
+    if (!value) return !meta || gst_buffer_remove_meta(buffer, meta);
+    if (!meta) meta = gst_buffer_add_meta(buffer, kInfo(), nullptr);
+    if (meta) value_of(meta) = *value;
+    return meta != nullptr;
   }
 
  private:
@@ -65,7 +78,7 @@ class ValueMeta<kValue, kInit, kInfo> {
     return TRUE;
   }
   static gboolean carry_over(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark, gpointer) {
-    return put(to, value_of(meta)) != nullptr;
+    return set(to, &value_of(meta));
   }
 };
 
