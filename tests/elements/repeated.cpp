@@ -66,16 +66,16 @@ GST_START_TEST(the_camera_stands_still_while_a_picture_is_repeated) {
   world.pan = 2;
   line.run(world, 0, 10);
   GstBuffer* last = line.through(scene::grey_buffer(world, 10));
-  const CerberusCameraMotion before = cerberus_buffer_get_camera_motion_meta(last)->motion;
+  const CerberusCameraMotion before = *cerberus_buffer_peek_camera_motion(last);
   gst_buffer_unref(last);
   fail_unless(!before.still && before.matrix[2] != 0);
   GstBuffer* again = line.through(repeated(10, 1, 2));
-  const CerberusCameraMotionMeta* meta = cerberus_buffer_get_camera_motion_meta(again);
-  fail_unless(meta && meta->motion.still);
-  fail_unless(meta->motion.matrix[2] == 0);
-  fail_unless(meta->motion.path[2] == before.path[2]);
-  fail_unless_equals_int(meta->motion.path_id, before.path_id);
-  fail_unless_equals_uint64(meta->motion.from, 10 * scene::kStep);
+  const CerberusCameraMotion* now = cerberus_buffer_peek_camera_motion(again);
+  fail_unless(now && now->still);
+  fail_unless(now->matrix[2] == 0);
+  fail_unless(now->path[2] == before.path[2]);
+  fail_unless_equals_int(now->path_id, before.path_id);
+  fail_unless_equals_uint64(now->from, 10 * scene::kStep);
   gst_buffer_unref(again);
 }
 GST_END_TEST
