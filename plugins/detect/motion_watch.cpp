@@ -118,8 +118,7 @@ void MotionWatch::announce(MotionEvents::Change change, std::span<const TrackEve
   GstObject* self = GST_OBJECT(element_);
   const auto put = [&](GstMessage* message) { messages_.put(Message(message, gst_message_unref)); };
   const auto put_motion = [&](CerberusMotionState state) {
-    g_autoptr(GPtrArray) objects = g_ptr_array_sized_new(static_cast<guint>(last_.size()));
-    for (CerberusRegion& region : last_) g_ptr_array_add(objects, &region);
+    g_autoptr(GPtrArray) objects = array_of(last_);
     CerberusMotion motion{};
     motion.state = state;
     motion.regions = objects;

@@ -4,8 +4,10 @@
 
 #include <cerberus/cerberus.h>
 
+#include <vector>
+
+#include "detect_settings.hpp"
 #include "sensing/angles.h"
-#include "shared/clock_times.hpp"
 #include "vision/tracking/tracker.h"
 
 namespace cerberus::plugin {
@@ -39,6 +41,13 @@ inline CerberusRegion tracked(const vision::Track& track) {
   out.bearing = sensing::degrees(track.bearing);
   out.distance = track.distance;
   return out;
+}
+
+// Of a vector that outlives the array.
+inline GPtrArray* array_of(std::vector<CerberusRegion>& regions) {
+  GPtrArray* array = g_ptr_array_sized_new(static_cast<guint>(regions.size()));
+  for (CerberusRegion& region : regions) g_ptr_array_add(array, &region);
+  return array;
 }
 
 inline vision::Track track_of(const CerberusRegion& region) {
