@@ -51,6 +51,9 @@ Record Detector::begin(const LumaSource& picture) {
 Record Detector::copy(const Analysis& record, Stage end) {
   Record own = records_.take();
   *own = record;
+  // The regions stage may have taken the mask over; a second one begins with what the first has cleaned.
+  if (end == Stage::regions && own->foreground && !own->foreground->mask && own->regions)
+    own->foreground.stored().mask = own->regions->mask;
   own->clear_from(end);
   return own;
 }

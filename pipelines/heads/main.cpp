@@ -61,7 +61,7 @@ int run_pelco(const Options& o) {
 
 int main(int argc, char** argv) {
   // The end of the input stops the head and ends the program. A signal meant for the pipeline must not end it before.
-  for (const int number : {SIGINT, SIGHUP, SIGTERM}) std::signal(number, SIG_IGN);
+  for (const int number : {SIGINT, SIGHUP, SIGTERM, SIGPIPE}) std::signal(number, SIG_IGN);
   Options o;
   const GOptionEntry entries[] = {
       {"device", 0, 0, G_OPTION_ARG_STRING, &o.device, "serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT",

@@ -55,7 +55,7 @@ struct AnalysisPrivate {
   bool have_info = false;
   guint wanted = 0;              // of the record, downstream
   std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
-  bool live = false;             // upstream
+  std::optional<bool> live;      // upstream; empty until the source has answered
   History history;
   guint64 number = 0;  // analysed frames
   vision::CameraFollower camera;
@@ -77,9 +77,9 @@ GstBaseTransformClass* parent_class();
 
 // Queries at the first frame after caps or RECONFIGURE, when all elements downstream have received the caps.
 void ask_downstream(GstBaseTransform* trans, AnalysisPrivate& priv) {
-  if (!priv.ask.exchange(false)) return;
-  priv.wanted = ask_for_record(GST_BASE_TRANSFORM_SRC_PAD(trans));
-  priv.live = is_live(GST_BASE_TRANSFORM_SINK_PAD(trans)).value_or(false);
+  const bool ask = priv.ask.exchange(false);
+  if (ask) priv.wanted = ask_for_record(GST_BASE_TRANSFORM_SRC_PAD(trans));
+  if (ask || !priv.live) priv.live = is_live(GST_BASE_TRANSFORM_SINK_PAD(trans));
 }
 
 // No element upstream has analysed this frame.
@@ -114,7 +114,7 @@ Frame frame_of(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer
   frame.info = &priv.info;
   frame.size = {GST_VIDEO_INFO_WIDTH(&priv.info), GST_VIDEO_INFO_HEIGHT(&priv.info)};
   frame.running_time = running_time_of(trans->segment, buffer);
-  frame.live = priv.live;
+  frame.live = priv.live.value_or(false);
   frame.wanted = priv.wanted;
   return frame;
 }

@@ -204,6 +204,9 @@ bool show(State& state, const Settings& settings, GstBuffer* in, const overlay::
       cerberus::plugin::record_of(in, {GST_VIDEO_INFO_WIDTH(&state.in), GST_VIDEO_INFO_HEIGHT(&state.in)});
   // A repeated picture has none of its own.
   if (!record && GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_GAP)) record = state.last;
+  if (record &&
+      record->frame != vision::Size{GST_VIDEO_INFO_WIDTH(&state.in), GST_VIDEO_INFO_HEIGHT(&state.in)})
+    record = {};
   state.last = record;
   if (!record) return stage == STAGE_LUMA && show_own_luma(state, in, canvas);
   if (stage == STAGE_HISTOGRAM) return show_histogram(*record, canvas);

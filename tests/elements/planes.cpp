@@ -79,6 +79,18 @@ GST_START_TEST(another_branch_keeps_its_uncleaned_mask) {
 }
 GST_END_TEST
 
+GST_START_TEST(regions_are_found_again_on_a_record_that_has_them) {
+  Line line("motiondetect keep-planes=always ! motionregions keep-planes=always ! motiontrack ! identity");
+  const World world = entering();
+  for (int k = 0; k < 30; ++k) {
+    GstBuffer* out = line.through(scene::grey_buffer(world, k));
+    fail_unless(cerberus_buffer_regions_known(out));
+    fail_unless(moving_pixels(out) >= 0);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
 // One in black and one in white who meet before the wall, stand together and go back where they came from.
 class Meeting {
  public:
@@ -232,6 +244,7 @@ Suite* planes_suite() {
   tcase_add_test(tests, who_asks_behind_keep_planes_never_is_heard_again_when_that_changes);
   tcase_add_test(tests, planes_come_and_go_with_the_property_while_frames_flow);
   tcase_add_test(tests, another_branch_keeps_its_uncleaned_mask);
+  tcase_add_test(tests, regions_are_found_again_on_a_record_that_has_them);
   return suite;
 }
 

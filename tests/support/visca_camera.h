@@ -30,6 +30,7 @@ struct ViscaFaults {
   bool header = true;      // expects the header of VISCA over IP, over UDP
   int refuses = 0;         // as many moves are answered by "buffer full"
   int loses_answers = 0;   // as many acknowledgements are lost
+  int swallows_moves = 0;  // likewise of moves
   int swallows_stops = 0;  // as many stops are neither obeyed nor answered
   std::chrono::milliseconds delay{0};
 };
@@ -138,6 +139,8 @@ class ViscaCamera {
     }
     if (line_ == Line::udp)
       ::sendto(fd_, message.data(), message.size(), 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
+    else if (line_ == Line::tcp)
+      ::send(fd_, message.data(), message.size(), MSG_NOSIGNAL);
     else if (::write(fd_, message.data(), message.size()) < 0)
       return;
   }
@@ -154,6 +157,7 @@ class ViscaCamera {
     if (m.size() != 9 || m[0] != 0x81 || m[1] != 1 || m[2] != 6 || m[3] != 1) return;
     const bool stop = m[6] == 3 && m[7] == 3;
     if (stop && faults_.swallows_stops > 0) return void(--faults_.swallows_stops);
+    if (!stop && faults_.swallows_moves > 0) return void(--faults_.swallows_moves);
     if (!stop && faults_.refuses > 0) {
       --faults_.refuses;
       return answer({0x90, 0x60, 0x03, 0xff});

@@ -114,7 +114,10 @@ END_TEST
 START_TEST(a_head_with_speed_commands_only_brakes_at_the_target) {
   const Recorder helper("velocity rate 100");
   HelperHead head("external");
-  assert_text(head.open(setup_with(helper.command())), "");
+  HeadSetup setup = setup_with(helper.command());
+  setup.limits.pan.acceleration =
+      radians(60);  // a third of a second to full speed: many lines, however busy the machine
+  assert_text(head.open(setup), "");
   assert_text(head.command({0s, {Kind::position, radians(6), radians(20)}, {}}), "");
   const auto lines = helper.until("move hold hold", 6);
   double most = 0;

@@ -34,10 +34,11 @@ ViscaOptions options_for(const ViscaCamera& camera, bool header = true) {
 // A helper that serves `head` until the pipeline's end of the line is closed.
 class Served {
  public:
-  explicit Served(ViscaOptions options) : head_(std::move(options)) {
+  explicit Served(ViscaOptions options, const char* timeout = "5") : head_(std::move(options)) {
     if (::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_) != 0) std::abort();
     status_ = std::async(std::launch::async, [this] { return serve_head(ends_[1], ends_[1], head_); });
-    say("cerberus-head 1 timeout 0.2 limits -170 170 -45 45 speed 90 90 acceleration 600 600 start 0 0");
+    say(std::string("cerberus-head 1 timeout ") + timeout +
+        " limits -170 170 -45 45 speed 90 90 acceleration 600 600 start 0 0");
   }
   ~Served() {
     hang_up();
@@ -107,7 +108,7 @@ END_TEST
 START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second) {
   for (const bool silent : {true, false}) {
     ViscaCamera camera(kLines[_i]);
-    Served served(options_for(camera));
+    Served served(options_for(camera), silent ? "0.2" : "5");
     served.line("ready");
     served.say("move at -45 hold");
     ck_assert(served.until([&] { return camera.speed() == -45; }));
@@ -153,6 +154,42 @@ START_TEST(what_a_full_camera_refused_is_sent_again) {
   served.line("ready");
   served.say("move at 9 hold");
   ck_assert(served.until([&] { return camera.speed() == 9; }));
+}
+END_TEST
+
+START_TEST(a_lost_move_is_sent_again) {
+  ViscaFaults faults;
+  faults.swallows_moves = 2;
+  ViscaCamera camera(ViscaCamera::Line::udp, faults);
+  Served served(options_for(camera));
+  served.line("ready");
+  served.say("move at 25 hold");
+  ck_assert(served.until([&] { return camera.speed() == 25; }));
+}
+END_TEST
+
+START_TEST(a_camera_that_acknowledges_and_reports_nothing_is_no_fault) {
+  ViscaFaults faults;
+  faults.reports = false;
+  ViscaCamera camera(ViscaCamera::Line::tcp, faults);
+  Served served(options_for(camera));
+  assert_text(served.line("ready"), "ready 1 velocity rate 20");
+  served.say("move at 9 hold");
+  ck_assert(served.until([&] { return camera.pan() > 12; }));  // 1.3 s without anything to say
+  ck_assert_double_eq(camera.speed(), 9);
+}
+END_TEST
+
+// Its position is past the limit of 10 degrees at once: it is stopped, and moves inwards only.
+START_TEST(a_camera_at_its_limit_is_stopped) {
+  ViscaCamera camera(ViscaCamera::Line::udp);
+  Served served(options_for(camera));
+  served.line("ready");
+  served.say("limits -10 10 -10 10");
+  served.say("move at 45 hold");
+  ck_assert(served.until([&] { return camera.pan() > 10 && camera.speed() == 0; }, "move at 45 hold"));
+  ck_assert_double_lt(camera.pan(), 45);
+  ck_assert(served.until([&] { return camera.speed() == -45; }, "move at -45 hold"));
 }
 END_TEST
 
@@ -210,7 +247,8 @@ int main() {
     tcase_add_loop_test(cases, test, 0, std::size(kLines));
   for (const TTest* test :
        {a_stop_is_sent_until_the_camera_obeys, what_a_full_camera_refused_is_sent_again,
-        a_camera_without_the_header_of_visca_over_ip_is_understood,
+        a_lost_move_is_sent_again, a_camera_that_acknowledges_and_reports_nothing_is_no_fault,
+        a_camera_at_its_limit_is_stopped, a_camera_without_the_header_of_visca_over_ip_is_understood,
         a_camera_that_goes_away_is_reported_and_used_again_at_rest, what_cannot_be_opened_is_named})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);

@@ -31,8 +31,9 @@ using Kind = AxisCommand::Kind;
 struct Parameters {
   Time ready_timeout = std::chrono::seconds(5);  // derived: a slow network camera logs in within it
   Time restart_delay =
-      std::chrono::seconds(1);           // derived: issue "used again when it returns", without a busy loop
-  Time fresh = std::chrono::seconds(1);  // feedback older than this does not make a pose measured
+      std::chrono::seconds(1);  // derived: issue "used again when it returns", without a busy loop
+  Time fresh =
+      std::chrono::milliseconds(500);  // feedback older than this corrects nothing and measures no pose
   double correction_gain =
       0.3;                     // share of the difference to a reported pose; derived: settles in ten reports
   double least_change = 1e-4;  // radians a second: slower changes of a speed are not sent
@@ -94,6 +95,8 @@ struct HelperHead::Core {
     const std::uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake, &one, sizeof one);
   }
+  // Whether the last report is young enough to correct the model with.
+  bool is_fresh(Time now) const { return measured && now - *measured < kParameters.fresh; }
   Time running_time() const { return since_start(Clock::now()) - epoch; }
   Time period() const { return Time(static_cast<Time::rep>(1e9 / abilities.rate)); }
 };
@@ -154,12 +157,16 @@ void HelperHead::Core::follow(Time now) {
   next_follow = now + period();
   Pose ahead;
   if (!model.state(now + setup.latency, ahead).empty()) return;
-  const auto axis = [this](const AxisState& state, double correction) -> AxisCommand {
+  const bool corrected = is_fresh(now);
+  const auto axis = [&](const AxisState& state, double error,
+                        const motion::AxisLimits& limits) -> AxisCommand {
+    const double correction = corrected ? error : 0;
     if (!abilities.velocity) return {Kind::position, state.position, std::abs(state.speed)};
-    const double speed = state.speed - correction * (measured ? 1.0 : 0.0);
+    const double speed = std::clamp(state.speed - correction, -limits.speed, limits.speed);
     return std::abs(speed) < kParameters.least_change ? AxisCommand{} : AxisCommand{Kind::velocity, speed, 0};
   };
-  const std::string line = move_line(axis(ahead.pan, pan_correction), axis(ahead.tilt, tilt_correction));
+  const std::string line = move_line(axis(ahead.pan, pan_correction, setup.limits.pan),
+                                     axis(ahead.tilt, tilt_correction, setup.limits.tilt));
   if (line != last_move) send(line);
   last_move = line;
   if (ahead.settled && !measured) follows = false;
@@ -171,6 +178,7 @@ void HelperHead::Core::handle(const HelperLine& line) {
     ready = true;
     fault.clear();
   } else if (const auto* reported = std::get_if<FaultLine>(&line)) {
+    if (fault.empty()) process.send("stop\n");
     fault = reported->text;
   } else if (std::get_if<RecoveredLine>(&line)) {
     fault.clear();
@@ -210,10 +218,12 @@ void HelperHead::Core::run() {
       next_alive = now + setup.helper_timeout / 4;
       send("alive\n");
     }
-    if (ready && follows) follow(running_time());
-    if (!process.running()) process.end();
+    if (ready && follows && fault.empty()) follow(running_time());
+    // A helper that ended may have left its head turning: only a new one can stop it.
+    if (!process.running() && now >= next_start && process.end())
+      if (const std::string wrong = start(); !wrong.empty()) lose(wrong);
     Time until = process.running() ? next_alive : now + kParameters.restart_delay;
-    if (ready && follows) until = std::min(until, next_follow + epoch);
+    if (ready && follows && fault.empty()) until = std::min(until, next_follow + epoch);
     const auto wait = std::chrono::ceil<std::chrono::milliseconds>(until - since_start(Clock::now()));
     pollfd fds[2]{{wake, POLLIN, 0}, {process.fd(), POLLIN, 0}};  // a negative descriptor is skipped
     guard.unlock();
@@ -314,7 +324,7 @@ std::string HelperHead::state(Time time, Pose& pose) {
   if (!core_ || !core_->open) return "the head's helper is not open";
   const std::lock_guard guard(core_->lock);
   if (std::string wrong = core_->model.state(time, pose); !wrong.empty()) return wrong;
-  pose.measured = core_->measured && time - *core_->measured < kParameters.fresh;
+  pose.measured = core_->is_fresh(time);
   if (!pose.measured) return {};
   pose.pan.position += core_->pan_correction;
   pose.tilt.position += core_->tilt_correction;

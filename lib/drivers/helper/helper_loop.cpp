@@ -38,6 +38,7 @@ class Server {
       }
       report(now);
     }
+    if (failed_) return 2;
     finish();
     return 0;
   }
@@ -85,7 +86,7 @@ class Server {
       const std::string wrong = device_.open(hello->setup, now);
       if (!wrong.empty()) {
         send("fault " + wrong);
-        ended_ = true;
+        ended_ = failed_ = true;
         return;
       }
       send(ready_line(device_.abilities()));
@@ -143,7 +144,7 @@ class Server {
   LineBuffer lines_;
   std::vector<pollfd> fds_;
   Time timeout_{}, heard_{};
-  bool greeted_ = false, ended_ = false;
+  bool greeted_ = false, ended_ = false, failed_ = false;
   bool obeyed_ = false;  // a move was carried out and no stop came after it
   bool silent_ = false;  // the head was stopped by the timeout
   std::string fault_;

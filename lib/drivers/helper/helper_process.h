@@ -37,7 +37,7 @@ class HelperProcess {
   // hang_up(), and waits for the end.
   void finish() noexcept;
 
-  static constexpr std::chrono::milliseconds kPatience{1000};
+  static constexpr std::chrono::milliseconds kPatience{6000};
 
  private:
   int fd_ = -1;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sensing/angles.h"
 
@@ -20,6 +21,11 @@ int step_of(const AxisCommand& command, double fastest) {
   return static_cast<int>(std::lround(std::clamp<double>(step, -pelco::kMostStep, pelco::kMostStep)));
 }
 
+// A head at its stop, or beyond it, that would go on outwards.
+bool outwards(double angle, int step, const motion::AxisLimits& axis) {
+  return (step > 0 && angle >= axis.to) || (step < 0 && angle <= axis.from);
+}
+
 }  // namespace
 
 std::string PelcoHead::open(const HeadSetup& setup, Time now) {
@@ -29,6 +35,7 @@ std::string PelcoHead::open(const HeadSetup& setup, Time now) {
     return "pan-speed and tilt-speed must be more than 0";
   tried_ = now;
   if (std::string wrong = stream_.open(options_.device, options_.baud); !wrong.empty()) return wrong;
+  connected_ = true;
   stop(now);
   return {};
 }
@@ -38,7 +45,9 @@ HeadAbilities PelcoHead::abilities() const {
 }
 
 void PelcoHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
-  const int p = step_of(pan, options_.pan_speed), t = step_of(tilt, options_.tilt_speed);
+  int p = step_of(pan, options_.pan_speed), t = step_of(tilt, options_.tilt_speed);
+  if (pan_degrees_ && outwards(radians(*pan_degrees_), p, limits_.pan)) p = 0;
+  if (tilt_degrees_ && outwards(radians(*tilt_degrees_), t, limits_.tilt)) t = 0;
   if (p == pan_ && t == tilt_) return;
   if (p == 0 && t == 0) return stop(now);
   stops_owed_ = 0;
@@ -70,9 +79,6 @@ void PelcoHead::read(Time now) {
     (position->axis == pelco::Axis::pan ? pan_degrees_ : tilt_degrees_) = position->degrees;
     new_pose_ = pan_degrees_ && tilt_degrees_;
     pan_time_ = now;
-    const auto outwards = [](double angle, int step, const motion::AxisLimits& axis) {
-      return (step > 0 && angle >= axis.to) || (step < 0 && angle <= axis.from);
-    };
     if ((pan_degrees_ && outwards(radians(*pan_degrees_), pan_, limits_.pan)) ||
         (tilt_degrees_ && outwards(radians(*tilt_degrees_), tilt_, limits_.tilt)))
       stop(now);
@@ -81,15 +87,24 @@ void PelcoHead::read(Time now) {
 
 Time PelcoHead::tick(Time now) {
   if (!stream_.is_open()) {
+    if (std::exchange(connected_, false)) tried_ = now;  // reported before it is tried again
     fault_ = "the Pelco-D head at " + options_.device + " is gone";
     if (now - tried_ < kReconnect) return tried_ + kReconnect;
     tried_ = now;
     if (!stream_.open(options_.device, options_.baud).empty()) return now + kReconnect;
+    connected_ = true;
+    pan_time_ = now;
     stop(now);  // it stands until the next move
   }
-  fault_.clear();
   read(now);
   if (!stream_.is_open()) return now;
+  // A head that is limited by its own positions must report them.
+  const bool silent = options_.feedback && pan_degrees_ && now - pan_time_ > kSilence;
+  if (silent && fault_.empty()) {
+    fault_ = "the Pelco-D head at " + options_.device + " does not answer";
+    stop(now);
+  }
+  if (!silent) fault_.clear();
   const Time again = stops_owed_ > 0 ? Time(kStopAgain) : Time(kRepeat);
   if ((stops_owed_ > 0 || pan_ != 0 || tilt_ != 0) && now - sent_ >= again) {
     if (stops_owed_ > 0) --stops_owed_;

@@ -32,7 +32,7 @@ class PelcoHead final : public HeadDevice {
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
-  bool stopping() const override { return stops_owed_ > 0 && stream_.is_open(); }
+  bool stopping() const override { return stops_owed_ > 0; }
   void watch(std::vector<pollfd>& fds) const override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
@@ -42,6 +42,8 @@ class PelcoHead final : public HeadDevice {
   static constexpr std::chrono::milliseconds kStopAgain{50};  // a frame takes 29 ms at 2400 baud
   static constexpr int kStops = 5;
   static constexpr std::chrono::milliseconds kReconnect{1000};
+  static constexpr std::chrono::milliseconds kSilence{
+      1000};                           // without a position, of a head that reports them
   static constexpr double kRate = 10;  // commands a second
 
  private:
@@ -57,7 +59,7 @@ class PelcoHead final : public HeadDevice {
   Time sent_{}, asked_{}, tried_{}, pan_time_{};
   pelco::Axis next_query_ = pelco::Axis::pan;
   std::optional<double> pan_degrees_, tilt_degrees_;
-  bool new_pose_ = false;
+  bool new_pose_ = false, connected_ = false;
   std::string fault_;
 };
 

@@ -84,7 +84,7 @@ std::string ByteStream::open_serial(const std::string& path, int baud) {
   ::cfsetospeed(&mode, speed);
   ::tcsetattr(fd_, TCSANOW, &mode);
   ::tcflush(fd_, TCIOFLUSH);
-  datagrams_ = false;
+  datagrams_ = socket_ = false;
   return {};
 }
 
@@ -103,6 +103,7 @@ std::string ByteStream::open_socket(const std::string& address, const std::strin
     fd_ = ::socket(at->ai_family, at->ai_socktype | SOCK_NONBLOCK | SOCK_CLOEXEC, at->ai_protocol);
     if (fd_ < 0) continue;
     datagrams_ = datagrams;
+    socket_ = true;
     if (::connect(fd_, at->ai_addr, at->ai_addrlen) == 0) return {};
     error = errno;
     pollfd wait{fd_, POLLOUT, 0};
@@ -128,7 +129,8 @@ void ByteStream::close() noexcept {
 
 bool ByteStream::write(std::span<const std::uint8_t> bytes) noexcept {
   if (fd_ < 0) return false;
-  const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
+  const ssize_t written = socket_ ? ::send(fd_, bytes.data(), bytes.size(), MSG_NOSIGNAL)
+                                  : ::write(fd_, bytes.data(), bytes.size());
   if (written < 0 && errno != EAGAIN && errno != EINTR && !(datagrams_ && errno == ECONNREFUSED)) close();
   return written == static_cast<ssize_t>(bytes.size());
 }

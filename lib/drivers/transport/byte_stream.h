@@ -41,7 +41,7 @@ class ByteStream {
   std::string open_socket(const std::string& address, const std::string& place, bool datagrams);
 
   int fd_ = -1;
-  bool datagrams_ = false;
+  bool datagrams_ = false, socket_ = false;
 };
 
 }  // namespace cerberus::drivers

@@ -25,7 +25,10 @@ std::string ViscaHead::connect(Time now) {
   cutter_ = {};
   waiting_ = false;
   sent_pan_ = sent_tilt_ = 0;
-  answered_ = asked_ = now;
+  asked_ = now;
+  unanswered_.reset();
+  connected_ = true;
+  last_pose_.reset();
   if (stream_.datagrams() && options_.header) {
     sequence_ = 0;
     stream_.write(visca::reset_sequence());
@@ -74,13 +77,13 @@ void ViscaHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) 
   };
   pan_ = step(pan, options_.speeds.pan);
   tilt_ = step(tilt, options_.speeds.tilt);
-  if (pan_ == 0 && tilt_ == 0 && (sent_pan_ != 0 || sent_tilt_ != 0)) return stop(now);
-  stopping_ = stopping_ && pan_ == 0 && tilt_ == 0;
+  if (pan_ != 0 || tilt_ != 0) stopping_ = false;
   send_drive(now);
 }
 
-void ViscaHead::limit(const motion::Limits& limits, Time) {
+void ViscaHead::limit(const motion::Limits& limits, Time now) {
   limits_ = limits;
+  send_drive(now);
 }
 
 void ViscaHead::stop(Time now) noexcept {
@@ -89,29 +92,41 @@ void ViscaHead::stop(Time now) noexcept {
   stopping_ = true;
   stops_ = 1;
   send(visca::stop(options_.address));
-  waiting_ = true;
+  moved_ = waiting_ = true;
   sent_ = now;
+  if (!unanswered_) unanswered_ = now;
 }
 
+// What is in force at the camera is what it has acknowledged: a command without an answer is sent again, also to a camera
+// that never answers.
 void ViscaHead::send_drive(Time now) {
   if (stopping_ || !stream_.is_open()) return;
   int pan = pan_, tilt = tilt_;
   if (last_pose_ && beyond(last_pose_->pan.position, pan, limits_.pan)) pan = 0;
   if (last_pose_ && beyond(last_pose_->tilt.position, tilt, limits_.tilt)) tilt = 0;
-  if (pan == sent_pan_ && tilt == sent_tilt_) return;
-  if (waiting_ && now - sent_ < kAnswerTime) return;
-  if (now - sent_ < Time(static_cast<Time::rep>(1e9 / kRate)) && !acknowledges_) return;
+  if (pan == 0 && tilt == 0) {
+    const int wanted_pan = pan_, wanted_tilt = tilt_;
+    if (moved_) stop(now);
+    pan_ = wanted_pan;
+    tilt_ = wanted_tilt;
+    return;
+  }
+  const bool unanswered = waiting_ && now - sent_ >= kAnswerTime;
+  if (pan == sent_pan_ && tilt == sent_tilt_ && !unanswered) return;
+  if (waiting_ && !unanswered) return;
+  if (now - sent_ < Time(static_cast<Time::rep>(1e9 / kRate))) return;
   send(visca::drive(options_.address, pan, tilt));
   sent_pan_ = pan;
   sent_tilt_ = tilt;
-  waiting_ = true;
+  moved_ = waiting_ = true;
   sent_ = now;
+  if (!unanswered_) unanswered_ = now;
 }
 
 void ViscaHead::handle(const visca::Reply& reply, Time now) {
   using Kind = visca::Reply::Kind;
   if (reply.kind == Kind::other || reply.address != options_.address) return;
-  answered_ = now;
+  unanswered_.reset();
   if (reply.kind == Kind::position) {
     reports_ = true;
     asked_ = now;
@@ -120,11 +135,11 @@ void ViscaHead::handle(const visca::Reply& reply, Time now) {
     pose_time_ = now;
     return;
   }
-  waiting_ = false;
   if (reply.kind == Kind::completion) return;  // the end of what was acknowledged before
+  waiting_ = false;
   if (reply.kind == Kind::ack) {
     acknowledges_ = true;
-    if (stopping_ && --answers_owed_ <= 0) stopping_ = false;
+    if (stopping_ && --answers_owed_ <= 0) stopping_ = moved_ = false;
     return;
   }
   // Refused: what was sent last is not in force, and is sent again; a stop by tick().
@@ -143,16 +158,21 @@ void ViscaHead::read(Time now) {
 Time ViscaHead::tick(Time now) {
   read(now);
   if (!stream_.is_open()) {
+    if (std::exchange(connected_, false)) tried_ = now;  // reported before it is tried again
     fault_ = "the VISCA camera at " + options_.device + " is gone";
-    if (now - tried_ >= kReconnect && connect(now).empty()) stop(now);  // it stands until the next move
-    if (!stream_.is_open()) return tried_ + kReconnect;
+    if (now - tried_ < kReconnect) return tried_ + kReconnect;
+    if (!connect(now).empty()) return tried_ + kReconnect;
+    stop(now);  // it stands until the next move
   }
-  const bool expected = reports_ || acknowledges_;
-  fault_ = expected && now - answered_ > kSilence
-               ? "the VISCA camera at " + options_.device + " does not answer"
-               : std::string();
+  const bool silent = (reports_ || acknowledges_) && unanswered_ && now - *unanswered_ > kSilence;
+  if (silent && fault_.empty()) {
+    fault_ = "the VISCA camera at " + options_.device + " does not answer";
+    stop(now);
+  }
+  if (!silent) fault_.clear();
   if (stopping_ && now - sent_ >= kStopAgain) {
     stopping_ = acknowledges_ || ++stops_ <= kStopsWithoutAnswer;
+    if (!stopping_) moved_ = waiting_ = false;
     if (stopping_) {
       answers_owed_ = 1;
       send(visca::stop(options_.address));
@@ -163,6 +183,7 @@ Time ViscaHead::tick(Time now) {
   if (options_.feedback && now - asked_ >= kInquiryPeriod) {
     asked_ = now;
     send(visca::position_inquiry(options_.address));
+    if (reports_ && !unanswered_) unanswered_ = now;
   }
   return now + (stopping_ || pan_ != sent_pan_ || tilt_ != sent_tilt_ ? Time(std::chrono::milliseconds(10))
                                                                       : Time(kInquiryPeriod) / 2);

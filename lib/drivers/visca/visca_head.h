@@ -35,7 +35,7 @@ class ViscaHead final : public HeadDevice {
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
-  bool stopping() const override { return stopping_ && stream_.is_open(); }
+  bool stopping() const override { return stopping_; }
   void watch(std::vector<pollfd>& fds) const override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
@@ -69,7 +69,10 @@ class ViscaHead final : public HeadDevice {
   bool acknowledges_ = false, reports_ = false, stopping_ = false;
   int stops_ = 0;         // sent without an answer
   int answers_owed_ = 0;  // while stopping: to commands before the stop, and to the stop
-  Time sent_{}, asked_{}, answered_{}, tried_{};
+  Time sent_{}, asked_{}, tried_{};
+  std::optional<Time> unanswered_;  // since when a camera that answers has not answered
+  bool moved_ = false;              // a drive was sent, and no stop after it is acknowledged
+  bool connected_ = false;          // the last time that tick() looked
   std::optional<PoseLine> pose_, last_pose_;
   Time pose_time_{};
   std::string fault_;
