@@ -108,7 +108,7 @@ std::string HelperHead::Core::start() {
   last_move.clear();
   pan_correction = tilt_correction = 0;
   measured.reset();
-  next_alive = Time::min();
+  next_alive = Time{};
   if (std::string wrong = process.start(arguments); !wrong.empty()) return wrong;
   HeadSetup now = setup;
   if (Pose pose; model.state(running_time(), pose).empty()) {
@@ -142,7 +142,7 @@ void HelperHead::Core::send_command() {
   };
   follows = !direct(last.pan) || !direct(last.tilt);
   if (follows) {
-    next_follow = Time::min();
+    next_follow = Time{};
     follow(running_time());
     return;
   }
