@@ -61,7 +61,7 @@ struct Decision {
   int rule = 0;  // number of the table's rule; complete: 1 (camera) and 7 (zero), 0 for the rest
   std::string_view
       rule_name;  // of the table's rule; complete: "camera", "overlap", "sector", "return", "zero";
-      // "stopped", "return": the reason for deferring rule 7. Valid until the next change of rules.
+  // "stopped", "return": the reason for deferring rule 7. Valid until the next change of rules.
   std::uint32_t target = 0;  // id of the track to follow; 0: none
   Interval sector{
       kUnknown,

@@ -8,6 +8,5 @@ static gboolean plugin_init(GstPlugin* plugin) {
   return GST_ELEMENT_REGISTER(virtualptz, plugin);
 }
 
-GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberussim,
-                  "Simulated pan-tilt cameras", plugin_init,
-                  PLUGIN_VERSION, "LGPL", PACKAGE, "Unknown package origin")
+GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberussim, "Simulated pan-tilt cameras",
+                  plugin_init, PLUGIN_VERSION, "LGPL", PACKAGE, "Unknown package origin")

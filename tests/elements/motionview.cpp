@@ -472,8 +472,10 @@ GST_START_TEST(interlaced_video_is_refused_naming_deinterlace) {
     Bus bus(harness.get());
     gst_harness_set_src_caps_str(harness.get(), caps.c_str());
     for (int start = 0; start < 2; ++start) {
-      fail_unless_equals_int(gst_harness_push(harness.get(), new_frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
-      fail_unless_equals_int(gst_harness_push(harness.get(), new_frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
+      fail_unless_equals_int(gst_harness_push(harness.get(), new_frame(info_of(caps))),
+                             GST_FLOW_NOT_NEGOTIATED);
+      fail_unless_equals_int(gst_harness_push(harness.get(), new_frame(info_of(caps))),
+                             GST_FLOW_NOT_NEGOTIATED);
       std::string text;
       fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
       fail_unless(text.find("deinterlace") != std::string::npos, "%s", text.c_str());

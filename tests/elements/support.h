@@ -39,8 +39,8 @@ inline void set_sample(GstVideoFrame* f, guint component, int x, int y, int leve
             static_cast<gssize>(y) * GST_VIDEO_FRAME_COMP_STRIDE(f, component) +
             x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, component);
   const int depth = GST_VIDEO_FORMAT_INFO_DEPTH(format, component);
-  const auto word = static_cast<guint16>(
-      level << (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + MAX(depth, 8) - 8));
+  const auto word =
+      static_cast<guint16>(level << (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + MAX(depth, 8) - 8));
   if (depth > 8) p += GST_VIDEO_FRAME_COMP_POFFSET(f, component) % 2;
   if (depth <= 8)
     *p = static_cast<guint8>(level);
