@@ -15,6 +15,11 @@ void unknown(CerberusBase& base) {
   base.valid_from = GST_CLOCK_TIME_NONE;
 }
 
+CerberusBase sane(CerberusBase base) {
+  if (!cerberus::is_one_of(CERBERUS_TYPE_BASE_SOURCE, &base.source)) base.source = CERBERUS_BASE_ESTIMATED;
+  return base;
+}
+
 void write(GstStructure* to, const CerberusBase& base) {
   cerberus::write_fields(to, kFields, &base);
 }
@@ -30,5 +35,5 @@ CERBERUS_DEFINE_BOXED(CerberusBase, cerberus_base, unknown)
 CERBERUS_DEFINE_ENUM(CerberusBaseSource, cerberus_base_source,
                      {CERBERUS_BASE_ESTIMATED, "CERBERUS_BASE_ESTIMATED", "estimated"},
                      {CERBERUS_BASE_REPORTED, "CERBERUS_BASE_REPORTED", "reported"})
-CERBERUS_DEFINE_META(CerberusBase, base, cerberus::same, nullptr)
+CERBERUS_DEFINE_META(CerberusBase, base, sane, nullptr)
 CERBERUS_DEFINE_EVENT(CerberusBase, base, CERBERUS_EVENT_BASE, GST_EVENT_CUSTOM_UPSTREAM, cerberus::is_any)

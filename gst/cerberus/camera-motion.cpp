@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iterator>
 
 #include "cerberus/private/define.hpp"
@@ -29,7 +30,7 @@ gboolean transform_meta(GstBuffer* to, GstMeta* meta, GstBuffer* from, GQuark ty
 }  // namespace
 
 CERBERUS_DEFINE_BOXED(CerberusCameraMotion, cerberus_camera_motion, unknown)
-CERBERUS_DEFINE_META(CerberusCameraMotion, camera_motion, cerberus::same, transform_meta,
+CERBERUS_DEFINE_META(CerberusCameraMotion, camera_motion, std::identity{}, transform_meta,
                      GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR)
 
 namespace {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "cerberus/private/define.hpp"
 
@@ -32,16 +31,8 @@ void hold(CerberusFusion& fusion) {
   fusion.decided = GST_CLOCK_TIME_NONE;
 }
 
-// An application may have left any number in it, which must not be read as an action.
-bool is_action(const CerberusFusionAction& action) {
-  static_assert(sizeof action == sizeof(int));
-  int number = 0;
-  std::memcpy(&number, &action, sizeof number);
-  return cerberus::enum_value(CERBERUS_TYPE_FUSION_ACTION, number);
-}
-
 CerberusFusion sane(CerberusFusion fusion) {
-  if (!is_action(fusion.action)) fusion.action = CERBERUS_FUSION_HOLD;
+  if (!cerberus::is_one_of(CERBERUS_TYPE_FUSION_ACTION, &fusion.action)) fusion.action = CERBERUS_FUSION_HOLD;
   if (!fusion.rule_name) fusion.rule_name = g_intern_static_string("none");
   cerberus::tidy_sensors(fusion.n_sensors, fusion.sensors, fusion.bearings);
   return fusion;

@@ -29,13 +29,14 @@ void straight_ahead(CerberusPose& pose) {
   pose.settled = TRUE;
 }
 
-CerberusPose named(CerberusPose pose) {
+CerberusPose sane(CerberusPose pose) {
   pose.head = cerberus::head_of(pose);
+  if (!cerberus::is_one_of(CERBERUS_TYPE_POSE_SOURCE, &pose.source)) pose.source = CERBERUS_POSE_COMMANDED;
   return pose;
 }
 
 void write(GstStructure* to, const CerberusPose& pose) {
-  const CerberusPose written = named(pose);
+  const CerberusPose written = sane(pose);
   cerberus::write_fields(to, kFields, &written);
 }
 
@@ -50,7 +51,7 @@ CERBERUS_DEFINE_BOXED(CerberusPose, cerberus_pose, straight_ahead)
 CERBERUS_DEFINE_ENUM(CerberusPoseSource, cerberus_pose_source,
                      {CERBERUS_POSE_COMMANDED, "CERBERUS_POSE_COMMANDED", "commanded"},
                      {CERBERUS_POSE_MEASURED, "CERBERUS_POSE_MEASURED", "measured"})
-CERBERUS_DEFINE_META(CerberusPose, pose, named, nullptr)
+CERBERUS_DEFINE_META(CerberusPose, pose, sane, nullptr)
 CERBERUS_DEFINE_EVENT(CerberusPose, pose, CERBERUS_EVENT_POSE, GST_EVENT_CUSTOM_UPSTREAM, cerberus::is_any)
 
 void cerberus_pose_set_head(CerberusPose* pose, const gchar* head) {

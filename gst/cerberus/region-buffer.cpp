@@ -36,8 +36,8 @@ bool is_sane(const CerberusRegion& region) {
   return std::ranges::all_of(std::initializer_list{region.x, region.y, region.width, region.height},
                              [](double n) { return std::abs(n) < kFar; }) &&
          region.width >= 0 && region.height >= 0 &&
-         cerberus::enum_value(CERBERUS_TYPE_REGION_KIND, region.kind) &&
-         cerberus::enum_value(CERBERUS_TYPE_REGION_STATE, region.state);
+         cerberus::is_one_of(CERBERUS_TYPE_REGION_KIND, &region.kind) &&
+         cerberus::is_one_of(CERBERUS_TYPE_REGION_STATE, &region.state);
 }
 
 // Our own record of a region. GStreamer's meta beside it is what others read: it holds whole pixels only, and up to

@@ -10,6 +10,12 @@ void unknown(CerberusStamp& stamp) {
   stamp.running_time = stamp.utc = GST_CLOCK_TIME_NONE;
 }
 
+CerberusStamp sane(CerberusStamp stamp) {
+  if (!cerberus::is_one_of(CERBERUS_TYPE_UTC_SOURCE, &stamp.utc_source))
+    stamp.utc_source = CERBERUS_UTC_UNKNOWN;
+  return stamp;
+}
+
 }  // namespace
 
 CERBERUS_DEFINE_BOXED(CerberusStamp, cerberus_stamp, unknown)
@@ -18,7 +24,7 @@ CERBERUS_DEFINE_ENUM(CerberusUtcSource, cerberus_utc_source,
                      {CERBERUS_UTC_REFERENCE_TIMESTAMP, "CERBERUS_UTC_REFERENCE_TIMESTAMP",
                       "reference-timestamp"},
                      {CERBERUS_UTC_CLOCK, "CERBERUS_UTC_CLOCK", "clock"})
-CERBERUS_DEFINE_META(CerberusStamp, stamp, cerberus::same, nullptr)
+CERBERUS_DEFINE_META(CerberusStamp, stamp, sane, nullptr)
 
 void cerberus_stamp_set_camera_name(CerberusStamp* stamp, const gchar* name) {
   g_return_if_fail(stamp);

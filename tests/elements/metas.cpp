@@ -9,6 +9,7 @@
 #include <gst/video/video.h>
 
 #include <cmath>
+#include <cstring>
 #include <string>
 
 #include "annotated.h"
@@ -273,6 +274,28 @@ START_TEST(a_shared_frame_cannot_be_annotated) {
 }
 END_TEST
 
+// An application in C may leave any number in an enumeration.
+START_TEST(a_foreign_number_in_an_enumeration_is_the_default) {
+  const int foreign = 77;
+  g_autoptr(GstBuffer) frame = gst_buffer_new();
+  CerberusPose pose;
+  cerberus_pose_init(&pose);
+  std::memcpy(&pose.source, &foreign, sizeof foreign);
+  fail_unless(cerberus_buffer_set_pose(frame, &pose));
+  fail_unless_equals_int(cerberus_buffer_peek_pose(frame)->source, CERBERUS_POSE_COMMANDED);
+  CerberusBase base;
+  cerberus_base_init(&base);
+  std::memcpy(&base.source, &foreign, sizeof foreign);
+  fail_unless(cerberus_buffer_set_base(frame, &base));
+  fail_unless_equals_int(cerberus_buffer_peek_base(frame)->source, CERBERUS_BASE_ESTIMATED);
+  CerberusStamp stamp;
+  cerberus_stamp_init(&stamp);
+  std::memcpy(&stamp.utc_source, &foreign, sizeof foreign);
+  fail_unless(cerberus_buffer_set_stamp(frame, &stamp));
+  fail_unless_equals_int(cerberus_buffer_peek_stamp(frame)->utc_source, CERBERUS_UTC_UNKNOWN);
+}
+END_TEST
+
 START_TEST(nothing_crashes_on_null) {
   fail_if(cerberus_camera_motion_copy(nullptr));
   fail_if(cerberus_region_copy(nullptr));
@@ -307,6 +330,7 @@ static Suite* metas_suite(void) {
   tc = tcase_create("bad input");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_shared_frame_cannot_be_annotated);
+  tcase_add_test(tc, a_foreign_number_in_an_enumeration_is_the_default);
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;
 }

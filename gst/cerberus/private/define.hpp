@@ -21,10 +21,6 @@ inline const gchar* head_of(const CerberusPose& pose) {
 
 // What needs no hook.
 template <typename Value>
-Value same(const Value& value) {
-  return value;
-}
-template <typename Value>
 void zero(Value&) {}
 template <typename Value>
 bool is_any(const Value&) {

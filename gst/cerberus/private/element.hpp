@@ -117,11 +117,7 @@ auto guarded(Element* element, Fallback fallback, Body&& body) noexcept -> std::
 template <typename Element, typename Body>
   requires std::is_void_v<std::invoke_result_t<Body>>
 void guarded(Element* element, Body&& body) noexcept {
-  try {
-    std::forward<Body>(body)();
-  } catch (...) {
-    detail::post_current_exception(reinterpret_cast<GstElement*>(element));
-  }
+  guarded(element, 0, [&] { return std::forward<Body>(body)(), 0; });
 }
 
 }  // namespace cerberus

@@ -32,6 +32,10 @@ GEnumClass* enum_class(GType type) {
   return static_cast<GEnumClass*>(klass ? klass : g_type_class_ref(type));
 }
 
+const GEnumValue* enum_value(GType type, int value) {
+  return g_enum_get_value(enum_class(type), value);
+}
+
 void write(GstStructure* to, const Field& f, const void* value) {
   switch (f.type) {
     case Field::Type::known:
@@ -122,8 +126,10 @@ void read_known_fields(const GstStructure* from, std::span<const Field> fields, 
   for (const Field& field : fields) read(from, field, value);
 }
 
-const GEnumValue* enum_value(GType type, int value) {
-  return g_enum_get_value(enum_class(type), value);
+bool is_one_of(GType type, const void* enumeration) {
+  int number = 0;
+  std::memcpy(&number, enumeration, sizeof number);
+  return enum_value(type, number);
 }
 
 const gchar* nick_of(GType type, int value) {

@@ -41,8 +41,8 @@ bool read_fields(const GstStructure* from, std::span<const Field> fields, void* 
 // Those that are missing or of another type keep what `value` holds.
 void read_known_fields(const GstStructure* from, std::span<const Field> fields, void* value);
 
-// nullptr: not a value of `type`.
-const GEnumValue* enum_value(GType type, int value);
+// Whether `enumeration`, an enum in which an application may have left any number, is a value of `type`.
+bool is_one_of(GType type, const void* enumeration);
 const gchar* nick_of(GType type, int value);
 
 // The array fields `sensors` and `bearings` of CerberusPir and CerberusFusion, of which at most `n` are read.
