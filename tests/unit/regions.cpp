@@ -221,6 +221,39 @@ START_TEST(head_and_legs_without_a_trunk_are_one_person_once_people_are_known) {
 }
 END_TEST
 
+// People are known, so that at row 200 a body is 50 pixels high and 18 wide. A body at 141..159 without its waist is two
+// components and therefore explained by a person, whose box is 18 wide: 141..159. The search around it reaches 0.3 of its
+// width, 5.4 pixels, to column 165, and 0.15 of its height upwards; each edge ends in the middle between the box and the
+// foreground found there.
+START_TEST(a_person_s_edge_lies_between_its_expected_place_and_the_limb_that_reaches_out) {
+  struct {
+    double reach, edge;
+  } const limbs[] = {{159, 159}, {164, (159 + 164) / 2.0}, {172, (159 + 165) / 2.0}};
+  for (const auto& limb : limbs) {
+    RegionFinder finder;
+    let_people_walk_by(finder);
+    Picture picture;
+    picture.fill(141, 150, 159, 164);
+    picture.fill(141, 177, 159, 200);
+    picture.fill(159, 180, limb.reach, 190);
+    const auto regions = picture.find(finder);
+    ck_assert_uint_eq(regions.size(), 1);
+    ck_assert(is_person_like(regions[0]));
+    ck_assert_double_eq(regions[0].box.x, 141);
+    ck_assert_double_eq(regions[0].box.right(), limb.edge);
+  }
+  RegionFinder finder;
+  let_people_walk_by(finder);
+  Picture picture;
+  picture.fill(141, 150, 159, 164);
+  picture.fill(141, 177, 159, 200);
+  picture.fill(147, 144, 151, 150);  // a hand above the head
+  const auto regions = picture.find(finder);
+  ck_assert_uint_eq(regions.size(), 1);
+  ck_assert_double_eq_tol(regions[0].box.y, (150 + 144) / 2.0, 1);
+}
+END_TEST
+
 START_TEST(a_car_among_people_is_not_cut_into_people_nor_lost) {
   RegionFinder finder;
   let_people_walk_by(finder);
@@ -443,6 +476,7 @@ int main() {
                   two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
                   a_region_s_area_is_the_foreground_in_its_box,
                   head_and_legs_without_a_trunk_are_one_person_once_people_are_known,
+                  a_person_s_edge_lies_between_its_expected_place_and_the_limb_that_reaches_out,
                   a_car_among_people_is_not_cut_into_people_nor_lost,
                   a_round_car_as_tall_as_people_is_one_region_until_it_has_left,
                   a_row_of_people_is_no_block_not_even_where_one_was,
