@@ -469,6 +469,20 @@ START_TEST(a_manual_command_survives_a_halt_and_not_the_end_of_the_stream) {
 }
 END_TEST
 
+START_TEST(the_end_of_the_stream_outlasts_resume_and_ends_with_a_flush) {
+  Rig rig;
+  rig.process(Rig::with(0s, Action::turn_left));
+  rig.controller.end({}, 10s, rig.out);
+  rig.controller.resume({}, rig.out);
+  rig.process(Rig::with(40ms, Action::turn_left));
+  ck_assert(holds(rig.command().pan));
+  rig.controller.forget();
+  rig.controller.resume({}, rig.out);
+  rig.process(Rig::with(80ms, Action::turn_left));
+  assert_turns(rig.command().pan, -40);
+}
+END_TEST
+
 START_TEST(a_closed_controller_refuses_everything) {
   Rig rig;
   rig.controller.close(10s);
@@ -778,6 +792,7 @@ int main() {
                            a_chosen_track_that_is_on_no_frame_for_five_seconds_is_given_up_with_a_warning,
                            a_halted_head_brakes_and_follows_frames_again_after_resume,
                            a_manual_command_survives_a_halt_and_not_the_end_of_the_stream,
+                           the_end_of_the_stream_outlasts_resume_and_ends_with_a_flush,
                            a_closed_controller_refuses_everything,
                            the_watchdog_brakes_at_its_time_where_frames_stayed_away,
                            gaps_do_not_feed_the_watchdog,
