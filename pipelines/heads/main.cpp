@@ -8,14 +8,17 @@
 #include <csignal>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "drivers/helper/helper_loop.h"
 #include "drivers/pelco/pelco_head.h"
 #include "drivers/visca/visca_head.h"
+#include "heads/drivers.h"
 
 namespace {
 
 using namespace cerberus::drivers;
+namespace heads = cerberus::heads;
 
 struct Options {
   gchar* device = nullptr;
@@ -23,13 +26,10 @@ struct Options {
   gboolean no_header = FALSE, no_feedback = FALSE, feedback = FALSE;
   gdouble pan_speed = PelcoOptions{}.pan_speed, tilt_speed = PelcoOptions{}.tilt_speed;
   gchar* speeds = nullptr;
+  gchar* emergency_stop = nullptr;
 };
 
-int fail(const std::string& text) {
-  // The pipeline reads standard output: what it cannot open is a fault, in words.
-  g_print("fault %s\n", text.c_str());
-  return 2;
-}
+using heads::fail;
 
 int run_visca(const Options& o) {
   ViscaOptions options;
@@ -42,7 +42,7 @@ int run_visca(const Options& o) {
     if (const std::string wrong = visca::parse_speed_table(o.speeds, options.speeds); !wrong.empty())
       return fail(wrong);
   ViscaHead head(options);
-  return serve_head(0, 1, head);
+  return heads::serve(head, o.emergency_stop ? o.emergency_stop : "");
 }
 
 int run_pelco(const Options& o) {
@@ -54,7 +54,7 @@ int run_pelco(const Options& o) {
   options.pan_speed = o.pan_speed;
   options.tilt_speed = o.tilt_speed;
   PelcoHead head(options);
-  return serve_head(0, 1, head);
+  return heads::serve(head, o.emergency_stop ? o.emergency_stop : "");
 }
 
 }  // namespace
@@ -62,6 +62,11 @@ int run_pelco(const Options& o) {
 int main(int argc, char** argv) {
   // The end of the input stops the head and ends the program. A signal meant for the pipeline must not end it before.
   for (const int number : {SIGINT, SIGHUP, SIGTERM, SIGPIPE}) std::signal(number, SIG_IGN);
+  if (const heads::Run run = heads::find_driver(argc > 1 ? argv[1] : "")) {
+    std::vector<OptionWord> words;
+    for (int i = 2; i < argc; ++i) words.push_back(option_word(argv[i]));
+    return run(words);
+  }
   Options o;
   const GOptionEntry entries[] = {
       {"device", 0, 0, G_OPTION_ARG_STRING, &o.device, "serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT",
@@ -80,11 +85,13 @@ int main(int argc, char** argv) {
       {"speeds", 0, 0, G_OPTION_ARG_STRING, &o.speeds,
        "Speeds of a VISCA camera's steps 0, 1, 2 ... in degrees a second: \"PAN PAN ...; TILT TILT ...\"",
        "TABLE"},
+      {"emergency-stop", 0, 0, G_OPTION_ARG_STRING, &o.emergency_stop,
+       "A normally closed contact that releases the motors", "CHIP:LINE"},
       {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
   const std::unique_ptr<GOptionContext, decltype(&g_option_context_free)> context(
       g_option_context_new("DRIVER"), g_option_context_free);
-  g_option_context_set_summary(context.get(),
-                               "Drives a pan-tilt head for pantiltsink. Drivers: visca, pelco-d.");
+  g_option_context_set_summary(
+      context.get(), "Drives a pan-tilt head for pantiltsink. Drivers: visca, pelco-d, stepper-gpio.");
   g_option_context_add_main_entries(context.get(), entries, nullptr);
   GError* error = nullptr;
   if (!g_option_context_parse(context.get(), &argc, &argv, &error)) {
@@ -94,7 +101,7 @@ int main(int argc, char** argv) {
   }
   const std::string driver = argc == 2 ? argv[1] : "";
   if (driver != "visca" && driver != "pelco-d")
-    return fail("there is no head driver \"" + driver + "\": take visca or pelco-d");
+    return fail("there is no head driver \"" + driver + "\": take visca, pelco-d or stepper-gpio");
   if (!o.device) return fail("the driver " + driver + " needs --device");
   return driver == "visca" ? run_visca(o) : run_pelco(o);
 }

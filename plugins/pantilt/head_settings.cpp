@@ -22,7 +22,7 @@ GType target_type() {
 
 const Property<HeadSettings> kProperties[] = {
     property("driver", &HeadSettings::driver,
-             "What drives the head: simulated, scripted, external, visca or pelco-d")
+             "What drives the head: simulated, scripted, external, visca, pelco-d or stepper-gpio")
         .read_at_start(),
     property("head", &HeadSettings::head, "Name of the head, in pose events and messages; one sink a name")
         .read_at_start(),
@@ -31,7 +31,7 @@ const Property<HeadSettings> kProperties[] = {
              "wait 8' with file descriptors")
         .read_at_start(),
     property("device", &HeadSettings::device,
-             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT or tcp:HOST:PORT")
+             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT or gpiochip0")
         .read_at_start(),
     property("device-options", &HeadSettings::device_options,
              "Options of the real head's driver, as 'baud=38400 address=2'")

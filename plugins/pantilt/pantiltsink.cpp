@@ -55,9 +55,10 @@
  * the usual choice goes on. `auto` takes the choice back, and so does each of the other signals: the last one counts.
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties), `scripted` (for
- * tests: what `script` says), `visca` and `pelco-d` (a camera at `device`) and `external` (a program that `command`
- * names). The last three run in a helper process, which stops the head when this one dies, hangs or is silent for
- * `helper-timeout`. One head has one name (`head`) and in a process one sink.
+ * tests: what `script` says), `external` (a program that `command` names) and those of real heads: `visca`,
+ * `pelco-d` (a camera at `device`) and `stepper-gpio` (motors on the GPIO chip `device`). All but the first two run in
+ * a helper process, which stops the head when this one dies, hangs or is silent for `helper-timeout`.
+ * One head has one name (`head`) and in a process one sink.
  *
  * No change of state waits for its first frame (`async=false`).
  *

@@ -74,7 +74,7 @@ int GpioLines::request_inputs(std::span<const unsigned>, LineBias) {
   chip.inputs = true;  // libgpiod 1.6 takes line by line: some are taken when one is refused
   return chip.input_error;
 }
-int GpioLines::request_outputs(std::span<const unsigned> offsets) {
+int GpioLines::request_outputs(std::span<const unsigned> offsets, const std::vector<bool>&) {
   chip.outputs = true;
   chip.lit.assign(offsets.size(), false);
   return chip.output_error;

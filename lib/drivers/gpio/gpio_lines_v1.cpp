@@ -47,10 +47,11 @@ struct GpioLines::Handles {
   int epoll = -1;
 
   int take(std::vector<gpiod_line*>& lines, std::span<const unsigned> offsets,
-           const gpiod_line_request_config& config) {
-    for (const unsigned offset : offsets) {
-      gpiod_line* line = gpiod_chip_get_line(chip, offset);
-      if (!line || gpiod_line_request(line, &config, 0) != 0) return last_error();
+           const gpiod_line_request_config& config, const std::vector<bool>& initial = {}) {
+    for (std::size_t i = 0; i < offsets.size(); ++i) {
+      gpiod_line* line = gpiod_chip_get_line(chip, offsets[i]);
+      const int level = i < initial.size() && initial[i];
+      if (!line || gpiod_line_request(line, &config, level) != 0) return last_error();
       lines.push_back(line);
     }
     return 0;
@@ -118,10 +119,10 @@ int GpioLines::request_inputs(std::span<const unsigned> offsets, LineBias bias) 
   return 0;
 }
 
-int GpioLines::request_outputs(std::span<const unsigned> offsets) {
+int GpioLines::request_outputs(std::span<const unsigned> offsets, const std::vector<bool>& initial) {
   const gpiod_line_request_config config{kConsumer, GPIOD_LINE_REQUEST_DIRECTION_OUTPUT, 0};
   errno = 0;
-  return handles_->take(handles_->outputs, offsets, config);
+  return handles_->take(handles_->outputs, offsets, config, initial);
 }
 
 int GpioLines::fd() const {
@@ -158,6 +159,21 @@ int GpioLines::set(const std::vector<bool>& levels) {
   errno = 0;
   for (std::size_t i = 0; i < handles_->outputs.size() && i < levels.size(); ++i)
     if (gpiod_line_set_value(handles_->outputs[i], levels[i]) != 0) return last_error();
+  return 0;
+}
+
+int GpioLines::set(std::size_t output, bool level) noexcept {
+  errno = 0;
+  if (output >= handles_->outputs.size()) return EINVAL;
+  return gpiod_line_set_value(handles_->outputs[output], level) == 0 ? 0 : last_error();
+}
+
+int GpioLines::level(std::size_t input, bool& level) noexcept {
+  errno = 0;
+  if (input >= handles_->inputs.size()) return EINVAL;
+  const int value = gpiod_line_get_value(handles_->inputs[input]);
+  if (value < 0) return last_error();
+  level = value != 0;
   return 0;
 }
 

@@ -48,13 +48,16 @@ using RequestConfig = Owned<gpiod_request_config, gpiod_request_config_free>;
 using Request = Owned<gpiod_line_request, gpiod_line_request_release>;
 using EdgeBuffer = Owned<gpiod_edge_event_buffer, gpiod_edge_event_buffer_free>;
 
+// levels: of outputs, one a line; empty: as `settings` says.
 int request_lines(gpiod_chip* chip, std::span<const unsigned> offsets, gpiod_line_settings* settings,
-                  Request& request) {
+                  std::span<const gpiod_line_value> levels, Request& request) {
   const LineConfig lines(gpiod_line_config_new());
   const RequestConfig config(gpiod_request_config_new());
   if (!lines || !config) return ENOMEM;
   gpiod_request_config_set_consumer(config.get(), kConsumer);
   if (gpiod_line_config_add_line_settings(lines.get(), offsets.data(), offsets.size(), settings) != 0)
+    return last_error();
+  if (!levels.empty() && gpiod_line_config_set_output_values(lines.get(), levels.data(), levels.size()) != 0)
     return last_error();
   request.reset(gpiod_chip_request_lines(chip, config.get(), lines.get()));
   return request ? 0 : last_error();
@@ -67,7 +70,7 @@ struct GpioLines::Handles {
   ChipInfo info;
   Request inputs, outputs;
   EdgeBuffer buffer;
-  std::vector<unsigned> offsets;              // of the inputs
+  std::vector<unsigned> offsets, out;         // of the inputs; of the outputs
   std::vector<gpiod_line_value> values, lit;  // of the inputs; of the outputs
 };
 
@@ -124,17 +127,21 @@ int GpioLines::request_inputs(std::span<const unsigned> offsets, LineBias bias) 
   gpiod_line_settings_set_bias(settings.get(), bias_of(bias));
   h.offsets.assign(offsets.begin(), offsets.end());
   h.values.resize(offsets.size());
-  return request_lines(h.chip.get(), offsets, settings.get(), h.inputs);
+  return request_lines(h.chip.get(), offsets, settings.get(), {}, h.inputs);
 }
 
-int GpioLines::request_outputs(std::span<const unsigned> offsets) {
+int GpioLines::request_outputs(std::span<const unsigned> offsets, const std::vector<bool>& initial) {
+  Handles& h = *handles_;
   errno = 0;
   const Settings settings(gpiod_line_settings_new());
   if (!settings) return ENOMEM;
   gpiod_line_settings_set_direction(settings.get(), GPIOD_LINE_DIRECTION_OUTPUT);
   gpiod_line_settings_set_output_value(settings.get(), GPIOD_LINE_VALUE_INACTIVE);
-  handles_->lit.assign(offsets.size(), GPIOD_LINE_VALUE_INACTIVE);
-  return request_lines(handles_->chip.get(), offsets, settings.get(), handles_->outputs);
+  h.out.assign(offsets.begin(), offsets.end());
+  h.lit.assign(offsets.size(), GPIOD_LINE_VALUE_INACTIVE);
+  for (std::size_t i = 0; i < std::min(initial.size(), h.lit.size()); ++i)
+    if (initial[i]) h.lit[i] = GPIOD_LINE_VALUE_ACTIVE;
+  return request_lines(h.chip.get(), offsets, settings.get(), h.lit, h.outputs);
 }
 
 int GpioLines::fd() const {
@@ -176,6 +183,24 @@ int GpioLines::set(const std::vector<bool>& levels) {
     lit[i] = levels[i] ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
   errno = 0;
   return gpiod_line_request_set_values(handles_->outputs.get(), lit.data()) == 0 ? 0 : last_error();
+}
+
+int GpioLines::set(std::size_t output, bool level) noexcept {
+  Handles& h = *handles_;
+  if (!h.outputs || output >= h.out.size()) return EINVAL;
+  h.lit[output] = level ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
+  errno = 0;
+  return gpiod_line_request_set_value(h.outputs.get(), h.out[output], h.lit[output]) == 0 ? 0 : last_error();
+}
+
+int GpioLines::level(std::size_t input, bool& level) noexcept {
+  Handles& h = *handles_;
+  if (!h.inputs || input >= h.offsets.size()) return EINVAL;
+  errno = 0;
+  const gpiod_line_value value = gpiod_line_request_get_value(h.inputs.get(), h.offsets[input]);
+  if (value == GPIOD_LINE_VALUE_ERROR) return last_error();
+  level = value == GPIOD_LINE_VALUE_ACTIVE;
+  return 0;
 }
 
 }  // namespace cerberus::drivers

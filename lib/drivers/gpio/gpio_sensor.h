@@ -21,10 +21,7 @@ class GpioSensor final : public Sensor {
   std::string place(int sensor) const override;
 
  private:
-  SensorError open_chip(const std::string& wanted);
-  SensorError offsets_of(const std::vector<std::string>& names, std::vector<unsigned>& offsets) const;
   SensorError request(const SensorSetup& setup);
-  SensorError refused(int error, std::span<const unsigned> offsets);
   SensorError gone(int error) const;
   void begin(Time now, std::vector<SensorEdge>& edges);
   SensorError take(std::vector<SensorEdge>& edges, Time now);

@@ -53,9 +53,9 @@ class Head {
   virtual bool blocks() const { return true; }
 };
 
-// "simulated", "scripted", "external", "visca", "pelco-d"; nullptr for an unknown name.
+// "simulated", "scripted", "external", "visca", "pelco-d", "stepper-gpio"; nullptr for an unknown name.
 std::unique_ptr<Head> make_head(std::string_view driver);
-// All names, for error messages: "simulated, scripted, external, visca, pelco-d".
+// All names, for error messages: "simulated, scripted, ...".
 std::string head_drivers();
 
 }  // namespace cerberus::drivers

@@ -12,7 +12,8 @@ namespace cerberus::drivers {
 
 namespace {
 
-constexpr std::array<std::string_view, 5> kDrivers{"simulated", "scripted", "external", "visca", "pelco-d"};
+constexpr std::array<std::string_view, 6> kDrivers{"simulated", "scripted", "external",
+                                                   "visca",     "pelco-d",  "stepper-gpio"};
 
 }  // namespace
 

@@ -23,6 +23,10 @@ class HeadDevice {
   virtual void limit(const motion::Limits& limits, Time now) = 0;
   // Stops both axes. A device that acknowledges is sent Stop again by tick() until it has.
   virtual void stop(Time now) noexcept = 0;
+  // Switches the motors off at once, where the device can; else stops them. Safe at any time.
+  virtual void release(Time now) noexcept { stop(now); }
+  // True while it moves without a command (homing): silence stops that, too.
+  virtual bool busy() const { return false; }
   // True while a stop is not acknowledged: the process does not end before, or before kStopPatience is over.
   virtual bool stopping() const = 0;
   // Descriptors to wait on.

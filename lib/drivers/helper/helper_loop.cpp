@@ -16,6 +16,7 @@ namespace cerberus::drivers {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr std::chrono::seconds kLongestWait{1};
 
 Time now_is() {
   return std::chrono::duration_cast<Time>(Clock::now().time_since_epoch());
@@ -28,10 +29,10 @@ class Server {
   int run() {
     if (!greet()) return 2;
     while (!ended_) {
-      wait(std::min(device_.tick(now_is()), obeyed_ ? heard_ + timeout_ : motion::kNever));
+      wait(std::min(device_.tick(now_is()), at_work() ? heard_ + timeout_ : motion::kNever));
       read();
       const Time now = now_is();
-      if (obeyed_ && now - heard_ >= timeout_) {
+      if (at_work() && now - heard_ >= timeout_) {
         device_.stop(now);
         obeyed_ = false;
         silent_ = true;
@@ -44,6 +45,8 @@ class Server {
   }
 
  private:
+  bool at_work() const { return obeyed_ || (device_.busy() && !silent_); }
+
   bool greet() {
     while (!ended_ && !greeted_) {
       wait(motion::kNever);
@@ -55,11 +58,12 @@ class Server {
   void wait(Time until) {
     fds_.assign(1, pollfd{in_, POLLIN, 0});
     if (greeted_) device_.watch(fds_);
-    int milliseconds = -1;
-    if (until != motion::kNever)
-      milliseconds = static_cast<int>(
-          std::clamp<long>(std::chrono::ceil<std::chrono::milliseconds>(until - now_is()).count(), 0, 1000));
-    ::poll(fds_.data(), fds_.size(), milliseconds);
+    // Not in milliseconds: a stepper's deadlines lie closer together than that.
+    const Time left = until == motion::kNever
+                          ? Time(kLongestWait)
+                          : std::clamp(until - now_is(), Time::zero(), Time(kLongestWait));
+    const timespec patience{left.count() / 1'000'000'000, left.count() % 1'000'000'000};
+    ::ppoll(fds_.data(), fds_.size(), &patience, nullptr);
   }
 
   void read() {

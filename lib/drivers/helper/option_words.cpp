@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/helper/option_words.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace cerberus::drivers {
+
+OptionWord option_word(std::string_view text) {
+  if (text.starts_with("--")) text.remove_prefix(2);
+  const std::size_t sign = text.find('=');
+  if (sign == text.npos) return {std::string(text), "", false};
+  return {std::string(text.substr(0, sign)), std::string(text.substr(sign + 1)), true};
+}
+
+std::vector<OptionWord> option_words(std::string_view text) {
+  std::vector<OptionWord> words;
+  for (const std::string& word : split(text, ' '))
+    if (!word.empty()) words.push_back(option_word(word));
+  return words;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = text.find(separator, begin);
+    parts.emplace_back(text.substr(begin, end == text.npos ? end : end - begin));
+    if (end == text.npos) return parts;
+    begin = end + 1;
+  }
+}
+
+std::optional<double> number_of(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "heads/drivers.h"
+
+#include <sched.h>
+#include <sys/prctl.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "drivers/helper/emergency_stop.h"
+#include "drivers/helper/helper_loop.h"
+#if HAVE_GPIOD
+#include "drivers/gpio/gpio_port.h"
+#endif
+
+namespace cerberus::heads {
+
+int fail(const std::string& text) {
+  std::printf("fault %s\n", text.c_str());
+  std::fflush(stdout);
+  return 2;
+}
+
+int serve(drivers::HeadDevice& device, const std::string& emergency_stop) {
+  if (emergency_stop.empty()) return drivers::serve_head(0, 1, device);
+#if HAVE_GPIOD
+  const std::size_t sign = emergency_stop.rfind(':');
+  if (sign == 0 || sign == emergency_stop.npos || sign + 1 == emergency_stop.size())
+    return fail("emergency-stop=" + emergency_stop + ": name it as CHIP:LINE, gpiochip0:17");
+  drivers::EmergencyStop guarded(device, std::make_unique<drivers::GpioPort>(emergency_stop.substr(0, sign)),
+                                 emergency_stop.substr(sign + 1));
+  return drivers::serve_head(0, 1, guarded);
+#else
+  return fail("emergency-stop needs libgpiod, which this build was made without");
+#endif
+}
+
+Run find_driver(const std::string& name) {
+  if (name == "stepper-gpio") return run_stepper;
+  return nullptr;
+}
+
+void be_punctual() {
+  ::prctl(PR_SET_TIMERSLACK, 1UL);  // nanoseconds; 50 us by default
+  const sched_param priority{10};   // above everything ordinary, below the kernel's own threads (50)
+  ::sched_setscheduler(0, SCHED_FIFO, &priority);  // refused without permission: steps are later then
+}
+
+}  // namespace cerberus::heads

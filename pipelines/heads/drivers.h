@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Drivers of cerberus-head whose options are words (drivers/helper/option_words.h), and what all drivers share.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "drivers/helper/head_device.h"
+#include "drivers/helper/option_words.h"
+
+namespace cerberus::heads {
+
+// Prints `fault TEXT`, which the pipeline reads from standard output. Returns the exit status.
+int fail(const std::string& text);
+
+// Serves the device until the end. emergency_stop: "CHIP:LINE" of a normally closed contact; empty: there is none.
+int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
+
+// One driver. Returns the process's exit status.
+using Run = int (*)(const std::vector<drivers::OptionWord>& words);
+int run_stepper(const std::vector<drivers::OptionWord>& words);
+
+// The driver of that name; nullptr: it is none of these.
+Run find_driver(const std::string& name);
+
+// Asks the kernel to wake this process on time: real-time priority where that is permitted, and exact timers.
+void be_punctual();
+
+}  // namespace cerberus::heads

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The driver stepper-gpio.
+#include <cerrno>
+#include <cstring>
+
+#include "drivers/stepper/stepper_head.h"
+#include "heads/drivers.h"
+#if HAVE_STEPPER
+#include "drivers/gpio/gpio_port.h"
+#endif
+
+namespace cerberus::heads {
+
+int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
+#if HAVE_STEPPER
+  drivers::StepperOptions options;
+  std::string emergency_stop, record;
+  for (const auto& [key, value, has_value] : words) {
+    std::string wrong;
+    if (key == "device")
+      options.chip = value;
+    else if (key == "pan")
+      wrong = drivers::parse_stepper_axis(value, options.pan);
+    else if (key == "tilt")
+      wrong = drivers::parse_stepper_axis(value, options.tilt);
+    else if (key == "release-delay")
+      wrong = drivers::parse_release_delay(value, options.release_delay);
+    else if (key == "emergency-stop")
+      emergency_stop = value;
+    else if (key == "record")
+      record = value;
+    else
+      wrong = "\"" + key +
+              "\" is no option of stepper-gpio: device, pan, tilt, release-delay, emergency-stop, record";
+    if (!wrong.empty()) return fail(wrong);
+  }
+  if (options.chip.empty()) return fail("stepper-gpio needs a GPIO chip (device=gpiochip0)");
+  std::FILE* steps = record.empty() ? nullptr : std::fopen(record.c_str(), "we");
+  if (!record.empty() && !steps) return fail("record=" + record + ": " + std::strerror(errno));
+  be_punctual();
+  drivers::StepperHead head(options, std::make_unique<drivers::GpioPort>(options.chip), steps);
+  const int status = serve(head, emergency_stop);
+  if (steps) std::fclose(steps);
+  return status;
+#else
+  return fail("stepper-gpio needs libgpiod, which this build was made without");
+#endif
+}
+
+}  // namespace cerberus::heads
