@@ -100,6 +100,11 @@ std::string HeadController::set_limits(const motion::Limits& limits, std::option
   return {};
 }
 
+void HeadController::set_manual_timeout(Time timeout) {
+  const std::lock_guard guard(lock_);
+  manual_timeout_ = timeout;
+}
+
 void HeadController::set_clock_driven(bool on) {
   const std::lock_guard guard(lock_);
   clock_driven_ = on;
@@ -167,7 +172,21 @@ void HeadController::report(HeadState state, std::string reason, Time head, Defe
 }
 
 void HeadController::report_manual(Time head, DeferredNotifications& out) {
-  if (manual_.active() && !halted_ && !faulty_) report(HeadState::manual, manual_.reason(), head, out);
+  if (!manual_.active() || halted_) return;
+  if (manual_.authority() == Authority::emergency_stop)
+    report(HeadState::stopped, manual_.reason(), head, out);
+  else if (!faulty_)
+    report(HeadState::manual, manual_.reason(), head, out);
+}
+
+// Takes over what the driver reports of its emergency stop.
+void HeadController::watch_emergency(Time head, DeferredNotifications& out) {
+  if (!runner_ || runner_->emergency() == (manual_.authority() == Authority::emergency_stop)) return;
+  manual_.emergency(manual_.authority() != Authority::emergency_stop);
+  law_.reset();
+  // A command that the head obeys ends its fault.
+  if (manual_.authority() == Authority::manual && clock_driven_ && !halted_) runner_->command({head, {}, {}});
+  report_manual(head, out);
 }
 
 void HeadController::report_fault(const std::string& failure, Time head, DeferredNotifications& out) {
@@ -223,6 +242,7 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
   HeadCommand command{now, {}, {}};
   if (halted_) return command;
   if (manual_.active()) {
+    manual_.lapse(now);
     report_manual(now, out);
     command.pan = manual_.command().pan;
     command.tilt = manual_.command().tilt;
@@ -292,6 +312,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
     return answer;
   }
   check(runner->failure(), now, out);
+  watch_emergency(now, out);
   remember(poses);
   publish(poses, std::max(from, now + std::max(setup_.latency, frame.length)), out);
   return answer;
@@ -320,6 +341,10 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
     runner->command({now, {}, {}});
     on_timeout(now, out);
   }
+  if (!halted_ && manual_.lapse(now)) {
+    runner->command({now, {}, {}});
+    report_manual(now, out);
+  }
   guard.unlock();
   std::vector<Pose> poses;
   const Answer answer = runner->ask({}, now, now + setup_.latency + kAhead, poses, kTickPatience);
@@ -330,13 +355,15 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
     return at + kWhileMoving;
   }
   if (answer != Answer::interrupted) check(runner->failure(), now, out);
+  watch_emergency(now, out);
   if (poses.empty()) return at + kWhileMoving;
   late_since_ = motion::kNever;
   remember(poses);
   publish(poses, motion::kNever, out);
   const Pose& pose = poses.front();
   Time next = now + (pose.moving() ? kWhileMoving : kAtRest);
-  next = std::max(now + milliseconds(1), std::min({next, pose.until, watchdog_.deadline()}));
+  next =
+      std::max(now + milliseconds(1), std::min({next, pose.until, watchdog_.deadline(), manual_.deadline()}));
   return next - epoch_;
 }
 
@@ -383,6 +410,7 @@ void HeadController::resume(std::optional<Time> at, DeferredNotifications& out) 
   if (ended_) return;
   halted_ = false;
   if (runner_ && std::exchange(limits_wait_, false)) runner_->limit(earliest(at), setup_.limits);
+  if (at && clock_driven_) manual_.lapse(head_time(*at));
   if (runner_ && manual_.active() && clock_driven_ && at)
     runner_->command({head_time(*at), manual_.command().pan, manual_.command().tilt});
   report_manual(latest_, out);
@@ -403,7 +431,10 @@ void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications&
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
   if (clock_driven_ && !halted_) runner_->command({now, manual_.command().pan, manual_.command().tilt});
-  report(HeadState::manual, manual_.reason(), now, out);
+  if (manual_.authority() == Authority::emergency_stop)
+    report_manual(now, out);
+  else
+    report(HeadState::manual, manual_.reason(), now, out);
 }
 
 bool HeadController::move(double pan, double tilt, bool relative, std::optional<Time> at,
@@ -412,6 +443,16 @@ bool HeadController::move(double pan, double tilt, bool relative, std::optional<
   if (!runner_ || ended_) return false;
   const Time now = at && clock_driven_ ? head_time(*at) : std::max(latest_, published_);
   if (!manual_.move(pan, tilt, relative, history_.at(now), setup_.limits)) return false;
+  if (manual_timeout_ > Time::zero()) manual_.expires(now + manual_timeout_);
+  apply_manual(at, out);
+  return true;
+}
+
+bool HeadController::turn(double pan, double tilt, std::optional<Time> at, DeferredNotifications& out) {
+  const std::lock_guard guard(lock_);
+  if (!runner_ || ended_ || !manual_.turn(pan, tilt)) return false;
+  const Time now = at && clock_driven_ ? head_time(*at) : std::max(latest_, published_);
+  manual_.expires(now + (manual_timeout_ > Time::zero() ? manual_timeout_ : Time(kTurnTimeout)));
   apply_manual(at, out);
   return true;
 }
@@ -434,7 +475,7 @@ void HeadController::end_manual(const char* reason, std::optional<Time> at, Defe
 
 bool HeadController::automatic(std::optional<Time> at, DeferredNotifications& out) {
   const std::lock_guard guard(lock_);
-  if (!runner_) return false;
+  if (!runner_ || manual_.authority() == Authority::emergency_stop) return false;
   selector_.follow(0);
   end_manual("told to go on by itself", at, out);
   return true;
@@ -442,7 +483,7 @@ bool HeadController::automatic(std::optional<Time> at, DeferredNotifications& ou
 
 bool HeadController::follow(std::uint32_t id, std::optional<Time> at, DeferredNotifications& out) {
   const std::lock_guard guard(lock_);
-  if (!runner_ || ended_ || id == 0) return false;
+  if (!runner_ || ended_ || id == 0 || manual_.authority() == Authority::emergency_stop) return false;
   selector_.follow(id);
   law_.reset();  // another target
   end_manual("told to follow somebody", at, out);

@@ -41,6 +41,10 @@ class HeadController {
   std::string set_limits(const motion::Limits& limits, std::optional<Time> now);
   // The limits of `law` are ignored: set_limits() sets them.
   void set_options(const LawOptions& law, const fusion::FuserOptions& fuser, Time watchdog);
+  // Manual commands are replaced by a stop after this time unless they are repeated; 0: positions never, speeds after
+  // kTurnTimeout.
+  void set_manual_timeout(Time timeout);
+  static constexpr std::chrono::milliseconds kTurnTimeout{500};
   void set_clock_driven(bool on);
   // Clears the frames and the end of the stream (a flush): the next frame begins anew.
   void forget();
@@ -70,8 +74,11 @@ class HeadController {
   // Ends the stream: a halt that only forget() and open() end. A manual command expires.
   void end(std::optional<Time> now, Patience patience, DeferredNotifications& out);
 
-  // Manual override until automatic(). Radians; now: as for halt(). False: not possible.
+  // Manual override until automatic(). Radians; now: as for halt(). False: not possible, as during an emergency stop,
+  // which the driver reports; after it the head stays until one of these or automatic() is called.
   bool move(double pan, double tilt, bool relative, std::optional<Time> now, DeferredNotifications& out);
+  // Radians a second; expires after the manual timeout.
+  bool turn(double pan, double tilt, std::optional<Time> now, DeferredNotifications& out);
   bool stop(std::optional<Time> now, DeferredNotifications& out);
   bool automatic(std::optional<Time> now, DeferredNotifications& out);
   // Chooses the track to follow while it lives; ends a manual override. 0 is refused.
@@ -96,6 +103,7 @@ class HeadController {
   drivers::HeadCommand decide(const Frame& frame, Time now, DeferredNotifications& out);
   void on_timeout(Time head, DeferredNotifications& out);
   void apply_manual(std::optional<Time> now, DeferredNotifications& out);
+  void watch_emergency(Time head, DeferredNotifications& out);
   void end_manual(const char* reason, std::optional<Time> now, DeferredNotifications& out);
   motion::Pose running(motion::Pose pose) const;
 
@@ -114,7 +122,7 @@ class HeadController {
   Time published_{};            // head time until which poses were published
   bool fresh_ = true;           // no pose was published since running time may have begun anew
   std::optional<Time> newest_;  // running
-  Time timeout_{};
+  Time timeout_{}, manual_timeout_{};
   Time late_since_ = motion::kNever;
   Status status_;
 };

@@ -10,7 +10,7 @@ using motion::AxisCommand;
 
 bool ManualOverride::move(double pan, double tilt, bool relative, const motion::Pose& here,
                           const motion::Limits& limits) {
-  if (!std::isfinite(pan) || !std::isfinite(tilt)) return false;
+  if (emergency_ || !std::isfinite(pan) || !std::isfinite(tilt)) return false;
   if (relative) {
     const auto base = [&](const AxisCommand& commanded, const motion::AxisState& state) {
       return active_ && commanded.kind == AxisCommand::Kind::position ? commanded.value : state.position;
@@ -26,12 +26,37 @@ bool ManualOverride::move(double pan, double tilt, bool relative, const motion::
   return true;
 }
 
+bool ManualOverride::turn(double pan, double tilt) {
+  if (emergency_ || !std::isfinite(pan) || !std::isfinite(tilt)) return false;
+  const auto axis = [](double speed) {
+    return speed == 0 ? AxisCommand{} : AxisCommand{AxisCommand::Kind::velocity, speed, 0};
+  };
+  set("told to turn", {.time = {}, .pan = axis(pan), .tilt = axis(tilt)});
+  return true;
+}
+
+bool ManualOverride::lapse(motion::Time now) {
+  if (deadline_ == motion::kNever || now < deadline_) return false;
+  expire("its order was not repeated");
+  return true;
+}
+
+void ManualOverride::emergency(bool pressed) {
+  if (pressed == emergency_) return;
+  set(pressed ? "the emergency stop is pressed" : "the emergency stop was pressed: it waits for an order",
+      {});
+  emergency_ = pressed;
+}
+
 bool ManualOverride::end() {
+  if (emergency_) return false;
+  deadline_ = motion::kNever;
   return std::exchange(active_, false);
 }
 
 void ManualOverride::set(const char* reason, const drivers::HeadCommand& command) {
   active_ = true;
+  deadline_ = motion::kNever;
   command_ = command;
   reason_ = reason;
 }

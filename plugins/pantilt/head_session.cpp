@@ -173,6 +173,7 @@ void HeadSession::configure() {
     const std::lock_guard guard(configuring_);
     const HeadSettings s = settings.snapshot();
     field_of_view = s.horizontal_fov;
+    controller.set_manual_timeout(time_of(s.manual_timeout));
     controller.set_options(law_options(s), fuser_options(s), time_of(s.watchdog_timeout));
     if (opened_) wrong = controller.set_limits(head_limits(s), now());
     if (wrong.empty())

@@ -95,6 +95,10 @@ const Property<HeadSettings> kProperties[] = {
              "Nanoseconds for which a person who stopped is watched at least, without pirfusion upstream"),
     property("watchdog-timeout", &HeadSettings::watchdog_timeout,
              "Nanoseconds without a frame after which the head stops; 0 = never"),
+    property("manual-timeout", &HeadSettings::manual_timeout,
+             "Nanoseconds after which an order by hand that is not repeated becomes a stop, for orders from "
+             "afar; 0 = "
+             "moves never, `turn` after 500 ms"),
     property("camera-name", &HeadSettings::camera_name, kCameraNameBlurb).read_at_start(),
 };
 

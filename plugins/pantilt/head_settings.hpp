@@ -31,7 +31,7 @@ struct HeadSettings {
   int target = static_cast<int>(fusion::TargetChoice::nearest);
   guint64 return_delay = 5 * GST_SECOND;
   guint64 hold_stopped = 30 * GST_SECOND;
-  guint64 watchdog_timeout = 500 * GST_MSECOND;
+  guint64 watchdog_timeout = 500 * GST_MSECOND, manual_timeout = 0;
 };
 
 std::span<const Property<HeadSettings>> head_properties();

@@ -47,7 +47,13 @@
  * `holding`, `manual`, `limited`, `fault`) and `reason` at every change of either.
  *
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees;
- * false if the head is not there, the stream is over, or a number is none), `stop`, `home`, `auto`.
+ * false if the head is not there, the stream is over, or a number is none), `turn` (degrees a second; a stop after 500 ms
+ * unless it is repeated), `stop`, `home`, `auto`. With `manual-timeout`, for orders that come from afar, a move that is
+ * not repeated becomes a stop as well. `stop` holds until the next order or `auto`.
+ *
+ * One controller at a time has the head: the emergency stop of its driver (state `stopped`), then the signals, then the
+ * decisions. Pressed, it switches the motors off and every signal but `stop` is refused; released, the head stays until
+ * the next signal.
  *
  * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over)
  * chooses whom to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on
@@ -351,6 +357,11 @@ gboolean move(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
     return head.move(radians(pan), radians(tilt), relative, now, out);
   });
 }
+gboolean turn(CerberusPanTiltSink* sink, gdouble pan, gdouble tilt) {
+  return manual(sink, [=](auto& head, auto now, auto& out) {
+    return head.turn(radians(pan), radians(tilt), now, out);
+  });
+}
 gboolean home(CerberusPanTiltSink* sink) {
   return move<false>(sink, 0, 0);
 }
@@ -397,6 +408,7 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
   Adjustable<HeadSettings>::install(object, head_properties());
   add_signal(object, "move-to", G_CALLBACK(move<false>), 2);
   add_signal(object, "move-by", G_CALLBACK(move<true>), 2);
+  add_signal(object, "turn", G_CALLBACK(turn), 2);
   add_signal(object, "stop", G_CALLBACK(stay));
   add_signal(object, "home", G_CALLBACK(home));
   add_signal(object, "auto", G_CALLBACK(automatic));

@@ -39,6 +39,7 @@ struct Record {
   std::vector<std::pair<Time, motion::Limits>> limits;
   std::vector<Time> stops;
   std::string failure;  // returned by command()
+  bool emergency = false;
   std::string refusal;  // returned by open()
 };
 
@@ -62,6 +63,7 @@ class RecordedHead : public drivers::Head {
     return head_->limit(now, limits);
   }
   std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
+  bool emergency() override { return record_->emergency; }
   bool simulated() const override { return true; }
   bool blocks() const override { return blocks_; }
 
@@ -734,6 +736,68 @@ START_TEST(a_fault_is_reported_once_and_the_state_returns_after_it) {
 }
 END_TEST
 
+START_TEST(a_turn_by_hand_becomes_a_stop_after_500_ms_unless_it_is_repeated) {
+  Options options;
+  options.clock_driven = true;
+  Rig rig(options);
+  ck_assert(rig.controller.turn(radians(20), 0, 1s, rig.out));
+  assert_turns(rig.command().pan, 20);
+  ck_assert(rig.controller.turn(radians(20), 0, 1400ms, rig.out));
+  rig.controller.tick(1600ms, rig.out);
+  assert_turns(rig.command().pan, 20);
+  ck_assert(rig.controller.tick(1880ms, rig.out) <= 1900ms);
+  rig.controller.tick(1900ms, rig.out);
+  ck_assert(holds(rig.command().pan));
+  rig.assert_status(HeadState::manual, "its order was not repeated");
+  // Neither does it go on after a pause.
+  rig.controller.turn(radians(20), 0, 2s, rig.out);
+  rig.controller.halt("paused", 2100ms, 10s, rig.out);
+  rig.controller.resume(3s, rig.out);
+  ck_assert(holds(rig.command().pan));
+}
+END_TEST
+
+START_TEST(moves_expire_only_with_a_manual_timeout) {
+  Options options;
+  options.clock_driven = true;
+  Rig rig(options);
+  rig.controller.move(radians(100), 0, false, 1s, rig.out);
+  rig.controller.tick(2s, rig.out);
+  assert_goes(rig.command().pan, 100, 90);
+  rig.controller.set_manual_timeout(300ms);
+  rig.controller.move(radians(-100), 0, false, 3s, rig.out);
+  rig.controller.tick(3299ms, rig.out);
+  assert_goes(rig.command().pan, -100, 90);
+  rig.controller.tick(3300ms, rig.out);
+  ck_assert(holds(rig.command().pan));
+}
+END_TEST
+
+START_TEST(the_emergency_stop_takes_the_head_from_everybody_until_a_new_order) {
+  Options options;
+  options.clock_driven = true;
+  Rig rig(options);
+  rig.controller.move(radians(30), 0, false, 1s, rig.out);
+  rig.record->emergency = true;
+  rig.controller.tick(1100ms, rig.out);
+  rig.assert_status(HeadState::stopped, "the emergency stop is pressed");
+  ck_assert(!rig.controller.move(radians(10), 0, false, 1200ms, rig.out));
+  ck_assert(!rig.controller.turn(1, 0, 1200ms, rig.out));
+  ck_assert(!rig.controller.automatic(1200ms, rig.out));
+  ck_assert(!rig.controller.follow(4, 1200ms, rig.out));
+  rig.record->emergency = false;
+  rig.controller.tick(2s, rig.out);
+  rig.assert_status(HeadState::manual, "the emergency stop was pressed: it waits for an order");
+  const auto before = rig.record->commands.size();
+  rig.process(Rig::with(2100ms, Action::turn_left));  // decisions do not move it
+  ck_assert_uint_eq(rig.record->commands.size(), before);
+  ck_assert(holds(rig.command().pan));
+  ck_assert(rig.controller.automatic(2200ms, rig.out));
+  rig.process(Rig::with(2300ms, Action::turn_left));
+  assert_turns(rig.command().pan, -40);
+}
+END_TEST
+
 START_TEST(after_a_fault_a_manual_command_is_reported_again) {
   Rig rig;
   rig.controller.move(radians(30), 0, false, {}, rig.out);
@@ -807,6 +871,9 @@ int main() {
                            a_new_command_takes_effect_after_the_published_poses_only,
                            the_head_s_time_goes_on_when_running_time_begins_anew,
                            a_fault_is_reported_once_and_the_state_returns_after_it,
+                           a_turn_by_hand_becomes_a_stop_after_500_ms_unless_it_is_repeated,
+                           moves_expire_only_with_a_manual_timeout,
+                           the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
                            after_a_fault_a_manual_command_is_reported_again,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
                            an_interrupted_frame_is_passed_again});

@@ -78,15 +78,32 @@ START_TEST(faults_keep_their_words) {
               "no port /dev/ttyUSB0: permission denied");
   assert_text(parsed<StoppedLine>("stopped silence").text, "silence");
   parsed<RecoveredLine>("recovered");
+  ck_assert(parsed<EmergencyLine>("emergency pressed").pressed);
+  ck_assert(!parsed<EmergencyLine>("emergency released").pressed);
 }
 END_TEST
 
 START_TEST(what_is_no_line_of_the_protocol_is_refused) {
-  for (const char* wrong :
-       {"", " ", "ready", "ready 2 position", "ready 1", "ready 1 feedback", "ready 1 position rate 0",
-        "ready 1 position rate nan", "pose 1 2 3 4", "pose 1 2 3 4 -1", "pose nan 0 0 0 0",
-        "pose 1e9 0 0 0 0", "pose 1 2 3 4 5 6", "pose 1,5 0 0 0 0", "fault", "recovered now",
-        "READY 1 position", "move at 3 hold"})
+  for (const char* wrong : {"",
+                            " ",
+                            "ready",
+                            "ready 2 position",
+                            "ready 1",
+                            "ready 1 feedback",
+                            "ready 1 position rate 0",
+                            "ready 1 position rate nan",
+                            "pose 1 2 3 4",
+                            "pose 1 2 3 4 -1",
+                            "pose nan 0 0 0 0",
+                            "pose 1e9 0 0 0 0",
+                            "pose 1 2 3 4 5 6",
+                            "pose 1,5 0 0 0 0",
+                            "fault",
+                            "recovered now",
+                            "emergency",
+                            "emergency perhaps",
+                            "READY 1 position",
+                            "move at 3 hold"})
     ck_assert_msg(!parse_helper_line(wrong), "'%s'", wrong);
 }
 END_TEST

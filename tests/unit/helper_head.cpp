@@ -150,6 +150,23 @@ START_TEST(a_helper_that_cannot_open_its_head_reports_the_reason) {
 }
 END_TEST
 
+START_TEST(an_emergency_stop_between_two_looks_is_seen) {
+  HelperHead head("external");
+  const std::string command =
+      "sh -c 'read a; echo ready 1 position; while read b; do case $b in move*) echo emergency pressed; echo "
+      "emergency released; echo fault done;; esac; done'";
+  assert_text(head.open(setup_with(command)), "");
+  ck_assert(!head.emergency());
+  assert_text(head.command({0s, {Kind::position, 0.1, 1}, {}}), "");
+  Time time = 0s;
+  for (const auto end = Clock::now() + 10s;
+       Clock::now() < end && head.command({time += 1ms, {}, {}}).empty();)
+    std::this_thread::sleep_for(5ms);
+  ck_assert(head.emergency());
+  ck_assert(!head.emergency());
+}
+END_TEST
+
 START_TEST(a_helper_that_ended_is_reported_and_started_again) {
   HelperHead head("external");
   const std::string command =
@@ -196,7 +213,7 @@ int main() {
       "helper_head",
       {the_shipped_example_goes_where_it_is_sent_and_reports_it, a_helper_receives_the_command,
        a_head_with_speed_commands_only_brakes_at_the_target, a_helper_receives_a_line_well_within_its_timeout,
-       a_helper_that_cannot_open_its_head_reports_the_reason,
+       a_helper_that_cannot_open_its_head_reports_the_reason, an_emergency_stop_between_two_looks_is_seen,
        a_helper_that_ended_is_reported_and_started_again,
        a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline});
 }

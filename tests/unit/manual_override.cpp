@@ -4,6 +4,8 @@
 
 #include <check.h>
 
+#include <chrono>
+#include <cmath>
 #include <limits>
 
 #include "../support/suite.h"
@@ -85,11 +87,59 @@ START_TEST(an_expired_command_stands_still_and_stays_an_override) {
 }
 END_TEST
 
+START_TEST(a_turn_and_a_move_with_a_deadline_become_a_stop_unless_repeated) {
+  using namespace std::chrono_literals;
+  ManualOverride manual;
+  ck_assert(manual.turn(radians(10), 0));
+  ck_assert(manual.command().pan.kind == Kind::velocity && manual.command().tilt.kind == Kind::hold);
+  ck_assert_double_eq(manual.command().pan.value, radians(10));
+  manual.expires(500ms);
+  ck_assert(!manual.lapse(499ms));
+  ck_assert(manual.turn(radians(10), 0));  // repeated
+  manual.expires(900ms);
+  ck_assert(!manual.lapse(500ms));
+  ck_assert(manual.lapse(900ms));
+  ck_assert(!manual.lapse(901ms));
+  ck_assert(manual.active() && manual.command().pan.kind == Kind::hold);  // latched
+  ck_assert(manual.move(radians(5), 0, false, {}, kLimits));
+  ck_assert(manual.deadline() == motion::kNever);
+  ck_assert(!manual.lapse(1h));
+  for (const double none : {std::numeric_limits<double>::quiet_NaN(), HUGE_VAL})
+    ck_assert(!manual.turn(none, 0) && !manual.turn(0, none));
+  assert_goes(manual, 5, 0);
+}
+END_TEST
+
+START_TEST(the_emergency_stop_takes_precedence_and_latches) {
+  using control::Authority;
+  ManualOverride manual;
+  ck_assert(manual.authority() == Authority::automatic);
+  manual.move(radians(5), 0, false, {}, kLimits);
+  ck_assert(manual.authority() == Authority::manual);
+  manual.emergency(true);
+  ck_assert(manual.authority() == Authority::emergency_stop);
+  ck_assert(manual.command().pan.kind == Kind::hold);
+  ck_assert(!manual.move(radians(5), 0, false, {}, kLimits));
+  ck_assert(!manual.turn(1, 0));
+  ck_assert(!manual.end());
+  manual.stop();
+  manual.expire("over");
+  ck_assert_str_eq(manual.reason(), "the emergency stop is pressed");
+  manual.emergency(false);
+  ck_assert(manual.authority() == Authority::manual);  // decisions do not have the head back
+  ck_assert(manual.command().pan.kind == Kind::hold);
+  ck_assert(manual.end());
+  ck_assert(manual.authority() == Authority::automatic);
+}
+END_TEST
+
 int main() {
   return tests::run_suite(
       "manual_override",
       {an_absolute_move_goes_there_whatever_the_pose,
        relative_moves_add_up_from_the_pose_and_then_from_the_last_command,
        beyond_a_limit_the_head_goes_as_far_as_the_limit, a_number_that_is_none_changes_nothing,
-       an_expired_command_stands_still_and_stays_an_override});
+       an_expired_command_stands_still_and_stays_an_override,
+       a_turn_and_a_move_with_a_deadline_become_a_stop_unless_repeated,
+       the_emergency_stop_takes_precedence_and_latches});
 }

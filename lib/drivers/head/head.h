@@ -47,6 +47,8 @@ class Head {
   // Returns in `pose` the piece of the trajectory at `time`, with pose.from = time. A time ahead by up to the latency
   // is final: a new command cannot change it.
   virtual std::string state(Time time, motion::Pose& pose) = 0;
+  // True while the device's emergency stop is pressed, and once after it was pressed between two calls.
+  virtual bool emergency() { return false; }
   // True: the head has no clock of its own and follows the times that are passed, whatever their rate.
   virtual bool simulated() const { return false; }
   // False: every call returns at once, and the head needs no thread of its own.

@@ -52,6 +52,7 @@ struct HeadRunner::Core {
   std::string failure;           // not reported yet
   std::string unopened;          // used like the head: why it could not be opened
   std::string refusal;           // the same, not reported yet
+  bool emergency = false;        // at the last request
   bool asking = false;           // a call of ask() waits
   bool failed = false;           // the last batch
   bool question_failed = false;  // that of the last question, whose answer is in `poses`
@@ -105,8 +106,10 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   if (blocks) guard.unlock();
   found.clear();
   const std::string wrong = carry_out(batch);
+  const bool pressed = head->emergency();
   if (batch.quit) head->close();
   if (blocks) guard.lock();
+  emergency = pressed;
   failed = !wrong.empty();
   if (failed) failure = wrong;
   const bool failed_to_open = failed && batch.open;
@@ -249,6 +252,11 @@ std::string HeadRunner::refusal() {
 bool HeadRunner::healthy() const {
   const std::lock_guard guard(core_->lock);
   return core_->obeys && core_->speaks;
+}
+
+bool HeadRunner::emergency() const {
+  const std::lock_guard guard(core_->lock);
+  return core_->emergency;
 }
 
 bool HeadRunner::idle() const {

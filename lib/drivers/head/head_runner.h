@@ -58,6 +58,8 @@ class HeadRunner {
   std::string refusal();
   // Returns whether the driver executed the last command and answered the last query of its state.
   bool healthy() const;
+  // Returns whether the head's emergency stop was pressed at the last request.
+  bool emergency() const;
   // Returns false while a request is in progress.
   bool idle() const;
 

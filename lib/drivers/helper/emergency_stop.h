@@ -29,6 +29,7 @@ class EmergencyStop final : public HeadDevice {
   void watch(std::vector<pollfd>& fds) const override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override { return device_.take_pose(now); }
+  bool emergency() const override { return open_; }
   std::string fault() const override;
 
   // Where the kernel reports no edge the line is read this often.

@@ -35,6 +35,8 @@ class HeadDevice {
   virtual Time tick(Time now) = 0;
   // The position since the last call, if there is a new one.
   virtual std::optional<PoseLine> take_pose(Time now) = 0;
+  // True while an emergency stop keeps the motors off.
+  virtual bool emergency() const { return false; }
   // What is wrong with the device now; empty: nothing.
   virtual std::string fault() const = 0;
 };

@@ -215,6 +215,11 @@ std::optional<HelperLine> parse_helper_line(std::string_view line) {
   if (word == "pose") return parse_pose(words);
   if (word == "fault" && !words.rest().empty()) return FaultLine{words.rest()};
   if (word == "recovered" && words.rest().empty()) return RecoveredLine{};
+  if (word == "emergency") {
+    const std::string state = words.rest();
+    if (state == "pressed" || state == "released") return EmergencyLine{state == "pressed"};
+    return std::nullopt;
+  }
   if (word == "stopped") return StoppedLine{words.rest()};
   return std::nullopt;
 }

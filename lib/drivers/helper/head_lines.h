@@ -12,7 +12,7 @@
 //   helper -> pipeline
 //     ready 1 [position] [velocity] [feedback] [rate N]
 //     pose PAN TILT PAN-SPEED TILT-SPEED AGE
-//     fault TEXT | recovered | stopped TEXT
+//     fault TEXT | recovered | stopped TEXT | emergency pressed | emergency released
 #pragma once
 
 #include <cstddef>
@@ -50,8 +50,11 @@ struct RecoveredLine {};
 struct StoppedLine {
   std::string text;  // why the helper stopped the head by itself
 };
+struct EmergencyLine {
+  bool pressed = false;  // the device's emergency stop
+};
 // What a helper sends.
-using HelperLine = std::variant<ReadyLine, PoseLine, FaultLine, RecoveredLine, StoppedLine>;
+using HelperLine = std::variant<ReadyLine, PoseLine, FaultLine, RecoveredLine, StoppedLine, EmergencyLine>;
 
 struct HelloLine {
   HeadSetup setup;  // limits, start and helper_timeout; the rest as by default

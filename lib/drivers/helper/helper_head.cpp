@@ -72,11 +72,12 @@ struct HelperHead::Core {
   SimulatedHead model;
   HeadAbilities abilities;
   bool open = false, ready = false, ended = false, follows = false;
-  std::string fault;      // of the head, as the helper reports it
-  std::string notice;     // what the next command() returns, once
-  Time epoch{};           // running time 0 on the steady clock
-  HeadCommand last;       // of the caller
-  std::string last_move;  // as sent
+  bool pressed = false, was_pressed = false;  // the emergency stop: now; since the last emergency()
+  std::string fault;                          // of the head, as the helper reports it
+  std::string notice;                         // what the next command() returns, once
+  Time epoch{};                               // running time 0 on the steady clock
+  HeadCommand last;                           // of the caller
+  std::string last_move;                      // as sent
   Time next_follow{}, next_alive{}, next_start{};
   double pan_correction = 0, tilt_correction = 0;  // radians: what to add to the model
   std::optional<Time> measured;                    // running time of the last report
@@ -102,7 +103,7 @@ struct HelperHead::Core {
 };
 
 std::string HelperHead::Core::start() {
-  ready = false;
+  ready = pressed = false;
   fault.clear();
   lines = {};
   last_move.clear();
@@ -183,6 +184,9 @@ void HelperHead::Core::handle(const HelperLine& line) {
   } else if (std::get_if<RecoveredLine>(&line)) {
     fault.clear();
     last_move.clear();
+  } else if (const auto* emergency = std::get_if<EmergencyLine>(&line)) {
+    pressed = emergency->pressed;
+    was_pressed = was_pressed || pressed;
   } else if (const auto* halted = std::get_if<StoppedLine>(&line)) {
     notice = "the helper stopped the head: " + halted->text;
     last_move.clear();
@@ -318,6 +322,12 @@ std::string HelperHead::limit(Time now, const motion::Limits& limits) {
   core_->setup.limits = limits;
   core_->send(limits_line(limits));
   return {};
+}
+
+bool HelperHead::emergency() {
+  if (!core_) return false;
+  const std::lock_guard guard(core_->lock);
+  return std::exchange(core_->was_pressed, core_->pressed) || core_->pressed;
 }
 
 std::string HelperHead::state(Time time, Pose& pose) {

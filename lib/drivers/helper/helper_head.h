@@ -33,6 +33,7 @@ class HelperHead final : public Head {
   std::string command(const HeadCommand& command) override;
   std::string limit(Time now, const motion::Limits& limits) override;
   std::string state(Time time, motion::Pose& pose) override;
+  bool emergency() override;
 
  private:
   struct Core;

@@ -117,6 +117,11 @@ class Server {
       fault_ = fault;
       send(fault.empty() ? "recovered" : "fault " + fault);
     }
+    // After `recovered`, so that a command that answers it is obeyed.
+    if (const bool pressed = device_.emergency(); pressed != emergency_) {
+      emergency_ = pressed;
+      send(pressed ? "emergency pressed" : "emergency released");
+    }
     if (const auto pose = device_.take_pose(now)) send(pose_line(*pose));
   }
 
@@ -151,6 +156,7 @@ class Server {
   bool greeted_ = false, ended_ = false, failed_ = false;
   bool obeyed_ = false;  // a move was carried out and no stop came after it
   bool silent_ = false;  // the head was stopped by the timeout
+  bool emergency_ = false;
   std::string fault_;
 };
 
