@@ -5,8 +5,11 @@
 // constructor.
 #pragma once
 
+#include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -47,6 +50,12 @@ class InOrder {
       guard.lock();
     }
   }
+  // Waits until no other thread is delivering, so that every item put in before has been delivered when the caller has
+  // called tell(). Returns at once inside a delivery, and after `limit`: a callback may itself wait for the caller.
+  void wait(std::chrono::nanoseconds limit) {
+    std::unique_lock guard(lock_);
+    idle_.wait_for(guard, limit, [&] { return !telling_ || teller_ == std::this_thread::get_id(); });
+  }
 
  private:
   // Marks the delivery as in progress; the mark is also removed when a callback throws.
@@ -54,10 +63,12 @@ class InOrder {
    public:
     Turn(InOrder& order, std::unique_lock<std::mutex>& guard) : order_(order), guard_(guard) {
       order_.telling_ = true;
+      order_.teller_ = std::this_thread::get_id();
     }
     ~Turn() {
       if (!guard_.owns_lock()) guard_.lock();
       order_.telling_ = false;
+      order_.idle_.notify_all();
     }
     Turn(const Turn&) = delete;
 
@@ -96,6 +107,8 @@ class InOrder {
   std::vector<T> things_ = std::vector<T>(kMost);  // on the heap, so that the owner stays small
   std::size_t first_ = 0, waiting_ = 0;
   bool telling_ = false;
+  std::thread::id teller_;  // the thread that delivers, while telling_
+  std::condition_variable idle_;
 };
 
 }  // namespace cerberus::threads

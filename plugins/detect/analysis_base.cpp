@@ -9,7 +9,6 @@
 #include <string>
 
 #include "cerberus/private/video.hpp"
-#include "history.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/clock_times.hpp"
@@ -17,6 +16,8 @@
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
 #include "shared/single_fields.hpp"
+#include "vision/frame_history.h"
+#include "vision/scene_breaks.h"
 
 GST_DEBUG_CATEGORY_STATIC(cerberus_analysis_debug);
 #define GST_CAT_DEFAULT cerberus_analysis_debug
@@ -40,13 +41,6 @@ const Property<Settings> kProperties[] = {
 
 }  // namespace
 
-// See complain_of_breaks().
-struct Scene {
-  int frames = 0;      // so far
-  double seconds = 0;  // from its third frame on
-  int broken = 0;      // scenes up to this one that ended too early, for no reason in the picture
-};
-
 struct AnalysisPrivate {
   Adjustable<Settings> settings;
   // From here on: streaming thread, and state changes while it does not run.
@@ -56,10 +50,10 @@ struct AnalysisPrivate {
   guint wanted = 0;              // of the record, downstream
   std::atomic<bool> ask = true;  // those downstream what they want; set by any thread
   std::optional<bool> live;      // upstream; empty until the source has answered
-  History history;
+  vision::FrameHistory history;
   guint64 number = 0;  // analysed frames
   vision::CameraFollower camera;
-  Scene scene;
+  vision::SceneBreaks breaks;
   int steps_back = 0;       // frames older than the one before
   Complaint complaint;      // about the caps
   Complaint pixels;         // about their shape
@@ -126,7 +120,14 @@ double nominal_distance(const GstVideoInfo& info) {
 
 GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
   Frame frame = frame_of(trans, priv, buffer);
-  const auto since = priv.history.repeat(frame.running_time, nominal_distance(priv.info));
+  const auto time = known_time(frame.running_time);
+  const double nominal = nominal_distance(priv.info);
+  // As in begin_frame(): a mark where frames are missing ends no scene, and where the camera is measured upstream, the
+  // element that measures it decides.
+  const bool goes_on = priv.analyser->measures_camera() ? priv.history.misses_frames(time, nominal)
+                                                        : path_point(buffer).has_value();
+  if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !goes_on) priv.history.drop();
+  const auto since = priv.history.repeat(time, nominal);
   if (!since) return GST_FLOW_OK;  // of nothing
   frame.fresh = false;
   frame.seconds = *since;
@@ -140,22 +141,23 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   Begun begun;
   Frame& frame = begun.frame = frame_of(trans, priv, buffer);
   const bool measures = priv.analyser->measures_camera();
-  const CameraFollower::Step camera =
-      priv.camera.next(measures ? std::nullopt : path_point(buffer), priv.history.previous(), frame.size);
+  const CameraFollower::Step camera = priv.camera.next(measures ? std::nullopt : path_point(buffer),
+                                                       clock_time(priv.history.previous()), frame.size);
 
   const double nominal = nominal_distance(priv.info);
+  const auto time = known_time(frame.running_time);
   // A mark of DISCONT may be a cut or dropped frames. The element that
   // measures the camera detects a cut among dropped frames, and publishes it.
   const bool marked = GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !camera.connected &&
-                      !(measures && priv.history.misses_frames(frame.running_time, nominal));
+                      !(measures && priv.history.misses_frames(time, nominal));
   if (marked) priv.history.drop();
-  const History::Step step = priv.history.next(frame.running_time, nominal);
+  const vision::FrameHistory::Step step = priv.history.next(time, nominal);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
   if (const auto look = look_of(buffer, frame.running_time)) frame.look = {look->pan, look->tilt};
   if (!frame.fresh) {
     frame.seconds = step.seconds;
-    frame.previous = step.previous;
+    frame.previous = clock_time(step.previous);
     frame.motion = camera.motion;
   }
   const bool first = is_first_stage(buffer, frame.size);
@@ -165,21 +167,10 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   return begun;
 }
 
-// Warns of scenes that end before a track can be confirmed: the stage then finds nothing, without a visible cause.
+// Warns of scenes that end before a track can be confirmed.
 void complain_of_breaks(GstBaseTransform* trans, AnalysisPrivate& priv, const Begun& begun) {
-  constexpr int kMany = 8;          // such scenes in a row
-  constexpr int kFrames = 5;        // as many it takes, the first regions are the third one's,
-  constexpr double kSeconds = .19;  // and confirm-time from there on
-  Scene& scene = priv.scene;
-  if (begun.frame.fresh) {
-    const bool enough = scene.frames >= kFrames && scene.seconds >= kSeconds;
-    scene.broken = begun.broken && !enough ? scene.broken + 1 : 0;
-    scene.frames = 1;
-    scene.seconds = 0;
-  } else if (++scene.frames > 3) {
-    scene.seconds += begun.frame.seconds;
-  }
-  if (scene.broken < kMany || priv.complained) return;
+  const bool many = priv.breaks.add(begun.frame.fresh, begun.broken, begun.frame.seconds);
+  if (!many || priv.complained) return;
   priv.complained = true;
   CERBERUS_ELEMENT_WARNING(
       trans, STREAM, FAILED,
@@ -205,7 +196,7 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     ask_downstream(trans, priv);
     if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return repeat_frame(trans, priv, buffer);
     check_settings(trans, priv);
-    const History history = priv.history;
+    const vision::FrameHistory history = priv.history;
     const vision::CameraFollower camera = priv.camera;
     Begun begun = begin_frame(trans, priv, buffer);
     if (priv.analyser->analyse(begun.frame)) {
@@ -311,10 +302,12 @@ gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
   AnalysisPrivate& priv = priv_of(trans);
   switch (GST_EVENT_TYPE(event)) {
     case GST_EVENT_FLUSH_START:
-      guarded(trans, [&] { priv.analyser->flush(); });
+      guarded(trans, [&] { priv.analyser->flush(true); });
       break;
-    case GST_EVENT_SEGMENT:
     case GST_EVENT_FLUSH_STOP:
+      guarded(trans, [&] { priv.analyser->flush(false); });
+      [[fallthrough]];
+    case GST_EVENT_SEGMENT:
     case GST_EVENT_STREAM_START:
       priv.history.drop();
       break;
@@ -333,7 +326,7 @@ gboolean start(GstBaseTransform* trans) {
     priv.history.drop();
     priv.have_info = false;
     priv.warned = false;
-    priv.scene = {};
+    priv.breaks = {};
     priv.steps_back = 0;
     priv.complained = false;
     priv.camera.forget();

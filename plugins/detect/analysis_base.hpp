@@ -3,7 +3,7 @@
 // the element's Analyser with its context.
 //
 // The base decides what is not thinking: caps (progressive, 32 x 32 to 8192 x 8192: the pad templates), when history
-// ends (see History and below), the camera's motion as found on the buffer, buffers that hold no picture, the property
+// ends (see vision::FrameHistory and below), the camera's motion as found on the buffer, buffers that hold no picture, the property
 // analysis-width, and that no exception leaves.
 //
 // A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new
@@ -52,8 +52,8 @@ class Analyser {
   virtual void repeat(Frame&) {}
   // PAUSED to PLAYING, and back.
   virtual void play(bool) {}
-  // A flush begins. From any thread.
-  virtual void flush() {}
+  // A flush begins (from any thread), or has ended.
+  virtual void flush(bool) {}
   // No further frame of the stream comes.
   virtual void end_of_stream() {}
   // Processes an event on its way upstream, which is passed on in any case. From any thread.

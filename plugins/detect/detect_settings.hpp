@@ -14,10 +14,6 @@
 
 namespace cerberus::plugin {
 
-constexpr GstClockTime clock_time(double seconds) {
-  return static_cast<GstClockTime>(seconds * GST_SECOND + 0.5);
-}
-
 struct DetectSettings {
   int model = static_cast<int>(vision::CameraMotionOptions{}.model);
   std::string head = "head";

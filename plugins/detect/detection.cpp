@@ -150,6 +150,7 @@ void Detection::repeat(Frame& frame) {
     motion.scene_age = std::max(motion.scene_age, 2u);
     cerberus_buffer_set_camera_motion(frame.buffer, &motion);
   }
+  if (has(Stage::camera)) carrier_.repeat(frame);
   state.shown = frame.running_time;
   if (state.facts) set_threshold_facts(frame.buffer, *state.facts);
   if (last_ < Stage::regions) return;

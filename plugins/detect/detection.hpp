@@ -32,7 +32,7 @@ class Detection : public Analyser {
   bool analyse(Frame& frame) override;
   void repeat(Frame& frame) override;
   void play(bool plays) override { watch_.play(plays); }
-  void flush() override { watch_.flush(); }
+  void flush(bool begins) override { watch_.flush(begins); }
   void end_of_stream() override;
   void upstream_event(GstEvent* event) override;
   bool measures_camera() const override { return has(vision::Stage::camera); }

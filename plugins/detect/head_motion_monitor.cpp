@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "cerberus/private/messages.hpp"
 #include "shared/camera_mount.hpp"
@@ -21,8 +20,6 @@ using motion::Time;
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // Numbers that are none, or another head's: there is a head, and where it looks is not known.
 constexpr PanTilt kStrange{kUnknown, kUnknown};
-// Share of the picture that must agree before it is compared with the head.
-constexpr double kConfident = 0.5;
 
 struct Words {
   const char* fault;
@@ -63,18 +60,12 @@ void warn(GstElement* element, const control::SlipFinding& finding, const char* 
 }  // namespace
 
 void HeadMotionMonitor::forget() {
-  before_ = now_ = {};
-  base_.reset();
-  begin_comparison();
+  comparison_.reset();
+  pose_.reset();
   pose_thread_.forget();
   const std::lock_guard guard(lock_);
   poses_.clear();
   told_base_.clear();
-}
-
-void HeadMotionMonitor::begin_comparison() {
-  pan_.reset();
-  tilt_.reset();
 }
 
 void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
@@ -88,8 +79,8 @@ void HeadMotionMonitor::hear(GstEvent* event, const std::string& head) {
     told_base_.add(time_of(base->valid_from), base->yaw_rate);
 }
 
-HeadMotionMonitor::Head HeadMotionMonitor::head_of(GstElement* element, Frame& frame,
-                                                   const std::string& head) {
+control::HeadComparison::Head HeadMotionMonitor::head_of(GstElement* element, Frame& frame,
+                                                         const std::string& head) {
   if (const CerberusPose* carried = cerberus_buffer_peek_pose(frame.buffer)) {
     if (!head.empty() && head != carried->head) return {.look = kStrange, .name = carried->head};
     return {frame.look ? PanTilt{frame.look->pan, frame.look->tilt} : kStrange, carried->head};
@@ -110,17 +101,22 @@ HeadMotionMonitor::Head HeadMotionMonitor::head_of(GstElement* element, Frame& f
 
 std::optional<vision::Transform> HeadMotionMonitor::look(GstElement* element, Frame& frame,
                                                          const std::string& head, const vision::Lens& lens) {
-  before_ = std::exchange(now_, head_of(element, frame, head));
-  if (!before_.look || !now_.look || !lens.known()) return std::nullopt;
-  return lens.turn(before_.look->pan, before_.look->tilt, now_.look->pan, now_.look->tilt);
+  const auto motion = comparison_.expect(head_of(element, frame, head), lens);
+  pose_.reset();
+  if (const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer)) {
+    pose_ = *pose;
+    cerberus_pose_evaluate(pose, frame.running_time, &pose_->pan, &pose_->tilt);
+    pose_->pan_speed = pose_->tilt_speed = pose_->pan_acceleration = pose_->tilt_acceleration = 0;
+  }
+  return motion;
 }
 
 // Priority: meta on the frame, then upstream event, then image estimate.
-void HeadMotionMonitor::tell_base(Frame& frame, double seen) {
+void HeadMotionMonitor::attach_base(Frame& frame, double measured) {
   if (cerberus_buffer_peek_base(frame.buffer)) return;
   CerberusBase base;
   cerberus_base_init(&base);
-  base.yaw_rate = seen;
+  base.yaw_rate = degrees(measured);
   if (GST_CLOCK_TIME_IS_VALID(frame.running_time)) {
     const Time time = time_of(frame.running_time);
     const std::lock_guard guard(lock_);
@@ -135,32 +131,24 @@ void HeadMotionMonitor::tell_base(Frame& frame, double seen) {
 
 void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision::Lens& lens,
                                 const vision::Transform& motion, double confidence) {
-  if (frame.fresh) base_.reset();
-  if (!lens.known()) return tell_base(frame, kUnknown);
-  // Without a head, or before its first pose, the head is assumed to stand.
-  const bool known = before_.look.has_value() == now_.look.has_value();
-  const PanTilt from = known ? before_.look.value_or(PanTilt{}) : kStrange;
-  const PanTilt to = known ? now_.look.value_or(PanTilt{}) : kStrange;
-  control::Turn turn{kUnknown, kUnknown};
-  if (confidence >= kConfident && motion.is_sane(frame.size))
-    turn = control::base_turn(motion, lens, frame.size, from, to);
-  const double pan = to.pan - from.pan, tilt = to.tilt - from.tilt;
-
-  // What a faulty head really did is not known.
-  const double base_turn = pan_.fault() != SlipFault::none && pan != 0 ? kUnknown : turn.yaw;
-  const Time time = GST_CLOCK_TIME_IS_VALID(frame.running_time) ? time_of(frame.running_time) : Time::zero();
-  base_.add(time, frame.seconds, base_turn, pan / frame.seconds);
-  tell_base(frame, degrees(base_.at(time)));
-
-  if (!now_.commanded || !before_.commanded || now_.name != before_.name) return;
+  const Time time = known_time(frame.running_time).value_or(Time::zero());
+  attach_base(
+      frame, comparison_.base_rate({frame.size, motion, confidence, time, frame.seconds, frame.fresh}, lens));
   const CerberusBase* base = cerberus_buffer_peek_base(frame.buffer);
-  const double told =
-      base && base->source == CERBERUS_BASE_REPORTED ? radians(base->yaw_rate) * frame.seconds : 0;
-  const char* head = now_.name;
-  if (const auto found = pan_.add(frame.seconds, turn.yaw + pan - told, pan))
-    warn(element, *found, head, "pan");
-  if (const auto found = tilt_.add(frame.seconds, turn.pitch + tilt, tilt))
-    warn(element, *found, head, "tilt");
+  const double reported = base && base->source == CERBERUS_BASE_REPORTED ? radians(base->yaw_rate) : 0;
+  const auto [pan, tilt] = comparison_.faults(frame.seconds, reported);
+  const char* head = comparison_.head().name;
+  if (pan) warn(element, *pan, head, "pan");
+  if (tilt) warn(element, *tilt, head, "tilt");
+}
+
+void HeadMotionMonitor::repeat(Frame& frame) {
+  if (pose_ && !cerberus_buffer_peek_pose(frame.buffer)) {
+    CerberusPose pose = *pose_;
+    if (GST_CLOCK_TIME_IS_VALID(frame.running_time)) pose.valid_from = pose.valid_until = frame.running_time;
+    cerberus_buffer_set_pose(frame.buffer, &pose);
+  }
+  attach_base(frame, comparison_.base_rate(known_time(frame.running_time).value_or(Time::zero())));
 }
 
 }  // namespace cerberus::plugin

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Monitors what carries the camera: a head, by its published poses, and the base below it. Attaches the head's pose and
-// the base's yaw rate to each frame, and compares the commanded turn of the head with the turn of the picture.
+// the base's yaw rate to each frame, and posts what lib's comparison of head and picture finds.
 #pragma once
 
 #include <cerberus/cerberus.h>
@@ -9,8 +9,7 @@
 #include <optional>
 #include <string>
 
-#include "control/base_rate.h"
-#include "control/slip.h"
+#include "control/head_comparison.h"
 #include "frame.hpp"
 #include "sensing/base_rates.h"
 #include "shared/pose_thread.hpp"
@@ -22,7 +21,7 @@ class HeadMotionMonitor {
   // Clears all state, poses and rates too.
   void forget();
   // Begins the comparison anew, for another lens or another head.
-  void begin_comparison();
+  void begin_comparison() { comparison_.forget_faults(); }
 
   // Processes an upstream event, from any thread. `head`: the head whose poses are used, empty: any.
   void hear(GstEvent* event, const std::string& head);
@@ -36,20 +35,16 @@ class HeadMotionMonitor {
   // frame if it is known, and posts a warning of `element` if the head does not execute its commands.
   void compare(GstElement* element, Frame& frame, const vision::Lens& lens, const vision::Transform& motion,
                double confidence);
+  // Attaches pose and base to a frame that repeats the last picture. The pose is the one of that picture, at rest: the
+  // pixels of the frame were taken with it, wherever the head has turned since.
+  void repeat(Frame& frame);
 
  private:
-  // The head when a frame was taken; no look: unknown.
-  struct Head {
-    std::optional<motion::PanTilt> look;
-    const gchar* name = nullptr;  // interned
-    bool commanded = false;  // from a pose event; else attached by the source of the frame, which is exact
-  };
-  Head head_of(GstElement* element, Frame& frame, const std::string& head);
-  void tell_base(Frame& frame, double seen);
+  control::HeadComparison::Head head_of(GstElement* element, Frame& frame, const std::string& head);
+  void attach_base(Frame& frame, double measured);
 
-  Head before_, now_;
-  control::BaseRate base_;
-  control::SlipWatch pan_, tilt_;
+  control::HeadComparison comparison_;
+  std::optional<CerberusPose> pose_;  // of the last picture, at rest
 
   PoseThread pose_thread_;
   std::mutex lock_;  // of the members below

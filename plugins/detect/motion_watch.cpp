@@ -19,6 +19,7 @@ void MotionWatch::begin(GstElement* element) {
   track_events_ = {};
   cerberus_stamp_init(&stamp_);
   last_.clear();
+  flushing_ = false;
 }
 
 void MotionWatch::frame(const std::vector<CerberusRegion>& regions, const CerberusStamp& stamp, Time step,
@@ -31,8 +32,7 @@ void MotionWatch::frame(const std::vector<CerberusRegion>& regions, const Cerber
     if (!regions.empty()) last_ = regions;
     tracks_.clear();
     for (const CerberusRegion& region : regions) tracks_.push_back(track_of(region));
-    const bool timed = GST_CLOCK_TIME_IS_VALID(stamp.running_time);
-    const auto time = timed ? std::optional(time_of(stamp.running_time)) : std::nullopt;
+    const auto time = known_time(stamp.running_time);
     announce(events_.update(!regions.empty(), time, step, hold),
              track_events_.update(tracks_, time, step, hold), stamp);
     arm();
@@ -47,6 +47,8 @@ void MotionWatch::end() {
     end_at(clock_time(events_.last()));
   }
   post();
+  // Longer than any receiver of a message should take; then the end of the stream goes on alone.
+  messages_.wait(std::chrono::seconds(1));
 }
 
 void MotionWatch::play(bool plays) {
@@ -56,15 +58,16 @@ void MotionWatch::play(bool plays) {
   arm();
 }
 
-void MotionWatch::flush() {
+void MotionWatch::flush(bool begins) {
   const std::lock_guard guard(lock_);
-  pending_.reset();
+  flushing_ = begins;
+  arm();
 }
 
 // A timer that is there stays and looks at the deadline when it wakes: one timer in a hold-time, not one a frame.
 void MotionWatch::arm() {
   const auto after = events_.ends_after(hold_);
-  if (!live_ || !plays_ || !after) return pending_.reset();
+  if (!live_ || !plays_ || flushing_ || !after) return pending_.reset();
   g_autoptr(GstClock) clock = gst_element_get_clock(element_);
   if (!clock) return;
   deadline_ = gst_clock_get_time(clock) + clock_time(*after);
@@ -116,7 +119,9 @@ void MotionWatch::end_at(GstClockTime running_time) {
 void MotionWatch::announce(MotionEvents::Change change, std::span<const TrackEvents::Event> tracks,
                            const CerberusStamp& stamp) {
   GstObject* self = GST_OBJECT(element_);
-  const auto put = [&](GstMessage* message) { messages_.put(Message(message, gst_message_unref)); };
+  const auto put = [&](GstMessage* message, guint track = 0, bool updated = false) {
+    messages_.put({std::shared_ptr<GstMessage>(message, gst_message_unref), track, updated});
+  };
   const auto put_motion = [&](CerberusMotionState state) {
     g_autoptr(GPtrArray) objects = array_of(last_);
     CerberusMotion motion{};
@@ -131,14 +136,15 @@ void MotionWatch::announce(MotionEvents::Change change, std::span<const TrackEve
     track.region = tracked(event.track);
     track.first = clock_time(event.first);
     track.last = clock_time(event.last);
-    put(cerberus_message_new_track(self, &stamp, &track));
+    put(cerberus_message_new_track(self, &stamp, &track), track.region.id,
+        event.change == TrackEvents::Change::updated);
   }
   if (change == MotionEvents::Change::ended) put_motion(CERBERUS_MOTION_ENDED);
 }
 
 void MotionWatch::post() {
   messages_.tell(
-      [&](const Message& message) { gst_element_post_message(element_, gst_message_ref(message.get())); });
+      [&](const Message& m) { gst_element_post_message(element_, gst_message_ref(m.message.get())); });
 }
 
 }  // namespace cerberus::plugin

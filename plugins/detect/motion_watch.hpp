@@ -26,15 +26,25 @@ class MotionWatch {
   // watches too.
   void frame(const std::vector<CerberusRegion>& regions, const CerberusStamp& stamp, Time step, Time hold,
              bool live);
-  // No frame comes any more: motion ends now.
+  // No frame comes any more: motion ends now. All is posted when this returns, also by the clock's thread, unless that
+  // is held up.
   void end();
   // The clock watches only while the element plays.
   void play(bool plays);
-  // Frames that come now are of another time.
-  void flush();
+  // A flush begins, or has ended. In between no timer is set: the frame that is being analysed is of the time before.
+  void flush(bool begins);
 
  private:
-  using Message = std::shared_ptr<GstMessage>;
+  struct Message {
+    std::shared_ptr<GstMessage> message;
+    guint track = 0;       // identity of its track; 0: it is about motion
+    bool updated = false;  // the track was there before and still is
+
+    // While nothing can be posted, the newest update of a track is kept, and all that happens once.
+    static bool replaces(const Message& newer, const Message& older) {
+      return older.updated && older.track == newer.track;
+    }
+  };
   struct Unschedule {
     void operator()(GstClockID id) const {
       gst_clock_id_unschedule(id);
@@ -60,10 +70,10 @@ class MotionWatch {
   std::vector<vision::Track> tracks_;  // of the frame at hand
   std::vector<CerberusRegion> last_;   // of the last frame with any
   Time hold_{};
-  bool live_ = false, plays_ = false;
+  bool live_ = false, plays_ = false, flushing_ = false;
   GstClockTime deadline_ = 0;  // when motion ends if no frame comes; clock time
   Pending pending_;            // wakes at the deadline as it was when it was made, or before
-  threads::InOrder<Message> messages_;
+  threads::InOrder<Message> messages_{Message::replaces};
 };
 
 }  // namespace cerberus::plugin

@@ -6,8 +6,8 @@
 
 #include <vector>
 
-#include "detect_settings.hpp"
 #include "sensing/angles.h"
+#include "shared/clock_times.hpp"
 #include "vision/tracking/tracker.h"
 
 namespace cerberus::plugin {

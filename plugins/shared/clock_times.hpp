@@ -16,9 +16,17 @@ constexpr GstClockTime clock_time(std::chrono::nanoseconds time) {
 constexpr GstClockTime clock_time(std::optional<std::chrono::nanoseconds> time) {
   return time ? clock_time(*time) : GST_CLOCK_TIME_NONE;
 }
+constexpr GstClockTime clock_time(double seconds) {
+  return static_cast<GstClockTime>(seconds * GST_SECOND + 0.5);
+}
 // Limited to a quarter of the range, 73 years, so that sums of some times do not overflow.
 constexpr std::chrono::nanoseconds time_of(GstClockTime time) {
   return std::chrono::nanoseconds(static_cast<gint64>(std::min<GstClockTime>(time, G_MAXINT64 / 4)));
+}
+
+// The same; nothing for NONE.
+constexpr std::optional<std::chrono::nanoseconds> known_time(GstClockTime time) {
+  return GST_CLOCK_TIME_IS_VALID(time) ? std::optional(time_of(time)) : std::nullopt;
 }
 
 // Running time of a buffer; none where it has no time, or the stream's times are no times.

@@ -107,6 +107,78 @@ GST_START_TEST(a_repeated_frame_before_any_picture_carries_nothing) {
 }
 GST_END_TEST
 
+// What a repeated frame is marked with: it does not continue the stream.
+GST_START_TEST(a_break_on_a_repeated_frame_ends_the_scene) {
+  Line line(kLines[__i__]);
+  World world, other;
+  other.wall = 5;
+  other.start = 250;
+  other.speed = -3;
+  line.run(world, 0, 25);
+  GstBuffer* marked = repeated(25, 0, 1);
+  GST_BUFFER_FLAG_SET(marked, GST_BUFFER_FLAG_DISCONT);
+  GstBuffer* out = line.through(marked);
+  fail_if(cerberus_buffer_regions_known(out), "what it repeats was not seen here");
+  gst_buffer_unref(out);
+  guint found = 0;
+  line.run(other, 26, 50, [&](int k, GstBuffer* buffer) {
+    const guint n = Regions(buffer).size();
+    fail_unless(k >= 28 || n == 0, "%u regions in frame %d", n, k);
+    found += n;
+  });
+  fail_unless(found > 0, "nothing was found any more");
+}
+GST_END_TEST
+
+// A leaky queue marks what follows the frames that it dropped.
+GST_START_TEST(a_mark_of_dropped_frames_on_a_repeated_frame_ends_no_scene) {
+  Line line(kLines[__i__]);
+  const World world;
+  line.run(world, 0, 25);
+  GstBuffer* marked = repeated(27, 0, 1);
+  GST_BUFFER_FLAG_SET(marked, GST_BUFFER_FLAG_DISCONT);
+  GstBuffer* out = line.through(marked);
+  fail_unless(Regions(out).size() > 0);
+  gst_buffer_unref(out);
+  line.run(world, 28, 29, [](int, GstBuffer* buffer) { fail_unless(Regions(buffer).size() > 0); });
+}
+GST_END_TEST
+
+// A head at 5 degrees that turns by 10 degrees a second; the base turns by 3.
+GST_START_TEST(a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_base) {
+  for (const bool carried : {false, true}) {
+    Line line("motiondetect name=motion horizontal-fov=60 ! identity");
+    for (int k = 0; k < 3; ++k) {
+      GstBuffer* in = scene::grey_buffer(World{}, k);
+      CerberusPose pose;
+      cerberus_pose_init(&pose);
+      cerberus_pose_set_head(&pose, "head");
+      pose.pan = 5 + .4 * k;
+      pose.pan_speed = 10;
+      pose.valid_from = k * scene::kStep;
+      if (carried)
+        cerberus_buffer_set_pose(in, &pose);
+      else
+        gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&pose));
+      gst_harness_push_upstream_event(line.harness, base_event(3, k * scene::kStep));
+      gst_buffer_unref(line.through(in));
+    }
+    GstBuffer* again = line.through(repeated(2, 1, 2));
+    const CerberusPose* pose = cerberus_buffer_peek_pose(again);
+    fail_unless(pose);
+    fail_unless_equals_string(pose->head, "head");
+    double pan = 0;
+    cerberus_pose_evaluate(pose, GST_BUFFER_PTS(again), &pan, nullptr);
+    fail_unless(std::abs(pan - 5.8) < 1e-9, "%g", pan);
+    cerberus_pose_evaluate(pose, GST_BUFFER_PTS(again) + GST_SECOND, &pan, nullptr);
+    fail_unless(std::abs(pan - 5.8) < 1e-9, "%g", pan);
+    const CerberusBase* base = cerberus_buffer_peek_base(again);
+    fail_unless(base && base->yaw_rate == 3 && base->source == CERBERUS_BASE_REPORTED);
+    gst_buffer_unref(again);
+  }
+}
+GST_END_TEST
+
 // ---- frames that stop coming
 
 // A figure that is seen until frame 24, and then nothing; a clock that goes by hand.
@@ -232,6 +304,10 @@ Suite* repeated_suite() {
   tcase_add_test(tests, the_camera_stands_still_while_a_picture_is_repeated);
   tcase_add_test(tests, an_endless_freeze_ends_tracks_after_coast_time_and_motion_after_hold_time);
   tcase_add_test(tests, a_repeated_frame_before_any_picture_carries_nothing);
+  tcase_add_loop_test(tests, a_break_on_a_repeated_frame_ends_the_scene, 0, G_N_ELEMENTS(kLines));
+  // Without cameramotion such a mark cannot be distinguished from a cut.
+  tcase_add_loop_test(tests, a_mark_of_dropped_frames_on_a_repeated_frame_ends_no_scene, 0, 2);
+  tcase_add_test(tests, a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_base);
   tcase_add_test(tests, live_motion_ends_by_the_clock_when_frames_stop);
   tcase_add_test(tests, there_is_one_timer_however_many_frames_come);
   tcase_add_test(tests, what_is_not_live_is_not_watched_by_the_clock);

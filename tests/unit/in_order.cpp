@@ -87,6 +87,56 @@ START_TEST(of_more_items_than_can_wait_the_oldest_are_never_delivered) {
 }
 END_TEST
 
+// A thread that delivers one item and is kept inside until go().
+struct Delivery {
+  InOrder<int, 4> order;
+  std::promise<void> kept, released;
+  bool over = false;
+  std::thread thread;
+  Delivery() {
+    order.put(1);
+    thread = std::thread([this] {
+      order.tell([this](int) {
+        kept.set_value();
+        released.get_future().wait();
+        over = true;
+      });
+    });
+    kept.get_future().wait();
+  }
+  ~Delivery() { thread.join(); }
+  void go() { released.set_value(); }
+};
+
+START_TEST(a_thread_that_waits_goes_on_when_another_one_has_delivered) {
+  Delivery delivery;
+  delivery.go();
+  delivery.order.wait(std::chrono::hours(1));
+  ck_assert(delivery.over);
+}
+END_TEST
+
+START_TEST(a_wait_ends_at_its_limit) {
+  Delivery delivery;
+  delivery.order.wait(std::chrono::milliseconds(1));
+  ck_assert(!delivery.over);
+  delivery.go();
+}
+END_TEST
+
+START_TEST(a_listener_does_not_wait_for_itself) {
+  InOrder<int, 4> order;
+  order.put(1);
+  int listened = 0;
+  order.tell([&](int) {
+    order.wait(std::chrono::hours(1));
+    ++listened;
+  });
+  ck_assert_int_eq(listened, 1);
+  order.wait(std::chrono::hours(1));  // nothing is being delivered
+}
+END_TEST
+
 // Ones replace ones, tens tens.
 constexpr auto kSameKind = [](const int& a, const int& b) { return (a < 10) == (b < 10); };
 
@@ -205,5 +255,6 @@ int main() {
        where_none_is_replaced_the_oldest_goes, cleared_items_are_not_delivered,
        after_a_listener_that_throws_the_next_one_receives_the_rest,
        nothing_is_kept_of_delivered_or_dropped_items, of_each_thread_the_numbers_come_in_its_order,
-       nothing_is_allocated});
+       a_thread_that_waits_goes_on_when_another_one_has_delivered, a_wait_ends_at_its_limit,
+       a_listener_does_not_wait_for_itself, nothing_is_allocated});
 }

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Decides from times and marks alone whether a frame continues the scene of the frames before it or begins a new one,
+// and how far apart the frames of a scene are. Not thread-safe.
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+namespace cerberus::vision {
+
+class FrameHistory {
+ public:
+  using Time = std::chrono::nanoseconds;
+
+  // Guarded by unit-frame_history, which checks each of them. None was swept.
+  struct Parameters {
+    // A frame that comes later than both, gap_factor usual distances and gap_seconds, begins a new scene. Derived: what
+    // moved has moved too far then for a difference of neighbours to mean anything. Live cameras that stall for a
+    // moment stay below gap_seconds; cameras that send a frame every few seconds are judged by their own distance.
+    double gap_factor = 3, gap_seconds = .25;
+    double smoothing = .1;        // weight of a new distance in the usual one: about the last ten frames
+    double missing_factor = 1.5;  // usual distances from which on a frame is missing: half way to two
+    double least_seconds = 1e-4;  // a smaller distance is no time of a camera, whatever the timestamps say
+    int late_frames =
+        8;  // frames in a row that are older than assumed, after which their times are used again
+    int lost_pictures = 5;  // pictures in a row that may be lost within a scene: a fifth of a second of video
+    double unknown_distance =
+        .04;  // seconds, where neither caps nor frames have shown one: 25 frames a second
+  };
+
+  FrameHistory() = default;
+  explicit FrameHistory(const Parameters& parameters) : parameters_(parameters) {}
+
+  // The next frame starts a scene: caps, segment, flush, DISCONT.
+  void drop() { any_ = false; }
+  // Records a frame without its picture. The next one follows the last with a picture, unless too many are lost in a
+  // row.
+  void lose();
+
+  // Records a frame that repeats the last picture. Returns how long ago that came, in seconds; nothing where a scene
+  // begins. time, nominal: as of next().
+  std::optional<double> repeat(std::optional<Time> time, double nominal);
+
+  // Running time of the last frame with a picture of its own, where it had one.
+  std::optional<Time> previous() const { return previous_; }
+
+  struct Step {
+    bool fresh = true;       // no predecessor: everything learnt from earlier frames is dropped
+    bool broken = false;     // there was a predecessor, but the time ended the scene
+    bool backwards = false;  // older than the frame before; if only a little, its time counts as unknown
+    double seconds = 0;      // since the previous frame; 0: none, or not known
+    std::optional<Time> previous;  // running time of the previous frame, where it has one
+  };
+
+  // Records a frame with a picture of its own. time: its running time, where it has one. nominal: frame distance of the
+  // caps in seconds, 0 = variable.
+  Step next(std::optional<Time> time, double nominal);
+  // Returns whether frames are missing between the last one, repeated or not, and this: a leaky queue marks the gap by
+  // DISCONT, as a cut is marked.
+  bool misses_frames(std::optional<Time> time, double nominal) const;
+
+ private:
+  void follow(Step& step, std::optional<Time> time, double rhythm);
+
+  Parameters parameters_;
+  bool any_ = false;              // a frame of this scene was seen
+  int lost_ = 0;                  // since the last picture
+  int repeats_ = 0;               // likewise
+  std::optional<Time> previous_;  // of the last picture
+  std::optional<Time> shown_;     // of the last frame, repeated or not
+  std::optional<Time> stamp_;     // of the last frame of this scene that had a time at all
+  Time clock_{};                  // the time that was assumed for it
+  int late_ = 0;                  // frames in a row that were older than that
+  double usual_ = 0;              // smoothed distance between frames, s
+};
+
+}  // namespace cerberus::vision

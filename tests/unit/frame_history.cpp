@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/frame_history.h"
+
+#include <check.h>
+
+#include <cmath>
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+using namespace std::chrono_literals;
+using Time = FrameHistory::Time;
+
+constexpr double kNominal = 0.04;
+constexpr Time kStep = 40ms;
+
+START_TEST(frames_in_order_follow_each_other) {
+  FrameHistory history;
+  ck_assert(history.next(0ms, kNominal).fresh);
+  for (int k = 1; k < 10; ++k) {
+    const FrameHistory::Step step = history.next(k * kStep, kNominal);
+    ck_assert(!step.fresh);
+    ck_assert(std::abs(step.seconds - 0.04) < 1e-9);
+    ck_assert(step.previous == (k - 1) * kStep);
+  }
+}
+END_TEST
+
+START_TEST(a_dropped_history_and_time_far_back_begin_a_scene) {
+  FrameHistory history;
+  history.next(1s, kNominal);
+  history.drop();
+  FrameHistory::Step step = history.next(1s + kStep, kNominal);
+  ck_assert(step.fresh);
+  ck_assert(!step.broken);
+  step = history.next(500ms, kNominal);
+  ck_assert(step.fresh && step.broken && step.backwards);
+  ck_assert(!history.next(500ms, kNominal).fresh);  // the same time again: a duplicate, no step back
+}
+END_TEST
+
+// What goes wrong with timestamps while the frames themselves come as they should: frame k's, in frames.
+struct Stamps {
+  int (*of)(int k);
+  bool told;
+};
+const Stamps kStamps[] = {
+    {[](int k) { return k - (k % 10 == 9 ? 2 : 0); }, true},
+    {[](int k) { return k - (k % 5 == 4 ? 2 : 0); }, true},
+    // as a decoder met them: 0 3 1 2 6 4 5
+    {[](int k) { return k + (k % 3 == 1 ? 2
+                             : k > 0    ? -1
+                                        : 0); }, true},
+    {[](int k) { return 1000 - k; }, true},
+    {[](int k) { return k - k / 20 * 4; }, true},  // a clock that is set back
+    {[](int) { return 7; }, false},
+};
+
+START_TEST(small_steps_back_are_a_matter_of_the_timestamps_only) {
+  constexpr int kFrames = 200;
+  for (const Stamps& stamps : kStamps) {
+    FrameHistory history;
+    double sum = 0;
+    bool told = false;
+    for (int k = 0; k < kFrames; ++k) {
+      const Time time = (10 + stamps.of(k)) * kStep;
+      const FrameHistory::Step step = history.next(time, &stamps == &kStamps[1] ? 0 : kNominal);
+      ck_assert_msg(step.fresh == (k == 0), "frame %d", k);
+      ck_assert_msg(k == 0 || step.seconds > 0, "frame %d", k);
+      sum += step.seconds;
+      told = told || step.backwards;
+    }
+    ck_assert_int_eq(told, stamps.told);
+    ck_assert_msg(std::abs(sum - 0.04 * (kFrames - 1)) < 0.1 * sum, "%f s", sum);
+  }
+}
+END_TEST
+
+// A clock that is set back once: guessed for a while, and then the new times count as the old ones did.
+START_TEST(times_are_believed_again_soon_after_a_step_back) {
+  FrameHistory history;
+  Time time = 1s;
+  for (int k = 0; k < 20; ++k) history.next(time += kStep, kNominal);
+  time -= 5 * kStep;
+  for (int k = 0; k < 12; ++k) {
+    const FrameHistory::Step step = history.next(time += 2 * kStep / (k < 10 ? 8 : 1), kNominal);
+    ck_assert(!step.fresh);
+    if (k >= 10)
+      ck_assert_msg(std::abs(step.seconds - 2 * kNominal) < 1e-9, "frame %d: %f s", k, step.seconds);
+  }
+}
+END_TEST
+
+START_TEST(times_that_no_camera_can_have_are_not_known) {
+  FrameHistory history;
+  history.next(0ms, kNominal);
+  for (int k = 1; k < 100; ++k) {
+    const FrameHistory::Step step = history.next(Time(k), kNominal);
+    ck_assert(!step.fresh);
+    ck_assert_msg(step.seconds == kNominal, "frame %d: %f s", k, step.seconds);
+  }
+}
+END_TEST
+
+START_TEST(lost_pictures_are_passed_over_unless_they_are_many) {
+  for (const bool timed : {true, false})
+    for (const int lost : {1, 5, 6}) {
+      FrameHistory history;
+      int k = 0;
+      for (; k < 10; ++k) history.next(timed ? std::optional<Time>(k * kStep) : std::nullopt, kNominal);
+      for (int i = 0; i < lost; ++i) history.lose();
+      k += lost;
+      const FrameHistory::Step step =
+          history.next(timed ? std::optional<Time>(k * kStep) : std::nullopt, kNominal);
+      ck_assert(step.fresh == (lost > 5));
+      if (lost <= 5)
+        ck_assert_msg(std::abs(step.seconds - (1 + lost) * kNominal) < 1e-9, "%f s", step.seconds);
+      ck_assert(!timed || lost > 5 || step.previous == 9 * kStep);
+      const FrameHistory::Step next =
+          history.next(timed ? std::optional<Time>((k + 1) * kStep) : std::nullopt, kNominal);
+      ck_assert_msg(std::abs(next.seconds - kNominal) < 1e-9, "%f s", next.seconds);
+    }
+}
+END_TEST
+
+START_TEST(a_gap_is_judged_by_the_rhythm_of_the_stream) {
+  FrameHistory fast, slow, unknown;
+  fast.next(0ms, kNominal);
+  ck_assert(!fast.next(240ms, kNominal).fresh);  // a stall
+  ck_assert(fast.next(640ms, kNominal).fresh);   // 10 frames
+  slow.next(0ms, 2.0);
+  ck_assert(!slow.next(2s, 2.0).fresh);  // a frame every two seconds is no gap
+  ck_assert(slow.next(9s, 2.0).fresh);
+  unknown.next(0ms, 0);
+  ck_assert(!unknown.next(2s, 0).fresh);  // variable rate: the first distance is the rhythm
+  ck_assert(!unknown.next(4s, 0).fresh);
+  ck_assert(unknown.next(11s, 0).fresh);
+}
+END_TEST
+
+START_TEST(a_stream_slower_than_its_caps_is_not_blind) {
+  FrameHistory history;
+  history.next(0ms, kNominal);
+  ck_assert(history.next(1s, kNominal).fresh);
+  for (int k = 2; k < 10; ++k) ck_assert(!history.next(k * 1s, kNominal).fresh);
+  // and a single gap does not excuse the next one
+  FrameHistory other;
+  Time time{};
+  other.next(time, kNominal);
+  ck_assert(other.next(time += 5s, kNominal).fresh);
+  ck_assert(!other.next(time += kStep, kNominal).fresh);
+  ck_assert(other.next(time += 5s, kNominal).fresh);
+}
+END_TEST
+
+START_TEST(missing_timestamps_are_taken_as_evenly_spaced) {
+  FrameHistory history;
+  ck_assert(history.next(std::nullopt, kNominal).fresh);
+  const FrameHistory::Step step = history.next(std::nullopt, kNominal);
+  ck_assert(!step.fresh);
+  ck_assert(step.seconds == kNominal);
+  ck_assert(!history.next(1s, kNominal).fresh);
+  ck_assert(!history.next(std::nullopt, kNominal).fresh);
+  ck_assert(history.next(500ms, kNominal).fresh);  // backwards, seen across the frame without a time
+}
+END_TEST
+
+START_TEST(missing_frames_are_told_from_a_mark_alone) {
+  FrameHistory history;
+  ck_assert(!history.misses_frames(0ms, kNominal));  // nothing came before
+  history.next(kStep, kNominal);
+  ck_assert(!history.misses_frames(2 * kStep, kNominal));
+  ck_assert(history.misses_frames(3 * kStep, kNominal));
+  ck_assert(!history.misses_frames(0ms, kNominal));  // backwards
+  ck_assert(!history.misses_frames(std::nullopt, kNominal));
+  ck_assert(!history.misses_frames(3 * kStep, 0));  // no rhythm is known
+  history.next(2 * kStep, 0);
+  ck_assert(!history.misses_frames(3 * kStep, 0));
+  ck_assert(history.misses_frames(4 * kStep, 0));
+}
+END_TEST
+
+START_TEST(a_repeated_frame_counts_from_the_last_picture) {
+  FrameHistory history;
+  ck_assert(!history.repeat(kStep, kNominal));  // of nothing
+  history.next(0ms, kNominal);
+  ck_assert(std::abs(*history.repeat(kStep, kNominal) - .04) < 1e-9);
+  ck_assert(std::abs(*history.repeat(3 * kStep, kNominal) - .12) < 1e-9);
+  ck_assert(history.previous() == 0ms);
+  const FrameHistory::Step step = history.next(5 * kStep, kNominal);
+  ck_assert(!step.fresh && step.previous == 0ms);
+  ck_assert(std::abs(step.seconds - .2) < 1e-9);
+  history.drop();
+  ck_assert(!history.repeat(6 * kStep, kNominal));
+}
+END_TEST
+
+// The distance of the caps, else 25 frames a second.
+START_TEST(repeated_frames_without_times_are_counted) {
+  FrameHistory history, unknown;
+  history.next(std::nullopt, .1);
+  ck_assert(std::abs(*history.repeat(std::nullopt, .1) - .1) < 1e-9);
+  ck_assert(std::abs(*history.repeat(std::nullopt, .1) - .2) < 1e-9);
+  unknown.next(std::nullopt, 0);
+  ck_assert(std::abs(*unknown.repeat(std::nullopt, 0) - .04) < 1e-9);
+}
+END_TEST
+
+START_TEST(repeated_frames_are_not_missing) {
+  FrameHistory history;
+  history.next(0ms, kNominal);
+  history.repeat(kStep, kNominal);
+  history.repeat(2 * kStep, kNominal);
+  ck_assert(!history.misses_frames(3 * kStep, kNominal));
+  ck_assert(history.misses_frames(4 * kStep, kNominal));
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "frame_history",
+      {frames_in_order_follow_each_other, a_dropped_history_and_time_far_back_begin_a_scene,
+       small_steps_back_are_a_matter_of_the_timestamps_only, times_are_believed_again_soon_after_a_step_back,
+       times_that_no_camera_can_have_are_not_known, lost_pictures_are_passed_over_unless_they_are_many,
+       a_gap_is_judged_by_the_rhythm_of_the_stream, a_stream_slower_than_its_caps_is_not_blind,
+       missing_timestamps_are_taken_as_evenly_spaced, missing_frames_are_told_from_a_mark_alone,
+       a_repeated_frame_counts_from_the_last_picture, repeated_frames_without_times_are_counted,
+       repeated_frames_are_not_missing});
+}
