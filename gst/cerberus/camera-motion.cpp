@@ -36,10 +36,11 @@ CERBERUS_DEFINE_META(CerberusCameraMotion, camera_motion, std::identity{}, trans
 namespace {
 
 // The residual scales by the geometric mean of both directions.
-gboolean transform_meta(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, gpointer data) {
+gboolean transform_meta(GstBuffer* to, GstMeta*, GstBuffer* from, GQuark type, gpointer data) {
   const auto sizes = cerberus::rescaling(type, data);
-  if (!sizes) return FALSE;
-  CerberusCameraMotion motion = CerberusCameraMotionCarried::value_of(meta);
+  const CerberusCameraMotion* carried = CerberusCameraMotionCarried::peek(from);
+  if (!sizes || !carried) return FALSE;
+  CerberusCameraMotion motion = *carried;
   if (sizes->from != sizes->to) {
     scale(motion.matrix, *sizes);
     scale(motion.path, *sizes);

@@ -134,39 +134,32 @@ gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, g
   return TRUE;
 }
 
-template <typename Meta>
-const GstMetaInfo* registered(const char* api, const char* name, cerberus::MetaTransform transform) {
-  return cerberus::register_meta<Meta>(
-      cerberus::register_meta_api(api, GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR), name,
-      [](GstMeta*, gpointer, GstBuffer*) -> gboolean { return TRUE; }, nullptr, transform);
-}
-
 const GstMetaInfo* region_meta_info() {
-  static const GstMetaInfo* const info =
-      registered<RegionMeta>("CerberusRegionMetaAPI", "CerberusRegionMeta", meta_transform);
+  static const GstMetaInfo* const info = cerberus::register_meta<RegionMeta>(
+      cerberus::register_meta_api("CerberusRegionMetaAPI", GST_META_TAG_VIDEO_STR,
+                                  GST_META_TAG_VIDEO_SIZE_STR),
+      "CerberusRegionMeta", [](GstMeta*, gpointer, GstBuffer*) -> gboolean { return TRUE; }, nullptr,
+      meta_transform);
   return info;
 }
 
-// Says that a detector has looked, also where it found nothing. It goes where a region's record goes, so that the two
-// are lost together.
-void record_known(GstBuffer* buffer);
+// Marks that a detector has analysed the picture, also where it found nothing. It goes where a region's record goes, so
+// that the two are lost together; without it there are no regions.
+constexpr struct Known {
+} kKnown;
+void init(Known*) {}
+const GstMetaInfo* known_meta_info();
+using KnownMeta = cerberus::ValueMeta<Known, init, known_meta_info, true>;
 
 const GstMetaInfo* known_meta_info() {
-  static const GstMetaInfo* const info =
-      registered<GstMeta>("CerberusRegionsKnownMetaAPI", "CerberusRegionsKnownMeta",
-                          [](GstBuffer* to, GstMeta*, GstBuffer*, GQuark type, gpointer data) -> gboolean {
-                            if (!cerberus::rescaling(type, data)) return FALSE;
-                            record_known(to);
-                            return TRUE;
-                          });
+  static const GstMetaInfo* const info = KnownMeta::register_as(
+      cerberus::register_meta_api("CerberusRegionsKnownMetaAPI", GST_META_TAG_VIDEO_STR,
+                                  GST_META_TAG_VIDEO_SIZE_STR),
+      "CerberusRegionsKnownMeta",
+      [](GstBuffer* to, GstMeta*, GstBuffer* from, GQuark type, gpointer data) -> gboolean {
+        return cerberus::rescaling(type, data) && KnownMeta::set(to, KnownMeta::peek(from));
+      });
   return info;
-}
-
-GstMeta* find_known(GstBuffer* buffer) {
-  return gst_buffer_get_meta(buffer, known_meta_info()->api);
-}
-void record_known(GstBuffer* buffer) {
-  if (!find_known(buffer)) gst_buffer_add_meta(buffer, known_meta_info(), nullptr);
 }
 
 guint count_analytics(GstBuffer* buffer) {
@@ -183,6 +176,7 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
   g_return_val_if_fail(region, FALSE);
   if (!gst_buffer_is_writable(buffer) || !is_sane(*region)) return FALSE;
 
+  if (!cerberus_buffer_regions_known(buffer)) cerberus_buffer_remove_regions(buffer);  // of another picture
   const Pixels p = whole_pixels(*region);
   const guint analytics =
       cerberus::analytics::add(buffer, *region, type_of(*region), p, count_analytics(buffer));
@@ -191,7 +185,7 @@ gboolean cerberus_buffer_add_region(GstBuffer* buffer, const CerberusRegion* reg
   meta->id = static_cast<gint>(region->id);
   add_params(meta, *region);
   record(buffer, *region, analytics);
-  record_known(buffer);
+  KnownMeta::set(buffer, &kKnown);
   return TRUE;
 }
 
@@ -200,7 +194,7 @@ gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions) {
   if (!gst_buffer_is_writable(buffer)) return FALSE;
   cerberus_buffer_remove_regions(buffer);
   if (!regions) return TRUE;
-  record_known(buffer);
+  KnownMeta::set(buffer, &kKnown);
   gboolean all = TRUE;
   for (guint i = 0; i < regions->len; ++i)
     all &=
@@ -210,13 +204,14 @@ gboolean cerberus_buffer_set_regions(GstBuffer* buffer, GPtrArray* regions) {
 
 gboolean cerberus_buffer_regions_known(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), FALSE);
-  return find_known(buffer) != nullptr;
+  return KnownMeta::peek(buffer) != nullptr;
 }
 
 GPtrArray* cerberus_buffer_get_regions(GstBuffer* buffer) {
   g_return_val_if_fail(GST_IS_BUFFER(buffer), nullptr);
   GPtrArray* regions = g_ptr_array_new_with_free_func(reinterpret_cast<GDestroyNotify>(cerberus_region_free));
   gpointer state = nullptr;
+  if (!cerberus_buffer_regions_known(buffer)) return regions;
   while (const RegionMeta* meta = next_region(buffer, state))
     g_ptr_array_add(regions, cerberus_region_copy(&meta->region));
   return regions;

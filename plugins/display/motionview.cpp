@@ -47,7 +47,6 @@
 #include "overlay/plane_view.h"
 #include "overlay/threshold_figure.h"
 #include "shared/complaint.hpp"
-#include "shared/enums.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
 #include "shared/single_fields.hpp"
@@ -228,6 +227,18 @@ gboolean cerberus_motion_view_start(GstBaseTransform* transform) {
   return TRUE;
 }
 
+gboolean cerberus_motion_view_stop(GstBaseTransform* transform) {
+  cerberus_motion_view_self(transform)->priv->state.last = {};
+  return TRUE;
+}
+
+// Frames that follow these events repeat no picture from before them.
+gboolean cerberus_motion_view_sink_event(GstBaseTransform* transform, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP || GST_EVENT_TYPE(event) == GST_EVENT_SEGMENT)
+    cerberus_motion_view_self(transform)->priv->state.last = {};
+  return cerberus_motion_view_parent_class()->sink_event(transform, event);
+}
+
 GstCaps* cerberus_motion_view_transform_caps(GstBaseTransform* transform, GstPadDirection direction,
                                              GstCaps* caps, GstCaps* filter) {
   const bool colour = is_colour(cerberus_motion_view_self(transform)->priv->settings.snapshot().stage);
@@ -369,6 +380,8 @@ void cerberus_motion_view_class_init(CerberusMotionViewClass* klass) {
 
   GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
   transform->start = cerberus_motion_view_start;
+  transform->stop = cerberus_motion_view_stop;
+  transform->sink_event = cerberus_motion_view_sink_event;
   transform->transform_caps = cerberus_motion_view_transform_caps;
   transform->set_caps = cerberus_motion_view_set_caps;
   transform->get_unit_size = cerberus_motion_view_get_unit_size;

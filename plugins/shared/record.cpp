@@ -22,12 +22,17 @@ struct FactsMeta {
   ThresholdFacts facts;
 };
 
-// Several modules of a process have this file: the one that is loaded first registers.
+// Several modules of a process have this file: the one that comes first registers, under the lock of an object that
+// all of them share.
 template <typename Meta, typename... Tags>
 const GstMetaInfo* registered(const char* api, const char* name, GstMetaInitFunction init,
                               GstMetaFreeFunction free, MetaTransform transform, Tags... tags) {
+  GstRegistry* shared = gst_registry_get();
+  GST_OBJECT_LOCK(shared);
   const GstMetaInfo* info = gst_meta_get_info(name);
-  return info ? info : register_meta<Meta>(register_meta_api(api, tags...), name, init, free, transform);
+  if (!info) info = register_meta<Meta>(register_meta_api(api, tags...), name, init, free, transform);
+  GST_OBJECT_UNLOCK(shared);
+  return info;
 }
 
 vision::Record& record_in(GstMeta* meta) {

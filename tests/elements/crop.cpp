@@ -111,6 +111,68 @@ GST_START_TEST(a_window_moves_over_the_cropped_picture) {
 }
 GST_END_TEST
 
+// A crop in place behind the detector changes no memory and calls no transform function. What was found is of another
+// picture then, as behind a crop that copies.
+GST_START_TEST(a_crop_in_place_behind_the_detector_makes_its_result_unknown) {
+  const bool offered = __i__ == 0;
+  Line line("motiondetect confirm-time=0 ! videocrop left=100", "");
+  if (offered) {
+    gst_harness_add_propose_allocation_meta(line.harness, GST_VIDEO_META_API_TYPE, nullptr);
+    gst_harness_add_propose_allocation_meta(line.harness, GST_VIDEO_CROP_META_API_TYPE, nullptr);
+  }
+  gst_harness_set_src_caps_str(line.harness, scene::caps("I420", scene::kWidth, scene::kHeight).c_str());
+  for (int k = 0; k < 12; ++k) {
+    GstBuffer* out = line.through(
+        scene::buffer("I420", scene::kWidth, scene::kHeight, World{}.picture(k), k * scene::kStep));
+    fail_unless_equals_int(gst_buffer_get_video_crop_meta(out) != nullptr, offered);
+    fail_if(cerberus_buffer_regions_known(out));
+    fail_unless_equals_int(Regions(out).size(), 0);
+    fail_if(cerberus_buffer_peek_camera_motion(out));
+    // A copy has the crop before the rest, or behind it: it knows no more.
+    GstBuffer* copy = gst_buffer_copy(out);
+    fail_if(cerberus_buffer_regions_known(copy));
+    fail_if(cerberus_buffer_peek_camera_motion(copy));
+    gst_buffer_unref(copy);
+    // What is found afterwards is of the visible picture, and alone on the buffer.
+    CerberusRegion region;
+    cerberus_region_init(&region);
+    region.x = 3, region.width = region.height = 20;
+    fail_unless(cerberus_buffer_add_region(out, &region));
+    fail_unless(cerberus_buffer_regions_known(out));
+    fail_unless_equals_int(Regions(out).size(), 1);
+    copy = gst_buffer_copy(out);
+    fail_unless_equals_int(Regions(copy).size(), 1);
+    gst_buffer_unref(copy);
+    gst_buffer_unref(out);
+  }
+  fail_unless(line.messages(GST_MESSAGE_WARNING).empty());
+}
+GST_END_TEST
+
+// The stages behind the crop begin anew, on the visible picture.
+GST_START_TEST(stages_behind_a_crop_in_place_see_the_visible_picture) {
+  std::string found[2];
+  for (const bool offered : {false, true}) {
+    Line line("cameramotion ! videocrop left=100 ! motiontrack confirm-time=0", "");
+    if (offered) {
+      gst_harness_add_propose_allocation_meta(line.harness, GST_VIDEO_META_API_TYPE, nullptr);
+      gst_harness_add_propose_allocation_meta(line.harness, GST_VIDEO_CROP_META_API_TYPE, nullptr);
+    }
+    gst_harness_set_src_caps_str(line.harness, scene::caps("I420", scene::kWidth, scene::kHeight).c_str());
+    World world;
+    world.start = 110;
+    for (int k = 0; k < 20; ++k) {
+      GstBuffer* out = line.through(
+          scene::buffer("I420", scene::kWidth, scene::kHeight, world.picture(k), k * scene::kStep));
+      found[offered] += Regions(out).text() + "\n";
+      gst_buffer_unref(out);
+    }
+  }
+  fail_unless(found[0].find('|') != std::string::npos);
+  ck_assert_str_eq(found[1].c_str(), found[0].c_str());
+}
+GST_END_TEST
+
 // A crop that reaches beyond the memory, or is smaller than the caps: an unusable buffer, never a read outside.
 GST_START_TEST(a_crop_that_does_not_fit_is_an_unusable_buffer) {
   const struct {
@@ -145,6 +207,8 @@ Suite* crop_suite() {
   tcase_add_loop_test(tests, boxes_are_drawn_on_the_cropped_picture, 0, kCroppedCount);
   tcase_add_loop_test(tests, a_view_of_a_cropped_picture_is_whole, 0, kCroppedCount);
   tcase_add_loop_test(tests, a_window_moves_over_the_cropped_picture, 0, kCroppedCount);
+  tcase_add_loop_test(tests, a_crop_in_place_behind_the_detector_makes_its_result_unknown, 0, 2);
+  tcase_add_test(tests, stages_behind_a_crop_in_place_see_the_visible_picture);
   tcase_add_test(tests, a_crop_that_does_not_fit_is_an_unusable_buffer);
   return suite;
 }

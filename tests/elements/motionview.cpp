@@ -360,6 +360,28 @@ GST_START_TEST(each_stage_that_misses_its_plane_is_warned_of_once) {
 GST_END_TEST
 
 // Grey of level 77 in every format: what is shown is what cameramotion would have analysed.
+GST_START_TEST(a_repeated_picture_shows_the_last_mask_unless_it_is_from_before_a_break) {
+  enum { NONE, FLUSH, RESTART };
+  const std::string caps = caps_string("GRAY8", 32, 32);
+  for (const int kind : {NONE, FLUSH, RESTART}) {
+    Harness harness = started("motionview stage=mask", caps);
+    GstBuffer* in = new_frame(info_of(caps));
+    add_plane(in, MASK, 32, 32, [](int, int) { return 255; });
+    fail_unless_equals_int(shown(harness.get(), in).at(5, 5), 255);
+    if (kind == FLUSH) push_flush(harness.get());
+    if (kind == RESTART) {
+      gst_element_set_state(harness->element, GST_STATE_READY);
+      gst_element_set_state(harness->element, GST_STATE_PLAYING);
+      gst_harness_push_event(harness.get(), gst_event_new_stream_start("again"));
+      gst_harness_set_src_caps_str(harness.get(), caps.c_str());
+    }
+    GstBuffer* again = new_frame(info_of(caps), 1);
+    GST_BUFFER_FLAG_SET(again, GST_BUFFER_FLAG_GAP);
+    fail_unless_equals_int(shown(harness.get(), again).at(5, 5), kind == NONE ? 255 : 0);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(luma_is_made_here_where_no_stage_made_it) {
   for (const char* format : kFormats) {
     const std::string caps = caps_string(format, 354, 66);
@@ -538,6 +560,7 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
   tcase_add_test(tc, a_missing_plane_is_black_and_told_once);
   tcase_add_test(tc, each_stage_that_misses_its_plane_is_warned_of_once);
+  tcase_add_test(tc, a_repeated_picture_shows_the_last_mask_unless_it_is_from_before_a_break);
   tcase_add_test(tc, luma_is_made_here_where_no_stage_made_it);
   tcase_add_test(tc, a_buffer_without_a_picture_is_black_and_told_once);
   tc = tcase_create("stream");

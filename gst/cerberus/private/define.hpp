@@ -78,7 +78,8 @@ inline bool has_running_time(const GstStructure* structure) {
 #define CERBERUS_DEFINE_META(Type, name, sane, transform, ...)                                         \
   namespace {                                                                                          \
   const GstMetaInfo* name##_meta_info();                                                               \
-  using Type##Carried = cerberus::ValueMeta<Type, cerberus_##name##_init, name##_meta_info>;           \
+  using Type##Carried = cerberus::ValueMeta<Type, cerberus_##name##_init, name##_meta_info,            \
+                                            !std::is_null_pointer_v<decltype(transform)>>;             \
   const GstMetaInfo* name##_meta_info() {                                                              \
     static const GstMetaInfo* const info =                                                             \
         Type##Carried::register_as(cerberus_##name##_meta_api_get_type(), #Type "Meta", transform);    \

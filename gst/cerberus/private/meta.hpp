@@ -5,6 +5,7 @@
 
 #include <gst/video/video.h>
 
+#include <array>
 #include <optional>
 
 #include "vision/image/image.h"
@@ -41,13 +42,22 @@ inline std::optional<Rescaling> rescaling(GQuark type, gpointer data) {
   return sizes;
 }
 
+// The part of the memory that is the picture, where a crop in place (`videocrop` before a sink that crops) has written it
+// on the buffer. No transform function is called then.
+using Crop = std::array<guint, 4>;  // x, y, width, height
+inline Crop crop_of(GstBuffer* buffer) {
+  const GstVideoCropMeta* crop = gst_buffer_get_video_crop_meta(buffer);
+  return crop ? Crop{crop->x, crop->y, crop->width, crop->height} : Crop{};
+}
+
 // A meta that carries one plain C structure, at most one a buffer. kInit sets its empty value; kInfo: the meta's
-// info, which comes from register_as().
-template <typename Value, void (*kInit)(Value*), const GstMetaInfo* (*kInfo)()>
+// info, which comes from register_as(). kInPixels: true of one picture only, so that a later crop in place removes it.
+template <typename Value, void (*kInit)(Value*), const GstMetaInfo* (*kInfo)(), bool kInPixels>
 class ValueMeta {
   struct Meta {
     GstMeta meta;
     Value value;
+    Crop crop;  // of the buffer when it was attached
   };
 
  public:
@@ -60,7 +70,8 @@ class ValueMeta {
   // nullptr: there is none.
   static const Value* peek(GstBuffer* buffer) {
     GstMeta* meta = gst_buffer_get_meta(buffer, kInfo()->api);
-    return meta ? &value_of(meta) : nullptr;
+    if (!meta || (kInPixels && reinterpret_cast<Meta*>(meta)->crop != crop_of(buffer))) return nullptr;
+    return &value_of(meta);
   }
   // nullptr removes. False: it cannot be done.
   static gboolean set(GstBuffer* buffer, const Value* value) {
@@ -68,8 +79,10 @@ class ValueMeta {
     GstMeta* meta = gst_buffer_get_meta(buffer, kInfo()->api);
     if (!value) return !meta || gst_buffer_remove_meta(buffer, meta);
     if (!meta) meta = gst_buffer_add_meta(buffer, kInfo(), nullptr);
-    if (meta) value_of(meta) = *value;
-    return meta != nullptr;
+    if (!meta) return FALSE;
+    value_of(meta) = *value;
+    reinterpret_cast<Meta*>(meta)->crop = crop_of(buffer);
+    return TRUE;
   }
 
  private:
