@@ -172,6 +172,27 @@ GST_START_TEST(pan_comes_from_the_frame_else_from_the_events_that_passed) {
 }
 GST_END_TEST
 
+// The head turns by 20 degrees a second. A repeated picture was taken when the last new one came.
+GST_START_TEST(a_repeated_frame_is_decided_with_the_pose_of_its_picture_and_the_newest_readings) {
+  Rig rig;
+  rig.add_pir();
+  rig.read(0, {0, 0, 0});
+  say(rig, pose(10, 0, 20));
+  CerberusFusion fusion = rig.show(frame_with(0, 9));
+  fail_unless(std::abs(fusion.pan - 10) < 1e-9, "%g", fusion.pan);
+  rig.read(50 * kMs, {0, 1, 0});
+  GstBuffer* again = frame_with(100 * kMs, 9);
+  GST_BUFFER_FLAG_SET(again, GST_BUFFER_FLAG_GAP);
+  fusion = rig.show(again);
+  fail_unless(std::abs(fusion.pan - 10) < 1e-9, "%g", fusion.pan);
+  assert_says(text(sensors(fusion)), "010");
+  fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TRACK);
+  fail_unless_equals_int(fusion.target, 9);
+  fusion = rig.show(frame_with(200 * kMs, 9));
+  fail_unless(std::abs(fusion.pan - 14) < 1e-9, "%g", fusion.pan);
+}
+GST_END_TEST
+
 GST_START_TEST(a_strangers_pose_is_passed_on_and_not_listened_to) {
   Rig rig;
   GstHarness* pir = rig.add_pir();
@@ -313,6 +334,7 @@ static Suite* pirfusion_suite() {
   tc = tcase_create("head");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, pan_comes_from_the_frame_else_from_the_events_that_passed);
+  tcase_add_test(tc, a_repeated_frame_is_decided_with_the_pose_of_its_picture_and_the_newest_readings);
   tcase_add_test(tc, a_strangers_pose_is_passed_on_and_not_listened_to);
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
   tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);

@@ -179,6 +179,34 @@ GST_START_TEST(a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_
 }
 GST_END_TEST
 
+// But for the trails, which fade with time.
+GST_START_TEST(a_repeated_frame_is_drawn_on_as_its_picture_was) {
+  Line line("motiondetect confirm-time=0 ! motionoverlay show-trails=false",
+            scene::caps("I420", scene::kWidth, scene::kHeight));
+  const World world;
+  const auto picture = [&](int k) {
+    return scene::buffer("I420", scene::kWidth, scene::kHeight, world.picture(k), k * scene::kStep);
+  };
+  for (int k = 0; k < 24; ++k) gst_buffer_unref(line.through(picture(k)));
+  GstBuffer* drawn = line.through(picture(24));
+  fail_unless(Regions(drawn).size() > 0);
+  GstBuffer* in = picture(24);
+  GstMapInfo plain, once, twice;
+  GST_BUFFER_PTS(in) += scene::kStep / 2;
+  GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_GAP);
+  GstBuffer* original = gst_buffer_copy_deep(in);
+  GstBuffer* again = line.through(in);
+  fail_unless(gst_buffer_map(original, &plain, GST_MAP_READ) && gst_buffer_map(drawn, &once, GST_MAP_READ) &&
+              gst_buffer_map(again, &twice, GST_MAP_READ));
+  fail_unless(memcmp(once.data, plain.data, plain.size) != 0, "nothing was drawn");
+  fail_unless(memcmp(once.data, twice.data, plain.size) == 0, "a repeated frame looks different");
+  gst_buffer_unmap(original, &plain);
+  gst_buffer_unmap(drawn, &once);
+  gst_buffer_unmap(again, &twice);
+  for (GstBuffer* each : {original, drawn, again}) gst_buffer_unref(each);
+}
+GST_END_TEST
+
 // ---- frames that stop coming
 
 // A figure that is seen until frame 24, and then nothing; a clock that goes by hand.
@@ -307,6 +335,7 @@ Suite* repeated_suite() {
   tcase_add_loop_test(tests, a_break_on_a_repeated_frame_ends_the_scene, 0, G_N_ELEMENTS(kLines));
   // Without cameramotion such a mark cannot be distinguished from a cut.
   tcase_add_loop_test(tests, a_mark_of_dropped_frames_on_a_repeated_frame_ends_no_scene, 0, 2);
+  tcase_add_test(tests, a_repeated_frame_is_drawn_on_as_its_picture_was);
   tcase_add_test(tests, a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_base);
   tcase_add_test(tests, live_motion_ends_by_the_clock_when_frames_stop);
   tcase_add_test(tests, there_is_one_timer_however_many_frames_come);
