@@ -52,5 +52,6 @@ CERBERUS_DEFINE_ENUM(CerberusPantiltState, cerberus_pantilt_state,
                      {CERBERUS_PANTILT_HOLDING, "CERBERUS_PANTILT_HOLDING", "holding"},
                      {CERBERUS_PANTILT_MANUAL, "CERBERUS_PANTILT_MANUAL", "manual"},
                      {CERBERUS_PANTILT_LIMITED, "CERBERUS_PANTILT_LIMITED", "limited"},
-                     {CERBERUS_PANTILT_FAULT, "CERBERUS_PANTILT_FAULT", "fault"})
+                     {CERBERUS_PANTILT_FAULT, "CERBERUS_PANTILT_FAULT", "fault"},
+                     {CERBERUS_PANTILT_HOMING, "CERBERUS_PANTILT_HOMING", "homing"})
 CERBERUS_DEFINE_MESSAGE(CerberusPantilt, pantilt, CERBERUS_MESSAGE_PANTILT)

@@ -28,6 +28,7 @@ G_BEGIN_DECLS
  * @CERBERUS_PANTILT_MANUAL: the application drives it
  * @CERBERUS_PANTILT_LIMITED: it stands at a limit that the target is beyond
  * @CERBERUS_PANTILT_FAULT: its driver fails
+ * @CERBERUS_PANTILT_HOMING: it has lost its reference and looks for it
  *
  * What a head does.
  */
@@ -41,6 +42,7 @@ typedef enum {
   CERBERUS_PANTILT_MANUAL,
   CERBERUS_PANTILT_LIMITED,
   CERBERUS_PANTILT_FAULT,
+  CERBERUS_PANTILT_HOMING,
 } CerberusPantiltState;
 
 /**

@@ -37,6 +37,15 @@ Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision
   return {sum.yaw / (kGrid * kGrid), sum.pitch / (kGrid * kGrid)};
 }
 
+std::optional<Turn> head_turn(const PictureMotion& motion, const vision::Lens& lens,
+                              const motion::PanTilt& look) {
+  constexpr double kConfident = 0.5;  // share of the picture that must agree, as in HeadMotionMonitor
+  if (!(motion.confidence >= kConfident) || !lens.known() || !motion.transform.is_sane(motion.picture))
+    return std::nullopt;
+  const Turn turn = base_turn(motion.transform, lens, motion.picture, look, look);
+  return Turn{turn.yaw - motion.base_yaw, turn.pitch};
+}
+
 void BaseRate::reset() {
   *this = {};
 }

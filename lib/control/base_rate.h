@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "motion/head_limits.h"
 #include "motion/pan_tilt.h"
@@ -23,6 +24,18 @@ struct Turn {
 // degree lens a degree has a third more pixels than in the middle. NaN for an unknown lens or pose.
 Turn base_turn(const vision::Transform& motion, const vision::Lens& lens, vision::Size picture,
                const motion::PanTilt& before, const motion::PanTilt& after);
+
+// The motion of the picture since the frame before, as measured.
+struct PictureMotion {
+  vision::Transform transform;  // frame pixels
+  double confidence = 0;        // 0 to 1: share of the picture that agrees
+  vision::Size picture;         // pixels
+  double base_yaw = 0;          // radians by which the base turned meanwhile, as reported; 0: it stands
+};
+// Returns the turn of a head that looks at `look` and whose picture moved. Nothing: the confidence is too low, or it is
+// no motion of a camera, or the lens is unknown.
+std::optional<Turn> head_turn(const PictureMotion& motion, const vision::Lens& lens,
+                              const motion::PanTilt& look);
 
 // Converts the turns of single frames to a rate: the mean of their middle half over kSpan, so that neither a wrong
 // measurement nor a shaking camera counts as a turn.

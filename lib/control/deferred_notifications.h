@@ -24,6 +24,7 @@ enum class HeadState : std::uint8_t {
   manual,
   limited,
   fault,
+  homing,
 };
 struct Status {
   HeadState state = HeadState::stopped;

@@ -20,6 +20,8 @@ constexpr motion::Time kSilence = std::chrono::seconds(1);
 constexpr char kSilent[] = "the head does not answer";
 // A decision between frames is used if its time is at most kEarly after and at most kStale before now.
 constexpr motion::Time kEarly = milliseconds(100), kStale = std::chrono::seconds(1);
+// A reference that was not found is looked for again after this time. derived: longer than HelperHead looks for it.
+constexpr motion::Time kHomePatience = std::chrono::seconds(60);
 constexpr auto kTickPatience = milliseconds(10);
 // This is long because results must not depend on the load of the machine; a state change interrupts the wait.
 constexpr auto kFramePatience = std::chrono::seconds(10);
@@ -53,7 +55,8 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   history_.clear();
   watchdog_.rest();
   manual_ = {};
-  faulty_ = silent_ = ended_ = false;
+  faulty_ = silent_ = ended_ = homing_ = false;
+  simulated_ = runner_->simulated();
   halted_ = fresh_ = true;
   latest_ = epoch_ = published_ = Time::zero();
   newest_.reset();
@@ -62,6 +65,7 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   start.pan.position = setup.pan;
   start.tilt.position = setup.tilt;
   history_.add(start);
+  correction_.reset(start, setup.latency);
   status_ = {};
 }
 
@@ -96,7 +100,7 @@ std::string HeadController::set_limits(const motion::Limits& limits, std::option
   setup_.limits = limits;
   confine_law();
   limits_wait_ = halted_;
-  if (!halted_) runner_->limit(earliest(at), limits);
+  if (!halted_) runner_->limit(earliest(at), correction_.limits(limits));
   return {};
 }
 
@@ -136,7 +140,7 @@ HeadController::Time HeadController::earliest(std::optional<Time> at) {
 
 void HeadController::confine_law() {
   control::LawOptions options = law_.options();
-  options.limits = setup_.limits;
+  options.limits = correction_.narrowed(setup_.limits);
   law_.set_options(options);
 }
 
@@ -146,8 +150,39 @@ Pose HeadController::running(Pose pose) const {
   return pose;
 }
 
-void HeadController::remember(const std::vector<Pose>& poses) {
-  for (const Pose& pose : poses) history_.add(pose);
+// Shifts the driver's poses by their correction.
+void HeadController::remember(std::vector<Pose>& poses) {
+  for (Pose& pose : poses) {
+    correction_.add(pose);
+    history_.add(pose);
+  }
+}
+
+// Gives the driver a command in its own, uncorrected angles.
+void HeadController::order(drivers::HeadCommand command) {
+  correction_.to_driver(command);
+  runner_->command(command);
+}
+
+// Corrects the pose of a head that reports none by the turn of the picture, and looks for a lost reference.
+void HeadController::correct(const Frame& frame, Time now, DeferredNotifications& out) {
+  if (frame.repeats) return;
+  const bool lost = correction_.lost();
+  const Pose ahead = history_.at(now + setup_.latency);
+  const auto turn =
+      frame.motion ? head_turn(*frame.motion, frame.lens, correction_.position().value_or(motion::PanTilt{}))
+                   : std::nullopt;
+  if (correction_.on_frame(frame.running + epoch_, ahead, turn, setup_.limits)) {
+    confine_law();
+    runner_->limit(now, correction_.limits(setup_.limits));
+  }
+  homing_ = homing_ && correction_.lost() && now - home_tried_ < kHomePatience;
+  if (!correction_.lost() || (lost && now - home_tried_ < kHomePatience)) return;
+  home_tried_ = now;
+  homing_ = true;
+  law_.reset();
+  runner_->home(now);
+  report(HeadState::homing, "its pose is too uncertain: it looks for its reference", now, out);
 }
 
 // Publishes the pieces from `published_` on, the last one cut at `until` (kNever: only the first, as it is).
@@ -185,7 +220,7 @@ void HeadController::watch_emergency(Time head, DeferredNotifications& out) {
   manual_.emergency(manual_.authority() != Authority::emergency_stop);
   law_.reset();
   // A command that the head obeys ends its fault.
-  if (manual_.authority() == Authority::manual && clock_driven_ && !halted_) runner_->command({head, {}, {}});
+  if (manual_.authority() == Authority::manual && clock_driven_ && !halted_) order({head, {}, {}});
   report_manual(head, out);
 }
 
@@ -231,7 +266,7 @@ HeadController::Answer HeadController::announce(Time at, DeferredNotifications& 
   if (answer == Answer::interrupted) return answer;
   fresh_ = false;
   // Without an answer of the driver, publishes the last known pose.
-  if (answer != Answer::done) poses.assign(1, history_.at(from));
+  if (answer != Answer::done) poses.assign(1, correction_.driver_pose(from));
   if (answer != Answer::done) poses[0].from = from;
   remember(poses);
   publish(poses, until, out);
@@ -249,7 +284,10 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
     return command;
   }
   const Time taken = frame.repeats.value_or(frame.running) + epoch_;
-  const Pose capture = frame.capture ? *frame.capture : history_.at(taken);
+  const auto estimate = correction_.position();
+  Pose capture = frame.capture && !estimate ? *frame.capture : history_.at(taken);
+  if (estimate) capture.pan.position = estimate->pan;
+  if (estimate) capture.tilt.position = estimate->tilt;
   const Pose ahead = history_.at(now + setup_.latency);
   const TargetSelector::Selection selection =
       selector_.on_frame(*frame.seen, frame.running, capture.pan.position);
@@ -270,8 +308,10 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
     if (!frame.seen || halted_) return Answer::done;
     const Time now = head_time(frame.now);
     watchdog_.feed(now);
+    if (!simulated_) correct(frame, now, out);
+    if (homing_ && !manual_.active()) return Answer::done;
     const HeadCommand command = decide(frame, now, out);
-    if (!manual_.active()) runner->command(command);
+    if (!manual_.active()) order(command);
     return Answer::done;
   }
 
@@ -321,7 +361,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
 void HeadController::on_decision(const FusionDecision& decision, Time at, DeferredNotifications& out) {
   const std::lock_guard guard(lock_);
   // Only frames feed the watchdog: without them no decision moves the head.
-  if (!runner_ || !clock_driven_ || halted_ || manual_.active() || !watchdog_.alive()) return;
+  if (!runner_ || !clock_driven_ || halted_ || homing_ || manual_.active() || !watchdog_.alive()) return;
   if (!decision.decided || *decision.decided > at + kEarly || *decision.decided < at - kStale) return;
   const auto selection = selector_.on_decision(decision);
   if (!selection) return;
@@ -329,7 +369,7 @@ void HeadController::on_decision(const FusionDecision& decision, Time at, Deferr
   const Pose ahead = history_.at(now + setup_.latency);
   const Command command = law_.update(selection->goal, {}, ahead, ahead);
   if (!faulty_) report(state_of(command), selection->reason, now, out);
-  runner_->command({now, command.pan, command.tilt});
+  order({now, command.pan, command.tilt});
 }
 
 HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
@@ -338,11 +378,12 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   if (!runner) return at + kAtRest;
   const Time now = head_time(at);
   if (watchdog_.bites(now)) {
-    runner->command({now, {}, {}});
+    homing_ = false;
+    order({now, {}, {}});
     on_timeout(now, out);
   }
   if (!halted_ && manual_.lapse(now)) {
-    runner->command({now, {}, {}});
+    order({now, {}, {}});
     report_manual(now, out);
   }
   guard.unlock();
@@ -375,6 +416,7 @@ void HeadController::halt(const char* reason, std::optional<Time> at, drivers::H
   const Time now = earliest(at);
   watchdog_.rest();
   law_.reset();
+  homing_ = false;
   guard.unlock();
   const Answer answer = runner->stop(now, patience);
   std::vector<Pose> poses;
@@ -409,10 +451,11 @@ void HeadController::resume(std::optional<Time> at, DeferredNotifications& out) 
   const std::lock_guard guard(lock_);
   if (ended_) return;
   halted_ = false;
-  if (runner_ && std::exchange(limits_wait_, false)) runner_->limit(earliest(at), setup_.limits);
+  if (runner_ && std::exchange(limits_wait_, false))
+    runner_->limit(earliest(at), correction_.limits(setup_.limits));
   if (at && clock_driven_) manual_.lapse(head_time(*at));
   if (runner_ && manual_.active() && clock_driven_ && at)
-    runner_->command({head_time(*at), manual_.command().pan, manual_.command().tilt});
+    order({head_time(*at), manual_.command().pan, manual_.command().tilt});
   report_manual(latest_, out);
 }
 
@@ -430,7 +473,8 @@ std::optional<HeadController::Time> HeadController::newest() const {
 void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications& out) {
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
-  if (clock_driven_ && !halted_) runner_->command({now, manual_.command().pan, manual_.command().tilt});
+  homing_ = false;
+  if (clock_driven_ && !halted_) order({now, manual_.command().pan, manual_.command().tilt});
   if (manual_.authority() == Authority::emergency_stop)
     report_manual(now, out);
   else
@@ -469,7 +513,7 @@ bool HeadController::stop(std::optional<Time> at, DeferredNotifications& out) {
 void HeadController::end_manual(const char* reason, std::optional<Time> at, DeferredNotifications& out) {
   if (!manual_.end()) return;
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
-  if (clock_driven_ && !halted_) runner_->command({now, {}, {}});
+  if (clock_driven_ && !halted_) order({now, {}, {}});
   report(HeadState::holding, reason, now, out);
 }
 

@@ -17,6 +17,7 @@
 #include "control/deferred_notifications.h"
 #include "control/law.h"
 #include "control/manual_override.h"
+#include "control/pose_correction.h"
 #include "control/target_selector.h"
 #include "control/watchdog.h"
 #include "drivers/head/head_runner.h"
@@ -58,6 +59,7 @@ class HeadController {
     Time now{};                       // clock-driven: running time by the clock
     vision::Lens lens;
     std::optional<motion::Pose> capture;  // the head's pose at that time, if the frame carries it
+    std::optional<PictureMotion> motion;  // since the frame before, where it was measured
     std::optional<Time> repeats;          // the frame repeats the picture that was taken at this running time
   };
   // Processes a frame. interrupted: call again with the same frame; after any other answer the frame is processed.
@@ -93,7 +95,9 @@ class HeadController {
   Time head_time(Time running);
   Time earliest(std::optional<Time> now);
   void confine_law();
-  void remember(const std::vector<motion::Pose>& poses);
+  void remember(std::vector<motion::Pose>& poses);
+  void correct(const Frame& frame, Time now, DeferredNotifications& out);
+  void order(drivers::HeadCommand command);
   void publish(const std::vector<motion::Pose>& poses, Time until, DeferredNotifications& out);
   void report(HeadState state, std::string reason, Time head, DeferredNotifications& out);
   void report_manual(Time head, DeferredNotifications& out);
@@ -113,10 +117,14 @@ class HeadController {
   bool limits_wait_ = false;  // for the end of a halt
   Law law_;
   motion::PoseHistory history_;  // in the head's time
+  PoseCorrection correction_;    // of a head that the clock drives
   Watchdog watchdog_;
   TargetSelector selector_;
   ManualOverride manual_;
   bool clock_driven_ = false, halted_ = false, faulty_ = false, silent_ = false;
+  bool simulated_ = true;       // the head's poses are exact
+  bool homing_ = false;         // the head looks for its reference
+  Time home_tried_{};           // when it began to
   bool ended_ = false;          // the stream
   Time latest_{}, epoch_{};     // head time of the last command; head time = running time + epoch
   Time published_{};            // head time until which poses were published

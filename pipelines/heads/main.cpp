@@ -25,6 +25,8 @@ struct Options {
   gint baud = 0, address = 1;
   gboolean no_header = FALSE, no_feedback = FALSE, feedback = FALSE;
   gdouble pan_speed = PelcoOptions{}.pan_speed, tilt_speed = PelcoOptions{}.tilt_speed;
+  gint home_preset = 0;
+  gdouble home_time = PelcoOptions{}.home_time;
   gchar* speeds = nullptr;
   gchar* emergency_stop = nullptr;
 };
@@ -53,6 +55,8 @@ int run_pelco(const Options& o) {
   options.feedback = o.feedback;
   options.pan_speed = o.pan_speed;
   options.tilt_speed = o.tilt_speed;
+  options.home_preset = o.home_preset;
+  options.home_time = o.home_time;
   PelcoHead head(options);
   return heads::serve(head, o.emergency_stop ? o.emergency_stop : "");
 }
@@ -81,6 +85,10 @@ int main(int argc, char** argv) {
       {"pan-speed", 0, 0, G_OPTION_ARG_DOUBLE, &o.pan_speed,
        "Degrees a second of a Pelco-D head's fastest pan (40)", "N"},
       {"tilt-speed", 0, 0, G_OPTION_ARG_DOUBLE, &o.tilt_speed, "Degrees a second of its fastest tilt (20)",
+       "N"},
+      {"home-preset", 0, 0, G_OPTION_ARG_INT, &o.home_preset,
+       "Preset of a Pelco-D head that looks straight ahead, its reference (none)", "N"},
+      {"home-time", 0, 0, G_OPTION_ARG_DOUBLE, &o.home_time, "Seconds that it takes to go there at most (10)",
        "N"},
       {"speeds", 0, 0, G_OPTION_ARG_STRING, &o.speeds,
        "Speeds of a VISCA camera's steps 0, 1, 2 ... in degrees a second: \"PAN PAN ...; TILT TILT ...\"",

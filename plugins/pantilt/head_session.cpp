@@ -30,7 +30,7 @@ void refuse(GstElement* element, const char* head, const std::string& why) {
 
 static_assert(static_cast<int>(control::HeadState::stopped) == CERBERUS_PANTILT_STOPPED &&
               static_cast<int>(control::HeadState::holding) == CERBERUS_PANTILT_HOLDING &&
-              static_cast<int>(control::HeadState::fault) == CERBERUS_PANTILT_FAULT);
+              static_cast<int>(control::HeadState::homing) == CERBERUS_PANTILT_HOMING);
 
 // Posts one notice.
 struct Posting {

@@ -86,6 +86,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "head_session.hpp"
+#include "shared/camera_path.hpp"
 #include "shared/complaint.hpp"
 #include "shared/times.hpp"
 #include "shared/tracks.hpp"
@@ -107,6 +108,7 @@ struct State {  // streaming thread only
   bool known = false;                 // info
   Complaint complaint;                // about the caps
   std::vector<fusion::Track> tracks;  // on the frame
+  vision::CameraFollower camera;      // since the last frame
   std::optional<Time> taken;          // running time of the last frame that repeats none
   bool began_late = false;            // the stream, after the sink was set to PLAYING
   bool live_known = false;            // whether upstream is live was asked
@@ -185,6 +187,18 @@ std::optional<Time> running_time(const HeadSession& session, GstClockTime pts, s
   return time_of(running);
 }
 
+// The motion of the picture since the last frame here.
+std::optional<control::PictureMotion> motion_of(State& state, GstBuffer* buffer, Time taken) {
+  const CerberusCameraMotion* motion = cerberus_buffer_peek_camera_motion(buffer);
+  const vision::Size size{state.info.width, state.info.height};
+  const auto step = state.camera.next(path_point(buffer), clock_time(state.taken), size);
+  if (!motion || step.link != vision::CameraFollower::Link::follows || !state.taken) return std::nullopt;
+  const CerberusBase* base = cerberus_buffer_peek_base(buffer);
+  const double rate = base && base->source == CERBERUS_BASE_REPORTED ? radians(base->yaw_rate) : 0;
+  const double base_yaw = rate * motion::seconds(taken - *state.taken);
+  return control::PictureMotion{step.motion.transform, motion->confidence, size, base_yaw};
+}
+
 GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstClockTime duration) {
   HeadSession& session = self.session;
   // In PAUSED nothing is done; the base class would let a gap through, and a frame that comes just then.
@@ -208,13 +222,16 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
       .now = session.now().value_or(*taken),
       .lens = vision::Lens(radians(session.field_of_view), {info.width, info.height}),
       .capture = std::nullopt,
+      .motion = std::nullopt,
       .repeats = std::nullopt};
   if (buffer) {
     session.stamps.frame(GST_BASE_SINK_PAD(session.sink), buffer, clock_time(*taken), session.camera_name);
-    if (!GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP))
+    if (!GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) {
+      frame.motion = motion_of(self.state, buffer, *taken);
       self.state.taken = taken;
-    else
+    } else {
       frame.repeats = std::min(self.state.taken, taken);
+    }
     read_tracks(buffer, self.state.tracks);
     const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
     frame.seen.emplace(self.state.tracks, fusion ? std::optional(from_c(*fusion)) : std::nullopt);

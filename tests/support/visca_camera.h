@@ -11,12 +11,14 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <deque>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -32,7 +34,9 @@ struct ViscaFaults {
   int loses_answers = 0;   // as many acknowledgements are lost
   int swallows_moves = 0;  // likewise of moves
   int swallows_stops = 0;  // as many stops are neither obeyed nor answered
-  std::chrono::milliseconds delay{0};
+  bool strict = false;     // refuses a sequence number that is not the next one, as Sony's cameras do
+  std::chrono::milliseconds delay{0};      // of each answer
+  std::chrono::milliseconds dead_time{0};  // from a move or stop until the camera turns so
 };
 
 class ViscaCamera {
@@ -72,31 +76,68 @@ class ViscaCamera {
       if (fd >= 0) ::close(fd);
   }
   const std::string& device() const { return device_; }
-  double pan() { return state(pan_); }          // degrees
-  double speed() { return state(pan_speed_); }  // degrees a second
+  double pan() { return state(pan_.position); }  // degrees
+  double tilt() { return state(tilt_.position); }
+  double speed() { return state(pan_.speed); }  // degrees a second
   int moves() const { return moves_; }
+  int homes() const { return homes_; }
   // When the camera stopped last.
   Clock::time_point stopped() {
     const std::lock_guard guard(lock_);
     return stopped_;
   }
+  // The next reset of the sequence number is lost.
+  void drop_reset() { drops_resets_ = 1; }
   // The camera's cable is pulled (TCP: the connection ends).
   void hang_up() { hang_up_ = true; }
 
  private:
+  struct Axis {
+    double position = 0, speed = 0;
+  };
+  struct Drive {
+    Clock::time_point from;
+    double pan, tilt;  // degrees a second
+  };
+  static constexpr double kHomeSpeed = 60;
+
   double state(double& value) {
     const std::lock_guard guard(lock_);
     advance();
     return value;
   }
+  void turn_until(Clock::time_point time) {
+    const double dt = std::chrono::duration<double>(time - last_).count();
+    for (Axis* axis : {&pan_, &tilt_}) {
+      const double most = kHomeSpeed * dt;
+      axis->position += homing_ ? std::clamp(-axis->position, -most, most) : axis->speed * dt;
+    }
+    last_ = time;
+  }
   void advance() {
     const auto now = Clock::now();
-    pan_ += pan_speed_ * std::chrono::duration<double>(now - last_).count();
-    last_ = now;
+    for (; !coming_.empty() && coming_.front().from <= now; coming_.pop_front()) {
+      turn_until(coming_.front().from);
+      homing_ = false;
+      const bool moved = pan_.speed != 0;
+      pan_.speed = coming_.front().pan;
+      tilt_.speed = coming_.front().tilt;
+      if (moved && pan_.speed == 0) stopped_ = coming_.front().from;
+    }
+    turn_until(now);
+  }
+  bool has_come_home() {
+    const std::lock_guard guard(lock_);
+    advance();
+    return homing_ && pan_.position == 0 && tilt_.position == 0;
   }
   void run() {
     std::vector<std::uint8_t> bytes;
     while (!end_) {
+      if (has_come_home()) {
+        homing_ = false;
+        answer({0x90, 0x52, 0xff});
+      }
       if (hang_up_.exchange(false) && line_ == Line::tcp && fd_ >= 0) ::close(fd_), fd_ = -1;
       if (line_ == Line::tcp && fd_ < 0) {
         pollfd wait{listener_, POLLIN, 0};
@@ -116,9 +157,25 @@ class ViscaCamera {
       }
       std::size_t skip = 0;
       if (line_ == Line::udp && faults_.header) {
-        if (got < 9 || piece[0] != 0x01) continue;  // control messages: the sequence number begins anew
+        if (got < 9) continue;
+        if (piece[0] == 0x02) {  // the sequence number begins anew
+          if (drops_resets_ > 0)
+            --drops_resets_;
+          else
+            next_ = 0;
+          continue;
+        }
         skip = 8;
         std::memcpy(header_, piece, 8);
+        const std::uint32_t number =
+            static_cast<std::uint32_t>(piece[4]) << 24 | piece[5] << 16 | piece[6] << 8 | piece[7];
+        if (faults_.strict && number != next_) {
+          const std::uint8_t error[10] = {0x02,     0x01,     0,        2,    piece[4],
+                                          piece[5], piece[6], piece[7], 0x0f, 0x01};
+          ::sendto(fd_, error, sizeof error, 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
+          continue;
+        }
+        next_ = number + 1;
       }
       bytes.insert(bytes.end(), piece + skip, piece + got);
       for (std::size_t i = 0; i < bytes.size(); ++i)
@@ -154,6 +211,17 @@ class ViscaCamera {
       reply.insert(reply.end(), {0, 0, 0, 0, 0xff});
       return answer(reply);
     }
+    if (m == std::vector<std::uint8_t>{0x81, 0x01, 0x06, 0x04, 0xff}) {
+      {
+        const std::lock_guard guard(lock_);
+        advance();
+        coming_.clear();
+        pan_.speed = tilt_.speed = 0;
+        homing_ = true;
+      }
+      ++homes_;
+      return answer({0x90, 0x42, 0xff});
+    }
     if (m.size() != 9 || m[0] != 0x81 || m[1] != 1 || m[2] != 6 || m[3] != 1) return;
     const bool stop = m[6] == 3 && m[7] == 3;
     if (stop && faults_.swallows_stops > 0) return void(--faults_.swallows_stops);
@@ -165,11 +233,13 @@ class ViscaCamera {
     {
       static constexpr double kSpeeds[] = {.3, 1,  1.5, 2.2, 2.4, 2.6, 2.8, 3.0, 3.2, 3.4, 3.8, 4.5, 6,
                                            9,  15, 19,  25,  32,  38,  45,  58,  75,  88,  105, 120};
+      static constexpr double kTilts[] = {.3, 1,  1.5, 2.2, 3.6, 4.7, 6,  8,  10, 12,
+                                          15, 18, 23,  30,  39,  48,  59, 69, 80};
       const std::lock_guard guard(lock_);
+      coming_.push_back({Clock::now() + faults_.dead_time,
+                         m[6] == 3 ? 0 : kSpeeds[m[4]] * (m[6] == 2 ? 1 : -1),
+                         m[7] == 3 ? 0 : kTilts[std::min<int>(m[5], 18)] * (m[7] == 1 ? 1 : -1)});
       advance();
-      const bool moved = pan_speed_ != 0;
-      pan_speed_ = m[6] == 3 ? 0 : kSpeeds[m[4]] * (m[6] == 2 ? 1 : -1);
-      if (moved && pan_speed_ == 0) stopped_ = Clock::now();
       if (!stop) ++moves_;
     }
     if (!faults_.acknowledges) return;
@@ -186,9 +256,13 @@ class ViscaCamera {
   sockaddr_storage peer_{};
   socklen_t peer_size_ = 0;
   std::mutex lock_;
-  double pan_ = 0, pan_speed_ = 0;
+  Axis pan_, tilt_;  // degrees, degrees a second
+  std::deque<Drive> coming_;
+  std::atomic<bool> homing_{false};
+  std::atomic<int> homes_{0};
+  std::uint32_t next_ = 0;
   Clock::time_point last_, stopped_;
-  std::atomic<int> moves_{0};
+  std::atomic<int> moves_{0}, drops_resets_{0};
   std::atomic<bool> end_{false}, hang_up_{false};
   std::thread thread_;
 };

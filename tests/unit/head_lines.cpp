@@ -144,6 +144,16 @@ START_TEST(what_a_helper_writes_a_pipeline_reads) {
   ck_assert_double_eq_tol(degrees(pose.pan.position), -7.25, 1e-9);
   ck_assert_double_eq_tol(degrees(pose.tilt.speed), 3, 1e-9);
   ck_assert_double_eq(pose.age, 0.05);
+  ck_assert(!some.home);
+  ck_assert(parsed<ReadyLine>(ready_line({false, true, false, 20, true})).abilities.home);
+  assert_text(speeds_line({{radians(19), radians(-6)}, 0.125}), "speeds 19 -6 0.125");
+  const SpeedsLine speeds = parsed<SpeedsLine>("speeds 19 -6 0.125");
+  ck_assert_double_eq_tol(degrees(speeds.speed.tilt), -6, 1e-9);
+  ck_assert_double_eq(speeds.age, 0.125);
+  assert_text(homed_line({{0, radians(-3)}}), "homed 0 -3");
+  ck_assert_double_eq_tol(degrees(parsed<HomedLine>("homed 0 -3").at.tilt), -3, 1e-9);
+  for (const char* wrong : {"speeds 1 2", "speeds 1 2 -1", "speeds 1 2 3 4", "homed 1", "homed 1 2 3"})
+    ck_assert_msg(!parse_helper_line(wrong), "%s", wrong);
 }
 END_TEST
 

@@ -109,8 +109,15 @@ START_TEST(the_header_of_visca_over_ip_is_built_and_taken_off) {
   assert_text(hex(with_header(position_inquiry(1), 5)), "01 10 00 05 00 00 00 05 81 09 06 12 ff");
   assert_text(hex(reset_sequence()), "02 00 00 01 00 00 00 00 01");
   const Message answer = bytes({0x01, 0x11, 0, 3, 0, 0, 0, 9, 0x90, 0x41, 0xff});
-  assert_text(hex(without_header(answer)), "90 41 ff");
-  assert_text(hex(without_header(bytes({0x90, 0x41, 0xff}))), "90 41 ff");
+  assert_text(hex(parse_datagram(answer).payload), "90 41 ff");
+  ck_assert_uint_eq(parse_datagram(answer).sequence, 9);
+  ck_assert(!is_sequence_error(parse_datagram(answer)));
+  const Message bare = bytes({0x90, 0x41, 0xff});
+  assert_text(hex(parse_datagram(bare).payload), "90 41 ff");
+  ck_assert(!parse_datagram(bare).header);
+  // Control reply, "abnormality in the sequence number".
+  const Message error = bytes({0x02, 0x01, 0, 2, 0, 0, 0, 7, 0x0f, 0x01});
+  ck_assert(is_sequence_error(parse_datagram(error)));
 }
 END_TEST
 
@@ -137,7 +144,7 @@ START_TEST(any_bytes_are_parsed_without_harm) {
   for (int k = 0; k < 2000; ++k) {
     Message noise(random() % 40);
     for (std::uint8_t& byte : noise) byte = static_cast<std::uint8_t>(random() % 4 ? random() : 0xff);
-    cutter.append(without_header(noise));
+    cutter.append(parse_datagram(noise).payload);
     while (const auto message = cutter.take()) {
       ck_assert_uint_le(message->size(), kMostBytes);
       parse_reply(*message);

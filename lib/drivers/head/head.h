@@ -44,6 +44,9 @@ class Head {
   // Sets other limits, which have passed motion::check(), from `now` on (a time as of a command): the last command
   // continues within them. A head beyond them returns, and turns no further out.
   virtual std::string limit(Time now, const motion::Limits& limits) = 0;
+  // Begins to look for the head's reference, and obeys no command until it was found; the poses are then measured for a
+  // moment. The error of a head that has no way to find it leaves it as it was.
+  virtual std::string home(Time) { return "the head has no way to find its reference"; }
   // Returns in `pose` the piece of the trajectory at `time`, with pose.from = time. A time ahead by up to the latency
   // is final: a new command cannot change it.
   virtual std::string state(Time time, motion::Pose& pose) = 0;

@@ -39,11 +39,11 @@ struct HeadRunner::Core {
     std::optional<HeadSetup> open;
     std::optional<Limiting> limiting;
     std::optional<HeadCommand> command;
-    std::optional<Time> stop;
+    std::optional<Time> stop, home;
     std::optional<Question> question;
     bool quit = false;
     // Returns whether the batch may change the head's trajectory.
-    bool moves() const { return open || limiting || command || stop; }
+    bool moves() const { return open || limiting || command || stop || home; }
     bool any() const { return moves() || question || quit; }
   } todo;
   unsigned long asked = 0, answered = 0;  // tickets
@@ -86,6 +86,7 @@ std::string HeadRunner::Core::carry_out(const Batch& batch) {
     failed = head->command(*batch.command);
     if (!failed.empty()) head->stop(batch.command->time);
   }
+  if (batch.home && failed.empty()) failed = head->home(*batch.home);
   if (!batch.question) return failed;
   for (Time at = batch.question->from; found.size() < kMostPieces;) {
     motion::Pose& pose = found.emplace_back();
@@ -114,7 +115,7 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   if (failed) failure = wrong;
   const bool failed_to_open = failed && batch.open;
   if (failed_to_open) refusal = unopened;
-  if (batch.open || batch.limiting || batch.command)
+  if (batch.open || batch.limiting || batch.command || batch.home)
     obeys = !failed;
   else if (batch.question)
     speaks = !failed;
@@ -191,6 +192,7 @@ HeadRunner::Answer HeadRunner::open(const HeadSetup& setup, Patience patience) {
 HeadRunner::Answer HeadRunner::stop(Time now, Patience patience) {
   std::unique_lock guard(core_->lock);
   core_->todo.command.reset();
+  core_->todo.home.reset();
   core_->todo.stop = now;
   return wait(guard, core_->hand_over(guard), patience, false);
 }
@@ -199,6 +201,12 @@ void HeadRunner::command(const HeadCommand& command) {
   std::unique_lock guard(core_->lock);
   core_->todo.stop.reset();
   core_->todo.command = command;
+  core_->hand_over(guard);
+}
+
+void HeadRunner::home(Time now) {
+  std::unique_lock guard(core_->lock);
+  core_->todo.home = now;
   core_->hand_over(guard);
 }
 

@@ -41,6 +41,8 @@ class HeadRunner {
   Answer stop(Time now, Patience patience);
   // Passes the command to the driver and returns without waiting.
   void command(const HeadCommand& command);
+  // Lets the head look for its reference, without waiting. A refusal is a failure().
+  void home(Time now);
   // Passes limits as command() does. A waiting command is executed within the new limits only: a head that refuses them
   // is stopped, and the limits are passed again before each command.
   void limit(Time now, const motion::Limits& limits);

@@ -37,6 +37,13 @@ class HeadDevice {
   virtual std::optional<PoseLine> take_pose(Time now) = 0;
   // True while an emergency stop keeps the motors off.
   virtual bool emergency() const { return false; }
+  // Of a device without feedback: the speeds that it was commanded last, in which its steps are counted, if they have
+  // changed since the last call.
+  virtual std::optional<SpeedsLine> take_speeds(Time) { return std::nullopt; }
+  // Begins to look for the reference (abilities().home); any other command ends it.
+  virtual void home(Time) {}
+  // Once: the reference was found, and the device stands there.
+  virtual std::optional<HomedLine> take_homed(Time) { return std::nullopt; }
   // What is wrong with the device now; empty: nothing.
   virtual std::string fault() const = 0;
 };

@@ -79,6 +79,7 @@ std::optional<HelperLine> parse_ready(Words words) {
     if (word == "position") ready.abilities.position = true;
     if (word == "velocity") ready.abilities.velocity = true;
     if (word == "feedback") ready.abilities.feedback = true;
+    if (word == "home") ready.abilities.home = true;
     if (word != "rate") continue;
     const std::optional<double> rate = words.number();
     if (!rate || *rate < 1 || *rate > 1000) return std::nullopt;
@@ -94,6 +95,18 @@ std::optional<HelperLine> parse_pose(Words words) {
   if (!pan || !tilt || !pan_speed || !tilt_speed || !age || *age < 0 || !words.next().empty())
     return std::nullopt;
   return PoseLine{{radians(*pan), radians(*pan_speed), 0}, {radians(*tilt), radians(*tilt_speed), 0}, *age};
+}
+
+std::optional<HelperLine> parse_speeds(Words words) {
+  const auto pan = words.number(), tilt = words.number(), age = words.number();
+  if (!pan || !tilt || !age || *age < 0 || !words.next().empty()) return std::nullopt;
+  return SpeedsLine{{radians(*pan), radians(*tilt)}, *age};
+}
+
+std::optional<HelperLine> parse_homed(Words words) {
+  const auto pan = words.number(), tilt = words.number();
+  if (!pan || !tilt || !words.next().empty()) return std::nullopt;
+  return HomedLine{{radians(*pan), radians(*tilt)}};
 }
 
 std::optional<motion::Limits> parse_stops(Words& words, motion::Limits limits = {}) {
@@ -149,6 +162,7 @@ std::string ready_line(const HeadAbilities& abilities) {
   if (abilities.position) line += " position";
   if (abilities.velocity) line += " velocity";
   if (abilities.feedback) line += " feedback";
+  if (abilities.home) line += " home";
   line += " rate";
   append(line, abilities.rate);
   return line;
@@ -158,6 +172,19 @@ std::string pose_line(const PoseLine& pose) {
   std::string line;
   append_angles(line, "pose", {pose.pan.position, pose.tilt.position, pose.pan.speed, pose.tilt.speed});
   append(line, pose.age);
+  return line;
+}
+
+std::string speeds_line(const SpeedsLine& speeds) {
+  std::string line;
+  append_angles(line, "speeds", {speeds.speed.pan, speeds.speed.tilt});
+  append(line, speeds.age);
+  return line;
+}
+
+std::string homed_line(const HomedLine& homed) {
+  std::string line;
+  append_angles(line, "homed", {homed.at.pan, homed.at.tilt});
   return line;
 }
 
@@ -171,8 +198,11 @@ std::optional<PipelineLine> parse_pipeline_line(std::string_view text) {
     const auto tilt = pan ? parse_command(words) : std::nullopt;
     if (tilt) line = MoveLine{*pan, *tilt};
   } else if (word == "limits") {
-    if (const auto limits = parse_stops(words); limits && motion::check(*limits).empty())
+    if (const auto limits = parse_stops(words);
+        limits && limits->pan.from <= limits->pan.to && limits->tilt.from <= limits->tilt.to)
       line = LimitsLine{*limits};
+  } else if (word == "home") {
+    line = HomeLine{};
   } else if (word == "alive") {
     line = AliveLine{};
   } else if (word == "stop") {
@@ -213,6 +243,8 @@ std::optional<HelperLine> parse_helper_line(std::string_view line) {
   const std::string_view word = words.next();
   if (word == "ready") return parse_ready(words);
   if (word == "pose") return parse_pose(words);
+  if (word == "speeds") return parse_speeds(words);
+  if (word == "homed") return parse_homed(words);
   if (word == "fault" && !words.rest().empty()) return FaultLine{words.rest()};
   if (word == "recovered" && words.rest().empty()) return RecoveredLine{};
   if (word == "emergency") {

@@ -8,10 +8,13 @@
 //     cerberus-head 1 timeout T limits PAN-MIN PAN-MAX TILT-MIN TILT-MAX speed PAN TILT acceleration PAN TILT start PAN TILT
 //     move PAN-COMMAND TILT-COMMAND     a command is `hold`, `to POSITION SPEED` or `at SPEED`
 //     limits PAN-MIN PAN-MAX TILT-MIN TILT-MAX
+//     home                              looks for the reference
 //     alive | stop | quit
 //   helper -> pipeline
-//     ready 1 [position] [velocity] [feedback] [rate N]
+//     ready 1 [position] [velocity] [feedback] [home] [rate N]
 //     pose PAN TILT PAN-SPEED TILT-SPEED AGE
+//     speeds PAN TILT AGE               of a head without feedback: what its steps make of the last `move`
+//     homed PAN TILT                    the reference was found; the head stands there
 //     fault TEXT | recovered | stopped TEXT | emergency pressed | emergency released
 #pragma once
 
@@ -22,6 +25,7 @@
 #include <variant>
 
 #include "drivers/head/head.h"
+#include "motion/pan_tilt.h"
 
 namespace cerberus::drivers {
 
@@ -34,6 +38,7 @@ struct HeadAbilities {
   bool velocity = false;  // it turns at a speed
   bool feedback = false;  // it sends `pose` lines
   double rate = 50;       // commands a second that it takes, 1 to 1000
+  bool home = false;      // it finds a reference: `home`
 };
 
 struct ReadyLine {
@@ -42,6 +47,13 @@ struct ReadyLine {
 struct PoseLine {
   motion::AxisState pan, tilt;  // radians; acceleration 0
   double age = 0;               // seconds since it was measured
+};
+struct SpeedsLine {
+  motion::PanTilt speed;  // radians a second
+  double age = 0;         // seconds since they were commanded
+};
+struct HomedLine {
+  motion::PanTilt at;  // radians
 };
 struct FaultLine {
   std::string text;
@@ -54,7 +66,8 @@ struct EmergencyLine {
   bool pressed = false;  // the device's emergency stop
 };
 // What a helper sends.
-using HelperLine = std::variant<ReadyLine, PoseLine, FaultLine, RecoveredLine, StoppedLine, EmergencyLine>;
+using HelperLine = std::variant<ReadyLine, PoseLine, SpeedsLine, HomedLine, FaultLine, RecoveredLine,
+                                StoppedLine, EmergencyLine>;
 
 struct HelloLine {
   HeadSetup setup;  // limits, start and helper_timeout; the rest as by default
@@ -65,11 +78,12 @@ struct MoveLine {
 struct LimitsLine {
   motion::Limits limits;  // the stops only
 };
+struct HomeLine {};
 struct AliveLine {};
 struct StopLine {};
 struct QuitLine {};
 // What a pipeline sends.
-using PipelineLine = std::variant<HelloLine, MoveLine, LimitsLine, AliveLine, StopLine, QuitLine>;
+using PipelineLine = std::variant<HelloLine, MoveLine, LimitsLine, HomeLine, AliveLine, StopLine, QuitLine>;
 
 std::string hello_line(const HeadSetup& setup, Time timeout);
 std::string move_line(const motion::AxisCommand& pan, const motion::AxisCommand& tilt);
@@ -78,9 +92,12 @@ std::string limits_line(const motion::Limits& limits);
 // Without a line feed.
 std::string ready_line(const HeadAbilities& abilities);
 std::string pose_line(const PoseLine& pose);
+std::string speeds_line(const SpeedsLine& speeds);
+std::string homed_line(const HomedLine& homed);
 
 // One line without its line feed. Nothing: it is no line of this protocol, a number is not finite, its limits are not
-// those of a head (motion::check()), or its timeout is not between 1 ms and 10 s.
+// those of a head (motion::check(); `limits` alone may exclude zero: those of a corrected head are shifted), or its
+// timeout is not between 1 ms and 10 s.
 std::optional<PipelineLine> parse_pipeline_line(std::string_view line);
 
 // One line without its line feed. Nothing: it is no line of this protocol, its numbers are not finite, or a `ready`

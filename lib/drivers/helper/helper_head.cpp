@@ -17,6 +17,7 @@
 #include "drivers/helper/head_lines.h"
 #include "drivers/helper/helper_process.h"
 #include "drivers/simulated/simulated_head.h"
+#include "motion/reckoning.h"
 #include "text/numbers.h"
 
 namespace cerberus::drivers {
@@ -37,6 +38,11 @@ struct Parameters {
   double correction_gain =
       0.3;                     // share of the difference to a reported pose; derived: settles in ten reports
   double least_change = 1e-4;  // radians a second: slower changes of a speed are not sent
+  // Radians a second for each radian between the model and the reckoned pose when a command takes effect. derived: a
+  // step that is 20 % too fast at 20 degrees a second stays within 1.3 degrees.
+  double follow_gain = 3;
+  // derived: 340 degrees at a camera's slow 10 degrees a second, and its start
+  Time home_timeout = std::chrono::seconds(45);
 };
 constexpr Parameters kParameters;
 
@@ -81,6 +87,9 @@ struct HelperHead::Core {
   Time next_follow{}, next_alive{}, next_start{};
   double pan_correction = 0, tilt_correction = 0;  // radians: what to add to the model
   std::optional<Time> measured;                    // running time of the last report
+  motion::Reckoning reckoning;                     // of a head that reports speeds instead of positions
+  bool reckons = false;                            // it does
+  std::optional<Time> homing;                      // since when the head looks for its reference
   int wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
 
   ~Core() { ::close(wake); }
@@ -92,6 +101,7 @@ struct HelperHead::Core {
   void send(const std::string& line);
   void send_command();
   void follow(Time now);
+  void check_homing(Time now);
   void poke() const {
     const std::uint64_t one = 1;
     [[maybe_unused]] const ssize_t written = ::write(wake, &one, sizeof one);
@@ -109,6 +119,8 @@ std::string HelperHead::Core::start() {
   last_move.clear();
   pan_correction = tilt_correction = 0;
   measured.reset();
+  homing.reset();
+  reckons = false;
   next_alive = Time{};
   if (std::string wrong = process.start(arguments); !wrong.empty()) return wrong;
   HeadSetup now = setup;
@@ -158,19 +170,31 @@ void HelperHead::Core::follow(Time now) {
   next_follow = now + period();
   Pose ahead;
   if (!model.state(now + setup.latency, ahead).empty()) return;
-  const bool corrected = is_fresh(now);
-  const auto axis = [&](const AxisState& state, double error,
+  const bool corrected = is_fresh(now) && !reckons;
+  const Pose reckoned = reckoning.at(now + setup.latency);
+  const auto error = [&](const AxisState& model_axis, const AxisState& reckoned_axis, double correction) {
+    if (reckons) return kParameters.follow_gain * (reckoned_axis.position - model_axis.position);
+    return corrected ? correction : 0;
+  };
+  const auto axis = [&](const AxisState& state, double correction,
                         const motion::AxisLimits& limits) -> AxisCommand {
-    const double correction = corrected ? error : 0;
     if (!abilities.velocity) return {Kind::position, state.position, std::abs(state.speed)};
     const double speed = std::clamp(state.speed - correction, -limits.speed, limits.speed);
     return std::abs(speed) < kParameters.least_change ? AxisCommand{} : AxisCommand{Kind::velocity, speed, 0};
   };
-  const std::string line = move_line(axis(ahead.pan, pan_correction, setup.limits.pan),
-                                     axis(ahead.tilt, tilt_correction, setup.limits.tilt));
+  const std::string line =
+      move_line(axis(ahead.pan, error(ahead.pan, reckoned.pan, pan_correction), setup.limits.pan),
+                axis(ahead.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction), setup.limits.tilt));
   if (line != last_move) send(line);
   last_move = line;
-  if (ahead.settled && !measured) follows = false;
+  if (ahead.settled && !measured && (!reckons || reckoned.settled)) follows = false;
+}
+
+void HelperHead::Core::check_homing(Time now) {
+  if (!homing || now - *homing < kParameters.home_timeout) return;
+  homing.reset();
+  send("stop\n");
+  notice = "the head did not find its reference";
 }
 
 void HelperHead::Core::handle(const HelperLine& line) {
@@ -192,6 +216,8 @@ void HelperHead::Core::handle(const HelperLine& line) {
     last_move.clear();
   } else if (const auto* pose = std::get_if<PoseLine>(&line)) {
     const Time at = running_time() - Time(static_cast<Time::rep>(std::min(pose->age, 10.0) * 1e9));
+    measured = at;
+    if (reckons) return reckoning.place(at, {pose->pan.position, pose->tilt.position});
     Pose expected;
     if (!model.state(at, expected).empty()) return;
     const auto correct = [](double& correction, double difference) {
@@ -199,7 +225,18 @@ void HelperHead::Core::handle(const HelperLine& line) {
     };
     correct(pan_correction, pose->pan.position - expected.pan.position);
     correct(tilt_correction, pose->tilt.position - expected.tilt.position);
-    measured = at;
+  } else if (const auto* speeds = std::get_if<SpeedsLine>(&line)) {
+    const Time at =
+        running_time() - Time(static_cast<Time::rep>(std::min(speeds->age, 1.0) * 1e9)) + setup.latency;
+    Pose here;
+    if (!std::exchange(reckons, true) && model.state(at, here).empty())
+      reckoning.begin(at, {here.pan.position, here.tilt.position});
+    reckoning.turn(at, speeds->speed);
+  } else if (const auto* homed = std::get_if<HomedLine>(&line)) {
+    if (!std::exchange(homing, std::nullopt)) return;
+    measured = running_time();
+    reckons = true;
+    reckoning.begin(*measured, homed->at);
   }
   answered.notify_all();
 }
@@ -223,6 +260,7 @@ void HelperHead::Core::run() {
       send("alive\n");
     }
     if (ready && follows && fault.empty()) follow(running_time());
+    check_homing(running_time());
     // A helper that ended may have left its head turning: only a new one can stop it.
     if (!process.running() && now >= next_start && process.end())
       if (const std::string wrong = start(); !wrong.empty()) lose(wrong);
@@ -295,6 +333,7 @@ void HelperHead::stop(Time now) noexcept {
   core_->model.stop(now);
   core_->last.pan = core_->last.tilt = {};
   core_->follows = false;
+  core_->homing.reset();
   core_->last_move.clear();
   core_->send("stop\n");
 }
@@ -305,6 +344,7 @@ std::string HelperHead::command(const HeadCommand& command) {
   Core& c = *core_;
   if (std::string wrong = c.model.command(command); !wrong.empty()) return wrong;
   c.last = command;
+  if (std::exchange(c.homing, std::nullopt)) c.last_move.clear();
   c.epoch = since_start(Clock::now()) - command.time;
   if (!c.process.running() && since_start(Clock::now()) >= c.next_start)
     if (const std::string wrong = c.start(); !wrong.empty()) c.lose(wrong);
@@ -330,11 +370,26 @@ bool HelperHead::emergency() {
   return std::exchange(core_->was_pressed, core_->pressed) || core_->pressed;
 }
 
+std::string HelperHead::home(Time now) {
+  if (!core_ || !core_->open) return "the head's helper is not open";
+  const std::lock_guard guard(core_->lock);
+  Core& c = *core_;
+  if (!c.ready || !c.abilities.home) return Head::home(now);
+  const AxisCommand zero{Kind::position, 0, c.setup.limits.pan.speed};
+  if (std::string wrong = c.model.command({now, zero, zero}); !wrong.empty()) return wrong;
+  c.follows = false;
+  c.homing = now;
+  c.send("home\n");
+  return {};
+}
+
 std::string HelperHead::state(Time time, Pose& pose) {
   if (!core_ || !core_->open) return "the head's helper is not open";
   const std::lock_guard guard(core_->lock);
   if (std::string wrong = core_->model.state(time, pose); !wrong.empty()) return wrong;
+  if (core_->reckons) pose = core_->reckoning.at(time);
   pose.measured = core_->is_fresh(time);
+  if (core_->reckons) return {};
   if (!pose.measured) return {};
   pose.pan.position += core_->pan_correction;
   pose.tilt.position += core_->tilt_correction;

@@ -7,6 +7,8 @@
 //
 // The pose is dead-reckoned: a model of the head (SimulatedHead) carries out the same commands with the same limits and
 // latency. Where the helper reports positions, the difference to the model at the time of the measurement corrects it.
+// A helper without positions may report the speeds that its steps give; the pose is then their integral from
+// the time at which they take effect (motion/reckoning.h), and the head is made to follow the model.
 // A head that only turns at speeds is given the speeds of the model's motion, so it brakes before its limits; one that
 // only goes to angles is given the model's angles.
 #pragma once
@@ -32,6 +34,7 @@ class HelperHead final : public Head {
   void stop(Time now) noexcept override;
   std::string command(const HeadCommand& command) override;
   std::string limit(Time now, const motion::Limits& limits) override;
+  std::string home(Time now) override;
   std::string state(Time time, motion::Pose& pose) override;
   bool emergency() override;
 

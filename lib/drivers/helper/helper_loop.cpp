@@ -101,6 +101,9 @@ class Server {
     if (const auto* move = std::get_if<MoveLine>(&*line)) {
       device_.move(move->pan, move->tilt, now);
       obeyed_ = true;
+    } else if (std::get_if<HomeLine>(&*line)) {
+      device_.home(now);
+      obeyed_ = true;
     } else if (const auto* limits = std::get_if<LimitsLine>(&*line)) {
       device_.limit(limits->limits, now);
     } else if (std::get_if<StopLine>(&*line)) {
@@ -123,6 +126,8 @@ class Server {
       send(pressed ? "emergency pressed" : "emergency released");
     }
     if (const auto pose = device_.take_pose(now)) send(pose_line(*pose));
+    if (const auto speeds = device_.take_speeds(now)) send(speeds_line(*speeds));
+    if (const auto homed = device_.take_homed(now)) send(homed_line(*homed));
   }
 
   // What the pipeline does not read is dropped: a helper never waits for it.

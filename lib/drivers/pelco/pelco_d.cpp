@@ -11,6 +11,7 @@ namespace {
 
 constexpr std::uint8_t kSync = 0xff;
 constexpr std::uint8_t kRight = 0x02, kLeft = 0x04, kUp = 0x08, kDown = 0x10;
+constexpr std::uint8_t kGoToPreset = 0x07;
 constexpr std::uint8_t kQueryPan = 0x51, kQueryTilt = 0x53, kPan = 0x59, kTilt = 0x5b;
 
 std::uint8_t sum_of(const Frame& frame) {
@@ -40,6 +41,10 @@ Frame drive(int address, int pan, int tilt) {
 
 Frame position_query(int address, Axis axis) {
   return finished(address, axis == Axis::pan ? kQueryPan : kQueryTilt, 0, 0);
+}
+
+Frame go_to_preset(int address, int preset) {
+  return finished(address, kGoToPreset, 0, preset);
 }
 
 // Hundredths of a degree, 0 to 35999, clockwise; a tilt grows downwards.

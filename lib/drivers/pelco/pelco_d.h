@@ -18,6 +18,7 @@ inline constexpr int kMostStep = 0x3f;  // of both axes; 0x40 is turbo, of pan a
 Frame drive(int address, int pan, int tilt);
 enum class Axis : std::uint8_t { pan, tilt };
 Frame position_query(int address, Axis axis);
+Frame go_to_preset(int address, int preset);  // 1 to 255
 
 struct Position {
   int address = 0;

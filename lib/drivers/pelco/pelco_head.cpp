@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sensing/angles.h"
@@ -11,61 +12,102 @@ namespace cerberus::drivers {
 namespace {
 
 using motion::AxisCommand;
+using motion::PanTilt;
 using sensing::degrees;
 using sensing::radians;
 
-// The nearest step of a straight line from 0 to `fastest` degrees a second.
-int step_of(const AxisCommand& command, double fastest) {
+// The nearest step of a straight line from 0 to `fastest` degrees a second that is no faster than `limit` (radians a
+// second); the slowest one where all are.
+int step_of(const AxisCommand& command, double fastest, double limit) {
   if (command.kind != AxisCommand::Kind::velocity || !std::isfinite(command.value)) return 0;
-  const double step = degrees(command.value) / fastest * pelco::kMostStep;
-  return static_cast<int>(std::lround(std::clamp<double>(step, -pelco::kMostStep, pelco::kMostStep)));
-}
-
-// A head at its stop, or beyond it, that would go on outwards.
-bool outwards(double angle, int step, const motion::AxisLimits& axis) {
-  return (step > 0 && angle >= axis.to) || (step < 0 && angle <= axis.from);
+  const double steps = pelco::kMostStep / fastest;
+  const double most = std::clamp(std::floor(degrees(limit) * steps + 1e-9), 1.0, double{pelco::kMostStep});
+  return static_cast<int>(std::lround(std::clamp(degrees(command.value) * steps, -most, most)));
 }
 
 }  // namespace
 
 std::string PelcoHead::open(const HeadSetup& setup, Time now) {
-  limits_ = setup.limits;
   if (options_.address < 1 || options_.address > 255) return "a Pelco-D address is 1 to 255";
   if (!(options_.pan_speed > 0) || !(options_.tilt_speed > 0))
     return "pan-speed and tilt-speed must be more than 0";
-  tried_ = now;
-  if (std::string wrong = stream_.open(options_.device, options_.baud); !wrong.empty()) return wrong;
-  connected_ = true;
-  stop(now);
-  return {};
+  if (options_.home_preset < 0 || options_.home_preset > 255) return "a Pelco-D preset is 1 to 255";
+  if (!(options_.home_time > 0 && options_.home_time <= 40)) return "home-time must be up to 40 seconds";
+  return connect(setup, now);
+}
+
+void PelcoHead::on_connected(Time now) {
+  pan_time_ = now;
+  home_at_.reset();
+  stop(now);  // it stands until the next move
 }
 
 HeadAbilities PelcoHead::abilities() const {
-  return {.position = false, .velocity = true, .feedback = options_.feedback, .rate = kRate};
+  return {.position = false,
+          .velocity = true,
+          .feedback = options_.feedback,
+          .rate = kRate,
+          .home = !options_.feedback && options_.home_preset > 0};
+}
+
+PanTilt PelcoHead::speeds_of(int pan, int tilt) const {
+  return {radians(options_.pan_speed * pan / pelco::kMostStep),
+          radians(options_.tilt_speed * tilt / pelco::kMostStep)};
+}
+
+void PelcoHead::drive(int pan, int tilt, Time now) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const PanTilt measured{pan_degrees_ ? radians(*pan_degrees_) : kNan,
+                         tilt_degrees_ ? radians(*tilt_degrees_) : kNan};
+  const PanTilt allowed = confined(speeds_of(pan, tilt), measured, now);
+  if (allowed.pan == 0) pan = 0;
+  if (allowed.tilt == 0) tilt = 0;
+  if (pan == pan_ && tilt == tilt_) return;
+  if (pan == 0 && tilt == 0) return stop(now);
+  stops_owed_ = 0;
+  pan_ = pan;
+  tilt_ = tilt;
+  sent_ = now;
+  send(pelco::drive(options_.address, pan_, tilt_));
+  set_speeds(speeds_of(pan_, tilt_), now);
 }
 
 void PelcoHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
-  int p = step_of(pan, options_.pan_speed), t = step_of(tilt, options_.tilt_speed);
-  if (pan_degrees_ && outwards(radians(*pan_degrees_), p, limits_.pan)) p = 0;
-  if (tilt_degrees_ && outwards(radians(*tilt_degrees_), t, limits_.tilt)) t = 0;
-  if (p == pan_ && t == tilt_) return;
-  if (p == 0 && t == 0) return stop(now);
-  stops_owed_ = 0;
-  pan_ = p;
-  tilt_ = t;
-  sent_ = now;
-  send(pelco::drive(options_.address, pan_, tilt_));
+  if (home_at_) stop(now);
+  drive(step_of(pan, options_.pan_speed, limits_.pan.speed),
+        step_of(tilt, options_.tilt_speed, limits_.tilt.speed), now);
 }
 
-void PelcoHead::limit(const motion::Limits& limits, Time) {
-  limits_ = limits;
+void PelcoHead::limit(const motion::Limits& limits, Time now) {
+  limits_.pan.from = limits.pan.from;
+  limits_.pan.to = limits.pan.to;
+  limits_.tilt.from = limits.tilt.from;
+  limits_.tilt.to = limits.tilt.to;
+  if (!home_at_) drive(pan_, tilt_, now);
 }
 
 void PelcoHead::stop(Time now) noexcept {
   pan_ = tilt_ = 0;
+  home_at_.reset();
   stops_owed_ = kStops - 1;
   sent_ = now;
   send(pelco::drive(options_.address, 0, 0));
+  set_speeds({}, now);
+}
+
+void PelcoHead::home(Time now) {
+  stop(now);
+  stops_owed_ = 0;
+  home_at_ = now + Time(static_cast<Time::rep>(options_.home_time * 1e9));
+  sent_ = now;
+  send(pelco::go_to_preset(options_.address, options_.home_preset));
+}
+
+std::optional<HomedLine> PelcoHead::take_homed(Time now) {
+  if (!home_at_ || now < *home_at_) return std::nullopt;
+  home_at_.reset();
+  set_reference({}, now);
+  return HomedLine{};
 }
 
 void PelcoHead::read(Time now) {
@@ -79,32 +121,16 @@ void PelcoHead::read(Time now) {
     (position->axis == pelco::Axis::pan ? pan_degrees_ : tilt_degrees_) = position->degrees;
     new_pose_ = pan_degrees_ && tilt_degrees_;
     pan_time_ = now;
-    if ((pan_degrees_ && outwards(radians(*pan_degrees_), pan_, limits_.pan)) ||
-        (tilt_degrees_ && outwards(radians(*tilt_degrees_), tilt_, limits_.tilt)))
-      stop(now);
   }
 }
 
 Time PelcoHead::tick(Time now) {
-  if (!stream_.is_open()) {
-    if (std::exchange(connected_, false)) tried_ = now;  // reported before it is tried again
-    fault_ = "the Pelco-D head at " + options_.device + " is gone";
-    if (now - tried_ < kReconnect) return tried_ + kReconnect;
-    tried_ = now;
-    if (!stream_.open(options_.device, options_.baud).empty()) return now + kReconnect;
-    connected_ = true;
-    pan_time_ = now;
-    stop(now);  // it stands until the next move
-  }
+  if (Time next; !is_there(now, next)) return next;
   read(now);
   if (!stream_.is_open()) return now;
   // A head that is limited by its own positions must report them.
-  const bool silent = options_.feedback && pan_degrees_ && now - pan_time_ > kSilence;
-  if (silent && fault_.empty()) {
-    fault_ = "the Pelco-D head at " + options_.device + " does not answer";
-    stop(now);
-  }
-  if (!silent) fault_.clear();
+  set_silent(options_.feedback && pan_degrees_ && now - pan_time_ > kSilence, now);
+  if (!home_at_) drive(pan_, tilt_, now);  // stops at a limit
   const Time again = stops_owed_ > 0 ? Time(kStopAgain) : Time(kRepeat);
   if ((stops_owed_ > 0 || pan_ != 0 || tilt_ != 0) && now - sent_ >= again) {
     if (stops_owed_ > 0) --stops_owed_;
@@ -122,10 +148,6 @@ std::optional<PoseLine> PelcoHead::take_pose(Time now) {
   if (!std::exchange(new_pose_, false)) return std::nullopt;
   return PoseLine{
       {radians(*pan_degrees_), 0, 0}, {radians(*tilt_degrees_), 0, 0}, motion::seconds(now - pan_time_)};
-}
-
-void PelcoHead::watch(std::vector<pollfd>& fds) const {
-  if (stream_.is_open()) fds.push_back({stream_.fd(), POLLIN, 0});
 }
 
 }  // namespace cerberus::drivers

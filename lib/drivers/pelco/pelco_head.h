@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A head that speaks Pelco-D, over a serial line or a converter on TCP or UDP. The protocol acknowledges nothing: what
-// is in force is sent again kRepeats times a second, so that a lost frame costs a fifth of a second, and a stop
-// kStops times. Positions are queried only if the options declare that the head answers.
+// is in force is sent again every kRepeat, so that a lost frame costs a fifth of a second, and a stop kStops times.
+// Positions are queried only if the options declare that the head answers. A head without them is stopped at its limits
+// by the speeds that it was sent, and finds its reference by going to a preset, where the options name one.
 #pragma once
 
 #include <optional>
@@ -9,9 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/helper/head_device.h"
 #include "drivers/pelco/pelco_d.h"
-#include "drivers/transport/byte_stream.h"
+#include "drivers/transport/stream_device.h"
 
 namespace cerberus::drivers {
 
@@ -22,45 +22,50 @@ struct PelcoOptions {
   double pan_speed = 40;  // degrees a second of the fastest step; the steps are taken as a straight line
   double tilt_speed = 20;
   bool feedback = false;  // ask for positions
+  int home_preset = 0;    // the preset that looks straight ahead, 1 to 255; 0: there is none
+  double home_time = 10;  // seconds after which the head has reached it, from anywhere
 };
 
-class PelcoHead final : public HeadDevice {
+class PelcoHead final : public StreamDevice {
  public:
-  explicit PelcoHead(PelcoOptions options) : options_(std::move(options)) {}
+  explicit PelcoHead(const PelcoOptions& options)
+      : StreamDevice("Pelco-D head", options.device, options.baud), options_(options) {
+    reports_ = options.feedback;
+  }
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
   bool stopping() const override { return stops_owed_ > 0; }
-  void watch(std::vector<pollfd>& fds) const override;
+  void home(Time now) override;
+  std::optional<HomedLine> take_homed(Time now) override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
-  std::string fault() const override { return fault_; }
 
   static constexpr std::chrono::milliseconds kRepeat{200};
   static constexpr std::chrono::milliseconds kStopAgain{50};  // a frame takes 29 ms at 2400 baud
   static constexpr int kStops = 5;
-  static constexpr std::chrono::milliseconds kReconnect{1000};
   static constexpr std::chrono::milliseconds kSilence{
       1000};                           // without a position, of a head that reports them
   static constexpr double kRate = 10;  // commands a second
 
  private:
+  void on_connected(Time now) override;
   void send(const pelco::Frame& frame) { stream_.write(frame); }
+  motion::PanTilt speeds_of(int pan, int tilt) const;
+  void drive(int pan, int tilt, Time now);
   void read(Time now);
 
   PelcoOptions options_;
-  motion::Limits limits_;
-  ByteStream stream_;
   pelco::Answers answers_;
   int pan_ = 0, tilt_ = 0;  // steps in force
   int stops_owed_ = 0;
-  Time sent_{}, asked_{}, tried_{}, pan_time_{};
+  Time sent_{}, asked_{}, pan_time_{};
+  std::optional<Time> home_at_;  // when the head has reached its preset
   pelco::Axis next_query_ = pelco::Axis::pan;
   std::optional<double> pan_degrees_, tilt_degrees_;
-  bool new_pose_ = false, connected_ = false;
-  std::string fault_;
+  bool new_pose_ = false;
 };
 
 }  // namespace cerberus::drivers

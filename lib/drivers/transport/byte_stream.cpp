@@ -122,6 +122,13 @@ std::string ByteStream::open_socket(const std::string& address, const std::strin
   return address + " cannot be reached: " + std::strerror(error);
 }
 
+void ByteStream::take(ByteStream& other) noexcept {
+  close();
+  fd_ = std::exchange(other.fd_, -1);
+  datagrams_ = other.datagrams_;
+  socket_ = other.socket_;
+}
+
 void ByteStream::close() noexcept {
   if (fd_ >= 0) ::close(fd_);
   fd_ = -1;

@@ -21,6 +21,8 @@ class ByteStream {
   ~ByteStream() { close(); }
   ByteStream(const ByteStream&) = delete;
   ByteStream& operator=(const ByteStream&) = delete;
+  // Takes over the connection of `other`, which is then closed.
+  void take(ByteStream& other) noexcept;
 
   // Returns what is wrong, naming the device and what to do; empty: it is open. Blocks up to kConnectTimeout for tcp.
   // baud: of a serial port, one of 1200 to 115200.

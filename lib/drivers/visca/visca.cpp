@@ -184,10 +184,18 @@ Message reset_sequence() {
   return {0x02, 0x00, 0x00, 0x01, 0x00, 0x00, 0x00, 0x00, 0x01};
 }
 
-std::span<const std::uint8_t> without_header(std::span<const std::uint8_t> datagram) {
-  const bool header = datagram.size() > 8 && (datagram[0] == 0x01 || datagram[0] == 0x02) &&
-                      static_cast<std::size_t>(datagram[2] << 8 | datagram[3]) == datagram.size() - 8;
-  return header ? datagram.subspan(8) : datagram;
+Datagram parse_datagram(std::span<const std::uint8_t> d) {
+  const bool header = d.size() > 8 && (d[0] == 0x01 || d[0] == 0x02) &&
+                      static_cast<std::size_t>(d[2] << 8 | d[3]) == d.size() - 8;
+  if (!header) return {.payload = d};
+  std::uint32_t sequence = 0;
+  for (int i = 4; i < 8; ++i) sequence = sequence << 8 | d[i];
+  return {.header = true, .control = d[0] == 0x02, .sequence = sequence, .payload = d.subspan(8)};
+}
+
+bool is_sequence_error(const Datagram& datagram) {
+  return datagram.control && datagram.payload.size() == 2 && datagram.payload[0] == 0x0f &&
+         datagram.payload[1] == 0x01;
 }
 
 }  // namespace cerberus::drivers::visca

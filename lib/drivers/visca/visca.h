@@ -68,7 +68,14 @@ class Cutter {
 // The header of VISCA over IP: type, length, sequence number, eight bytes, big endian.
 Message with_header(const Message& message, std::uint32_t sequence);
 Message reset_sequence();
-// What a datagram holds behind its header; all of it where there is none.
-std::span<const std::uint8_t> without_header(std::span<const std::uint8_t> datagram);
+struct Datagram {
+  bool header = false;         // it has one; else the payload is all of it
+  bool control = false;        // its payload is no VISCA message: a reset or an error of the sequence
+  std::uint32_t sequence = 0;  // of the command that it answers
+  std::span<const std::uint8_t> payload;
+};
+Datagram parse_datagram(std::span<const std::uint8_t> datagram);
+// A camera that lost count: the sequence must be reset. Control payload 0f 01.
+bool is_sequence_error(const Datagram& datagram);
 
 }  // namespace cerberus::drivers::visca

@@ -2,7 +2,9 @@
 #include "drivers/visca/visca_head.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <utility>
 
 #include "sensing/angles.h"
@@ -11,39 +13,56 @@ namespace cerberus::drivers {
 namespace {
 
 using motion::AxisCommand;
+using motion::PanTilt;
 using sensing::degrees;
 using sensing::radians;
 
 // No answer at all for so long means that the camera is gone.
 constexpr Time kSilence = std::chrono::milliseconds(800);
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// Radians a second of a signed step.
+double speed_of(int step, const std::vector<double>& table) {
+  if (step == 0) return 0;
+  const auto n = std::min<std::size_t>(static_cast<std::size_t>(std::abs(step)), table.size() - 1);
+  return radians(step > 0 ? table[n] : -table[n]);
+}
+
+// The step nearest to the commanded speed, of those that are no faster than the limit.
+int step_for(const AxisCommand& command, const std::vector<double>& table, double fastest) {
+  if (command.kind != AxisCommand::Kind::velocity || !std::isfinite(command.value)) return 0;
+  int step = visca::speed_step(table, degrees(command.value));
+  while (std::abs(step) > 1 && std::abs(speed_of(step, table)) > fastest + 1e-9) step += step > 0 ? -1 : 1;
+  return step;
+}
 
 }  // namespace
 
-std::string ViscaHead::connect(Time now) {
-  tried_ = now;
-  if (std::string wrong = stream_.open(options_.device, options_.baud); !wrong.empty()) return wrong;
+void ViscaHead::reset_sequence() {
+  sequence_ = 0;
+  stream_.write(visca::reset_sequence());
+}
+
+void ViscaHead::on_connected(Time now) {
   cutter_ = {};
-  waiting_ = false;
+  unanswered_orders_.clear();
   sent_pan_ = sent_tilt_ = 0;
   asked_ = now;
   unanswered_.reset();
-  connected_ = true;
   last_pose_.reset();
-  if (stream_.datagrams() && options_.header) {
-    sequence_ = 0;
-    stream_.write(visca::reset_sequence());
+  homing_.reset();
+  if (numbered()) {
+    reset_sequence();
   } else if (!stream_.datagrams() && options_.device.starts_with("serial:")) {
     send(visca::address_set());
     send(visca::interface_clear());
   }
-  return {};
+  stop(now);  // it stands until the next move
 }
 
 std::string ViscaHead::open(const HeadSetup& setup, Time now) {
-  limits_ = setup.limits;
   if (options_.address < 1 || options_.address > 7) return "a VISCA address is 1 to 7";
-  if (std::string wrong = connect(now); !wrong.empty()) return wrong;
-  stop(now);
+  if (std::string wrong = connect(setup, now); !wrong.empty()) return wrong;
   if (!options_.feedback) return {};
   send(visca::position_inquiry(options_.address));
   const auto begin = std::chrono::steady_clock::now();
@@ -56,54 +75,72 @@ std::string ViscaHead::open(const HeadSetup& setup, Time now) {
 }
 
 HeadAbilities ViscaHead::abilities() const {
-  return {.position = false, .velocity = true, .feedback = reports_, .rate = kRate};
+  return {.position = false, .velocity = true, .feedback = reports_, .rate = kRate, .home = !reports_};
 }
 
 void ViscaHead::send(const visca::Message& message) {
-  if (stream_.datagrams() && options_.header)
+  if (numbered())
     stream_.write(visca::with_header(message, sequence_++));
   else
     stream_.write(message);
 }
 
-// True for a head that stands at its stop, or beyond it, and would go on outwards.
-bool ViscaHead::beyond(double position, int step, const motion::AxisLimits& axis) const {
-  return step > 0 ? position >= axis.to : step < 0 && position <= axis.from;
+void ViscaHead::send_order(Order order, const visca::Message& message, Time now) {
+  if (unanswered_orders_.size() == kMostOrders) unanswered_orders_.erase(unanswered_orders_.begin());
+  unanswered_orders_.push_back({order, sequence_, now});
+  send(message);
+  sent_ = now;
+  if (!unanswered_) unanswered_ = now;
 }
 
 void ViscaHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
-  const auto step = [](const AxisCommand& command, const std::vector<double>& table) {
-    return command.kind == AxisCommand::Kind::velocity ? visca::speed_step(table, degrees(command.value)) : 0;
-  };
-  pan_ = step(pan, options_.speeds.pan);
-  tilt_ = step(tilt, options_.speeds.tilt);
+  if (homing_) stop(now);
+  pan_ = step_for(pan, options_.speeds.pan, limits_.pan.speed);
+  tilt_ = step_for(tilt, options_.speeds.tilt, limits_.tilt.speed);
   if (pan_ != 0 || tilt_ != 0) stopping_ = false;
   send_drive(now);
 }
 
 void ViscaHead::limit(const motion::Limits& limits, Time now) {
-  limits_ = limits;
+  limits_.pan.from = limits.pan.from;
+  limits_.pan.to = limits.pan.to;
+  limits_.tilt.from = limits.tilt.from;
+  limits_.tilt.to = limits.tilt.to;
   send_drive(now);
 }
 
 void ViscaHead::stop(Time now) noexcept {
   pan_ = tilt_ = sent_pan_ = sent_tilt_ = 0;
-  answers_owed_ = waiting_ ? 2 : 1;
-  stopping_ = true;
+  homing_.reset();
+  stopping_ = moved_ = true;
   stops_ = 1;
-  send(visca::stop(options_.address));
-  moved_ = waiting_ = true;
-  sent_ = now;
-  if (!unanswered_) unanswered_ = now;
+  send_order(Order::stop, visca::stop(options_.address), now);
+  set_speeds({}, now);
+}
+
+void ViscaHead::home(Time now) {
+  pan_ = tilt_ = sent_pan_ = sent_tilt_ = 0;
+  stopping_ = homed_ = false;
+  moved_ = true;
+  homing_ = 0;
+  send_order(Order::home, visca::home(options_.address), now);
+}
+
+std::optional<HomedLine> ViscaHead::take_homed(Time now) {
+  if (!std::exchange(homed_, false)) return std::nullopt;
+  set_reference({}, now);
+  return HomedLine{};
 }
 
 // What is in force at the camera is what it has acknowledged: a command without an answer is sent again, also to a camera
 // that never answers.
 void ViscaHead::send_drive(Time now) {
-  if (stopping_ || !stream_.is_open()) return;
-  int pan = pan_, tilt = tilt_;
-  if (last_pose_ && beyond(last_pose_->pan.position, pan, limits_.pan)) pan = 0;
-  if (last_pose_ && beyond(last_pose_->tilt.position, tilt, limits_.tilt)) tilt = 0;
+  if (stopping_ || homing_ || !stream_.is_open()) return;
+  const PanTilt wanted{speed_of(pan_, options_.speeds.pan), speed_of(tilt_, options_.speeds.tilt)};
+  const PanTilt measured =
+      last_pose_ ? PanTilt{last_pose_->pan.position, last_pose_->tilt.position} : PanTilt{kNan, kNan};
+  const PanTilt allowed = confined(wanted, measured, now);
+  const int pan = allowed.pan == 0 ? 0 : pan_, tilt = allowed.tilt == 0 ? 0 : tilt_;
   if (pan == 0 && tilt == 0) {
     const int wanted_pan = pan_, wanted_tilt = tilt_;
     if (moved_) stop(now);
@@ -111,19 +148,28 @@ void ViscaHead::send_drive(Time now) {
     tilt_ = wanted_tilt;
     return;
   }
-  const bool unanswered = waiting_ && now - sent_ >= kAnswerTime;
+  const bool unanswered = waiting() && now - sent_ >= kAnswerTime;
   if (pan == sent_pan_ && tilt == sent_tilt_ && !unanswered) return;
-  if (waiting_ && !unanswered) return;
+  if (acknowledges_ && waiting() && !unanswered) return;
   if (now - sent_ < Time(static_cast<Time::rep>(1e9 / kRate))) return;
-  send(visca::drive(options_.address, pan, tilt));
+  send_order(Order::move, visca::drive(options_.address, pan, tilt), now);
   sent_pan_ = pan;
   sent_tilt_ = tilt;
-  moved_ = waiting_ = true;
-  sent_ = now;
-  if (!unanswered_) unanswered_ = now;
+  moved_ = true;
+  set_speeds(allowed, now);
 }
 
-void ViscaHead::handle(const visca::Reply& reply, Time now) {
+// The order that an answer belongs to; nothing: to none that is still waited for.
+std::optional<ViscaHead::Sent> ViscaHead::answered(std::uint32_t sequence) {
+  auto at = unanswered_orders_.begin();
+  if (numbered()) at = std::ranges::find(unanswered_orders_, sequence, &Sent::sequence);
+  if (at == unanswered_orders_.end()) return std::nullopt;
+  const Sent sent = *at;
+  unanswered_orders_.erase(unanswered_orders_.begin(), at + 1);  // earlier answers are lost
+  return sent;
+}
+
+void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time now) {
   using Kind = visca::Reply::Kind;
   if (reply.kind == Kind::other || reply.address != options_.address) return;
   unanswered_.reset();
@@ -135,50 +181,62 @@ void ViscaHead::handle(const visca::Reply& reply, Time now) {
     pose_time_ = now;
     return;
   }
-  if (reply.kind == Kind::completion) return;  // the end of what was acknowledged before
-  waiting_ = false;
+  if (reply.kind == Kind::completion) {  // the end of what was acknowledged before
+    const bool home = homing_ && reply.socket == *homing_;
+    if (!home) return;
+    homing_.reset();
+    moved_ = false;
+    homed_ = true;
+    return;
+  }
+  const std::optional<Sent> sent = answered(sequence);
   if (reply.kind == Kind::ack) {
     acknowledges_ = true;
-    if (stopping_ && --answers_owed_ <= 0) stopping_ = moved_ = false;
+    if (!sent) return;
+    if (sent->order == Order::stop && stopping_) stopping_ = moved_ = false;
+    if (sent->order == Order::home && homing_) homing_ = reply.socket;
     return;
   }
   // Refused: what was sent last is not in force, and is sent again; a stop by tick().
+  if (!sent) return;
+  if (sent->order == Order::home) homing_.reset();
   if (!stopping_) sent_pan_ = sent_tilt_ = INT32_MIN;
 }
 
 void ViscaHead::read(Time now) {
   std::vector<std::uint8_t> bytes;
   while (stream_.read(bytes)) {
-    cutter_.append(stream_.datagrams() ? visca::without_header(bytes) : std::span<const std::uint8_t>(bytes));
+    visca::Datagram datagram{.payload = bytes};
+    if (stream_.datagrams()) datagram = visca::parse_datagram(bytes);
+    if (numbered() && visca::is_sequence_error(datagram)) {
+      reset_sequence();
+      unanswered_orders_.clear();
+      sent_pan_ = sent_tilt_ = INT32_MIN;  // what was sent meanwhile is not in force
+      if (stopping_) sent_ = now - kStopAgain;
+    } else if (!datagram.control) {
+      cutter_.append(datagram.payload);
+    }
+    const std::uint32_t sequence = datagram.sequence;
     bytes.clear();
-    while (const auto message = cutter_.take()) handle(visca::parse_reply(*message), now);
+    while (const auto message = cutter_.take()) handle(visca::parse_reply(*message), sequence, now);
   }
+  // An answer that was lost belongs to no later command.
+  std::erase_if(unanswered_orders_, [now](const Sent& sent) { return now - sent.time > kForgotten; });
+}
+
+void ViscaHead::repeat_stop(Time now) {
+  if (!stopping_ || now - sent_ < kStopAgain) return;
+  stopping_ = acknowledges_ || ++stops_ <= kStopsWithoutAnswer;
+  if (stopping_) return send_order(Order::stop, visca::stop(options_.address), now);
+  moved_ = false;
+  unanswered_orders_.clear();
 }
 
 Time ViscaHead::tick(Time now) {
   read(now);
-  if (!stream_.is_open()) {
-    if (std::exchange(connected_, false)) tried_ = now;  // reported before it is tried again
-    fault_ = "the VISCA camera at " + options_.device + " is gone";
-    if (now - tried_ < kReconnect) return tried_ + kReconnect;
-    if (!connect(now).empty()) return tried_ + kReconnect;
-    stop(now);  // it stands until the next move
-  }
-  const bool silent = (reports_ || acknowledges_) && unanswered_ && now - *unanswered_ > kSilence;
-  if (silent && fault_.empty()) {
-    fault_ = "the VISCA camera at " + options_.device + " does not answer";
-    stop(now);
-  }
-  if (!silent) fault_.clear();
-  if (stopping_ && now - sent_ >= kStopAgain) {
-    stopping_ = acknowledges_ || ++stops_ <= kStopsWithoutAnswer;
-    if (!stopping_) moved_ = waiting_ = false;
-    if (stopping_) {
-      answers_owed_ = 1;
-      send(visca::stop(options_.address));
-      sent_ = now;
-    }
-  }
+  if (Time next; !is_there(now, next)) return next;
+  set_silent((reports_ || acknowledges_) && unanswered_ && now - *unanswered_ > kSilence, now);
+  repeat_stop(now);
   send_drive(now);
   if (options_.feedback && now - asked_ >= kInquiryPeriod) {
     asked_ = now;
@@ -193,10 +251,6 @@ std::optional<PoseLine> ViscaHead::take_pose(Time now) {
   std::optional<PoseLine> pose = std::exchange(pose_, std::nullopt);
   if (pose) pose->age = motion::seconds(now - pose_time_);
   return pose;
-}
-
-void ViscaHead::watch(std::vector<pollfd>& fds) const {
-  if (stream_.is_open()) fds.push_back({stream_.fd(), POLLIN, 0});
 }
 
 }  // namespace cerberus::drivers

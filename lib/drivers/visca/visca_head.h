@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A camera that speaks VISCA, over a serial line, UDP (with and without the header of VISCA over IP) or TCP.
 //
-// At most one command is on its way: the newest waits until the camera acknowledges the last one, refuses it, or has not
+// At most one move is on its way: the newest waits until the camera acknowledges the last one, refuses it, or has not
 // answered for kAnswerTime. A camera that has never acknowledged anything is sent commands at its rate. Stop goes out at
-// once, and again until it is acknowledged. Positions are asked for kInquiries times a second, where the camera answers.
+// once, and again until it is acknowledged. Which command an answer belongs to is known from its sequence number, where
+// the line has these, else from the order: a camera answers in the order in which it was asked. Positions are asked for
+// every kInquiryPeriod, where the camera answers.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/helper/head_device.h"
-#include "drivers/transport/byte_stream.h"
+#include "drivers/transport/stream_device.h"
 #include "drivers/visca/visca.h"
 
 namespace cerberus::drivers {
@@ -26,9 +27,12 @@ struct ViscaOptions {
   visca::SpeedTable speeds = visca::default_speed_table();
 };
 
-class ViscaHead final : public HeadDevice {
+class ViscaHead final : public StreamDevice {
  public:
-  explicit ViscaHead(ViscaOptions options) : options_(std::move(options)) {}
+  explicit ViscaHead(const ViscaOptions& options)
+      : StreamDevice("VISCA camera", options.device, options.baud), options_(options) {
+    unanswered_orders_.reserve(kMostOrders);
+  }
   // Blocks up to kAnswerTime to learn whether the camera answers position inquiries.
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
@@ -36,46 +40,55 @@ class ViscaHead final : public HeadDevice {
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
   bool stopping() const override { return stopping_; }
-  void watch(std::vector<pollfd>& fds) const override;
+  void home(Time now) override;
+  std::optional<HomedLine> take_homed(Time now) override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
-  std::string fault() const override { return fault_; }
 
   static constexpr std::chrono::milliseconds kAnswerTime{
       200};  // VISCA: an answer within 16 ms; slow firmwares need more
   static constexpr std::chrono::milliseconds kStopAgain{100};
   static constexpr int kStopsWithoutAnswer = 5;  // to a camera that never acknowledged anything
   static constexpr std::chrono::milliseconds kInquiryPeriod{100};
-  static constexpr std::chrono::milliseconds kReconnect{1000};
+  static constexpr std::chrono::milliseconds kForgotten{1000};  // an answer that has not come by then is lost
   static constexpr double kRate =
       20;  // commands a second: a frame of 16 bytes at 9600 baud takes 17 ms both ways
 
  private:
-  std::string connect(Time now);
+  enum class Order : std::uint8_t { move, stop, home };
+  struct Sent {
+    Order order = Order::move;
+    std::uint32_t sequence = 0;
+    Time time{};
+  };
+  void on_connected(Time now) override;
+  bool numbered() const { return stream_.datagrams() && options_.header; }
+  void reset_sequence();
   void send(const visca::Message& message);
+  void send_order(Order order, const visca::Message& message, Time now);
   void send_drive(Time now);
+  void repeat_stop(Time now);
   void read(Time now);
-  void handle(const visca::Reply& reply, Time now);
-  bool beyond(double position, int step, const motion::AxisLimits& axis) const;
+  void handle(const visca::Reply& reply, std::uint32_t sequence, Time now);
+  std::optional<Sent> answered(std::uint32_t sequence);
+  bool waiting() const { return !unanswered_orders_.empty(); }
 
   ViscaOptions options_;
-  motion::Limits limits_;
-  ByteStream stream_;
   visca::Cutter cutter_;
   std::uint32_t sequence_ = 0;
-  int pan_ = 0, tilt_ = 0;            // steps wanted
-  int sent_pan_ = 0, sent_tilt_ = 0;  // steps sent last
-  bool waiting_ = false;              // for the answer to the last command
-  bool acknowledges_ = false, reports_ = false, stopping_ = false;
-  int stops_ = 0;         // sent without an answer
-  int answers_owed_ = 0;  // while stopping: to commands before the stop, and to the stop
-  Time sent_{}, asked_{}, tried_{};
+  int pan_ = 0, tilt_ = 0;                        // steps wanted
+  int sent_pan_ = 0, sent_tilt_ = 0;              // steps sent last
+  static constexpr std::size_t kMostOrders = 64;  // more than are sent in kForgotten
+  std::vector<Sent> unanswered_orders_;           // the oldest first
+  bool acknowledges_ = false, stopping_ = false;
+  int stops_ = 0;  // sent without an answer
+  Time sent_{}, asked_{};
   std::optional<Time> unanswered_;  // since when a camera that answers has not answered
   bool moved_ = false;              // a drive was sent, and no stop after it is acknowledged
-  bool connected_ = false;          // the last time that tick() looked
+  std::optional<int> homing_;       // on its way to its home: the socket of the command, 0 before its answer
+  bool homed_ = false;
   std::optional<PoseLine> pose_, last_pose_;
   Time pose_time_{};
-  std::string fault_;
 };
 
 }  // namespace cerberus::drivers

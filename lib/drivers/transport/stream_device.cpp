@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/transport/stream_device.h"
+
+#include <cmath>
+#include <utility>
+
+#include "motion/stop_margin.h"
+
+namespace cerberus::drivers {
+
+void StreamDevice::watch(std::vector<pollfd>& fds) const {
+  const int fd = stream_.is_open() ? stream_.fd() : connector_.fd();
+  if (fd >= 0) fds.push_back({fd, POLLIN, 0});
+}
+
+std::string StreamDevice::connect(const HeadSetup& setup, Time now) {
+  limits_ = setup.limits;
+  reckoned_.begin(now, {setup.pan, setup.tilt});
+  if (std::string wrong = stream_.open(device_, baud_); !wrong.empty()) return wrong;
+  connected_ = true;
+  on_connected(now);
+  return {};
+}
+
+bool StreamDevice::is_there(Time now, Time& next) {
+  if (stream_.is_open()) return true;
+  next = now + std::chrono::milliseconds(50);
+  if (std::exchange(connected_, false)) tried_ = now;  // reported before it is tried again
+  fault_ = "the " + name_ + " at " + device_ + " is gone";
+  if (!connector_.busy()) {
+    if (now - tried_ < kReconnect) return false;
+    tried_ = now;
+    connector_.start(device_, baud_);
+  }
+  const auto over = connector_.take(stream_);
+  if (!over || !over->empty()) return false;
+  connected_ = true;
+  on_connected(now);
+  return stream_.is_open();
+}
+
+void StreamDevice::set_silent(bool silent, Time now) {
+  if (!silent) return fault_.clear();
+  if (!fault_.empty()) return;
+  fault_ = "the " + name_ + " at " + device_ + " does not answer";
+  stop(now);
+}
+
+void StreamDevice::set_speeds(const motion::PanTilt& speed, Time now) {
+  const motion::PanTilt last = reckoned_.last();
+  if (speed.pan == last.pan && speed.tilt == last.tilt) return;
+  reckoned_.turn(now, speed);
+  speeds_ = now;
+}
+
+std::optional<SpeedsLine> StreamDevice::take_speeds(Time now) {
+  const auto changed = std::exchange(speeds_, std::nullopt);
+  if (!changed || reports_) return std::nullopt;
+  return SpeedsLine{reckoned_.last(), motion::seconds(now - *changed)};
+}
+
+motion::PanTilt StreamDevice::confined(const motion::PanTilt& speed, const motion::PanTilt& measured,
+                                       Time now) const {
+  constexpr Parameters kParameters;
+  const auto axis = [&](double v, double position, double reckoned, const motion::AxisLimits& limits) {
+    const double range = limits.to - limits.from;
+    double margin = motion::stop_margin(std::abs(v), kParameters.reaction, 0, range);
+    if (std::isnan(position)) {
+      position = reckoned;
+      margin = -kParameters.reckoned_slack;
+    }
+    const bool beyond = v > 0 ? position >= limits.to - margin : position <= limits.from + margin;
+    return beyond ? 0 : v;
+  };
+  const motion::Pose here = reckoned_.at(now);
+  return {axis(speed.pan, measured.pan, here.pan.position, limits_.pan),
+          axis(speed.tilt, measured.tilt, here.tilt.position, limits_.tilt)};
+}
+
+}  // namespace cerberus::drivers
