@@ -44,7 +44,10 @@
  * warning and the state `fault`, until it answers again: the video goes on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`,
- * `holding`, `manual`, `limited`, `fault`) and `reason` at every change of either.
+ * `holding`, `manual`, `limited`, `fault`, `homing`) and `reason` at every change of either.
+ *
+ * The pose of a real head that reports none is reckoned from its commands and corrected by the camera motion on the
+ * frames (`motiondetect`, `cameramotion`); a head that has lost its reference looks for it (`homing`).
  *
  * Action signals override the decisions until `auto` gives them back: `move-to` and `move-by` (pan, tilt in degrees;
  * false if the head is not there, the stream is over, or a number is none), `turn` (degrees a second; a stop after 500 ms

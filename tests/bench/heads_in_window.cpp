@@ -55,6 +55,11 @@ GstPadProbeReturn aim(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
   pose.tilt = emulation.camera->tilt();
   pose.valid_from = GST_BUFFER_PTS(frame);
   pose.valid_until = GST_CLOCK_TIME_NONE;
+  if (std::getenv("TRACE"))
+    std::fprintf(stderr, "%.2f true %.2f %.2f pub %.2f %.2f v %.2f src %d from %.2f\n",
+                 GST_BUFFER_PTS(frame) * 1e-9, pose.pan, pose.tilt, emulation.published.pan,
+                 emulation.published.tilt, emulation.published.pan_speed, (int)emulation.published.source,
+                 emulation.published.valid_from * 1e-9);
   emulation.windows.push_back(window_at(pose.pan / kRadian, pose.tilt / kRadian));
   if (emulation.any) {
     double pan = 0, tilt = 0;
@@ -92,6 +97,12 @@ void add_probe(GstElement* pipeline, const char* element, const char* pad_name, 
   gst_pad_add_probe(pad, type, callback, data, nullptr);
   gst_object_unref(pad);
   gst_object_unref(at);
+}
+
+// In real time, from a source that is live.
+constexpr char kPace[] = " ! identity sync=true name=live";
+void make_live(GstElement* pipeline) {
+  add_probe(pipeline, "live", "src", GST_PAD_PROBE_TYPE_QUERY_UPSTREAM, answer_live, nullptr);
 }
 
 std::string line_for(const std::string& source, const std::string& pace, const std::string& window,
@@ -151,6 +162,15 @@ int main(int argc, char** argv) {
       return 1;
     std::printf("%6d  %-24s %10d %7d %7.3f\n", person, "simulated, in step", reference.chosen_at,
                 reference.annotated, share(reference));
+    Run live(&truth, person, first);
+    if (!for_each_sample(line_for(*source, end + kPace, "", "driver=simulated"), ignore,
+                         [&](GstElement* pipeline) {
+                           make_live(pipeline);
+                           watch_head(pipeline, live);
+                         }))
+      return 1;
+    std::printf("%6d  %-24s %10d %7d %7.3f %13.3f\n", person, "simulated, real time", live.chosen_at,
+                live.annotated, share(live), share(live) / share(reference));
     for (const Case& c : cases) {
       ViscaCamera camera(ViscaCamera::Line::udp, c.faults);
       Emulation emulation{&camera, {}, {}, {}, false};
@@ -158,9 +178,8 @@ int main(int argc, char** argv) {
       run.window = [&](int frame) { return emulation.windows.at(static_cast<std::size_t>(frame)); };
       const std::string head = "driver=visca device=" + camera.device() + " " + c.options;
       if (!for_each_sample(
-              line_for(*source, end + " ! identity sync=true name=live", "head=emulated", head), ignore,
-              [&](GstElement* pipeline) {
-                add_probe(pipeline, "live", "src", GST_PAD_PROBE_TYPE_QUERY_UPSTREAM, answer_live, nullptr);
+              line_for(*source, end + kPace, "head=emulated", head), ignore, [&](GstElement* pipeline) {
+                make_live(pipeline);
                 add_probe(pipeline, "window", "sink", GST_PAD_PROBE_TYPE_BUFFER, aim, &emulation);
                 add_probe(pipeline, "window", "src", GST_PAD_PROBE_TYPE_BUFFER, forget_pose, nullptr);
                 add_probe(pipeline, "detect", "src", GST_PAD_PROBE_TYPE_EVENT_UPSTREAM, note_pose,

@@ -204,11 +204,13 @@ class ViscaCamera {
   void obey(const std::vector<std::uint8_t>& m) {
     if (m.size() == 5 && m[0] == 0x81 && m[1] == 0x09 && m[2] == 0x06 && m[3] == 0x12) {
       if (!faults_.reports) return;
-      const auto units = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(pan() * 14.4)));
       std::vector<std::uint8_t> reply{0x90, 0x50};
-      for (int shift = 12; shift >= 0; shift -= 4)
-        reply.push_back(static_cast<std::uint8_t>(units >> shift & 15));
-      reply.insert(reply.end(), {0, 0, 0, 0, 0xff});
+      for (const double angle : {pan(), tilt()}) {
+        const auto units = static_cast<std::uint16_t>(static_cast<std::int16_t>(std::lround(angle * 14.4)));
+        for (int shift = 12; shift >= 0; shift -= 4)
+          reply.push_back(static_cast<std::uint8_t>(units >> shift & 15));
+      }
+      reply.push_back(0xff);
       return answer(reply);
     }
     if (m == std::vector<std::uint8_t>{0x81, 0x01, 0x06, 0x04, 0xff}) {

@@ -30,6 +30,11 @@ class EmergencyStop final : public HeadDevice {
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override { return device_.take_pose(now); }
   bool emergency() const override { return open_; }
+  std::optional<SpeedsLine> take_speeds(Time now) override { return device_.take_speeds(now); }
+  void home(Time now) override {
+    if (!open_) device_.home(now);
+  }
+  std::optional<HomedLine> take_homed(Time now) override { return device_.take_homed(now); }
   std::string fault() const override;
 
   // Where the kernel reports no edge the line is read this often.

@@ -229,7 +229,7 @@ void HelperHead::Core::handle(const HelperLine& line) {
     const Time at =
         running_time() - Time(static_cast<Time::rep>(std::min(speeds->age, 1.0) * 1e9)) + setup.latency;
     Pose here;
-    if (!std::exchange(reckons, true) && model.state(at, here).empty())
+    if (!std::exchange(reckons, true) && model.state(running_time(), here).empty())
       reckoning.begin(at, {here.pan.position, here.tilt.position});
     reckoning.turn(at, speeds->speed);
   } else if (const auto* homed = std::get_if<HomedLine>(&line)) {
@@ -299,7 +299,8 @@ std::string HelperHead::open(const HeadSetup& setup) {
   core->setup = setup;
   core->arguments = external ? std::vector<std::string>{"/bin/sh", "-c", "exec " + setup.command}
                              : helper_arguments(driver_, setup);
-  core->name = external ? setup.command : driver_ + " of " + setup.device;
+  // Not the whole command: its arguments may hold a password.
+  core->name = external ? setup.command.substr(0, setup.command.find(' ')) : driver_ + " of " + setup.device;
   core->epoch = since_start(Clock::now());
   if (std::string wrong = core->start(); !wrong.empty()) return wrong;
   core_ = core;
@@ -361,6 +362,14 @@ std::string HelperHead::limit(Time now, const motion::Limits& limits) {
   if (std::string wrong = core_->model.limit(now, limits); !wrong.empty()) return wrong;
   core_->setup.limits = limits;
   core_->send(limits_line(limits));
+  // The model returns within the limits from wherever it rests: a head that only turns at speeds must be driven there.
+  Pose ahead;
+  const bool moves = core_->model.state(now + core_->setup.latency, ahead).empty() && !ahead.settled;
+  if (moves && !core_->abilities.position) {
+    core_->follows = true;
+    core_->next_follow = Time{};
+    core_->poke();
+  }
   return {};
 }
 
