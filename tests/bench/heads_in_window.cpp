@@ -55,11 +55,6 @@ GstPadProbeReturn aim(GstPad* pad, GstPadProbeInfo* info, gpointer data) {
   pose.tilt = emulation.camera->tilt();
   pose.valid_from = GST_BUFFER_PTS(frame);
   pose.valid_until = GST_CLOCK_TIME_NONE;
-  if (std::getenv("TRACE"))
-    std::fprintf(stderr, "%.2f true %.2f %.2f pub %.2f %.2f v %.2f src %d from %.2f\n",
-                 GST_BUFFER_PTS(frame) * 1e-9, pose.pan, pose.tilt, emulation.published.pan,
-                 emulation.published.tilt, emulation.published.pan_speed, (int)emulation.published.source,
-                 emulation.published.valid_from * 1e-9);
   emulation.windows.push_back(window_at(pose.pan / kRadian, pose.tilt / kRadian));
   if (emulation.any) {
     double pan = 0, tilt = 0;
