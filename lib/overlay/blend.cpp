@@ -13,93 +13,8 @@ namespace cerberus::overlay {
 
 namespace {
 
-// Rows of the picture that are prefetched ahead of the one at hand: rows of a large frame lie further apart than
-// processors prefetch by themselves (derived: 8 rows of 16 pixels take longer than a load from memory).
-constexpr int kAhead = 8;
-
-void look_ahead(const std::uint8_t* row, std::ptrdiff_t bytes) {
-  constexpr std::ptrdiff_t kLine = 64;
-  for (std::ptrdiff_t at = 0; at < bytes; at += kLine) __builtin_prefetch(row + at, 1);
-  __builtin_prefetch(row + bytes - 1, 1);
-}
-
-constexpr int kTile = 64;  // samples that are weighed, or skipped if all are transparent, at once
-
 std::int32_t fixed(double weight) {
   return static_cast<std::int32_t>(std::lround(weight * 65536));
-}
-
-// The rows `top` and, where a sample stands for two, `bottom` of the drawing on one row of samples. `left`: the column
-// of the sample at `to` at which the drawing begins, of the pixels that it stands for.
-struct SampleRow {
-  WeightedRow weights;
-  int count = 1, left = 0, width = 0;  // pixels side by side a sample stands for; of the drawing
-  int shift = 0;                       // 2^shift pixels a sample
-  std::uint8_t* to = nullptr;
-  int step = 1;
-
-  void blend_one(int first, int last) {
-    std::int32_t value, rest;
-    weigh_sample(weights, weights.top + first, weights.bottom ? weights.bottom + first : nullptr,
-                 last - first, value, rest);
-    if (rest != weights.full) *to = mix_sample(value, rest, shift, *to);
-    to += step;
-  }
-
-  void blend() {
-    int x = 0;
-    if (left > 0)
-      blend_one(0, x = std::min(count - left, width));  // a sample that the drawing covers in part
-    if (count > 2) {
-      for (; x + count <= width; x += count) blend_one(x, x + count);
-    } else {
-      const WeightedRow all = weights;
-      for (int samples; (samples = std::min(kTile, (width - x) / count)) > 0; x += samples * count) {
-        weights.top = all.top + x;
-        weights.bottom = all.bottom ? all.bottom + x : nullptr;
-        weights.samples = samples;
-        blend_tile();
-      }
-      weights = all;
-    }
-    if (x < width) blend_one(x, width);
-  }
-
-  void blend_tile() {
-    std::int32_t value[kTile], rest[kTile];
-    if (weigh(weights, value, rest)) {
-      if (step == 1)
-        mix(value, rest, shift, weights.samples, to);
-      else
-        for (int i = 0; i < weights.samples; ++i)
-          if (rest[i] != weights.full) to[i * step] = mix_sample(value[i], rest[i], shift, to[i * step]);
-    }
-    to += static_cast<std::ptrdiff_t>(weights.samples) * step;
-  }
-};
-
-void blend_component(vision::View<const std::uint32_t> drawing, int x, int y, const BlendComponent& c) {
-  SampleRow row;
-  row.count = 1 << c.shift_x;
-  row.left = x & (row.count - 1);
-  row.width = drawing.width;
-  row.shift = c.shift_x + c.shift_y;
-  row.step = c.step;
-  row.weights.pairs = row.count == 2;
-  row.weights.full = 255 << row.shift;
-  row.weights.red = fixed(c.red), row.weights.green = fixed(c.green), row.weights.blue = fixed(c.blue);
-  row.weights.alpha = fixed(c.offset / 255);
-  const int bottom = y + drawing.height;
-  for (int v = y >> c.shift_y; v << c.shift_y < bottom; ++v) {
-    const int first = std::max(v << c.shift_y, y) - y, end = std::min((v + 1) << c.shift_y, bottom) - y;
-    row.weights.top = drawing.row(first);
-    row.weights.bottom = end - first > 1 ? drawing.row(first + 1) : nullptr;
-    if ((v + kAhead) << c.shift_y < bottom)
-      look_ahead(c.data + (v + kAhead) * c.stride + static_cast<std::ptrdiff_t>(x >> c.shift_x) * c.step,
-                 static_cast<std::ptrdiff_t>(drawing.width >> c.shift_x) * c.step);
-    row.to = c.data + v * c.stride + static_cast<std::ptrdiff_t>(x >> c.shift_x) * c.step;
-    row.blend();
-  }
 }
 
 // A component of more than 8 bits. Sums of bytes over n pixels times 16.16 weights are in 64 bits.
@@ -174,19 +89,26 @@ std::optional<PackedLayout> packed_layout(std::span<const BlendComponent> pictur
 void blend(vision::View<const std::uint32_t> drawing, int x, int y, std::span<const BlendComponent> picture) {
   if (const auto layout = packed_layout(picture)) {
     std::uint8_t* to = picture[0].pixel + y * picture[0].stride + 4 * static_cast<std::ptrdiff_t>(x);
-    for (int row = 0; row < drawing.height; ++row, to += picture[0].stride) {
-      if (row + kAhead < drawing.height)
-        look_ahead(to + kAhead * picture[0].stride, 4 * static_cast<std::ptrdiff_t>(drawing.width));
-      blend_packed(drawing.row(row), *layout, drawing.width, to);
+    return blend_packed(drawing, *layout, to, picture[0].stride);
+  }
+  // Neighbours in the list whose samples stand for the same pixels are blended together.
+  PlaneGroup group;
+  const auto blend_group = [&] {
+    if (group.count > 0) blend_planes(drawing, x, y, group);
+    group.count = 0;
+  };
+  for (const BlendComponent& c : picture) {
+    if (c.bits > 8) {
+      WordBlender(c).blend(drawing, x, y);
+      continue;
     }
-    return;
+    if (group.count == PlaneGroup::kMost || c.shift_x != group.shift_x || c.shift_y != group.shift_y)
+      blend_group();
+    group.shift_x = c.shift_x, group.shift_y = c.shift_y;
+    group.planes[group.count++] = {
+        c.data, c.stride, c.step, fixed(c.red), fixed(c.green), fixed(c.blue), fixed(c.offset / 255)};
   }
-  for (const BlendComponent& component : picture) {
-    if (component.bits > 8)
-      WordBlender(component).blend(drawing, x, y);
-    else
-      blend_component(drawing, x, y, component);
-  }
+  blend_group();
 }
 
 }  // namespace cerberus::overlay

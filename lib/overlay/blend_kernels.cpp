@@ -15,30 +15,32 @@ HWY_BEFORE_NAMESPACE();
 namespace cerberus::overlay::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+// A row of samples: the rows of the drawing that it stands for.
+struct Rows {
+  const std::uint32_t* top = nullptr;
+  const std::uint32_t* bottom = nullptr;  // null: no second row
+};
+
+void look_ahead(const std::uint8_t* row, std::ptrdiff_t bytes) {
+  constexpr std::ptrdiff_t kLine = 64;
+  for (std::ptrdiff_t at = 0; at < bytes; at += kLine) __builtin_prefetch(row + at, 1);
+  __builtin_prefetch(row + bytes - 1, 1);
+}
+
 #if HWY_TARGET == HWY_SCALAR
 
-bool weigh_rows(const WeightedRow& row, std::int32_t* value, std::int32_t* rest) {
-  const int step = row.pairs ? 2 : 1;
-  bool any = false;
-  for (int i = 0; i < row.samples; ++i) {
-    weigh_sample(row, row.top + i * step, row.bottom ? row.bottom + i * step : nullptr, step, value[i],
-                 rest[i]);
-    any = any || rest[i] != row.full;
-  }
-  return any;
+int blend_row(const Rows&, const PlaneGroup&, int from, int, int, int) {
+  return from;
 }
 
-void mix_samples(const std::int32_t* value, const std::int32_t* rest, int shift, int samples,
-                 std::uint8_t* to) {
-  for (int x = 0; x < samples; ++x) to[x] = mix_sample(value[x], rest[x], shift, to[x]);
-}
-
-void blend_packed_pixels(const std::uint32_t* from, const PackedLayout& layout, int pixels,
-                         std::uint8_t* to) {
-  for (int x = 0; x < pixels; ++x) blend_packed_pixel(from[x], layout, to + 4 * x);
+int blend_packed_row(const std::uint32_t*, const PackedLayout&, int, std::uint8_t*) {
+  return 0;
 }
 
 #else
+
+// The sides of boxes are about twelve pixels wide: vectors of eight and of four words leave few over.
+constexpr int kMostLanes = 8, kFewLanes = 4;
 
 // Two channels of words, eight bits each, in the halves of a word: blue and red, green and alpha.
 template <class V>
@@ -60,86 +62,76 @@ HWY_INLINE hn::Vec<hn::Half<D>> pair_sums(D, hn::Vec<D> sums) {
   return hn::TruncateTo(hn::Half<D>(), hn::Add(pairs, hn::ShiftRight<32>(pairs)));
 }
 
+// Blends the sums into samples side by side of all planes.
 template <class D>
-HWY_INLINE void store_weighed(D d, const WeightedRow& row, Channels<hn::Vec<D>> sums, std::int32_t* value,
-                              std::int32_t* rest) {
+HWY_INLINE void mix(D d, Channels<hn::Vec<D>> sums, const PlaneGroup& group, int u, int v) {
   const hn::RebindToSigned<D> s;
+  const hn::Rebind<std::uint8_t, D> bytes;
   const auto low = hn::Set(d, 0xffffu);
   const auto red = hn::BitCast(s, hn::ShiftRight<16>(sums.blue_red)),
-             blue = hn::BitCast(s, hn::And(sums.blue_red, low));
-  const auto alpha = hn::BitCast(s, hn::ShiftRight<16>(sums.green_alpha)),
+             blue = hn::BitCast(s, hn::And(sums.blue_red, low)),
+             alpha = hn::BitCast(s, hn::ShiftRight<16>(sums.green_alpha)),
              green = hn::BitCast(s, hn::And(sums.green_alpha, low));
-  const auto colors = hn::Add(hn::Mul(red, hn::Set(s, row.red)), hn::Mul(green, hn::Set(s, row.green)));
-  const auto others = hn::Add(hn::Mul(blue, hn::Set(s, row.blue)), hn::Mul(alpha, hn::Set(s, row.alpha)));
-  hn::StoreU(hn::Add(colors, others), s, value);
-  hn::StoreU(hn::Sub(hn::Set(s, row.full), alpha), s, rest);
-}
-
-// Processes the words from x on that fill whole vectors; returns their end.
-template <class D>
-HWY_INLINE int weigh_vectors(D d, const WeightedRow& row, int x, int words, std::int32_t* value,
-                             std::int32_t* rest) {
-  const hn::Half<D> half;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  for (; x + lanes <= words; x += lanes) {
-    auto sums = split(d, hn::LoadU(d, row.top + x));
-    if (row.bottom) {
-      const auto more = split(d, hn::LoadU(d, row.bottom + x));
-      sums = {hn::Add(sums.blue_red, more.blue_red), hn::Add(sums.green_alpha, more.green_alpha)};
-    }
-    if (row.pairs) {
-      const Channels<hn::Vec<decltype(half)>> halved{pair_sums(d, sums.blue_red),
-                                                     pair_sums(d, sums.green_alpha)};
-      store_weighed(half, row, halved, value + x / 2, rest + x / 2);
+  const auto rest = hn::Sub(hn::Set(s, group.full()), alpha);
+  const auto half = hn::Set(s, 32768 << group.shift());
+  for (int i = 0; i < group.count; ++i) {
+    const WeightedPlane& plane = group.planes[i];
+    const auto colors = hn::Add(hn::Mul(red, hn::Set(s, plane.red)), hn::Mul(green, hn::Set(s, plane.green)));
+    const auto others =
+        hn::Add(hn::Mul(blue, hn::Set(s, plane.blue)), hn::Mul(alpha, hn::Set(s, plane.alpha)));
+    const auto value = hn::Add(hn::Add(colors, others), half);
+    std::uint8_t* to = plane.data + v * plane.stride + static_cast<std::ptrdiff_t>(u) * plane.step;
+    const auto mixed = [&](auto samples) {
+      const auto kept = hn::Mul(hn::PromoteTo(s, samples), rest);
+      const auto sum =
+          hn::Add(value, hn::Add(hn::Add(hn::ShiftLeft<8>(kept), kept), hn::ShiftRight<8>(kept)));
+      return hn::DemoteTo(bytes, hn::ShiftRightSame(sum, 16 + group.shift()));
+    };
+    if (plane.step == 1) {
+      hn::StoreU(mixed(hn::LoadU(bytes, to)), bytes, to);
     } else {
-      store_weighed(d, row, sums, value + x, rest + x);
+      std::uint8_t side_by_side[kMostLanes];
+      const int lanes = static_cast<int>(hn::Lanes(d));
+      for (int k = 0; k < lanes; ++k) side_by_side[k] = to[k * plane.step];
+      hn::StoreU(mixed(hn::LoadU(bytes, side_by_side)), bytes, side_by_side);
+      for (int k = 0; k < lanes; ++k) to[k * plane.step] = side_by_side[k];
     }
   }
-  return x;
-}
-
-bool weigh_rows(const WeightedRow& row, std::int32_t* value, std::int32_t* rest) {
-  const int words = row.pairs ? 2 * row.samples : row.samples, step = row.pairs ? 2 : 1;
-  std::uint32_t seen = 0;
-  for (const std::uint32_t* from : {row.top, row.bottom})
-    for (int i = 0; from && i < words; ++i) seen |= from[i];
-  if (seen == 0) return false;
-  // The sides of boxes are about twelve pixels wide: vectors of eight and of four leave few words over.
-  int x = weigh_vectors(hn::CappedTag<std::uint32_t, 8>(), row, 0, words, value, rest);
-  x = weigh_vectors(hn::CappedTag<std::uint32_t, 4>(), row, x, words, value, rest);
-  for (; x < words; x += step)
-    weigh_sample(row, row.top + x, row.bottom ? row.bottom + x : nullptr, step, value[x / step],
-                 rest[x / step]);
-  return true;
 }
 
 template <class D>
-HWY_INLINE int mix_vectors(D d, const std::int32_t* value, const std::int32_t* rest, int shift, int x,
-                           int samples, std::uint8_t* to) {
-  const hn::Rebind<std::uint8_t, D> bytes;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto half = hn::Set(d, 32768 << shift);
-  for (; x + lanes <= samples; x += lanes) {
-    const auto kept = hn::Mul(hn::PromoteTo(d, hn::LoadU(bytes, to + x)), hn::LoadU(d, rest + x));
-    const auto scaled = hn::Add(hn::Mul(kept, hn::Set(d, 257)), hn::ShiftRight<8>(kept));
-    const auto sum = hn::Add(hn::Add(hn::LoadU(d, value + x), scaled), half);
-    hn::StoreU(hn::DemoteTo(bytes, hn::ShiftRightSame(sum, 16 + shift)), bytes, to + x);
+HWY_INLINE int blend_vectors(D d, const Rows& rows, const PlaneGroup& group, int from, int words, int u,
+                             int v) {
+  const hn::Half<D> half;
+  const int lanes = static_cast<int>(hn::Lanes(d)), samples = lanes >> group.shift_x;
+  for (; from + lanes <= words; from += lanes, u += samples) {
+    const auto top = hn::LoadU(d, rows.top + from);
+    const auto bottom = rows.bottom ? hn::LoadU(d, rows.bottom + from) : hn::Zero(d);
+    if (hn::AllTrue(d, hn::Eq(hn::Or(top, bottom), hn::Zero(d)))) continue;
+    const auto upper = split(d, top), lower = split(d, bottom);
+    const Channels<hn::Vec<D>> sums{hn::Add(upper.blue_red, lower.blue_red),
+                                    hn::Add(upper.green_alpha, lower.green_alpha)};
+    if (group.shift_x == 1)
+      mix(half, {pair_sums(d, sums.blue_red), pair_sums(d, sums.green_alpha)}, group, u, v);
+    else
+      mix(d, sums, group, u, v);
   }
-  return x;
+  return from;
 }
 
-void mix_samples(const std::int32_t* value, const std::int32_t* rest, int shift, int samples,
-                 std::uint8_t* to) {
-  int x = mix_vectors(hn::CappedTag<std::int32_t, 8>(), value, rest, shift, 0, samples, to);
-  x = mix_vectors(hn::CappedTag<std::int32_t, 4>(), value, rest, shift, x, samples, to);
-  for (; x < samples; ++x) to[x] = mix_sample(value[x], rest[x], shift, to[x]);
+// Blends the words from..words that fill whole vectors; u: the sample of the first. Returns their end.
+int blend_row(const Rows& rows, const PlaneGroup& group, int from, int words, int u, int v) {
+  const int first = from;
+  from = blend_vectors(hn::CappedTag<std::uint32_t, kMostLanes>(), rows, group, from, words, u, v);
+  u += (from - first) >> group.shift_x;
+  return blend_vectors(hn::CappedTag<std::uint32_t, kFewLanes>(), rows, group, from, words, u, v);
 }
 
-void blend_packed_pixels(const std::uint32_t* from, const PackedLayout& layout, int pixels,
-                         std::uint8_t* to) {
-  const hn::ScalableTag<std::uint8_t> d;
-  const hn::Repartition<std::uint16_t, decltype(d)> wide;
-  const hn::Repartition<std::uint32_t, decltype(d)> words;
+template <class D>
+HWY_INLINE int blend_packed_vectors(D words, const std::uint32_t* from, const PackedLayout& layout, int x,
+                                    int pixels, std::uint8_t* to) {
+  const hn::Repartition<std::uint8_t, D> d;
+  const hn::Repartition<std::uint16_t, D> wide;
   constexpr std::uint8_t kAlpha = std::endian::native == std::endian::little ? 3 : 0;
   std::uint32_t color = 0, alpha = 0;  // byte numbers within the four of a pixel
   std::uint8_t colors[4], alphas[4];
@@ -160,7 +152,6 @@ void blend_packed_pixels(const std::uint32_t* from, const PackedLayout& layout, 
     return hn::ShiftRight<8>(hn::Add(sum, hn::ShiftRight<8>(sum)));
   };
   const int lanes = static_cast<int>(hn::Lanes(words));
-  int x = 0;
   for (; x + lanes <= pixels; x += lanes) {
     const auto drawn = hn::LoadU(words, from + x);
     if (hn::AllTrue(words, hn::Eq(drawn, hn::Zero(words)))) continue;
@@ -172,10 +163,56 @@ void blend_packed_pixels(const std::uint32_t* from, const PackedLayout& layout, 
     const auto kept = hn::BitCast(d, hn::Or(even, hn::ShiftLeft<8>(odd)));
     hn::StoreU(hn::SaturatedAdd(kept, hn::TableLookupBytesOr0(source, color_table)), d, to + 4 * x);
   }
-  for (; x < pixels; ++x) blend_packed_pixel(from[x], layout, to + 4 * x);
+  return x;
+}
+
+HWY_INLINE int blend_packed_row(const std::uint32_t* from, const PackedLayout& layout, int pixels,
+                                std::uint8_t* to) {
+  const int x = blend_packed_vectors(hn::CappedTag<std::uint32_t, kMostLanes>(), from, layout, 0, pixels, to);
+  return blend_packed_vectors(hn::CappedTag<std::uint32_t, kFewLanes>(), from, layout, x, pixels, to);
 }
 
 #endif
+
+void blend_all_planes(vision::View<const std::uint32_t> drawing, int x, int y, const PlaneGroup& group) {
+  const int side = 1 << group.shift_x, bottom = y + drawing.height, width = drawing.width;
+  const int left = x & (side - 1);  // column of the drawing's first pixel within its sample
+  for (int v = y >> group.shift_y; v << group.shift_y < bottom; ++v) {
+    if ((v + kRowsAhead) << group.shift_y < bottom)
+      for (int i = 0; i < group.count; ++i) {
+        const WeightedPlane& plane = group.planes[i];
+        const std::ptrdiff_t at = static_cast<std::ptrdiff_t>(x >> group.shift_x) * plane.step;
+        look_ahead(plane.data + (v + kRowsAhead) * plane.stride + at,
+                   static_cast<std::ptrdiff_t>(width >> group.shift_x) * plane.step);
+      }
+    const int first = std::max(v << group.shift_y, y) - y,
+              end = std::min((v + 1) << group.shift_y, bottom) - y;
+    const Rows rows{drawing.row(first), end - first > 1 ? drawing.row(first + 1) : nullptr};
+    int u = x >> group.shift_x, at = 0;
+    const auto blend_one = [&](int stop) {
+      blend_sample(rows.top + at, rows.bottom ? rows.bottom + at : nullptr, stop - at, group, u++, v);
+      at = stop;
+    };
+    if (left > 0) blend_one(std::min(side - left, width));
+    if (group.shift_x <= 1) {
+      const int stop = blend_row(rows, group, at, width, u, v);
+      u += (stop - at) >> group.shift_x;
+      at = stop;
+    }
+    while (at < width) blend_one(std::min(at + side, width));
+  }
+}
+
+void blend_all_packed(vision::View<const std::uint32_t> drawing, const PackedLayout& layout, std::uint8_t* to,
+                      std::ptrdiff_t stride) {
+  for (int y = 0; y < drawing.height; ++y, to += stride) {
+    if (y + kRowsAhead < drawing.height)
+      look_ahead(to + kRowsAhead * stride, 4 * static_cast<std::ptrdiff_t>(drawing.width));
+    const std::uint32_t* from = drawing.row(y);
+    for (int x = blend_packed_row(from, layout, drawing.width, to); x < drawing.width; ++x)
+      blend_packed_pixel(from[x], layout, to + 4 * static_cast<std::ptrdiff_t>(x));
+  }
+}
 
 }  // namespace cerberus::overlay::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -183,26 +220,26 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cerberus::overlay {
 
-HWY_EXPORT(weigh_rows);
-HWY_EXPORT(mix_samples);
-HWY_EXPORT(blend_packed_pixels);
+HWY_EXPORT(blend_all_planes);
+HWY_EXPORT(blend_all_packed);
 
-void weigh_sample(const WeightedRow& row, const std::uint32_t* top, const std::uint32_t* bottom, int count,
-                  std::int32_t& value, std::int32_t& rest) {
+void blend_sample(const std::uint32_t* top, const std::uint32_t* bottom, int count, const PlaneGroup& group,
+                  int u, int v) {
   std::int32_t r = 0, g = 0, b = 0, a = 0;
   for (const std::uint32_t* from : {top, bottom})
     for (int i = 0; from && i < count; ++i) {
       const std::uint32_t p = from[i];
       r += p >> 16 & 255, g += p >> 8 & 255, b += p & 255, a += p >> 24;
     }
-  value = row.red * r + row.green * g + row.blue * b + row.alpha * a;
-  rest = row.full - a;
-}
-
-std::uint8_t mix_sample(std::int32_t value, std::int32_t rest, int shift, std::uint8_t sample) {
-  const std::int32_t kept = sample * rest;
-  const std::int32_t sum = value + kept * 257 + (kept >> 8) + (32768 << shift);
-  return static_cast<std::uint8_t>(std::clamp(sum >> (16 + shift), 0, 255));
+  if (a == 0) return;
+  for (int i = 0; i < group.count; ++i) {
+    const WeightedPlane& plane = group.planes[i];
+    std::uint8_t& sample = plane.data[v * plane.stride + static_cast<std::ptrdiff_t>(u) * plane.step];
+    const std::int32_t value = plane.red * r + plane.green * g + plane.blue * b + plane.alpha * a;
+    const std::int32_t kept = sample * (group.full() - a);
+    const std::int32_t sum = value + kept * 257 + (kept >> 8) + (32768 << group.shift());
+    sample = static_cast<std::uint8_t>(std::clamp(sum >> (16 + group.shift()), 0, 255));
+  }
 }
 
 void blend_packed_pixel(std::uint32_t word, const PackedLayout& layout, std::uint8_t* to) {
@@ -216,16 +253,13 @@ void blend_packed_pixel(std::uint32_t word, const PackedLayout& layout, std::uin
   }
 }
 
-bool weigh(const WeightedRow& row, std::int32_t* value, std::int32_t* rest) {
-  return HWY_DYNAMIC_DISPATCH(weigh_rows)(row, value, rest);
+void blend_planes(vision::View<const std::uint32_t> drawing, int x, int y, const PlaneGroup& group) {
+  HWY_DYNAMIC_DISPATCH(blend_all_planes)(drawing, x, y, group);
 }
 
-void mix(const std::int32_t* value, const std::int32_t* rest, int shift, int samples, std::uint8_t* to) {
-  HWY_DYNAMIC_DISPATCH(mix_samples)(value, rest, shift, samples, to);
-}
-
-void blend_packed(const std::uint32_t* from, const PackedLayout& layout, int pixels, std::uint8_t* to) {
-  HWY_DYNAMIC_DISPATCH(blend_packed_pixels)(from, layout, pixels, to);
+void blend_packed(vision::View<const std::uint32_t> drawing, const PackedLayout& layout, std::uint8_t* to,
+                  std::ptrdiff_t stride) {
+  HWY_DYNAMIC_DISPATCH(blend_all_packed)(drawing, layout, to, stride);
 }
 
 }  // namespace cerberus::overlay

@@ -31,6 +31,13 @@ std::optional<Object> clipped(Object object, Area frame) {
   return sane ? std::optional(object) : std::nullopt;
 }
 
+// The rims of boxes begin at even pixels, where samples of chroma begin, and are a number of small vectors wide.
+constexpr int kGrid = 4;
+
+int rounded_up(int value, int multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
 bool looks_alike(const Object& a, const Object& b) {
   return a.id == b.id && a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height &&
          a.state == b.state && a.target == b.target;
@@ -95,25 +102,31 @@ void Painter::draw_box(const Object& object, std::vector<Patch>& patches) {
                                                                  : LineStyle::solid;
   const Outline outline(object.x, object.y, object.width, object.height, line_, style,
                         identity_color(object.id));
-  const double reach = outline.reach();
   const auto add = [&](const Area& wanted) {
     const Area area = wanted.intersection(frame_);
     if (area.empty()) return;
-    const PicturePtr picture = pool_.take(area.width, area.height);
+    const PicturePtr picture = pool_.take_unwritten(area.width, area.height);
     outline.draw(area, picture->view());
     patches.push_back({area, picture});
   };
-  const double rim = outline.corner() + reach;  // the corners lie in the upper and lower strip
-  const Area all = Area::around(object.x, object.y, object.x + object.width, object.y + object.height, reach);
-  if (object.width < 4 * rim || object.height < 4 * rim) return add(all);
-  // Only the rim is a patch: the inside of a tall person's box in 4K would be megabytes of transparent pixels.
-  const int thick = static_cast<int>(std::ceil(rim + reach)),
-            thin = static_cast<int>(std::ceil(2 * reach)) + 1;
-  const int middle = all.height - 2 * thick;
-  add({all.x, all.y, all.width, thick});
-  add({all.x, all.y + all.height - thick, all.width, thick});
-  add({all.x + all.width - thin, all.y + thick, thin, middle});
-  add({all.x, all.y + thick, thin, middle});
+  const double right = object.x + object.width, bottom = object.y + object.height;
+  Area all = Area::around(object.x, object.y, right, bottom, outline.reach()).even();
+  all.width = rounded_up(all.width, kGrid);
+  // Only the rim of a large box is drawn: the inside of a tall person's box in 4K would be megabytes of transparent
+  // pixels. Of a small one four patches would cost more than its inside.
+  const double inner = outline.inner_reach();
+  const auto thick = [&](double from, double to, int grid) {
+    return rounded_up(static_cast<int>(std::ceil(to - from)), grid);
+  };
+  const int above = thick(all.y, object.y + inner, 2), below = thick(bottom - inner, all.y + all.height, 2);
+  const int before = thick(all.x, object.x + inner, kGrid),
+            behind = thick(right - inner, all.x + all.width, kGrid);
+  const int middle = all.height - above - below;
+  if (all.width < 2 * (before + behind) || all.height < 2 * (above + below)) return add(all);
+  add({all.x, all.y, all.width, above});
+  add({all.x, all.y + all.height - below, all.width, below});
+  add({all.x + all.width - behind, all.y + above, behind, middle});
+  add({all.x, all.y + above, before, middle});
 }
 
 bool Painter::is_free(const Area& area) const {

@@ -14,6 +14,11 @@ Area Area::intersection(const Area& other) const {
           std::min(y + height, other.y + other.height) - top};
 }
 
+Area Area::even() const {
+  const int left = x & ~1, top = y & ~1;
+  return {left, top, ((x + width + 1) & ~1) - left, ((y + height + 1) & ~1) - top};
+}
+
 Area Area::around(double left, double top, double right, double bottom, double margin) {
   const int x = static_cast<int>(std::floor(left - margin)), y = static_cast<int>(std::floor(top - margin));
   return {x, y, static_cast<int>(std::ceil(right + margin)) - x,
@@ -21,6 +26,12 @@ Area Area::around(double left, double top, double right, double bottom, double m
 }
 
 PicturePtr PicturePool::take(int width, int height) {
+  PicturePtr picture = take_unwritten(width, height);
+  std::fill(picture->words.begin(), picture->words.end(), 0u);
+  return picture;
+}
+
+PicturePtr PicturePool::take_unwritten(int width, int height) {
   const std::size_t words = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
   const auto order = static_cast<std::size_t>(std::bit_width(std::max<std::size_t>(words, 1) - 1));
   if (classes_.size() <= order) classes_.resize(order + 1);
@@ -40,7 +51,7 @@ PicturePtr PicturePool::take(int width, int height) {
   }
   found->width = width;
   found->height = height;
-  found->words.assign(words, 0);
+  found->words.resize(words);
   return found;
 }
 

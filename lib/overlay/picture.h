@@ -17,6 +17,8 @@ struct Area {
   bool operator==(const Area&) const = default;
   bool empty() const { return width <= 0 || height <= 0; }
   Area intersection(const Area& other) const;
+  // Returns the area enlarged to even coordinates: samples of chroma are then covered wholly.
+  Area even() const;
   // Returns the pixels touched by a shape between these corner coordinates, enlarged by `margin` pixels on all sides.
   static Area around(double left, double top, double right, double bottom, double margin);
 };
@@ -40,8 +42,9 @@ struct Patch {
 
 class PicturePool {
  public:
-  // Returns a transparent picture that has no other reference. Memory is reused in classes of powers of two.
-  PicturePtr take(int width, int height);
+  // Returns a picture that has no other reference. Memory is reused in classes of powers of two.
+  PicturePtr take(int width, int height);            // transparent
+  PicturePtr take_unwritten(int width, int height);  // whose pixels are any: the caller writes all of them
 
  private:
   struct Class {

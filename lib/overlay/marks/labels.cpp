@@ -11,8 +11,18 @@ namespace cerberus::overlay {
 
 namespace {
 
-double luminance(Color c) {
-  return 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
+// In sizes of the font: height of a label, margin before and behind the text, gap between its parts, width of the two
+// bars.
+constexpr double kHeight = 1.35, kPad = 0.4, kGap = 0.45, kBars = 0.5;
+
+double base_line(double font) {
+  return 1 + font * (kHeight / 2 + 0.36);
+}
+
+// Returns the colour of text on this colour.
+Color ink_on(Color c) {
+  const double luminance = 0.299 * c.r + 0.587 * c.g + 0.114 * c.b;
+  return luminance > 0.45 ? Color{0.05, 0.05, 0.05} : Color{1, 1, 1};
 }
 
 void append_number(std::string& text, double value) {
@@ -104,51 +114,60 @@ std::shared_ptr<const Picture> Labels::label(const Object& object, bool detailed
   if (detailed) write_details(object, speeds);
   Label& label = labels_[std::uint64_t{object.id} << 1 | std::uint64_t{detailed}];
   label.used = true;
-  if (!label.drawn || label.state != object.state || label.details != details_) {
+  if (label.state != object.state) label.drawn = false, label.plain = nullptr;
+  if (!label.drawn || label.details != details_) {
     label.drawn = true;
     label.state = object.state;
     label.details = details_;
-    label.picture = draw(object);
+    draw(object, label);
   }
   return label.picture;
 }
 
-PicturePtr Labels::draw(const Object& object) {
+// Draws the label without its details, into a picture of this size.
+void Labels::draw_plain(const Object& object, std::string_view id, int width, int height, Label& label) {
+  label.plain = pool_->take_unwritten(width, height);
+  const auto view = label.plain->view();
+  const auto w = static_cast<float>(width - 2), h = static_cast<float>(kHeight * font_),
+             f = static_cast<float>(font_);
+  const Color color = identity_color(object.id), ink = ink_on(color);
+  fill(view, {0.5f, 0.5f, w + 1.5f, h + 1.5f, 0.35f * f}, {Color{}, 0.55}, {1, 1, w + 1, h + 1, 0.3f * f},
+       {color, object.state == ObjectState::coasted ? 0.8 : 0.95});
+  label.details_x = 1 + kPad * font_;
+  if (!id.empty()) {
+    bold_.draw(id, label.details_x, base_line(font_), ink, view);
+    label.details_x += bold_.width(id) + kGap * font_;
+  }
+  if (object.state == ObjectState::stopped) {
+    for (const double at : {0.0, 0.32 * font_})
+      draw_bar(view, label.details_x + at, 1 + kHeight * font_ / 4, 0.16 * font_, kHeight * font_ / 2, ink);
+    label.details_x += (kBars + kGap) * font_;
+  }
+}
+
+void Labels::draw(const Object& object, Label& label) {
   char digits[12];
   const std::string_view id(
       digits, object.id ? static_cast<std::size_t>(
                               std::to_chars(digits, digits + sizeof digits, object.id).ptr - digits)
                         : 0);
   const bool bars = object.state == ObjectState::stopped;
-  const double pad = 0.4 * font_, gap = 0.45 * font_, bars_width = 0.5 * font_;
-  const double id_width = bold_.width(id), details_width = small_.width(details_);
-  const int parts = !id.empty() + bars + !details_.empty();
-  if (parts == 0) return nullptr;
-
-  const double width = 2 * pad + id_width + (bars ? bars_width : 0) + details_width + (parts - 1) * gap;
-  const double height = 1.35 * font_;
-  const PicturePtr label =
-      pool_->take(static_cast<int>(std::ceil(width)) + 2, static_cast<int>(std::ceil(height)) + 2);
-  const auto view = label->view();
-  const auto w = static_cast<float>(width), h = static_cast<float>(height), f = static_cast<float>(font_);
-  const Color color = identity_color(object.id);
-  fill(view, {0.5f, 0.5f, w + 1.5f, h + 1.5f, 0.35f * f}, {Color{}, 0.55}, {1, 1, w + 1, h + 1, 0.3f * f},
-       {color, object.state == ObjectState::coasted ? 0.8 : 0.95});
-
-  double x = 1 + pad;
-  const double base = 1 + height / 2 + 0.36 * font_;
-  const Color ink = luminance(color) > 0.45 ? Color{0.05, 0.05, 0.05} : Color{1, 1, 1};
-  if (!id.empty()) {
-    bold_.draw(id, x, base, ink, view);
-    x += id_width + gap;
+  const int parts = !id.empty() + bars + !label.details.empty();
+  label.picture = nullptr;
+  if (parts == 0) return;
+  const double room = bold_.width(id) + small_.width(label.details) +
+                      font_ * (2 * kPad + (bars ? kBars : 0) + (parts - 1) * kGap);
+  const int width = static_cast<int>(std::ceil(room)) + 2,
+            height = static_cast<int>(std::ceil(kHeight * font_)) + 2;
+  if (!label.plain || label.plain->width != width) draw_plain(object, id, width, height, label);
+  if (label.details.empty()) {
+    label.picture = label.plain;
+    return;
   }
-  if (bars) {
-    for (const double at : {0.0, 0.32 * font_})
-      draw_bar(view, x + at, 1 + height / 4, 0.16 * font_, height / 2, ink);
-    x += bars_width + gap;
-  }
-  small_.draw(details_, x, base - 0.03 * font_, ink, view);
-  return label;
+  label.picture = pool_->take_unwritten(width, height);
+  label.picture->words = label.plain->words;
+  small_.draw(label.details, label.details_x, base_line(font_) - 0.03 * font_,
+              ink_on(identity_color(object.id)), label.picture->view());
 }
 
 }  // namespace cerberus::overlay

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The labels of objects: a pill in the colour of the identity, with the identity, two bars for an object that stands,
-// speed and distance. A label is stored as long as it is shown, and drawn again only when its text changes.
+// speed and distance. A label is stored as long as it is shown; only its numbers are drawn again when those change.
 #pragma once
 
 #include <cstdint>
@@ -28,11 +28,13 @@ class Labels {
   struct Label {
     ObjectState state = ObjectState::seen;
     std::string details;
-    PicturePtr picture;
+    PicturePtr picture, plain;  // with and without the details
+    double details_x = 0;       // where those begin
     bool drawn = false, used = false;
   };
   void write_details(const Object& object, bool speeds);
-  PicturePtr draw(const Object& object);
+  void draw(const Object& object, Label& label);
+  void draw_plain(const Object& object, std::string_view id, int width, int height, Label& label);
 
   double font_ = 0;
   PicturePool* pool_ = nullptr;  // from begin() on

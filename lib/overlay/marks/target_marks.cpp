@@ -2,6 +2,7 @@
 #include "overlay/marks/target_marks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace cerberus::overlay {
@@ -34,6 +35,7 @@ struct Bracket {
 void draw_target_marks(const Object& object, double line, Area frame, PicturePool& pool,
                        std::vector<Patch>& patches) {
   const double room = kTargetRoom * line, thick = 1.6 * line, casing = std::max(1.0, 0.6 * line);
+  const double outer_half = thick / 2 + casing;
   const double arm =
       std::clamp(0.25 * std::min(object.width, object.height) + room, 2 * thick, 8 * thick) - thick / 2;
   const double left = std::max(object.x - room, thick), top = std::max(object.y - room, thick),
@@ -50,8 +52,13 @@ void draw_target_marks(const Object& object, double line, Area frame, PicturePoo
       const Bracket bracket{x - area.x, y - area.y, dx, dy};
       for (int j = 0; j < area.height; ++j) {
         std::uint32_t* row = picture->view().row(j);
-        for (int i = 0; i < area.width; ++i)
-          if (const float outer = bracket.covered(i, j, thick / 2 + casing); outer > 0)
+        // Beside the level stroke only the columns of the upright one are drawn.
+        const bool level = std::abs(j + 0.5 - bracket.y) < outer_half + 1;
+        const int from = level ? 0 : std::max(0, static_cast<int>(bracket.x - outer_half - 1)),
+                  to =
+                      level ? area.width : std::min(area.width, static_cast<int>(bracket.x + outer_half + 2));
+        for (int i = from; i < to; ++i)
+          if (const float outer = bracket.covered(i, j, outer_half); outer > 0)
             row[i] = (color * bracket.covered(i, j, thick / 2)).over(dark * outer).word();
       }
       patches.push_back({area, picture});

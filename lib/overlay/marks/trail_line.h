@@ -25,17 +25,13 @@ class TrailLine {
             std::vector<Patch>& patches);
 
  private:
-  static constexpr int kSteps = 8;  // of age
-
   void smooth(std::span<const TrailPoint> points, double line);
-  int step(double time, const Style& style) const;
   void draw_part(std::uint32_t id, const Style& style, Area area, std::size_t first, std::size_t last,
                  vision::View<std::uint32_t> picture);
-  void measure(Area area, vision::Point from, vision::Point to, float half, float step, float reach);
 
   std::vector<TrailPoint> points_;  // smoothed
   std::vector<float> depth_;        // a pixel's depth inside the nearest stretch, and
-  std::vector<float> step_;         // the age of that; of the patch at hand
+  std::vector<float> strength_;     // the strength of that (0: of another patch); of the patch at hand
 };
 
 }  // namespace cerberus::overlay
