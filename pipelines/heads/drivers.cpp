@@ -36,6 +36,7 @@ int serve(drivers::HeadDevice& device, const std::string& emergency_stop) {
 }
 
 Run find_driver(const std::string& name) {
+  if (name == "onvif") return run_onvif;
   if (name == "stepper-gpio") return run_stepper;
   return nullptr;
 }

@@ -18,6 +18,7 @@ int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
 
 // One driver. Returns the process's exit status.
 using Run = int (*)(const std::vector<drivers::OptionWord>& words);
+int run_onvif(const std::vector<drivers::OptionWord>& words);
 int run_stepper(const std::vector<drivers::OptionWord>& words);
 
 // The driver of that name; nullptr: it is none of these.

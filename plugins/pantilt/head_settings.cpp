@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "head_settings.hpp"
 
+#include "drivers/helper/passwords.h"
 #include "helper_program.hpp"
 #include "shared/choices.hpp"
 #include "shared/stamps.hpp"
@@ -22,7 +23,7 @@ GType target_type() {
 
 const Property<HeadSettings> kProperties[] = {
     property("driver", &HeadSettings::driver,
-             "What drives the head: simulated, scripted, external, visca, pelco-d or stepper-gpio")
+             "What drives the head: simulated, scripted, external, visca, pelco-d, onvif or stepper-gpio")
         .read_at_start(),
     property("head", &HeadSettings::head, "Name of the head, in pose events and messages; one sink a name")
         .read_at_start(),
@@ -31,7 +32,9 @@ const Property<HeadSettings> kProperties[] = {
              "wait 8' with file descriptors")
         .read_at_start(),
     property("device", &HeadSettings::device,
-             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT or gpiochip0")
+             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT, gpiochip0 or http://HOST; "
+             "never "
+             "with a password")
         .read_at_start(),
     property("device-options", &HeadSettings::device_options,
              "Options of the real head's driver, as 'baud=38400 address=2'")
@@ -112,6 +115,11 @@ motion::Limits head_limits(const HeadSettings& s) {
   const double speed = radians(s.max_speed), acceleration = radians(s.max_acceleration);
   return {.pan = {radians(s.pan_min), radians(s.pan_max), speed, acceleration},
           .tilt = {radians(s.tilt_min), radians(s.tilt_max), speed, acceleration}};
+}
+
+void hide_passwords(HeadSettings& s) {
+  for (const auto setting : {&HeadSettings::device, &HeadSettings::device_options})
+    s.*setting = drivers::without_password(s.*setting);
 }
 
 void copy_limits(const HeadSettings& from, HeadSettings& to) {

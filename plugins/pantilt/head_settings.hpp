@@ -39,6 +39,8 @@ std::span<const Property<HeadSettings>> head_properties();
 motion::Limits head_limits(const HeadSettings& settings);
 // The properties that head_limits() reads.
 void copy_limits(const HeadSettings& from, HeadSettings& to);
+// Passwords in `device` and `device-options` become asterisks: properties are shown in graphs and logs.
+void hide_passwords(HeadSettings& settings);
 control::LawOptions law_options(const HeadSettings& settings);
 // Of the decisions without pirfusion.
 fusion::FuserOptions fuser_options(const HeadSettings& settings);

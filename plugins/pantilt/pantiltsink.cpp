@@ -65,7 +65,7 @@
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties), `scripted` (for
  * tests: what `script` says), `external` (a program that `command` names) and those of real heads: `visca`,
- * `pelco-d` (a camera at `device`) and `stepper-gpio` (motors on the GPIO chip `device`). All but the first two run in
+ * `pelco-d`, `onvif` (a camera at `device`) and `stepper-gpio` (motors on the GPIO chip `device`). All but the first two run in
  * a helper process, which stops the head when this one dies, hangs or is silent for `helper-timeout`.
  * One head has one name (`head`) and in a process one sink.
  *
@@ -398,6 +398,7 @@ gboolean follow(CerberusPanTiltSink* sink, guint id) {
 void set_property(GObject* object, guint id, const GValue* value, GParamSpec*) {
   HeadSession& session = cerberus_pan_tilt_sink_self(object)->priv->session;
   session.settings.set(head_properties(), id, value);
+  session.settings.adjust(hide_passwords);
   guarded(session.sink, [&] { session.configure(); });
 }
 

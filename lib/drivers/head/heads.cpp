@@ -12,8 +12,8 @@ namespace cerberus::drivers {
 
 namespace {
 
-constexpr std::array<std::string_view, 6> kDrivers{"simulated", "scripted", "external",
-                                                   "visca",     "pelco-d",  "stepper-gpio"};
+constexpr std::array<std::string_view, 7> kDrivers{"simulated", "scripted",     "external", "visca",
+                                                   "pelco-d",   "stepper-gpio", "onvif"};
 
 }  // namespace
 

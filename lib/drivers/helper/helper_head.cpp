@@ -16,6 +16,7 @@
 
 #include "drivers/helper/head_lines.h"
 #include "drivers/helper/helper_process.h"
+#include "drivers/helper/passwords.h"
 #include "drivers/simulated/simulated_head.h"
 #include "motion/reckoning.h"
 #include "text/numbers.h"
@@ -290,6 +291,8 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const bool external = driver_ == "external";
   if (external && setup.command.empty()) return "the driver external needs a helper to run (command=)";
   if (!external && setup.device.empty()) return "the driver " + driver_ + " needs a device (device=)";
+  for (const std::string& setting : {setup.device, setup.options})
+    if (std::string wrong = refuse_password(setting); !wrong.empty()) return wrong;
   if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))
     return "helper-timeout must be 1 ms to 10 s, and is " +
            text::significant(motion::seconds(setup.helper_timeout), 6).string() + " s";

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/onvif/login.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace cerberus::drivers::onvif {
+namespace {
+
+constexpr Time kStopTime = std::chrono::milliseconds(500);  // the driver sends Stop again after the login
+
+}  // namespace
+
+void Login::begin(Time now, Time timeout) {
+  soap_.cancel(id_);
+  camera_ = {};
+  services_ = {};
+  configuration_.clear();
+  seen_profiles_.clear();
+  wrong_.clear();
+  refused_ = false;
+  timeout_ = timeout;
+  soap_.send_passwords_in_clear(options_.password_text);
+  send(Step::clock, now);
+}
+
+void Login::fail(std::string why) {
+  wrong_ = std::move(why);
+  id_ = 0;
+}
+
+// An address that cannot be read: most cameras serve everything at one path.
+Address Login::service(const std::string& claimed) const {
+  return reachable(claimed, options_.device).value_or(options_.device);
+}
+
+void Login::send(Step step, Time now) {
+  step_ = step;
+  sent_ = now;
+  const auto request = [&]() -> Request {
+    switch (step) {
+      case Step::clock:
+        return get_system_date_and_time();
+      case Step::services:
+        return get_services();
+      case Step::capabilities:
+        return get_capabilities();
+      case Step::profiles:
+        return get_profiles();
+      case Step::profiles_media2:
+        return get_profiles_media2();
+      case Step::options:
+        return get_configuration_options(configuration_);
+      case Step::stop:
+        return stop(camera_.profile);
+      case Step::status:
+        return get_status(camera_.profile);
+      case Step::absolute:
+        break;
+    }
+    const Space& at = *camera_.status->position;
+    return absolute_move(camera_.profile, {at.x.from, at.y.from, at.uri}, std::nullopt);
+  };
+  const Address to = step <= Step::capabilities      ? options_.device
+                     : step == Step::profiles        ? service(services_.media)
+                     : step == Step::profiles_media2 ? service(services_.media2)
+                                                     : camera_.ptz;
+  // The clock is asked for without a token, which the camera could not accept before its clock is known.
+  id_ = soap_.send(to, request(), now, step == Step::stop ? std::min(timeout_, kStopTime) : timeout_,
+                   step != Step::clock);
+}
+
+bool Login::choose(const std::vector<Profile>& profiles) {
+  for (const Profile& profile : profiles) {
+    const bool named =
+        options_.profile.empty() || options_.profile == profile.token || options_.profile == profile.name;
+    if (!profile.configuration.empty() && named) {
+      camera_.profile = profile.token;
+      configuration_ = profile.configuration;
+      return true;
+    }
+    if (profile.configuration.empty()) continue;
+    if (!seen_profiles_.empty()) seen_profiles_.append(", ");
+    seen_profiles_.append(profile.token);
+  }
+  return false;
+}
+
+void Login::after_services(const SoapAnswer& answer, Time now) {
+  services_ = read_services(answer.body);
+  if (services_.ptz.empty() && step_ == Step::services) return send(Step::capabilities, now);
+  if (services_.ptz.empty()) return fail("has no PTZ service: it cannot pan and tilt");
+  camera_.ptz = service(services_.ptz);
+  if (services_.media.empty() && services_.media2.empty())
+    return fail("has no media service, so no profile to move");
+  send(services_.media.empty() ? Step::profiles_media2 : Step::profiles, now);
+}
+
+void Login::after_profiles(const SoapAnswer& answer, Time now) {
+  if (choose(read_profiles(answer.body))) return send(Step::options, now);
+  if (step_ == Step::profiles && !services_.media2.empty()) return send(Step::profiles_media2, now);
+  if (seen_profiles_.empty()) return fail("has no profile with a PTZ configuration: it cannot pan and tilt");
+  fail("has no profile \"" + options_.profile + "\" that can pan and tilt; it has " + seen_profiles_);
+}
+
+void Login::handle(const SoapAnswer& answer, Time now) {
+  id_ = 0;
+  if (!answer.arrived && step_ != Step::stop) return fail("cannot be reached: " + answer.wrong);
+  if (step_ == Step::clock) {
+    // Half of the way there and back lies behind the answer; without the camera's time this machine's is used.
+    if (const auto time = read_system_date_and_time(answer.body))
+      soap_.set_camera_time(*time, sent_ + (now - sent_) / 2);
+    return send(Step::services, now);
+  }
+  if (answer.not_authorized()) {
+    if (options_.device.encrypted && !soap_.passwords_in_clear() && !soap_.user().empty()) {
+      soap_.send_passwords_in_clear(true);
+      return send(step_, now);
+    }
+    refused_ = true;
+    const std::string& user = soap_.user();
+    return fail(user.empty()
+                    ? "demands a login: give user= and password-file= in device-options"
+                    : "refuses the login of the user \"" + user + "\" (" + answer.fault->text() +
+                          "): check user= and password-file= in device-options, and the user's rights");
+  }
+  const bool optional = step_ != Step::capabilities && step_ != Step::profiles_media2 &&
+                        !(step_ == Step::profiles && services_.media2.empty());
+  if (!answer.good() && !optional)
+    return fail(answer.fault ? "does not say what it can do (" + answer.fault->text() + ")"
+                             : "is no ONVIF camera: " + answer.wrong);
+  switch (step_) {
+    case Step::clock:
+      break;
+    case Step::services:
+    case Step::capabilities:
+      return after_services(answer, now);
+    case Step::profiles:
+    case Step::profiles_media2:
+      return after_profiles(answer, now);
+    case Step::options:
+      camera_.options = read_configuration_options(answer.body).value_or(PtzOptions{});
+      return send(Step::stop, now);
+    case Step::stop:
+      return send(Step::status, now);
+    case Step::status:
+      camera_.status = read_status(answer.body);
+      if (options_.try_absolute && camera_.status && camera_.status->position &&
+          !camera_.options.positions.empty())
+        return send(Step::absolute, now);
+      return;
+    case Step::absolute:
+      camera_.absolute = answer.good();
+      return;
+  }
+}
+
+}  // namespace cerberus::drivers::onvif

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What happens between an address and the first move: the camera's clock, its services, the profile that can pan and tilt,
+// what its PTZ configuration offers, a Stop, the position, and whether AbsoluteMove works (it is sent to where it is).
+#pragma once
+
+#include <string>
+
+#include "drivers/onvif/soap_client.h"
+
+namespace cerberus::drivers::onvif {
+
+struct LoginOptions {
+  Address device;
+  std::string profile;         // token or name; empty: the first that can pan and tilt
+  bool password_text = false;  // passwords in clear also without TLS
+  bool try_absolute = true;
+};
+
+// What the camera is, after a login.
+struct Camera {
+  Address ptz;
+  std::string profile;
+  PtzOptions options;
+  std::optional<PtzStatus> status;  // nothing: it has none
+  bool absolute = false;            // it takes an AbsoluteMove to its own position
+};
+
+class Login {
+ public:
+  Login(SoapClient& soap, LoginOptions options) : soap_(soap), options_(std::move(options)) {}
+  // Begins anew. timeout: of each request.
+  void begin(Time now, Time timeout);
+  bool busy() const { return id_ != 0; }
+  bool owns(unsigned id) const { return id != 0 && id == id_; }
+  // An answer that it owns.
+  void handle(const SoapAnswer& answer, Time now);
+  // After the end: why it failed; empty: it is done.
+  const std::string& wrong() const { return wrong_; }
+  // It failed because the camera refused the user.
+  bool refused() const { return refused_; }
+  const Camera& camera() const { return camera_; }
+
+ private:
+  enum class Step {
+    clock,
+    services,
+    capabilities,
+    profiles,
+    profiles_media2,
+    options,
+    stop,
+    status,
+    absolute
+  };
+
+  void send(Step step, Time now);
+  void fail(std::string why);
+  // False: no profile of these can pan and tilt.
+  bool choose(const std::vector<Profile>& profiles);
+  void after_services(const SoapAnswer& answer, Time now);
+  void after_profiles(const SoapAnswer& answer, Time now);
+  Address service(const std::string& claimed) const;
+
+  SoapClient& soap_;
+  LoginOptions options_;
+  Camera camera_;
+  Step step_ = Step::clock;
+  unsigned id_ = 0;
+  Time timeout_{}, sent_{};
+  Services services_;
+  std::string configuration_, seen_profiles_;
+  std::string wrong_;
+  bool refused_ = false;
+};
+
+}  // namespace cerberus::drivers::onvif

@@ -1,0 +1,365 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/onvif/onvif_head.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sensing/angles.h"
+
+namespace cerberus::drivers {
+
+using motion::AxisCommand;
+using onvif::Angles;
+using onvif::SoapAnswer;
+using sensing::degrees;
+using sensing::radians;
+using Kind = AxisCommand::Kind;
+
+namespace {
+
+constexpr OnvifParameters kParameters = kOnvifParameters;
+
+// Faults that mean the space or the numbers in it, rather than the move.
+bool refuses_space(const onvif::Fault& fault) {
+  for (const std::string_view code :
+       {"SpaceNotSupported", "InvalidVelocity", "InvalidTranslation", "InvalidArgVal"})
+    if (fault.has(code)) return true;
+  return false;
+}
+
+}  // namespace
+
+OnvifHead::OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions options)
+    : options_(std::move(options)), soap_(std::move(http)), login_(soap_, options_.login) {}
+
+std::string OnvifHead::open(const HeadSetup& setup, Time now) {
+  limits_ = setup.limits;
+  const auto begin = std::chrono::steady_clock::now();
+  const auto elapsed = [&] {
+    return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now() - begin);
+  };
+  login_.begin(now, kParameters.login_time);
+  while (login_.busy() && elapsed() < kParameters.login_time) {
+    pollfd wait{soap_.fd(), POLLIN, 0};
+    ::poll(&wait, 1, 20);
+    while (const auto answer = soap_.take(now + elapsed()))
+      if (login_.owns(answer->id)) login_.handle(*answer, now + elapsed());
+  }
+  if (login_.busy()) return camera_name() + " does not answer in time";
+  if (!login_.wrong().empty()) return camera_name() + " " + login_.wrong();
+  on_login(now + elapsed());
+  keeps_limits_ = absolute_;
+  return {};
+}
+
+HeadAbilities OnvifHead::abilities() const {
+  return {.position = keeps_limits_, .velocity = true, .feedback = positions_, .rate = kParameters.rate};
+}
+
+void OnvifHead::on_login(Time now) {
+  camera_ = login_.camera();
+  spaces_ = onvif::velocity_spaces(camera_.options);
+  position_space_ = onvif::position_space(camera_.options, options_.mechanics);
+  const auto& status = camera_.status;
+  positions_ = options_.feedback && status && status->position &&
+               onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
+  absolute_ = positions_ && camera_.absolute && position_space_;
+  stops_by_zero_ = timeout_refused_ = false;
+  online_ = true;
+  retry_ = kParameters.reconnect;
+  for (const SentStop& sent : stops_) soap_.cancel(sent.id);
+  stops_.clear();
+  begin_stop(now);
+}
+
+// Small cameras let a move end later than asked, or only at their own steps of a second.
+Time OnvifHead::camera_timeout() const {
+  Time timeout = kParameters.camera_timeout;
+  if (camera_.options.most_timeout && camera_.options.most_timeout->count() > 0)
+    timeout = std::min<Time>(timeout, *camera_.options.most_timeout);
+  if (camera_.options.least_timeout) timeout = std::max<Time>(timeout, *camera_.options.least_timeout);
+  return timeout;
+}
+
+unsigned OnvifHead::send(const onvif::Request& request, Time now) {
+  return soap_.send(camera_.ptz, request, now, kParameters.request_time);
+}
+
+void OnvifHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
+  if (pan != pan_ || tilt != tilt_) sent_angle_ = false;
+  pan_ = pan;
+  tilt_ = tilt;
+  stops_while_moving_ = 0;
+  if (pan.kind != Kind::hold || tilt.kind != Kind::hold) return send_move(now);
+  if (moved_ && !stopping_) begin_stop(now);
+}
+
+void OnvifHead::limit(const motion::Limits& limits, Time now) {
+  limits_ = limits;
+  sent_angle_ = false;
+  send_move(now);
+}
+
+void OnvifHead::stop(Time now) noexcept {
+  pan_ = tilt_ = {};
+  stops_while_moving_ = 0;
+  begin_stop(now);
+}
+
+void OnvifHead::begin_stop(Time now) {
+  sent_velocity_ = {};
+  sent_angle_ = false;
+  if (camera_.profile.empty()) return;
+  stopping_ = moved_ = true;
+  verifying_ = false;
+  send_stop(now);
+}
+
+void OnvifHead::send_stop(Time now) {
+  stop_sent_ = now;
+  if (stops_.size() >= kParameters.most_stops) return;
+  const onvif::PanTilt zero{0, 0, spaces_.empty() ? std::string() : spaces_.front().uri};
+  const onvif::Request request = stops_by_zero_ ? onvif::continuous_move(camera_.profile, zero, std::nullopt)
+                                                : onvif::stop(camera_.profile);
+  stops_.push_back({send(request, now), move_ == 0});
+}
+
+// As long as none counts: at once when the last move has been answered, else after a while.
+void OnvifHead::send_stops(Time now) {
+  if (!stopping_) return;
+  const bool counts =
+      std::any_of(stops_.begin(), stops_.end(), [](const SentStop& sent) { return sent.last; });
+  const Time again = online_ ? kParameters.stop_again : std::max(kParameters.stop_again, retry_);
+  if ((online_ && move_ == 0 && !counts && stops_.empty()) || now - stop_sent_ >= again) send_stop(now);
+}
+
+void OnvifHead::on_stop(const SentStop& sent, const SoapAnswer& answer, Time now) {
+  if (!stopping_ || !answer.arrived) return;
+  if (answer.not_authorized()) return log_in_again(now);
+  if (answer.fault) {
+    stops_by_zero_ = !stops_by_zero_;
+    return;
+  }
+  if (!answer.good() || !sent.last || !online_) return;
+  for (const SentStop& other : stops_) soap_.cancel(other.id);
+  stops_.clear();
+  stopping_ = moved_ = false;
+  verifying_ = seen_moving_ && seen_idle_;
+}
+
+bool OnvifHead::has_position(Time now) const {
+  return position_ && now - position_time_ < kParameters.fresh;
+}
+
+double OnvifHead::predicted(double position, double velocity, Time now) const {
+  return position + velocity * motion::seconds(now - position_time_);
+}
+
+bool OnvifHead::goes_to_an_angle() const {
+  const bool angle = pan_.kind == Kind::position || tilt_.kind == Kind::position;
+  return angle && pan_.kind != Kind::velocity && tilt_.kind != Kind::velocity;
+}
+
+double OnvifHead::velocity(const AxisCommand& command, const motion::AxisLimits& limits, double position,
+                           double sent, Time now) const {
+  if (command.kind == Kind::hold || !std::isfinite(command.value)) return 0;
+  const bool known = has_position(now);
+  const double wanted = degrees(command.value);
+  // A head that goes to angles keeps the limits itself, for which it needs its position; the others are sent speeds that
+  // brake before them.
+  if (!known) return keeps_limits_ || command.kind == Kind::position ? 0 : wanted;
+  const double at = predicted(position, sent, now);
+  if (command.kind == Kind::position) {
+    const double off = std::clamp(wanted, degrees(limits.from), degrees(limits.to)) - at;
+    const double most = degrees(command.speed > 0 ? command.speed : limits.speed);
+    return std::abs(off) < kParameters.arrived ? 0 : std::clamp(kParameters.position_gain * off, -most, most);
+  }
+  const double left = wanted > 0 ? degrees(limits.to) - at : at - degrees(limits.from);
+  if (left < kParameters.arrived) return 0;
+  return std::copysign(std::min(std::abs(wanted), left / kParameters.limit_horizon), wanted);
+}
+
+void OnvifHead::send_absolute(Time now) {
+  if (sent_angle_ || move_ != 0) return;
+  verifying_ = false;
+  const auto target = [](const AxisCommand& command, const motion::AxisLimits& limits, double position) {
+    if (command.kind != Kind::position || !std::isfinite(command.value)) return position;
+    return degrees(std::clamp(command.value, limits.from, limits.to));
+  };
+  const Angles to{target(pan_, limits_.pan, position_->pan), target(tilt_, limits_.tilt, position_->tilt)};
+  const auto speed = [](const AxisCommand& command, const motion::AxisLimits& limits) {
+    return degrees(command.speed > 0 ? std::min(command.speed, limits.speed) : limits.speed);
+  };
+  move_ =
+      send(onvif::absolute_move(camera_.profile, onvif::to_position(to, *position_space_, options_.mechanics),
+                                onvif::to_speed({speed(pan_, limits_.pan), speed(tilt_, limits_.tilt)},
+                                                camera_.options, options_.mechanics)),
+           now);
+  sent_angle_ = moved_ = true;
+  sent_velocity_ = {};
+  sent_ = now;
+}
+
+void OnvifHead::send_move(Time now) {
+  if (!online_ || login_.busy() || stopping_ || now < move_refused_until_) return;
+  if (absolute_ && goes_to_an_angle() && has_position(now)) return send_absolute(now);
+  const Angles position = position_.value_or(Angles{});
+  const Angles wanted{velocity(pan_, limits_.pan, position.pan, sent_velocity_.pan, now),
+                      velocity(tilt_, limits_.tilt, position.tilt, sent_velocity_.tilt, now)};
+  if (wanted.pan == 0 && wanted.tilt == 0) {
+    if (moved_) begin_stop(now);
+    return;
+  }
+  if (move_ != 0) return;
+  verifying_ = false;
+  const bool same = std::abs(wanted.pan - sent_velocity_.pan) < kParameters.least_change &&
+                    std::abs(wanted.tilt - sent_velocity_.tilt) < kParameters.least_change &&
+                    (wanted.pan == 0) == (sent_velocity_.pan == 0) &&
+                    (wanted.tilt == 0) == (sent_velocity_.tilt == 0);
+  const Time refresh = timeout_refused_ ? motion::kNever : camera_timeout() / 2;
+  if (moved_ && now - sent_ < (same ? refresh : Time(static_cast<Time::rep>(1e9 / kParameters.rate)))) return;
+  std::optional<std::chrono::milliseconds> timeout;
+  if (!timeout_refused_) timeout = std::chrono::ceil<std::chrono::milliseconds>(camera_timeout());
+  const onvif::PanTilt vector = onvif::to_velocity(wanted, spaces_.front(), options_.mechanics);
+  move_ = send(onvif::continuous_move(camera_.profile, vector, timeout), now);
+  sent_velocity_ = wanted;
+  sent_angle_ = false;
+  moved_ = true;
+  sent_ = now;
+}
+
+void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
+  move_ = 0;
+  if (answer.good()) return;
+  const bool angle = std::exchange(sent_angle_, false);
+  sent_velocity_ = {};  // not in force: it is sent again, or something better
+  if (!answer.fault) return;
+  if (answer.not_authorized()) return log_in_again(now);
+  if (angle) {
+    absolute_ = false;  // from now on angles are reached at speeds
+  } else if (answer.fault->has("TimeoutNotSupported")) {
+    timeout_refused_ = true;
+  } else if (refuses_space(*answer.fault) && spaces_.size() > 1) {
+    spaces_.erase(spaces_.begin());
+  } else {
+    refuse(*answer.fault, now);
+  }
+}
+
+void OnvifHead::refuse(const onvif::Fault& fault, Time now) {
+  fault_ = camera_name() + " refuses to move: " + fault.text();
+  stop(now);
+  move_refused_until_ = now + kParameters.after_fault;
+}
+
+void OnvifHead::send_inquiry(Time now) {
+  if (inquiry_ != 0 || !online_ || now - inquiry_sent_ < kParameters.inquiry_period) return;
+  inquiry_sent_ = now;
+  inquiry_ = send(onvif::get_status(camera_.profile), now);
+}
+
+void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
+  inquiry_ = 0;
+  if (answer.not_authorized()) return log_in_again(now);
+  const auto status = onvif::read_status(answer.body);
+  if (!status) return;
+  if (positions_ && status->position) {
+    const auto at =
+        onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
+    if (at) {
+      position_ = at;
+      position_time_ = inquiry_sent_ + (now - inquiry_sent_) / 2;
+      pose_ = PoseLine{{radians(at->pan), 0, 0}, {radians(at->tilt), 0, 0}, 0};
+    }
+  }
+  if (!status->moving) return;
+  (*status->moving ? seen_moving_ : seen_idle_) = true;
+  if (!*status->moving) {
+    verifying_ = false;
+    stops_while_moving_ = 0;
+  }
+  // A report from before the stop was acknowledged says nothing about it.
+  if (!*status->moving || stopping_ || moved_ || inquiry_sent_ < stop_sent_ || !seen_idle_) return;
+  verifying_ = stops_while_moving_ < kParameters.stops_while_moving;
+  if (!verifying_) return;
+  ++stops_while_moving_;
+  begin_stop(now);
+}
+
+void OnvifHead::log_in_again(Time now) {
+  if (login_.busy() || now - login_tried_ < retry_) return;
+  login_tried_ = now;
+  login_.begin(now, kParameters.request_time);
+}
+
+void OnvifHead::lose(const std::string& why, Time now) {
+  fault_ = camera_name() + " " + why;
+  if (std::exchange(online_, false)) {
+    for (const unsigned id : {move_, inquiry_}) soap_.cancel(id);
+    move_ = inquiry_ = 0;
+    login_tried_ = now;  // reported before it is tried again
+    stop(now);
+  }
+}
+
+void OnvifHead::count_failures(const SoapAnswer& answer, Time now) {
+  failures_ = answer.arrived ? 0 : failures_ + 1;
+  unreadable_ = answer.arrived && !answer.body && !answer.fault ? unreadable_ + 1 : 0;
+  if (!online_) return;
+  // A camera may close an idle connection just when a request goes out: one failure is none.
+  if (failures_ > 1) lose("cannot be reached: " + answer.wrong, now);
+  if (unreadable_ >= kParameters.most_unreadable) lose("does not work: " + answer.wrong, now);
+}
+
+void OnvifHead::read(Time now) {
+  while (const auto answer = soap_.take(now)) {
+    if (login_.owns(answer->id)) {
+      login_.handle(*answer, now);
+      if (login_.busy()) continue;
+      if (login_.wrong().empty()) {
+        on_login(now);
+        continue;
+      }
+      if (login_.refused()) retry_ = kParameters.after_refusal;
+      lose(login_.wrong(), now);
+      continue;
+    }
+    if (const auto stop = std::find_if(stops_.begin(), stops_.end(),
+                                       [&](const SentStop& sent) { return sent.id == answer->id; });
+        stop != stops_.end()) {
+      const SentStop sent = *stop;
+      stops_.erase(stop);
+      on_stop(sent, *answer, now);
+    } else if (answer->id == move_) {
+      on_move(*answer, now);
+    } else if (answer->id == inquiry_) {
+      on_status(*answer, now);
+    }
+    count_failures(*answer, now);
+  }
+}
+
+Time OnvifHead::tick(Time now) {
+  read(now);
+  const auto unanswered = soap_.unanswered();
+  if (online_ && unanswered && now - *unanswered > options_.answer_time) lose("does not answer", now);
+  if (!online_) log_in_again(now);
+  if (online_ && !stopping_ && now >= move_refused_until_) fault_.clear();
+  send_stops(now);
+  send_move(now);
+  send_inquiry(now);
+  return now + (stopping_ || move_ != 0 ? std::chrono::milliseconds(10) : std::chrono::milliseconds(25));
+}
+
+std::optional<PoseLine> OnvifHead::take_pose(Time now) {
+  std::optional<PoseLine> pose = std::exchange(pose_, std::nullopt);
+  if (pose) pose->age = motion::seconds(now - position_time_);
+  return pose;
+}
+
+void OnvifHead::watch(std::vector<pollfd>& fds) const {
+  fds.push_back({soap_.fd(), POLLIN, 0});
+}
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A pan-tilt camera that speaks ONVIF.
+//
+// No call waits for the camera, but open(). At most one move and one position inquiry are on their way; the newest move
+// waits for the answer to the last one. A move carries a Timeout, after which the camera shall stop by itself, and is
+// sent again before it is over; nothing relies on that.
+//
+// Stop goes out at once, whatever is on its way, and again until the camera has acknowledged one that was sent when no
+// move was on its way: cameras obey requests of two connections in any order. A camera that reports that it still moves
+// after that is sent Stop again.
+//
+// A camera that does not answer, or refuses connections, is a fault. It is sent Stop and a new login until it answers;
+// then it stands until the next move.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/helper/head_device.h"
+#include "drivers/onvif/login.h"
+#include "drivers/onvif/spaces.h"
+
+namespace cerberus::drivers {
+
+struct OnvifOptions {
+  onvif::LoginOptions login;
+  onvif::Mechanics mechanics;
+  bool feedback = true;  // use the positions that the camera reports
+  // A camera that has not answered for so long is gone. Derived: reported within 1 s of its last sign.
+  std::chrono::milliseconds answer_time{750};
+};
+
+struct OnvifParameters {
+  Time login_time = std::chrono::milliseconds(4500);  // derived: the pipeline waits 5 s for a helper
+  Time request_time =
+      std::chrono::milliseconds(2000);  // derived: then the next move is worth more than an answer
+  Time stop_again = std::chrono::milliseconds(150);  // derived: three tries within helper-timeout
+  unsigned most_stops = 4;     // on their way at once; derived: connections that small cameras accept
+  int stops_while_moving = 5;  // to a camera that acknowledges Stop and reports that it moves
+  int most_unreadable = 5;     // answers in a row; derived: a second of position inquiries
+  Time inquiry_period =
+      std::chrono::milliseconds(200);  // of the position, which also shows that the camera is there
+  Time camera_timeout = std::chrono::milliseconds(1000);  // in a move; AutoPTZ 2.2 uses 1 s, too
+  Time reconnect = std::chrono::milliseconds(500);
+  Time after_refusal = std::chrono::seconds(30);  // cameras lock a user out after some wrong logins
+  Time after_fault = std::chrono::seconds(5);     // then a refused move is tried again
+  Time fresh = std::chrono::milliseconds(1000);   // an older position is none; derived: five inquiries
+  double rate = 10;            // commands a second; derived: 0.1 s a request on a slow camera
+  double limit_horizon = 0.4;  // seconds before a limit in which a move slows down; derived: two inquiries
+  double least_change = 0.1;   // degrees a second: a smaller change is not sent
+  double position_gain = 2;    // 1/s: velocity towards an angle where AbsoluteMove is refused
+  double arrived = 0.5;        // degrees from an angle or a limit, where such a move ends
+};
+inline constexpr OnvifParameters kOnvifParameters{};
+
+class OnvifHead final : public HeadDevice {
+ public:
+  OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions options);
+  // Blocks up to OnvifParameters::login_time.
+  std::string open(const HeadSetup& setup, Time now) override;
+  HeadAbilities abilities() const override;
+  void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
+  void limit(const motion::Limits& limits, Time now) override;
+  void stop(Time now) noexcept override;
+  bool stopping() const override { return stopping_ || verifying_; }
+  void watch(std::vector<pollfd>& fds) const override;
+  Time tick(Time now) override;
+  std::optional<PoseLine> take_pose(Time now) override;
+  std::string fault() const override { return fault_; }
+
+ private:
+  struct SentStop {
+    unsigned id;
+    bool last;  // no move was on its way when it was sent
+  };
+
+  std::string camera_name() const { return "the ONVIF camera at " + options_.login.device.name(); }
+  void read(Time now);
+  void on_login(Time now);
+  void on_stop(const SentStop& sent, const onvif::SoapAnswer& answer, Time now);
+  void on_move(const onvif::SoapAnswer& answer, Time now);
+  void on_status(const onvif::SoapAnswer& answer, Time now);
+  void count_failures(const onvif::SoapAnswer& answer, Time now);
+  void refuse(const onvif::Fault& fault, Time now);
+  void lose(const std::string& why, Time now);
+  void log_in_again(Time now);
+  void begin_stop(Time now);
+  void send_stop(Time now);
+  void send_stops(Time now);
+  void send_move(Time now);
+  void send_absolute(Time now);
+  void send_inquiry(Time now);
+  bool goes_to_an_angle() const;
+  bool has_position(Time now) const;
+  // Where an axis is now by its last report and the velocity in force, degrees.
+  double predicted(double position, double velocity, Time now) const;
+  // The velocity of an axis that its command asks for now, in degrees a second; slower near a limit.
+  double velocity(const motion::AxisCommand& command, const motion::AxisLimits& limits, double position,
+                  double sent, Time now) const;
+  Time camera_timeout() const;
+  unsigned send(const onvif::Request& request, Time now);
+
+  OnvifOptions options_;
+  onvif::SoapClient soap_;
+  onvif::Login login_;
+  onvif::Camera camera_;
+  std::vector<onvif::Space> spaces_;  // for velocities, best first
+  std::optional<onvif::Space> position_space_;
+  motion::Limits limits_;
+  motion::AxisCommand pan_, tilt_;
+  onvif::Angles sent_velocity_;      // in force at the camera, as far as known
+  bool sent_angle_ = false;          // the AbsoluteMove of pan_ and tilt_ was sent
+  Time sent_{};                      // of the last move
+  unsigned move_ = 0, inquiry_ = 0;  // requests on their way
+  std::vector<SentStop> stops_;      // likewise
+  Time stop_sent_{}, inquiry_sent_{}, login_tried_{}, move_refused_until_{};
+  Time retry_ = kOnvifParameters.reconnect;
+  bool online_ = false;
+  bool stopping_ = false;       // no stop is acknowledged that counts
+  bool verifying_ = false;      // one is, and the camera has not reported rest
+  bool moved_ = false;          // a move was sent, and no stop after it is acknowledged
+  bool stops_by_zero_ = false;  // Stop is refused: a move at speed 0 takes its place
+  bool timeout_refused_ = false, positions_ = false;
+  bool absolute_ = false;      // AbsoluteMove works
+  bool keeps_limits_ = false;  // it did at the start, so that the pipeline sends angles and bare speeds
+  bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
+  int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
+  int stops_while_moving_ = 0;
+  std::optional<PoseLine> pose_;
+  std::optional<onvif::Angles> position_;  // last measured
+  Time position_time_{};
+  std::string fault_;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The ONVIF driver against an emulated camera over loopback HTTP: moves, stops, positions.
+#include "support/onvif_rig.h"
+
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::drivers;
+using namespace cerberus::tests;
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+START_TEST(a_camera_turns_and_stops) {
+  OnvifCamera camera;
+  OnvifRig rig(camera);
+  assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
+  rig.served.say("move at 45 hold");
+  ck_assert(rig.served.until([&] { return camera.pan() > 5; }));
+  ck_assert_double_eq_tol(camera.speed(), 45, 1e-9);
+  ck_assert_double_eq(camera.tilt(), 0);
+  rig.served.say("move hold hold");
+  ck_assert(rig.served.until([&] { return camera.speed() == 0; }));
+}
+END_TEST
+
+START_TEST(pan_is_positive_to_the_right_and_tilt_up) {
+  OnvifCamera camera;
+  OnvifRig rig(camera);
+  rig.served.line("ready");
+  rig.served.say("move at -20 at 10");
+  ck_assert(rig.served.until([&] { return camera.pan() < -1 && camera.tilt() > .5; }));
+}
+END_TEST
+
+START_TEST(a_move_has_a_timeout_and_is_sent_again_before_it_is_over) {
+  OnvifCamera camera;
+  OnvifRig rig(camera);
+  rig.served.line("ready");
+  rig.served.say("move at 20 hold");
+  ck_assert(rig.served.until([&] { return camera.pan() > 30; }));  // 1.5 s: longer than the Timeout
+  assert_text(camera.timeout(), "PT1S");
+  ck_assert_double_eq_tol(camera.speed(), 20, 1e-9);
+  ck_assert_int_le(camera.count("ContinuousMove"), 5);
+}
+END_TEST
+
+// The camera ignores its Timeout, so that only Stop stops it.
+START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second) {
+  for (const bool silent : {true, false}) {
+    OnvifCamera camera({.ignores_timeout = true});
+    OnvifRig rig(onvif_options(camera), {}, silent ? "0.2" : "5");
+    rig.served.line("ready");
+    rig.served.say("move at -45 hold");
+    ck_assert(rig.served.until([&] { return camera.speed() < -44; }));
+    const auto last_word = Clock::now();
+    if (!silent) rig.served.hang_up();
+    while (camera.speed() != 0 && Clock::now() - last_word < 5s) std::this_thread::sleep_for(2ms);
+    ck_assert(camera.speed() == 0);
+    ck_assert(camera.stopped() - last_word < 500ms);
+  }
+}
+END_TEST
+
+START_TEST(the_camera_stops_by_its_own_timeout_when_the_helper_is_gone) {
+  OnvifCamera camera;
+  auto head = std::make_unique<OnvifHead>(
+      std::make_unique<cerberus::heads::SoupClient>(cerberus::heads::SoupClientOptions{}),
+      onvif_options(camera));
+  const auto now = [] { return std::chrono::duration_cast<Time>(Clock::now().time_since_epoch()); };
+  assert_text(head->open({}, now()), "");
+  for (const auto end = Clock::now() + 5s; camera.speed() == 0 && Clock::now() < end;
+       std::this_thread::sleep_for(5ms)) {
+    head->move({cerberus::motion::AxisCommand::Kind::velocity, .5, 0}, {}, now());
+    head->tick(now());
+  }
+  ck_assert(camera.speed() > 0);
+  head.reset();  // as by kill -9
+  for (const auto end = Clock::now() + 5s; camera.speed() != 0 && Clock::now() < end;)
+    std::this_thread::sleep_for(5ms);
+  ck_assert(camera.speed() == 0);
+}
+END_TEST
+
+START_TEST(a_stop_is_sent_until_the_camera_acknowledges_it) {
+  OnvifCamera deaf({.ignores_timeout = true, .loses_stops = 4});
+  OnvifRig rig(deaf);
+  rig.served.line("ready");
+  ck_assert(rig.served.until([&] { return deaf.speed() > 44; }, "move at 45 hold"));
+  rig.served.hang_up();
+  ck_assert_int_eq(rig.served.status(), 0);
+  ck_assert_double_eq(deaf.speed(), 0);
+}
+END_TEST
+
+// MoveStatus is the only sign that the camera still moves.
+START_TEST(a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again) {
+  OnvifCamera camera({.ignores_timeout = true, .swallows_stops = 2});
+  OnvifRig rig(camera);
+  rig.served.line("ready");
+  rig.served.say("move at 45 hold");
+  ck_assert(rig.served.until([&] { return camera.pan() > 30; }));
+  rig.served.hang_up();
+  ck_assert_int_eq(rig.served.status(), 0);
+  ck_assert_double_eq(camera.speed(), 0);
+}
+END_TEST
+
+START_TEST(a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well) {
+  OnvifCamera camera({.ignores_timeout = true, .move_delay = 400ms});
+  OnvifRig rig(camera);
+  rig.served.line("ready");
+  rig.served.say("move at 45 hold");
+  std::this_thread::sleep_for(100ms);  // it is on its way
+  rig.served.hang_up();
+  ck_assert_int_eq(rig.served.status(), 0);
+  std::this_thread::sleep_for(100ms);
+  ck_assert_double_eq(camera.speed(), 0);
+  ck_assert_int_ge(camera.count("ContinuousMove"), 1);
+}
+END_TEST
+
+START_TEST(the_newest_move_waits_for_the_answer_to_the_last_one) {
+  OnvifCamera camera({.delay = 150ms});
+  OnvifRig rig(camera);
+  rig.served.line("ready");
+  const int before = camera.count("ContinuousMove");
+  for (int k = 1; k <= 40; ++k) {  // 0.4 s
+    rig.served.say("move at " + std::to_string(k) + " hold");
+    std::this_thread::sleep_for(10ms);
+  }
+  ck_assert(rig.served.until([&] { return std::abs(camera.speed() - 40) < 1e-9; }));
+  ck_assert_int_le(camera.count("ContinuousMove") - before, 6);
+}
+END_TEST
+
+START_TEST(positions_are_reported_and_a_camera_at_its_limit_is_stopped) {
+  OnvifCamera camera;
+  OnvifRig rig(onvif_options_with_range(camera));
+  assert_text(rig.served.line("ready"), "ready 1 velocity feedback rate 10");
+  rig.served.say("limits -10 10 -10 10");
+  ck_assert(rig.served.until([&] { return camera.pan() > 8 && camera.speed() == 0; }, "move at 45 hold"));
+  ck_assert_double_le(camera.pan(), 10.5);
+  const std::string pose = rig.served.line("pose");
+  ck_assert_msg(pose.starts_with("pose "), "%s", pose.c_str());
+  ck_assert(rig.served.until([&] { return camera.speed() < -40; }, "move at -45 hold"));
+}
+END_TEST
+
+START_TEST(a_camera_with_absolute_moves_goes_to_an_angle) {
+  OnvifCamera camera({.degrees = true});
+  OnvifOptions options = onvif_options(camera);
+  options.login.try_absolute = true;
+  OnvifRig rig(options);
+  assert_text(rig.served.line("ready"), "ready 1 position velocity feedback rate 10");
+  rig.served.line("pose");
+  rig.served.say("move to 30 60 to -5 20");
+  ck_assert(rig.served.until(
+      [&] { return std::abs(camera.pan() - 30) < .01 && std::abs(camera.tilt() + 5) < .01; }));
+  ck_assert_int_eq(camera.count("AbsoluteMove"), 2);  // one asked whether it works
+  ck_assert_int_eq(camera.count("ContinuousMove"), 0);
+}
+END_TEST
+
+START_TEST(a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds) {
+  OnvifCamera camera({.degrees = true, .refuses_absolute = true});
+  OnvifOptions options = onvif_options(camera);
+  options.login.try_absolute = true;
+  OnvifRig rig(options);
+  assert_text(rig.served.line("ready"), "ready 1 velocity feedback rate 10");
+}
+END_TEST
+
+int main() {
+  return run_suite("onvif_head", {a_camera_turns_and_stops, pan_is_positive_to_the_right_and_tilt_up,
+                                  a_move_has_a_timeout_and_is_sent_again_before_it_is_over,
+                                  silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
+                                  the_camera_stops_by_its_own_timeout_when_the_helper_is_gone,
+                                  a_stop_is_sent_until_the_camera_acknowledges_it,
+                                  a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again,
+                                  a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well,
+                                  the_newest_move_waits_for_the_answer_to_the_last_one,
+                                  positions_are_reported_and_a_camera_at_its_limit_is_stopped,
+                                  a_camera_with_absolute_moves_goes_to_an_angle,
+                                  a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds});
+}
