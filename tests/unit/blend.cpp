@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "support/suite.h"
+#include "support/targets.h"
 #include "support/wrong.h"
 
 using namespace cerberus::overlay;
@@ -166,9 +166,9 @@ START_TEST(pixels_of_four_bytes_are_blended_as_their_components_are) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("blend",
-                                    {every_layout_agrees_with_the_definition,
-                                     words_of_sixteen_bits_are_drawn_on_in_either_layout_and_byte_order,
-                                     opaque_white_is_white_and_nothing_is_nothing,
-                                     pixels_of_four_bytes_are_blended_as_their_components_are});
+  return cerberus::tests::run_suite_on_every_target(
+      "blend", {every_layout_agrees_with_the_definition,
+                words_of_sixteen_bits_are_drawn_on_in_either_layout_and_byte_order,
+                opaque_white_is_white_and_nothing_is_nothing,
+                pixels_of_four_bytes_are_blended_as_their_components_are});
 }

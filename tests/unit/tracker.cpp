@@ -146,6 +146,30 @@ START_TEST(a_stopped_track_is_held_for_thirty_seconds) {
 }
 END_TEST
 
+// The object is 100 pixels tall, the picture comes 10 times a second: it must have come 45 pixels and have been seen for
+// 1.5 s to be held where it ceases to move.
+START_TEST(a_track_that_came_from_nearby_or_was_seen_for_a_moment_is_not_held) {
+  struct {
+    double step;  // pixels a frame, in the first six
+    int frames;   // with a region; the age at the last one is 0.1 s less
+    bool held;
+  } const cases[] = {{12, 30, true}, {5, 30, false}, {12, 18, true}, {12, 13, false}};
+  for (const auto& c : cases) {
+    Tracker tracker;
+    for (int k = 0; k < c.frames; ++k) {
+      const Region seen = person(300 + c.step * std::min(k, 6), 240);
+      const auto tracks = tracker.update({&seen, 1}, {}, 0.1, kFrame);
+      if (k >= 4) ck_assert_uint_eq(tracks.size(), 1);
+    }
+    for (int k = 0; k < 50; ++k) {
+      const auto tracks = tracker.update({}, {}, 0.1, kFrame);
+      for (const Track& t : tracks) ck_assert((t.state == TrackState::stopped) == c.held);
+      if (c.held || k == 49) ck_assert_uint_eq(tracks.size(), c.held);
+    }
+  }
+}
+END_TEST
+
 START_TEST(a_stopped_person_who_walks_on_keeps_the_identity) {
   Tracker tracker;
   for (int k = 0; k < 100; ++k) {
@@ -411,6 +435,7 @@ int main() {
                               a_zoom_scales_box_and_speed_of_a_coasted_track,
                               a_flickering_object_is_coasted_over_its_gaps,
                               a_stopped_track_is_held_for_thirty_seconds,
+                              a_track_that_came_from_nearby_or_was_seen_for_a_moment_is_not_held,
                               a_stopped_person_who_walks_on_keeps_the_identity,
                               a_standing_person_s_moving_arm_does_not_make_the_person_small,
                               a_track_that_leaves_the_picture_ends_within_half_a_second,
