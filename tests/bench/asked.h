@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a figure must reach is said beside it, and judged at the end.
+// The value that a figure must reach is given beside it, and judged at the end.
 #pragma once
 
 #include <cstdio>
@@ -13,7 +13,8 @@ inline constexpr char kJudged[] = "motiondetect";
 
 class Asked {
  public:
-  // What to print after the figure. `promised` false: it is asked, but known to be missed; said so, and no fault.
+  // The text after the figure. `promised` false: the value is a goal that is known to be missed; printed so, and no
+  // failure.
   std::string at_least(const std::string& what, double figure, double least, bool promised = true) {
     return judge(what, figure, figure >= least, "at least " + text(least), promised);
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// How right the camera's motion is. Synthetic pictures, whose motion is known exactly: what
-// a lens shows of a camera that turns and shakes, with noise and something large that moves.
-// And real frames, where somebody else's estimate is there to compare with. Errors are
-// distances between where two transforms take a grid of 16 points, in pixels of the frame.
+// The error of the estimated camera motion. Synthetic pictures, whose motion is known exactly: what a lens shows of a
+// camera that turns and shakes, with noise and a large moving object. And real frames with an independent estimate to
+// compare with. Errors are distances between where two transforms take a grid of 16 points, in pixels of the frame.
 #include "vision/ego_motion/camera_motion.h"
 
 #include <gst/gst.h>
@@ -74,11 +73,11 @@ struct Turns {
 constexpr Turns kTurns[] = {{"a camera that shakes", 0.1, 0.1, 0.1, 0},
                             {"a pan of up to 30 degrees a second", 1, 0.1, 0, 0},
                             {"a pan of up to 90 degrees a second", 3, 0.3, 0.3, 0},
-                            {"the same, a quarter of it somebody close", 3, 0.3, 0.3, 0.25},
+                            {"the same, a quarter of it a person close by", 3, 0.3, 0.3, 0.25},
                             {"the same, 40 % of it", 3, 0.3, 0.3, 0.4}};
 
-// `told`: what share of the turn (but for its roll) a head said beforehand; 0: there is none.
-void synthetic(const Turns& turns, MotionModel model, const char* name, double told = 0) {
+// `prior_share`: the share of the turn (but for its roll) in the head's pose; 0: there is no pose.
+void synthetic(const Turns& turns, MotionModel model, const char* name, double prior_share = 0) {
   constexpr Size size{320, 240};
   const Lens lens(radians(60), size);
   Errors pixels, angle;
@@ -109,7 +108,7 @@ void synthetic(const Turns& turns, MotionModel model, const char* name, double t
     camera.set_options({model});
     camera.update(earlier.view());
     std::optional<Transform> prior;
-    if (told != 0) prior = lens.turn(0, 0, told * pan, told * tilt);
+    if (prior_share != 0) prior = lens.turn(0, 0, prior_share * pan, prior_share * tilt);
     const CameraMotionResult result = camera.update(later.view(), prior);
     pixels.add(distance(result.transform, truth, size));
     angle.add(std::abs(degrees(control::base_turn(result.transform, lens, size, {}, {}).yaw - pan)));

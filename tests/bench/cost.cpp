@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the chain costs, beside its peers on the same frames in the same run. Single-threaded everywhere: figures are
-// CPU time of the one streaming thread (or of the calling thread), medians of five rounds, in each of which everybody
-// runs once; quote the ratios.
+// The cost of the chain, beside its peers on the same frames in the same run. Single-threaded everywhere: figures are
+// CPU time of the one streaming thread (or of the calling thread), medians of five rounds, in each of which every
+// candidate runs once; quote the ratios.
 #include <gst/app/gstappsrc.h>
 #include <gst/gst.h>
 
@@ -25,12 +25,12 @@ namespace {
 
 constexpr int kRounds = 5;
 
-// Who is measured.
+// What is measured.
 struct Row {
   const char* name;
   // Seconds a frame of one run; negative: it does not run; none: it is not there.
   std::function<double()> run;
-  const char* most = nullptr;  // what the ratio is asked to be at most, where it is; time is not judged
+  const char* most = nullptr;  // the largest ratio that is asked for, if any; time is not judged
 };
 
 // Thread CPU time of the streaming thread between the first buffer and the end of the stream.
@@ -97,8 +97,8 @@ double run_loop(const Frames& frames, std::size_t count, const std::function<voi
   return (thread_seconds() - begin) / static_cast<double>(count);
 }
 
-// The first row is the unit. A machine's speed may jump from one second to the next: so everybody runs once in each
-// round, and is compared with the unit of that round.
+// The first row is the unit. A machine's speed may jump from one second to the next: every candidate therefore runs
+// once in each round, and is compared with the unit of that round.
 void compare(const std::vector<Row>& rows) {
   std::vector<std::vector<double>> seconds(rows.size()), ratios(rows.size());
   std::vector<bool> there(rows.size());

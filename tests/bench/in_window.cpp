@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Does the closed loop keep somebody in the picture? A window of 320 x 240 over vtest.avi, turned by a simulated head
+// Does the closed loop keep a person in the picture? A window of 320 x 240 over vtest.avi, turned by a simulated head
 // towards one annotated person: chosen on the first frame on which a track has that person's box, as an application
-// chooses, by pantiltsink's signal `follow`; before that the head stands. Counted from then on:
-// annotated frames on which the person's middle, and nine tenths of what the picture shows of
-// the person, are inside the window. The last columns tell whether that is the loop's merit: on
-// how many of these frames the chosen track has the person's box, and how many tracks had it.
+// chooses, by pantiltsink's signal `follow`; before that the head stands. Counted from then on: annotated frames on
+// which the person's middle, and nine tenths of the visible part of the person, are inside the window. The last
+// columns show whether that is the loop's merit: on how many of these frames the chosen track has the person's box,
+// and how many tracks had it.
 #include <algorithm>
 #include <cstdio>
 
@@ -20,8 +20,8 @@ namespace {
 
 constexpr int kLeastFrames = 40;  // annotated
 constexpr double kAsked = 0.95;   // of the frames with the middle inside
-// Who, from which frame on, is known not to be kept as long: not
-// with every processor's vectors, which round in other ways.
+// Persons and first frames that are known not to be kept as long with some processors' vectors, which round
+// differently.
 constexpr std::pair<int, int> kNotYet[] = {{9, 4}, {11, 20}, {11, 354}};
 
 bool follow(Run& run, const std::string& source, const std::string& head) {
@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
       if (!follow(run, *source, head)) return 1;
       const double n = std::max(run.annotated, 1);
       const bool promised = std::ranges::find(kNotYet, std::pair{person, seen[i]}) == std::end(kNotYet);
-      const std::string who = "person " + std::to_string(person) + " from " + std::to_string(seen[i]);
-      const std::string judgement = judged ? asked.at_least(who, run.middle / n, kAsked, promised) : "";
+      const std::string row = "person " + std::to_string(person) + " from " + std::to_string(seen[i]);
+      const std::string judgement = judged ? asked.at_least(row, run.middle / n, kAsked, promised) : "";
       std::printf("  %6d %5d %7d %10d %7d %14.3f %20.3f %21.3f %8zu%s\n", person, seen[i], run.waited,
                   run.chosen_at, run.annotated, run.middle / n, run.most / n, run.tracked / n,
                   run.carriers.size(), judgement.c_str());

@@ -24,7 +24,7 @@ constexpr double kWideFov = 60;     // degrees: any will do, the window counts i
 constexpr double kSpeed = 12;       // pixels a frame
 constexpr double kReach = 192;      // pixels to each side of the middle; beyond it the truth ends
 constexpr int kPhases = 8;          // ways that begin evenly spread along the path; as many places of rest
-constexpr double kLeastSeen = 0.5;  // of a person, inside the window: less is nobody, and no mistake either
+constexpr double kLeastSeen = 0.5;  // of a person, inside the window: with less there is no person, and no mistake either
 
 // Somewhere on the path there and back again.
 double along(double way) {
@@ -51,8 +51,8 @@ vision::Box clip(const vision::Box& b, double left, double top) {
           std::min<double>(b.bottom() - top, kWindow.height) - y0};
 }
 
-// The pose of frame `number`, as its head would tell it while frame `number - 1` is looked at.
-void tell(GstElement* pipeline, const Window& window, int number, GstClockTime from, GstClockTime until) {
+// The pose of frame `number`, as its head would publish it while frame `number - 1` is analysed.
+void send_pose(GstElement* pipeline, const Window& window, int number, GstClockTime from, GstClockTime until) {
   CerberusPose pose;
   cerberus_pose_init(&pose);
   const double seconds = static_cast<double>(until - from) / GST_SECOND;
@@ -78,7 +78,7 @@ bool measure(Counts& counts, const std::string& source, const People& truth, con
       [&](GstSample* sample, int n) {
         GstBuffer* buffer = gst_sample_get_buffer(sample);
         const GstClockTime now = GST_BUFFER_PTS(buffer);
-        tell(pipeline, window, n + 1, now, now + GST_BUFFER_DURATION(buffer));
+        send_pose(pipeline, window, n + 1, now, now + GST_BUFFER_DURATION(buffer));
         const auto people = truth.find(n);
         if (people == truth.end()) return;
         const double left = window.left(n);

@@ -26,7 +26,7 @@ namespace {
 constexpr int kWidth = 1920, kHeight = 1080, kObjects = 9, kFrames = 150, kWarm = 60, kRounds = 7;
 constexpr double kRate = 25;  // frames a second
 
-// Nine people who walk, slowly grow and shrink as measured outlines do, and whose speed changes in every frame.
+// Nine people who walk, slowly grow and shrink as measured outlines do, and change their speed in every frame.
 CerberusRegion walker(int id, int frame) {
   const double t = frame / kRate;
   CerberusRegion r;
@@ -182,7 +182,7 @@ double run_peer(const char* format) {
 struct Row {
   const char* name;
   std::function<double()> run;
-  double most = 0;  // what the ratio to the peer is asked to be at most; 0: not judged
+  double most = 0;  // the largest ratio to the peer that is asked for; 0: not judged
   std::vector<double> milliseconds = {};
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pixel F of OpenCV's MOG2 and KNN, scored as tests/bench/quality.cpp scores ours: the data folder's README tells the
-// same figures, so this checks the scoring itself.
+// Pixel F of OpenCV's MOG2 and KNN, scored as tests/bench/quality.cpp scores ours: the data folder's README has the
+// same figures, so that this checks the scoring itself.
 #include <gst/gst.h>
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The sequences whose moving pixels are known, as the data folder's README says what their truth means.
+// The sequences with known moving pixels, in the format that the data folder's README describes.
 #pragma once
 
 #include <filesystem>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Does it report only what moves? After cuts, seeks and in shaking pictures: what of it overlaps nothing that moves, by
-// the ground truth, and what is told before three frames of the new scene were seen. It is because of the cut unless
-// something wrong is there in the same frame of the same sequence without any cut, too. And before still pictures of
-// real places, lit by what flickers, whose exposure changes: every region is wrong.
+// Does it report only what moves? After cuts, seeks and in shaking pictures: the reported regions that overlap nothing
+// that moves, by the ground truth, and those reported before three frames of the new scene were seen. An error is due
+// to the cut unless there is one in the same frame of the same sequence without any cut, too. And before still
+// pictures of real places under flickering light and with changing exposure: every region is wrong.
 //
-//   bench-steady [--list]    with a line for everything that is wrong
+//   bench-steady [--list]    with a line for every error
 #include <gst/gst.h>
 
 #include <algorithm>
@@ -31,7 +31,7 @@ using vision::GrayView;
 namespace {
 
 constexpr double kFrame = 1.0 / 25;
-constexpr int kOutside = 85;  // CDnet's, of what was not looked at
+constexpr int kOutside = 85;  // CDnet's, of what was not annotated
 bool list = false;
 
 // Frames and their truth at the same size; frame k of the one is frame k of the other.
@@ -43,7 +43,7 @@ struct Pictures {
       settled{};  // what is wrong in each frame without any cut (regions and tracks)
 };
 
-// Something that moves, or may do so, is under it; or nobody looked at any of it.
+// Something that moves, or may do so, is under it; or none of it was annotated.
 bool right(const Box& b, GrayView truth, int moves_from) {
   const int x0 = std::max(static_cast<int>(b.x), 0), y0 = std::max(static_cast<int>(b.y), 0);
   const int x1 = std::min(static_cast<int>(std::ceil(b.right())), truth.width);

@@ -25,7 +25,7 @@ inline GstBuffer* plain_frame(gsize bytes = kWidth * kHeight * 3 / 2) {
   return frame;
 }
 
-// Somebody tracked, whose edges are nearest to the pixels 8, 16, 24 and 40.
+// A track with every field set, whose edges are nearest to the pixels 8, 16, 24 and 40.
 inline CerberusRegion walker() {
   CerberusRegion region;
   cerberus_region_init(&region);
@@ -66,7 +66,7 @@ inline const CerberusRegion& at(GPtrArray* regions, guint i) {
   return *static_cast<CerberusRegion*>(g_ptr_array_index(regions, i));
 }
 
-// A frame that carries one of everything, and a region of interest of a stranger.
+// A frame with one annotation of each kind, and a region of interest of another element.
 inline GstBuffer* frame_with_everything(gsize bytes = kWidth * kHeight * 3 / 2) {
   GstBuffer* frame = plain_frame(bytes);
 
@@ -91,7 +91,7 @@ inline GstBuffer* frame_with_everything(gsize bytes = kWidth * kHeight * 3 / 2) 
   records::on(frame, {kWidth, kHeight})->regions.write().mask =
       records::picture<guint8>({8, 6}, [](int, int) { return 255; });
 
-  gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);  // a stranger's
+  gst_buffer_add_video_region_of_interest_meta(frame, "motion", 1, 2, 3, 4);  // of another element
 
   const CerberusRegion region = walker();
   cerberus_buffer_add_region(frame, &region);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Input that nobody should send and somebody will: a clear word or a sane result, never a crash, never a wrong answer.
-// C++ first: check's macros (fail) bite standard headers.
+// Input that should not occur and does: a clear error or a sane result, never a crash, never a wrong result. The C++
+// headers come first: check's macros (fail) break standard headers.
 #include "records.h"
 
 #include <limits>
@@ -19,7 +19,7 @@ using scene::World;
 
 constexpr const char* kDetect = "motiondetect confirm-time=0 ! identity";
 
-// Takes both frames; at the end somebody must have been found.
+// Consumes both frames; at the end at least one object must have been found.
 void assert_same_regions(GstBuffer* found, GstBuffer* expected, bool at_the_end) {
   const std::string is = Regions(found).text(), should = Regions(expected).text();
   ck_assert_str_eq(is.c_str(), should.c_str());
@@ -175,9 +175,9 @@ const Stamps kStamps[] = {
 };
 constexpr int kStampCount = G_N_ELEMENTS(kStamps);
 
-// Frames that come as they should with timestamps that do not: who is there is found all the same, and one warning says
-// what to do. Far steps back are scenes.
-GST_START_TEST(timestamps_out_of_order_blind_nobody) {
+// Frames in order with wrong timestamps: objects are found all the same, and one warning names the remedy. A large
+// step back begins a new scene.
+GST_START_TEST(timestamps_out_of_order_do_not_stop_the_detection) {
   const char* const lines[] = {"motiondetect ! identity",
                                "threeframediff ! fuzzythreshold ! motionregions ! motiontrack"};
   const Stamps& kind = kStamps[__i__ % kStampCount];
@@ -207,8 +207,8 @@ GST_START_TEST(timestamps_out_of_order_blind_nobody) {
 }
 GST_END_TEST
 
-// With the frame rate that the caps tell, or none: then 25 frames a second are assumed, as for speeds. So ten frames
-// without anybody are 0.4 s.
+// With the frame rate of the caps, or with none: then 25 frames a second are assumed, as for speeds. Ten frames
+// without an object are therefore 0.4 s.
 GST_START_TEST(motion_ends_after_hold_time_whatever_the_timestamps_say) {
   const Stamps& kind = kStamps[__i__ % kStampCount];
   Line line("motiondetect coast-time=0 hold-stopped=0 hold-time=400000000 ! identity");
@@ -262,8 +262,8 @@ GST_START_TEST(lost_pictures_end_no_scene) {
 }
 GST_END_TEST
 
-// Somebody else's metas of our own kinds, with numbers out of a nightmare.
-GST_START_TEST(metas_from_strangers_do_no_harm) {
+// Metas of our types from another element, with numbers that are not finite or out of range.
+GST_START_TEST(metas_of_other_elements_do_no_harm) {
   Line line(std::string(kElements[__i__]) + " ! identity");
   Line alone(std::string(kElements[__i__]) + " ! identity");
   const World world;
@@ -294,8 +294,9 @@ GST_START_TEST(metas_from_strangers_do_no_harm) {
                gst_buffer_iterate_meta_filtered(out, &position, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
       faces += reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta)->roi_type == g_quark_from_string("face");
     fail_unless_equals_int(faces, 1);
-    // Where the camera is measured anew, all that follows from it is made anew: the answer is the one without
-    // strangers. The others cannot follow such a camera, and find nothing but what planes say that look like ours.
+    // Where the camera motion is measured anew, everything downstream is computed anew: the result equals the one
+    // without foreign metas. The other elements cannot follow such a camera, and find only what the foreign planes
+    // contain.
     GstBuffer* without = alone.through(scene::grey_buffer(world, k));
     const std::string is = Regions(out).text(), should = Regions(without).text();
     const std::string element = kElements[__i__];
@@ -312,7 +313,7 @@ GST_START_TEST(metas_from_strangers_do_no_harm) {
 }
 GST_END_TEST
 
-// The numbers follow each other as they should; what they say is nonsense, or would turn the picture over.
+// The times are consecutive; the transforms are meaningless or would mirror the picture.
 GST_START_TEST(a_camera_motion_that_none_can_be_is_not_believed) {
   const double nonsense[][9] = {
       {std::numeric_limits<double>::quiet_NaN(), 0, 0, 0, 1, 0, 0, 0, 1},
@@ -358,7 +359,8 @@ GST_START_TEST(a_camera_motion_that_none_can_be_is_not_believed) {
 }
 GST_END_TEST
 
-// A record of a frame of another size says nothing of this one: an element in between has cropped the picture in place.
+// The record of a frame of another size does not apply to this one: an element in between cropped the picture in
+// place.
 GST_START_TEST(the_record_of_a_frame_of_another_size_is_not_read) {
   Line line("motionregions ! identity"), alone("motionregions ! identity");
   const World world;
@@ -399,12 +401,12 @@ GST_START_TEST(video_without_a_size_is_one_error) {
 }
 GST_END_TEST
 
-// Distances and people's proportions would be wrong, and nobody would know why.
-GST_START_TEST(pixels_that_are_not_square_are_told_once) {
+// Distances and body proportions would be wrong without any sign of it.
+GST_START_TEST(pixels_that_are_not_square_are_warned_of_once) {
   const std::pair<const char*, bool> kShapes[] = {
       {"1/1", false}, {"12/11", false}, {"10/11", false}, {"1/2", true}, {"64/45", true}};
   const World world;
-  for (const auto& [shape, told] : kShapes) {
+  for (const auto& [shape, warned] : kShapes) {
     Line line("motiondetect ! identity",
               scene::caps("GRAY8", scene::kWidth, scene::kHeight) + ",pixel-aspect-ratio=" + shape);
     line.run(world, 0, 3);
@@ -412,8 +414,8 @@ GST_START_TEST(pixels_that_are_not_square_are_told_once) {
         scene::caps("GRAY8", scene::kWidth, scene::kHeight, ",framerate=50/1,pixel-aspect-ratio=") + shape);
     line.run(world, 3, 5);
     const auto warnings = line.messages(GST_MESSAGE_WARNING);
-    fail_unless_equals_int(warnings.size(), told);
-    if (told) fail_unless(warnings[0].find("videoscale") != std::string::npos, "%s", warnings[0].c_str());
+    fail_unless_equals_int(warnings.size(), warned);
+    if (warned) fail_unless(warnings[0].find("videoscale") != std::string::npos, "%s", warnings[0].c_str());
   }
 }
 GST_END_TEST
@@ -479,8 +481,8 @@ GST_START_TEST(zones_that_cannot_be_read_are_a_clear_error) {
 }
 GST_END_TEST
 
-// Settings that contradict themselves or leave nothing: told once, by the property's name, and the frames go through.
-GST_START_TEST(settings_that_can_find_nothing_are_told) {
+// Settings that contradict each other or exclude everything: one warning names the property, and the frames pass.
+GST_START_TEST(settings_that_can_find_nothing_are_warned_of) {
   const char* const kSettings[][2] = {
       {"minimum-width=100 maximum-width=10", "minimum-width is larger than maximum-width"},
       {"minimum-height=100 maximum-height=10", "minimum-height is larger than maximum-height"},
@@ -515,13 +517,13 @@ GST_START_TEST(settings_that_can_find_nothing_are_told) {
   const auto warnings = line.messages(GST_MESSAGE_WARNING);
   fail_unless_equals_int(warnings.size(), expected != nullptr);
   if (expected) fail_unless(warnings[0].find(expected) != std::string::npos, "%s", warnings[0].c_str());
-  line.restart();  // somebody else may listen now
+  line.restart();  // another element may be listening now
   line.run(world, 0, 5);
   fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), expected != nullptr);
 }
 GST_END_TEST
 
-GST_START_TEST(a_setting_made_while_playing_is_told_and_another_one_is_not_told_again) {
+GST_START_TEST(a_setting_made_while_playing_is_warned_of_and_no_other_one_repeats_it) {
   GstElement* element = gst_element_factory_make("motionregions", nullptr);
   g_object_set(element, "minimum-width", 50.0, nullptr);
   GstHarness* harness = gst_harness_new_with_element(element, "sink", "src");
@@ -529,7 +531,7 @@ GST_START_TEST(a_setting_made_while_playing_is_told_and_another_one_is_not_told_
   gst_element_set_bus(element, bus);
   gst_harness_set_src_caps_str(harness, scene::caps("GRAY8", scene::kWidth, scene::kHeight).c_str());
   const World world;
-  int told = 0;
+  int warned = 0;
   for (int k = 0; k < 12; ++k) {
     if (k == 2 || k == 8) g_object_set(element, "maximum-width", 10.0, nullptr);
     if (k == 4) g_object_set(element, "closing", 3, nullptr);
@@ -539,10 +541,10 @@ GST_START_TEST(a_setting_made_while_playing_is_told_and_another_one_is_not_told_
     fail_unless_equals_int(gst_harness_push(harness, scene::grey_buffer(world, k)), GST_FLOW_OK);
     gst_buffer_unref(gst_harness_pull(harness));
     while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
-      ++told;
+      ++warned;
       gst_message_unref(message);
     }
-    fail_unless_equals_int(told, k < 2 ? 0 : k < 8 ? 1 : k < 9 ? 2 : 3);
+    fail_unless_equals_int(warned, k < 2 ? 0 : k < 8 ? 1 : k < 9 ? 2 : 3);
   }
   gst_element_set_bus(element, nullptr);
   gst_harness_teardown(harness);
@@ -573,19 +575,19 @@ Suite* bad_input_suite() {
   tcase_add_test(tests, a_video_meta_larger_than_the_caps_changes_nothing);
   tcase_add_test(tests, a_video_meta_that_does_not_fit_is_an_unusable_buffer);
   tcase_add_test(tests, missing_timestamps_are_no_obstacle);
-  tcase_add_loop_test(tests, timestamps_out_of_order_blind_nobody, 0, 2 * kStampCount);
+  tcase_add_loop_test(tests, timestamps_out_of_order_do_not_stop_the_detection, 0, 2 * kStampCount);
   tcase_add_loop_test(tests, motion_ends_after_hold_time_whatever_the_timestamps_say, 0, 2 * kStampCount);
   tcase_add_loop_test(tests, lost_pictures_end_no_scene, 0, 4);
-  tcase_add_loop_test(tests, metas_from_strangers_do_no_harm, 0, kElementCount);
+  tcase_add_loop_test(tests, metas_of_other_elements_do_no_harm, 0, kElementCount);
   tcase_add_loop_test(tests, a_camera_motion_that_none_can_be_is_not_believed, 0, 6);
   tcase_add_test(tests, the_record_of_a_frame_of_another_size_is_not_read);
   tcase_add_loop_test(tests, the_warning_of_an_unusable_buffer_comes_again_with_new_caps, 0, kElementCount);
   tcase_add_loop_test(tests, video_without_a_size_is_one_error, 0, 6);
-  tcase_add_test(tests, pixels_that_are_not_square_are_told_once);
+  tcase_add_test(tests, pixels_that_are_not_square_are_warned_of_once);
   tcase_add_loop_test(tests, absurd_property_values_are_refused_or_harmless, 0, kElementCount);
   tcase_add_test(tests, zones_that_cannot_be_read_are_a_clear_error);
-  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_told, 0, 22);
-  tcase_add_test(tests, a_setting_made_while_playing_is_told_and_another_one_is_not_told_again);
+  tcase_add_loop_test(tests, settings_that_can_find_nothing_are_warned_of, 0, 22);
+  tcase_add_test(tests, a_setting_made_while_playing_is_warned_of_and_no_other_one_repeats_it);
   tcase_add_test(tests, an_analysis_width_of_one_still_sees);
   return suite;
 }

@@ -55,7 +55,7 @@ GST_START_TEST(frames_go_through_in_the_same_memory_with_the_same_times) {
 }
 GST_END_TEST
 
-// As behind a tee: somebody else holds the buffer, so that it is not writable.
+// As behind a tee: the buffer has a second reference and is not writable.
 GST_START_TEST(a_shared_frame_is_neither_copied_nor_annotated_for_the_others) {
   Line line(kElements[__i__]);
   const World world;
@@ -115,7 +115,7 @@ void expect_refusal(const char* element, const std::string& caps, const char* wo
     fail_unless_equals_int(errors.size(), 1);
     fail_unless(errors[0].find(word) != std::string::npos, "%s", errors[0].c_str());
     fail_unless(errors[0].find(other_word) != std::string::npos, "%s", errors[0].c_str());
-    // A start anew is told anew.
+    // A restart is reported again.
     line.restart(caps);
   }
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What the stages are told while they play, and what they tell: camera, zones, limits, places, tracks.
+// The stages' properties changed while they play, and their results: camera, zones, limits, places, tracks.
 #include <cmath>
 #include <set>
 #include <string>
@@ -68,7 +68,7 @@ GST_START_TEST(model_none_says_that_the_camera_stands) {
 GST_END_TEST
 
 GST_START_TEST(the_area_changes_while_playing) {
-  const bool own = __i__ == 0;  // differences; else upstream is asked for them
+  const bool own = __i__ == 0;  // differences; otherwise they are requested upstream
   Line line(std::string(own ? "" : "threeframediff ! ") + "fuzzythreshold memory=false name=t ! identity");
   GstElement* threshold = gst_bin_get_by_name(GST_BIN(line.harness->element), "t");
   const World world;
@@ -110,7 +110,7 @@ GST_START_TEST(the_analysis_width_changes_while_playing) {
 }
 GST_END_TEST
 
-// A crop loses the regions, and with them the knowledge that somebody has looked: they are found again in what is left.
+// A crop removes the regions and the record that a detector ran: they are found again in the cropped picture.
 GST_START_TEST(behind_a_crop_the_regions_are_found_again) {
   Line line("motiondetect confirm-time=0 ! videocrop left=16 ! motiontrack confirm-time=0 ! identity");
   guint found = 0;
@@ -193,8 +193,8 @@ GST_START_TEST(bearing_and_distance_follow_from_the_lens) {
 }
 GST_END_TEST
 
-// The lens 0.8 m above the floor, pitched down by 10 degrees: the feet's ray falls steeper, so they are nearer. A pose
-// on the frame says so, or the property; the pose wins.
+// The lens is 0.8 m above the floor, pitched down by 10 degrees: the ray to the feet falls steeper, so they are
+// nearer. The pitch comes from the pose on the frame or from the property; the pose takes precedence.
 GST_START_TEST(the_tilt_of_the_camera_counts_for_the_distance) {
   const World world = entering();
   const char* const tilts[] = {"", "tilt=-10", "tilt=30"};
@@ -231,7 +231,7 @@ GST_END_TEST
 // A fixed camera 5 m up, 60 degrees wide, that looks down by 35. By hand: f = 160
 // / tan 30 = 277.13; feet in row 168, 48 below the middle, are 9.826 degrees
 // below the axis, so 44.826 below the horizon, and 5 / tan 44.826 = 5.030 m away.
-GST_START_TEST(a_fixed_camera_that_looks_down_tells_distances) {
+GST_START_TEST(a_fixed_camera_that_looks_down_measures_distances) {
   World world = entering();
   Line line(
       "motiondetect confirm-time=0 horizontal-fov=60 mounting-height=5 tilt=-35 preset=traffic ! identity");
@@ -246,8 +246,8 @@ GST_START_TEST(a_fixed_camera_that_looks_down_tells_distances) {
 }
 GST_END_TEST
 
-// Of the same camera: one pixel at the feet is 5 / (48 / f cos 35 + sin 35) / f = 0.0252 m wide, so somebody 28 to 36
-// pixels wide passes the limit of 1.44 m. Level, it would be 5 / 48 = 0.104 m, and he would not.
+// Of the same camera: one pixel at the feet is 5 / (48 / f cos 35 + sin 35) / f = 0.0252 m wide, so that a person 28
+// to 36 pixels wide passes the limit of 1.44 m. Level, it would be 5 / 48 = 0.104 m, and the person would not pass.
 GST_START_TEST(the_tilt_counts_for_the_limits_in_metres) {
   for (const bool looks_down : {true, false}) {
     Line line(std::string("motionregions horizontal-fov=60 mounting-height=5 ") +
@@ -302,7 +302,7 @@ GST_START_TEST(tracks_have_identity_velocity_age_and_state) {
 }
 GST_END_TEST
 
-// From the third frame of a scene on, as the regions are; with the default somebody has to be seen for a while.
+// From the third frame of a scene on, as for the regions; by default a track is confirmed later.
 GST_START_TEST(without_confirm_time_a_region_is_an_object_at_once) {
   Line regions("motionregions"), at_once("motiontrack confirm-time=0"), later("motiontrack");
   const World world;
@@ -357,7 +357,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, limits_of_size_drop_what_is_outside);
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
   tcase_add_loop_test(tests, the_tilt_of_the_camera_counts_for_the_distance, 0, 3);
-  tcase_add_test(tests, a_fixed_camera_that_looks_down_tells_distances);
+  tcase_add_test(tests, a_fixed_camera_that_looks_down_measures_distances);
   tcase_add_test(tests, the_tilt_counts_for_the_limits_in_metres);
   tcase_add_test(tests, limits_of_speed_drop_what_is_outside);
   tcase_add_test(tests, tracks_have_identity_velocity_age_and_state);

@@ -114,7 +114,7 @@ GST_START_TEST(a_property_that_another_thread_sets_meanwhile_wins_over_the_prese
     GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
     const auto set_presets = [](gpointer on) -> gpointer {
       for (int k = 0; k < 200; ++k)
-        gst_util_set_object_arg(G_OBJECT(on), "preset", k % 2 ? "default" : "paper");  // both say order=1
+        gst_util_set_object_arg(G_OBJECT(on), "preset", k % 2 ? "default" : "paper");  // both set order=1
       return nullptr;
     };
     GThread* thread = g_thread_new("application", set_presets, detect);
@@ -198,8 +198,8 @@ GST_START_TEST(area_chooses_among_the_sets_of_the_differences) {
 }
 GST_END_TEST
 
-// Every property of every stage is on the bin, with the same default: nobody has to open it. Where stages share one and
-// say what each of them does with it, the bin says it in the words of one.
+// Every property of every stage is a property of motiondetect, with the same default. Where stages share a property
+// and each documents its own use of it, motiondetect has the text of one of them.
 GST_START_TEST(the_bin_has_every_property_of_its_stages) {
   GstElement* detect = gst_element_factory_make("motiondetect", nullptr);
   std::map<std::string, bool> worded;

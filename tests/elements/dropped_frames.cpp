@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Frames that somebody drops on the way (videorate, a leaky queue):
-// whatever stands where must go on seeing, and must say so where it cannot.
+// Frames that are dropped upstream (videorate, a leaky queue): standing objects must still be found, and where that is
+// impossible a warning must be posted.
 #include "../support/motions.h"
 #include "scene.h"
 #include "support.h"
@@ -37,7 +37,7 @@ World turning(double pan) {
 }
 
 // Of three frames one comes through, marked as a leaky queue marks it, and with other times, as videorate writes them.
-GST_START_TEST(frames_dropped_between_two_stages_blind_nobody) {
+GST_START_TEST(frames_dropped_between_two_stages_do_not_stop_the_detection) {
   const Cut& cut = kCuts[__i__ % kCutCount];
   const World world = turning(kPans[__i__ / kCutCount]);
   Line before(std::string(cut.before) + " ! identity"), behind(cut.behind);
@@ -124,7 +124,7 @@ GST_START_TEST(the_path_of_another_camera_is_not_followed) {
 GST_END_TEST
 
 // A leaky queue in front: holes, each of them marked.
-GST_START_TEST(frames_dropped_in_front_blind_nobody) {
+GST_START_TEST(frames_dropped_in_front_do_not_stop_the_detection) {
   const World world = turning(kPans[__i__]);
   Line line("motiondetect confirm-time=0");
   int seen = 0;
@@ -140,16 +140,17 @@ GST_START_TEST(frames_dropped_in_front_blind_nobody) {
 }
 GST_END_TEST
 
-// Marked without a hole: a cut every time, for all that can be known. One message says why nothing is found, also where
-// each scene ends just before somebody would be confirmed: the third frame has the first regions, three are needed, and
-// confirm-time. None is said where they last a little longer: a seek now and then is nobody's fault.
+// Marked without a gap: each of these frames is a cut, as far as the element can see. One message explains why nothing
+// is found, also where each scene ends just before the first confirmation: the third frame has the first regions,
+// three are needed, and confirm-time. There is no message where the scenes are a little longer: an occasional seek is
+// usual.
 GST_START_TEST(a_stream_of_breaks_is_complained_of_once) {
   const struct {
     int fps, every;
-    bool told;
+    bool warned;
   } kCases[] = {{25, 1, true}, {25, 3, true}, {25, 7, true}, {25, 8, false}, {5, 4, true},   {5, 5, false},
                 {2, 4, true},  {2, 5, false}, {60, 9, true}, {60, 14, true}, {60, 15, false}};
-  const auto& [fps, every, told] = kCases[__i__];
+  const auto& [fps, every, warned] = kCases[__i__];
   const World world;
   const std::string rate = ",framerate=" + std::to_string(fps) + "/1";
   Line line("motiondetect", scene::caps("GRAY8", scene::kWidth, scene::kHeight, rate.c_str()));
@@ -160,13 +161,13 @@ GST_START_TEST(a_stream_of_breaks_is_complained_of_once) {
     gst_buffer_unref(line.through(in));
   }
   const auto warnings = line.messages(GST_MESSAGE_WARNING);
-  fail_unless_equals_int(warnings.size(), told);
-  if (told) fail_unless(warnings[0].find("videorate") != std::string::npos, "%s", warnings[0].c_str());
+  fail_unless_equals_int(warnings.size(), warned);
+  if (warned) fail_unless(warnings[0].find("videorate") != std::string::npos, "%s", warnings[0].c_str());
 }
 GST_END_TEST
 
-// Somebody else's camera motion, which nothing but its times connects,
-// and dropped frames; and a seek now and then, which is nobody's fault.
+// Camera motion of another element, which is connected by its times only, and dropped frames; and an occasional seek,
+// for which no warning is posted.
 GST_START_TEST(motions_that_cannot_be_followed_are_complained_of_once) {
   const World world;
   Line stage("threeframediff"), sought("threeframediff");
@@ -192,10 +193,11 @@ Suite* dropped_frames_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
-  tcase_add_loop_test(tests, frames_dropped_between_two_stages_blind_nobody, 0, kCutCount * kPanCount);
+  tcase_add_loop_test(tests, frames_dropped_between_two_stages_do_not_stop_the_detection, 0,
+                      kCutCount * kPanCount);
   tcase_add_loop_test(tests, the_camera_is_followed_across_a_dropped_frame, 0, 2);
   tcase_add_test(tests, the_path_of_another_camera_is_not_followed);
-  tcase_add_loop_test(tests, frames_dropped_in_front_blind_nobody, 0, kPanCount);
+  tcase_add_loop_test(tests, frames_dropped_in_front_do_not_stop_the_detection, 0, kPanCount);
   tcase_add_loop_test(tests, a_stream_of_breaks_is_complained_of_once, 0, 11);
   tcase_add_test(tests, motions_that_cannot_be_followed_are_complained_of_once);
   return suite;

@@ -36,7 +36,7 @@ GstStaticPadTemplate src_template =
 CERBERUS_DEFINE_TYPE(CerberusTestThrower, cerberus_test_thrower, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
 
-void fail_as_told(Throws what) {
+void fail_as_set(Throws what) {
   switch (what) {
     case Throws::nothing:
       return;
@@ -52,14 +52,14 @@ void fail_as_told(Throws what) {
 GstFlowReturn transform_ip(GstBaseTransform* base, GstBuffer*) {
   auto* self = cerberus_test_thrower_self(base);
   return cerberus::guarded(self, GST_FLOW_ERROR, [&] {
-    fail_as_told(self->priv->throws);
+    fail_as_set(self->priv->throws);
     return GST_FLOW_OK;
   });
 }
 
 gboolean stop(GstBaseTransform* base) {
   auto* self = cerberus_test_thrower_self(base);
-  cerberus::guarded(self, [&] { fail_as_told(self->priv->throws); });
+  cerberus::guarded(self, [&] { fail_as_set(self->priv->throws); });
   return TRUE;
 }
 
@@ -72,7 +72,7 @@ void cerberus_test_thrower_class_init(CerberusTestThrowerClass* klass) {
   auto* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
-  gst_element_class_set_static_metadata(element, "Thrower", "Test", "Throws as told", "The Cerberus authors");
+  gst_element_class_set_static_metadata(element, "Thrower", "Test", "Throws as set", "The Cerberus authors");
   GST_BASE_TRANSFORM_CLASS(klass)->transform_ip = transform_ip;
   GST_BASE_TRANSFORM_CLASS(klass)->stop = stop;
 }
@@ -91,7 +91,7 @@ void cerberus_test_plain_class_init(CerberusTestPlainClass* klass) {
 
 }  // namespace
 
-CERBERUS_REGISTER_ELEMENT(testthrower, GST_RANK_NONE, cerberus_test_thrower, category, "throws as told")
+CERBERUS_REGISTER_ELEMENT(testthrower, GST_RANK_NONE, cerberus_test_thrower, category, "throws as set")
 
 namespace {
 
@@ -191,7 +191,7 @@ START_TEST(an_exception_becomes_one_error_message) {
 }
 END_TEST
 
-START_TEST(no_memory_is_told_as_such) {
+START_TEST(no_memory_is_reported_as_such) {
   const Outcome outcome = push_one(Throws::no_memory);
   fail_unless_equals_int(outcome.flow, GST_FLOW_ERROR);
   fail_unless_equals_int(outcome.errors, 1);
@@ -227,7 +227,7 @@ static Suite* element_types_suite(void) {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, without_an_exception_the_result_passes);
   tcase_add_test(tc, an_exception_becomes_one_error_message);
-  tcase_add_test(tc, no_memory_is_told_as_such);
+  tcase_add_test(tc, no_memory_is_reported_as_such);
   tcase_add_test(tc, anything_thrown_is_caught);
   tcase_add_test(tc, a_guard_without_a_result_returns_normally);
   return s;

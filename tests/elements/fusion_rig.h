@@ -2,7 +2,7 @@
 // A pirfusion with a harness at its video pads and one at each PIR pad.
 #pragma once
 
-// Before gst-check, whose macros take names of the standard library.
+// Before gst-check, whose macros redefine names of the standard library.
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -38,7 +38,7 @@ inline GstBuffer* frame(GstClockTime time) {
   return buffer;
 }
 
-// A frame with somebody on it.
+// A frame with one track.
 inline GstBuffer* frame_with(GstClockTime time, guint id, double x = 4,
                              CerberusRegionState state = CERBERUS_REGION_SEEN) {
   GstBuffer* buffer = frame(time);
@@ -160,8 +160,8 @@ struct Rig {
   }
   std::string error() { return message(GST_MESSAGE_ERROR); }
   std::string warning() { return message(GST_MESSAGE_WARNING); }
-  // Decisions told by message since the last call: "time ms:rule:action".
-  std::vector<std::string> told() {
+  // Decisions posted as messages since the last call: "time ms:rule:action".
+  std::vector<std::string> posted() {
     std::vector<std::string> result;
     while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ELEMENT)) {
       g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message);
@@ -215,7 +215,7 @@ inline std::string with_sensors(int count, double first, double step, double fie
          ">,field-of-view=(double)" + std::to_string(static_cast<int>(field));
 }
 
-// What a head or an application says upstream.
+// Events that a head or an application sends upstream.
 inline void say(Rig& rig, GstEvent* event) {
   gst_harness_push_upstream_event(rig.video, event);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What cameramotion makes of head and picture together: how the body turns below, and heads that do not do as they are
-// told. Pictures of a wall that shift by what a camera's turning shows of it; degrees everywhere.
+// The comparison of head and picture in cameramotion: the yaw rate of the base below the head, and heads that do not
+// execute their commands. Pictures of a wall, shifted as a turning camera shows it; degrees everywhere.
 #include "scene.h"
 #include "support.h"
 
@@ -46,10 +46,10 @@ CerberusBase turning_at(double rate) {
 }
 
 struct Shown {
-  double gain = 1, base = 0;  // of what the head is told; degrees a second
+  double gain = 1, base = 0;  // gain: of the commanded angle; base: degrees a second
   const char* head = "head";
-  bool carried = false;  // the pose comes on the frame
-  bool told = false;     // an application says that the base turns against the head
+  bool carried = false;   // the pose comes on the frame
+  bool reported = false;  // the application reports that the base turns against the head
   bool blank = false;
 };
 
@@ -64,7 +64,7 @@ double show(scene::Line& line, const Shown& shown, int from, int to) {
       cerberus_buffer_set_pose(in, &pose);
     else
       gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&pose));
-    if (shown.told)
+    if (shown.reported)
       gst_harness_push_upstream_event(line.harness,
                                       base_event((sweep(k - 1) - sweep(k)) / 0.04, k * scene::kStep));
     GstBuffer* out = line.through(in);
@@ -100,7 +100,7 @@ std::string fault(scene::Line& line, double* gain) {
 
 }  // namespace
 
-GST_START_TEST(a_head_that_does_as_it_is_told_is_silent_and_its_base_stands) {
+GST_START_TEST(a_head_that_executes_its_commands_causes_no_warning_and_its_base_stands) {
   scene::Line line(kLens);
   const double rate = show(line, {}, 0, 170);
   fail_unless(std::abs(rate) < 1, "%g", rate);
@@ -154,10 +154,10 @@ GST_START_TEST(a_robots_turning_is_measured_and_no_fault_of_the_head) {
 }
 GST_END_TEST
 
-// The picture stands because the robot turns against the head, and the application says so.
+// The picture stands because the robot turns against the head, as the application reports.
 GST_START_TEST(a_head_that_turns_against_its_robot_does_not_slip) {
   scene::Line line(kLens);
-  show(line, {.gain = 0, .told = true}, 1, 160);
+  show(line, {.gain = 0, .reported = true}, 1, 160);
   fail_unless(line.messages(GST_MESSAGE_WARNING).empty());
 }
 GST_END_TEST
@@ -176,7 +176,7 @@ GST_START_TEST(with_another_lens_the_comparison_begins_anew) {
 }
 GST_END_TEST
 
-// Who made the frames attached the pose with which they were made: it cannot be wrong of them.
+// The element that made the frames attached the pose that it used: that pose cannot be wrong.
 GST_START_TEST(poses_that_came_on_the_frames_are_not_judged) {
   scene::Line line(kLens);
   show(line, {.gain = -1, .carried = true}, 0, 120);
@@ -184,7 +184,7 @@ GST_START_TEST(poses_that_came_on_the_frames_are_not_judged) {
 }
 GST_END_TEST
 
-// There is a head, but not the one asked for: what it did is not known.
+// There is a head, but not the one that is selected: its motion is unknown.
 GST_START_TEST(another_heads_pose_on_the_frames_leaves_the_base_unknown) {
   scene::Line line(kLens);
   fail_unless(std::isnan(show(line, {.head = "another", .carried = true}, 0, 20)));
@@ -249,7 +249,7 @@ static Suite* carrier_suite() {
   TCase* tc = tcase_create("cameramotion");
   tcase_set_timeout(tc, 60);
   suite_add_tcase(s, tc);
-  tcase_add_test(tc, a_head_that_does_as_it_is_told_is_silent_and_its_base_stands);
+  tcase_add_test(tc, a_head_that_executes_its_commands_causes_no_warning_and_its_base_stands);
   tcase_add_test(tc, a_head_that_does_not_is_warned_of_once);
   tcase_add_test(tc, without_a_lens_or_with_a_blank_picture_nothing_is_said);
   tcase_add_test(tc, a_robots_turning_is_measured_and_no_fault_of_the_head);

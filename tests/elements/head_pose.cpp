@@ -13,7 +13,7 @@ CerberusPose pose(double pan, GstClockTime from, GstClockTime until = GST_CLOCK_
   return p;
 }
 
-void tell(scene::Line& line, const CerberusPose& p) {
+void send(scene::Line& line, const CerberusPose& p) {
   gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&p));
 }
 
@@ -33,8 +33,8 @@ GST_START_TEST(a_frame_gets_the_pose_of_its_own_time) {
   fail_unless(std::isnan(pan_on(line.through(scene::grey_buffer(kWorld, 0)))));
   CerberusPose moving = pose(10, scene::kStep, 3 * scene::kStep);
   moving.pan_speed = 50;  // 2 degrees a frame
-  tell(line, moving);
-  tell(line, pose(14, 3 * scene::kStep));
+  send(line, moving);
+  send(line, pose(14, 3 * scene::kStep));
   for (const double expected : {10.0, 12.0, 14.0, 14.0}) {
     static int number = 0;
     const double pan = pan_on(line.through(scene::grey_buffer(kWorld, ++number)));
@@ -43,9 +43,9 @@ GST_START_TEST(a_frame_gets_the_pose_of_its_own_time) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_pose_on_the_frame_wins_over_what_was_told) {
+GST_START_TEST(a_pose_on_the_frame_takes_precedence_over_the_event) {
   scene::Line line("cameramotion");
-  tell(line, pose(10, 0));
+  send(line, pose(10, 0));
   GstBuffer* buffer = scene::grey_buffer(kWorld, 0);
   const CerberusPose carried = pose(-5, 0);
   cerberus_buffer_set_pose(buffer, &carried);
@@ -55,11 +55,11 @@ GST_END_TEST
 
 GST_START_TEST(another_head_is_not_listened_to_and_every_event_goes_on) {
   scene::Line line("cameramotion");
-  CerberusPose stranger = pose(10, 0);
-  cerberus_pose_set_head(&stranger, "another");
-  tell(line, stranger);
+  CerberusPose other = pose(10, 0);
+  cerberus_pose_set_head(&other, "another");
+  send(line, other);
   fail_unless(std::isnan(pan_on(line.through(scene::grey_buffer(kWorld, 0)))));
-  tell(line, pose(7, 0));
+  send(line, pose(7, 0));
   fail_unless(pan_on(line.through(scene::grey_buffer(kWorld, 1))) == 7);
   int passed = 0;
   while (GstEvent* event = gst_harness_try_pull_upstream_event(line.harness)) {
@@ -72,21 +72,21 @@ GST_END_TEST
 
 GST_START_TEST(poses_of_the_run_before_are_forgotten) {
   scene::Line line("cameramotion");
-  tell(line, pose(10, 0));
+  send(line, pose(10, 0));
   line.restart();
   fail_unless(std::isnan(pan_on(line.through(scene::grey_buffer(kWorld, 0)))));
 }
 GST_END_TEST
 
-// A blank wall says nothing of the camera: then the head does. F = 160 / tan 30; a turn of atan(40 / F) to the right
-// moves the middle of the picture by 40 pixels to the left.
+// A blank wall contains no evidence of camera motion: the head's pose is used. F = 160 / tan 30; a turn of atan(40 /
+// F) to the right moves the middle of the picture by 40 pixels to the left.
 GST_START_TEST(a_heads_turn_counts_where_the_picture_says_nothing) {
   const double pan = std::atan(40 * std::tan(30 * M_PI / 180) / 160) * 180 / M_PI;
   for (const bool known : {true, false}) {
     scene::Line line(known ? "cameramotion horizontal-fov=60" : "cameramotion");
     const std::vector<std::uint8_t> grey(scene::kWidth * scene::kHeight, 90);
-    tell(line, pose(0, 0, scene::kStep - 1));
-    tell(line, pose(pan, scene::kStep));
+    send(line, pose(0, 0, scene::kStep - 1));
+    send(line, pose(pan, scene::kStep));
     double x = 0;
     for (int number = 0; number < 2; ++number) {
       GstBuffer* out =
@@ -107,7 +107,7 @@ static Suite* head_pose_suite() {
   TCase* tc = tcase_create("cameramotion");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_frame_gets_the_pose_of_its_own_time);
-  tcase_add_test(tc, a_pose_on_the_frame_wins_over_what_was_told);
+  tcase_add_test(tc, a_pose_on_the_frame_takes_precedence_over_the_event);
   tcase_add_test(tc, another_head_is_not_listened_to_and_every_event_goes_on);
   tcase_add_test(tc, poses_of_the_run_before_are_forgotten);
   tcase_add_test(tc, a_heads_turn_counts_where_the_picture_says_nothing);

@@ -65,15 +65,15 @@ inline void add(GstBuffer* buffer, CerberusFusionAction action, guint target = 0
   cerberus_buffer_set_fusion(buffer, &fusion);
 }
 
-// A frame on which fusion says what to do.
+// A frame with a fusion decision.
 inline GstBuffer* frame_with(CerberusFusionAction action, GstClockTime pts = 0) {
   GstBuffer* buffer = frame_at(pts);
   add(buffer, action);
   return buffer;
 }
 
-// A person of 20x60 pixels whose middle is this many degrees right of the camera's axis, behind 60 degrees.
-inline Person somebody(guint id, double degrees_right) {
+// A person of 20x60 pixels whose middle is this many degrees right of the camera's axis, through a lens of 60 degrees.
+inline Person person(guint id, double degrees_right) {
   const double focal = kWidth / 2.0 / std::tan(30 * std::numbers::pi / 180);
   const double middle = kWidth / 2.0 + focal * std::tan(degrees_right * std::numbers::pi / 180);
   return {.id = id, .x = middle - 10, .y = kHeight / 2.0 - 30, .width = 20, .height = 60};
@@ -178,7 +178,7 @@ class Rig {
     g_signal_emit_by_name(element, "follow", id, &done);
     return done;
   }
-  // What the warnings since the last call say, one a line. Like messages(), it throws away what it does not look for.
+  // The texts of the warnings since the last call, one a line. Like messages(), it discards all other messages.
   std::string warnings() {
     std::string all;
     while (GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_WARNING)) {
@@ -221,7 +221,7 @@ class Rig {
   }
 };
 
-// Frames with one action, from frame `first` on, `count` of them; every pose that is told for them.
+// Pushes `count` frames with one action, from frame `first` on; returns every pose that is published meanwhile.
 inline std::vector<CerberusPose> act(Rig& rig, CerberusFusionAction action, int first, int count,
                                      double from = NAN, double to = NAN) {
   std::vector<CerberusPose> all;

@@ -27,7 +27,7 @@ const char* const kLines[] = {
 GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen) {
   const int kind = __i__ % BREAKS;
   const char* launch = kLines[__i__ / BREAKS];
-  // Without cameramotion nobody knows of an unmarked cut.
+  // Without cameramotion an unmarked cut cannot be detected.
   if (kind == CUT && std::string(launch).find("motionregions") == 0) return;
   if (kind == CUT && std::string(launch).find("motiontrack") == 0) return;
 
@@ -100,7 +100,7 @@ GST_START_TEST(nothing_is_published_until_three_frames_of_a_new_scene_were_seen)
 }
 GST_END_TEST
 
-// A repeated picture is not looked at (here it is black), carries the last result, and the scene goes on.
+// A repeated picture is not analysed (here it is black), carries the last result, and the scene continues.
 GST_START_TEST(gap_buffers_pass_and_end_no_scene) {
   Line line("motiondetect confirm-time=0 ! identity");
   const World world;

@@ -9,7 +9,7 @@
 
 namespace loop {
 
-// What begins a launch line: a video of somebody who walks before a wall, `scene::World`, 320 x 240.
+// The begin of a launch line: a video of a person who walks before a wall, `scene::World`, 320 x 240.
 inline std::string film(int frames, const std::string& more = "", const char* rate = "25/1") {
   return "videotestsrc name=film num-buffers=" + std::to_string(frames) + " " + more +
          " ! video/x-raw,format=GRAY8,width=320,height=240,framerate=" + rate + " ! ";
@@ -39,7 +39,7 @@ class Pipeline {
   Pipeline(const Pipeline&) = delete;
 
   GstElement* element() const { return element_; }
-  // The film is without the frames for which missing(number) says so. To be called before it plays, and once.
+  // Removes the frames for which missing(number) is true. To be called before the pipeline plays, and once.
   template <typename Missing>
   void leave_out(Missing& missing) {
     GstElement* source = gst_bin_get_by_name(GST_BIN(element_), "film");

@@ -34,7 +34,7 @@ Holds held() {
   return {entries("/proc/self/task"), entries("/proc/self/fd"), mallinfo2().uordblks};
 }
 
-// A thread of GLib's pool that was told to end takes its time; one that was forgotten has all of it.
+// A thread of GLib's pool that was asked to end needs some time; a leaked one never ends.
 Holds held_in_the_end(int threads) {
   const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(20);
   Holds now = held();

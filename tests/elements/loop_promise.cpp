@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // From the edge of a PIR sensor to the first command of the motors nothing waits for a frame in a live pipeline,
-// whatever its frame rate is and the camera needs to deliver one. Here by the clock of the test; loop_real_time.cpp
-// measures the work that it takes.
+// whatever its frame rate and the camera's delay are. Here by the clock of the test; loop_real_time.cpp measures the
+// processing time.
 //
-// A sensor's rise is told at once (debounce delays falls only), decided at once as if the last frame came again, and
-// obeyed at once. A sensor that spoke before the first frame waits for that.
+// A rising edge is reported at once (debounce delays falls only), decided at once with the last frame, and executed at
+// once. A reading from before the first frame waits for that frame.
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
@@ -17,7 +17,7 @@
 
 namespace {
 
-GST_START_TEST(a_rise_is_told_with_its_own_time) {
+GST_START_TEST(a_rise_is_published_with_its_own_time) {
   for (const char* debounce : {"", "debounce=0", "debounce=50000000"})
     for (int ms = 1000; ms < 1034; ++ms) {
       const std::string script = "script=\"0,0,0,0; " + std::to_string(ms / 1000.0) + ",0,0,1\"";
@@ -69,7 +69,7 @@ class Detection {
   int number_ = 0, turned_ = 0;
 };
 
-// Which way the head was told to turn by what it was given just now.
+// The direction of the last command to the head.
 int command(const head_rig::Pipe& record) {
   std::string line;
   while (!line.starts_with("command")) line = record.line();
@@ -105,13 +105,13 @@ GstClockTime reaction(GstClockTime edge, GstClockTime step, GstClockTime age, bo
     gst_harness_set_time(fusion.video, now);
     gst_harness_set_time(head.harness, now);
   };
-  bool heard = false;
+  bool received = false;
   for (GstClockTime time = 0;; time += step) {
     const GstClockTime now = time + age;
-    if (now >= edge && !heard) {
+    if (now >= edge && !received) {
       set_time(edge);
       fusion.read(edge, {0, 0, 1});
-      heard = true;
+      received = true;
       if (hand_on(fusion, head) && command(record) == 1) return 0;
     }
     set_time(now);
@@ -125,7 +125,7 @@ GstClockTime reaction(GstClockTime edge, GstClockTime step, GstClockTime age, bo
       fail_unless(now < edge + GST_SECOND, "it is not obeyed at all");
       continue;
     }
-    fail_unless(heard && way == 1);
+    fail_unless(received && way == 1);
     fail_unless(!detects || detection.turned() > 5);
     return now - edge;
   }
@@ -160,7 +160,7 @@ Suite* loop_promise_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 90);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
-  tcase_add_test(tests, a_rise_is_told_with_its_own_time);
+  tcase_add_test(tests, a_rise_is_published_with_its_own_time);
   tcase_add_test(tests, no_edge_waits_for_a_frame);
   tcase_add_test(tests, what_was_said_before_the_first_frame_comes_with_it);
   return suite;

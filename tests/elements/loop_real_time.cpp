@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// From the edge of a PIR sensor to the first command of the motors at most 60 ms pass in a live pipeline. What nothing
-// waits for (loop_promise.cpp) is the work, and that is measured here, in real time. A machine that is late itself
-// cannot tell: then the test is skipped, and says so.
+// From the edge of a PIR sensor to the first command of the motors at most 60 ms pass in a live pipeline. Nothing
+// waits (loop_promise.cpp); what remains is processing time, and it is measured here, in real time. On a machine that
+// is late itself the test is skipped with a message.
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ struct Command {
   int way;
 };
 
-// What the head is told, with the running time at which it was told so.
+// A command to the head, with the running time at which it was given.
 class Listener {
  public:
   Listener(const head_rig::Pipe& record, GstElement* pipeline)
@@ -51,7 +51,7 @@ GstClockTime edge(int k) {
   return (300 + 113 * static_cast<GstClockTime>(k)) * GST_MSECOND;
 }
 
-// Somebody who does nothing but wake up at each edge: how late he is tells what the machine keeps everybody from.
+// A thread that does nothing but wake up at each edge: its lateness is that of the machine.
 class Witness {
  public:
   explicit Witness(GstElement* pipeline) : thread_([this, pipeline] { run(pipeline); }) {}
@@ -99,7 +99,7 @@ Round reactions() {
   Round round;
   {
     // The head reaches neither sensor's sector: it is always on the way there, or at the stop before it. The picture
-    // goes by as before a camera that turns, which is the most work; there is nobody in it.
+    // moves as before a turning camera, which costs most; it contains no person.
     loop::Pipeline pipeline(
         "videotestsrc is-live=true num-buffers=62 pattern=pinwheel horizontal-speed=2 ! "
         "video/x-raw,format=GRAY8,width=160,height=120,framerate=10/1 ! motiondetect ! "
@@ -127,7 +127,7 @@ Round reactions() {
   return round;
 }
 
-// No round was judged. A test runs in a process of its own: what it tells main() is in memory that both have.
+// No round was judged. A test runs in a process of its own: its result reaches main() through shared memory.
 std::atomic<bool>& judged_nothing() {
   static void* const place =
       mmap(nullptr, sizeof(std::atomic<bool>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
@@ -135,9 +135,9 @@ std::atomic<bool>& judged_nothing() {
   return *static_cast<std::atomic<bool>*>(place);
 }
 
-// A machine with other work may be late with any of them, and for a while with many: one round of some counts. At 10
-// frames a second four of ten edges would come too late if they waited for a frame: seven of ten in time tell that they
-// do not. Rounds that the machine was late for itself accuse nobody.
+// A machine with other work may be late with any of them, and for a while with many: one good round of several is
+// enough. At 10 frames a second four of ten edges would be late if they waited for a frame: seven of ten in time prove
+// that they do not. Rounds in which the machine itself was late are not judged.
 GST_START_TEST(sixty_milliseconds_from_an_edge_to_the_motors) {
   bool kept = false;
   int rounds = 0;

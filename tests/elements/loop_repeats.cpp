@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The closed loop gives the same JSON lines, byte by byte, however its work is spread over threads and whatever else
-// the machine does. Over somebody who walks before a wall, or, with CERBERUS_SEQUENCE=vtest in the environment, over
-// that video; where it is not there the test is skipped, and says so.
+// The closed loop gives the same JSON lines, byte by byte, however its work is spread over threads and whatever the
+// load of the machine. The video shows a person who walks before a wall or, with CERBERUS_SEQUENCE=vtest in the
+// environment, is vtest.avi; where that is missing the test is skipped with a message.
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
@@ -37,7 +37,7 @@ std::string loop_line(const std::string& link, int seed) {
          "t." +
          link + "motionjson" + link +
          "fakesink name=lines "
-         // The noise is in what the head says of itself: it is what a seed is for.
+         // The noise is that of the head's position feedback: it depends on the seed.
          "t." +
          link +
          "pantiltsink driver=simulated noise=0.05 step-size=0.02 backlash=0.1 seed=" + std::to_string(seed) +
@@ -82,7 +82,7 @@ std::string lines_of(unsigned way, int seed = 7) {
   return lines;
 }
 
-// The line in which two runs part, for whoever has to find out why.
+// The first line in which two runs differ, for debugging.
 std::string difference(const std::string& a, const std::string& b) {
   const auto at =
       static_cast<std::size_t>(std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first - a.begin());
@@ -104,8 +104,9 @@ GST_START_TEST(every_run_gives_the_same_lines) {
 }
 GST_END_TEST
 
-// What could not differ would prove nothing: the head turns, sees somebody and hears the sensors, and its noise counts.
-GST_START_TEST(the_lines_tell_of_a_loop_that_is_closed) {
+// The comparison needs something that could differ: the head turns, tracks a person, uses the sensors, and its noise
+// has an effect.
+GST_START_TEST(the_lines_come_from_a_closed_loop) {
   for (const char* part :
        {"\"track\"", "\"turn-left\"", "\"moving\":true", "\"pir\":[0,1,0]", "\"pir\":[1,0,1]"})
     fail_unless(reference().find(part) != std::string::npos, "no %s in\n%s", part, reference().c_str());
@@ -122,7 +123,7 @@ Suite* loop_repeats_suite() {
   // A whole video costs more: only what differs most.
   tcase_add_loop_test(tests, every_run_gives_the_same_lines, on_vtest() ? kQueues | kBusy : kPlain,
                       (kQueues | kBusy) + 1);
-  if (!on_vtest()) tcase_add_test(tests, the_lines_tell_of_a_loop_that_is_closed);
+  if (!on_vtest()) tcase_add_test(tests, the_lines_come_from_a_closed_loop);
   return suite;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The budget, measured from outside: what the heap holds for several streams more, whoever took it.
+// The memory budget, measured from outside: the growth of the heap for several more streams, whatever allocates.
 #include <malloc.h>
 
 #include <algorithm>
@@ -19,9 +19,9 @@ std::size_t held() {
   return info.uordblks + info.hblkhd;
 }
 
-// Sanitizers and valgrind have a heap of their own, of which
-// mallinfo2() knows nothing; a tracer keeps its records on ours.
-bool heap_tells() {
+// Sanitizers and valgrind have heaps of their own, which mallinfo2() does not count; a tracer keeps its records on
+// ours.
+bool heap_is_measurable() {
   if (g_getenv("GST_TRACERS")) {
     g_print("left out: the tracer's records would be counted\n");
     return false;
@@ -29,9 +29,9 @@ bool heap_tells() {
   constexpr std::size_t kMuch = 300000;
   const std::size_t before = held();
   void* volatile some = g_malloc(kMuch);
-  const bool tells = held() >= before + kMuch;
+  const bool measurable = held() >= before + kMuch;
   g_free(some);
-  return tells;
+  return measurable;
 }
 
 std::vector<GstBuffer*> film(int width, int height) {
@@ -80,7 +80,7 @@ constexpr Case kCases[] = {{kUsual, 320, 240, 19}, {kUsual, 320, 180, 19}, {kUsu
                            {kKept, 320, 240, 23},  {kKept, 640, 360, 23},  {kKept, 160, 120, 26}};
 
 GST_START_TEST(a_stream_needs_at_most_26_bytes_an_analysis_pixel) {
-  if (!heap_tells()) return;
+  if (!heap_is_measurable()) return;
   const Case& c = kCases[__i__];
   const std::string caps = scene::caps("GRAY8", c.width, c.height);
   const std::vector<GstBuffer*> frames = film(c.width, c.height);
@@ -100,9 +100,9 @@ GST_START_TEST(a_stream_needs_at_most_26_bytes_an_analysis_pixel) {
 }
 GST_END_TEST
 
-// What is said of a frame is a few hundred bytes; the smallest plane has 57600.
+// The annotations of a frame take a few hundred bytes; the smallest plane has 57600.
 GST_START_TEST(frames_that_wait_hold_no_planes) {
-  if (!heap_tells()) return;
+  if (!heap_is_measurable()) return;
   constexpr int kWaiting = 50;
   const std::string caps = scene::caps("GRAY8", 320, 180);
   const std::vector<GstBuffer*> frames = film(320, 180);

@@ -28,8 +28,8 @@ struct Passage {
   bool motion, threshold, plane, region;
 };
 
-// In 1.22 videoflip copies every meta as it is, whatever its tags: all but the threshold is wrong behind it, as the
-// documentation says. In 1.26 it drops them, which is right (1.24 was not tried).
+// In 1.22 videoflip copies every meta unchanged, whatever its tags: all but the threshold is wrong behind it, as is
+// documented. In 1.26 it drops them, which is right (1.24 was not tried).
 const bool kFlipCopies = [] {
   guint major, minor, micro, nano;
   gst_version(&major, &minor, &micro, &nano);
@@ -208,7 +208,7 @@ START_TEST(a_part_of_a_frame_has_no_planes) {
   fail_unless(mask_of(part).empty());
   fail_unless(threshold_facts_of(part));
 
-  // GStreamer asks for metas of the tag `memory` only where everything is copied; should somebody ask otherwise:
+  // GStreamer transforms metas of the tag `memory` only where everything is copied; for any other request:
   GstMeta* meta = gst_buffer_get_meta(frame, gst_meta_get_info("CerberusRecordMeta")->api);
   GstMetaTransformCopy copy = {TRUE, 0, 100};
   fail_if(meta->info->transform_func(part, meta, frame, _gst_meta_transform_copy, &copy));

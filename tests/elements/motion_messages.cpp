@@ -15,7 +15,7 @@ START_TEST(a_structure_holds_everything_but_what_is_unknown) {
 }
 END_TEST
 
-START_TEST(a_strangers_structure_is_read_with_care) {
+START_TEST(a_structure_of_another_element_is_read_with_care) {
   g_autoptr(GstStructure) other = gst_structure_new_empty("cerberus-objects");
   fail_if(cerberus_region_from_structure(other));
   g_autoptr(GstStructure) wrong = gst_structure_new("cerberus-object", "id", G_TYPE_STRING, "five", "x",
@@ -100,7 +100,7 @@ static Suite* motion_messages_suite() {
   TCase* tc = tcase_create("all");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_structure_holds_everything_but_what_is_unknown);
-  tcase_add_test(tc, a_strangers_structure_is_read_with_care);
+  tcase_add_test(tc, a_structure_of_another_element_is_read_with_care);
   tcase_add_test(tc, a_motion_message_reads_back);
   tcase_add_test(tc, a_motion_message_may_have_no_objects_and_no_source);
   tcase_add_test(tc, other_messages_are_not_motion);

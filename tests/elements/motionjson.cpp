@@ -109,7 +109,7 @@ GST_START_TEST(everything_attached_is_on_the_line) {
 }
 GST_END_TEST
 
-GST_START_TEST(pose_sensors_and_decision_are_there_where_somebody_told) {
+GST_START_TEST(pose_sensors_and_decision_are_there_where_the_frame_carries_them) {
   Harness h = started();
   GstBuffer* buffer = frame(info_of(kCaps));
   CerberusPose pose;
@@ -150,8 +150,8 @@ GST_START_TEST(a_locale_with_a_decimal_comma_changes_nothing) {
 }
 GST_END_TEST
 
-// Nothing was found, and no detector has looked: a program that reads the lines must be able to tell them apart.
-GST_START_TEST(nothing_found_is_not_nobody_looked) {
+// "Nothing was found" and "no detector ran" must be different values in the lines.
+GST_START_TEST(nothing_found_is_not_no_detector) {
   Harness h = started();
   GstBuffer* buffer = frame(info_of(kCaps));
   g_autoptr(GPtrArray) none = g_ptr_array_new();
@@ -353,10 +353,10 @@ static Suite* motionjson_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_frame_without_metas_gives_a_line_of_unknowns);
   tcase_add_test(tc, everything_attached_is_on_the_line);
-  tcase_add_test(tc, pose_sensors_and_decision_are_there_where_somebody_told);
+  tcase_add_test(tc, pose_sensors_and_decision_are_there_where_the_frame_carries_them);
   tcase_add_test(tc, a_locale_with_a_decimal_comma_changes_nothing);
   tcase_add_test(tc, a_threshold_that_is_not_ready_is_none);
-  tcase_add_test(tc, nothing_found_is_not_nobody_looked);
+  tcase_add_test(tc, nothing_found_is_not_no_detector);
   tcase_add_test(tc, a_frame_without_a_time_has_a_null_pts);
   tcase_add_test(tc, a_line_has_the_time_of_its_frame);
   tcase_add_test(tc, numbers_that_are_not_finite_are_null);

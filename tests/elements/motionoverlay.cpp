@@ -259,7 +259,7 @@ GST_START_TEST(a_label_lies_where_there_is_room) {
 }
 GST_END_TEST
 
-GST_START_TEST(whom_the_head_follows_has_corners) {
+GST_START_TEST(the_track_that_the_head_follows_has_corners) {
   Harness h = attaching("motionoverlay show-ids=false show-trails=false show-system=false");
   const GstVideoInfo info = info_of(kCaps);
   int number = 0;
@@ -398,7 +398,7 @@ GST_START_TEST(a_crowd_is_drawn) {
                 "label %d: %d, %d", id, label.x, label.y);
   }
 
-  // And in the picture: others may cover a line, but the frame's own grey is left on no side of anybody.
+  // In the picture as well: lines may cover each other, but the frame's own grey remains on no side of a person.
   Harness into = started("motionoverlay show-trails=false");
   const GstVideoInfo info = info_of(kCaps);
   GstBuffer* out = through(into.get(), crowd());
@@ -433,7 +433,7 @@ static Suite* motionoverlay_suite() {
   tcase_add_test(tc, speeds_and_distances_that_are_not_numbers_leave_a_label_without_them);
   tcase_add_test(tc, labels_keep_clear_of_each_other);
   tcase_add_test(tc, a_label_lies_where_there_is_room);
-  tcase_add_test(tc, whom_the_head_follows_has_corners);
+  tcase_add_test(tc, the_track_that_the_head_follows_has_corners);
   tcase_add_test(tc, the_corners_lie_round_the_box);
   tcase_add_test(tc, regions_without_identity_have_a_box_only);
   tcase_add_test(tc, properties_change_while_playing);

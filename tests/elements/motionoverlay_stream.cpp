@@ -8,7 +8,7 @@ namespace {
 
 const char* const kFeature = "video/x-raw(memory:SystemMemory,meta:GstVideoOverlayComposition)";
 
-// Somebody else's drawing: four by four white pixels at this place.
+// The drawing of another element: four by four white pixels at this place.
 GstVideoOverlayComposition* draw_square(GstBuffer* in, int x, int y) {
   GstBuffer* pixels = gst_buffer_new_allocate(nullptr, 4 * 4 * 4, nullptr);
   gst_buffer_memset(pixels, 0, 255, 64);
@@ -52,7 +52,7 @@ GST_START_TEST(drawings_are_attached_where_downstream_draws_them) {
 }
 GST_END_TEST
 
-// Who takes any caps (a file sink) must not swallow the drawing.
+// A sink that accepts any caps (a file sink) must not lose the drawing.
 GST_START_TEST(the_caps_feature_is_used_only_where_downstream_draws) {
   for (const bool draws : {false, true}) {
     Harness h = harness("motionoverlay");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Trails behind those who move.
+// Trails behind moving tracks.
 #include <functional>
 #include <tuple>
 
@@ -73,9 +73,9 @@ GST_START_TEST(a_trail_lies_on_the_scene_across_dropped_frames) {
 }
 GST_END_TEST
 
-// Of a stranger's motion, which counts no frames and has no path, the time from which it starts says that a frame is
-// missing.
-GST_START_TEST(where_nobody_knows_the_way_across_a_dropped_frame_a_trail_begins_anew) {
+// Camera motion of another element has no frame number and no path: the time from which it starts shows that a frame
+// is missing.
+GST_START_TEST(where_the_motion_across_a_dropped_frame_is_unknown_a_trail_begins_anew) {
   const auto extent = [](int dropped) {
     Harness h = attaching("motionoverlay show-boxes=false show-ids=false");
     std::vector<Rectangle> all;
@@ -159,7 +159,7 @@ static Suite* motionoverlay_trails_suite() {
   tcase_add_test(tc, a_trail_is_as_long_as_the_way);
   tcase_add_test(tc, a_trail_lies_on_the_scene_while_the_camera_turns);
   tcase_add_test(tc, a_trail_lies_on_the_scene_across_dropped_frames);
-  tcase_add_test(tc, where_nobody_knows_the_way_across_a_dropped_frame_a_trail_begins_anew);
+  tcase_add_test(tc, where_the_motion_across_a_dropped_frame_is_unknown_a_trail_begins_anew);
   tcase_add_test(tc, a_trail_is_as_old_as_trail_time);
   tcase_add_test(tc, trails_are_forgotten_where_the_scene_begins_anew);
   tcase_add_test(tc, a_trail_does_not_follow_the_edge_of_the_frame);

@@ -281,7 +281,7 @@ GST_START_TEST(the_curves_are_those_of_the_options_that_were_used) {
 }
 GST_END_TEST
 
-// Each of the options alone moves the curves: what fuzzythreshold was told arrives.
+// Each of the options alone moves the curves: the options of fuzzythreshold arrive.
 GST_START_TEST(each_option_of_the_threshold_moves_the_curves) {
   const char* const options[] = {"", "weighting=linear", "extremes=subset", "order=3", "clip=false"};
   std::vector<std::vector<std::pair<double, double>>> curves;
@@ -325,7 +325,7 @@ GST_START_TEST(the_histogram_is_drawn_at_every_size) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_missing_plane_is_black_and_told_once) {
+GST_START_TEST(a_missing_plane_is_black_and_warned_of_once) {
   for (const char* stage : {"difference", "previous-difference", "mask", "labels", "histogram"}) {
     const std::string caps = caps_string("I420", 64, 48);
     Harness harness = started(std::string("motionview stage=") + stage, caps);
@@ -335,7 +335,7 @@ GST_START_TEST(a_missing_plane_is_black_and_told_once) {
       std::string text;
       fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING, &text), 1);
       fail_unless(text.find(std::string("stage=") + stage) != std::string::npos, "%s", text.c_str());
-      // A start anew is told anew.
+      // A restart is reported again.
       gst_element_set_state(harness.get()->element, GST_STATE_READY);
       gst_element_set_state(harness.get()->element, GST_STATE_PLAYING);
       gst_harness_set_src_caps_str(harness.get(), caps.c_str());
@@ -393,7 +393,7 @@ GST_START_TEST(luma_is_made_here_where_no_stage_made_it) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_buffer_without_a_picture_is_black_and_told_once) {
+GST_START_TEST(a_buffer_without_a_picture_is_black_and_warned_of_once) {
   const std::string caps = caps_string("I420", 64, 48);
   Harness harness = started("motionview stage=luma", caps);
   Bus bus(harness.get());
@@ -402,7 +402,7 @@ GST_START_TEST(a_buffer_without_a_picture_is_black_and_told_once) {
 }
 GST_END_TEST
 
-GST_START_TEST(somebody_who_asks_for_planes_is_told_yes) {
+GST_START_TEST(a_request_for_planes_is_answered_yes) {
   Harness harness = started("motionview ! identity", caps_string("I420", 64, 48));
   fail_unless(cerberus::plugin::ask_for_record(harness->srcpad) == records::kRecordForReaders);
 }
@@ -501,7 +501,7 @@ GST_START_TEST(interlaced_video_is_refused_naming_deinterlace) {
       std::string text;
       fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
       fail_unless(text.find("deinterlace") != std::string::npos, "%s", text.c_str());
-      // A start anew is told anew.
+      // A restart is reported again.
       gst_element_set_state(harness.get()->element, GST_STATE_READY);
       gst_element_set_state(harness.get()->element, GST_STATE_PLAYING);
       gst_harness_set_src_caps_str(harness.get(), caps.c_str());
@@ -558,14 +558,14 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, the_curves_are_those_of_the_options_that_were_used);
   tcase_add_test(tc, each_option_of_the_threshold_moves_the_curves);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
-  tcase_add_test(tc, a_missing_plane_is_black_and_told_once);
+  tcase_add_test(tc, a_missing_plane_is_black_and_warned_of_once);
   tcase_add_test(tc, each_stage_that_misses_its_plane_is_warned_of_once);
   tcase_add_test(tc, a_repeated_picture_shows_the_last_mask_unless_it_is_from_before_a_break);
   tcase_add_test(tc, luma_is_made_here_where_no_stage_made_it);
-  tcase_add_test(tc, a_buffer_without_a_picture_is_black_and_told_once);
+  tcase_add_test(tc, a_buffer_without_a_picture_is_black_and_warned_of_once);
   tc = tcase_create("stream");
   suite_add_tcase(s, tc);
-  tcase_add_test(tc, somebody_who_asks_for_planes_is_told_yes);
+  tcase_add_test(tc, a_request_for_planes_is_answered_yes);
   tcase_add_test(tc, what_was_found_stays_on_the_picture_but_planes_do_not);
   tcase_add_test(tc, the_stage_changes_while_playing_and_the_format_with_it);
   tcase_add_test(tc, every_format_is_taken);

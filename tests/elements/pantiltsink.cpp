@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pantiltsink in a pipeline that is not live: time is that of the frames, so every pose is known beforehand.
-#include <chrono>  // before gst-check, whose macros bite standard headers
+#include <chrono>  // before gst-check, whose macros break standard headers
 
 #include "head_rig.h"
 #include "promises.h"
@@ -9,7 +9,7 @@ namespace {
 
 using namespace head_rig;
 
-// Where the head looks at `time`, by the poses told.
+// The head's pan at `time`, degrees, from the published poses.
 double pan_at(const std::vector<CerberusPose>& poses, GstClockTime time) {
   double pan = NAN;
   for (const CerberusPose& pose : poses)
@@ -17,7 +17,7 @@ double pan_at(const std::vector<CerberusPose>& poses, GstClockTime time) {
   return pan;
 }
 
-GST_START_TEST(the_start_pose_is_told_before_the_first_frame) {
+GST_START_TEST(the_start_pose_is_published_before_the_first_frame) {
   Rig rig("start-pan=20 start-tilt=-5 latency=80000000");
   const CerberusPose pose = rig.next_pose();
   fail_unless_equals_string(pose.head, "head");
@@ -31,7 +31,7 @@ GST_END_TEST
 
 GST_START_TEST(each_frame_is_answered_with_the_poses_until_its_time_plus_the_latency) {
   Rig rig;
-  GstClockTime told = rig.next_pose().valid_until;
+  GstClockTime published = rig.next_pose().valid_until;
   for (int k = 0; k < 50; ++k) {
     GstBuffer* buffer = frame_at(k * kFrame);
     add(buffer, k < 25 ? CERBERUS_FUSION_TURN_RIGHT : CERBERUS_FUSION_TURN_LEFT);
@@ -39,10 +39,10 @@ GST_START_TEST(each_frame_is_answered_with_the_poses_until_its_time_plus_the_lat
     const auto poses = rig.poses();
     fail_if(poses.empty());
     for (const CerberusPose& pose : poses) {
-      fail_unless_equals_uint64(pose.valid_from, told);  // without a gap
-      told = pose.valid_until;
+      fail_unless_equals_uint64(pose.valid_from, published);  // without a gap
+      published = pose.valid_until;
     }
-    fail_unless_equals_uint64(told, k * kFrame + 60 * GST_MSECOND);
+    fail_unless_equals_uint64(published, k * kFrame + 60 * GST_MSECOND);
   }
 }
 GST_END_TEST
@@ -111,15 +111,15 @@ GST_START_TEST(zero_returns_and_hold_stays) {
 }
 GST_END_TEST
 
-// A person who stands at a bearing of 25 degrees, seen as the head turns, with what was told of it.
+// A person who stands at a bearing of 25 degrees, seen by the turning head, with the poses published for it.
 GST_START_TEST(a_target_comes_into_the_middle_and_the_head_rests) {
   Rig rig;
   std::vector<CerberusPose> poses = rig.poses();
   for (int k = 0; k < 75; ++k) {
     GstBuffer* buffer = frame_at(k * kFrame);
     add(buffer, CERBERUS_FUSION_TRACK, 7);
-    add(buffer, somebody(7, 25 - pan_at(poses, k * kFrame)));
-    add(buffer, somebody(8, -20));
+    add(buffer, person(7, 25 - pan_at(poses, k * kFrame)));
+    add(buffer, person(8, -20));
     rig.push(buffer);
     for (const CerberusPose& pose : rig.poses()) poses.push_back(pose);
   }
@@ -141,7 +141,7 @@ GST_START_TEST(the_pose_on_a_frame_wins_if_it_is_this_heads) {
       pose.pan = 30;
       cerberus_buffer_set_pose(buffer, &pose);
       add(buffer, CERBERUS_FUSION_TRACK, 7);
-      add(buffer, somebody(7, 0));
+      add(buffer, person(7, 0));
       rig.push(buffer);
     }
     const double pan = rig.poses().back().pan;
@@ -155,7 +155,7 @@ GST_START_TEST(a_target_that_is_not_on_the_frame_is_not_followed) {
   for (int k = 0; k < 25; ++k) {
     GstBuffer* buffer = frame_at(k * kFrame);
     add(buffer, CERBERUS_FUSION_TRACK, 9);
-    add(buffer, somebody(7, 20));
+    add(buffer, person(7, 20));
     rig.push(buffer);
   }
   fail_unless(rig.poses().back().pan == 0);
@@ -167,7 +167,7 @@ GST_START_TEST(without_fusion_tracks_are_followed_and_later_the_head_returns) {
   std::vector<CerberusPose> poses = rig.poses();
   for (int k = 0; k < 150; ++k) {
     GstBuffer* buffer = frame_at(k * kFrame);
-    if (k < 50) add(buffer, somebody(3, 20 - pan_at(poses, k * kFrame)));
+    if (k < 50) add(buffer, person(3, 20 - pan_at(poses, k * kFrame)));
     rig.push(buffer);
     for (const CerberusPose& pose : rig.poses()) poses.push_back(pose);
   }
@@ -175,12 +175,12 @@ GST_START_TEST(without_fusion_tracks_are_followed_and_later_the_head_returns) {
   fail_unless(std::fabs(pan_at(poses, 2900 * GST_MSECOND) - 20) <= 0.7);  // return-delay
   fail_unless(std::fabs(poses.back().pan) < 1e-9);
   const std::string states = rig.states();
-  // Held twice, for two reasons: the track was here a moment ago; then nobody is, but not for long enough.
+  // Held twice, for two reasons: the track was here a moment ago; then there is none, but not for long enough.
   fail_unless_equals_string(states.c_str(), "tracking holding holding zeroing");
 }
 GST_END_TEST
 
-GST_START_TEST(who_is_followed_first_is_a_choice_and_then_kept) {
+GST_START_TEST(the_first_target_is_a_choice_and_then_kept) {
   const Person near{
       .id = 1, .x = 20, .y = 100, .width = 20, .height = 60, .age = 3 * GST_SECOND, .distance = 2};
   const Person large{
@@ -195,7 +195,7 @@ GST_START_TEST(who_is_followed_first_is_a_choice_and_then_kept) {
     const auto messages = rig.messages();
     fail_unless_equals_int(messages.size(), 1);
     fail_unless(messages[0].reason.ends_with(std::string("track ") + id), "%s", messages[0].reason.c_str());
-    // Somebody better does not take the place of the one who is followed.
+    // A better candidate does not replace the track that is followed.
     buffer = frame_at(kFrame);
     for (const Person& person : {near, large, young}) add(buffer, person);
     add(buffer, Person{.id = 4, .x = 0, .y = 0, .width = 300, .height = 200, .age = 0, .distance = 1});
@@ -243,12 +243,13 @@ GST_START_TEST(a_frame_may_come_in_the_middle_of_a_gap) {
 GST_END_TEST
 
 GST_START_TEST(when_frames_stay_away_the_head_has_stopped_meanwhile) {
-  for (const bool told : {false, true}) {  // that none will come
+  for (const bool gap : {false, true}) {  // that none will come
     Rig rig("watchdog-timeout=200000000 pan-max=170");
     act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 25);
-    if (told) fail_unless(gst_harness_push_event(rig.harness, gst_event_new_gap(25 * kFrame, 50 * kFrame)));
+    if (gap) fail_unless(gst_harness_push_event(rig.harness, gst_event_new_gap(25 * kFrame, 50 * kFrame)));
     const auto poses = act(rig, CERBERUS_FUSION_HOLD, 75, 1);  // 2 s later
-    // Told to stop 0.2 s after the frame at 0.96 s: 1.16, obeyed at 1.22, at rest 40^2 / 1200 degrees later.
+    // The stop is commanded 0.2 s after the frame at 0.96 s, at 1.16: braking begins at 1.22 and takes 40^2 / 1200
+    // degrees.
     const double stopped = 40 * (1.22 - 0.06 - 1 / 30.0) + 40 * 40 / 1200.0;
     fail_unless(std::fabs(poses.back().pan - stopped) < 1e-6, "%g %g", poses.back().pan, stopped);
   }
@@ -274,7 +275,7 @@ std::string trajectory(const char* properties) {
   std::vector<CerberusPose> poses = rig.poses();
   for (int k = 0; k < 100; ++k) {
     GstBuffer* buffer = frame_at(k * kFrame);
-    add(buffer, somebody(1, 40 * std::sin(k * 0.1) - pan_at(poses, k * kFrame)));
+    add(buffer, person(1, 40 * std::sin(k * 0.1) - pan_at(poses, k * kFrame)));
     rig.push(buffer);
     for (const CerberusPose& pose : rig.poses()) {
       poses.push_back(pose);
@@ -328,7 +329,7 @@ GST_START_TEST(what_the_application_asks_for_stays_within_the_limits) {
   fail_unless(std::fabs(poses.back().pan - 50) < 1e-9 && std::fabs(poses.back().tilt + 45) < 1e-9);
   fail_unless(rig.messages()[0].reason.find("limit") != std::string::npos);
   gst_element_set_state(rig.element, GST_STATE_NULL);
-  fail_if(rig.call("move-to", 0, 0));  // nobody there
+  fail_if(rig.call("move-to", 0, 0));  // there is no head
   fail_if(rig.call("stop"));
 }
 GST_END_TEST
@@ -426,7 +427,7 @@ GST_START_TEST(a_new_picture_size_changes_the_lens) {
 }
 GST_END_TEST
 
-GST_START_TEST(strangers_metas_do_no_harm) {
+GST_START_TEST(metas_of_other_elements_do_no_harm) {
   Rig rig;
   for (int k = 0; k < 40; ++k) {
     GstBuffer* buffer = frame_at(k * kFrame);
@@ -444,8 +445,8 @@ GST_START_TEST(strangers_metas_do_no_harm) {
     cerberus_buffer_set_pose(buffer, &pose);
     add(buffer, Person{.id = 1, .x = k % 3 ? NAN : 1e300, .y = -1e300, .width = INFINITY, .height = 0});
     rig.push(buffer);
-    for (const CerberusPose& told : rig.poses())
-      fail_unless(std::fabs(told.pan) <= 170 && std::fabs(told.tilt) <= 45);
+    for (const CerberusPose& pose : rig.poses())
+      fail_unless(std::fabs(pose.pan) <= 170 && std::fabs(pose.tilt) <= 45);
   }
 }
 GST_END_TEST
@@ -456,7 +457,7 @@ Suite* pantiltsink_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
-  tcase_add_test(tests, the_start_pose_is_told_before_the_first_frame);
+  tcase_add_test(tests, the_start_pose_is_published_before_the_first_frame);
   tcase_add_test(tests, each_frame_is_answered_with_the_poses_until_its_time_plus_the_latency);
   tcase_add_test(tests, poses_meet);
   tcase_add_test(tests, slow_frames_are_answered_until_the_next_one);
@@ -467,7 +468,7 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, the_pose_on_a_frame_wins_if_it_is_this_heads);
   tcase_add_test(tests, a_target_that_is_not_on_the_frame_is_not_followed);
   tcase_add_test(tests, without_fusion_tracks_are_followed_and_later_the_head_returns);
-  tcase_add_test(tests, who_is_followed_first_is_a_choice_and_then_kept);
+  tcase_add_test(tests, the_first_target_is_a_choice_and_then_kept);
   tcase_add_test(tests, a_frame_that_is_not_newer_is_dropped);
   tcase_add_test(tests, frames_without_time_stamps_count_at_the_frame_rate);
   tcase_add_test(tests, a_gap_keeps_the_pace);
@@ -482,7 +483,7 @@ Suite* pantiltsink_suite() {
   tcase_add_test(tests, after_a_flush_time_begins_anew_and_the_head_goes_on_from_where_it_is);
   tcase_add_test(tests, properties_changed_while_playing_count_from_the_next_frame);
   tcase_add_test(tests, a_new_picture_size_changes_the_lens);
-  tcase_add_test(tests, strangers_metas_do_no_harm);
+  tcase_add_test(tests, metas_of_other_elements_do_no_harm);
   return suite;
 }
 

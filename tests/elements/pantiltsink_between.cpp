@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pantiltsink obeys what fusion decides between two frames as it obeys a frame, and nothing more.
+// pantiltsink executes a fusion decision that comes between two frames as if a frame carried it, and nothing else.
 #include <functional>
 
 #include "head_rig.h"
@@ -25,8 +25,8 @@ void show(Rig& rig, GstClockTime pts, const CerberusFusion& fusion) {
   rig.push(frame);
 }
 
-// Its states since it was told between two frames.
-std::string told(Rig& rig, const CerberusFusion& fusion, const char* head = "head") {
+// The states that are reported after a decision between two frames.
+std::string states_after(Rig& rig, const CerberusFusion& fusion, const char* head = "head") {
   rig.messages();
   gst_harness_push_event(rig.harness, fusion_event(head, fusion));
   return rig.states();
@@ -36,7 +36,7 @@ void set_time(Rig& rig, GstClockTime now) {
   gst_harness_set_time(rig.harness, now);
 }
 
-// A live head that holds because a frame says so, at 100 ms.
+// A live head that holds because of the decision on a frame, at 100 ms.
 void begin(Rig& rig) {
   set_time(rig, 100 * kMs);
   show(rig, 60 * kMs, decision(CERBERUS_FUSION_HOLD, 90 * kMs));
@@ -49,7 +49,7 @@ GST_START_TEST(it_is_obeyed_at_once) {
     Rig rig("watchdog-timeout=0", Source::live);
     begin(rig);
     rig.poses();
-    fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs), head) == "turning");
+    fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs), head) == "turning");
     while (rig.next_pose().valid_until == GST_CLOCK_TIME_NONE) continue;  // a plan with an end: it will move
   }
 }
@@ -59,21 +59,23 @@ GST_END_TEST
 GST_START_TEST(a_frame_that_was_decided_before_does_not_take_it_back) {
   Rig rig("watchdog-timeout=0", Source::live);
   begin(rig);
-  told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs));
+  states_after(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs));
   show(rig, 61 * kMs, decision(CERBERUS_FUSION_HOLD, 94 * kMs));
   fail_unless(rig.states().empty());
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_LEFT, 93 * kMs)).empty());  // nor does an older event
+  fail_unless(
+      states_after(rig, decision(CERBERUS_FUSION_TURN_LEFT, 93 * kMs)).empty());  // nor does an older event
   show(rig, 62 * kMs, decision(CERBERUS_FUSION_HOLD, 95 * kMs));
   fail_unless(rig.states() == "holding");
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_LEFT, 95 * kMs)).empty());  // the frame knew as much
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_LEFT, 95 * kMs))
+                  .empty());  // the frame's decision is as new
 }
 GST_END_TEST
 
-GST_START_TEST(strangers_are_not_obeyed) {
+GST_START_TEST(events_of_another_head_are_ignored) {
   Rig rig("watchdog-timeout=0", Source::live);
   begin(rig);
   const CerberusFusion right = decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs);
-  fail_unless(told(rig, right, "tail").empty());
+  fail_unless(states_after(rig, right, "tail").empty());
   for (const int action : {257, -1, 6}) {  // none that there is; the first is 1 in a byte
     GstEvent* event = fusion_event("head", right);
     gst_structure_set(gst_event_writable_structure(event), "action", CERBERUS_TYPE_FUSION_ACTION, action,
@@ -81,28 +83,28 @@ GST_START_TEST(strangers_are_not_obeyed) {
     gst_harness_push_event(rig.harness, event);
     fail_unless(rig.states().empty());
   }
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 300 * kMs)).empty());  // not yet
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 300 * kMs)).empty());  // not yet
   set_time(rig, 1200 * kMs);
-  fail_unless(told(rig, right).empty());  // long ago
+  fail_unless(states_after(rig, right).empty());  // long ago
   set_time(rig, 1210 * kMs);
   for (const char* name : {"cerberus-fusion", "something"})
     gst_harness_push_event(
         rig.harness, gst_event_new_custom(GST_EVENT_CUSTOM_DOWNSTREAM_OOB, gst_structure_new_empty(name)));
   fail_unless(rig.states().empty());
-  // Nobody fuses here: the head looks for itself.
+  // There is no fusion here: the head uses its own rules.
   rig.push(frame_at(1200 * kMs));
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 1210 * kMs)).empty());
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 1210 * kMs)).empty());
 }
 GST_END_TEST
 
-GST_START_TEST(who_obeys_no_frame_obeys_no_event) {
+GST_START_TEST(a_head_that_ignores_frames_ignores_events) {
   const CerberusFusion right = decision(CERBERUS_FUSION_TURN_RIGHT, 110 * kMs);
   const struct {
     const char* what;
     std::function<void(Rig&)> stop;
   } cases[] = {{"paused", [](Rig& rig) { gst_element_set_state(rig.element, GST_STATE_PAUSED); }},
                {"at the end", [](Rig& rig) { gst_harness_push_event(rig.harness, gst_event_new_eos()); }},
-               {"in somebody's hand", [](Rig& rig) { rig.call("stop"); }},
+               {"under manual control", [](Rig& rig) { rig.call("stop"); }},
                {"flushed", [](Rig& rig) {
                   gst_harness_push_event(rig.harness, gst_event_new_flush_start());
                   gst_harness_push_event(rig.harness, gst_event_new_flush_stop(FALSE));
@@ -112,20 +114,20 @@ GST_START_TEST(who_obeys_no_frame_obeys_no_event) {
     begin(rig);
     set_time(rig, 110 * kMs);
     c.stop(rig);
-    fail_unless(told(rig, right).empty(), "%s", c.what);
+    fail_unless(states_after(rig, right).empty(), "%s", c.what);
   }
   Rig stored("watchdog-timeout=0");
   begin(stored);
-  fail_unless(told(stored, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs)).empty());
+  fail_unless(states_after(stored, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs)).empty());
 }
 GST_END_TEST
 
-// Sensors that go on speaking do not keep a head going whose camera has died.
+// Decisions that continue do not keep the head moving when the frames have stopped.
 GST_START_TEST(frames_alone_keep_the_watchdog_quiet) {
   Rig rig("watchdog-timeout=200000000", Source::live);
   begin(rig);
   set_time(rig, 250 * kMs);
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 250 * kMs)) == "turning");
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 250 * kMs)) == "turning");
   GstClockTime now = 0;
   for (bool stopped = false; !stopped;) {
     now = rig.crank();
@@ -133,14 +135,14 @@ GST_START_TEST(frames_alone_keep_the_watchdog_quiet) {
     stopped = rig.states() == "stopped";
   }
   fail_unless(now >= 300 * kMs);
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_LEFT, now)).empty());
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_LEFT, now)).empty());
 }
 GST_END_TEST
 
 GST_START_TEST(limits_hold) {
   Rig rig("watchdog-timeout=0 pan-min=-10 pan-max=10", Source::live);
   begin(rig);
-  told(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs));
+  states_after(rig, decision(CERBERUS_FUSION_TURN_RIGHT, 95 * kMs));
   double most = 0;
   while (rig.crank() < 3 * GST_SECOND && most < 9.99)
     for (const CerberusPose& pose : rig.poses()) most = std::max(most, pose.pan);
@@ -152,8 +154,8 @@ GST_START_TEST(a_target_is_followed_with_frames) {
   Rig rig("watchdog-timeout=0", Source::live);
   set_time(rig, 100 * kMs);
   GstBuffer* frame = frame_at(60 * kMs);
-  add(frame, somebody(3, 10));
-  add(frame, somebody(4, -10));
+  add(frame, person(3, 10));
+  add(frame, person(4, -10));
   const CerberusFusion hold = decision(CERBERUS_FUSION_HOLD, 90 * kMs);
   cerberus_buffer_set_fusion(frame, &hold);
   GstBuffer* next = gst_buffer_copy(frame);
@@ -161,15 +163,16 @@ GST_START_TEST(a_target_is_followed_with_frames) {
   GstBuffer* last = gst_buffer_copy(frame);
   GST_BUFFER_PTS(last) = 62 * kMs;
   rig.push(frame);
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TRACK, 95 * kMs, 4)).empty());
-  rig.push(next);  // that knew less: it is the event's target that is looked for on it
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TRACK, 95 * kMs, 4)).empty());
+  rig.push(next);  // an older decision: the event's target is looked up among this frame's tracks
   const auto messages = rig.messages();
   fail_unless(messages.size() == 1 && messages[0].state == "tracking", "%zu", messages.size());
   fail_unless(messages[0].reason.find("track 4") != std::string::npos, "%s", messages[0].reason.c_str());
 
   fail_unless(rig.follow(3));
   rig.push(last);
-  fail_unless(told(rig, decision(CERBERUS_FUSION_TURN_LEFT, 97 * kMs)).empty());  // who was chosen is here
+  fail_unless(states_after(rig, decision(CERBERUS_FUSION_TURN_LEFT, 97 * kMs))
+                  .empty());  // the chosen track is on the frame
 }
 GST_END_TEST
 
@@ -180,8 +183,8 @@ static Suite* pantiltsink_between_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, it_is_obeyed_at_once);
   tcase_add_test(tc, a_frame_that_was_decided_before_does_not_take_it_back);
-  tcase_add_test(tc, strangers_are_not_obeyed);
-  tcase_add_test(tc, who_obeys_no_frame_obeys_no_event);
+  tcase_add_test(tc, events_of_another_head_are_ignored);
+  tcase_add_test(tc, a_head_that_ignores_frames_ignores_events);
   tcase_add_test(tc, frames_alone_keep_the_watchdog_quiet);
   tcase_add_test(tc, limits_hold);
   tcase_add_test(tc, a_target_is_followed_with_frames);

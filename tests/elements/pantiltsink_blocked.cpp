@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A driver that blocks for ever keeps nobody: not a change of state, not a frame on its way, not the next element.
+// A driver that blocks for ever delays nothing else: no change of state, no frame on its way, no other element.
 //
-// Beside the promise (promises.h), no round may take seconds, whatever the load: the element's own patience with a
-// driver is 10 s, so that is what a lock held at the wrong moment costs.
+// Beside the time limit (promises.h), no round may take seconds, whatever the load: the element waits 10 s for a
+// driver, which is what a lock held at the wrong moment costs.
 #include <array>
 #include <chrono>
 #include <future>
@@ -78,7 +78,7 @@ class Meeting {
   }
 
   void meet() {
-    took_place_ = true;  // before there is anybody to see it
+    took_place_ = true;  // before another thread can see it
     pusher_ = std::thread([this] {
       if (what_ == What::segment) rig_.begin();
       if (what_ == What::frame) gst_harness_push(rig_.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT));
@@ -198,9 +198,8 @@ GST_START_TEST(a_frame_that_is_early_for_playing_goes_on_by_itself) {
 }
 GST_END_TEST
 
-// The base class may refuse PLAYING: the head obeys nobody
-// then, as before, and does nothing that it was told in PAUSED.
-GST_START_TEST(who_does_not_come_to_playing_stands) {
+// The base class may refuse PLAYING: the head then executes no command, as before, and none that was given in PAUSED.
+GST_START_TEST(a_head_that_does_not_reach_playing_stands) {
   Pipe record;
   Rig rig(scripted("record " + record.writer()), Source::live);
   change(rig, GST_STATE_PAUSED);
@@ -299,7 +298,7 @@ static Suite* pantiltsink_blocked_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, what_comes_in_the_middle_of_a_change_of_state_does_not_hold_it_up);
   tcase_add_test(tests, a_frame_that_is_early_for_playing_goes_on_by_itself);
-  tcase_add_test(tests, who_does_not_come_to_playing_stands);
+  tcase_add_test(tests, a_head_that_does_not_reach_playing_stands);
   tcase_add_test(tests, a_blocked_driver_delays_no_change_of_state);
   tcase_add_test(tests, a_frame_that_waits_for_the_driver_lets_go_of_a_flush_and_of_a_stop);
   tcase_add_test(tests, a_head_whose_driver_blocks_is_not_free_until_it_is_through);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pantiltsink's action signal `follow`: the application chooses whom the head turns to.
+// pantiltsink's action signal `follow`: the application chooses the track that the head follows.
 #include "head_rig.h"
 
 namespace {
@@ -8,7 +8,7 @@ using namespace head_rig;
 
 constexpr double kFirst = -10, kSecond = 10;  // bearings
 
-// Two people stand there. The usual choice is the first: the feet are lower, and fusion, where there is any, says so.
+// Two people stand there. The usual choice is the first: the feet are lower, and a fusion decision, if any, names it.
 struct Scene {
   Rig rig;
   bool fused;
@@ -55,9 +55,9 @@ struct Scene {
 
  private:
   void stand(GstBuffer* buffer, guint id, double bearing, double lower) const {
-    Person person = somebody(id, bearing - pan);
-    person.y += lower;
-    add(buffer, person);
+    Person shown = person(id, bearing - pan);
+    shown.y += lower;
+    add(buffer, shown);
   }
 };
 
@@ -81,7 +81,7 @@ GST_START_TEST(the_chosen_one_is_followed_whatever_the_usual_choice_is_until_aut
 }
 GST_END_TEST
 
-GST_START_TEST(while_the_chosen_one_is_away_nobody_else_is_turned_to) {
+GST_START_TEST(while_the_chosen_track_is_away_no_other_is_followed) {
   for (const bool fused : {false, true}) {
     Scene scene(fused);
     fail_unless(scene.rig.follow(2));
@@ -99,7 +99,7 @@ GST_START_TEST(while_the_chosen_one_is_away_nobody_else_is_turned_to) {
 }
 GST_END_TEST
 
-// Nobody is in the picture any more, and a sensor heard somebody on the left: perhaps the one.
+// No track is left in the picture, and a sensor on the left detects: it may be the chosen person.
 GST_START_TEST(while_the_chosen_one_is_away_sensors_are_obeyed) {
   Scene scene;
   fail_unless(scene.rig.follow(2));
@@ -114,7 +114,7 @@ GST_START_TEST(while_the_chosen_one_is_away_sensors_are_obeyed) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_stays_away_is_warned_of_once_and_forgotten) {
+GST_START_TEST(a_chosen_track_that_stays_away_is_warned_of_once_and_given_up) {
   for (const bool fused : {false, true}) {
     Scene scene(fused);
     fail_unless(scene.rig.follow(2));
@@ -131,7 +131,7 @@ GST_START_TEST(who_stays_away_is_warned_of_once_and_forgotten) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile) {
+GST_START_TEST(a_chosen_track_that_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile) {
   Scene scene;
   fail_unless(scene.rig.follow(4000000000));
   scene.frames(50);
@@ -165,7 +165,7 @@ GST_START_TEST(of_what_the_application_asks_for_the_last_counts) {
 }
 GST_END_TEST
 
-GST_START_TEST(nobody_is_chosen_where_there_is_no_head_nor_by_no_identity) {
+GST_START_TEST(no_track_is_chosen_without_a_head_nor_without_an_identity) {
   Scene scene;
   fail_if(scene.rig.follow(0));
   scene.frames(5);
@@ -209,18 +209,18 @@ GST_START_TEST(a_flush_does_not_unmake_the_choice) {
 GST_END_TEST
 
 Suite* pantiltsink_follow_suite() {
-  Suite* suite = suite_create("pantiltsink told whom to follow");
+  Suite* suite = suite_create("pantiltsink follow");
   TCase* tests = tcase_create("all");
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_test(tests, the_chosen_one_is_followed_whatever_the_usual_choice_is_until_auto);
-  tcase_add_test(tests, while_the_chosen_one_is_away_nobody_else_is_turned_to);
+  tcase_add_test(tests, while_the_chosen_track_is_away_no_other_is_followed);
   tcase_add_test(tests, while_the_chosen_one_is_away_sensors_are_obeyed);
-  tcase_add_test(tests, who_stays_away_is_warned_of_once_and_forgotten);
-  tcase_add_test(tests, who_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile);
+  tcase_add_test(tests, a_chosen_track_that_stays_away_is_warned_of_once_and_given_up);
+  tcase_add_test(tests, a_chosen_track_that_never_comes_is_warned_of_and_the_usual_choice_goes_on_meanwhile);
   tcase_add_test(tests, of_what_the_application_asks_for_the_last_counts);
-  tcase_add_test(tests, nobody_is_chosen_where_there_is_no_head_nor_by_no_identity);
+  tcase_add_test(tests, no_track_is_chosen_without_a_head_nor_without_an_identity);
   tcase_add_test(tests, a_flush_does_not_unmake_the_choice);
   return suite;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pantiltsink whose limits are changed while it plays: they count at once, and the head stays safe.
+// pantiltsink whose limits change while it plays: they apply at once, and the head stays safe.
 #include <algorithm>
 
 #include "head_rig.h"
@@ -31,11 +31,11 @@ GST_START_TEST(a_head_that_is_beyond_a_new_limit_returns_to_it_from_the_next_fra
     fail_unless(std::fabs(poses.back().*axis.position - axis.from) < 1e-9);
     fail_unless(rig.call("stop"));  // it is to stay where it is, and may not
     poses = act(rig, CERBERUS_FUSION_HOLD, 75, 1);
-    const GstClockTime told = poses.back().valid_until;
+    const GstClockTime published = poses.back().valid_until;
     g_object_set(rig.element, axis.property, axis.limit, nullptr);
     poses = act(rig, CERBERUS_FUSION_HOLD, 76, 1);
-    // What was told goes first; what follows is on the way back.
-    fail_unless_equals_uint64(poses.front().valid_from, told);
+    // Published poses stay valid; the return begins after them.
+    fail_unless_equals_uint64(poses.front().valid_from, published);
     fail_unless(poses.back().moving, "%s", axis.property);
     double last = axis.from;
     for (const CerberusPose& pose : act(rig, CERBERUS_FUSION_HOLD, 77, 75)) {
@@ -67,7 +67,7 @@ GST_START_TEST(a_head_on_its_way_beyond_a_new_limit_stops_at_it) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_turns_as_far_as_the_stop_turns_as_far_as_the_new_one) {
+GST_START_TEST(a_turn_to_the_stop_ends_at_the_new_stop) {
   Rig rig("pan-max=20");
   auto poses = act(rig, CERBERUS_FUSION_TURN_RIGHT, 0, 50);
   fail_unless(std::fabs(poses.back().pan - 20) < 1e-9);
@@ -89,7 +89,8 @@ GST_START_TEST(a_new_speed_holds_after_the_latency_and_braking) {
   g_object_set(rig.element, "max-speed", 10.0, nullptr);
   act(rig, CERBERUS_FUSION_HOLD, 25, 1);
   for (const CerberusPose& pose : act(rig, CERBERUS_FUSION_HOLD, 26, 4)) {
-    if (pose.valid_from < 1240 * GST_MSECOND) continue;  // told at 0.96, obeyed at 1.02, from 90 in 133 ms
+    if (pose.valid_from < 1240 * GST_MSECOND)
+      continue;  // commanded at 0.96, in effect at 1.02, from 90 in 133 ms
     fail_unless(std::fabs(pose.pan_speed - 10) < 1e-6, "%g", pose.pan_speed);
   }
   g_object_set(rig.element, "max-speed", 80.0, nullptr);
@@ -120,7 +121,7 @@ GST_START_TEST(limits_that_cannot_be_are_warned_of_and_change_nothing) {
                   "pan-min -170 and pan-max -10 exclude 0: the head could not return to where it looks "
                   "straight ahead. The limits stay as they were.\n",
               "%s", text.c_str());
-  g_object_set(rig.element, "turn-speed", 30.0, nullptr);  // something else: not said again
+  g_object_set(rig.element, "turn-speed", 30.0, nullptr);  // another property: no second message
   text = rig.warnings();
   fail_unless(text.empty(), "%s", text.c_str());
   auto poses = act(rig, CERBERUS_FUSION_TURN_RIGHT, 25, 25);
@@ -183,9 +184,9 @@ GST_START_TEST(in_a_pause_the_head_stays_and_the_limits_count_afterwards) {
 }
 GST_END_TEST
 
-GST_START_TEST(what_was_told_of_the_way_stays_true) {
+GST_START_TEST(published_poses_stay_valid) {
   Rig rig("start-pan=50");
-  constexpr GstClockTime kSlow = GST_SECOND / 2;  // told until the next one: longer than the latency
+  constexpr GstClockTime kSlow = GST_SECOND / 2;  // published until the next one: longer than the latency
   rig.push(frame_at(0, kSlow));
   fail_unless_equals_uint64(rig.poses().back().valid_until, kSlow);
   g_object_set(rig.element, "pan-max", 30.0, nullptr);
@@ -197,7 +198,7 @@ GST_START_TEST(what_was_told_of_the_way_stays_true) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_real_head_is_told_of_limits_when_the_pause_ends) {
+GST_START_TEST(a_real_head_receives_limits_when_the_pause_ends) {
   Pipe record;
   Rig rig("driver=scripted latency=0 script=\"record " + record.writer() + "\"", Source::live);
   fail_unless(record.line().starts_with("open"));
@@ -222,7 +223,7 @@ GST_START_TEST(with_a_clock_a_limit_counts_without_a_frame) {
   g_object_set(rig.element, "pan-max", 45.0, nullptr);
   const std::string limit = record.line();
   fail_unless(limit.starts_with("limit ") && limit.find(" 0.7853") != std::string::npos, "%s", limit.c_str());
-  // The driver may answer later than the element waits, which asks again when the clock has gone on.
+  // The driver may answer later than the element waits; the element queries it again when the clock has advanced.
   for (double pan = 0; std::fabs(pan - 45) > 1e-9; rig.crank())
     for (const CerberusPose& pose : rig.poses()) pan = pose.pan;
 }
@@ -267,15 +268,15 @@ Suite* pantiltsink_limits_suite() {
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_test(tests, a_head_that_is_beyond_a_new_limit_returns_to_it_from_the_next_frame_on);
   tcase_add_test(tests, a_head_on_its_way_beyond_a_new_limit_stops_at_it);
-  tcase_add_test(tests, who_turns_as_far_as_the_stop_turns_as_far_as_the_new_one);
+  tcase_add_test(tests, a_turn_to_the_stop_ends_at_the_new_stop);
   tcase_add_test(tests, a_new_speed_holds_after_the_latency_and_braking);
   tcase_add_test(tests, a_new_acceleration_holds_for_the_next_turn);
   tcase_add_test(tests, limits_that_cannot_be_are_warned_of_and_change_nothing);
   tcase_add_test(tests, a_refused_limit_reads_as_the_one_in_force);
   tcase_add_test(tests, the_ranges_hold_what_a_head_accepts);
   tcase_add_test(tests, in_a_pause_the_head_stays_and_the_limits_count_afterwards);
-  tcase_add_test(tests, what_was_told_of_the_way_stays_true);
-  tcase_add_test(tests, a_real_head_is_told_of_limits_when_the_pause_ends);
+  tcase_add_test(tests, published_poses_stay_valid);
+  tcase_add_test(tests, a_real_head_receives_limits_when_the_pause_ends);
   tcase_add_test(tests, with_a_clock_a_limit_counts_without_a_frame);
   tcase_add_test(tests, a_driver_that_refuses_limits_is_warned_of);
   tcase_add_test(tests, what_is_read_at_the_start_says_so);

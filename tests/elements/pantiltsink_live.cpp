@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // pantiltsink with a clock: poses by the clock, the watchdog,
 // drivers that fail, and every way of asking for what cannot be.
-#include <chrono>  // before gst-check, whose macros bite standard headers
+#include <chrono>  // before gst-check, whose macros break standard headers
 
 #include "../support/entries.h"
 #include "../support/says.h"
@@ -12,7 +12,7 @@ namespace {
 
 using namespace head_rig;
 
-// Waits for a pose that says so; the clock stands still.
+// Waits for a pose for which says() is true; the clock stands still.
 template <typename Says>
 CerberusPose wait_for_pose(Rig& rig, Says says) {
   for (;;) {
@@ -31,9 +31,9 @@ GST_START_TEST(at_rest_poses_come_five_times_a_second) {
   int poses = 0;
   while (rig.time() < start + GST_SECOND) {
     rig.crank();
-    const auto told = rig.poses();
-    poses += told.size();
-    for (const CerberusPose& pose : told) {
+    const auto published = rig.poses();
+    poses += published.size();
+    for (const CerberusPose& pose : published) {
       fail_if(pose.moving);
       fail_unless_equals_uint64(pose.valid_until, GST_CLOCK_TIME_NONE);
     }
@@ -121,7 +121,7 @@ GST_START_TEST(when_frames_stay_away_an_order_is_over) {
   fail_unless_equals_string(messages[0].state.c_str(), "manual");
   while (rig.time() < 2 * GST_SECOND) rig.crank();
   for (const CerberusPose& pose : rig.poses()) fail_unless(pose.pan == stopped.pan);
-  // Who orders now knows that no frames come.
+  // A manual command that is given after the timeout needs no frames.
   fail_unless(rig.call("move-to", 30, 0));
   while (rig.time() < 5 * GST_SECOND) rig.crank();
   fail_unless(std::fabs(rig.poses().back().pan - 30) < 1e-9);
@@ -135,7 +135,7 @@ GST_START_TEST(in_pause_a_head_with_a_clock_stands_still) {
   while (rig.time() < 500 * GST_MSECOND) rig.crank();
   const double before = rig.poses().back().pan;
   fail_unless_equals_int(gst_element_set_state(rig.element, GST_STATE_PAUSED), GST_STATE_CHANGE_SUCCESS);
-  // Told to the end: at 40 degrees a second for the latency of 60 ms, then braking at 600.
+  // Published to the end: at 40 degrees a second for the latency of 60 ms, then braking at 600.
   const auto poses = rig.poses();
   fail_unless(poses.front().moving && !poses.back().moving);
   fail_unless_equals_uint64(poses.back().valid_until, GST_CLOCK_TIME_NONE);
@@ -226,8 +226,8 @@ GST_START_TEST(a_driver_that_fails_warns_once_and_the_video_goes_on) {
 }
 GST_END_TEST
 
-// What the element says when it does not start; it says it once.
-// A driver on a thread of its own may say it a moment later.
+// The error text when the element does not start, posted once. A driver on a thread of its own may fail a moment
+// later.
 std::string refusal(const std::string& properties, const char* script = nullptr, const char* head = nullptr) {
   GstElement* element = gst_parse_launch(("pantiltsink " + properties).c_str(), nullptr);
   gst_object_ref_sink(element);
@@ -275,7 +275,7 @@ GST_START_TEST(what_cannot_be_is_refused_with_its_name) {
 }
 GST_END_TEST
 
-// GStreamer loses a message with a field that is no UTF-8, and says so in a warning of its own.
+// GStreamer drops a message with a field that is not UTF-8 and logs a warning of its own.
 GST_START_TEST(whatever_a_driver_says_arrives) {
   fail_unless(says(refusal(scripted("", "attic"), "open fail T\xfcr zu"), "cannot be opened: T\\xfcr zu."));
   fail_unless(says(refusal(scripted("", "attic"), "\xff"), "script: '\\xff'"));
@@ -285,8 +285,8 @@ GST_START_TEST(whatever_a_driver_says_arrives) {
   g_object_set(rig.element, "script", "command 2 fail T\xfcr zu", nullptr);
   gst_element_set_state(rig.element, GST_STATE_PLAYING);
   rig.begin();
-  bool warned = false, told = false;
-  for (int frames = 0; !warned || !told;) {
+  bool warned = false, reported = false;
+  for (int frames = 0; !warned || !reported;) {
     const auto kinds = static_cast<GstMessageType>(GST_MESSAGE_WARNING | GST_MESSAGE_ELEMENT);
     g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(rig.bus, 50 * GST_MSECOND, kinds);
     if (!message) {  // a driver that is still at the command before gets the newest one only
@@ -296,7 +296,7 @@ GST_START_TEST(whatever_a_driver_says_arrives) {
     }
     const HeadState state(message);
     if (!state.state.empty()) {
-      if (state.state == "fault") told = says(state.reason.c_str(), "T\\xfcr zu");
+      if (state.state == "fault") reported = says(state.reason.c_str(), "T\\xfcr zu");
       continue;
     }
     fail_unless(GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING);
@@ -330,7 +330,7 @@ GST_START_TEST(a_head_that_cannot_be_opened_is_an_error_however_late) {
 }
 GST_END_TEST
 
-// Nothing else happens in PAUSED that could tell it.
+// Nothing else happens in PAUSED that could trigger the report.
 GST_START_TEST(a_head_that_cannot_be_opened_says_so_in_paused_too) {
   Pipe gate;
   const std::string line =
@@ -364,7 +364,7 @@ GST_START_TEST(one_head_has_one_sink) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_strangers_pose_event_passes_and_changes_nothing) {
+GST_START_TEST(a_pose_event_of_another_head_passes_and_changes_nothing) {
   Rig rig;
   rig.poses();
   CerberusPose pose;
@@ -431,7 +431,7 @@ Suite* pantiltsink_live_suite() {
   tcase_add_test(tests, a_head_that_cannot_be_opened_is_an_error_however_late);
   tcase_add_test(tests, a_head_that_cannot_be_opened_says_so_in_paused_too);
   tcase_add_test(tests, one_head_has_one_sink);
-  tcase_add_test(tests, a_strangers_pose_event_passes_and_changes_nothing);
+  tcase_add_test(tests, a_pose_event_of_another_head_passes_and_changes_nothing);
   tcase_add_test(tests, caps_without_a_size_are_refused);
   tcase_add_test(tests, many_starts_and_stops_leave_no_thread);
   return suite;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a head does is told in the order in which it did it,
-// whichever thread says so and whoever keeps the one that does.
+// A head's reports are published in the order of its actions, whichever thread reports and whichever callback blocks.
 #include <future>
 #include <thread>
 
@@ -10,7 +9,7 @@ namespace {
 
 using namespace head_rig;
 
-// Keeps whoever posts the first state of this name until it is let go.
+// Blocks the thread that posts the first state of this name until it is released.
 class Keeper {
  public:
   Keeper(Rig& rig, std::string state) : rig_(rig), state_(std::move(state)) {
@@ -23,8 +22,8 @@ class Keeper {
  private:
   static GstBusSyncReply on_message(GstBus*, GstMessage* message, gpointer keeper) {
     auto* self = static_cast<Keeper*>(keeper);
-    const HeadState told(message);
-    if (self->state_ != told.state || self->kept_) return GST_BUS_PASS;
+    const HeadState reported(message);
+    if (self->state_ != reported.state || self->kept_) return GST_BUS_PASS;
     self->kept_ = true;
     self->there_.set_value();
     self->go_.get_future().wait();
@@ -39,7 +38,7 @@ class Keeper {
 
 }  // namespace
 
-GST_START_TEST(who_is_kept_while_posting_is_not_overtaken) {
+GST_START_TEST(a_thread_blocked_while_posting_is_not_overtaken) {
   Rig rig("watchdog-timeout=0", Source::live);
   Keeper keeper(rig, "turning");
   std::thread frames([&] { gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT)); });
@@ -54,8 +53,8 @@ GST_START_TEST(who_is_kept_while_posting_is_not_overtaken) {
 }
 GST_END_TEST
 
-// A frame has said what the head is to do, then waits for the driver.
-GST_START_TEST(who_waits_for_the_driver_is_not_overtaken) {
+// The head was commanded by a frame and now waits for the driver.
+GST_START_TEST(a_thread_that_waits_for_the_driver_is_not_overtaken) {
   Pipe gate, record;
   Rig rig("driver=scripted script=\"record " + record.writer() + "; command wait " + gate.reader() + "\"");
   rig.messages();
@@ -70,14 +69,14 @@ GST_START_TEST(who_waits_for_the_driver_is_not_overtaken) {
 }
 GST_END_TEST
 
-// Whoever hears of a state may answer from where he hears it.
-GST_START_TEST(an_answer_is_told_behind_what_it_answers) {
+// A handler of a state message may call the element from within.
+GST_START_TEST(a_reply_is_published_after_its_cause) {
   Rig rig("watchdog-timeout=0", Source::live);
   gst_bus_set_sync_handler(
       rig.bus,
       [](GstBus*, GstMessage* message, gpointer answering) {
-        const HeadState told(message);
-        if (told.state == "turning") fail_unless(static_cast<Rig*>(answering)->call("stop"));
+        const HeadState reported(message);
+        if (reported.state == "turning") fail_unless(static_cast<Rig*>(answering)->call("stop"));
         return GST_BUS_PASS;
       },
       &rig, nullptr);
@@ -88,13 +87,13 @@ GST_START_TEST(an_answer_is_told_behind_what_it_answers) {
 }
 GST_END_TEST
 
-// Whoever tells of one head is kept until the sink drives another: each is told by its own name.
-GST_START_TEST(of_each_head_is_told_by_its_name) {
+// A thread that delivers reports of one head is blocked until the sink drives another: each report names its own head.
+GST_START_TEST(each_report_names_its_head) {
   Rig rig("head=first", Source::live);
   gst_bus_set_sync_handler(
       rig.bus,
-      [](GstBus*, GstMessage* message, gpointer told) {
-        auto* rig = static_cast<Rig*>(told);
+      [](GstBus*, GstMessage* message, gpointer data) {
+        auto* rig = static_cast<Rig*>(data);
         const HeadState said(message);
         if (said.state != "manual" || said.head != "first") return GST_BUS_PASS;
         gst_element_set_state(rig->element, GST_STATE_READY);
@@ -108,15 +107,15 @@ GST_START_TEST(of_each_head_is_told_by_its_name) {
   gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
   std::string all;
   while (GstMessage* message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ELEMENT)) {
-    const HeadState told(message);
-    if (!told.state.empty()) all += told.head + " " + told.state + ". ";
+    const HeadState reported(message);
+    if (!reported.state.empty()) all += reported.head + " " + reported.state + ". ";
     gst_message_unref(message);
   }
   fail_unless_equals_string(all.c_str(), "first manual. first stopped. second manual. ");
 }
 GST_END_TEST
 
-// However long who posts is kept, and however often the state changes meanwhile.
+// However long the posting thread is blocked, and however often the state changes meanwhile.
 GST_START_TEST(a_warning_is_not_lost_among_states) {
   Rig rig;
   Keeper keeper(rig, "manual");
@@ -124,7 +123,7 @@ GST_START_TEST(a_warning_is_not_lost_among_states) {
   keeper.wait();
   fail_unless(rig.call("auto") && rig.follow(7));
   GstBuffer* here = frame_at(0);
-  add(here, somebody(7, 5));
+  add(here, person(7, 5));
   rig.push(here);
   rig.push(frame_at(kFrame));
   rig.push(frame_at(6 * GST_SECOND));  // without 7 for longer than it is waited for
@@ -136,8 +135,8 @@ GST_START_TEST(a_warning_is_not_lost_among_states) {
   std::string last;
   while (GstMessage* message = gst_bus_pop(rig.bus)) {
     warnings += GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING;
-    const HeadState told(message);
-    if (!told.state.empty()) last = told.state;
+    const HeadState reported(message);
+    if (!reported.state.empty()) last = reported.state;
     gst_message_unref(message);
   }
   fail_unless_equals_int(warnings, 1);
@@ -150,11 +149,11 @@ static Suite* pantiltsink_order_suite() {
   Suite* suite = suite_create("pantiltsink's messages in their order");
   TCase* tests = tcase_create("all");
   suite_add_tcase(suite, tests);
-  tcase_add_test(tests, who_is_kept_while_posting_is_not_overtaken);
-  tcase_add_test(tests, who_waits_for_the_driver_is_not_overtaken);
-  tcase_add_test(tests, an_answer_is_told_behind_what_it_answers);
+  tcase_add_test(tests, a_thread_blocked_while_posting_is_not_overtaken);
+  tcase_add_test(tests, a_thread_that_waits_for_the_driver_is_not_overtaken);
+  tcase_add_test(tests, a_reply_is_published_after_its_cause);
   tcase_add_test(tests, a_warning_is_not_lost_among_states);
-  tcase_add_test(tests, of_each_head_is_told_by_its_name);
+  tcase_add_test(tests, each_report_names_its_head);
   return suite;
 }
 

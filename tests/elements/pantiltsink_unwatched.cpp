@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A head that the clock moves is moved by nobody while there is no thread to watch over it.
+// A clock-driven head does not move while there is no thread for its watchdog.
 #include <dlfcn.h>
 #include <pthread.h>
 
@@ -15,7 +15,7 @@ std::atomic<bool> no_threads = false;
 
 }  // namespace
 
-// In place of the system's, which has none left when a test says so.
+// Replaces the system's thread creation, which fails while a test demands it.
 extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* how, void* (*body)(void*),
                               void* data) {
   using Create = int (*)(pthread_t*, const pthread_attr_t*, void* (*)(void*), void*);
@@ -32,7 +32,7 @@ struct WithoutThreads {
   ~WithoutThreads() { no_threads = false; }
 };
 
-// It was said once what is the matter.
+// The cause was reported once.
 void assert_complained(Rig& rig) {
   g_autoptr(GstMessage) message = gst_bus_pop_filtered(rig.bus, GST_MESSAGE_ERROR);
   fail_unless(message != nullptr);
@@ -76,32 +76,32 @@ GST_START_TEST(without_a_thread_a_head_with_a_clock_does_not_come_to_playing) {
 GST_END_TEST
 
 // A handler of messages runs in the thread that posts: no lock is held that it would need to begin anew.
-GST_START_TEST(who_hears_that_there_is_no_thread_may_begin_anew_at_once) {
+GST_START_TEST(a_handler_of_the_error_may_restart_at_once) {
   Pipe record;
   Rig rig("driver=scripted script=\"record " + record.writer() + "\"", Source::live);
-  struct Heard {
+  struct Received {
     GstElement* element;
     int errors = 0;
     GstStateChangeReturn anew = GST_STATE_CHANGE_FAILURE;
-  } heard{rig.element};
-  const auto hear = [](GstBus*, GstMessage* message, gpointer data) {
-    auto& heard = *static_cast<Heard*>(data);
+  } received{rig.element};
+  const auto on_error = [](GstBus*, GstMessage* message, gpointer data) {
+    auto& received = *static_cast<Received*>(data);
     if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ERROR) return GST_BUS_PASS;
-    ++heard.errors;
+    ++received.errors;
     no_threads = false;
-    gst_element_set_state(heard.element, GST_STATE_READY);
-    heard.anew = gst_element_set_state(heard.element, GST_STATE_PLAYING);
+    gst_element_set_state(received.element, GST_STATE_READY);
+    received.anew = gst_element_set_state(received.element, GST_STATE_PLAYING);
     return GST_BUS_PASS;
   };
-  gst_bus_set_sync_handler(rig.bus, hear, &heard, nullptr);
+  gst_bus_set_sync_handler(rig.bus, on_error, &received, nullptr);
   gst_element_set_state(rig.element, GST_STATE_PAUSED);
   {
     const WithoutThreads none;
     gst_element_set_state(rig.element, GST_STATE_PLAYING);
   }
   gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
-  fail_unless_equals_int(heard.errors, 1);
-  fail_unless_equals_int(heard.anew, GST_STATE_CHANGE_SUCCESS);
+  fail_unless_equals_int(received.errors, 1);
+  fail_unless_equals_int(received.anew, GST_STATE_CHANGE_SUCCESS);
   rig.begin();  // and it plays: what comes next is the order that it is given, 20 degrees, in radians
   fail_unless(rig.call("move-to", 20, 0));
   std::string line;
@@ -123,11 +123,11 @@ GST_START_TEST(without_a_thread_no_frame_of_a_live_stream_is_taken) {
   const std::vector<Message> messages = rig.messages();
   fail_unless_equals_int(static_cast<int>(messages.size()), 1);
   fail_unless_equals_string(messages[0].state.c_str(), "stopped");
-  fail_unless_equals_string(messages[0].reason.c_str(), "nobody watches over it");
+  fail_unless_equals_string(messages[0].reason.c_str(), "no thread for the watchdog");
   fail_unless_equals_int(gst_harness_push(rig.harness, frame_with(CERBERUS_FUSION_TURN_RIGHT, kFrame)),
                          GST_FLOW_ERROR);
   assert_no_complaint(rig);
-  // Nor is it in anybody's hand, whatever is flushed.
+  // Nor does a manual command move it, whatever is flushed.
   fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_start()));
   fail_unless(gst_harness_push_event(rig.harness, gst_event_new_flush_stop(TRUE)));
   fail_unless(rig.call("move-to", 10, 0));
@@ -136,7 +136,7 @@ GST_START_TEST(without_a_thread_no_frame_of_a_live_stream_is_taken) {
   later.base = GST_SECOND;
   fail_unless(gst_harness_push_event(rig.harness, gst_event_new_segment(&later)));
   fail_unless(rig.poses().back().pan == 0);  // in a second
-  // Whoever lets it begin anew may have a thread by then.
+  // The next start may find a thread.
   gst_element_set_state(rig.element, GST_STATE_READY);
   gst_element_set_state(rig.element, GST_STATE_PLAYING);
   rig.messages();
@@ -154,7 +154,7 @@ static Suite* pantiltsink_unwatched_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, without_a_thread_a_head_with_a_clock_does_not_come_to_playing);
-  tcase_add_test(tests, who_hears_that_there_is_no_thread_may_begin_anew_at_once);
+  tcase_add_test(tests, a_handler_of_the_error_may_restart_at_once);
   tcase_add_test(tests, without_a_thread_no_frame_of_a_live_stream_is_taken);
   return suite;
 }

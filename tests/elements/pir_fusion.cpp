@@ -5,12 +5,12 @@
 #include <initializer_list>
 #include <limits>
 
+#include "filled.h"
 #include "support.h"
-#include "told.h"
 
 #include <gst/check/gstharness.h>
 
-using told::assert_same, told::searching, told::turning;
+using filled::assert_same, filled::searching, filled::turning;
 
 namespace {
 
@@ -156,7 +156,7 @@ START_TEST(pir_caps_that_are_incomplete_or_absurd_are_refused_in_words) {
 }
 END_TEST
 
-START_TEST(a_pir_message_tells_every_reading) {
+START_TEST(a_pir_message_contains_every_reading) {
   CerberusPir pir;
   cerberus_pir_init(&pir);
   pir.n_sensors = 3;
@@ -175,11 +175,11 @@ START_TEST(a_pir_message_tells_every_reading) {
   fail_unless(data[0] == 1 && data[1] == 0 && data[2] == 2);
   fail_unless_equals_uint64(running_time_of(message), 5 * GST_SECOND);
 
-  g_autoptr(GstMessage) stranger = gst_message_new_element(nullptr, gst_structure_new_empty("something"));
+  g_autoptr(GstMessage) foreign = gst_message_new_element(nullptr, gst_structure_new_empty("something"));
   g_autoptr(GstMessage) empty =
       gst_message_new_element(nullptr, gst_structure_new_empty(CERBERUS_MESSAGE_PIR));
   g_autoptr(GstMessage) eos = gst_message_new_eos(nullptr);
-  for (GstMessage* other : {stranger, empty, eos}) {
+  for (GstMessage* other : {foreign, empty, eos}) {
     fail_if(cerberus_message_parse_pir(other));
     fail_if(cerberus_message_parse_fusion(other));
     fail_if(cerberus_message_parse_pantilt(other));
@@ -233,7 +233,7 @@ START_TEST(an_event_between_frames_tells_the_whole_decision_and_when) {
       gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM, gst_structure_copy(gst_event_get_structure(right)));
   g_autoptr(GstEvent) eos = gst_event_new_eos();
   fail_if(cerberus_event_parse_fusion(upwards) || cerberus_event_parse_fusion(eos));
-  fusion.decided = GST_CLOCK_TIME_NONE;  // nobody could tell what it goes before
+  fusion.decided = GST_CLOCK_TIME_NONE;  // its order among decisions would be undefined
   EXPECT_CRITICAL(fusion_event("eye", fusion));
   EXPECT_CRITICAL(cerberus_event_new_fusion(nullptr));
   EXPECT_CRITICAL(cerberus_event_parse_fusion(nullptr));
@@ -241,7 +241,7 @@ START_TEST(an_event_between_frames_tells_the_whole_decision_and_when) {
 END_TEST
 
 // A C structure, a message and an event hold what an application has put in.
-START_TEST(nonsense_in_a_decision_moves_nobody) {
+START_TEST(invalid_numbers_in_a_decision_move_no_head) {
   for (const int action : {257, -1, 6}) {  // the first is 1 in a byte
     CerberusFusion fusion = searching();
     std::memcpy(&fusion.action, &action, sizeof action);  // as C would
@@ -255,9 +255,9 @@ START_TEST(nonsense_in_a_decision_moves_nobody) {
     fail_unless(cerberus_buffer_set_fusion(frame, &fusion));
     g_autoptr(GstMessage) message = cerberus_message_new_fusion(nullptr, nullptr, &fusion);
     g_autoptr(GstEvent) event = fusion_event("eye", fusion);
-    g_autoptr(CerberusFusion) heard = cerberus_message_parse_fusion(message);
-    g_autoptr(CerberusFusion) told = cerberus_event_parse_fusion(event);
-    const CerberusFusion* const all[] = {cerberus_buffer_peek_fusion(frame), heard, told};
+    g_autoptr(CerberusFusion) posted = cerberus_message_parse_fusion(message);
+    g_autoptr(CerberusFusion) sent = cerberus_event_parse_fusion(event);
+    const CerberusFusion* const all[] = {cerberus_buffer_peek_fusion(frame), posted, sent};
     for (const CerberusFusion* f : all) {
       fail_unless_equals_int(f->action, CERBERUS_FUSION_HOLD);
       fail_unless_equals_string(f->rule_name, "none");
@@ -267,7 +267,7 @@ START_TEST(nonsense_in_a_decision_moves_nobody) {
     }
   }
   const CerberusFusion fusion = searching();
-  const auto heard = [&](const char* field, GType type, auto set, auto value) {
+  const auto parsed = [&](const char* field, GType type, auto set, auto value) {
     GstMessage* message = cerberus_message_new_fusion(nullptr, nullptr, &fusion);
     GValue array = G_VALUE_INIT, item = G_VALUE_INIT;
     gst_value_array_init(&array, 3);
@@ -280,12 +280,12 @@ START_TEST(nonsense_in_a_decision_moves_nobody) {
     return result;
   };
   for (const int reading : {257, -1, 3}) {
-    g_autoptr(CerberusFusion) f = heard("sensors", G_TYPE_INT, g_value_set_int, reading);
+    g_autoptr(CerberusFusion) f = parsed("sensors", G_TYPE_INT, g_value_set_int, reading);
     fail_unless_equals_int(f->sensors[0], 2);
   }
-  fail_if(heard("sensors", G_TYPE_DOUBLE, g_value_set_double, 1.0));
-  fail_if(heard("bearings", G_TYPE_INT, g_value_set_int, 1));
-  fail_if(heard("bearings", G_TYPE_DOUBLE, g_value_set_double, kNan));
+  fail_if(parsed("sensors", G_TYPE_DOUBLE, g_value_set_double, 1.0));
+  fail_if(parsed("bearings", G_TYPE_INT, g_value_set_int, 1));
+  fail_if(parsed("bearings", G_TYPE_DOUBLE, g_value_set_double, kNan));
 }
 END_TEST
 
@@ -336,10 +336,10 @@ static Suite* pir_fusion_suite() {
   tcase_add_test(tc, a_frame_has_one_pose_and_one_decision_and_the_last_counts);
   tcase_add_test(tc, pir_caps_say_what_the_sensors_cover);
   tcase_add_test(tc, pir_caps_that_are_incomplete_or_absurd_are_refused_in_words);
-  tcase_add_test(tc, a_pir_message_tells_every_reading);
+  tcase_add_test(tc, a_pir_message_contains_every_reading);
   tcase_add_test(tc, a_fusion_message_tells_the_whole_decision);
   tcase_add_test(tc, an_event_between_frames_tells_the_whole_decision_and_when);
-  tcase_add_test(tc, nonsense_in_a_decision_moves_nobody);
+  tcase_add_test(tc, invalid_numbers_in_a_decision_move_no_head);
   tcase_add_test(tc, actions_have_names);
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;

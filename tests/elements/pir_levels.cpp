@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// PIR readings in volts (format=level): pirsrc gives them to who asks, pirfusion compares them with a threshold.
+// PIR readings in volts (format=level): pirsrc outputs them on request, pirfusion compares them with a threshold.
 #include <limits>
 #include <random>
 
@@ -53,13 +53,13 @@ GstBuffer* volts(GstClockTime time, const Volts& values) {
   return buffer;
 }
 
-// What pirfusion says of its sensors when two of them say `values` then.
+// The sensor states that pirfusion derives when two of them read `values`.
 std::string after(Rig& rig, GstClockTime time, const Volts& values) {
   fail_unless_equals_int(gst_harness_push(rig.pir[0], volts(time, values)), GST_FLOW_OK);
   return text(sensors(rig.at(time)));
 }
 
-// The sensors' readings on each frame of a pipeline that is not live, as pirfusion tells them.
+// The sensor states on each frame of a pipeline that is not live, as attached by pirfusion.
 std::string fused(const std::string& script, const std::string& filter) {
   const std::string line =
       "videotestsrc num-buffers=120 ! video/x-raw,format=GRAY8,width=16,height=16,framerate=30/1 ! "
@@ -70,27 +70,27 @@ std::string fused(const std::string& script, const std::string& filter) {
   fail_unless(pipeline, "%s", line.c_str());
   g_autoptr(GstElement) sink = gst_bin_get_by_name(GST_BIN(pipeline), "sink");
   g_autoptr(GstPad) pad = gst_element_get_static_pad(sink, "sink");
-  std::string told;
+  std::string readings;
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo* info, gpointer told) {
+      [](GstPad*, GstPadProbeInfo* info, gpointer readings) {
         const CerberusFusion* fusion = cerberus_buffer_peek_fusion(GST_PAD_PROBE_INFO_BUFFER(info));
-        *static_cast<std::string*>(told) += (fusion ? text(sensors(*fusion)) : "none") + " ";
+        *static_cast<std::string*>(readings) += (fusion ? text(sensors(*fusion)) : "none") + " ";
         return GST_PAD_PROBE_OK;
       },
-      &told, nullptr);
+      &readings, nullptr);
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
   g_autoptr(GstMessage) end = gst_bus_timed_pop_filtered(
       bus, GST_CLOCK_TIME_NONE, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
   fail_unless_equals_int(GST_MESSAGE_TYPE(end), GST_MESSAGE_EOS);
   gst_element_set_state(pipeline, GST_STATE_NULL);
-  return told;
+  return readings;
 }
 
 }  // namespace
 
-GST_START_TEST(who_asks_for_volts_gets_every_sample) {
+GST_START_TEST(a_consumer_of_volts_receives_every_sample) {
   Source source(std::string(kTwo) + "script=\"0.5,0.1V,3.2V; 1,0.1V,3.25V; 1.5,0.2V,0V; 2,-1V,0V\"",
                 "application/x-pir,format=level");
   source.play();
@@ -101,18 +101,18 @@ GST_START_TEST(who_asks_for_volts_gets_every_sample) {
   assert_says(source.volts(), "1.520: 0.2 0");  // the detection ends
   assert_says(source.volts(), "2.000: -1 0");
   fail_unless_equals_int(source.format(), CERBERUS_PIR_LEVEL);
-  // The messages speak of presence in any case.
-  std::string told;
+  // The messages contain presence in any case.
+  std::string readings;
   while (GstMessage* message = source.pop(GST_MESSAGE_ELEMENT)) {
     g_autoptr(CerberusPir) pir = cerberus_message_parse_pir(message);
-    told += text(Bytes(pir->sensors, pir->sensors + pir->n_sensors)) + " ";
+    readings += text(Bytes(pir->sensors, pir->sensors + pir->n_sensors)) + " ";
     gst_message_unref(message);
   }
-  assert_says(told, "22 01 00 ");
+  assert_says(readings, "22 01 00 ");
 }
 GST_END_TEST
 
-GST_START_TEST(who_takes_both_gets_presence) {
+GST_START_TEST(a_consumer_of_both_formats_receives_presence) {
   const std::string line = std::string(kTwo) + "threshold=2 hysteresis=1 script=\"0,0V,2.4V; 1,2.5V,2.4V\"";
   for (const char* caps : {"ANY", "application/x-pir", "application/x-pir,format={level,presence}"}) {
     Source source(line, caps);
@@ -140,7 +140,7 @@ GST_START_TEST(the_format_may_change_while_it_plays) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_asks_for_volts_that_nobody_measures_is_told_so) {
+GST_START_TEST(volts_that_no_driver_measures_are_refused_with_a_reason) {
   Source source(std::string(kTwo) + "script=\"0,0,1\"", "application/x-pir,format=level");
   const std::string why = source.refusal(GST_CORE_ERROR, GST_CORE_ERROR_NEGOTIATION);
   for (const char* what : {"format=(string)level", "format=(string)presence", "driver=iio"})
@@ -219,7 +219,7 @@ GST_START_TEST(a_sensor_in_volts_that_is_stuck_is_named_and_so_is_its_recovery) 
 }
 GST_END_TEST
 
-// There is one model: whoever compares, the decision is the same.
+// There is one model: the decision is the same in pirsrc and in pirfusion.
 GST_START_TEST(volts_say_the_same_whether_pirsrc_compares_them_or_pirfusion) {
   std::mt19937 random(11);
   std::string script;
@@ -243,10 +243,10 @@ static Suite* pir_levels_suite() {
   Suite* s = suite_create("pir_levels");
   TCase* tc = tcase_create("pir_levels");
   suite_add_tcase(s, tc);
-  tcase_add_test(tc, who_asks_for_volts_gets_every_sample);
-  tcase_add_test(tc, who_takes_both_gets_presence);
+  tcase_add_test(tc, a_consumer_of_volts_receives_every_sample);
+  tcase_add_test(tc, a_consumer_of_both_formats_receives_presence);
   tcase_add_test(tc, the_format_may_change_while_it_plays);
-  tcase_add_test(tc, who_asks_for_volts_that_nobody_measures_is_told_so);
+  tcase_add_test(tc, volts_that_no_driver_measures_are_refused_with_a_reason);
   tcase_add_test(tc, volts_are_compared_with_the_threshold_of_pirfusion);
   tcase_add_test(tc, what_becomes_of_a_sensor_between_samples_has_its_own_time);
   tcase_add_test(tc, what_is_no_measurement_is_invalid);

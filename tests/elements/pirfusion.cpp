@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// pirfusion's decisions: what it takes from frames and events, and what it says. (Its rules are in pirfusion_rules.cpp,
-// what comes to its pads in pirfusion_pads.cpp, who waits for whom in pirfusion_waiting.cpp.)
+// pirfusion's decisions: its inputs from frames and events, and its outputs. (The rules are tested in
+// pirfusion_rules.cpp, the pads' input in pirfusion_pads.cpp, waiting in pirfusion_waiting.cpp.)
 #include "fusion_rig.h"
 
 namespace {
@@ -22,7 +22,7 @@ std::vector<std::string> events_up(GstHarness* h) {
 
 }  // namespace
 
-GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_told) {
+GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_posted) {
   Rig rig(true, "return-delay=0");
   for (int k = 0; k < 5; ++k) {
     const CerberusFusion fusion = rig.at(k * 40 * kMs);
@@ -39,10 +39,10 @@ GST_START_TEST(every_frame_carries_a_decision_and_only_changes_are_told) {
     fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TRACK);
     fail_unless_equals_int(fusion.target, 9);
   }
-  const auto told = rig.told();
-  fail_unless_equals_int(told.size(), 2);
-  assert_says(told[0], "0:7:zero");
-  assert_says(told[1], "200:1:track");
+  const auto posted = rig.posted();
+  fail_unless_equals_int(posted.size(), 2);
+  assert_says(posted[0], "0:7:zero");
+  assert_says(posted[1], "200:1:track");
 }
 GST_END_TEST
 
@@ -80,7 +80,7 @@ GST_START_TEST(properties_count_while_playing) {
   rig.read(120 * kMs, {0, 0, 0});
   fail_unless_equals_int(rig.show(frame_at(120 * kMs, -90)).rule, 0);
   fail_unless_equals_int(rig.show(frame_at(400 * kMs, -90)).action, CERBERUS_FUSION_ZERO);
-  // Whom to follow: the larger, the newer; whoever is followed stays.
+  // The choice of target: the larger, the newer; a followed track is kept.
   g_object_set(rig.element, "target", 1, "camera-hold", guint64{0}, nullptr);
   const auto two = [](GstClockTime time) {
     GstBuffer* buffer = frame_with(time, 5, 1);
@@ -98,7 +98,7 @@ GST_START_TEST(properties_count_while_playing) {
   fail_unless_equals_int(rig.show(two(480 * kMs)).target, 6);
   rig.show(frame_with(520 * kMs, 7));
   fail_unless_equals_int(rig.show(two(560 * kMs)).target, 5);
-  // Limits that cross: said, and the old ones stay.
+  // Limits in the wrong order: a warning, and the old ones stay in force.
   g_object_set(rig.element, "pan-min", 200.0, nullptr);
   rig.at(600 * kMs);
   const std::string warning = rig.warning();
@@ -153,7 +153,7 @@ GST_START_TEST(it_begins_anew_after_it_was_stopped) {
   push_segment(rig.video);
   const CerberusFusion fusion = rig.at(40 * kMs);
   fail_unless(std::isnan(fusion.pan) && !fusion.camera_found);
-  assert_says(text(sensors(fusion)), "2");  // of the pad, whose caps are forgotten, too
+  assert_says(text(sensors(fusion)), "2");  // of the pad, whose caps are cleared, too
 }
 GST_END_TEST
 
@@ -193,7 +193,7 @@ GST_START_TEST(a_repeated_frame_is_decided_with_the_pose_of_its_picture_and_the_
 }
 GST_END_TEST
 
-GST_START_TEST(a_strangers_pose_is_passed_on_and_not_listened_to) {
+GST_START_TEST(a_pose_of_another_head_is_forwarded_and_not_used) {
   Rig rig;
   GstHarness* pir = rig.add_pir();
   events_up(rig.video);
@@ -210,19 +210,19 @@ GST_START_TEST(a_strangers_pose_is_passed_on_and_not_listened_to) {
   const std::vector<std::string> expected = {CERBERUS_EVENT_POSE, CERBERUS_EVENT_POSE, CERBERUS_EVENT_POSE,
                                              "something", CERBERUS_EVENT_POSE};
   fail_unless(events_up(rig.video) == expected);
-  fail_unless(events_up(pir) == expected);  // a PIR source listens as well
-  // On the frame it is a stranger's as well.
+  fail_unless(events_up(pir) == expected);  // a PIR source receives it as well
+  // The pose on the frame may be another head's.
   GstBuffer* buffer = frame(40 * kMs);
   const CerberusPose strange = pose(-50, 40 * kMs, 0, "another");
   cerberus_buffer_set_pose(buffer, &strange);
   fail_unless(rig.show(buffer).pan == 30);
-  // Told to listen to the other: the first one's poses are nothing any more.
+  // The other head is selected: the first one's poses are ignored from now on.
   g_object_set(rig.element, "head", "another", nullptr);
   fail_unless(std::isnan(rig.at(80 * kMs).pan));
   say(rig, pose(91, 0, 0, "another"));
   fail_unless(rig.at(120 * kMs).pan == 91);
   g_object_set(rig.element, "head", "", nullptr);
-  say(rig, pose(92, 0, 0, "whoever"));
+  say(rig, pose(92, 0, 0, "another"));
   fail_unless(rig.at(160 * kMs).pan == 92);
 }
 GST_END_TEST
@@ -237,7 +237,7 @@ GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
   rig.read(200 * kMs, {0, 0, 1});
   CerberusFusion fusion = rig.show(frame_at(240 * kMs, 0));
   fail_unless_equals_int(fusion.doubtful, 0b100);
-  assert_says(text(sensors(fusion)), "001");  // told as it was read
+  assert_says(text(sensors(fusion)), "001");  // reported as it was read
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_HOLD);
   fail_unless_equals_int(rig.show(frame_at(10 * GST_SECOND, 0)).doubtful, 0b100);  // just after
   fusion = rig.show(frame_at(14 * GST_SECOND, 0));                                 // calm for long
@@ -246,7 +246,7 @@ GST_START_TEST(readings_while_the_robot_turns_are_doubtful) {
 }
 GST_END_TEST
 
-// Without an event, what cameramotion saw counts, and the sensors' sources hear of it: they see no frames.
+// Without an event, cameramotion's yaw rate is used and sent to the sensors' sources, which see no frames.
 GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
   const auto turning = [](GstClockTime time, double rate) {
     GstBuffer* buffer = frame_at(time, 0);
@@ -264,15 +264,15 @@ GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
   fail_unless_equals_int(rig.show(turning(80 * kMs, -20)).doubtful, 0b010);
   fail_unless_equals_int(rig.show(turning(120 * kMs, -20.5)).doubtful, 0b010);
   fail_unless_equals_int(rig.show(frame_at(160 * kMs, 0)).doubtful, 0b010);  // just after
-  std::vector<double> heard;
+  std::vector<double> received;
   while (GstEvent* event = gst_harness_try_pull_upstream_event(pir)) {
     double rate = 0;
-    if (parse_base(event, &rate, nullptr)) heard.push_back(rate);
+    if (parse_base(event, &rate, nullptr)) received.push_back(rate);
     gst_event_unref(event);
   }
   // Not each small change, but always what makes a doubt or ends it.
-  fail_unless(heard == std::vector<double>({4.9, 5.1, -20, 0}));
-  // An application knows better, until it falls silent.
+  fail_unless(received == std::vector<double>({4.9, 5.1, -20, 0}));
+  // The application's value takes precedence until it stops sending.
   say(rig, base_event(0, 200 * kMs));
   rig.read(1000 * kMs, {1, 0, 0});
   fail_unless_equals_int(rig.show(turning(1199 * kMs, 40)).doubtful, 0);
@@ -281,10 +281,10 @@ GST_START_TEST(a_turning_that_the_camera_saw_makes_readings_doubtful) {
 GST_END_TEST
 
 // They would forget it within a second; that it stands they take silence for.
-GST_START_TEST(the_sensors_sources_are_told_again_while_the_robot_turns) {
+GST_START_TEST(the_sensors_sources_receive_the_rate_again_while_the_robot_turns) {
   Rig rig;
   GstHarness* pir = rig.add_pir();
-  std::vector<GstClockTime> told;
+  std::vector<GstClockTime> sent;
   for (GstClockTime time = 0; time < 5 * GST_SECOND; time += 40 * kMs) {
     GstBuffer* buffer = frame_at(time, 0);
     CerberusBase base;
@@ -296,12 +296,12 @@ GST_START_TEST(the_sensors_sources_are_told_again_while_the_robot_turns) {
       double rate = 0;
       if (parse_base(event, &rate, nullptr)) {
         fail_unless_equals_float(rate, base.yaw_rate);
-        told.push_back(time);
+        sent.push_back(time);
       }
       gst_event_unref(event);
     }
   }
-  fail_unless(told == std::vector<GstClockTime>(
+  fail_unless(sent == std::vector<GstClockTime>(
                           {0, 520 * kMs, 1040 * kMs, 1560 * kMs, 2080 * kMs, 2600 * kMs, 3 * GST_SECOND}));
 }
 GST_END_TEST
@@ -325,7 +325,7 @@ static Suite* pirfusion_suite() {
   Suite* s = suite_create("pirfusion");
   TCase* tc = tcase_create("decisions");
   suite_add_tcase(s, tc);
-  tcase_add_test(tc, every_frame_carries_a_decision_and_only_changes_are_told);
+  tcase_add_test(tc, every_frame_carries_a_decision_and_only_changes_are_posted);
   tcase_add_test(tc, only_confirmed_tracks_make_the_camera_found);
   tcase_add_test(tc, properties_count_while_playing);
   tcase_add_test(tc, hysteresis_and_hold_stopped_are_the_users);
@@ -335,10 +335,10 @@ static Suite* pirfusion_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, pan_comes_from_the_frame_else_from_the_events_that_passed);
   tcase_add_test(tc, a_repeated_frame_is_decided_with_the_pose_of_its_picture_and_the_newest_readings);
-  tcase_add_test(tc, a_strangers_pose_is_passed_on_and_not_listened_to);
+  tcase_add_test(tc, a_pose_of_another_head_is_forwarded_and_not_used);
   tcase_add_test(tc, readings_while_the_robot_turns_are_doubtful);
   tcase_add_test(tc, a_turning_that_the_camera_saw_makes_readings_doubtful);
-  tcase_add_test(tc, the_sensors_sources_are_told_again_while_the_robot_turns);
+  tcase_add_test(tc, the_sensors_sources_receive_the_rate_again_while_the_robot_turns);
   tcase_add_test(tc, a_seek_reaches_the_pir_sources_and_the_video_source);
   return s;
 }

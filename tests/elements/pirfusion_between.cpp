@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What a sensor says between two frames of a live video is decided at once, told once, and agrees with the next frame.
+// A sensor reading between two frames of a live video is decided at once, published once, and agrees with the next
+// frame.
 #include <array>
 
 #include "fusion_rig.h"
@@ -12,7 +13,7 @@ void set_time(Rig& rig, GstClockTime now) {
   gst_harness_set_time(rig.video, now);
 }
 
-// What was told downstream since the last call, between frames: "time ms:rule name:action:head".
+// Decisions published downstream since the last call, between frames: "time ms:rule name:action:head".
 std::vector<std::string> events(Rig& rig) {
   std::vector<std::string> result;
   while (GstEvent* event = gst_harness_try_pull_event(rig.video)) {
@@ -30,7 +31,7 @@ void assert_one(const std::vector<std::string>& found, const char* expected) {
   assert_says(found[0], expected);
 }
 
-// A frame 40 ms old, and everything that it told is over.
+// A frame 40 ms old, and all that it published is consumed.
 CerberusFusion see(Rig& rig, GstClockTime now, GstBuffer* buffer) {
   set_time(rig, now);
   const CerberusFusion fusion = rig.show(buffer);
@@ -41,7 +42,7 @@ CerberusFusion see(Rig& rig, GstClockTime now, GstBuffer* buffer) {
 void begin(Rig& rig) {
   rig.read(0, {0, 0, 0});
   see(rig, 40 * kMs, frame_at(0, 0));
-  rig.told();
+  rig.posted();
 }
 
 }  // namespace
@@ -52,20 +53,20 @@ GST_START_TEST(an_edge_does_not_wait_for_the_next_frame) {
   begin(rig);
   set_time(rig, 53 * kMs);
   rig.read(52 * kMs, {0, 0, 1});
-  assert_one(rig.told(), "53:0:turn-right");
+  assert_one(rig.posted(), "53:0:turn-right");
   assert_one(events(rig), "53:sector:turn-right:head");
   set_time(rig, 60 * kMs);
   rig.read(60 * kMs, {0, 0, 1});  // a heartbeat
-  fail_unless(rig.told().empty() && events(rig).empty());
+  fail_unless(rig.posted().empty() && events(rig).empty());
 
   const CerberusFusion frame = see(rig, 80 * kMs, frame_at(40 * kMs, 0));
   fail_unless_equals_int(frame.action, CERBERUS_FUSION_TURN_RIGHT);
   fail_unless_equals_uint64(frame.decided, 80 * kMs);
-  fail_unless(rig.told().empty(), "it was told twice");
+  fail_unless(rig.posted().empty(), "it was posted twice");
 }
 GST_END_TEST
 
-// Shorter than the time between two frames: no frame would have told of it.
+// Shorter than the time between two frames: no frame would have shown it.
 GST_START_TEST(a_short_pulse_counts) {
   Rig rig;
   g_object_set(rig.element, "head", "", nullptr);
@@ -77,9 +78,9 @@ GST_START_TEST(a_short_pulse_counts) {
   set_time(rig, 60 * kMs);
   rig.read(60 * kMs, {0, 0, 0});
   assert_one(events(rig), "60:return:turn-left:");
-  fail_unless_equals_int(static_cast<int>(rig.told().size()), 2);
+  fail_unless_equals_int(static_cast<int>(rig.posted().size()), 2);
   fail_unless_equals_int(see(rig, 80 * kMs, frame_at(40 * kMs, 0)).action, CERBERUS_FUSION_TURN_LEFT);
-  fail_unless(rig.told().empty());
+  fail_unless(rig.posted().empty());
 }
 GST_END_TEST
 
@@ -88,34 +89,34 @@ GST_START_TEST(the_cameras_last_word_counts) {
   rig.add_pir();
   rig.read(0, {0, 0, 0});
   see(rig, 40 * kMs, frame_with(0, 7));
-  rig.told();
+  rig.posted();
   set_time(rig, 50 * kMs);
   rig.read(50 * kMs, {0, 0, 1});
   assert_one(events(rig), "50:camera:track:head");
-  assert_one(rig.told(), "50:1:track");
+  assert_one(rig.posted(), "50:1:track");
 }
 GST_END_TEST
 
-// Where the head looks by now is known better than where it looked when the last frame was taken.
+// The head's latest pose is newer than the one at which the last frame was taken.
 GST_START_TEST(the_newest_pose_counts) {
   const struct {
-    CerberusPose heard;
-    bool on_frame;  // the frame says at 0 that the head looks straight ahead
+    CerberusPose received;
+    bool on_frame;  // the pose on the frame at 0 is straight ahead
     const char* decided;
   } cases[] = {{pose(100, 45 * kMs), true, "53:sector:search:head"},
                {pose(100, 45 * kMs), false, "53:sector:search:head"},
                {pose(-50, 45 * kMs, 20000), true, "53:sector:search:head"},  // 110 degrees at 53 ms
-               {pose(100, 0), false, "53:sector:search:head"},               // told before
-               {pose(100, 0), true, "53:sector:turn-right:head"},            // the frame knew better
-               {pose(100, 60 * kMs), true, "53:sector:turn-right:head"},     // not yet
+               {pose(100, 0), false, "53:sector:search:head"},               // published before
+               {pose(100, 0), true, "53:sector:turn-right:head"},  // the pose on the frame takes precedence
+               {pose(100, 60 * kMs), true, "53:sector:turn-right:head"},  // not yet
                {pose(100, 45 * kMs, 0, "tail"), true, "53:sector:turn-right:head"}};
   for (const auto& c : cases) {
     Rig rig;
     rig.add_pir();
     rig.read(0, {0, 0, 0});
     see(rig, 40 * kMs, c.on_frame ? frame_at(0, 0) : frame(0));
-    rig.told();
-    say(rig, c.heard);
+    rig.posted();
+    say(rig, c.received);
     set_time(rig, 53 * kMs);
     rig.read(52 * kMs, {0, 0, 1});
     assert_one(events(rig), c.decided);
@@ -124,15 +125,15 @@ GST_START_TEST(the_newest_pose_counts) {
   rig.add_pir();
   begin(rig);
   say(rig, pose(100, 45 * kMs, 0, "tail"));
-  g_object_set(rig.element, "head", "head", nullptr);  // which has told nothing since
+  g_object_set(rig.element, "head", "head", nullptr);  // which has published nothing since
   set_time(rig, 53 * kMs);
   rig.read(52 * kMs, {0, 0, 1});
   assert_one(events(rig), "53:sector:turn-right:head");
 }
 END_TEST
 
-// A module holds its output for a while: counted from when the
-// robot was heard to stand, not from the frame before that.
+// A module holds its output for a while: counted from the event that reported the end of the robot's turn, not from
+// the frame before that.
 GST_START_TEST(doubt_lasts_from_when_the_robot_stands) {
   Rig rig;
   rig.add_pir();
@@ -179,7 +180,7 @@ GST_START_TEST(two_decisions_never_have_one_time_and_no_frame_knows_less) {
   rig.add_pir(kPaper);
   begin(rig);
   rig.read(0, {0, 0, 0}, 1);
-  rig.told(), events(rig);
+  rig.posted(), events(rig);
   set_time(rig, 50 * kMs);
   rig.read(50 * kMs, {0, 0, 1}, 0);
   rig.read(50 * kMs, {0, 0, 1}, 1);
@@ -199,7 +200,7 @@ GST_START_TEST(two_decisions_never_have_one_time_and_no_frame_knows_less) {
 }
 GST_END_TEST
 
-// However long who posts is kept, and however often a sensor changes its mind meanwhile.
+// However long the posting thread is blocked, and however often a sensor changes meanwhile.
 GST_START_TEST(what_was_decided_once_is_not_lost_among_what_is_decided_often) {
   struct Keeper {
     std::promise<void> there, go;
@@ -232,10 +233,10 @@ GST_START_TEST(what_was_decided_once_is_not_lost_among_what_is_decided_often) {
   keeper.go.set_value();
   sensor.join();
   gst_bus_set_sync_handler(rig.bus, nullptr, nullptr, nullptr);
-  const std::vector<std::string> told = rig.told();
-  fail_unless(told.size() > 2 && told[0] == "50:0:turn-right" && told[1] == "60:1:track", "%zu %s %s",
-              told.size(), told[0].c_str(), told[1].c_str());
-  assert_says(told.back(), "2600:0:turn-right");
+  const std::vector<std::string> posted = rig.posted();
+  fail_unless(posted.size() > 2 && posted[0] == "50:0:turn-right" && posted[1] == "60:1:track", "%zu %s %s",
+              posted.size(), posted[0].c_str(), posted[1].c_str());
+  assert_says(posted.back(), "2600:0:turn-right");
 }
 GST_END_TEST
 
@@ -247,11 +248,11 @@ GST_START_TEST(where_it_is_not_live_frames_alone_decide) {
     set_time(rig, 50 * kMs);
     rig.read(45 * kMs, {0, 0, 1});
     rig.read(3 * GST_SECOND, {0, 0, 1});
-    fail_unless(rig.told().empty() && events(rig).empty());
+    fail_unless(rig.posted().empty() && events(rig).empty());
     const CerberusFusion frame = see(rig, 90 * kMs, frame_at(80 * kMs, 0));
     fail_unless_equals_int(frame.action, CERBERUS_FUSION_TURN_RIGHT);
     fail_unless_equals_uint64(frame.decided, live_video ? 90 * kMs : 80 * kMs);
-    assert_one(rig.told(), "80:0:turn-right");
+    assert_one(rig.posted(), "80:0:turn-right");
   }
 }
 GST_END_TEST
@@ -259,10 +260,10 @@ GST_END_TEST
 GST_START_TEST(without_a_frame_to_speak_of_nothing_is_decided) {
   const auto edge = [](Rig& rig, GstClockTime time) {
     events(rig);
-    rig.told();
+    rig.posted();
     set_time(rig, time);
     rig.read(time, {0, 0, 1});
-    fail_unless(rig.told().empty() && events(rig).empty());
+    fail_unless(rig.posted().empty() && events(rig).empty());
   };
   {
     Rig rig;
@@ -313,16 +314,16 @@ GST_START_TEST(without_a_frame_to_speak_of_nothing_is_decided) {
 }
 GST_END_TEST
 
-// Two sensors' threads and the video's at once: every change of a sensor is decided before its thread brings the next
-// one, so each is in what is told. In another order sensors would seem to have changed more often.
-GST_START_TEST(changes_are_told_once_and_in_their_order) {
+// Two sensors' threads and the video's at once: every change of a sensor is decided before its thread delivers the
+// next one, so that each is published. In another order sensors would seem to have changed more often.
+GST_START_TEST(changes_are_published_once_and_in_their_order) {
   Rig rig;
   rig.add_pir(with_sensors(1, 0, 0).c_str());
   rig.add_pir(with_sensors(1, 0, 0).c_str());
   rig.read(0, {0}, 0);
   rig.read(0, {0}, 1);
   see(rig, 0, frame_at(0, 0));
-  rig.told();
+  rig.posted();
   constexpr int kRounds = 200;
   const auto chatter = [&rig](std::size_t pad) {
     for (int i = 1; i <= kRounds; ++i) rig.read(0, {static_cast<guint8>(i % 2)}, pad);
@@ -337,7 +338,7 @@ GST_START_TEST(changes_are_told_once_and_in_their_order) {
     g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message);
     gst_message_unref(message);
     const Bytes now = sensors(*fusion);
-    fail_if(now == before, "told twice");
+    fail_if(now == before, "posted twice");
     for (std::size_t i = 0; i < changes.size(); ++i) changes[i] += now[i] != before[i];
     before = now;
   }
@@ -361,7 +362,7 @@ static Suite* pirfusion_between_suite() {
   tcase_add_test(tc, what_was_decided_once_is_not_lost_among_what_is_decided_often);
   tcase_add_test(tc, where_it_is_not_live_frames_alone_decide);
   tcase_add_test(tc, without_a_frame_to_speak_of_nothing_is_decided);
-  tcase_add_test(tc, changes_are_told_once_and_in_their_order);
+  tcase_add_test(tc, changes_are_published_once_and_in_their_order);
   return s;
 }
 

@@ -47,12 +47,12 @@ GST_START_TEST(readings_out_of_order_are_put_where_they_belong) {
     const char* values;
   } cases[] = {{40, "000"}, {60, "010"}, {99, "010"}, {110, "100"}, {250, "100"}};
   for (const auto& c : cases) assert_says(text(sensors(rig.at(c.time * kMs))), c.values);
-  // What was heard last is repeated by heartbeats: one of before them does not undo it.
+  // Heartbeats repeat the last reading: one from before it does not undo it.
   for (const int time : {300, 400, 500}) rig.read(time * kMs, {1, 0, 0});
   rig.read(450 * kMs, {0, 0, 1});
   assert_says(text(sensors(rig.at(470 * kMs))), "001");
   assert_says(text(sensors(rig.at(500 * kMs))), "100");
-  // Later by much: running time began anew, and what was said of the time before is no future.
+  // Much later: running time began anew, and readings with future times are discarded.
   rig.read(10 * GST_SECOND, {0, 0, 1});
   rig.read(300 * kMs, {1, 1, 0});
   assert_says(text(sensors(rig.at(11 * GST_SECOND))), "110");
@@ -106,7 +106,7 @@ GST_START_TEST(several_pir_pads_are_one_row_of_sensors_in_the_order_of_their_num
   // The first sensor of pir_5 looks at 90 +- 30.
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
   fail_unless(fusion.sector_from == 60 && fusion.sector_to == 120);
-  const double bearings[] = {-100, 0, -30, 0, 0, 90, 150};  // nobody has told of those between
+  const double bearings[] = {-100, 0, -30, 0, 0, 90, 150};  // the bearings in between were not reported
   for (int i = 0; i < 7; ++i) fail_unless(fusion.bearings[i] == bearings[i], "%d: %g", i, fusion.bearings[i]);
 }
 GST_END_TEST
@@ -116,7 +116,7 @@ GST_START_TEST(a_sensor_of_which_nothing_is_known_keeps_its_place) {
   const char* const kPads[] = {"pir_0", "pir_1", "pir_2"};
   const double bearings[] = {0, -120, 120};
   const auto turns = [&](const char* missing, bool requested, std::size_t fires, int rule,
-                         CerberusFusionAction action, const char* told) {
+                         CerberusFusionAction action, const char* expected) {
     Rig rig(true, "rules=paper");
     for (std::size_t i = 0; i < 3; ++i) {
       const bool there = !g_str_equal(kPads[i], missing);
@@ -125,7 +125,7 @@ GST_START_TEST(a_sensor_of_which_nothing_is_known_keeps_its_place) {
       if (there) rig.read(0, {guint8(i == fires)}, rig.pir.size() - 1);
     }
     const CerberusFusion fusion = rig.show(frame_at(0, 0));
-    assert_says(text(sensors(fusion)), told);
+    assert_says(text(sensors(fusion)), expected);
     fail_unless_equals_int(fusion.rule, rule);
     fail_unless_equals_int(fusion.action, action);
   };
@@ -195,7 +195,7 @@ GST_START_TEST(what_happens_at_a_pir_pad_stays_there) {
   fail_unless(gst_harness_push_event(pir, gst_event_new_flush_start()));
   rig.at(80 * kMs);  // in the middle of the flush
   fail_unless(gst_harness_push_event(pir, gst_event_new_flush_stop(TRUE)));
-  assert_says(text(sensors(rig.at(120 * kMs))), "2");  // what was said is forgotten
+  assert_says(text(sensors(rig.at(120 * kMs))), "2");  // earlier readings are discarded
   push_segment(pir);
   rig.read(160 * kMs, {1});
   assert_says(text(sensors(rig.at(160 * kMs))), "1");
@@ -254,7 +254,7 @@ GST_START_TEST(pads_come_and_go_while_frames_pass) {
   rig.add_pir();  // the first number is free again
   fail_unless(static_pad(rig.element, "pir_0"));
 
-  // And while somebody else pushes.
+  // And while another thread pushes.
   std::thread frames([&] {
     for (int k = 5; k < 400; ++k) rig.at(k * 40 * kMs);
   });
@@ -267,7 +267,7 @@ GST_START_TEST(pads_come_and_go_while_frames_pass) {
 }
 GST_END_TEST
 
-// A pad that nothing is linked to is absent: its sensors are invalid, not what they once said.
+// A pad without a link is absent: its sensors are invalid, and earlier readings are not kept.
 GST_START_TEST(a_pad_that_is_unlinked_says_nothing_any_more) {
   Rig rig;
   GstHarness* pir = rig.add_pir();
@@ -281,7 +281,7 @@ GST_START_TEST(a_pad_that_is_unlinked_says_nothing_any_more) {
 }
 GST_END_TEST
 
-// Two sensors look the same way and disagree; then two that look opposite ways both see somebody.
+// Two sensors of the same bearing disagree; then two of opposite bearings both detect.
 GST_START_TEST(sensors_that_contradict_each_other_are_answered_without_hunting) {
   Rig rig(true, "lost-after=0");
   for (const double bearing : {90, 90, -90}) rig.add_pir(with_sensors(1, bearing, 0).c_str());
@@ -293,14 +293,14 @@ GST_START_TEST(sensors_that_contradict_each_other_are_answered_without_hunting) 
   fusion = rig.show(frame_at(40 * kMs, 0));
   assert_says(text(sensors(fusion)), "010");
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_RIGHT);
-  rig.told();
-  rig.read(80 * kMs, {1}, 2);  // equally near: who came last is answered, and stays the one
+  rig.posted();
+  rig.read(80 * kMs, {1}, 2);  // equally near: the later one is chosen, and kept
   for (int k = 2; k < 100; ++k) {
     fusion = rig.show(frame_at(k * 40 * kMs, 0));
     assert_says(text(sensors(fusion)), "011");
     fail_unless_equals_int(fusion.action, CERBERUS_FUSION_TURN_LEFT);
   }
-  fail_unless_equals_int(rig.told().size(), 1);
+  fail_unless_equals_int(rig.posted().size(), 1);
   fail_unless(rig.warning().empty() && rig.error().empty());
 }
 GST_END_TEST
@@ -308,7 +308,7 @@ GST_END_TEST
 GST_START_TEST(the_video_path_is_as_if_nothing_were_there) {
   Rig rig(true, "return-delay=0");
   GstHarness* pir = rig.add_pir();
-  // Latency: the video's, whatever a PIR source says.
+  // Latency: the video's, whatever a PIR source answers.
   gst_harness_set_upstream_latency(rig.video, 30 * kMs);
   gst_harness_set_upstream_latency(pir, 500 * kMs);
   fail_unless_equals_uint64(gst_harness_query_latency(rig.video), 30 * kMs);
@@ -353,7 +353,7 @@ GST_START_TEST(a_shared_frame_is_not_written_on) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_flush_and_a_new_segment_forget_whom_we_followed) {
+GST_START_TEST(a_flush_and_a_new_segment_clear_the_followed_track) {
   for (const bool flush : {true, false}) {
     Rig rig;
     rig.show(frame_with(0, 3));
@@ -422,7 +422,7 @@ static Suite* pirfusion_pads_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, the_video_path_is_as_if_nothing_were_there);
   tcase_add_test(tc, a_shared_frame_is_not_written_on);
-  tcase_add_test(tc, a_flush_and_a_new_segment_forget_whom_we_followed);
+  tcase_add_test(tc, a_flush_and_a_new_segment_clear_the_followed_track);
   tcase_add_test(tc, running_time_counts_not_the_timestamps);
   return s;
 }

@@ -58,7 +58,7 @@ name = "mine"
 sensors = 2
 [[rule]]
 number = 40
-name = "somebody"
+name = "person"
 camera = "found"
 action = "track"
 [[rule]]
@@ -112,7 +112,7 @@ GST_START_TEST(a_users_own_rules_are_followed) {
   const RuleFile file(kTwoSensors);
   Rig rig(true, file.property());
   rig.add_pir();
-  rig.read(0, {0, 0, 1});  // a third sensor of which the table does not speak
+  rig.read(0, {0, 0, 1});  // a third sensor, which the table does not mention
   CerberusFusion fusion = rig.at(0);
   fail_unless_equals_int(fusion.rule, 42);
   fail_unless_equals_string(fusion.rule_name, "quiet");
@@ -121,7 +121,7 @@ GST_START_TEST(a_users_own_rules_are_followed) {
   fail_unless_equals_string(fusion.rule_name, "gate");
   fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
   fail_unless(std::abs(fusion.sector_from + 90) < 1e-9 && std::abs(fusion.sector_to + 45) < 1e-9);
-  fail_unless_equals_string(rig.show(frame_with(80 * kMs, 2)).rule_name, "somebody");
+  fail_unless_equals_string(rig.show(frame_with(80 * kMs, 2)).rule_name, "person");
 }
 GST_END_TEST
 
@@ -136,11 +136,11 @@ GST_START_TEST(rules_that_cannot_be_used_are_refused_and_the_case_is_named) {
   const struct {
     const RuleFile& file;
     std::vector<const char*> words;
-  } cases[] = {{gap, {"camera not found", "infer1", "no rule applies"}},
-               {contradiction,
-                {"camera found", "infer1 and infer2 fired", "somebody says track", "rule 43 says zero"}},
-               {unknown, {"unknown action \"left\""}},
-               {broken, {":1"}}};
+  } cases[] = {
+      {gap, {"camera not found", "infer1", "no rule applies"}},
+      {contradiction, {"camera found", "infer1 and infer2 fired", "person says track", "rule 43 says zero"}},
+      {unknown, {"unknown action \"left\""}},
+      {broken, {":1"}}};
   for (const auto& c : cases) {
     const std::string text = refusal(c.file.property());
     fail_unless(text.find(c.file.path()) != std::string::npos, "%s", text.c_str());
@@ -180,7 +180,7 @@ GST_START_TEST(rules_may_change_while_playing_and_bad_ones_leave_the_old) {
   };
   g_object_set(rig.element, "rules-file", "/nowhere/rules.toml", nullptr);
   fail_unless(rig.warning().find("/nowhere/rules.toml") != std::string::npos);
-  path_is(file.path());  // whose rules still run
+  path_is(file.path());  // its rules still run
   g_object_set(rig.element, "rules-file", "", nullptr);
   path_is("");
   fail_unless_equals_int(rig.at(120 * kMs).rule, 7);
@@ -209,7 +209,7 @@ GST_START_TEST(rules_for_another_number_of_sensors_are_warned_of_once) {
   const auto said = [](const std::string& rules, int sensors, int frames = 3) {
     Rig rig(true, rules);
     rig.add_pir(nullptr);
-    rig.at(0);  // nobody has said how many there are
+    rig.at(0);  // the number of sensors is not known yet
     fail_unless(rig.warning().empty());
     gst_harness_set_src_caps_str(rig.pir[0], with_sensors(sensors, 0, 30).c_str());
     for (int i = 1; i <= frames; ++i) {
@@ -247,7 +247,7 @@ GST_START_TEST(a_head_of_another_name_is_warned_of_once) {
                     "%s", text.c_str());
     }
   }
-  Rig silent(true, "head=eye");  // without any head there is nothing to be told
+  Rig silent(true, "head=eye");  // without any head there is nothing to report
   for (GstClockTime time = 0; time <= 5 * GST_SECOND; time += 500 * kMs) silent.at(time);
   fail_unless(silent.warning().empty());
 }
@@ -262,7 +262,7 @@ GST_START_TEST(a_rule_that_never_applies_is_refused) {
 }
 GST_END_TEST
 
-// Each of them, to what it is already: in the middle of a search nothing happens, and nothing is told.
+// Each property is set to its present value: in the middle of a search nothing changes, and nothing is published.
 GST_START_TEST(a_property_that_is_set_ends_no_search) {
   const RuleFile file(kTwoSensors);
   const std::string all[] = {"rules=complete", "rules=paper", file.property()};
@@ -275,7 +275,7 @@ GST_START_TEST(a_property_that_is_set_ends_no_search) {
     rig.show(frame_at(40 * kMs, -100));
     rig.read(80 * kMs, {0, 0, 0});
     CerberusFusion before = rig.show(frame_at(80 * kMs, -100));
-    rig.told();
+    rig.posted();
     GstClockTime time = 80 * kMs;
     guint count = 0;
     g_autofree GParamSpec** specs = g_object_class_list_properties(G_OBJECT_GET_CLASS(rig.element), &count);
@@ -291,7 +291,7 @@ GST_START_TEST(a_property_that_is_set_ends_no_search) {
                       g_str_equal(after.rule_name, before.rule_name),
                   "%s was set, and it is %s (%s)", spec->name, cerberus_fusion_action_get_nick(after.action),
                   after.rule_name);
-      fail_unless(rig.told().empty(), "%s was set, and told", spec->name);
+      fail_unless(rig.posted().empty(), "%s was set, and told", spec->name);
     }
     fail_unless(time > 400 * kMs);
   }

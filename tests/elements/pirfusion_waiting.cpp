@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Who waits for whom: a frame of a stream that is not live for its PIR sensors, a PIR file for the video, nobody in a
-// live pipeline; and what ends the waiting. No test sleeps: a frame that must wait is proven by the reading that it
-// comes out with, one that must not by coming out at all.
-#include <chrono>  // before gst-check, whose macros bite standard headers
+// Which thread waits for which: a frame of a stream that is not live for its PIR sensors, a PIR file for the video,
+// none in a live pipeline; and what ends the wait. No test sleeps: a frame that must wait is proven by the reading
+// that it carries, one that must not by coming out at all.
+#include <chrono>  // before gst-check, whose macros break standard headers
 
 #include "fusion_rig.h"
 #include "promises.h"
@@ -36,7 +36,7 @@ std::string run(unsigned seed) {
   std::vector<std::thread> threads;
   for (std::size_t pad = 0; pad < 2; ++pad)
     threads.emplace_back([&rig, pad, seed] {
-      std::uint32_t noise = seed + static_cast<std::uint32_t>(pad);  // when it yields, not what it says
+      std::uint32_t noise = seed + static_cast<std::uint32_t>(pad);  // when it yields, not its readings
       for (int k = 0; k < 150; ++k) {
         const auto bit = [&](int i) { return guint8(k * (7 + i) / 13 % 3 == 1); };
         Bytes bytes = {bit(0)};
@@ -58,7 +58,7 @@ std::string run(unsigned seed) {
 
 }  // namespace
 
-GST_START_TEST(live_nobody_waits_for_a_pir_pad_that_never_speaks) {
+GST_START_TEST(live_no_frame_waits_for_a_pir_pad_that_never_sends) {
   Rig rig(true, kForEver);
   rig.add_pir(nullptr);  // linked, and not a word
   assert_says(values(rig, 0), "2");
@@ -70,7 +70,7 @@ GST_START_TEST(live_nobody_waits_for_a_pir_pad_that_never_speaks) {
 }
 GST_END_TEST
 
-GST_START_TEST(live_nobody_waits_for_a_late_reading) {
+GST_START_TEST(live_no_frame_waits_for_a_late_reading) {
   Rig rig(true, kForEver + " lost-after=0");
   rig.add_pir();
   rig.read(0, {1, 0, 0});
@@ -80,8 +80,9 @@ GST_START_TEST(live_nobody_waits_for_a_late_reading) {
 }
 GST_END_TEST
 
-// A chip that was unplugged, a network that broke: the head must not look for ever for whom a lost sensor saw last.
-GST_START_TEST(live_who_falls_silent_is_named_once_and_invalid) {
+// A chip that was unplugged, a network that broke: the head must not search for ever because of a lost sensor's last
+// reading.
+GST_START_TEST(live_a_sensor_that_stops_sending_is_named_once_and_invalid) {
   for (const bool ends : {false, true}) {
     Rig rig;
     GstHarness* pir = rig.add_pir();
@@ -107,7 +108,7 @@ GST_START_TEST(live_who_falls_silent_is_named_once_and_invalid) {
     fusion = frame_of(8 * GST_SECOND);
     assert_says(text(sensors(fusion)), "001");
     fail_unless_equals_int(fusion.action, CERBERUS_FUSION_SEARCH);
-    // Who says that nothing changes is there.
+    // A sensor that sends GAP events is present.
     fail_unless(gst_harness_push_event(pir, gst_event_new_gap(9 * GST_SECOND, GST_SECOND)));
     assert_says(text(sensors(frame_of(11 * GST_SECOND))), "001");
     assert_says(text(sensors(frame_of(11040 * kMs))), "222");
@@ -131,7 +132,7 @@ GST_START_TEST(live_a_pad_that_never_speaks_is_named) {
 }
 GST_END_TEST
 
-// Late by a network, but alive: what arrives now was said by somebody who is there.
+// Delayed by a network, but alive: a reading that arrives now proves that the sensor is present.
 GST_START_TEST(live_readings_that_are_always_late_count) {
   Rig rig;
   GstHarness* pir = rig.add_pir();
@@ -158,7 +159,7 @@ GST_START_TEST(live_the_last_word_of_a_recording_stays_true) {
 GST_END_TEST
 
 // As v4l2src does without a frame rate.
-GST_START_TEST(where_nobody_knows_whether_it_is_live_nobody_waits) {
+GST_START_TEST(without_an_answer_about_liveness_no_frame_waits) {
   Rig rig(false, kForEver);
   GstHarness* pir = rig.add_pir(kPaper, "pir_%u", false);
   for (GstPad* pad : {rig.video->srcpad, pir->srcpad})
@@ -213,7 +214,7 @@ GST_START_TEST(not_live_every_linked_pad_is_waited_for) {
 }
 GST_END_TEST
 
-// Each of these says that nothing more will come for the frame at 1 s.
+// After each of these no more readings come for the frame at 1 s.
 GST_START_TEST(readings_gaps_and_the_end_cover_a_frame) {
   const auto covered_by = [](const std::function<void(Rig&, GstHarness*)>& action, const char* expected) {
     for (const bool before : {true, false}) {  // as the frame comes, or while it waits
@@ -246,7 +247,7 @@ GST_START_TEST(readings_gaps_and_the_end_cover_a_frame) {
 }
 GST_END_TEST
 
-// A gap from 0.5 s to 1 s says nothing of 1 s itself.
+// A gap from 0.5 s to 1 s does not cover 1 s itself.
 GST_START_TEST(a_gap_ends_before_its_end) {
   Rig rig(false, "max-wait=20000000");
   GstHarness* pir = rig.add_pir();
@@ -285,7 +286,7 @@ GST_START_TEST(a_silent_pad_is_warned_of_and_ignored_until_it_speaks) {
   // From now on a wait would be for ever.
   g_object_set(rig.element, "max-wait", GST_CLOCK_TIME_NONE, nullptr);
   for (int k = 0; k < 5; ++k) assert_says(values(rig, (600 + k) * kMs), "2222");
-  // It speaks: counted again, and waited for again.
+  // It sends again: it counts again, and frames wait for it again.
   rig.read(700 * kMs, {0, 0, 0});
   Pushing frame_in(rig.video, static_pad(rig.element, "sink"), frame(800 * kMs));
   rig.read(750 * kMs, {0, 1, 0});
@@ -295,7 +296,7 @@ GST_START_TEST(a_silent_pad_is_warned_of_and_ignored_until_it_speaks) {
 }
 GST_END_TEST
 
-GST_START_TEST(with_max_wait_0_nobody_waits_and_nobody_complains) {
+GST_START_TEST(with_max_wait_0_no_frame_waits_and_there_is_no_warning) {
   Rig rig(false, "max-wait=0");
   rig.add_pir();
   rig.read(0, {1, 0, 0});
@@ -416,14 +417,14 @@ static Suite* pirfusion_waiting_suite() {
   Suite* s = suite_create("pirfusion_waiting");
   TCase* tc = tcase_create("live");
   suite_add_tcase(s, tc);
-  tcase_add_test(tc, live_nobody_waits_for_a_pir_pad_that_never_speaks);
-  tcase_add_test(tc, live_nobody_waits_for_a_late_reading);
-  tcase_add_test(tc, live_who_falls_silent_is_named_once_and_invalid);
+  tcase_add_test(tc, live_no_frame_waits_for_a_pir_pad_that_never_sends);
+  tcase_add_test(tc, live_no_frame_waits_for_a_late_reading);
+  tcase_add_test(tc, live_a_sensor_that_stops_sending_is_named_once_and_invalid);
   tcase_add_test(tc, live_a_pad_that_never_speaks_is_named);
   tcase_add_test(tc, live_readings_that_are_always_late_count);
   tcase_add_test(tc, live_the_last_word_of_a_recording_stays_true);
   tcase_add_test(tc, a_live_pir_source_never_waits);
-  tcase_add_test(tc, where_nobody_knows_whether_it_is_live_nobody_waits);
+  tcase_add_test(tc, without_an_answer_about_liveness_no_frame_waits);
   tc = tcase_create("not live");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, not_live_a_frame_waits_for_the_readings_of_its_time);
@@ -432,7 +433,7 @@ static Suite* pirfusion_waiting_suite() {
   tcase_add_test(tc, a_gap_ends_before_its_end);
   tcase_add_test(tc, a_pad_that_goes_away_is_not_waited_for);
   tcase_add_test(tc, a_silent_pad_is_warned_of_and_ignored_until_it_speaks);
-  tcase_add_test(tc, with_max_wait_0_nobody_waits_and_nobody_complains);
+  tcase_add_test(tc, with_max_wait_0_no_frame_waits_and_there_is_no_warning);
   tcase_add_test(tc, a_waiting_frame_lets_go_at_once);
   tcase_add_test(tc, after_a_flush_a_frame_waits_again);
   tcase_add_test(tc, a_flush_of_a_pir_pad_takes_back_what_it_covered);

@@ -120,7 +120,7 @@ GST_START_TEST(a_seek_backwards_is_refused_and_leaves_the_stream_as_it_is) {
 }
 GST_END_TEST
 
-// Whoever seeks in a recorded night sees what the sensors said then.
+// A seek in a recorded night returns the sensor states of that time.
 GST_START_TEST(after_a_seek_frames_meet_the_readings_of_their_time) {
   g_autoptr(GstElement) pipeline = gst_parse_launch(
       "videotestsrc ! video/x-raw,format=GRAY8,width=16,height=16,framerate=25/1 ! pirfusion name=fusion "
@@ -146,8 +146,8 @@ GST_START_TEST(after_a_seek_frames_meet_the_readings_of_their_time) {
     for (int k = 0; k < 20; ++k) {
       const int time = second * 1000 + k * 40;
       const char* said = time < 1000 ? "000" : time < 2500 ? "100" : time < 2520 ? "110" : "010";
-      const std::string told = next();
-      fail_unless(told == std::to_string(time) + " " + said, "%s, not %s at %d", told.c_str(), said, time);
+      const std::string read = next();
+      fail_unless(read == std::to_string(time) + " " + said, "%s, not %s at %d", read.c_str(), said, time);
     }
   }
   gst_element_set_state(pipeline, GST_STATE_NULL);
@@ -211,10 +211,10 @@ GST_START_TEST(the_model_follows_the_properties) {
   };
   for (const auto& one : cases) {
     const std::string line = std::string("bearings=0 heartbeat=3600000000000 ") + one.properties;
-    const std::vector<std::string> told = Source(line).all();
+    const std::vector<std::string> readings = Source(line).all();
     std::string text;
-    for (const std::string& each : told) text += each + "; ";
-    fail_unless(told == one.expected, "%s: %s", line.c_str(), text.c_str());
+    for (const std::string& each : readings) text += each + "; ";
+    fail_unless(readings == one.expected, "%s: %s", line.c_str(), text.c_str());
   }
 }
 GST_END_TEST
@@ -303,14 +303,14 @@ GST_START_TEST(a_bad_recording_is_named_with_its_line) {
   }
   // Whatever bytes it has, a message is UTF-8 (else GStreamer itself complains) and does not end at a NUL.
   using namespace std::string_literals;
-  for (const auto& [text, told] :
+  for (const auto& [text, expected] :
        {std::pair("0,0,0,0\n\xff\xfe,1,0,0\n"s, "\"\\xff\\xfe\" is no time"),
         {"0,0,0,0\n\0\0,1,0,0\n"s, "\"\\x00\\x00\" is no time"},
         {"0,0,0,0\n1,\u00e9\x1b,0,0\n"s, "\"\u00e9\\x1b\" is no reading"},
         {"0,0,0,0\n{\"time\":1,\"pir\":[\"\xc3\"]}"s, "no complete JSON object"}}) {
     g_file_set_contents(path, text.data(), static_cast<gssize>(text.size()), nullptr);
     const std::string why = Source(properties).refusal(GST_STREAM_ERROR, GST_STREAM_ERROR_DECODE);
-    fail_unless(says(why, "line 2: ") && says(why, told), "%s", why.c_str());
+    fail_unless(says(why, "line 2: ") && says(why, expected), "%s", why.c_str());
   }
   Source nowhere("name=source driver=replay");
   g_object_set(nowhere.child("source"), "location", "/nowhere\xff.csv", nullptr);
@@ -337,7 +337,7 @@ GST_START_TEST(a_driver_that_fails_ends_the_stream_with_its_words) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_fails_again_behind_a_seek_says_so_again) {
+GST_START_TEST(a_failure_that_recurs_after_a_seek_is_reported_again) {
   Source source("script=\"0,0,0,0; 0.15 fail the cable broke\"");
   source.play();
   for (int round = 0; round < 3; ++round) {
@@ -348,8 +348,8 @@ GST_START_TEST(who_fails_again_behind_a_seek_says_so_again) {
 }
 GST_END_TEST
 
-// The head must not look for somebody whom nobody sees any more.
-GST_START_TEST(whom_failing_sensors_saw_last_does_not_stand) {
+// The head must not search for a person whom no sensor detects any more.
+GST_START_TEST(the_last_reading_of_failed_sensors_is_not_kept) {
   Source source("heartbeat=1000000000 script=\"0,0,0,0; 0.5,0,1,0; 1.5 fail the cable broke\"");
   source.play();
   source.error(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ);
@@ -417,7 +417,7 @@ GST_START_TEST(while_the_base_turns_a_detection_is_doubtful) {
     gst_message_unref(message);
   }
   fail_unless_equals_int(doubtful, 2);
-  // A stranger's event is not for us, and does no harm.
+  // Another element's event is not for this source, and does no harm.
   gst_harness_push_upstream_event(
       source.harness(),
       gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
@@ -449,8 +449,8 @@ Suite* pirsrc_suite() {
   tcase_add_test(tests, a_wrong_setting_is_an_error_that_names_it);
   tcase_add_test(tests, a_bad_recording_is_named_with_its_line);
   tcase_add_test(tests, a_driver_that_fails_ends_the_stream_with_its_words);
-  tcase_add_test(tests, who_fails_again_behind_a_seek_says_so_again);
-  tcase_add_test(tests, whom_failing_sensors_saw_last_does_not_stand);
+  tcase_add_test(tests, a_failure_that_recurs_after_a_seek_is_reported_again);
+  tcase_add_test(tests, the_last_reading_of_failed_sensors_is_not_kept);
   tcase_add_test(tests, live_it_keeps_the_clocks_time);
   tcase_add_test(tests, stopping_takes_no_time_while_it_waits);
   tcase_add_test(tests, while_the_base_turns_a_detection_is_doubtful);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors whose driver blocks for ever keep nobody: not a change of state, not an event, not a query.
+// Sensors whose driver blocks for ever delay no change of state, no event and no query.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -59,7 +59,7 @@ GST_START_TEST(a_blocked_driver_delays_no_reading_event_or_query) {
         g_autoptr(GstBuffer) buffer = blocked.source.take();
         readings = readings_of(buffer);
       } while (nothing_is_known(readings));
-      fail_unless(readings == std::vector({0, 0, 1}));  // what it said before it blocked
+      fail_unless(readings == std::vector({0, 0, 1}));  // the reading before it blocked
       fail_unless(gst_harness_push_upstream_event(blocked.source.harness(), base_event(9, GST_SECOND)));
       g_autoptr(GstCaps) caps = gst_pad_peer_query_caps(blocked.source.harness()->sinkpad, nullptr);
       fail_unless(gst_caps_is_fixed(caps));

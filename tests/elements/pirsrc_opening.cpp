@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Sensors whose driver hangs while it is opened: no change of state waits for it, nothing is known meanwhile, and what
-// comes of it is told, however late.
+// Sensors whose driver hangs while it is opened: no change of state waits for it, the readings are invalid meanwhile,
+// and the result is reported, however late.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -57,8 +57,8 @@ class Hanging {
 };
 
 void assert_next(Hanging& hanging, const char* expected) {
-  const std::string told = hanging.next();
-  ck_assert_str_eq(told.c_str(), expected);
+  const std::string reading = hanging.next();
+  ck_assert_str_eq(reading.c_str(), expected);
 }
 
 int held() {
@@ -85,7 +85,7 @@ GST_START_TEST(an_opening_that_hangs_delays_no_change_of_state) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_hangs_and_does_not_fit_fails_in_time) {
+GST_START_TEST(a_driver_that_hangs_and_does_not_fit_fails_in_time) {
   assert_prompt("a start that fails", [] {
     Hanging hanging("0,0,0,1", "is-live=true", "application/x-other");
     return time_taken([&] {
@@ -105,7 +105,7 @@ void hang_and_leave() {
   }
 }
 
-GST_START_TEST(whoever_hangs_for_longer_than_his_source_leaves_nothing_when_he_is_through) {
+GST_START_TEST(a_driver_that_outlasts_its_source_leaves_nothing_when_it_returns) {
   hang_and_leave();
   const int before =
       held();  // GLib's own threads are there, and perhaps one of ours still: fewer than five times as many
@@ -125,12 +125,12 @@ GST_START_TEST(live_nothing_is_known_until_they_are_open) {
   }
   fail_unless(gst_harness_try_pull(hanging.source.harness()) == nullptr);
   hanging.gate.close_writer();
-  assert_next(hanging, "200 001");  // at once, what it says of now
+  assert_next(hanging, "200 001");  // at once, the present reading
   gst_harness_set_time(hanging.source.harness(), 350 * GST_MSECOND);
-  std::string told;
-  do told = hanging.next();
-  while (!told.ends_with("011"));
-  ck_assert_str_eq(told.c_str(), "350 011");
+  std::string reading;
+  do reading = hanging.next();
+  while (!reading.ends_with("011"));
+  ck_assert_str_eq(reading.c_str(), "350 011");
 }
 GST_END_TEST
 
@@ -173,7 +173,7 @@ GST_START_TEST(a_recording_that_is_being_opened_can_be_sought_in) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_cannot_be_opened_says_so_at_once_and_once_however_late) {
+GST_START_TEST(sensors_that_cannot_be_opened_are_reported_at_once_and_once_however_late) {
   for (const char* live : {"is-live=true", "is-live=false"}) {
     for (const GstState state : {GST_STATE_PAUSED, GST_STATE_PLAYING}) {
       Hanging hanging("open fail no such converter", live);
@@ -191,25 +191,25 @@ GST_START_TEST(who_cannot_be_opened_says_so_at_once_and_once_however_late) {
 }
 GST_END_TEST
 
-// Whoever stops at the first that ends the stream must hear that it did not end well.
+// An application that stops at the first message that ends the stream must receive the error.
 GST_START_TEST(no_end_of_the_stream_overtakes_the_error) {
   for (int round = 0; round < 5; ++round) {
     Hanging hanging("open fail no such converter", "is-live=true");
-    std::atomic<bool> told = false;
+    std::atomic<bool> posted = false;
     GstBus* bus = gst_element_get_bus(hanging.source.element());
     gst_bus_set_sync_handler(
         bus,
-        [](GstBus*, GstMessage* message, gpointer heard) {
+        [](GstBus*, GstMessage* message, gpointer data) {
           if (GST_MESSAGE_TYPE(message) != GST_MESSAGE_ERROR) return GST_BUS_PASS;
           g_usleep(50000);
-          *static_cast<std::atomic<bool>*>(heard) = true;
+          *static_cast<std::atomic<bool>*>(data) = true;
           return GST_BUS_PASS;
         },
-        &told, nullptr);
+        &posted, nullptr);
     hanging.change(GST_STATE_PLAYING);
     hanging.gate.close_writer();
     hanging.ends();
-    const bool first = told;
+    const bool first = posted;
     hanging.change(GST_STATE_NULL);
     gst_bus_set_sync_handler(bus, nullptr, nullptr, nullptr);
     gst_object_unref(bus);
@@ -218,7 +218,7 @@ GST_START_TEST(no_end_of_the_stream_overtakes_the_error) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_failed_may_be_started_again) {
+GST_START_TEST(a_source_that_failed_may_be_started_again) {
   Hanging hanging("open fail no such converter", "is-live=true");
   for (int round = 0; round < 3; ++round) {  // after the first, at once: the gate is open
     if (gst_element_set_state(hanging.source.element(), GST_STATE_PAUSED) != GST_STATE_CHANGE_FAILURE)
@@ -231,7 +231,7 @@ GST_START_TEST(who_failed_may_be_started_again) {
 }
 GST_END_TEST
 
-// What they measure is known when they are open, and what follows may have asked before.
+// The sensors' properties are known once they are open; an element downstream may have queried before.
 GST_START_TEST(volts_that_are_not_measured_are_refused_however_late) {
   for (const char* live : {"is-live=true", "is-live=false"}) {
     Hanging hanging("0,0,0,1", live, "application/x-pir,format=level");
@@ -277,15 +277,15 @@ static Suite* pirsrc_opening_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, an_opening_that_hangs_delays_no_change_of_state);
-  tcase_add_test(tests, who_hangs_and_does_not_fit_fails_in_time);
-  tcase_add_test(tests, whoever_hangs_for_longer_than_his_source_leaves_nothing_when_he_is_through);
+  tcase_add_test(tests, a_driver_that_hangs_and_does_not_fit_fails_in_time);
+  tcase_add_test(tests, a_driver_that_outlasts_its_source_leaves_nothing_when_it_returns);
   tcase_add_test(tests, live_nothing_is_known_until_they_are_open);
   tcase_add_test(tests, a_device_is_read_as_soon_as_it_is_open);
   tcase_add_test(tests, a_recording_is_the_same_however_late_it_opens);
   tcase_add_test(tests, a_recording_that_is_being_opened_can_be_sought_in);
-  tcase_add_test(tests, who_cannot_be_opened_says_so_at_once_and_once_however_late);
+  tcase_add_test(tests, sensors_that_cannot_be_opened_are_reported_at_once_and_once_however_late);
   tcase_add_test(tests, no_end_of_the_stream_overtakes_the_error);
-  tcase_add_test(tests, who_failed_may_be_started_again);
+  tcase_add_test(tests, a_source_that_failed_may_be_started_again);
   tcase_add_test(tests, volts_that_are_not_measured_are_refused_however_late);
   tcase_add_test(tests, who_likes_volts_best_gets_readings_where_there_are_no_volts);
   return suite;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Planes: who wants them gets them, and nobody sees another one's changes.
+// Planes: kept where an element requests them, and writing to one copy changes no other.
 #include <cmath>
 #include <string>
 #include <vector>
@@ -18,7 +18,7 @@ bool has_record(GstBuffer* buffer) {
   return static_cast<bool>(records::record_of(buffer));
 }
 
-GST_START_TEST(planes_stay_only_where_somebody_asks_for_them) {
+GST_START_TEST(planes_are_kept_only_where_an_element_requests_them) {
   struct Case {
     const char* launch;
     bool asked;
@@ -46,7 +46,7 @@ GST_START_TEST(planes_stay_only_where_somebody_asks_for_them) {
 }
 GST_END_TEST
 
-// Somebody is linked later and asks upstream to reconfigure.
+// An element is linked later and sends a reconfigure event.
 GST_START_TEST(planes_stay_after_a_reconfigure_event_when_they_are_wanted_then) {
   Line line("motiondetect ! identity");
   line.run(World{}, 0, 5, [](int, GstBuffer* out) { fail_if(has_record(out)); });
@@ -91,29 +91,31 @@ GST_START_TEST(regions_are_found_again_on_a_record_that_has_them) {
 }
 GST_END_TEST
 
-// One in black and one in white who meet before the wall, stand together and go back where they came from.
+// One person in black and one in white meet before the wall, stand together and return to where they came from.
 class Meeting {
  public:
   static constexpr int kFrames = 115;
-  static double left_of(int who, int frame) { return 146 + (who == 0 ? -2 : 2) * std::abs(frame - 60.0); }
+  static double left_of(int person, int frame) {
+    return 146 + (person == 0 ? -2 : 2) * std::abs(frame - 60.0);
+  }
   static GstBuffer* frame(int k) {
     World world;
     world.figure = false;
     std::vector<std::uint8_t> picture = world.picture(k);
-    for (int who = 1; who >= 0; --who)
+    for (int person = 1; person >= 0; --person)
       for (int y = 80; y < 80 + scene::kFigureHeight; ++y)
         for (int x = 0; x < scene::kFigureWidth; ++x) {
-          const int at = static_cast<int>(left_of(who, k)) + x;
+          const int at = static_cast<int>(left_of(person, k)) + x;
           if (at >= 0 && at < scene::kWidth)
-            picture[static_cast<std::size_t>(y) * scene::kWidth + at] =
-                static_cast<std::uint8_t>((who == 0 ? 8 : 225) + 0.08 * scene::texture(x, y, 5, 7 + who));
+            picture[static_cast<std::size_t>(y) * scene::kWidth + at] = static_cast<std::uint8_t>(
+                (person == 0 ? 8 : 225) + 0.08 * scene::texture(x, y, 5, 7 + person));
         }
     return scene::buffer("GRAY8", scene::kWidth, scene::kHeight, picture, k * scene::kStep);
   }
 };
 
-// The planes of the stages are what the tracker knows people's looks from; by their places these two seem to pass.
-GST_START_TEST(who_is_who_is_told_by_the_planes) {
+// The tracker's appearance model needs the planes of the stages; by their positions these two seem to pass each other.
+GST_START_TEST(identities_are_distinguished_by_the_planes) {
   const bool taken_away = __i__ > 0;
   Line line("motionregions ! identity name=between ! motiontrack");
   g_autoptr(GstElement) between = gst_bin_get_by_name(GST_BIN(line.harness->element), "between");
@@ -134,15 +136,15 @@ GST_START_TEST(who_is_who_is_told_by_the_planes) {
     GstBuffer* out = line.through(Meeting::frame(k));
     fail_if(has_record(out));
     const scene::Regions found(out);
-    for (int who = 0; who < 2 && (k == 40 || k == Meeting::kFrames - 1); ++who) {
+    for (int person = 0; person < 2 && (k == 40 || k == Meeting::kFrames - 1); ++person) {
       guint id = 0;
       for (guint i = 0; i < found.size(); ++i)
-        if (std::abs(found[i].x - Meeting::left_of(who, k)) < 10) id = found[i].id;
-      fail_unless(id > 0, "frame %d: nobody is where %d is", k, who);
+        if (std::abs(found[i].x - Meeting::left_of(person, k)) < 10) id = found[i].id;
+      fail_unless(id > 0, "frame %d: there is no track at person %d", k, person);
       if (k == 40)
-        before[who] = id;
+        before[person] = id;
       else
-        fail_unless((id == before[who]) != taken_away, "%d was %u and is %u", who, before[who], id);
+        fail_unless((id == before[person]) != taken_away, "%d was %u and is %u", person, before[person], id);
     }
     gst_buffer_unref(out);
   }
@@ -162,8 +164,8 @@ void count_previous(Line& line, int& made) {
       &made, nullptr);
 }
 
-// D(k-1) is of use to area=leading and area=common, and to whoever looks at planes.
-GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
+// D(k-1) is used by area=leading and area=common, and by elements that show planes.
+GST_START_TEST(the_previous_difference_is_computed_where_an_element_reads_it) {
   struct Case {
     const char* launch;
     bool asked, made;
@@ -178,7 +180,7 @@ GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
       {"threeframediff name=d ! fuzzythreshold ! motionregions ! motiontrack", false, false},
       {"threeframediff name=d ! fuzzythreshold ! motionregions keep-planes=always ! identity", false, true},
       {"threeframediff name=d ! tee ! fuzzythreshold area=leading ! identity", false, true},
-      // Who never keeps planes makes asking for them behind him vain, but not in another branch.
+      // An element that never keeps planes makes requests behind it futile, but not in another branch.
       {"threeframediff name=d ! fuzzythreshold ! motionregions keep-planes=never ! identity", true, false},
       {"threeframediff name=d ! fuzzythreshold ! tee name=t ! motionregions keep-planes=never ! "
        "fakesink async=false t. ! identity",
@@ -195,7 +197,7 @@ GST_START_TEST(the_difference_before_is_made_where_somebody_reads_it) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_asks_behind_keep_planes_never_is_heard_again_when_that_changes) {
+GST_START_TEST(a_request_behind_keep_planes_never_takes_effect_when_that_changes) {
   Line line("threeframediff name=d ! fuzzythreshold ! motionregions name=r ! identity");
   records::want_record(line.harness->sinkpad);
   g_autoptr(GstElement) regions = gst_bin_get_by_name(GST_BIN(line.harness->element), "r");
@@ -203,7 +205,7 @@ GST_START_TEST(who_asks_behind_keep_planes_never_is_heard_again_when_that_change
   count_previous(line, made);
   for (const char* keep : {"auto", "never", "auto"}) {
     gst_util_set_object_arg(G_OBJECT(regions), "keep-planes", keep);
-    line.run(World{}, k, k + 1);  // upstream is asked with the next frame
+    line.run(World{}, k, k + 1);  // the request reaches upstream with the next frame
     made = 0;
     line.run(World{}, k + 1, k + 6);
     fail_unless_equals_int(made, std::string(keep) == "never" ? 0 : 5);
@@ -221,7 +223,7 @@ GST_START_TEST(planes_come_and_go_with_the_property_while_frames_flow) {
     const bool kept = std::string(keep) == "always";
     line.run(World{}, k, k + 6, [&](int frame, GstBuffer* out) {
       fail_unless_equals_int(has_record(out), kept);
-      // Upstream is asked with the next frame.
+      // The request reaches upstream with the next frame.
       const bool previous = records::has_previous(out);
       if (frame > k) fail_unless_equals_int(previous, kept);
       fail_unless_equals_int(records::threshold_facts_of(out)->result.ready, frame >= 2);
@@ -237,11 +239,11 @@ Suite* planes_suite() {
   suite_add_tcase(suite, tests);
   tcase_set_timeout(tests, 300);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
-  tcase_add_loop_test(tests, planes_stay_only_where_somebody_asks_for_them, 0, 6);
+  tcase_add_loop_test(tests, planes_are_kept_only_where_an_element_requests_them, 0, 6);
   tcase_add_test(tests, planes_stay_after_a_reconfigure_event_when_they_are_wanted_then);
-  tcase_add_loop_test(tests, who_is_who_is_told_by_the_planes, 0, 2);
-  tcase_add_loop_test(tests, the_difference_before_is_made_where_somebody_reads_it, 0, 11);
-  tcase_add_test(tests, who_asks_behind_keep_planes_never_is_heard_again_when_that_changes);
+  tcase_add_loop_test(tests, identities_are_distinguished_by_the_planes, 0, 2);
+  tcase_add_loop_test(tests, the_previous_difference_is_computed_where_an_element_reads_it, 0, 11);
+  tcase_add_test(tests, a_request_behind_keep_planes_never_takes_effect_when_that_changes);
   tcase_add_test(tests, planes_come_and_go_with_the_property_while_frames_flow);
   tcase_add_test(tests, another_branch_keeps_its_uncleaned_mask);
   tcase_add_test(tests, regions_are_found_again_on_a_record_that_has_them);

@@ -4,10 +4,10 @@
 #include <initializer_list>
 #include <limits>
 
+#include "filled.h"
 #include "support.h"
-#include "told.h"
 
-using told::assert_same, told::turning;
+using filled::assert_same, filled::turning;
 
 namespace {
 
@@ -65,7 +65,7 @@ START_TEST(a_pose_that_ends_before_it_begins_holds_what_it_began_with) {
 }
 END_TEST
 
-START_TEST(a_pose_event_says_what_it_was_told) {
+START_TEST(a_pose_event_contains_the_given_pose) {
   const CerberusPose pose = turning();
   g_autoptr(GstEvent) event = cerberus_event_new_pose(&pose);
   fail_unless_equals_int(GST_EVENT_TYPE(event), GST_EVENT_CUSTOM_UPSTREAM);
@@ -142,7 +142,7 @@ START_TEST(a_base_event_says_how_fast_the_body_turns) {
 }
 END_TEST
 
-START_TEST(a_pantilt_message_tells_what_the_head_does) {
+START_TEST(a_pantilt_message_contains_the_head_s_state) {
   const CerberusPose pose = turning();
   g_autoptr(CerberusPantilt) pantilt = cerberus_pantilt_new();
   pantilt->state = CERBERUS_PANTILT_FAULT;
@@ -191,12 +191,12 @@ START_TEST(nothing_crashes_on_null) {
   EXPECT_CRITICAL(parse_base(nullptr, nullptr, nullptr));
   EXPECT_CRITICAL(cerberus_buffer_set_pose(nullptr, pose));
   g_autoptr(GstBuffer) frame = gst_buffer_new();
-  pose->head = nullptr;  // whoever reads it compares it with a name
+  pose->head = nullptr;  // consumers compare it with a name
   fail_unless(cerberus_buffer_set_pose(frame, pose));
   fail_unless_equals_string(cerberus_buffer_peek_pose(frame)->head, "head");
   g_autoptr(GstEvent) event = cerberus_event_new_pose(pose);
-  g_autoptr(CerberusPose) told = cerberus_event_parse_pose(event);
-  fail_unless_equals_string(told->head, "head");
+  g_autoptr(CerberusPose) parsed = cerberus_event_parse_pose(event);
+  fail_unless_equals_string(parsed->head, "head");
   g_autoptr(CerberusPantilt) nameless = cerberus_pantilt_new();
   nameless->pose.head = nullptr;
   g_autoptr(GstMessage) message = cerberus_message_new_pantilt(nullptr, nullptr, nameless);
@@ -217,11 +217,11 @@ static Suite* poses_suite() {
   tcase_add_test(tc, a_new_pose_looks_straight_ahead_for_ever);
   tcase_add_test(tc, a_pose_is_evaluated_within_its_span_and_held_outside);
   tcase_add_test(tc, a_pose_that_ends_before_it_begins_holds_what_it_began_with);
-  tcase_add_test(tc, a_pose_event_says_what_it_was_told);
+  tcase_add_test(tc, a_pose_event_contains_the_given_pose);
   tcase_add_test(tc, a_pose_event_that_is_not_right_is_no_pose);
   tcase_add_test(tc, other_events_are_neither_pose_nor_base);
   tcase_add_test(tc, a_base_event_says_how_fast_the_body_turns);
-  tcase_add_test(tc, a_pantilt_message_tells_what_the_head_does);
+  tcase_add_test(tc, a_pantilt_message_contains_the_head_s_state);
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;
 }

@@ -28,8 +28,9 @@ void assert_prompt(const char* what, Round&& round) {
   fail_unless(best < kPromised, "%s takes %d ms", what, static_cast<int>(best.count()));
 }
 
-// round(): what was said. A driver's thread may answer later than it is waited for, and that be said: one round of
-// several counts. Where there is no such thread nobody is late, and the first round has to be right.
+// round(): returns what was reported. A driver's thread may answer after the wait for it has ended, and the lateness
+// is then reported: one good round of several is enough. Without such a thread there is no lateness, and the first
+// round must be right.
 enum class Answers { at_once, on_a_thread };
 template <typename Round>
 void assert_said(const std::string& expected, Answers answers, Round&& round) {

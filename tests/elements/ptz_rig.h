@@ -60,7 +60,7 @@ inline CerberusPose pose(double pan, double tilt = 0, GstClockTime from = 0,
   return p;
 }
 
-inline void tell(GstHarness* h, const CerberusPose& p) {
+inline void send(GstHarness* h, const CerberusPose& p) {
   gst_harness_push_upstream_event(h, cerberus_event_new_pose(&p));
 }
 

@@ -15,10 +15,10 @@
   } while (0)
 
 static int boxed_types_copy_and_compare(void) {
-  const GType types[] = {CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_REGION,
-                         CERBERUS_TYPE_POSE,          CERBERUS_TYPE_FUSION,    CERBERUS_TYPE_BASE,
-                         CERBERUS_TYPE_PIR,           CERBERUS_TYPE_PANTILT,   CERBERUS_TYPE_MOTION,
-                         CERBERUS_TYPE_TRACK,         CERBERUS_TYPE_STAMP};
+  const GType types[] = {CERBERUS_TYPE_CAMERA_MOTION, CERBERUS_TYPE_REGION, CERBERUS_TYPE_POSE,
+                         CERBERUS_TYPE_FUSION,        CERBERUS_TYPE_BASE,   CERBERUS_TYPE_PIR,
+                         CERBERUS_TYPE_PANTILT,       CERBERUS_TYPE_MOTION, CERBERUS_TYPE_TRACK,
+                         CERBERUS_TYPE_STAMP};
   guint i;
 
   for (i = 0; i < G_N_ELEMENTS(types); ++i) CHECK(G_TYPE_IS_BOXED(types[i]));
@@ -61,10 +61,10 @@ static int a_buffer_carries_it_all(void) {
   return 0;
 }
 
-static int a_head_and_its_sensors_are_told_of(void) {
+static int a_head_and_its_sensors_are_published(void) {
   g_autoptr(GstBuffer) buffer = gst_buffer_new();
   g_autoptr(CerberusPose) pose = cerberus_pose_new();
-  g_autoptr(CerberusPose) heard = NULL;
+  g_autoptr(CerberusPose) received = NULL;
   g_autoptr(CerberusFusion) fusion = cerberus_fusion_new();
   g_autoptr(GstEvent) event = NULL;
   g_autoptr(GstCaps) caps = NULL;
@@ -72,8 +72,8 @@ static int a_head_and_its_sensors_are_told_of(void) {
 
   pose->pan = 30;
   event = cerberus_event_new_pose(pose);
-  heard = cerberus_event_parse_pose(event);
-  CHECK(heard != NULL && heard->pan == 30);
+  received = cerberus_event_parse_pose(event);
+  CHECK(received != NULL && received->pan == 30);
   CHECK(cerberus_buffer_set_pose(buffer, pose) && cerberus_buffer_peek_pose(buffer)->pan == 30);
   fusion->action = CERBERUS_FUSION_TURN_LEFT;
   CHECK(cerberus_buffer_set_fusion(buffer, fusion));
@@ -126,6 +126,6 @@ static int versions_agree(void) {
 
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
-  return boxed_types_copy_and_compare() + a_buffer_carries_it_all() + a_head_and_its_sensors_are_told_of() +
+  return boxed_types_copy_and_compare() + a_buffer_carries_it_all() + a_head_and_its_sensors_are_published() +
          a_message_carries_a_track_and_its_stamp() + versions_agree();
 }

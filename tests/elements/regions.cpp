@@ -126,8 +126,8 @@ START_TEST(scaling_scales_regions_and_keeps_what_others_read) {
 }
 END_TEST
 
-// Up and down again, several times: nothing drifts, and what others read stays what it is. Two regions with one number
-// and one stranger's beside them are not mixed up.
+// Up and down again, several times: nothing drifts, and metas that other elements read stay as they are. Two regions
+// with one number and one of another element beside them are not mixed up.
 START_TEST(scaling_often_loses_nothing) {
   for (const char* width : {"384", "65", "61", "512"}) {
     g_autofree gchar* launch = g_strdup_printf(
@@ -213,7 +213,7 @@ START_TEST(converting_changes_nothing) {
 }
 END_TEST
 
-START_TEST(removing_regions_leaves_those_of_strangers) {
+START_TEST(removing_regions_leaves_those_of_other_elements) {
   GstBuffer* const frames[] = {
       gst_buffer_new(),
       through("videoscale", "video/x-raw,format=I420,framerate=25/1,width=31,height=17", walker()),
@@ -324,7 +324,7 @@ START_TEST(detections_go_with_the_regions) {
 }
 END_TEST
 
-START_TEST(detections_of_strangers_stay) {
+START_TEST(detections_of_other_elements_stay) {
   g_autoptr(GstBuffer) frame = gst_buffer_new();
   GstAnalyticsRelationMeta* meta = gst_buffer_add_analytics_relation_meta(frame);
   GstAnalyticsODMtd dog;
@@ -365,13 +365,13 @@ static Suite* regions_suite(void) {
   tcase_add_test(tc, scaling_often_loses_nothing);
   tcase_add_test(tc, params_that_survive_scaling_are_brought_up_to_date);
   tcase_add_test(tc, converting_changes_nothing);
-  tcase_add_test(tc, removing_regions_leaves_those_of_strangers);
+  tcase_add_test(tc, removing_regions_leaves_those_of_other_elements);
   tcase_add_test(tc, a_region_over_the_edge_of_the_frame_is_cut_for_others_only);
   tcase_add_test(tc, a_region_without_a_place_is_refused);
 #if CERBERUS_ANALYTICS
   tcase_add_test(tc, analytics_elements_find_a_detection_and_its_track);
   tcase_add_test(tc, detections_go_with_the_regions);
-  tcase_add_test(tc, detections_of_strangers_stay);
+  tcase_add_test(tc, detections_of_other_elements_stay);
 #endif
   tcase_add_test(tc, nothing_crashes_on_null);
   return s;

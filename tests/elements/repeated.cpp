@@ -20,7 +20,7 @@ const char* const kLines[] = {
     "cameramotion ! threeframediff ! fuzzythreshold ! motionregions ! motiontrack confirm-time=0",
     "motionregions ! identity", "motiontrack confirm-time=0 ! identity"};
 
-// A picture between frame k and k + 1 that says of itself that it is none; what it shows is not looked at.
+// A picture between frame k and k + 1 that is marked GAP; its content is not analysed.
 GstBuffer* repeated(int k, int part, int parts) {
   GstBuffer* buffer = gst_buffer_new_allocate(nullptr, scene::kWidth * scene::kHeight, nullptr);
   gst_buffer_memset(buffer, 0, 0, gst_buffer_get_size(buffer));
@@ -305,7 +305,7 @@ GST_START_TEST(a_pause_a_flush_and_the_end_of_the_stream_stop_the_timer) {
 }
 GST_END_TEST
 
-// Whoever receives the message at once may come back to the element: no lock is held.
+// A handler that receives the message synchronously may call the element: no lock is held.
 GST_START_TEST(no_lock_is_held_while_the_end_is_posted) {
   Stopped stream;
   gst_bus_set_sync_handler(

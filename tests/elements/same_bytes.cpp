@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// motiondetect and the five elements it stands for give the same bytes over a real sequence: the environment's
-// CERBERUS_SEQUENCE says which, `vtest` or `tennis`. Where it is not there the test is skipped, and says so.
+// motiondetect and the five elements that it stands for give the same bytes over a real sequence, which the
+// environment's CERBERUS_SEQUENCE selects: `vtest` or `tennis`. Where it is missing the test is skipped with a
+// message.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>

@@ -218,7 +218,7 @@ class Line {
     push_caps(caps_text);
     push_segment(harness);
   }
-  // What the messages of this type posted so far say (removes them); of those of elements the states of motion.
+  // The texts of the messages of this type posted so far (removes them); of element messages the states of motion.
   std::vector<std::string> messages(GstMessageType type) {
     std::vector<std::string> texts;
     while (GstMessage* message = gst_bus_pop_filtered(bus, type)) {

@@ -28,7 +28,7 @@ inline int sample_at(const GstVideoFrame* f, guint component, int x, int y) {
                   x * GST_VIDEO_FRAME_COMP_PSTRIDE(f, component);
   const int depth = GST_VIDEO_FORMAT_INFO_DEPTH(format, component);
   if (depth <= 8) return *p;
-  p += GST_VIDEO_FRAME_COMP_POFFSET(f, component) % 2;  // 1 is said for V of P010, and 2 is meant
+  p += GST_VIDEO_FRAME_COMP_POFFSET(f, component) % 2;  // GStreamer states 1 for V of P010, and means 2
   const int word = GST_VIDEO_FORMAT_INFO_IS_LE(format) ? GST_READ_UINT16_LE(p) : GST_READ_UINT16_BE(p);
   return word >> (GST_VIDEO_FORMAT_INFO_SHIFT(format, component) + depth - 8);
 }

@@ -2,7 +2,7 @@
 // The thread that lets a clock's time pass, with a clock that stands still unless the test turns it.
 #include "../../plugins/pantilt/ticker.hpp"
 
-#include <future>  // before gstcheck.h, whose macro `fail` it cannot take
+#include <future>  // before gstcheck.h, whose macro `fail` breaks it
 
 #include <gst/check/gstcheck.h>
 #include <gst/check/gsttestclock.h>
@@ -16,7 +16,7 @@ using cerberus::plugin::Ticker;
 struct Clock {
   GstClock* clock = gst_test_clock_new();
   ~Clock() { gst_object_unref(clock); }
-  // Until somebody waits for that time.
+  // Returns when a thread waits for that time.
   void await(GstClockTime time) const {
     GstClockID id = nullptr;
     gst_test_clock_wait_for_next_pending_id(GST_TEST_CLOCK(clock), &id);

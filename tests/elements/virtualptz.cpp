@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What virtualptz shows and tells. (Whom it waits for: virtualptz_lockstep.cpp.)
+// The picture and the messages of virtualptz. (Its waiting: virtualptz_lockstep.cpp.)
 #include <cmath>
 #include <span>
 #include <string>
@@ -32,23 +32,23 @@ GST_START_TEST(a_pose_moves_the_window_in_every_format) {
   for (const char* format : std::span(kFormats).first(kByteFormatCount)) {
     Ptz ptz(kLine, true, format);
     ptz.frame_shows(0, 80, 60);
-    tell(ptz.h.get(), pose(kForty));
+    send(ptz.h.get(), pose(kForty));
     ptz.frame_shows(1, 120, 60);
-    tell(ptz.h.get(), pose(-kForty));
+    send(ptz.h.get(), pose(-kForty));
     ptz.frame_shows(2, 40, 60);
-    tell(ptz.h.get(), pose(0, kForty));
+    send(ptz.h.get(), pose(0, kForty));
     ptz.frame_shows(3, 80, 20);
   }
 }
 GST_END_TEST
 
-GST_START_TEST(the_window_begins_where_it_is_told_to) {
+GST_START_TEST(the_window_begins_at_its_start_position) {
   Ptz ptz(kLine + "start-pan=8.2132107 start-tilt=-89");
   ptz.frame_shows(0, 120, 120);
 }
 GST_END_TEST
 
-GST_START_TEST(a_head_that_looks_beyond_its_reach_is_told_once) {
+GST_START_TEST(a_head_that_points_beyond_its_reach_is_warned_of_once) {
   Ptz ptz;
   Bus bus(ptz.h.get());
   ptz.frame_shows(0, 80, 60);
@@ -56,7 +56,7 @@ GST_START_TEST(a_head_that_looks_beyond_its_reach_is_told_once) {
   int number = 0;
   std::string text;
   const auto warnings = [&](double to_pan, double to_tilt) {
-    tell(ptz.h.get(), pose(to_pan, to_tilt));
+    send(ptz.h.get(), pose(to_pan, to_tilt));
     gst_buffer_unref(ptz.through(++number));
     return bus.count(GST_MESSAGE_WARNING, &text);
   };
@@ -64,7 +64,7 @@ GST_START_TEST(a_head_that_looks_beyond_its_reach_is_told_once) {
   fail_unless_equals_int(warnings(-31.25, 0), 1);
   fail_unless(text.find("pan -31.25, tilt 0,") != text.npos && text.find("pan-min") != text.npos, "%s",
               text.c_str());
-  fail_unless_equals_int(warnings(0, 40), 0);  // it was told already
+  fail_unless_equals_int(warnings(0, 40), 0);  // it was reported already
 }
 GST_END_TEST
 
@@ -78,7 +78,7 @@ GST_START_TEST(between_pixels_it_interpolates) {
   gst_buffer_unmap(stripes, &map);
   gst_harness_push(ptz.h.get(), gst_buffer_copy_deep(stripes));
   gst_buffer_unref(gst_harness_pull(ptz.h.get()));
-  tell(ptz.h.get(), pose(std::atan(0.25 / 277.128) * 180 / M_PI));
+  send(ptz.h.get(), pose(std::atan(0.25 / 277.128) * 180 / M_PI));
   GST_BUFFER_PTS(stripes) = 40 * GST_MSECOND;
   gst_harness_push(ptz.h.get(), stripes);
   const Picture seen(ptz.out, gst_harness_pull(ptz.h.get()));
@@ -93,7 +93,7 @@ GST_START_TEST(a_moving_pose_is_evaluated_at_the_frames_time) {
   p.pan_speed = kForty / 0.040;
   p.valid_until = 40 * GST_MSECOND;
   p.moving = TRUE;
-  tell(ptz.h.get(), p);
+  send(ptz.h.get(), p);
   ptz.frame_shows(1, 120, 60);
 }
 GST_END_TEST
@@ -101,15 +101,15 @@ GST_END_TEST
 GST_START_TEST(poses_are_passed_on_and_only_those_of_the_own_head_count) {
   Ptz ptz;
   ptz.frame_shows(0, 80, 60);
-  CerberusPose stranger = pose(kForty);
-  cerberus_pose_set_head(&stranger, "another");
-  tell(ptz.h.get(), stranger);
+  CerberusPose other = pose(kForty);
+  cerberus_pose_set_head(&other, "another");
+  send(ptz.h.get(), other);
   gst_harness_push_upstream_event(
       ptz.h.get(),
       gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
                            gst_structure_new(CERBERUS_EVENT_POSE, "pan", G_TYPE_STRING, "x", nullptr)));
   ptz.frame_shows(1, 80, 60);
-  tell(ptz.h.get(), pose(kForty));
+  send(ptz.h.get(), pose(kForty));
   ptz.frame_shows(2, 120, 60);
   int passed = 0;
   while (GstEvent* event = gst_harness_try_pull_upstream_event(ptz.h.get())) {
@@ -128,7 +128,7 @@ GST_START_TEST(a_frame_carries_the_pose_it_was_made_with) {
   gst_buffer_unref(out);
   CerberusPose p = pose(80, 3);
   p.source = CERBERUS_POSE_MEASURED;
-  tell(ptz.h.get(), p);
+  send(ptz.h.get(), p);
   out = ptz.through(1);
   const CerberusPose* made = cerberus_buffer_peek_pose(out);
   fail_unless(std::abs(made->pan - 16.102) < 1e-3, "pan %g: the picture ends there", made->pan);
@@ -156,8 +156,8 @@ GST_START_TEST(a_pose_and_regions_of_the_wide_picture_do_not_come_through) {
 }
 GST_END_TEST
 
-// A window does not move quite as a head turns; nobody must take the difference for a robot that does.
-GST_START_TEST(its_base_stands_unless_somebody_upstream_knows) {
+// A window does not move quite as a head turns; the difference must not be reported as a turning robot.
+GST_START_TEST(its_base_stands_unless_an_upstream_element_reports_it) {
   Ptz ptz;
   GstBuffer* out = ptz.through(0);
   const CerberusBase* base = cerberus_buffer_peek_base(out);
@@ -168,7 +168,7 @@ GST_START_TEST(its_base_stands_unless_somebody_upstream_knows) {
   cerberus_base_init(&turning);
   turning.yaw_rate = -8;
   cerberus_buffer_set_base(in, &turning);
-  tell(ptz.h.get(), pose(0, 0));
+  send(ptz.h.get(), pose(0, 0));
   gst_harness_push(ptz.h.get(), in);
   out = gst_harness_pull(ptz.h.get());
   base = cerberus_buffer_peek_base(out);
@@ -209,7 +209,7 @@ GST_START_TEST(the_picture_may_change_its_size_on_the_way) {
 GST_END_TEST
 
 GST_START_TEST(what_does_not_fit_is_an_error_that_says_so) {
-  for (const auto& [more, told] :
+  for (const auto& [more, expected] :
        {std::pair{"width=321 height=100", "A window of 321 x 100 pixels does not fit"},
         {"width=160 height=120 wide-fov=60 horizontal-fov=61.5",
          " pixels that sees 61.5 degrees does not fit"}}) {
@@ -222,9 +222,9 @@ GST_START_TEST(what_does_not_fit_is_an_error_that_says_so) {
         fail_unless_equals_int(gst_harness_push(h.get(), frame(info_of(caps))), GST_FLOW_NOT_NEGOTIATED);
       std::string text;
       fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
-      fail_unless(text.find(std::string(told) + " into the picture of 320 x 240") != text.npos, "%s",
+      fail_unless(text.find(std::string(expected) + " into the picture of 320 x 240") != text.npos, "%s",
                   text.c_str());
-      // A start anew is told anew.
+      // A restart is reported again.
       for (const GstState state : {GST_STATE_READY, GST_STATE_PLAYING})
         gst_element_set_state(h.get()->element, state);
       gst_harness_set_src_caps_str(h.get(), caps.c_str());
@@ -255,7 +255,7 @@ GST_START_TEST(angles_may_change_while_it_runs_as_long_as_they_fit) {
   ptz.frame_shows(0, 80, 60);
   GstElement* element = gst_harness_find_element(ptz.h.get(), "virtualptz");
   g_object_set(element, "wide-fov", 90.0, nullptr);
-  tell(ptz.h.get(), pose(std::atan(40 / 160.0) * 180 / M_PI));
+  send(ptz.h.get(), pose(std::atan(40 / 160.0) * 180 / M_PI));
   ptz.frame_shows(1, 120, 60);
   g_object_set(element, "horizontal-fov", 100.0, nullptr);
   ptz.frame_shows(2, 120, 60);
@@ -271,14 +271,14 @@ static Suite* virtualptz_suite() {
   suite_add_tcase(s, tc);
   tcase_add_test(tc, the_window_is_the_middle_of_the_picture_in_every_format);
   tcase_add_test(tc, a_pose_moves_the_window_in_every_format);
-  tcase_add_test(tc, the_window_begins_where_it_is_told_to);
-  tcase_add_test(tc, a_head_that_looks_beyond_its_reach_is_told_once);
+  tcase_add_test(tc, the_window_begins_at_its_start_position);
+  tcase_add_test(tc, a_head_that_points_beyond_its_reach_is_warned_of_once);
   tcase_add_test(tc, between_pixels_it_interpolates);
   tcase_add_test(tc, a_moving_pose_is_evaluated_at_the_frames_time);
   tcase_add_test(tc, poses_are_passed_on_and_only_those_of_the_own_head_count);
   tcase_add_test(tc, a_frame_carries_the_pose_it_was_made_with);
   tcase_add_test(tc, a_pose_and_regions_of_the_wide_picture_do_not_come_through);
-  tcase_add_test(tc, its_base_stands_unless_somebody_upstream_knows);
+  tcase_add_test(tc, its_base_stands_unless_an_upstream_element_reports_it);
   tcase_add_test(tc, it_says_how_far_it_reaches);
   tcase_add_test(tc, downstream_may_choose_the_size);
   tcase_add_test(tc, the_picture_may_change_its_size_on_the_way);

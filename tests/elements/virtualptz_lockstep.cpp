@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Not live, virtualptz makes a frame when it knows where the head looks then: whom it waits for, and for how long.
+// Not live, virtualptz makes a frame when the pose for its time is known: which pose it waits for, and for how long.
 #include <chrono>
 #include <string>
 #include <thread>
@@ -31,10 +31,10 @@ GST_START_TEST(not_live_a_frame_waits_for_its_pose) {
   Ptz ptz(kLine, false);
   ptz.frame_shows(0, 80, 60);
   for (int number = 1; number < 20; ++number) {
-    // A pose of the time before wakes nobody.
-    tell(ptz.h.get(), pose(0, 0, (number - 1) * 40 * GST_MSECOND, (number * 40 - 1) * GST_MSECOND));
+    // An earlier pose ends no wait.
+    send(ptz.h.get(), pose(0, 0, (number - 1) * 40 * GST_MSECOND, (number * 40 - 1) * GST_MSECOND));
     Push push(ptz, number);
-    tell(ptz.h.get(),
+    send(ptz.h.get(),
          pose(number % 2 ? kForty : 0, 0, (number * 40 - 1) * GST_MSECOND, number * 40 * GST_MSECOND));
     fail_unless_equals_int(push.result(), GST_FLOW_OK);
     ptz.shows(gst_harness_pull(ptz.h.get()), number, number % 2 ? 120 : 80, 60);
@@ -42,7 +42,7 @@ GST_START_TEST(not_live_a_frame_waits_for_its_pose) {
 }
 GST_END_TEST
 
-// A head that knows of no frame to come stays silent, and tells its way through a gap when it hears of one.
+// A head without frames publishes nothing, and publishes poses through a gap when it receives a GAP event.
 struct Silent {
   GstHarness* h;
   std::vector<std::pair<GstClockTime, GstClockTime>> gaps;
@@ -55,19 +55,19 @@ struct Silent {
           auto* self = static_cast<Silent*>(data);
           auto& gap = self->gaps.emplace_back();
           gst_event_parse_gap(event, &gap.first, &gap.second);
-          tell(self->h, pose(kForty, 0, gap.first, gap.first + gap.second));
+          send(self->h, pose(kForty, 0, gap.first, gap.first + gap.second));
           return GST_PAD_PROBE_OK;
         },
         this, nullptr);
   }
 };
 
-GST_START_TEST(where_frames_are_missing_those_behind_are_told) {
+GST_START_TEST(missing_frames_are_announced_downstream) {
   Ptz ptz(kLine + "lockstep-timeout=1000000", false);
   Silent silent(ptz.h.get());
   ptz.frame_shows(0, 80, 60);
   ptz.frame_shows(5, 120, 60);
-  tell(ptz.h.get(), pose(0, 0, 200 * GST_MSECOND, 260 * GST_MSECOND));
+  send(ptz.h.get(), pose(0, 0, 200 * GST_MSECOND, 260 * GST_MSECOND));
   ptz.frame_shows(6, 80, 60);
   ptz.frame_shows(8, 120, 60);
   const decltype(silent.gaps) missing = {{40 * GST_MSECOND, 160 * GST_MSECOND},
@@ -76,12 +76,12 @@ GST_START_TEST(where_frames_are_missing_those_behind_are_told) {
 }
 GST_END_TEST
 
-// Nobody tells the head of a frame that got lost on its way to it: the next one is not shown before the gap is.
+// The head does not learn of a frame that was lost on its way: the next one is not shown before the gap is.
 GST_START_TEST(a_frame_that_is_lost_behind_it_becomes_a_gap) {
   Ptz ptz(kLine + "lockstep-timeout=60000000000", false);
   Silent silent(ptz.h.get());
   ptz.frame_shows(0, 80, 60);
-  tell(ptz.h.get(), pose(0, 0, 0, 40 * GST_MSECOND));
+  send(ptz.h.get(), pose(0, 0, 0, 40 * GST_MSECOND));
   ptz.frame_shows(1, 80, 60);  // is lost
   fail_unless(silent.gaps.empty());
   ptz.frame_shows(2, 120, 60);
@@ -120,7 +120,7 @@ GST_START_TEST(a_segment_may_begin_with_a_gap) {
   gst_harness_push_event(ptz.h.get(), gst_event_new_segment(&segment));
   GstBuffer* frame = noise(ptz.in, 1);
   GST_BUFFER_PTS(frame) = 10 * GST_SECOND + 80 * GST_MSECOND;
-  tell(ptz.h.get(), pose(0, 0, GST_SECOND, GST_SECOND + 60 * GST_MSECOND));
+  send(ptz.h.get(), pose(0, 0, GST_SECOND, GST_SECOND + 60 * GST_MSECOND));
   gst_harness_push(ptz.h.get(), frame);
   const decltype(silent.gaps) missing = {{10 * GST_SECOND, 80 * GST_MSECOND}};
   fail_unless(silent.gaps == missing, "%zu gaps", silent.gaps.size());
@@ -134,15 +134,15 @@ GST_START_TEST(of_two_poses_that_meet_the_earlier_counts_in_lockstep) {
   CerberusPose moving = pose(0, 0, 0, 40 * GST_MSECOND);
   moving.pan_speed = 10;
   moving.moving = TRUE;
-  tell(ptz.h.get(), moving);
-  tell(ptz.h.get(), pose(0.4, 0, 40 * GST_MSECOND, 80 * GST_MSECOND));
+  send(ptz.h.get(), moving);
+  send(ptz.h.get(), pose(0.4, 0, 40 * GST_MSECOND, 80 * GST_MSECOND));
   GstBuffer* out = ptz.through(1);
   fail_unless(cerberus_buffer_peek_pose(out)->moving);
   gst_buffer_unref(out);
 }
 GST_END_TEST
 
-GST_START_TEST(nobody_waits_in_a_live_pipeline_or_without_lockstep) {
+GST_START_TEST(no_frame_waits_in_a_live_pipeline_or_without_lockstep) {
   for (const bool live : {true, false}) {
     Ptz ptz(live ? kLine : kLine + "lockstep=off", live);
     for (int number = 0; number < 3; ++number) ptz.frame_shows(number, 80, 60);
@@ -150,17 +150,17 @@ GST_START_TEST(nobody_waits_in_a_live_pipeline_or_without_lockstep) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_head_that_never_tells_is_an_error_that_names_it) {
+GST_START_TEST(a_head_that_never_publishes_is_an_error_that_names_it) {
   for (const char* timeout : {"1000000", "1"}) {
-    Ptz ptz(kLine + "head=nobody lockstep-timeout=" + timeout, false);
+    Ptz ptz(kLine + "head=missing lockstep-timeout=" + timeout, false);
     Bus bus(ptz.h.get());
     ptz.frame_shows(0, 80, 60);
-    tell(ptz.h.get(), pose(0));
+    send(ptz.h.get(), pose(0));
     fail_unless_equals_int(gst_harness_push(ptz.h.get(), noise(ptz.in, 1)), GST_FLOW_ERROR);
     std::string text;
     fail_unless_equals_int(bus.count(GST_MESSAGE_ERROR, &text), 1);
     fail_unless(
-        text.find("\"nobody\"") != std::string::npos && text.find("lockstep=off") != std::string::npos, "%s",
+        text.find("\"missing\"") != std::string::npos && text.find("lockstep=off") != std::string::npos, "%s",
         text.c_str());
   }
 }
@@ -186,7 +186,7 @@ GST_END_TEST
 GST_START_TEST(after_a_flush_the_window_is_where_it_was) {
   Ptz ptz(kLine, false);
   ptz.frame_shows(0, 80, 60);
-  tell(ptz.h.get(), pose(kForty));
+  send(ptz.h.get(), pose(kForty));
   ptz.frame_shows(1, 120, 60);
   push_flush(ptz.h.get());
   ptz.frame_shows(0, 120, 60);
@@ -199,13 +199,13 @@ static Suite* virtualptz_lockstep_suite() {
   TCase* tc = tcase_create("all");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, not_live_a_frame_waits_for_its_pose);
-  tcase_add_test(tc, where_frames_are_missing_those_behind_are_told);
+  tcase_add_test(tc, missing_frames_are_announced_downstream);
   tcase_add_test(tc, a_frame_that_is_lost_behind_it_becomes_a_gap);
   tcase_add_test(tc, a_stream_without_a_rate_is_full_of_gaps);
   tcase_add_test(tc, a_segment_may_begin_with_a_gap);
   tcase_add_test(tc, of_two_poses_that_meet_the_earlier_counts_in_lockstep);
-  tcase_add_test(tc, nobody_waits_in_a_live_pipeline_or_without_lockstep);
-  tcase_add_test(tc, a_head_that_never_tells_is_an_error_that_names_it);
+  tcase_add_test(tc, no_frame_waits_in_a_live_pipeline_or_without_lockstep);
+  tcase_add_test(tc, a_head_that_never_publishes_is_an_error_that_names_it);
   tcase_add_test(tc, a_flush_and_a_stop_end_the_waiting_at_once);
   tcase_add_test(tc, after_a_flush_the_window_is_where_it_was);
   return s;

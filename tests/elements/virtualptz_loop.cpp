@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// virtualptz with the head behind it that turns it: over somebody who walks before a wall, 320 x 240 pixels, a window
-// of 160 x 120 that reaches 16.1 degrees (80 pixels) to each side.
+// virtualptz with the head behind it that turns it: a person walks before a wall, 320 x 240 pixels; the window of 160
+// x 120 reaches 16.1 degrees (80 pixels) to each side.
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -19,7 +19,7 @@ std::string line(int frames, const std::string& detect = "", const std::string& 
          head;
 }
 
-// Somebody who walks to the right, and into the window as it looks at the start.
+// A person who walks to the right, and into the window at its start position.
 scene::World stroll() {
   scene::World world;
   world.start = 44;
@@ -67,7 +67,7 @@ std::vector<Seen> sweep(const std::string& detect) {
   return all;
 }
 
-// The identity of the one who is seen where the figure is.
+// The identity of the track at the figure's place.
 guint identity(const Seen& seen) {
   fail_unless_equals_int(seen.regions.size(), 1);
   const CerberusRegion& r = seen.regions[0];
@@ -78,8 +78,8 @@ guint identity(const Seen& seen) {
 
 }  // namespace
 
-GST_START_TEST(who_is_left_by_the_window_is_the_same_when_it_comes_back) {
-  // Without the lens's angle the picture's own motion says how far the camera turned.
+GST_START_TEST(a_person_who_leaves_the_window_has_the_same_identity_on_return) {
+  // Without the lens's angle the camera's turn is estimated from the picture's own motion.
   for (const char* detect : {"", "horizontal-fov=32.2"}) {
     const std::vector<Seen> all = sweep(detect);
     int away = 0;
@@ -111,7 +111,7 @@ GST_START_TEST(frames_may_be_missing) {
 }
 GST_END_TEST
 
-// A leaky queue, or whoever else drops frames between window and head. (Each costs half a second.)
+// A leaky queue, or another element that drops frames between window and head. (Each costs half a second.)
 GST_START_TEST(a_frame_may_be_lost_on_its_way_to_the_head) {
   for (const char* latency : {"0", "60000000"}) {
     loop::Pipeline pipeline(line(30, "name=detect", std::string("latency=") + latency));
@@ -179,7 +179,7 @@ GST_START_TEST(a_frame_that_was_late_and_not_lost_changes_nothing) {
 }
 GST_END_TEST
 
-// At half the speed a frame lasts twice as long as it says.
+// At half the speed a frame lasts twice as long as its duration.
 GST_START_TEST(it_may_be_played_slowly) {
   loop::Pipeline pipeline(line(30, "", "latency=0"));
   int come = 0;
@@ -201,7 +201,7 @@ static Suite* virtualptz_loop_suite() {
   TCase* tc = tcase_create("all");
   suite_add_tcase(s, tc);
   tcase_set_timeout(tc, 60);
-  tcase_add_test(tc, who_is_left_by_the_window_is_the_same_when_it_comes_back);
+  tcase_add_test(tc, a_person_who_leaves_the_window_has_the_same_identity_on_return);
   tcase_add_test(tc, frames_may_be_missing);
   tcase_add_test(tc, a_frame_may_be_lost_on_its_way_to_the_head);
   tcase_add_test(tc, a_frame_that_was_late_and_not_lost_changes_nothing);

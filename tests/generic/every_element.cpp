@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// What must hold for each element of the project's plugins, whatever it does: the registry is asked which
-// there are, so a new element is tested from its first day on.
+// What must hold for each element of the project's plugins: the list comes from the registry, so that a new element is
+// tested from its first day on.
 
 #include <gst/check/gstcheck.h>
 #include <gst/gst.h>
@@ -197,7 +197,7 @@ GstElement* pipeline_with(const std::string& name) {
       " name=tested ! fakesink";
   GstElement* pipeline = gst_parse_launch(line.c_str(), nullptr);
   GstElement* tested = gst_bin_get_by_name(GST_BIN(pipeline), "tested");
-  // Nobody turns a head here: what would wait for one does not, or not for long.
+  // There is no head here: an element that would wait for one does not, or not for long.
   if (g_object_class_find_property(G_OBJECT_GET_CLASS(tested), "lockstep")) {
     gst_util_set_object_arg(G_OBJECT(tested), "lockstep", "off");
     g_object_set(tested, "lockstep-timeout", 10 * GST_MSECOND, nullptr);

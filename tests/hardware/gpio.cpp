@@ -45,7 +45,7 @@ std::string gpio(const Chip& chip, const std::string& more = "lines=0,1,2") {
   return "driver=gpio heartbeat=5000000000 chip=" + chip.path() + " " + more;
 }
 
-// One that plays, and nobody is there.
+// A source that plays and whose lines are all low.
 class Quiet : public Source {
  public:
   explicit Quiet(const std::string& properties) : Source(properties) {
@@ -159,7 +159,7 @@ GST_START_TEST(leds_are_red_while_a_sensor_detects_and_blue_while_it_does_not) {
     chip.pull(1, false);
     source.expect({0, 0, 0});
     must_become("000111");
-    // A simulated line forgets its level when it is let go, a real one may not: it must have been set before.
+    // A simulated line loses its level when it is released, a real one may not: it must have been set before.
     simulated::Trace trace("gpio/gpio_value");
     gst_element_set_state(source.element(), GST_STATE_READY);
     must_become("000000");
@@ -234,7 +234,7 @@ GST_START_TEST(lines_that_may_not_be_used_are_named) {
     fail_unless(says(why, "No permission to use lines 5, 4, 3 of GPIO chip " + chip.path()));
     outputs_refused = 0;
   }
-  inputs_refused = EINVAL;  // of a driver that knows no bias
+  inputs_refused = EINVAL;  // of a driver without bias support
   const std::string why = Source(gpio(chip)).refusal(GST_RESOURCE_ERROR_READ);
   fail_unless(says(why, "does not give lines 0, 1, 2 (Invalid argument)") && says(why, "bias"));
   inputs_refused = 0;
@@ -250,7 +250,7 @@ GST_START_TEST(a_chip_that_is_unplugged_while_running_is_an_error_that_names_it)
   chip.pull(1, true);
   source.expect({0, 1, 0});
   chip.unplug();
-  source.expect({2, 2, 2});  // whom it saw last is not searched for ever
+  source.expect({2, 2, 2});  // a lost sensor's last reading causes no endless search
   fail_unless(says(source.words(GST_MESSAGE_ERROR, GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_READ),
                    "GPIO chip " + chip.path()));
 }
@@ -284,7 +284,7 @@ GST_START_TEST(a_sensor_that_chatters_is_named_with_its_line) {
   Chip chip;
   Quiet source(gpio(chip, "lines=4,5,6 debounce=0 chatter-edges=10"));
   for (int i = 0; i < 30;
-       ++i) {  // more than needed: of edges that come too fast the kernel tells some as one
+       ++i) {  // more than needed: of edges that come too fast the kernel reports some as one
     chip.pull(5, true);
     g_usleep(3000);
     chip.pull(5, false);
@@ -295,12 +295,12 @@ GST_START_TEST(a_sensor_that_chatters_is_named_with_its_line) {
 }
 GST_END_TEST
 
-// The kernel keeps 16 edges of a line for who does not come; what is lost must not leave the sensor wrong.
+// The kernel keeps 16 edges of a line for a late reader; lost edges must not leave the sensor wrong.
 GST_START_TEST(a_flood_of_edges_ends_with_the_right_level) {
   Chip chip;
   Quiet source("driver=gpio debounce=0 chatter-edges=0 lines=0,1,2 chip=" + chip.path());
   for (int round = 0; round < 4; ++round) {  // now the kernel's last edge is the right one by chance, now not
-    gst_element_set_state(source.element(), GST_STATE_PAUSED);  // nobody reads
+    gst_element_set_state(source.element(), GST_STATE_PAUSED);  // no reader
     for (int i = 0; i < 101; ++i) {
       chip.pull(0, i % 2 == round % 2);
       g_usleep(500);

@@ -93,7 +93,7 @@ GST_START_TEST(a_voltage_that_rises_and_falls_is_a_detection_with_hysteresis) {
     const GstClockTime before = source.now();
     voltage.set(2300);
     const GstClockTime rose = source.expect({1});
-    fail_unless(rose + 10 * GST_MSECOND >= before);  // a sample counts from when it was asked for
+    fail_unless(rose + 10 * GST_MSECOND >= before);  // a sample's time is that of its request
     const GstClockTime took = source.now() - before;
     voltage.set(800);  // 0.00108 V: not yet
     g_usleep(50000);
@@ -117,7 +117,7 @@ GST_START_TEST(a_channel_or_a_converter_that_is_missing_is_named) {
 }
 GST_END_TEST
 
-// Nobody but its owner may read the file; a test is that owner, until it is nobody.
+// Only the owner may read the file; the test is that owner, until it changes its user.
 class Forbidden {
  public:
   explicit Forbidden(const std::string& file) : file_(file) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where real video is that tests and benches may use. None of it is part of the project: who finds nothing skips, and
-// says what is missing. The one place that knows the places.
+// The places of real video that tests and benches may use. None of it is part of the project: a test that finds none
+// skips and names what is missing. This is the only file with these paths.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ std::optional<std::filesystem::path> vtest();
 // What decodes it, for gst_parse_launch.
 std::optional<std::string> vtest_source();
 
-// What to tell who has to do without.
+// The text for a user without the data.
 inline constexpr char kNoVtest[] =
     "no vtest.avi (`pipelines/setup video FOLDER` fetches it; CERBERUS_VIDEO names its place)";
 inline constexpr char kNoData[] = "no research data (CERBERUS_DATA names its folder)";

@@ -26,7 +26,7 @@ class German {
   German(const German&) = delete;
   German& operator=(const German&) = delete;
 
-  // False, and said so: there is none.
+  // Returns false, with a message, if there is none.
   explicit operator bool() const { return there_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Pictures for tests: a scene that can be looked at from anywhere without interpolation error, noise, and memory that
+// Pictures for tests: a scene that can be viewed from anywhere without interpolation error, noise, and memory that
 // ends at an unreadable page.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// A pirsrc, somebody who takes what it sends, and what it says on the bus.
+// A pirsrc, a consumer of its output, and its messages on the bus.
 #pragma once
 
 #include <algorithm>
@@ -68,7 +68,7 @@ class PirSource {
   }
   // One that is there already; nullptr: there is none.
   GstMessage* pop(GstMessageType type) { return gst_bus_pop_filtered(bus_, type); }
-  // Waits for an error or a warning, of this code if a domain is named; what it says to a user.
+  // Waits for an error or a warning, of this code if a domain is named; returns its text for the user.
   std::string words(GstMessageType type, GQuark domain = 0, gint code = 0) {
     GstMessage* message = wait_for(type);
     GError* error = nullptr;
@@ -80,7 +80,7 @@ class PirSource {
     gst_message_unref(message);
     return text;
   }
-  // It must not start, or say so later if its driver takes its time; why.
+  // It must not start, or fail later if its driver takes its time; returns the reason.
   std::string refusal(GQuark domain, gint code) {
     gst_element_set_state(element_, GST_STATE_PAUSED);
     const std::string why = words(GST_MESSAGE_ERROR, domain, code);

@@ -22,7 +22,7 @@ class RoomCamera {
  public:
   static constexpr vision::Size kSize{320, 240};
 
-  // The chain's next frame, of what brightness(x, y) says, with the sensor's noise.
+  // The chain's next frame, with brightness(x, y) and the sensor's noise.
   template <typename Brightness>
   const Chain& see(Brightness&& brightness) {
     for (int y = 0; y < kSize.height; ++y)

@@ -8,7 +8,7 @@
 
 namespace cerberus::tests {
 
-// The path of a new file with this text. Who asks for one removes it.
+// The path of a new file with this text. The caller removes it.
 inline std::string temporary_file(const std::string& text) {
   char path[] = "/tmp/cerberus-XXXXXX";
   const int fd = mkstemp(path);

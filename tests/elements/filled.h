@@ -7,7 +7,7 @@
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>
 
-namespace told {
+namespace filled {
 
 inline CerberusPose turning() {
   CerberusPose pose;
@@ -82,4 +82,4 @@ inline void assert_same(const CerberusFusion& a, const CerberusFusion& b) {
   fail_unless_equals_int(a.doubtful, b.doubtful);
 }
 
-}  // namespace told
+}  // namespace filled
