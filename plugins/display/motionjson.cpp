@@ -25,11 +25,11 @@
  *   of the scene).
  * - `camera`: where the picture went from the previous frame to this one, a homography in row-major order, in
  *   pixels of this frame; `confidence`: 0 to 1. Both are null where no element upstream measured it.
- * - `objects`: null where no detector upstream looked at the frame, [] where one found nothing. `id` is the track's identity, null for a region that no tracker has seen; `type` is `motion`
+ * - `objects`: null where no detector ran upstream, [] where one found nothing. `id` is the track's identity, null for a region without a tracker; `type` is `motion`
  *   (`person` is reserved: nothing verifies that yet); `kind` is `person-like`, `group`, `part` or `thing`, by
  *   its size and the people of the scene; `state` is `seen`, `coasted` or `stopped`; `x`, `y`, `w`, `h`:
  *   pixels of the frame; `vx`, `vy`: pixels a second, camera motion taken out (of a stream without time stamps and
- *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, wherever the head looks, positive to
+ *   frame rate: at 25 frames a second); `bearing`: degrees from the camera's axis, whatever the head's pose, positive to
  *   the right; `distance`: metres.
  *
  * Keys that are there only where their values are known, after `frame`:
@@ -37,13 +37,13 @@
  *   rtspsrc's `add-reference-timestamp-meta`) or `clock` (live: the system's clock when the frame arrived).
  * - `camera-name`: the property of this name, here or upstream.
  *
- * Keys that are there only where an element told, after `objects`:
- * - `pose`: where the head looked when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
+ * Keys that are there only where the frame carries the value, after `objects`:
+ * - `pose`: of the head when the frame was taken (`pantiltsink`, `virtualptz`): `pan`, `tilt` in degrees,
  *   `moving` true or false.
  * - `base`: `yaw-rate`, how fast the body turned that carries the camera (a robot), degrees a second, positive to the
  *   right (`cameramotion` with `horizontal-fov`, or the application).
- * - `pir`: the sensors' readings, 0 nothing, 1 somebody, 2 invalid; and `fusion`: what
- *   `pirfusion` decided: `rule` (number, 0 for one without), `name` (the rule's: of the default
+ * - `pir`: the sensors' readings, 0 nothing, 1 detection, 2 invalid; and `fusion`: the
+ *   decision of `pirfusion`: `rule` (number, 0 for one without), `name` (the rule's: of the default
  *   rules `camera`, `sector`, `overlap`, `return`, `zero`, `stopped`), `action` (`track`,
  *   `turn-left`, `turn-right`, `search`, `zero`, `hold`), `target` (a track's identity or null).
  *

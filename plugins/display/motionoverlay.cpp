@@ -5,9 +5,9 @@
  * @short_description: draws what moves
  * @see_also: motiondetect, motionjson, motionview
  *
- * Draws a box around everything that moves, with its identity and speed, and the way it came. The line tells
- * how its place is known: solid = seen in this frame, dashed = carried on by its velocity, dotted and two
- * bars in the label = it stands and is held. Colours belong to identities and are told apart with any colour
+ * Draws a box around everything that moves, with its identity and speed, and the way it came. The line shows
+ * how its position is known: solid = seen in this frame, dashed = carried on by its velocity, dotted and two
+ * bars in the label = it stands and is held. Colours belong to identities and can be distinguished with any colour
  * vision. Trails lie on the scene: while the camera turns they turn with the picture.
  *
  * Pads: raw video in and out, in every format that the stages read. Where downstream takes GstVideoOverlayComposition
@@ -15,13 +15,13 @@
  * the frame is not touched; otherwise they are blended into a writable copy of what they cover. A frame in
  * which nothing moves passes as it is. Other branches of a tee never see the drawing.
  *
- * Where a head and sensors are part of the system, a corner says so (`show-system`): pan and tilt, a light a PIR sensor
- * (red: detects, blue: does not, grey: no valid reading) in the order in which they look from left to right, with its
+ * Where a head and sensors are part of the system, a corner shows their state (`show-system`): pan and tilt, a light a PIR sensor
+ * (red: detects, blue: does not, grey: no valid reading) in the order of their bearings from left to right, with its
  * number, counted as in `bearings` of `pirsrc`, the rule that fired (its number if it has one, and its name) and the
- * action. Whom `pirfusion` has the head follow is marked by thick corners round the box. What others attached to the
- * frame (`inset` of `virtualptz`, say) lies on top.
+ * action. The track that the head follows (`pirfusion`) is marked by thick corners round the box. Compositions that
+ * other elements attached to the frame (`inset` of `virtualptz`) lie on top.
  *
- * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions that no tracker has seen are drawn
+ * Reads the region, camera-motion, pose and fusion metas. Posts no messages. Regions without a tracker are drawn
  * in white, without identity and trail. What reaches beyond the frame is cut at its edge.
  *
  * ## Example launch lines

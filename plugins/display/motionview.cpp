@@ -13,12 +13,12 @@
  * - `stage=mask`: 0 or 255, the moving area; behind `motionregions` the cleaned one that regions are made from.
  * - `stage=labels`: one colour a connected part of the mask: what regions are made from.
  * - `stage=histogram`: how the threshold was chosen, after the paper's figures 2 and 3: histogram of the difference,
- *   memberships, indices of fuzziness (as `fuzzythreshold` was set), the threshold that was used.
+ *   memberships, indices of fuzziness (with the options of `fuzzythreshold`), the threshold that was used.
  *
  * Pads: `sink` takes raw video in every format that the stages read; `src` gives GRAY8 (or BGRx) for the grey
  * stages, BGRx for labels and histogram. Regions, threshold and camera motion stay on the buffers, so that
  * motionoverlay and motionjson work behind it. With it in the pipeline the stages leave their record on the buffers.
- * Where a picture is missing there the output is black; one warning message says so.
+ * Where a picture is missing there the output is black; one warning message names the cause.
  *
  * ## Example launch lines
  * |[
@@ -104,7 +104,7 @@ struct Settings {
 };
 
 const Property<Settings> kProperties[] = {
-    property("stage", &Settings::stage, stage_type, "Whose result is shown"),
+    property("stage", &Settings::stage, stage_type, "The stage whose result is shown"),
     property(
         "gain", &Settings::gain, 0, 255,
         "Factor of the grey levels shown for the two differences: 1 shows them as they are, 4 makes small "

@@ -10,20 +10,20 @@
  * Pads: `sink` and `src` take any caps; caps, allocation and latency are theirs alone. Each `pir_%u` takes PIR readings
  * (`application/x-pir`, what the sensors cover is read from the caps; several pads are counted on in the order of their
  * numbers, 16 sensors at most). A pad that has no caps yet, and a number that is left out (`pir_1` without `pir_0`),
- * counts as one sensor whose readings are invalid: the others keep their places, and rules mean whom they meant.
- * `format=level` (volts) is compared with `level-threshold` and watched as `pirsrc` does by default; let `pirsrc` do
- * that where it is the source: it knows the module's warm-up and hold.
+ * counts as one sensor whose readings are invalid: the others keep their numbers, and rules keep their meaning.
+ * `format=level` (volts) is compared with `level-threshold` and filtered as `pirsrc` does by default; let `pirsrc` do
+ * that where it is the source: it has the module's warm-up and hold.
  *
  * - Live: a frame never waits. The newest reading counts that is there when the frame comes, even one that is younger
  *   than the frame: a camera's frames are old when they arrive, and a sensor shall not wait for that. Nor does it wait
- *   for the next frame: when a sensor of a live source changes its mind, that is decided at once, as if the last frame
- *   came again (if that was in the last second), and goes downstream as the event `cerberus-fusion`, which
- *   `pantiltsink` obeys while frames come. Such events of another `pirfusion` upstream end here. Without a reading the
- *   sensors are invalid. So are those of a pad that was silent for `lost-after`, or ended so long ago: a warning names
- *   it.
+ *   for the next frame: a change of a live source's sensor is decided at once, as if the last frame
+ *   came again (if that was in the last second), and sent downstream as the event `cerberus-fusion`, which
+ *   `pantiltsink` executes while frames come. Such events of another `pirfusion` upstream end here. Without a reading
+ *   the sensors are invalid. So are those of a pad without data for `lost-after`, or ended so long ago: a warning
+ *   names it.
  * - Not live: a frame waits until readings, GAP events or EOS of every linked PIR pad cover its running time, so that
- *   every run gives the same. A pad that is silent for `max-wait` is warned of, is invalid, and is not waited for until
- *   it speaks. Video and PIR need a thread each (a `queue`) where one element makes both.
+ *   every run gives the same. A pad without data for `max-wait` causes a warning, is invalid, and is not waited for until
+ *   data comes. Video and PIR need a thread each (a `queue`) where one element makes both.
  * - A PIR source that is not live keeps its last reading when it ends (EOS). One that is live (also a recording with
  *   `is-live`) beside a live video keeps it for `lost-after`.
  *
@@ -31,18 +31,18 @@
  * upstream, evaluated at the frame's running time. In a stream that is not live, events that come through a queue
  * behind this element are ignored, with a warning: each run would use them for other frames. Between two frames it is that of the newest such event, evaluated at
  * the time of the decision; where none came for a time after a frame that carried a pose, it is still the frame's.
- * Until a head has told, it is not known, and no turn is ordered.
+ * Until the first pose it is unknown, and no turn is decided.
  *
- * Readings that come while the robot turns faster than 5 degrees a second are doubtful and do not count: a
- * `cerberus-base` event says so, or, where none came within a second, what `cameramotion` saw (#CerberusBase on the
- * buffer), which the PIR pads are told by that event. Both events, and seeks, are passed on to the video and to the PIR
+ * Readings that come while the robot turns faster than 5 degrees a second are doubtful and do not count. The rate comes
+ * from a `cerberus-base` event or, where none came within a second, from `cameramotion` (#CerberusBase on the
+ * buffer), and is then sent to the PIR pads by that event. Both events, and seeks, are passed on to the video and to the PIR
  * pads; where a video can begin at key frames only, accurate seeks keep a recording of sensors in step with it.
  *
- * `rules=paper` is the paper's table and no more: it knows no `return-delay` and no `hysteresis`. A
+ * `rules=paper` is the paper's table and no more, without `return-delay` and `hysteresis`. A
  * table of your own is described in the manual (rules); one that leaves a case open, contradicts
- * itself or has a rule that never applies is refused and the case named. A warning tells what of it
- * lies beyond `pan-min` and `pan-max`, and when rules speak of another number of sensors than the
- * PIR pads have; another one, when a head tells its pose that is not `head`, and that one does not.
+ * itself or has a rule that never applies is refused and the case named. A warning names what of it
+ * lies beyond `pan-min` and `pan-max`, and rules for another number of sensors than the
+ * PIR pads have; another one, poses that come from another head than `head` only.
  *
  * ## Example
  * |[
@@ -182,7 +182,7 @@ void warn_of(CerberusPirFusion* self, const std::vector<fusion::SilentSource>& s
     const char* what = pad.ended ? "The PIR readings have ended at" : "No PIR reading comes to";
     CERBERUS_ELEMENT_WARNING(
         self, RESOURCE, READ,
-        ("%s pad %s, for %s s now: its sensors are invalid and nobody waits for them.", what,
+        ("%s pad %s, for %s s now: its sensors are invalid, and no frame waits for them.", what,
          pad.name.c_str(), seconds.c_str()),
         ("frame at running time %" GST_TIME_FORMAT, GST_TIME_ARGS(clock_time(self->priv->state->time))));
   }

@@ -31,17 +31,17 @@ const Property<Settings> kTable[] = {
         "rule "
         "that never applies is refused; given while the element runs, the old rules and their path stay"),
     property("target", &Settings::target, target_type,
-             "Whom to follow when nobody is followed yet; whoever is followed stays the target"),
+             "Which track to follow when none is followed yet; a followed track stays the target"),
     property(
         "return-delay", &Settings::return_delay,
         "Nanoseconds without any detection, from the first frame on, after which the head returns to zero; "
         "0 = at once. rules=paper has none"),
     property(
         "hold-stopped", &Settings::hold_stopped,
-        "Nanoseconds for which a followed person who stopped moving is watched at least; 0 = not at all"),
+        "Nanoseconds for which a followed track that stopped is kept as the target at least; 0 = not at all"),
     property(
         "camera-hold", &Settings::camera_hold,
-        "Nanoseconds for which the camera counts as having found somebody after the last track; 0 = only "
+        "Nanoseconds for which the camera counts as having found a person after the last track; 0 = only "
         "while there is one"),
     property("hysteresis", &Settings::hysteresis, 0, 90,
              "Degrees by which pan must leave a sector or a band of angles before it counts as outside; 0 = "
@@ -55,18 +55,17 @@ const Property<Settings> kTable[] = {
     property(
         "max-wait", &Settings::max_wait,
         "Nanoseconds of real time that a frame of a stream that is not live waits for a PIR pad, which is "
-        "then warned of and not waited for until it speaks; 0 = never wait"),
-    property(
-        "lost-after", &Settings::lost_after,
-        "Nanoseconds of silence after which the sensors of a live PIR pad are invalid, with a warning, until "
-        "it speaks: several heartbeats of its source; 0 = never"),
+        "then warned of and not waited for until data comes; 0 = never wait"),
+    property("lost-after", &Settings::lost_after,
+             "Nanoseconds without data after which the sensors of a live PIR pad are invalid, with a "
+             "warning, until "
+             "data comes: several heartbeats of its source; 0 = never"),
     property("level-threshold", &Settings::level_threshold, -1000, 1000,
-             "Volts between nobody and somebody, at PIR pads that are given volts (format=level); read with "
+             "Volts above which a sensor detects, at PIR pads that receive volts (format=level); read with "
              "their caps"),
-    property(
-        "level-hysteresis", &Settings::level_hysteresis, 0, 1000,
-        "Volts between switching to somebody and switching back, level-threshold in the middle; read with "
-        "the caps"),
+    property("level-hysteresis", &Settings::level_hysteresis, 0, 1000,
+             "Volts between switching on and switching off, level-threshold in the middle; read with "
+             "the caps"),
     property("head", &Settings::head, "Name of the head whose pose counts; empty = any"),
     property("camera-name", &Settings::camera_name, kCameraNameBlurb),
 };

@@ -255,7 +255,7 @@ bool HeadSession::run() {
 
 void HeadSession::halt_unwatched() {
   Reports out = reports();
-  controller.halt("nobody watches over it", now(), kHaltPatience, out);
+  controller.halt("no thread for the watchdog", now(), kHaltPatience, out);
   CERBERUS_ELEMENT_ERROR(sink, RESOURCE, FAILED,
                          ("The head \"%s\" is not moved: there is no thread to watch over it.", head.load()),
                          ("the system gives none: too many of this user or process, or too little memory"));

@@ -39,8 +39,9 @@ const Property<HeadSettings> kProperties[] = {
     property("device-options", &HeadSettings::device_options,
              "Options of the real head's driver, as 'baud=38400 address=2'")
         .read_at_start(),
-    property("command", &HeadSettings::command,
-             "The helper program of driver=external, run by /bin/sh, which speaks the line protocol of heads")
+    property(
+        "command", &HeadSettings::command,
+        "The helper program of driver=external, run by /bin/sh, which implements the line protocol of heads")
         .read_at_start(),
     property("helper-timeout", &HeadSettings::helper_timeout,
              "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
@@ -77,7 +78,7 @@ const Property<HeadSettings> kProperties[] = {
     property("dead-band-stop", &HeadSettings::dead_band_stop, 0, 90,
              "A head that follows rests when the target is less than this many degrees off the middle"),
     property("latency", &HeadSettings::latency,
-             "Nanoseconds from a command until the head obeys, at most 5 s")
+             "Nanoseconds from a command until it takes effect, at most 5 s")
         .read_at_start(),
     property("step-size", &HeadSettings::step_size, 0, 90,
              "A simulated head rests at multiples of this many degrees; 0 = anywhere")
@@ -86,7 +87,7 @@ const Property<HeadSettings> kProperties[] = {
              "Play in degrees between a simulated head's motor and camera")
         .read_at_start(),
     property("noise", &HeadSettings::noise, 0, 90,
-             "Standard deviation in degrees of what a simulated head says of its own position")
+             "Standard deviation in degrees of a simulated head's position feedback")
         .read_at_start(),
     property("seed", &HeadSettings::seed, 0, G_MAXINT, "Seed of the noise: equal seeds give equal runs")
         .read_at_start(),
@@ -94,8 +95,9 @@ const Property<HeadSettings> kProperties[] = {
              "Which track to follow when none is followed yet, without pirfusion upstream"),
     property("return-delay", &HeadSettings::return_delay,
              "Nanoseconds without a track after which the head returns to zero, without pirfusion upstream"),
-    property("hold-stopped", &HeadSettings::hold_stopped,
-             "Nanoseconds for which a person who stopped is watched at least, without pirfusion upstream"),
+    property(
+        "hold-stopped", &HeadSettings::hold_stopped,
+        "Nanoseconds for which a stopped track is kept as the target at least, without pirfusion upstream"),
     property("watchdog-timeout", &HeadSettings::watchdog_timeout,
              "Nanoseconds without a frame after which the head stops; 0 = never"),
     property("manual-timeout", &HeadSettings::manual_timeout,

@@ -6,41 +6,41 @@
  * @see_also: pirfusion, virtualptz, motiontrack
  *
  * Reads from each video frame what the head is to do, and drives
- * the head through a driver. The pixels are not looked at.
+ * the head through a driver. The pixels are not read.
  *
  * What to do comes from the fusion meta (`pirfusion`): track, turn left or right, search a sector, return to zero,
  * hold. Without it the head follows the tracked regions (`motiontrack`, `motiondetect`): the one it follows already,
- * else the nearest, largest or newest (`target`); when nobody was there for `return-delay` it returns to zero.
+ * else the nearest, largest or newest (`target`); without a track for `return-delay` it returns to zero.
  *
  * A pixel becomes an angle through the lens (`horizontal-fov`), with the pose that the head had when the frame was
  * taken: the pose meta of the frame if it is this head's, else the element's own memory. The head follows
  * proportionally (`gain`) and rests within a dead band that has two thresholds. It never passes `pan-min`, `pan-max`,
  * `tilt-min`, `tilt-max`, which must include 0. Tilt holds unless a target is tracked or the head returns to zero.
- * Limits, `max-speed` and `max-acceleration` that change while it plays go to the head at once: who is beyond a new
- * limit returns to it, in PAUSED when that ends. Limits that cannot be are a warning, and the old ones stay.
+ * Limits, `max-speed` and `max-acceleration` that change while it plays apply at once: a head beyond a new
+ * limit returns to it (in PAUSED: when that ends). Invalid limits cause a warning, and the old ones stay in force.
  *
- * Live, what `pirfusion` decides between two frames because a sensor changed its mind (the event `cerberus-fusion`, in
- * the name of this head or of any) is obeyed at once as if the last frame had said so: in the same states and within
- * the same limits, and only while frames come that carry its decisions. A target is followed with frames alone.
+ * Live, a decision that `pirfusion` makes between two frames because a sensor changed (the event `cerberus-fusion`, in
+ * the name of this head or of any) is executed at once as if the last frame carried it: in the same states and within
+ * the same limits, and only while frames with decisions come. A target is followed with frames alone.
  *
  * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits
- * for the clock and asks nobody upstream to hurry.
+ * for the clock and sends no QoS events upstream.
  *
  * Each pose of the head goes upstream as the event `cerberus-pose`. In a live pipeline, or with a real head, it is sent
  * at every change of plan and at 50 Hz while the head moves, 5 Hz while it rests, and when no frame comes for
- * `watchdog-timeout` the head stops. That is the work of a thread; where the system gives none, an error says so, and
- * PLAYING or the frames of a live stream are refused rather than let a head move unwatched. In a pipeline that is not
+ * `watchdog-timeout` the head stops. This needs a thread; if the system provides none, the element posts an error and
+ * refuses PLAYING or the frames of a live stream, so that no head moves without its watchdog. In a pipeline that is not
  * live a simulated head's time is the running time of the frames, never a clock: each frame is answered with the poses
  * until its running time plus `latency` (or until the next frame, if that is later), so that a source upstream can keep
  * in step with it and two runs give the same.
  * Listeners upstream use those poses only where no queue lies between (see `cameramotion`, `pirfusion`).
  *
- * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. An order by
- * hand goes on after PAUSED, but not after the end of the stream, nor when frames came and stay away for
- * `watchdog-timeout`: then the head stands until another order or `auto`. At the end of the stream `move-to`,
- * `move-by`, `home` and `follow` are refused until a flush begins it anew; where no frames come, an order is obeyed.
+ * In PAUSED, at the end of the stream, on a flush and when the element stops the head brakes and stays. A manual
+ * command continues after PAUSED, but not after the end of the stream, nor when frames came and stay away for
+ * `watchdog-timeout`: then the head stands until the next command or `auto`. At the end of the stream `move-to`,
+ * `move-by`, `home` and `follow` are refused until a flush; before the first frame a manual command is executed.
  * Driver calls are made on a thread of their own; a driver that blocks delays no change of state by more than 100 ms. A
- * driver that cannot be opened is an error, however late it says so, and in PAUSED too; one that fails later is a
+ * driver that cannot be opened is an error, however late that is found, and in PAUSED too; one that fails later is a
  * warning and the state `fault`, until it answers again: the video goes on.
  *
  * Element messages: `cerberus-pantilt` with `state` (`stopped`, `tracking`, `turning`, `searching`, `zeroing`,
@@ -59,12 +59,12 @@
  * the next signal.
  *
  * `follow` (the identity of a track, as its region has it; false if the head is not there or the stream is over)
- * chooses whom to follow: that track from the next frame on, whatever fusion or `target` would choose. While it is on
- * no frame the head turns to nobody else that the camera sees; after 5 s, also if it never came, a warning names it and
- * the usual choice goes on. `auto` takes the choice back, and so does each of the other signals: the last one counts.
+ * chooses the track to follow from the next frame on, whatever fusion or `target` would choose. While it is on
+ * no frame the head follows no other track; after 5 s, also if it never came, a warning names it and
+ * the usual choice continues. `auto` ends the choice, and so does each of the other signals: the last one counts.
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties), `scripted` (for
- * tests: what `script` says), `external` (a program that `command` names) and those of real heads: `visca`,
+ * tests: follows `script`), `external` (a program that `command` names) and those of real heads: `visca`,
  * `pelco-d`, `onvif` (a camera at `device`) and `stepper-gpio` (motors on the GPIO chip `device`). All but the first two run in
  * a helper process, which stops the head when this one dies, hangs or is silent for `helper-timeout`.
  * One head has one name (`head`) and in a process one sink.

@@ -65,7 +65,8 @@ const Property<PirSettings> kProperties[] = {
              "Nanoseconds that a line must be quiet before a detection ends, up to 50 ms; 0 = at once. A "
              "detection "
              "begins at once in any case"),
-    property("hold", &S::hold, "Least duration of a detection in nanoseconds; 0 = as long as the line says"),
+    property("hold", &S::hold,
+             "Least duration of a detection in nanoseconds; 0 = as long as the line is active"),
     property("block-time", &S::block_time,
              "Nanoseconds after a detection in which nothing triggers; 0 = none"),
     property("warm-up", &S::warm_up, "Nanoseconds after the start in which readings are invalid; 0 = none"),

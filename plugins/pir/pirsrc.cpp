@@ -2,13 +2,13 @@
 /**
  * SECTION:element-pirsrc
  *
- * Readings of passive infrared sensors as a stream: one byte a sensor, 0 = nothing, 1 = somebody, 2 = invalid (warm-up,
- * stuck, chattering, or nothing known yet). A buffer comes at once at the start and at every change, and every
- * `heartbeat` when nothing changes. Caps tell where the sensors look, so `pirfusion` need not be told again.
+ * Readings of passive infrared sensors as a stream: one byte a sensor, 0 = nothing, 1 = detection, 2 = invalid (warm-up,
+ * stuck, chattering, or not open yet). A buffer comes at once at the start and at every change, and every
+ * `heartbeat` when nothing changes. The caps contain the sensors' bearings, which `pirfusion` reads.
  *
  * Where volts are measured, downstream may take those instead, with the caps `application/x-pir,format=level`: a 32-bit
  * float a sensor in this machine's byte order, at every sample,
- * NaN before the first one. Whoever takes both gets presence.
+ * NaN before the first one. An element that accepts both receives presence.
  *
  * Drivers (`driver`):
  * - `gpio`: lines of a GPIO chip, edges with the kernel's time stamps; LEDs on output lines (`leds-red` while a sensor
@@ -19,17 +19,17 @@
  *   (in JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
  * - `scripted`: the same in the property `script`, lines separated by `;`. Not live unless `is-live`.
  *
- * A recording that is not live can be sought in: readings go on with what it says of that time. A seek backwards in
+ * A recording that is not live can be sought in: readings continue with those of that time. A seek backwards in
  * time (a negative rate) is refused. A last line without its line feed counts if it is complete in itself.
  *
  * Lines of all drivers go through the same model: `active-low`, `debounce`, `hold`, `block-time`, `warm-up`; `preset`
- * knows modules. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
- * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, as an upstream event
- * `cerberus-base` says). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last
+ * sets them for a module. At every change the element posts an element message `cerberus-pir` (see cerberus_message_parse_pir();
+ * its field `doubtful` has a bit for each sensor that detects while the robot itself turns, according to the
+ * upstream event `cerberus-base`). A sensor that is stuck or chatters is named in a warning message. When a driver fails, a last
  * reading is invalid for all sensors; then comes the error.
  *
  * A driver's calls are made on a thread of its own: one that blocks delays no change of state by more than 100 ms.
- * While it is still being opened a live source says that nothing is known (2), and one that is not live waits for it.
+ * While it is still being opened a live source sends invalid readings (2), and one that is not live waits for it.
  * That it cannot be opened is an error, however late.
  *
  * ## Examples
@@ -189,7 +189,7 @@ bool open_sensors(CerberusPirSrc* self) {
   if (settings.driver == "scripted" && settings.script.empty())
     CERBERUS_ELEMENT_WARNING(
         self, RESOURCE, SETTINGS,
-        ("driver=scripted without a script knows nothing. Set driver to gpio, iio or replay."), (nullptr));
+        ("driver=scripted without a script has no readings. Set driver to gpio, iio or replay."), (nullptr));
   return true;
 }
 
@@ -233,12 +233,12 @@ bool fits_downstream(CerberusPirSrc* self) {
   if (gst_caps_can_intersect(wanted, given)) return true;
   g_autofree gchar* wish = gst_caps_to_string(wanted);
   g_autofree gchar* gift = gst_caps_to_string(given);
-  CERBERUS_ELEMENT_ERROR(
-      self, CORE, NEGOTIATION,
-      ("What follows pirsrc wants %s, and the sensors give %s. Volts (format=level) come from driver=iio "
-       "and from recordings in volts only.",
-       wish, gift),
-      (nullptr));
+  CERBERUS_ELEMENT_ERROR(self, CORE, NEGOTIATION,
+                         ("The element downstream of pirsrc accepts %s, and the sensors give %s. Volts "
+                          "(format=level) come from driver=iio "
+                          "and from recordings in volts only.",
+                          wish, gift),
+                         (nullptr));
   return false;
 }
 

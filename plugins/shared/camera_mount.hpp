@@ -20,8 +20,8 @@ inline constexpr char kFieldOfViewBlurb[] =
     "and bearing "
     "and distance of objects are known; 0 = unknown";
 inline constexpr char kMountingHeightBlurb[] =
-    "Height in metres of the lens above the floor on which people walk; the camera looks level unless "
-    "tilt or a head's pose on the frame says otherwise";
+    "Height in metres of the lens above the floor on which people walk; the camera is level unless "
+    "tilt or a head's pose on the frame gives another angle";
 inline constexpr char kTiltBlurb[] =
     "Angle in degrees by which the camera looks up, negative: down; where a head's pose is on the frame, "
     "that counts instead";

@@ -67,7 +67,7 @@ GType area_type() {
 
 GType keep_planes_type() {
   static const GEnumValue values[] = {
-      {KEEP_PLANES_AUTO, "Only when an element downstream asks for it", "auto"},
+      {KEEP_PLANES_AUTO, "Only when an element downstream requests it", "auto"},
       {KEEP_PLANES_ALWAYS, "Leave it on the buffers", "always"},
       {KEEP_PLANES_NEVER, "Remove it always", "never"},
       {0, nullptr, nullptr}};

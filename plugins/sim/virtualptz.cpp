@@ -9,25 +9,25 @@
  * pose, resampled with sub-pixel precision. With a `pantiltsink driver=simulated` downstream a fixed 4K camera becomes
  * a pan-tilt camera without a motor, and the whole loop can be closed on recorded footage.
  *
- * The head tells its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are passed on.
- * On each frame is the pose meta with which it was made, and what upstream said of the base (that it stands, where
- * nobody did). The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window
+ * The head publishes its pose by the upstream event `cerberus-pose`; another head's (`head`) is ignored, all are
+ * forwarded. Each frame carries the pose meta with which it was made, and the base's yaw rate from upstream, 0 without
+ * one. The wide picture counts as a pinhole camera's that looks straight ahead and sees `wide-fov`; the window
  * sees `horizontal-fov`, or, for 0, as many pixels as it has. Its size is `width` x `height`, or
- * what downstream takes. It ends at the picture's edges: `pan-min`, `pan-max`, `tilt-min`, `tilt-max` tell how far it
- * reaches once the video's size is known, and `window-fov` what it sees: what `pantiltsink` has to know. A head that
- * looks beyond is told in a warning, once.
+ * what downstream takes. It ends at the picture's edges: `pan-min`, `pan-max`, `tilt-min`, `tilt-max` are its
+ * limits once the video's size is known, and `window-fov` its angle: `pantiltsink` needs both. A head that
+ * points beyond them causes one warning.
  *
  * In a pipeline that is not live, each frame but the first waits until the head's way is known up to its running time
- * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event tells
- * those behind. So it does after half the `lockstep-timeout`, at most half a second, without a pose, in case a frame
+ * (`lockstep`), so that every run gives the same, whatever queues there are; where frames are missing a GAP event is
+ * sent downstream. So it is after half the `lockstep-timeout`, at most half a second, without a pose, in case a frame
  * was lost on its way to the head (a leaky queue).
  * When no pose comes for `lockstep-timeout` the element gives up with an error. The first frame (also after a flush)
- * shows where the head looked last, `start-pan` and `start-tilt` at
+ * shows the head's last position, `start-pan` and `start-tilt` at
  * the start. In a live pipeline nothing waits: the newest pose counts.
  *
  * With `inset` each frame carries a small picture of the whole scene, with the window's place in it, as a
  * GstVideoOverlayComposition for the upper right corner: `motionoverlay` draws it, and so do most sinks that draw with
- * a graphics card. The frame's own pixels stay as they are for those who look for motion in them.
+ * a graphics card. The frame's own pixels stay as they are for motion detection.
  *
  * Pads: raw progressive video in system memory, in and out in the same format. Regions and overlays that lie on the
  * wide picture are dropped: stages that look for motion belong behind the window.
@@ -271,7 +271,7 @@ GstFlowReturn wait_for_head(GstBaseTransform* trans, Private& self, GstBuffer* i
   const std::string waited = text::significant(motion::seconds(patience), 3).string();
   CERBERUS_ELEMENT_ERROR(
       trans, RESOURCE, READ,
-      ("The head \"%s\" does not tell where it looks at %s s: for %s s no pose came. Is there "
+      ("The head \"%s\" published no pose for the frame at %s s: none came for %s s. Is there "
        "a pantiltsink of "
        "that name downstream? Without one, set lockstep=off.",
        s.head.c_str(), at.c_str(), waited.c_str()),

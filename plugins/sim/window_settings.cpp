@@ -28,11 +28,11 @@ const Property<WindowSettings> kProperties[] = {
         "picture is a pixel of the window"),
     property(
         "start-pan", &WindowSettings::start_pan, -90, 90,
-        "Where the window looks until a head tells, degrees, positive to the right (read when the element "
+        "Pan of the window until the first pose comes, degrees, positive to the right (read when the element "
         "starts)"),
     property(
         "start-tilt", &WindowSettings::start_tilt, -90, 90,
-        "Where the window looks until a head tells, degrees, positive up (read when the element starts)"),
+        "Tilt of the window until the first pose comes, degrees, positive up (read when the element starts)"),
     property("inset", &WindowSettings::inset,
              "Attach to each frame a small picture of the whole scene with the window's place in it, for "
              "motionoverlay and sinks that draw overlays"),
