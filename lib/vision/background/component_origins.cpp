@@ -7,8 +7,10 @@
 namespace cerberus::vision {
 namespace {
 
-// Pixels to either side where a component that moved on is found again. Origin unknown; guard: unit-component_origins.
-constexpr int kBeside = 2;
+// Origin unknown: kept from the first version. Guard: unit-component_origins.
+constexpr struct Parameters {
+  int beside = 2;  // pixels to either side where a component that moved on is found again
+} kParameters;
 
 }  // namespace
 
@@ -23,8 +25,8 @@ void ComponentOrigins::reset() {
 
 void ComponentOrigins::add_overlap(const Run& run, Overlap& overlap) const {
   const std::uint64_t *differed = differed_.view().row(run.row), *inside = inside_.view().row(run.row);
-  const int end = std::min(run.end + kBeside, 64 * differed_.view().width);
-  for_words(std::max(run.first - kBeside, 0), end, [&](int word, std::uint64_t ones) {
+  const int end = std::min(run.end + kParameters.beside, 64 * differed_.view().width);
+  for_words(std::max(run.first - kParameters.beside, 0), end, [&](int word, std::uint64_t ones) {
     overlap.differed += std::popcount(differed[word] & ones);
     overlap.inside += std::popcount(inside[word] & ones);
   });

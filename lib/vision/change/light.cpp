@@ -16,15 +16,27 @@ namespace {
 constexpr int kBand = LightSamples::kBandRows *
                       LightSamples::kRowStep;  // rows; flicker at 100 Hz has a period of 70 rows and more
 constexpr int kMaximumBands = 512;             // pictures of more bands are not searched for them
-constexpr int kBandReach = 64;                 // 1/256: largest excess of a band's gain
 
 // Origin unknown: kept from the first version. Guard of all: unit-light, and flicker and bands in unit-foreground_mask.
 constexpr struct Parameters {
-  int full_weight = 64;       // grey levels from which a sample counts fully for a gain
-  int least_of_third = 8;     // samples of a third of a band that counts
-  int least_samples = 12;     // samples of a band that counts
-  double least_band = 1.0;    // grey levels: weaker bands are not compensated
-  double least_global = 0.7;  // grey levels: the same for the picture as a whole
+  // The picture as a whole: a line through the median differences of brightness classes.
+  int least_picture = 64;         // samples: fewer determine nothing
+  int least_class = 100;          // 1/n of the samples: a smaller class does not count
+  double clipped = 4;             // grey levels: a class at or below was possibly clipped
+  int rounds = 6;                 // of reweighting
+  double ridge = 10 * 10;         // grey levels squared: strength of the prior that black stays black
+  double least_mean = 16.0;       // grey levels, of the picture's mean in that prior
+  int agrees = 8;                 // grey levels: a sample so close to the line agrees with it
+  double dark = 48, light = 208;  // grey levels between which a change counts
+  double least_global = 0.7;      // grey levels: a change that is smaller there is not compensated
+  double least_gain = 0.25, most_gain = 4.0;  // of a change of light
+  // Bands of rows.
+  int least_bands = 4;      // in a picture that is searched for them
+  int full_weight = 64;     // grey levels from which a sample counts fully for a gain
+  int least_of_third = 8;   // samples of a third of a band that counts
+  int least_samples = 12;   // samples of a band that counts
+  double least_band = 1.0;  // grey levels: weaker bands are not compensated
+  int band_reach = 64;      // 1/256: largest excess of a band's gain
 } kParameters;
 
 // 1/256 of a gain that half a grey level is, 8 bits of fraction, by the level it is added to.
@@ -132,7 +144,8 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   }
   int total = 0;
   for (const int n : number) total += n;
-  if (total < 64) return false;
+  const Parameters& p = kParameters;
+  if (total < p.least_picture) return false;
 
   struct Entry {
     double a, e, weight;
@@ -140,10 +153,10 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   std::array<Entry, kClasses> points;
   int used = 0;
   for (int k = 0; k < kClasses; ++k) {
-    if (number[k] * 100 < total) continue;
+    if (number[k] * p.least_class < total) continue;
     const double a = static_cast<double>(sum[k]) / number[k],
                  e = median_of_levels(counts[k], number[k], -kReach);
-    if (a + e > kNearWhite || a + e < 4 || a > kNearWhite)
+    if (a + e > kNearWhite || a + e < p.clipped || a > kNearWhite)
       continue;  // clipped: no information about the gain
     points[used++] = {a, e, static_cast<double>(number[k])};
   }
@@ -153,7 +166,7 @@ bool LightChange::estimate_global(const LightSamples& samples) {
   double slope = 0, offset = 0, mean = 0;
   std::array<double, kClasses> w;
   for (int i = 0; i < used; ++i) w[i] = points[i].weight;
-  for (int round = 0; round < 6 && used; ++round) {
+  for (int round = 0; round < p.rounds && used; ++round) {
     double sw = 0, sa = 0, se = 0, saa = 0, sae = 0;
     for (int i = 0; i < used; ++i) sw += w[i], sa += w[i] * points[i].a, se += w[i] * points[i].e;
     mean = sa / sw;
@@ -163,8 +176,8 @@ bool LightChange::estimate_global(const LightSamples& samples) {
       saa += w[i] * da * da;
       sae += w[i] * da * (points[i].e - offset);
     }
-    // A prior that black stays black to within the noise: a ridge of 10 levels.
-    slope = (sae + 100 * sw * offset / std::max(mean, 16.0)) / (saa + 100 * sw);
+    // A prior that black stays black to within the noise.
+    slope = (sae + p.ridge * sw * offset / std::max(mean, p.least_mean)) / (saa + p.ridge * sw);
     for (int i = 0; i < used; ++i) {
       const double r = points[i].e - offset - slope * (points[i].a - mean);
       w[i] = points[i].weight / (1 + r * r);
@@ -176,14 +189,14 @@ bool LightChange::estimate_global(const LightSamples& samples) {
     if (!number[k]) continue;
     const double a = static_cast<double>(sum[k]) / number[k];
     const int e = static_cast<int>(std::lround(std::clamp(a + at_zero + slope * a, 0.0, 255.0) - a));
-    for (int d = std::max(e - 8, -kReach); d <= std::min(e + 8, kReach); ++d)
+    for (int d = std::max(e - p.agrees, -kReach); d <= std::min(e + p.agrees, kReach); ++d)
       agree += static_cast<int>(counts[k][d + kReach]);
   }
   agreement_ = static_cast<double>(agree) / total;
   // A change that is small from dark grey to light grey is not compensated.
-  if (std::max(std::abs(at_zero + 48 * slope), std::abs(at_zero + 208 * slope)) < kParameters.least_global)
+  if (std::max(std::abs(at_zero + p.dark * slope), std::abs(at_zero + p.light * slope)) < p.least_global)
     return false;
-  const double gain = std::clamp(1 + slope, 0.25, 4.0);
+  const double gain = std::clamp(1 + slope, p.least_gain, p.most_gain);
   const auto relit = [&](RowLight row) {
     return RowLight{round_to_int(row.gain * gain), round_to_int(row.offset * gain + 256 * at_zero)};
   };
@@ -209,6 +222,7 @@ double LightChange::misfit(const LightSamples& samples) const {
 // The median of the gains of a band's samples, less 1. Dark samples weigh little, and whole levels make steps there, so
 // half of each sample is counted half a level lower and half of it half a level higher.
 double LightChange::excess_of_band(const LightSamples& samples, int band) const {
+  constexpr int kBandReach = kParameters.band_reach;
   std::array<std::uint32_t, 2 * kBandReach + 1> counts{};
   std::int64_t weights = 0;
   for (int row = samples.first_row(band); row < samples.first_row(band + 1); ++row)
@@ -227,7 +241,7 @@ double LightChange::excess_of_band(const LightSamples& samples, int band) const 
 // Estimates the bands. Returns true if there are any.
 bool LightChange::estimate_bands(const LightSamples& samples) {
   const int bands = samples.bands();
-  if (bands < 4 || bands > kMaximumBands) return false;
+  if (bands < kParameters.least_bands || bands > kMaximumBands) return false;
   std::array<double, kMaximumBands> excess;  // gain of the band, minus 1
   std::bitset<kMaximumBands> known;
   double strongest = 0;

@@ -10,6 +10,7 @@
 
 #include "vision/detection/height_prior.h"
 #include "vision/detection/people.h"
+#include "vision/detection/region_parameters.h"
 #include "vision/detection/two_frame_confirmation.h"
 #include "vision/image/labelling.h"
 #include "vision/image/mask.h"
@@ -19,17 +20,8 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr double kLeastShare = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
-constexpr double kTallest = 2.2;      // heights of a person: a taller component is something else
-constexpr struct {
-  double least = 0.8, most = 1.2;
-} kUsual;                           // heights of a person by the prior: so high is one whole person
-constexpr double kSameBlock = 0.5;  // overlap of two blocks, a frame apart, that are the same
-constexpr double kSkirt = 0.3;      // columns lower than this share of the highest are a shadow
-constexpr int kYoung =
-    60;  // frames of a scene in which its first objects may still be part of the background model
-constexpr double kRim =
-    2;  // pixels at 320 columns by which a box is larger than its moving pixels in that time
+constexpr RegionParameters kParameters;
+
 constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
 constexpr std::size_t kMostWalkers = 32;  // isolated walking persons, at a time
 constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
@@ -38,8 +30,10 @@ constexpr std::size_t kMostRegions = 2 * kMostParts;  // persons and the compone
 // Returns whether a component may be one person: upright, reasonably filled, and not cut by the picture's edge.
 bool looks_like_one_person(const Component& c, const Bounds& body, Size picture) {
   const double aspect = static_cast<double>(body.height()) / body.width();
-  return c.height() >= 12 && aspect > 1.6 && aspect < 4.5 && c.area > 0.4 * body.width() * body.height() &&
-         c.left > 0 && c.top > 0 && c.right < picture.width && c.bottom < picture.height;
+  const RegionParameters& p = kParameters;
+  return c.height() >= p.least_height && aspect > p.widest && aspect < p.narrowest &&
+         c.area > p.least_filled * body.width() * body.height() && c.left > 0 && c.top > 0 &&
+         c.right < picture.width && c.bottom < picture.height;
 }
 
 Box box_of(const Bounds& w) {
@@ -73,7 +67,7 @@ struct RegionFinder::State {
 
   std::uint32_t least() const {
     return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
-                                                               : kLeastShare * size.area());
+                                                               : kParameters.least_share * size.area());
   }
   void preallocate(Size picture);
   void trim();
@@ -120,8 +114,8 @@ void RegionFinder::State::trim() {
     int highest = columns[0];
     for (int x = 1; x < width; ++x) highest = std::max(highest, columns[x] += columns[x - 1]);
     int left = 0, right = width;
-    while (columns[left] < kSkirt * highest) ++left;
-    while (columns[right - 1] < kSkirt * highest) --right;
+    while (columns[left] < kParameters.skirt * highest) ++left;
+    while (columns[right - 1] < kParameters.skirt * highest) --right;
     bodies.push_back({c.left + left, c.top, c.left + right, c.bottom});
     ++i;
   }
@@ -130,6 +124,7 @@ void RegionFinder::State::trim() {
 // Only walkers are samples of the height prior: blobs that look like one person, isolated, of the same height for three
 // frames, and moving. Fragments of a person close by come in crowds, flicker and stay in place.
 void RegionFinder::State::learn(const Transform& motion) {
+  const RegionParameters& p = kParameters;
   const auto parts = labeller.components();
   std::swap(walkers, walkers_before);
   walkers.clear();
@@ -137,7 +132,7 @@ void RegionFinder::State::learn(const Transform& motion) {
     const Component& c = parts[i];
     const Bounds& body = bodies[i];
     if (!looks_like_one_person(c, body, size)) continue;
-    const double reach = 0.4 * c.height();
+    const double reach = p.alone * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(),
                                     [&](const Component& o) { return &o != &c && are_within(reach, c, o); });
     if (!alone || walkers.size() == kMostWalkers) continue;
@@ -146,21 +141,23 @@ void RegionFinder::State::learn(const Transform& motion) {
     walker.from = walker.foot;
     for (const Walker& w : walkers_before) {
       const Point foot = motion.apply(w.foot);
-      if (std::abs(foot.x - walker.foot.x) > 0.5 * h || std::abs(foot.y - walker.foot.y) > 0.3 * h ||
-          w.height < 0.85 * h || w.height > 1.18 * h)
+      if (std::abs(foot.x - walker.foot.x) > p.step_x * h ||
+          std::abs(foot.y - walker.foot.y) > p.step_y * h || w.height < p.shrinks * h ||
+          w.height > p.grows * h)
         continue;
       walker.from = motion.apply(w.from);
       walker.looks = w.looks + 1;
       break;
     }
     const double walked = std::hypot(walker.foot.x - walker.from.x, walker.foot.y - walker.from.y);
-    if (walker.looks >= 3 && walked > 0.15 * h) prior.learn(c.bottom, h, h);
+    if (walker.looks >= p.least_looks && walked > p.walked * h) prior.learn(c.bottom, h, h);
     walkers.push_back(walker);
   }
 }
 
 // Components that may be pieces of one person: one above the other within half a body height, or almost touching.
 void RegionFinder::State::group_components() {
+  const RegionParameters& p = kParameters;
   const auto parts = labeller.components();
   group.resize(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -170,8 +167,8 @@ void RegionFinder::State::group_components() {
       const double height = prior.height(std::max(a.bottom, b.bottom));
       if (height <= 0) continue;
       const int across = gap(a.left, a.right, b.left, b.right), down = gap(a.top, a.bottom, b.top, b.bottom);
-      if (across > 0.1 * height || down > 0.4 * height ||
-          std::max(a.bottom, b.bottom) - std::min(a.top, b.top) > 1.6 * height)
+      if (across > p.across * height || down > p.down * height ||
+          std::max(a.bottom, b.bottom) - std::min(a.top, b.top) > p.joined * height)
         continue;
       const int from = group[i], to = group[j];
       for (std::size_t k = 0; k <= i; ++k)
@@ -183,11 +180,12 @@ void RegionFinder::State::group_components() {
 // What no person explains, where no block was found.
 RegionKind RegionFinder::State::kind_of(const Component& c) const {
   const double expected = prior.height(c.bottom);
-  if (expected <= 0 || c.height() > kTallest * expected) return RegionKind::thing;
-  return c.height() < kUsual.least * expected ? RegionKind::part : RegionKind::group;
+  if (expected <= 0 || c.height() > kParameters.tallest * expected) return RegionKind::thing;
+  return c.height() < kParameters.usual_least * expected ? RegionKind::part : RegionKind::group;
 }
 
 void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
+  const RegionParameters& p = kParameters;
   const bool person = kind == RegionKind::person_like;
   const Component& c = labeller.components()[i];
   if (regions.size() == regions.capacity()) return;
@@ -195,21 +193,24 @@ void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
   const double filled = c.area / box.area();
   // An object that was there when the scene began uncovers its place: the foreground edge has the object on one side
   // and the place on the other, and in a young scene they cannot be distinguished. The box takes in both.
-  if (options.people && !person && seen <= kYoung) {
-    const double rim = std::max(1.0, std::round(kRim * size.width / 320));
+  if (options.people && !person && seen <= p.young) {
+    const double rim = std::max(1.0, std::round(p.rim * size.width / 320));
     const double left = std::max(box.x - rim, 0.0), top = std::max(box.y - rim, 0.0);
     box = {left, top, std::min(box.right() + rim, static_cast<double>(size.width)) - left,
            std::min(box.bottom() + rim, static_cast<double>(size.height)) - top};
   }
-  regions.push_back({box, 0, person ? std::min(1.0, 0.5 + 0.5 * filled) : std::min(1.0, 0.45 * filled),
+  regions.push_back({box, 0,
+                     person ? std::min(1.0, p.person_confidence + (1 - p.person_confidence) * filled)
+                            : std::min(1.0, p.other_confidence * filled),
                      static_cast<int>(i) + 1, kind});
 }
 
-// Pulls the edges of an expected box to the moving pixels around it that no other person explains better, a quarter
-// of the body either way at most.
+// Pulls the edges of an expected box half way to the outermost moving pixels around it that no other person explains
+// better.
 Box RegionFinder::State::fit(const Box& expected, const Bounds& window, std::size_t self,
                              std::span<const Person> all) const {
-  const double reach_x = 0.3 * expected.width, reach_y = 0.15 * expected.height;
+  const double reach_x = kParameters.reach_x * expected.width,
+               reach_y = kParameters.reach_y * expected.height;
   const int left = std::max(window.left, static_cast<int>(expected.x - reach_x));
   const int right = std::min(window.right, static_cast<int>(std::ceil(expected.right() + reach_x)));
   const int top = std::max(window.top, static_cast<int>(expected.y - reach_y));
@@ -252,6 +253,7 @@ long RegionFinder::State::moving_in(const Box& box) const {
 }
 
 void RegionFinder::State::explain(int g) {
+  const RegionParameters& p = kParameters;
   const auto parts = labeller.components();
   Bounds window{size.width, size.height, 0, 0};
   Bounds body = window;
@@ -265,16 +267,16 @@ void RegionFinder::State::explain(int g) {
   }
   const double expected = prior.height(window.bottom);
   const double aspect = static_cast<double>(body.height()) / body.width();
-  const bool usual = expected > 0 && window.height() > kUsual.least * expected &&
-                     window.height() < kUsual.most * expected && aspect > 1.8;
-  if (expected <= 0 || window.height() > kTallest * expected || (members == 1 && usual)) {
+  const bool usual = expected > 0 && window.height() > p.usual_least * expected &&
+                     window.height() < p.usual_most * expected && aspect > p.usual_aspect;
+  if (expected <= 0 || window.height() > p.tallest * expected || (members == 1 && usual)) {
     for (std::size_t i = 0; i < parts.size(); ++i)
       if (group[i] == g) add_plain(i, usual ? RegionKind::person_like : RegionKind::thing);
     return;
   }
   const Box whole = box_of(window);
   const bool was_block = std::any_of(blocks_before.begin(), blocks_before.end(), [&](const Box& b) {
-    return intersection_over_union(b, whole) > kSameBlock;
+    return intersection_over_union(b, whole) > p.same_block;
   });
   const auto found = people.find(moving.view(), window, prior, was_block);
   if (people.found_wide_block() && blocks.size() < kMostBlocks) blocks.push_back(whole);
@@ -287,8 +289,8 @@ void RegionFinder::State::explain(int g) {
     if (group[i] != g) continue;
     const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});
     double covered = 0;
-    for (const Person& p : found) covered += overlap_area(p.box, box);
-    if (covered < 0.4 * box.area())
+    for (const Person& person : found) covered += overlap_area(person.box, box);
+    if (covered < p.explained * box.area())
       add_plain(i, people.found_wide_block() ? RegionKind::thing : kind_of(parts[i]));
   }
 }

@@ -6,6 +6,7 @@
 #include <bitset>
 #include <cmath>
 
+#include "vision/ego_motion/camera_motion_parameters.h"
 #include "vision/ego_motion/global_shift.h"
 #include "vision/ego_motion/patch_matches.h"
 #include "vision/image/pyramid.h"
@@ -14,16 +15,7 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kLeastSide = 16;                // smaller pictures are not estimated
-constexpr int kReferenceAge = 16;             // frames after which the reference of a still camera is renewed
-constexpr double kMajority = 0.6;             // share of the patches that no other motion can outvote
-constexpr double kBent = 0.2;                 // pixels: a smaller bend of the prior is neglected
-constexpr int kFewParts = 5, kManyParts = 8;  // of MotionSamples::kRegions
-constexpr int kWideColumns = 3;    // of the four: a motion seen in as many adjacent columns is the camera's
-constexpr float kWide = 0.25f;     // of the picture: a moving object as wide is seen in many parts
-constexpr int kGoesOn = 50;        // frames: duration of a turn past a wall without texture
-constexpr double kBentAtOnce = 1;  // pixels of the level: the bend of a smaller turn is negligible there
-constexpr double kStillMotion = 0.2;  // pixels, RMS over the picture: a still camera remains still below it
+constexpr CameraMotionParameters kParameters;
 
 int search_level(Size size) {
   int level = 0;
@@ -56,8 +48,8 @@ double bend(const Transform& t, Size size) {
 
 }  // namespace
 
-// The reference is frame k-1 while the camera moves. While the camera is still, the reference is kept for kReferenceAge
-// frames, so that a motion too slow to be measured from frame to frame accumulates until it is measured.
+// The reference is frame k-1 while the camera moves. While the camera is still, the reference is kept for
+// CameraMotionParameters::reference_age frames, so that a motion too slow to be measured from frame to frame accumulates until it is measured.
 struct CameraMotion::State {
   CameraMotionOptions options;
   Pyramid reference, current;  // current: of the caller's picture, valid only during update()
@@ -115,7 +107,7 @@ std::size_t CameraMotion::bytes() const {
 }
 
 void CameraMotion::State::next_reference(bool keep) {
-  if (keep && ++reference_age < kReferenceAge) return;
+  if (keep && ++reference_age < kParameters.reference_age) return;
   sites.choose(current, noise, scratch);
   reference.take(current);
   std::swap(reference_relief, current_relief);
@@ -154,20 +146,22 @@ void CameraMotion::State::count_followers(const PatchMatches& matches, const Mot
 }
 
 void CameraMotion::State::measure_noise(const PatchMatches& matches) {
-  if (const auto measured = matches.noise()) noise += 0.1 * (*measured - noise);
+  if (const auto measured = matches.noise()) noise += kParameters.noise_share * (*measured - noise);
 }
 
 MotionFit CameraMotion::State::fit_on(int level, const MotionSamples& samples,
                                       std::span<const Transform> guesses, const LensBend& known) const {
+  const CameraMotionParameters& q = kParameters;
   const Size size = reference.size();
   const MotionModel model = level > 0 ? std::min(options.model, MotionModel::similarity) : options.model;
   const bool top = level == top_level(size);  // finer levels start from its result
-  const MotionFit fit = fit_motion(samples, model, size, guesses, top ? 96 : 24, top ? 24 : 0, known);
+  const MotionFit fit = fit_motion(samples, model, size, guesses, top ? q.hypotheses : q.finer_hypotheses,
+                                   top ? q.turns : 0, known);
   // On a coarse level a turn is fitted only if its bend would mislead the finer levels: their search covers a few
   // pixels around the guess.
   const bool turns =
       model == MotionModel::similarity && (level == 0 || !fit.transform.is_affine() ||
-                                           mean_motion(fit.transform, size) > kBentAtOnce * (1 << level));
+                                           mean_motion(fit.transform, size) > q.bent_at_once * (1 << level));
   if (!turns) return fit;
   MotionFit turned = fit_turn(samples, size, fit, known);
   turned.rival = fit.rival;
@@ -189,12 +183,11 @@ MotionFit CameraMotion::State::fit_beyond(const Transform& prior, int level, con
 
 // Returns whether the current picture starts a new scene: hardly any patch of the reference is well matched at any
 // guess, and the pictures as a whole differ. After a reference without texture: the current picture has texture.
-// Measured: 1440 pairs of unrelated real pictures, share.well at most .20, difference at least .77; 2309 pairs of
-// successive ones, share.well at least .32; half the picture replaced: share.well at least .26 in 95 of 100.
 bool CameraMotion::State::is_cut(const Shift& shift) const {
+  const CameraMotionParameters& q = kParameters;
   const double before = reference_relief.contrast(), now = current_relief.contrast();
-  if (sites.count < PatchMatches::kLeast) return now > 3 * before + 1;
-  return share.well < 0.22 && (shift.difference > 0.6 || before > 4 * now);
+  if (sites.count < PatchMatches::kLeast) return now > q.new_contrast * before + 1;
+  return share.well < q.cut_share && (shift.difference > q.cut_difference || before > q.cut_contrast * now);
 }
 
 // Matches every patch at its own place on the finest level. The matches of estimate() do not suffice: they were
@@ -210,45 +203,48 @@ PatchMatches CameraMotion::State::found_in_place() const {
 // several places and seems to follow a person walking over it.
 std::optional<MotionFit> CameraMotion::State::standing(const MotionSamples& samples,
                                                        const MotionFit& fit) const {
+  const CameraMotionParameters& q = kParameters;
   if (options.model == MotionModel::none) return rate_motion(samples, {});
   const double motion = mean_motion(fit.transform, reference.size());
-  if (share.all > 0.9 && motion > 0.5) return std::nullopt;
-  const bool anew = still && motion > 1;
+  if (share.all > q.certain_share && motion > q.certain_motion) return std::nullopt;
+  const bool anew = still && motion > q.large_motion;
   const MotionFit none = anew ? rate_motion(found_in_place().samples(), {}) : rate_motion(samples, {});
   const auto stands = [&] {
-    if (motion < (still ? kStillMotion : 0.1)) return true;
+    if (motion < (still ? q.still_motion : q.least_motion)) return true;
     // For a large motion the regions that agree are compared: if a large object moves, the rest of the picture supports
     // no motion in many places.
     const bool contested = fit.rival.has_value();
     const double here = contested ? none.ground : none.support, there = contested ? fit.ground : fit.support;
-    if (motion > 1) return here > (still ? 0.6 : 0.85) * there;
+    if (motion > q.large_motion) return here > (still ? q.stays : q.stops) * there;
     // Leaving "still" needs strong support; slow motion accumulates against the kept reference.
-    if (still && (contested || share.all < 0.5)) return true;
+    if (still && (contested || share.all < q.leaves)) return true;
     // A small motion counts as none if it explains the samples hardly better than no motion does.
     const double unexplained = fit.agreeing > 1 ? fit.cost / fit.agreeing : 1;
-    return none.support > 0.9 * fit.support && none.cost - fit.cost < 12 * std::max(1.0, unexplained);
+    return none.support > q.as_supported * fit.support &&
+           none.cost - fit.cost < q.worth * std::max(1.0, unexplained);
   };
   return stands() ? std::optional(none) : std::nullopt;
 }
 
 // Returns whether enough parts of the picture follow `fit` for it to be the camera's motion. The camera's motion shows
 // in many parts of the picture; a motion in a few parts is that of an object before a blank wall. A moving camera needs
-// kFewParts parts, or kWideColumns columns of parts. A still camera needs kManyParts parts; between kFewParts and
-// kManyParts the followers must be spread wider than an object seen in so few parts (the few objects on a bare wall),
+// few_parts, or wide_columns columns of parts. A still camera needs many_parts; between few_parts and
+// many_parts the followers must be spread wider than an object seen in so few parts (the few objects on a bare wall),
 // and no patch may be left behind.
 bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit& fit) const {
+  const CameraMotionParameters& q = kParameters;
   std::bitset<MotionSamples::kRegions> seen;
   std::array<float, MotionSamples::kMax> across;
   int following = 0;
   for (int i = 0; i < samples.count; ++i)
     if (follows(samples, i, fit.transform)) seen.set(samples.region[i]), across[following++] = samples.x[i];
-  const std::size_t parts = seen.count();
+  const int parts = static_cast<int>(seen.count());
   if (!still) {
     const auto columns =
         (seen | seen >> 4 | seen >> 8 | seen >> 12) & std::bitset<MotionSamples::kRegions>(0xf);
-    return parts >= kFewParts || columns.count() >= kWideColumns;
+    return parts >= q.few_parts || static_cast<int>(columns.count()) >= q.wide_columns;
   }
-  if (parts < kFewParts || parts >= kManyParts) return parts >= kManyParts;
+  if (parts < q.few_parts || parts >= q.many_parts) return parts >= q.many_parts;
   // The width of the middle four fifths of the followers, because single matches may be wrong.
   const int tenth = following / 10;
   const auto place = [&](int rank) {
@@ -256,7 +252,7 @@ bool CameraMotion::State::is_known(const MotionSamples& samples, const MotionFit
     return across[rank];
   };
   const float width = place(following - 1 - tenth) - place(tenth);
-  return width > kWide * static_cast<float>(reference.size().width) && !leaves_behind(fit);
+  return width > q.wide * static_cast<float>(reference.size().width) && !leaves_behind(fit);
 }
 
 // Returns whether more than one patch is found in its old place and does not follow `fit`. A single one may be wrong.
@@ -274,7 +270,7 @@ bool CameraMotion::State::leaves_behind(const MotionFit& fit) const {
 // times as much, cannot give another result. Returns nullopt also when the reference is due for renewal.
 std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   if (!still || reference_age == 0 || sites.count < PatchMatches::kLeast ||
-      reference_age + 1 >= kReferenceAge)
+      reference_age + 1 >= kParameters.reference_age)
     return std::nullopt;
   const Size size = reference.size();
   const PatchMatches matches = found_in_place();
@@ -283,7 +279,8 @@ std::optional<CameraMotionResult> CameraMotion::State::confirm_still() {
   const MotionFit fit = rate_motion(matches.samples(), motion);
   share = {};
   count_followers(matches, fit);
-  if (share.all < kMajority || mean_motion(motion, size) >= kStillMotion || !is_known(matches.samples(), fit))
+  if (share.all < kParameters.majority || mean_motion(motion, size) >= kParameters.still_motion ||
+      !is_known(matches.samples(), fit))
     return std::nullopt;
   measure_noise(matches);
   next_reference(true);
@@ -310,13 +307,13 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const int top = top_level(size);
   const std::array<Shift, 2> shifts = ShiftSearch{}.run(reference_relief, current_relief);
   Transform motion = first_guess(matches, top, shifts, prior);
-  const bool bent = prior && bend(*prior, size) > kBent;
+  const bool bent = prior && bend(*prior, size) > kParameters.bent;
   MotionFit fit;
   std::optional<Transform> rival;  // second guess for the patches of the next level
   share = {};
   for (int level = top; level >= 0; --level) {
     // After agreement on the coarsest level the levels in between are skipped: the finest one finds its patches.
-    if (level < top && level > 0 && share.all > kMajority) continue;
+    if (level < top && level > 0 && share.all > kParameters.majority) continue;
     if (level < top && rival)
       matches.follow(reference, current, level, std::array{motion, *rival});
     else if (level < top)
@@ -338,7 +335,7 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   const auto stands = lost ? std::nullopt : standing(matches.samples(), fit);
   still = stands.has_value();
   if (still) fit = *stands;
-  on_its_way = still ? 0 : !fit.transform.is_identity() ? kGoesOn : std::max(0, on_its_way - 1);
+  on_its_way = still ? 0 : !fit.transform.is_identity() ? kParameters.goes_on : std::max(0, on_its_way - 1);
   lens.learn(fit.lens);
   CameraMotionResult result;
   result.scene_age = ++scene_age;
@@ -361,7 +358,7 @@ CameraMotionResult CameraMotion::update(GrayView picture, const std::optional<Tr
   s.current.extend(level + 1);
   s.current_relief.build(s.current.level(std::min(level, s.current.levels() - 1)));
   if (s.scene_age == 0) return s.start_scene();
-  if (std::min(picture.width, picture.height) < kLeastSide) {
+  if (std::min(picture.width, picture.height) < kParameters.least_side) {
     const int age = s.scene_age + 1;
     CameraMotionResult result = s.start_scene();
     result.scene_age = s.scene_age = age;

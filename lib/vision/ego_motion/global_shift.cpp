@@ -15,7 +15,14 @@ namespace {
 // exactly kLimit, which is subtracted afterwards.
 constexpr int kMiddle = 128, kRange = 64, kLimit = 63;
 constexpr int kStride = 96, kBorder = 16;  // of the later picture: 16 columns left and right of 64
-constexpr double kMeanRelief = 24, kMaxGain = 12;
+// Origin unknown: kept from the first version. Guard: bench-camera_motion.
+constexpr struct Parameters {
+  double mean_relief = 24;  // grey levels: mean amount to which a relief is amplified,
+  double most_gain = 12;    // by this factor at most
+  int least_side = 8;       // pixels: a smaller picture is not searched
+  int reach = 4;            // 1/n of either side: the largest shift
+  int apart = 2;            // pixels in either direction: a second shift so close is the first
+} kParameters;
 
 }  // namespace
 
@@ -41,7 +48,8 @@ void Relief::build(GrayView picture) {
     }
   }
   contrast_ = size.area() ? total / 25.0 / size.area() : 0;
-  const double gain = std::min(kMaxGain, contrast_ > 0 ? kMeanRelief / contrast_ : kMaxGain) / 25;
+  const Parameters& q = kParameters;
+  const double gain = std::min(q.most_gain, contrast_ > 0 ? q.mean_relief / contrast_ : q.most_gain) / 25;
   const int gain16 = static_cast<int>(gain * 65536);
   for (int y = 0; y < size.height; ++y)
     for (int x = 0; x < size.width; ++x) {
@@ -51,9 +59,10 @@ void Relief::build(GrayView picture) {
 }
 
 std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later) {
+  const Parameters& q = kParameters;
   const Size size = earlier.size();
-  if (size != later.size() || size.width < 8 || size.height < 8) return {};
-  const int rx = std::min(size.width / 4, kBorder), ry = std::min(size.height / 4, kBorder);
+  if (size != later.size() || std::min(size.width, size.height) < q.least_side) return {};
+  const int rx = std::min(size.width / q.reach, kBorder), ry = std::min(size.height / q.reach, kBorder);
   const int columns = 2 * rx + 1, rows = 2 * ry + 1;
   alignas(64) std::array<std::uint8_t, kStride * Relief::kMaxSide> bordered;  // for every shift
   bordered.fill(255);
@@ -72,7 +81,7 @@ std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later
       const int without = padded * (end - begin) - partners;
       map[(dy + ry) * columns + dx + rx] =
           static_cast<float>(sum - static_cast<std::uint32_t>(kLimit * without)) /
-          static_cast<float>(partners) / static_cast<float>(kMeanRelief);
+          static_cast<float>(partners) / static_cast<float>(q.mean_relief);
     }
   const auto at = [&](int dx, int dy) { return map[(dy + ry) * columns + dx + rx]; };
   // Vertex of the parabola through three neighbours.
@@ -87,7 +96,7 @@ std::array<Shift, 2> ShiftSearch::run(const Relief& earlier, const Relief& later
     float least = 1e9f;
     for (int dy = -ry; dy < -ry + rows; ++dy)
       for (int dx = -rx; dx <= rx; ++dx) {
-        if (rank == 1 && std::abs(dx - first_x) <= 2 && std::abs(dy - first_y) <= 2) continue;
+        if (rank == 1 && std::abs(dx - first_x) <= q.apart && std::abs(dy - first_y) <= q.apart) continue;
         if (at(dx, dy) < least) least = at(dx, dy), bx = dx, by = dy;
       }
     const float fx = std::abs(bx) < rx ? vertex(at(bx - 1, by), least, at(bx + 1, by)) : 0.0f;

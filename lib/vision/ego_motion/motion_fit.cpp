@@ -12,9 +12,39 @@ namespace cerberus::vision {
 
 namespace {
 
-// Widths of Tukey's weights in the rounds of refinement, in gates: wide first, because the start is a guess, and wider
-// for a model that starts from a similarity.
-constexpr std::array kGates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f}, kRicherGates{50.0f, 12.0f, 3.0f, 1.5f, 1.5f};
+// Where no origin stands it is unknown: kept from the first version. Guard of all: bench-camera_motion, bench-steady and
+// tests/unit/motion_fit.
+constexpr struct Parameters {
+  // Widths of Tukey's weights in the rounds of refinement, in gates: wide first, because the start is a guess, and wider
+  // for a model that starts from a similarity.
+  std::array<float, 5> gates{6.0f, 3.0f, 1.5f, 1.5f, 1.5f}, richer_gates{50.0f, 12.0f, 3.0f, 1.5f, 1.5f};
+  // Weight of the six parts in the middle for MotionFit::ground. A near person fills the middle and reaches the lower
+  // edge, and the background surrounds the person (the prior of Wei, Wen, Zhu, Sun, Geodesic saliency using background
+  // priors, ECCV 2012).
+  double inside = 0.25;
+
+  // Hypotheses.
+  double least_zoom = 0.6, most_zoom = 1.6;  // from frame to frame: a camera motion
+  double most_roll = 0.5;                    // sine of the angle times the zoom: the same
+  double least_distance = 0.15;              // of the width: between the samples of a similarity
+  int shifts = 4;                            // every so manieth hypothesis is a shift
+  double enough =
+      0.85;  // of the possible support: no more hypotheses. derived: inlier noise costs the last tenth
+  double hopeless = 0.4;  // of the best one's support: a weaker hypothesis is not refined
+  // Bends of lenses of 50, 65, 80 and 100 degrees.
+  std::array<double, 4> lenses{0.3, 0.6, 1.2, 2.4};
+
+  // F tests on the truncated cost that decide whether the richer model explains more than chance does with its
+  // additional unknowns. derived: F(1), F(2), F(2), F(4) of many samples at a level of about one in a thousand, times
+  // the unknowns. A model that fails would only follow noise in the corners of the picture.
+  double bend_earns = 10.8, rolling_earns = 2 * 6.9, affine_earns = 2 * 6.9, homography_earns = 4 * 4.6;
+  double least_unexplained = 0.2;  // of the noise, per direction: the tests' denominator
+  double as_supported = 0.95;      // of the simpler model's support that the richer one needs
+
+  // Memory of the lens.
+  double remembered = 0.97;  // share that is kept from frame to frame
+  double most_earned = 10;   // times bend_earns, at most
+} kParameters;
 
 double support_of(const Agreement& agreement) {
   double support = 0;
@@ -29,10 +59,8 @@ double greatest_support(const MotionSamples& s) {
   return support_of(agreement);
 }
 
-// Weights of the parts of the picture for MotionFit::ground: the six parts in the middle weigh a quarter. A near person
-// fills the middle and reaches the lower edge, and the background surrounds the person (the prior of Wei, Wen, Zhu,
-// Sun, Geodesic saliency using background priors, ECCV 2012).
-constexpr double kInside = 0.25;
+// Weights of the parts of the picture for MotionFit::ground.
+constexpr double kInside = kParameters.inside;
 constexpr std::array<double, MotionSamples::kRegions> kGround{1, 1,       1,       1,  //
                                                               1, kInside, kInside, 1,  //
                                                               1, kInside, kInside, 1,  //
@@ -50,7 +78,8 @@ bool similarity_through(const MotionSamples& s, int i, int j, double least_dista
   const double square = px * px + py * py;
   if (square < least_distance * least_distance) return false;
   const double a = (px * qx + py * qy) / square, b = (px * qy - py * qx) / square;
-  if (a < 0.6 || a > 1.6 || std::abs(b) > 0.5) return false;
+  if (a < kParameters.least_zoom || a > kParameters.most_zoom || std::abs(b) > kParameters.most_roll)
+    return false;
   t = {{a, -b, s.u[i] - a * s.x[i] + b * s.y[i], b, a, s.v[i] - b * s.x[i] - a * s.y[i], 0, 0, 1}};
   return true;
 }
@@ -122,8 +151,8 @@ Rated rate(const SampleRows& rows, const Transform& transform) {
 
 Rated refined(const SampleRows& rows, MotionModel model, Size picture, Transform motion) {
   const MotionLeastSquares squares(picture);
-  reweight(rows, model > MotionModel::similarity ? kRicherGates : kGates, squares.scale(), picture,
-           model == MotionModel::homography, motion,
+  reweight(rows, model > MotionModel::similarity ? kParameters.richer_gates : kParameters.gates,
+           squares.scale(), picture, model == MotionModel::homography, motion,
            [&](const MotionNormal& normal, Transform& next) { return squares.step(model, normal, next); });
   return rate(rows, motion);
 }
@@ -133,7 +162,7 @@ Rated refined(const SampleRows& rows, MotionModel model, Size picture, Transform
 Rated turned(const SampleRows& rows, Size picture, Shutter shutter, const LensBend& known, Transform motion) {
   const MotionLeastSquares squares(picture);
   LensBend seen;
-  reweight(rows, std::span(kGates).subspan(1), squares.scale(), picture, true, motion,
+  reweight(rows, std::span(kParameters.gates).subspan(1), squares.scale(), picture, true, motion,
            [&](const MotionNormal& normal, Transform& next) {
              LensBend lens = known;
              if (!squares.step_turned(normal, shutter, lens, next) || !next.is_sane(picture)) return false;
@@ -154,20 +183,15 @@ Transform unbent(const Transform& turn, Size picture) {
   return Transform::translation(x, y) * centred * Transform::translation(-x, -y);
 }
 
-// Thresholds of the F test on the truncated cost that decides whether the richer model explains more than chance does
-// with its additional unknowns, at a level of about one in a thousand. A model that fails it would only follow noise
-// in the corners of the picture.
-constexpr double kBendEarns = 10.8, kRollingEarns = 2 * 6.9, kAffineEarns = 2 * 6.9,
-                 kHomographyEarns = 4 * 4.6;  // F(1), F(2), F(4), many
 // Returns the cost that inliers leave unexplained, for each direction.
 double unexplained(const MotionFit& fit) {
-  return std::max(fit.agreeing > 1 ? fit.cost / (2 * fit.agreeing) : 1, 0.2);
+  return std::max(fit.agreeing > 1 ? fit.cost / (2 * fit.agreeing) : 1, kParameters.least_unexplained);
 }
 double earned(const MotionFit& finer, const MotionFit& fit) {
   return (fit.cost - finer.cost) / unexplained(finer);
 }
 bool is_as_supported(const MotionFit& finer, const MotionFit& fit) {
-  return finer.support > 0.95 * fit.support;
+  return finer.support > kParameters.as_supported * fit.support;
 }
 
 }  // namespace
@@ -190,42 +214,40 @@ double refine_motion(const MotionSamples& s, MotionModel model, Size picture, Tr
 
 MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
                      std::span<const Transform> guesses, int hypotheses, int turns, const LensBend& known) {
+  const Parameters& q = kParameters;
   const SampleRows rows(s);
   Contenders contenders(rows);
   for (const Transform& t : guesses) contenders.add(t);
   if (model == MotionModel::none || s.count == 0) return rate(rows, contenders.best());
-  const double least_distance = 0.15 * picture.width;
+  const double least_distance = q.least_distance * picture.width;
   std::uint32_t random = 12345;  // linear congruence (Numerical Recipes), its upper bits
   const auto draw = [&] {
     random = random * 1664525u + 1013904223u;
     return static_cast<int>((std::uint64_t{random} * static_cast<std::uint32_t>(s.count)) >> 32);
   };
-  // Skip the random hypotheses once the support exceeds 85 % of the possible one (inlier noise costs the last tenth).
-  const double enough = 0.85 * greatest_support(s);
+  const double enough = q.enough * greatest_support(s);
   for (int h = 0; h < hypotheses && contenders.most() < enough; ++h) {
     const int i = draw(), j = draw();
     Transform t = Transform::translation(s.u[i] - s.x[i], s.v[i] - s.y[i]);
-    const bool shift = model == MotionModel::translation || h % 4 == 0;
+    const bool shift = model == MotionModel::translation || h % q.shifts == 0;
     if (shift || similarity_through(s, i, j, least_distance, t)) contenders.add(t);
   }
   // The bend of a wide lens is too far from any similarity to be reached by refinement: add turns from one sample each,
-  // through the known lens or through lenses of 50, 65, 80 and 100 degrees.
-  constexpr std::array kLenses{0.3, 0.6, 1.2, 2.4};
+  // through the known lens or through usual ones.
   const bool may_bend = model == MotionModel::similarity || model == MotionModel::homography;
   const MotionLeastSquares squares(picture);
   for (int h = 0; h < turns && may_bend && contenders.most() < enough; ++h) {
     const int i = draw();
-    const double bend = known.earned > kBendEarns ? known.bend : kLenses[h % kLenses.size()];
+    const double bend = known.earned > q.bend_earns ? known.bend : q.lenses[h % q.lenses.size()];
     const Transform t = squares.turn({s.x[i], s.y[i]}, {s.u[i], s.v[i]}, bend);
     if (t.is_sane(picture)) contenders.add(t);
   }
   // A hypothesis from two samples has their errors; hypotheses are refined before they are compared.
-  constexpr double kHopeless = 0.4;
   const MotionModel simple = std::min(model, MotionModel::similarity);
   Rated fit, rival;
   bool first = true;
   for (const auto& [hypothesis, support, unrefined] : contenders.all()) {
-    if (support < kHopeless * contenders.most()) break;
+    if (support < q.hopeless * contenders.most()) break;
     const Rated better = may_bend && !hypothesis.is_affine()
                              ? turned(rows, picture, Shutter::global, known, hypothesis)
                              : refined(rows, simple, picture, hypothesis);
@@ -243,7 +265,7 @@ MotionFit fit_motion(const MotionSamples& s, MotionModel model, Size picture,
   if (model <= MotionModel::similarity) return fit;
   MotionFit finer = refined(rows, model, picture, fit.transform);
   finer.rival = fit.rival;
-  const double earns = model == MotionModel::affine ? kAffineEarns : kHomographyEarns;
+  const double earns = model == MotionModel::affine ? q.affine_earns : q.homography_earns;
   return is_as_supported(finer, fit) && earned(finer, fit) > earns ? finer : fit;
 }
 
@@ -256,20 +278,22 @@ MotionFit fit_turn(const MotionSamples& s, Size picture, const MotionFit& found,
     similarity = refined(rows, MotionModel::similarity, picture, unbent(found.transform, picture));
   }
   bent.lens.earned = earned(bent, similarity);
-  const bool bends = is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kBendEarns;
+  const bool bends =
+      is_as_supported(bent, similarity) && known.earned + bent.lens.earned > kParameters.bend_earns;
   MotionFit fit = bends ? bent : similarity;
   // The sheared motion is also bent: it must pass the F test for both.
   const MotionFit rolled = turned(rows, picture, Shutter::rolling, known, bent.transform);
-  const double earns = kRollingEarns + (bends ? 0 : kBendEarns);
+  const double earns = kParameters.rolling_earns + (bends ? 0 : kParameters.bend_earns);
   if (is_as_supported(rolled, fit) && earned(rolled, fit) > earns) fit = rolled;
   fit.lens = bent.lens;
   return fit;
 }
 
 void LensBend::learn(const LensBend& seen) {
-  constexpr double kRemembered = 0.97, kMostEarned = 10 * kBendEarns, kContradicts = kGate;
-  information *= kRemembered;
-  earned = std::clamp(kRemembered * earned + seen.earned, 0.0, kMostEarned);
+  const Parameters& q = kParameters;
+  constexpr double kContradicts = kGate;
+  information *= q.remembered;
+  earned = std::clamp(q.remembered * earned + seen.earned, 0.0, q.most_earned * q.bend_earns);
   if (!(seen.information > 0)) return;
   const double apart = seen.bend - bend;
   if (information > 0 && apart * apart > kContradicts * (1 / information + 1 / seen.information))

@@ -9,9 +9,16 @@ namespace cerberus::vision {
 
 namespace {
 
-// Priors, standard deviations over the half diagonal: shift free, linear part 10 %, perspective 3 %, effect of a
-// rolling shutter under acceleration 2 %.
-constexpr double kFree = 10, kLinear = 0.1, kPerspective = 0.03, kRolling = 0.02;
+// Standard deviations of the priors over the half diagonal. Origin unknown: kept from the first version. Guard:
+// bench-camera_motion and tests/unit/motion_least_squares.
+constexpr struct Parameters {
+  double free = 10;           // of the shift: not limited
+  double linear = 0.1;        // of zoom, roll and the rest of the linear part
+  double perspective = 0.03;  // of the perspective part
+  double rolling = 0.02;      // of the effect of a rolling shutter under acceleration
+} kParameters;
+constexpr double kFree = kParameters.free, kLinear = kParameters.linear,
+                 kPerspective = kParameters.perspective, kRolling = kParameters.rolling;
 
 }  // namespace
 

@@ -12,21 +12,45 @@ constexpr int kBlock = 4;  // gradient sums are kept per block of 4 x 4 pixels; 
 
 constexpr float kMiddle = 0.5f * (kPatch - 1);  // of a patch, from its corner
 
+// Where no origin stands it is unknown: kept from the first version. Guard of all: bench-camera_motion and
+// tests/unit/patches.
+constexpr struct Parameters {
+  // Choice of patches.
+  int halved = 64;  // pixels of the shorter side from which the half-size picture is read: half the noise, a
+                    // quarter of the work
+  int cell = 20;    // pixels: side of a cell, which has one patch at most
+  int least_cell = 8;   // pixels: of a small picture, so that several parts of it have patches
+  int least_cells = 4;  // in either direction of such a picture
+  int most_cells_x = 16, most_cells_y = 12;
+  double least_gradient = 16.0;  // grey levels squared a pixel: texture
+  double noise_gradient = 3;     // times that of noise, which has 2 noise^2 a pixel (not halved differences)
+  double edge =
+      0.05;  // of the larger gradient in a patch's score: prefers corners to edges, and edges to no texture
+  // Matching.
+  float least_variance = 0.25f;  // grey levels squared a pixel: a patch with less is not matched
+  float stiff = 0.01f;           // of the gradient sums, and
+  float stiff_pixel = 0.5f;  // grey levels squared a pixel: a patch with an edge only does not move along it
+  float least_gain = 0.15f;  // contrast, in that of the patch: with less it is not at this place
+  float most_step = 2.0f;    // pixels in a round
+  float converged = 0.03f;   // pixels: a smaller step is the last
+} kParameters;
+
 constexpr int kMargin = 1;  // blocks start one pixel inside, so that every pixel has all its neighbours
 
 }  // namespace
 
 void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch) {
+  const Parameters& q = kParameters;
   count = 0;
   const Size size = pyramid.size();
-  // Half size for pictures that are large enough: half the noise, a quarter of the work.
-  const int level = pyramid.levels() > 1 && std::min(size.width, size.height) >= 64 ? 1 : 0;
+  const int level = pyramid.levels() > 1 && std::min(size.width, size.height) >= q.halved ? 1 : 0;
   const GrayView picture = pyramid.level(level);
   const int across = (picture.width - 2 * kMargin) / kBlock, down = (picture.height - 2 * kMargin) / kBlock;
   if (across < 2 || down < 2) return;
-  // Cells of 20 pixels; small pictures have smaller ones, so that several parts of them have patches.
-  const int cells_x = std::clamp(size.width / 20, std::clamp(size.width / 8, 1, 4), 16);
-  const int cells_y = std::clamp(size.height / 20, std::clamp(size.height / 8, 1, 4), 12);
+  const auto cells = [&](int length, int most) {
+    return std::clamp(length / q.cell, std::clamp(length / q.least_cell, 1, q.least_cells), most);
+  };
+  const int cells_x = cells(size.width, q.most_cells_x), cells_y = cells(size.height, q.most_cells_y);
   // Three planes beside one another, each with the rows of blocks that one row of cells reads: its own, one more, and
   // the last of the row before.
   const int depth = down / cells_y + 3;
@@ -39,8 +63,8 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
   kept_.resize({kSide * kSide, cells_x * cells_y});
   int known = 0;  // rows of blocks
   const double pixel_noise = noise / (1 << level);
-  // Gradients of pure noise have variance 2 noise^2 a pixel (not halved differences).
-  const double least = kPatch * kPatch * std::max(16.0, 3 * 2 * pixel_noise * pixel_noise);
+  const double least =
+      kPatch * kPatch * std::max(q.least_gradient, q.noise_gradient * 2 * pixel_noise * pixel_noise);
   for (int cy = 0; cy < cells_y; ++cy) {
     const int y0 = cy * (down - 1) / cells_y, y1 = std::max((cy + 1) * (down - 1) / cells_y, y0 + 1);
     for (; known < std::min(y1 + 1, down); ++known)
@@ -61,7 +85,7 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
           const double spread = std::sqrt(0.25 * (a - c) * (a - c) + b * b);
           const double large = 0.5 * (a + c) + spread, small = 0.5 * (a + c) - spread;
           if (large < least) continue;
-          const double score = small + 0.05 * large;  // prefers corners to edges, and edges to no texture
+          const double score = small + q.edge * large;
           if (score > best) best = score, best_x = x, best_y = y;
         }
       }
@@ -106,14 +130,13 @@ void PatchFollower::begin(GrayView part, const Corner& corner) {
   corner_x_ = corner.x, corner_y_ = corner.y;
   match_.x = static_cast<float>(corner_x_) + kMiddle, match_.y = static_cast<float>(corner_y_) + kMiddle;
   make_template(part, 1, 1, patch_);
-  textured_ = patch_.vv > kPatch * kPatch * 0.25f;
+  textured_ = patch_.vv > kPatch * kPatch * kParameters.least_variance;
   if (!textured_) return;
   per_value_ = 1 / patch_.vv;
   gain_x_ = patch_.xv * per_value_, gain_y_ = patch_.yv * per_value_;
   match_.hxx = patch_.xx - gain_x_ * patch_.xv, match_.hyy = patch_.yy - gain_y_ * patch_.yv;
   match_.hxy = patch_.xy - gain_x_ * patch_.yv;
-  // Adds a small stiffness, so that a patch with an edge only does not move along it.
-  const float stiff = 0.01f * (patch_.xx + patch_.yy) + kPatch * kPatch * 0.5f;
+  const float stiff = kParameters.stiff * (patch_.xx + patch_.yy) + kPatch * kPatch * kParameters.stiff_pixel;
   const float xx = match_.hxx + stiff, yy = match_.hyy + stiff;
   const float per_determinant = 1 / (xx * yy - match_.hxy * match_.hxy);
   ixx_ = yy * per_determinant, ixy_ = -match_.hxy * per_determinant, iyy_ = xx * per_determinant;
@@ -121,7 +144,8 @@ void PatchFollower::begin(GrayView part, const Corner& corner) {
 
 PatchMatch PatchFollower::follow(GrayView later, float dx, float dy, int rounds) const {
   constexpr int kLast = kPatch + 1;
-  constexpr float kPixels = kPatch * kPatch, kEnough = 0.03f;
+  constexpr float kPixels = kPatch * kPatch;
+  const Parameters& q = kParameters;
   PatchMatch match = match_;
   if (!textured_) return match;
   const float right = static_cast<float>(later.width - kLast), low = static_cast<float>(later.height - kLast);
@@ -135,12 +159,12 @@ PatchMatch PatchFollower::follow(GrayView later, float dx, float dy, int rounds)
     const float bx = p.x - gain_x_ * p.value, by = p.y - gain_y_ * p.value;
     const float ex = ixx_ * bx + ixy_ * by, ey = ixy_ * bx + iyy_ * by;  // times the gain
     const float gain = (p.value - patch_.xv * ex - patch_.yv * ey) * per_value_;
-    if (!(gain > 0.15f)) break;  // the patch is not at this place
+    if (!(gain > q.least_gain)) break;  // the patch is not at this place
     const float per_gain = 1 / gain;
-    const float step_x = std::max(-2.0f, std::min(2.0f, ex * per_gain));
-    const float step_y = std::max(-2.0f, std::min(2.0f, ey * per_gain));
+    const float step_x = std::max(-q.most_step, std::min(q.most_step, ex * per_gain));
+    const float step_y = std::max(-q.most_step, std::min(q.most_step, ey * per_gain));
     dx -= step_x, dy -= step_y;
-    if (step_x * step_x + step_y * step_y < kEnough * kEnough)
+    if (step_x * step_x + step_y * step_y < q.converged * q.converged)
       break;  // converged: the products of this place remain valid after the step
   }
   const float spread = p.squares - p.sum * p.sum / kPixels;

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Tuned numbers of the way from components to regions (regions.cpp).
+//
+// Where no origin stands the value was chosen by hand on vtest.avi. Guard of all: tests/unit/regions and the boxes on
+// vtest.avi (precision .84, recall .83).
+#pragma once
+
+namespace cerberus::vision {
+
+struct RegionParameters {
+  double least_share = 4e-4;  // of the picture: smaller blobs are noise (31 pixels of 320x240)
+
+  // One person by itself.
+  int least_height = 12;      // pixels: the proportions of a lower component are no evidence
+  double narrowest = 4.5;     // height / width of a person: a narrower component is a pole or an edge,
+  double widest = 1.6;        // a wider one is a group or a fragment
+  double least_filled = 0.4;  // of its box that is foreground
+  double tallest = 2.2;       // heights of a person: a taller component is something else
+  double usual_least = 0.8,
+         usual_most = 1.2;    // heights of a person by the prior: so high is one whole person,
+  double usual_aspect = 1.8;  // if its height / width is above this
+  double skirt = 0.3;         // columns lower than this share of the highest are a shadow
+
+  // Samples of the height prior. Lengths in heights of the component.
+  double alone = 0.4;                   // distance to the next component
+  double step_x = 0.5, step_y = 0.3;    // by which the foot moves from frame to frame, at most
+  double shrinks = 0.85, grows = 1.18;  // times the height of the frame before
+  int least_looks = 3;                  // frames in a row
+  double walked = 0.15;                 // distance from the first place
+
+  // Pieces of one person. In expected heights.
+  double across = 0.1;  // gap from side to side
+  double down = 0.4;    // gap from top to bottom
+  double joined = 1.6;  // height of both together, at most
+
+  // Edges of a person's box.
+  double reach_x = 0.3, reach_y = 0.15;  // of width and height: how far foreground moves an edge, at most
+  double explained = 0.4;                // of a component's box that persons cover: it is theirs
+
+  double same_block = 0.5;  // intersection over union of two blocks, a frame apart, that are the same
+
+  // A young scene.
+  int young = 60;  // frames in which the first objects may still be part of the background model
+  double rim = 2;  // pixels at 320 columns by which a box is larger than its moving pixels in that time
+
+  // Confidence of a box: that of a component rises with its filled share.
+  double person_confidence = 0.5;  // of one whole person with an empty box, 1 with a full one
+  double other_confidence = 0.45;  // of any other component with a full box
+};
+
+}  // namespace cerberus::vision
