@@ -245,7 +245,7 @@ GST_START_TEST(volts_that_are_not_measured_are_refused_however_late) {
 }
 GST_END_TEST
 
-GST_START_TEST(who_likes_volts_best_gets_readings_where_there_are_no_volts) {
+GST_START_TEST(a_consumer_that_prefers_volts_gets_readings_where_there_are_none) {
   for (const bool volts : {true, false}) {
     Hanging hanging(volts ? "0,0V,0V,3V" : "0,0,0,1", kTimes,
                     "application/x-pir,format=level;application/x-pir");
@@ -287,7 +287,7 @@ static Suite* pirsrc_opening_suite() {
   tcase_add_test(tests, no_end_of_the_stream_overtakes_the_error);
   tcase_add_test(tests, a_source_that_failed_may_be_started_again);
   tcase_add_test(tests, volts_that_are_not_measured_are_refused_however_late);
-  tcase_add_test(tests, who_likes_volts_best_gets_readings_where_there_are_no_volts);
+  tcase_add_test(tests, a_consumer_that_prefers_volts_gets_readings_where_there_are_none);
   return suite;
 }
 

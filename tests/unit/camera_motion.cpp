@@ -158,7 +158,7 @@ START_TEST(a_pan_is_measured_behind_a_close_person) {
 END_TEST
 
 // A close person at rest covers a third of the picture when the camera begins to pan. On the coarse picture most
-// go along with him; what the others do has to be looked for on the finer ones, too.
+// patches follow the person; the finer levels must search for the motion of the others, too.
 START_TEST(a_pan_that_begins_behind_a_close_person_at_rest_is_found_on_finer_levels) {
   constexpr int kStands = 3, kFrames = 7, kMostPan = 20, kWay = kMostPan * (kFrames - kStands);
   constexpr Size kPerson{180, 140};

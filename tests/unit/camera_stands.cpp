@@ -76,10 +76,10 @@ int set_in_motion(std::uint32_t seed, double contrast, Light lamps, Size person,
   return moved;
 }
 
-// Bands of light and a moving person look like a motion of less than a pixel, which others contest or of which few
-// patches know. In so dull a room chance sets the camera in motion all the same, in up to 1 frame of 50. If nobody
-// asked what contests the motion, it would be 1 of 7 behind who sways; if nobody asked how many know of it, 1 of 20
-// behind who walks.
+// Bands of light and a moving person resemble a motion of less than a pixel, which has a rival or few supporting
+// patches. In so dull a room chance sets the camera in motion all the same, in up to 1 frame of 50. Without the test
+// of the rival it would be 1 of 7 behind a swaying person; without the test of the support, 1 of 20 behind a walking
+// one.
 START_TEST(bands_of_light_behind_a_close_swaying_person_leave_the_camera_still) {
   int moved = 0, frames = 0;
   for (std::uint32_t seed = 0; seed < 2; ++seed)

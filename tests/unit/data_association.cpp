@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "support/allocations.h"
 #include "support/suite.h"
 
 using namespace cerberus::vision;
@@ -189,6 +190,23 @@ START_TEST(a_region_is_crowded_where_another_track_covers_a_fifth_of_it) {
 }
 END_TEST
 
+START_TEST(as_many_pairs_as_reserved_take_no_memory) {
+  constexpr std::size_t kTracks = 8, kRegions = 16;
+  Scene s;
+  for (std::size_t i = 0; i < kTracks; ++i) s.tracks.push_back(track({60.0 * i, 100, 30, 80}));
+  for (std::size_t i = 0; i < kRegions; ++i)
+    s.regions.push_back(region(60.0 * (i % kTracks), i < kTracks ? 100 : 300, 30, 80));
+  s.appearances.update({}, s.regions, {}, kFrame);
+  s.association.reserve(kTracks, kRegions);
+  const std::size_t bytes = s.association.bytes(), before = cerberus::tests::allocations();
+  s.association.associate(s.tracks, s.regions, s.appearances, {kFrame, 0.1, 0});
+  ck_assert_uint_eq(cerberus::tests::allocations(), before);
+  ck_assert_uint_eq(s.association.bytes(), bytes);
+  for (std::size_t i = 0; i < kTracks; ++i)
+    ck_assert_int_eq(s.association.matches()[i].region, static_cast<int>(i));
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "data_association",
@@ -201,5 +219,6 @@ int main() {
        a_track_without_region_shares_the_blob_it_is_expected_in_unless_it_has_stopped,
        fragments_one_above_the_other_merge_into_the_older_one,
        others_are_expected_only_in_a_larger_region_that_holds_half_of_them,
-       a_region_is_crowded_where_another_track_covers_a_fifth_of_it});
+       a_region_is_crowded_where_another_track_covers_a_fifth_of_it,
+       as_many_pairs_as_reserved_take_no_memory});
 }

@@ -4,6 +4,7 @@
 #include "fuser_stream.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "support/allocations.h"
@@ -282,6 +283,14 @@ START_TEST(options_that_make_no_sense_are_put_right) {
   ck_assert(fuser.options().hysteresis == 0 && fuser.options().lens == 0 && fuser.options().dwell == 0s);
   ck_assert(fuser.options().limits.from == kDefaultLimits.from &&
             fuser.options().limits.to == kDefaultLimits.to);
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  for (const Interval& limits : {Interval{kUnknown, 1}, {-1, kUnknown}, {-kInfinite, 1}, {-1, kInfinite}}) {
+    fuser.set_options({.limits = limits});
+    ck_assert(fuser.options().limits.from == kDefaultLimits.from &&
+              fuser.options().limits.to == kDefaultLimits.to);
+  }
+  fuser.set_options({.limits = {-1, 1}});
+  ck_assert(fuser.options().limits.from == -1 && fuser.options().limits.to == 1);
 }
 END_TEST
 

@@ -41,7 +41,7 @@ void seen_alone(TrackHypothesis& b, int bin, int frames) {
   }
 }
 
-// Two whose identities were swapped at contact: each has looked like the other for `frames` since.
+// Two tracks whose identities were swapped at contact: the appearance of each has been the other's for `frames` since.
 std::vector<TrackHypothesis> swapped(double apart = 60, int frames = 3) {
   std::vector<TrackHypothesis> two{person(1, 200, 1), person(2, 200 + apart, 6)};
   for (TrackHypothesis& b : two) b.touch();

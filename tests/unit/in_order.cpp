@@ -206,7 +206,7 @@ START_TEST(nothing_is_kept_of_delivered_or_dropped_items) {
 }
 END_TEST
 
-// Four threads put in a thousand numbers each and call behind each of them; one at a time is telling.
+// Four threads put in a thousand numbers each and deliver after each of them; one at a time delivers.
 START_TEST(of_each_thread_the_numbers_come_in_its_order) {
   constexpr int kThreads = 4, kEach = 1000;
   InOrder<int, kThreads * kEach> order;

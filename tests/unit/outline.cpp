@@ -172,9 +172,34 @@ START_TEST(parts_are_parts_of_the_whole) {
 }
 END_TEST
 
+// Areas whose edges cut through the line of each side, as the frame's do where a box reaches beyond it. The picture has
+// other memory beside and below it.
+START_TEST(nothing_is_drawn_outside_of_the_area) {
+  constexpr int kBeside = 8;
+  constexpr std::uint32_t kOther = 0x12345678;
+  for (const Case& c : kCases)
+    for (int cut = -8; cut <= 8; ++cut) {
+      const int left = static_cast<int>(c.x) + cut, right = static_cast<int>(c.x + c.width) + cut;
+      const int top = static_cast<int>(c.y) + cut, bottom = static_cast<int>(c.y + c.height) + cut;
+      for (const Area& area : {Area{left, 0, kWidth - left, kHeight}, Area{0, 0, right, kHeight},
+                               Area{0, top, kWidth, kHeight - top}, Area{0, 0, kWidth, bottom}}) {
+        const int stride = area.width + kBeside;
+        std::vector<std::uint32_t> words(static_cast<std::size_t>(stride * (area.height + 2)), kOther);
+        const cerberus::vision::View<std::uint32_t> picture{words.data() + stride, area.width, area.height,
+                                                            stride};
+        for (int y = 0; y < area.height; ++y) std::fill_n(picture.row(y), area.width, 0u);
+        Outline(c.x, c.y, c.width, c.height, c.line, c.style, {1, 0.5, 0}).draw(area, picture);
+        for (int y = -1; y <= area.height; ++y)
+          for (int x = y < 0 || y == area.height ? 0 : area.width; x < stride; ++x)
+            ck_assert_uint_eq(words[static_cast<std::size_t>((y + 1) * stride + x)], kOther);
+      }
+    }
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "outline",
       {a_box_is_what_cairo_strokes, sides_cover_pixels_as_far_as_they_reach, rows_are_drawn_as_pixels_are,
-       nothing_lies_beyond_the_reaches, parts_are_parts_of_the_whole});
+       nothing_lies_beyond_the_reaches, parts_are_parts_of_the_whole, nothing_is_drawn_outside_of_the_area});
 }

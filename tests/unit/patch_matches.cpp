@@ -66,7 +66,7 @@ START_TEST(the_share_is_of_the_patches_that_follow) {
   const KeptPyramid before = pyramid_of(picture(Scene(3))), after = pyramid_of(std::move(later));
   const PatchSites sites = sites_of(before);
   PatchMatches matches(sites);
-  ck_assert_double_eq(matches.share_of({}).all, 0);  // nothing looked for yet
+  ck_assert_double_eq(matches.share_of({}).all, 0);  // no patch was searched yet
   matches.follow(before, after, 0, Transform::translation(4, 0));
   const PatchMatches::Share share =
       matches.share_of(rate_motion(matches.samples(), Transform::translation(4, 0)));

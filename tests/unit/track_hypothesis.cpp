@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The camera's effect on an object that is not seen: all of its lengths go with the picture's. And what a region tells
-// of the extent of one that is seen.
+// The camera's effect on an object without region: all of its lengths scale with the picture's. And the evidence of a
+// region about the extent of its track.
 #include "vision/tracking/track_hypothesis.h"
 
 #include <check.h>
@@ -128,7 +128,7 @@ START_TEST(it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_sa
   ck_assert(track.stays());
   track.appearance.place_change = appearance_distance(track.appearance.place, other);
   ck_assert(!track.stays());
-  track.appearance.place_change = -1;  // notrack can tell
+  track.appearance.place_change = -1;  // unknown
   ck_assert(!track.stays());
   track.slow = 0;
   track.learn_place(other, 0.1);  // it walks: its place is not learnt
