@@ -362,6 +362,21 @@ START_TEST(blobs_that_never_walk_teach_no_height) {
 }
 END_TEST
 
+// A walker is a sample of the height prior from its third frame on, and the prior answers from the eighth sample on: in
+// the tenth frame the walker is known to be as tall as a person.
+START_TEST(a_walker_teaches_its_height_from_the_third_frame_on) {
+  RegionFinder finder;
+  for (int k = 1; k <= 14; ++k) {
+    Picture picture;
+    picture.person(60 + 6 * k, 200);
+    const auto regions = picture.find(finder);
+    if (k < 3) continue;
+    ck_assert_uint_eq(regions.size(), 1);
+    ck_assert_msg(is_person_like(regions[0]) == (k >= 10), "frame %d", k);
+  }
+}
+END_TEST
+
 START_TEST(people_off_and_reset_give_plain_components_again) {
   RegionFinder finder;
   let_people_walk_by(finder);
@@ -484,6 +499,7 @@ int main() {
                   two_people_are_two_where_a_car_left_a_frame_before_the_last,
                   a_dog_among_people_is_a_small_region,
                   blobs_that_never_walk_teach_no_height,
+                  a_walker_teaches_its_height_from_the_third_frame_on,
                   people_off_and_reset_give_plain_components_again,
                   the_learnt_heights_follow_a_tilting_camera,
                   a_mask_full_of_clutter_or_wholly_set_is_survived,
