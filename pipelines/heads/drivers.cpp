@@ -38,6 +38,8 @@ int serve(drivers::HeadDevice& device, const std::string& emergency_stop) {
 Run find_driver(const std::string& name) {
   if (name == "onvif") return run_onvif;
   if (name == "stepper-gpio") return run_stepper;
+  if (name == "servo-pwm") return run_servo;
+  if (name == "v4l2") return run_v4l2;
   return nullptr;
 }
 

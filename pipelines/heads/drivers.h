@@ -20,6 +20,8 @@ int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
 using Run = int (*)(const std::vector<drivers::OptionWord>& words);
 int run_onvif(const std::vector<drivers::OptionWord>& words);
 int run_stepper(const std::vector<drivers::OptionWord>& words);
+int run_servo(const std::vector<drivers::OptionWord>& words);
+int run_v4l2(const std::vector<drivers::OptionWord>& words);
 
 // The driver of that name; nullptr: it is none of these.
 Run find_driver(const std::string& name);

@@ -98,8 +98,9 @@ int main(int argc, char** argv) {
       {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
   const std::unique_ptr<GOptionContext, decltype(&g_option_context_free)> context(
       g_option_context_new("DRIVER"), g_option_context_free);
-  g_option_context_set_summary(
-      context.get(), "Drives a pan-tilt head for pantiltsink. Drivers: visca, pelco-d, onvif, stepper-gpio.");
+  g_option_context_set_summary(context.get(),
+                               "Drives a pan-tilt head for pantiltsink. Drivers: visca, pelco-d, onvif, "
+                               "stepper-gpio, servo-pwm, v4l2.");
   g_option_context_add_main_entries(context.get(), entries, nullptr);
   GError* error = nullptr;
   if (!g_option_context_parse(context.get(), &argc, &argv, &error)) {
@@ -109,7 +110,8 @@ int main(int argc, char** argv) {
   }
   const std::string driver = argc == 2 ? argv[1] : "";
   if (driver != "visca" && driver != "pelco-d")
-    return fail("there is no head driver \"" + driver + "\": take visca, pelco-d, onvif or stepper-gpio");
+    return fail("there is no head driver \"" + driver +
+                "\": take visca, pelco-d, onvif, stepper-gpio, servo-pwm or v4l2");
   if (!o.device) return fail("the driver " + driver + " needs --device");
   return driver == "visca" ? run_visca(o) : run_pelco(o);
 }

@@ -23,7 +23,8 @@ GType target_type() {
 
 const Property<HeadSettings> kProperties[] = {
     property("driver", &HeadSettings::driver,
-             "What drives the head: simulated, scripted, external, visca, pelco-d, onvif or stepper-gpio")
+             "What drives the head: simulated, scripted, external, visca, pelco-d, onvif, stepper-gpio, "
+             "servo-pwm or v4l2")
         .read_at_start(),
     property("head", &HeadSettings::head, "Name of the head, in pose events and messages; one sink a name")
         .read_at_start(),
@@ -32,9 +33,8 @@ const Property<HeadSettings> kProperties[] = {
              "wait 8' with file descriptors")
         .read_at_start(),
     property("device", &HeadSettings::device,
-             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT, gpiochip0 or http://HOST; "
-             "never "
-             "with a password")
+             "The real head, as serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT, http://HOST, gpiochip0, "
+             "pwmchip0 or /dev/video0; never with a password")
         .read_at_start(),
     property("device-options", &HeadSettings::device_options,
              "Options of the real head's driver, as 'baud=38400 address=2'")

@@ -65,8 +65,9 @@
  *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties), `scripted` (for
  * tests: follows `script`), `external` (a program that `command` names) and those of real heads: `visca`,
- * `pelco-d`, `onvif` (a camera at `device`) and `stepper-gpio` (motors on the GPIO chip `device`). All but the first two run in
- * a helper process, which stops the head when this one dies, hangs or is silent for `helper-timeout`.
+ * `pelco-d`, `onvif`, `v4l2` (a camera at `device`), `stepper-gpio` and `servo-pwm` (motors on the GPIO or PWM chip
+ * `device`). All but the first two run in a helper process, which stops the head when this one dies, hangs or is silent
+ * for `helper-timeout`.
  * One head has one name (`head`) and in a process one sink.
  *
  * No change of state waits for its first frame (`async=false`).

@@ -58,7 +58,7 @@ class Head {
   virtual bool blocks() const { return true; }
 };
 
-// "simulated", "scripted", "external", "onvif", "visca", "pelco-d", "stepper-gpio"; nullptr for an unknown name.
+// "simulated", "scripted", "external", and the real ones in heads.cpp; nullptr for an unknown name.
 std::unique_ptr<Head> make_head(std::string_view driver);
 // All names, for error messages: "simulated, scripted, ...".
 std::string head_drivers();

@@ -12,8 +12,8 @@ namespace cerberus::drivers {
 
 namespace {
 
-constexpr std::array<std::string_view, 7> kDrivers{"simulated", "scripted",     "external", "visca",
-                                                   "pelco-d",   "stepper-gpio", "onvif"};
+constexpr std::array<std::string_view, 9> kDrivers{
+    "simulated", "scripted", "external", "visca", "pelco-d", "onvif", "stepper-gpio", "servo-pwm", "v4l2"};
 
 }  // namespace
 

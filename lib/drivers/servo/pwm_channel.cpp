@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/servo/pwm_channel.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <thread>
+
+namespace cerberus::drivers {
+namespace {
+
+// A number and a line feed, in one write as sysfs wants it.
+int write_number(int fd, long long number) noexcept {
+  std::array<char, 24> text;
+  char* end = std::to_chars(text.data(), text.data() + text.size() - 1, number).ptr;
+  *end++ = '\n';
+  const ssize_t length = end - text.data();
+  return ::pwrite(fd, text.data(), static_cast<std::size_t>(length), 0) == length ? 0 : errno ? errno : EIO;
+}
+
+int write_file(const std::string& path, long long number) {
+  const int fd = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+  if (fd < 0) return errno;
+  const int error = write_number(fd, number);
+  ::close(fd);
+  return error;
+}
+
+}  // namespace
+
+int PwmChannel::open(const std::string& chip, int channel, Time period, std::string& step) {
+  close();
+  const std::string folder = chip + "/pwm" + std::to_string(channel);
+  if (::access(folder.c_str(), F_OK) != 0) {
+    step = chip + "/export";
+    if (const int error = write_file(step, channel)) return error;
+  }
+  step = folder + "/duty_cycle";
+  for (auto waited = std::chrono::milliseconds(0); waited < kPatience && duty_ < 0;
+       waited += std::chrono::milliseconds(20)) {
+    duty_ = ::open(step.c_str(), O_WRONLY | O_CLOEXEC);
+    if (duty_ < 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  if (duty_ < 0) return errno;
+  int error = write_number(duty_, 0);  // a pulse longer than the new period would be refused
+  if (error == 0) {
+    step = folder + "/period";
+    error = write_file(step, period.count());
+  }
+  if (error == 0) {
+    step = folder + "/enable";
+    enable_ = ::open(step.c_str(), O_WRONLY | O_CLOEXEC);
+    if (enable_ < 0) error = errno;
+  }
+  if (error != 0) close();
+  return error;
+}
+
+void PwmChannel::close() noexcept {
+  if (duty_ >= 0) ::close(duty_);
+  if (enable_ >= 0) ::close(enable_);
+  duty_ = enable_ = -1;
+}
+
+int PwmChannel::set_width(Time width) noexcept {
+  return duty_ < 0 ? ENODEV : write_number(duty_, width.count());
+}
+
+int PwmChannel::enable(bool on) noexcept {
+  return enable_ < 0 ? ENODEV : write_number(enable_, on ? 1 : 0);
+}
+
+}  // namespace cerberus::drivers

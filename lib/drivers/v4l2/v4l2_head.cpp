@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/v4l2/v4l2_head.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "text/numbers.h"
+
+namespace cerberus::drivers {
+namespace {
+
+using motion::AxisCommand;
+using sensing::degrees;
+using sensing::radians;
+using Kind = AxisCommand::Kind;
+
+constexpr double kTie = 1e-6;  // of a step: rounding of the division
+constexpr double kSecond = radians(1) / 3600;  // of arc
+
+std::string in_degrees(double angle) {
+  return text::significant(degrees(angle), 6).string();
+}
+
+// The nearest value that the control takes. Step 0 counts as 1.
+std::int32_t on_grid(double value, const ControlRange& range) {
+  const double step = std::max(1, range.step);
+  const double count = std::round((value - range.least) / step);
+  return static_cast<std::int32_t>(
+      std::clamp(range.least + count * step, double(range.least), double(range.most)));
+}
+
+bool turns_both_ways(const std::optional<ControlRange>& range) {
+  return range && range->most > 0 && range->least == -range->most;
+}
+
+}  // namespace
+
+std::optional<V4l2Options::Mode> v4l2_mode(const std::string& word) {
+  using Mode = V4l2Options::Mode;
+  if (word == "auto") return Mode::automatic;
+  if (word == "speed") return Mode::speed;
+  if (word == "absolute") return Mode::absolute;
+  if (word == "relative") return Mode::relative;
+  return std::nullopt;
+}
+
+V4l2Head::~V4l2Head() {
+  stop({});
+}
+
+std::string V4l2Head::choose_mode() {
+  const bool absolute = pan_.angles || tilt_.angles, relative = pan_.ways || tilt_.ways;
+  const bool any_speed = pan_.speeds || tilt_.speeds;
+  const bool speed = (!pan_.speeds || turns_both_ways(pan_.speeds)) &&
+                     (!tilt_.speeds || turns_both_ways(tilt_.speeds)) && any_speed;
+  const bool speeds_known = options_.pan_speed > 0 && options_.tilt_speed > 0;
+  mode_ = options_.mode;
+  if (mode_ == Mode::automatic)
+    mode_ = speed && speeds_known ? Mode::speed
+            : absolute            ? Mode::absolute
+            : relative            ? Mode::relative
+                                  : Mode::speed;
+  if (!any_speed && !absolute && !relative)
+    return "the camera " + options_.device + " has no controls for pan and tilt (v4l2-ctl -L lists them)";
+  const auto lacks = [&](const char* what) {
+    return "the camera " + options_.device + " has no controls for mode=" + what +
+           " (v4l2-ctl -L lists them)";
+  };
+  if (mode_ == Mode::absolute && !absolute) return lacks("absolute");
+  if (mode_ == Mode::relative && !relative) return lacks("relative");
+  if (mode_ != Mode::speed) return {};
+  if (!any_speed) return lacks("speed");
+  if (!speed)
+    return "the kernel reports a wrong minimum of the pan or tilt speed of " + options_.device +
+           " (it is not minus the maximum): take mode=absolute or relative, or a newer kernel";
+  if (!speeds_known)
+    return "the speeds of " + options_.device +
+           " have no unit: name the degrees a second of the fastest ones (pan-speed=60 tilt-speed=40)";
+  return {};
+}
+
+std::string V4l2Head::check_range(const Axis& axis) const {
+  if (mode_ != Mode::absolute || !axis.angles) return {};
+  const double from = axis.angles->least * kSecond, to = axis.angles->most * kSecond;
+  if (axis.limits.from >= from - 1e-6 && axis.limits.to <= to + 1e-6) return {};
+  const std::string name = axis.name;
+  return name + "-min " + in_degrees(axis.limits.from) + " and " + name + "-max " +
+         in_degrees(axis.limits.to) + " are beyond what the camera " + options_.device + " reaches, " +
+         in_degrees(from) + " to " + in_degrees(to) + ": set " + name + "-min and " + name + "-max";
+}
+
+std::string V4l2Head::connect(Time now) {
+  if (const int error = controls_->open(options_.device)) {
+    if (error == EACCES || error == EPERM)
+      return "no permission to use " + options_.device + ": add the user to the group video";
+    if (error == ENOENT)
+      return "there is no camera " + options_.device + " (v4l2-ctl --list-devices lists them)";
+    return options_.device + " cannot be used as a camera: " + std::strerror(error);
+  }
+  for (Axis* axis : {&pan_, &tilt_}) {
+    axis->speeds = controls_->query(axis->speed);
+    axis->angles = controls_->query(axis->absolute);
+    axis->ways = controls_->query(axis->relative);
+    axis->sent.reset();
+    axis->command = {};
+    axis->moves = false;
+  }
+  if (std::string wrong = choose_mode(); !wrong.empty()) return wrong;
+  reads_ = false;
+  if (mode_ != Mode::relative) {
+    const bool pan = read_position(pan_), tilt = read_position(tilt_);
+    reads_ = pan || tilt;
+  }
+  for (Axis* axis : {&pan_, &tilt_}) axis->plan = motion::Plan(axis->position, now);
+  return {};
+}
+
+std::string V4l2Head::open(const HeadSetup& setup, Time now) {
+  pan_.limits = setup.limits.pan;
+  tilt_.limits = setup.limits.tilt;
+  pan_.position = setup.pan;
+  tilt_.position = setup.tilt;
+  pan_.fastest = radians(options_.pan_speed);
+  tilt_.fastest = radians(options_.tilt_speed);
+  if (std::string wrong = connect(now); !wrong.empty()) return wrong;
+  for (const Axis* axis : {&pan_, &tilt_})
+    if (std::string wrong = check_range(*axis); !wrong.empty()) return wrong;
+  stop(now);
+  next_ = now;
+  return {};
+}
+
+HeadAbilities V4l2Head::abilities() const {
+  const bool speed = mode_ == Mode::speed;
+  return {.position = !speed, .velocity = true, .feedback = reads_, .rate = 20};
+}
+
+bool V4l2Head::read_position(Axis& axis) {
+  std::int32_t value = 0;
+  if (!axis.angles || controls_->get(axis.absolute, value) != 0) return false;
+  axis.position = value * kSecond;
+  return true;
+}
+
+void V4l2Head::lose(int error) {
+  if (!fault_.empty()) return;
+  fault_ = "the camera " + options_.device + " does not obey any more (" + std::strerror(error) + ")";
+  lost_ = true;
+}
+
+void V4l2Head::set_speed(Axis& axis, double speed) {
+  if (!axis.speeds) return;
+  // A camera that tells where it is goes no further than the limits.
+  if (reads_ &&
+      ((speed > 0 && axis.position >= axis.limits.to) || (speed < 0 && axis.position <= axis.limits.from)))
+    speed = 0;
+  const auto value = static_cast<std::int32_t>(
+      std::lround(std::clamp(speed / axis.fastest, -1.0, 1.0) * static_cast<double>(axis.speeds->most)));
+  if (axis.sent == value) return;
+  const int error = controls_->set(axis.speed, value);
+  check(error);
+  if (error == 0) axis.sent = value;
+}
+
+void V4l2Head::plan(Axis& axis, const AxisCommand& command, Time now) {
+  axis.command = command;
+  axis.plan = motion::Plan::make(now, axis.plan.at(now), command, axis.limits);
+  axis.moves = axis.moves || axis.plan.end() > now || command.kind == Kind::position;
+}
+
+void V4l2Head::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
+  if (lost_) return;
+  stop_owed_ = false;
+  const auto order = [&](Axis& axis, const AxisCommand& command) {
+    if (mode_ == Mode::speed)
+      set_speed(axis, command.kind == Kind::velocity && std::isfinite(command.value) ? command.value : 0);
+    else
+      plan(axis, command, now);
+  };
+  order(pan_, pan);
+  order(tilt_, tilt);
+  next_ = std::min(next_, now);
+}
+
+void V4l2Head::limit(const motion::Limits& limits, Time now) {
+  pan_.limits = limits.pan;
+  tilt_.limits = limits.tilt;
+  if (mode_ == Mode::speed) return;
+  for (Axis* axis : {&pan_, &tilt_}) plan(*axis, axis->command, now);
+}
+
+void V4l2Head::stop(Time now) noexcept {
+  for (Axis* axis : {&pan_, &tilt_}) {
+    axis->command = {};
+    if (mode_ != Mode::speed) {
+      // Where it is, or where it was sent last.
+      read_position(*axis);
+      axis->moves = axis->moves && reads_;
+      axis->plan = motion::Plan(axis->position, now);
+    } else if (axis->speeds) {
+      // Whatever is believed to be in force; set again by tick() until the camera takes it.
+      const int error = controls_->set(axis->speed, 0);
+      stop_owed_ = stop_owed_ || error != 0;
+      if (error == 0) axis->sent = 0;
+    }
+  }
+}
+
+void V4l2Head::send_angle(Axis& axis, double angle) {
+  int error = 0;
+  if (mode_ == Mode::absolute && axis.angles) {
+    std::int32_t value = on_grid(angle / kSecond, *axis.angles);
+    // A step may be a whole degree: towards the inside of the limits.
+    const int step = std::max(1, axis.angles->step);
+    if (value * kSecond > axis.limits.to + 1e-9 && value - step >= axis.angles->least) value -= step;
+    if (value * kSecond < axis.limits.from - 1e-9 && value + step <= axis.angles->most) value += step;
+    if (axis.sent != value) error = controls_->set(axis.absolute, value);
+    axis.sent = value;
+    if (!reads_) axis.position = value * kSecond;
+  } else if (mode_ == Mode::relative && axis.ways) {
+    const int step = std::max(1, axis.ways->step);
+    const double steps = (angle - axis.position) / kSecond / step;
+    const double way = std::trunc(steps + std::copysign(kTie, steps)) * step;
+    const auto value =
+        static_cast<std::int32_t>(std::clamp(way, double(axis.ways->least), double(axis.ways->most)));
+    if (value != 0) error = controls_->set(axis.relative, value);
+    if (error == 0) axis.position += value * kSecond;
+  }
+  check(error);
+}
+
+Time V4l2Head::tick(Time now) {
+  if (lost_) {
+    if (next_open_ < now - Time(kReopen) || next_open_ == Time{}) next_open_ = now + kReopen;
+    if (now < next_open_) return next_open_;
+    next_open_ = now + kReopen;
+    if (!connect(now).empty()) return next_open_;
+    lost_ = false;
+    fault_.clear();
+    next_open_ = {};
+    stop(now);
+  }
+  if (now < next_) return next_;
+  next_ = now + kPeriod;
+  if (stop_owed_) {
+    stop_owed_ = false;
+    stop(now);
+  }
+  for (Axis* axis : {&pan_, &tilt_}) {
+    if (mode_ == Mode::speed || !axis->moves) continue;
+    axis->moves = now < axis->plan.end();
+    send_angle(*axis, axis->plan.at(now + Time(kPeriod)).position);
+  }
+  if (reads_ && !lost_) {
+    const bool pan = read_position(pan_), tilt = read_position(tilt_);
+    if (!pan && !tilt)
+      lose(ENODEV);
+    else
+      new_pose_ = true;
+    for (Axis* axis : {&pan_, &tilt_})
+      if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
+        set_speed(*axis, *axis->sent * axis->fastest / axis->speeds->most);
+  }
+  if (lost_) {
+    controls_->close();
+    next_open_ = now + kReopen;
+    return next_open_;
+  }
+  return next_;
+}
+
+std::optional<PoseLine> V4l2Head::take_pose(Time) {
+  if (!std::exchange(new_pose_, false)) return std::nullopt;
+  return PoseLine{{pan_.position, 0, 0}, {tilt_.position, 0, 0}, 0};
+}
+
+}  // namespace cerberus::drivers
