@@ -19,6 +19,7 @@ void Detector::set_options(const DetectorOptions& options) {
 }
 
 void Detector::reset() {
+  duplicates_.forget();
   camera_.reset();
   if (differences_) differences_->reset();
   if (foreground_) foreground_->reset();

@@ -11,6 +11,7 @@
 #include "vision/detection/burnt_in.h"
 #include "vision/detection/limits.h"
 #include "vision/detection/zones.h"
+#include "vision/duplicate_frames.h"
 #include "vision/geometry/lens.h"
 #include "vision/image/luma.h"
 
@@ -74,6 +75,12 @@ class Detector {
   Record begin(const LumaSource& picture);
   Record copy(const Analysis& record, Stage end);
 
+  // Whether `record`, made by begin(), shows the picture of the last one again, so that no stage is to see it; asked once
+  // for each picture. short_enough: as of DuplicateFrames.
+  bool repeats(const Analysis& record, const DetectorFrame& frame, bool short_enough) {
+    return duplicates_.repeats(*record.luma, !frame.fresh, short_enough);
+  }
+
   // Writes `camera` and sets frame.motion to it; where a cut begins a new scene, frame.fresh too. prior: the motion
   // of the picture since the previous frame that follows from the head's poses, frame pixels.
   void measure_camera(Analysis& record, DetectorFrame& frame, const std::optional<Transform>& prior = {});
@@ -108,6 +115,7 @@ class Detector {
 
   DetectorOptions options_;
   LumaScaler scaler_;
+  DuplicateFrames duplicates_;
   CameraMotion camera_;
   std::optional<ThreeFrameDifference> differences_;
   std::optional<ForegroundMask> foreground_;

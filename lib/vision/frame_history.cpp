@@ -20,7 +20,11 @@ std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nomi
   if (!any_) return std::nullopt;
   ++repeats_;
   shown_ = time;
-  if (time && previous_ && *time > *previous_) return seconds_between(*previous_, *time);
+  if (time && previous_ && *time > *previous_) {
+    const double seconds = seconds_between(*previous_, *time);
+    held_ = std::min(seconds, parameters_.longest_repeat);
+    return seconds;
+  }
   return repeats_ * (usual_ > 0 ? usual_ : nominal > 0 ? nominal : parameters_.unknown_distance);
 }
 
@@ -35,12 +39,14 @@ FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal) 
   else if (any_)
     follow(step, time, rhythm);
   step.broken = any_ && step.fresh;
+  step.repeatable = !step.fresh && step.seconds <= parameters_.longest_repeat;
   if (step.fresh) {
     stamp_.reset();
     late_ = 0;
   }
   any_ = true;
   lost_ = repeats_ = 0;
+  held_ = 0;
   previous_ = shown_ = time;
   if (!time) return step;
   stamp_ = time;
@@ -52,7 +58,7 @@ FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal) 
 // there is no other information. After a step back the clock advances by the assumed steps, so that they add up to the
 // time of the stamps once these are in order again.
 void FrameHistory::follow(Step& step, std::optional<Time> time, double rhythm) {
-  const double even = (1 + lost_) * rhythm;
+  const double even = (1 + lost_ + repeats_) * rhythm;
   step.fresh = false;
   step.previous = previous_;
   step.seconds = even;
@@ -67,8 +73,8 @@ void FrameHistory::follow(Step& step, std::optional<Time> time, double rhythm) {
     return;
   }
   step.seconds = seconds;
-  step.fresh = rhythm > 0 &&
-               seconds / (1 + lost_) > std::max(parameters_.gap_seconds, parameters_.gap_factor * rhythm);
+  step.fresh = rhythm > 0 && (seconds - held_) / (1 + lost_) >
+                                 std::max(parameters_.gap_seconds, parameters_.gap_factor * rhythm);
   if (step.fresh) {
     usual_ = seconds;  // caps that promise more frames than come must not make every frame a gap
     step.seconds = 0;

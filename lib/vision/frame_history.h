@@ -23,6 +23,9 @@ class FrameHistory {
     double least_seconds = 1e-4;  // a smaller distance is no time of a camera, whatever the timestamps say
     int late_frames =
         8;  // frames in a row that are older than assumed, after which their times are used again
+    // Seconds for which a repeated picture stands for the stream: no gap is counted within. Derived: a source of two
+    // frames a second, of which another element has made more; slower ones are too slow to follow people.
+    double longest_repeat = .5;
     int lost_pictures = 5;  // pictures in a row that may be lost within a scene: a fifth of a second of video
     double unknown_distance =
         .04;  // seconds, where neither caps nor frames have shown one: 25 frames a second
@@ -45,10 +48,11 @@ class FrameHistory {
   std::optional<Time> previous() const { return previous_; }
 
   struct Step {
-    bool fresh = true;       // no predecessor: everything learnt from earlier frames is dropped
-    bool broken = false;     // there was a predecessor, but the time ended the scene
-    bool backwards = false;  // older than the frame before; if only a little, its time counts as unknown
-    double seconds = 0;      // since the previous frame; 0: none, or not known
+    bool fresh = true;        // no predecessor: everything learnt from earlier frames is dropped
+    bool broken = false;      // there was a predecessor, but the time ended the scene
+    bool backwards = false;   // older than the frame before; if only a little, its time counts as unknown
+    bool repeatable = false;  // the previous frame is recent enough to be repeated by this one
+    double seconds = 0;       // since the previous frame; 0: none, or not known
     std::optional<Time> previous;  // running time of the previous frame, where it has one
   };
 
@@ -63,9 +67,10 @@ class FrameHistory {
   void follow(Step& step, std::optional<Time> time, double rhythm);
 
   Parameters parameters_;
-  bool any_ = false;              // a frame of this scene was seen
-  int lost_ = 0;                  // since the last picture
-  int repeats_ = 0;               // likewise
+  bool any_ = false;  // a frame of this scene was seen
+  int lost_ = 0;      // since the last picture
+  double held_ = 0;   // seconds for which the last picture is known to have stayed, at most longest_repeat
+  int repeats_ = 0;   // likewise
   std::optional<Time> previous_;  // of the last picture
   std::optional<Time> shown_;     // of the last frame, repeated or not
   std::optional<Time> stamp_;     // of the last frame of this scene that had a time at all

@@ -157,6 +157,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   if (const auto look = look_of(buffer, frame.running_time)) frame.look = {look->pan, look->tilt};
   if (!frame.fresh) {
     frame.seconds = step.seconds;
+    frame.repeatable = step.repeatable;
     frame.previous = clock_time(step.previous);
     frame.motion = camera.motion;
   }
@@ -199,17 +200,23 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
     const vision::FrameHistory history = priv.history;
     const vision::CameraFollower camera = priv.camera;
     Begun begun = begin_frame(trans, priv, buffer);
-    if (priv.analyser->analyse(begun.frame)) {
+    const Analyser::Outcome outcome = priv.analyser->analyse(begun.frame);
+    if (outcome == Analyser::Outcome::analysed) {
       complain_of_breaks(trans, priv, begun);
       complain_of_times(trans, priv, begun.backwards);
       return GST_FLOW_OK;
     }
 
-    // The buffer has no valid picture: the frame is passed on unchanged, marked by a flag. The next frame is compared
-    // with the last valid one.
+    // The next frame is compared with the last picture.
     priv.history = history;
     priv.camera = camera;
     --priv.number;
+    if (outcome == Analyser::Outcome::repeats) {
+      GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_GAP);
+      return repeat_frame(trans, priv, buffer);
+    }
+
+    // The buffer has no valid picture: the frame is passed on unchanged, marked by a flag.
     if (begun.cut)
       priv.history.drop();
     else

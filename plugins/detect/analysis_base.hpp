@@ -11,7 +11,8 @@
 // usable picture, a cut seen by `cameramotion`, and when it is not known how the camera moved since
 // the last frame seen here. Frames dropped between the stages, or in front of all, end nothing: see
 // camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only. A buffer with the flag GAP, as
-// `videorate` marks duplicates, repeats the last picture: no stage looks at it, and the last result stands.
+// `videorate` marks duplicates, repeats the last picture: no stage looks at it, and the last result stands. A frame that
+// the first stage recognises as such a duplicate gets the flag.
 #pragma once
 
 #include <gst/base/gstbasetransform.h>
@@ -42,12 +43,17 @@ class Answer {
 // at once, and no lock is held.
 class Analyser {
  public:
+  enum class Outcome {
+    analysed,
+    repeats,  // it repeats the last picture although the flag GAP is not on it
+    unusable  // the buffer does not hold the picture of its caps
+  };
   virtual ~Analyser() = default;
   // READY to PAUSED: begins in the initial state; returns false after posting an error. stop(): releases memory.
   virtual bool start() { return true; }
   virtual void stop() {}
-  // Analyses one frame and attaches the results. Returns false if the buffer does not hold the picture of its caps.
-  virtual bool analyse(Frame& frame) = 0;
+  // Analyses one frame and attaches the results. If nothing was analysed, the frame is as it was.
+  virtual Outcome analyse(Frame& frame) = 0;
   // Attaches the last result to a frame that repeats the last picture, which came `frame.seconds` ago.
   virtual void repeat(Frame&) {}
   // PAUSED to PLAYING, and back.

@@ -100,7 +100,7 @@ vision::Record Detection::obtain(const Frame& frame, bool regions_known) {
   return mapped ? detector.begin(luma_source(*mapped.get())) : record;
 }
 
-bool Detection::analyse(Frame& frame) {
+Analyser::Outcome Detection::analyse(Frame& frame) {
   State& state = *state_;
   const auto changed = changes();
   if (changed) apply(*changed);
@@ -110,8 +110,10 @@ bool Detection::analyse(Frame& frame) {
   }
   const bool known =
       !has(Stage::regions) && has(Stage::tracks) && cerberus_buffer_regions_known(frame.buffer);
+  const bool first = measures_camera() || !record_of(frame.buffer, frame.size);
   const vision::Record record = obtain(frame, known);
-  if (!record) return false;
+  if (!record) return Outcome::unusable;
+  if (first && !known && state.detector.repeats(*record, frame, frame.repeatable)) return Outcome::repeats;
 
   bool keep = true;
   frame.everything = (frame.wanted & kRecordForReaders) != 0;
@@ -135,7 +137,7 @@ bool Detection::analyse(Frame& frame) {
   state.repeated = 0;
   state.shown = frame.running_time;
   if (keep) set_record(frame.buffer, record);
-  return true;
+  return Outcome::analysed;
 }
 
 // The stages learn nothing from a repeated picture: the next new one is compared with the last.

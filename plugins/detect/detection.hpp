@@ -29,7 +29,7 @@ class Detection : public Analyser {
 
   bool start() override;
   void stop() override;
-  bool analyse(Frame& frame) override;
+  Outcome analyse(Frame& frame) override;
   void repeat(Frame& frame) override;
   void play(bool plays) override { watch_.play(plays); }
   void flush(bool begins) override { watch_.flush(begins); }

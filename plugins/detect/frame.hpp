@@ -15,6 +15,7 @@ struct Frame : vision::DetectorFrame {
   const GstVideoInfo* info = nullptr;
   GstClockTime running_time = GST_CLOCK_TIME_NONE;
   GstClockTime previous = GST_CLOCK_TIME_NONE;  // running time of the previous frame
+  bool repeatable = false;                      // its picture may be the last one again
   bool live = false;                            // the source is: frames come by the clock
   guint wanted = 0;                             // of the record, by elements downstream: see record.hpp
 };

@@ -22,7 +22,8 @@
  * known, and so has the frame for the elements behind.
  *
  * A buffer with the flag GAP repeats the last picture, as duplicates of `videorate` do: it is not looked at and carries
- * the objects of the last frame on, moving ones for `coast-time`, stopped ones for `hold-stopped`.
+ * the objects of the last frame on, moving ones for `coast-time`, stopped ones for `hold-stopped`. A pose that
+ * `cameramotion` attaches to it is that of the picture, wherever the head has turned since.
  *
  * ## Example
  * |[

@@ -29,8 +29,17 @@ GstBuffer* repeated(int k, int part, int parts) {
   return buffer;
 }
 
+// The same picture again without the mark, as videoscale of GStreamer 1.22 leaves it of videorate's duplicates.
+GstBuffer* duplicate(const World& world, int k, int part, int parts) {
+  GstBuffer* buffer = scene::grey_buffer(world, k);
+  GST_BUFFER_PTS(buffer) = k * scene::kStep + part * scene::kStep / parts;
+  return buffer;
+}
+
 GST_START_TEST(a_repeated_frame_carries_the_regions_of_the_last_picture) {
-  Line line(kLines[__i__]), plain(kLines[__i__]);
+  const int number = __i__ / 2;
+  const bool marked = __i__ % 2;
+  Line line(kLines[number]), plain(kLines[number]);
   const World world;
   guint found = 0;
   for (int k = 0; k < 25; ++k) {
@@ -40,7 +49,9 @@ GST_START_TEST(a_repeated_frame_carries_the_regions_of_the_last_picture) {
     ck_assert_str_eq(is.c_str(), expected.c_str());  // the pictures between change nothing of what is found
     found += Regions(out).size();
     for (int part = 1; part < 3; ++part) {
-      GstBuffer* again = line.through(repeated(k, part, 3));
+      if (!marked && k == 0) continue;  // equal pictures at the start of a scene are a still scene
+      GstBuffer* again = line.through(marked ? repeated(k, part, 3) : duplicate(world, k, part, 3));
+      fail_unless(GST_BUFFER_FLAG_IS_SET(again, GST_BUFFER_FLAG_GAP));
       fail_unless(cerberus_buffer_regions_known(again));
       const Regions before(out), after(again);
       fail_unless_equals_int(after.size(), before.size());
@@ -57,6 +68,27 @@ GST_START_TEST(a_repeated_frame_carries_the_regions_of_the_last_picture) {
     gst_buffer_unref(out);
   }
   fail_unless(found > 10, "nothing was found at all");
+}
+GST_END_TEST
+
+// Videoscale of GStreamer 1.22 takes the mark off.
+GST_START_TEST(duplicates_that_were_scaled_lose_nobody) {
+  Line line(
+      "videorate ! video/x-raw,framerate=75/1 ! videoscale ! video/x-raw,width=160,height=120 ! "
+      "motiondetect confirm-time=0 analysis-width=160");
+  int with = 0, without = 0;
+  for (int k = 0; k < 40; ++k) {
+    fail_unless_equals_int(gst_harness_push(line.harness, scene::grey_buffer(World{}, k)), GST_FLOW_OK);
+    while (GstBuffer* out = gst_harness_try_pull(line.harness)) {
+      if (Regions(out).size() > 0)
+        ++with;
+      else if (with > 0)
+        ++without;
+      gst_buffer_unref(out);
+    }
+  }
+  fail_unless(with > 90, "only %d frames with an object", with);
+  fail_unless_equals_int(without, 0);
 }
 GST_END_TEST
 
@@ -328,7 +360,8 @@ Suite* repeated_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_checked_fixture(tests, watch_library_log, nullptr);
   tcase_add_loop_test(tests, a_repeated_frame_carries_the_regions_of_the_last_picture, 0,
-                      G_N_ELEMENTS(kLines));
+                      2 * G_N_ELEMENTS(kLines));
+  tcase_add_test(tests, duplicates_that_were_scaled_lose_nobody);
   tcase_add_test(tests, the_camera_stands_still_while_a_picture_is_repeated);
   tcase_add_test(tests, an_endless_freeze_ends_tracks_after_coast_time_and_motion_after_hold_time);
   tcase_add_test(tests, a_repeated_frame_before_any_picture_carries_nothing);

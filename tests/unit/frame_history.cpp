@@ -206,6 +206,46 @@ START_TEST(repeated_frames_without_times_are_counted) {
 }
 END_TEST
 
+// Two pictures a second, of which something has made 25 frames: the distance of the caps.
+START_TEST(a_picture_that_is_seen_to_stay_leaves_no_gap) {
+  FrameHistory repeated, gaps;
+  for (int k = 0; k < 5; ++k) {
+    const FrameHistory::Step step = repeated.next(k * 500ms, kNominal);
+    ck_assert_int_eq(step.fresh, k == 0);
+    if (k > 0) ck_assert(std::abs(step.seconds - .5) < 1e-9);
+    for (int again = 1; again < 12; ++again) repeated.repeat(k * 500ms + again * kStep, kNominal);
+  }
+  gaps.next(0ms, kNominal);
+  ck_assert(gaps.next(500ms, kNominal).fresh);
+}
+END_TEST
+
+START_TEST(a_long_freeze_ends_the_scene) {
+  FrameHistory history;
+  history.next(0ms, kNominal);
+  for (int k = 1; k < 50; ++k) history.repeat(k * kStep, kNominal);
+  ck_assert(history.next(50 * kStep, kNominal).fresh);  // 2 s, of which .5 s are excused
+}
+END_TEST
+
+START_TEST(a_frame_may_repeat_a_picture_of_the_last_half_second) {
+  FrameHistory history;
+  ck_assert(!history.next(0ms, .5).repeatable);
+  ck_assert(history.next(500ms, .5).repeatable);
+  ck_assert(!history.next(1001ms, .5).repeatable);
+}
+END_TEST
+
+START_TEST(pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them) {
+  FrameHistory history;
+  history.next(std::nullopt, .1);
+  history.repeat(std::nullopt, .1);
+  history.repeat(std::nullopt, .1);
+  ck_assert(std::abs(history.next(std::nullopt, .1).seconds - .3) < 1e-9);
+  ck_assert(std::abs(history.next(std::nullopt, .1).seconds - .1) < 1e-9);
+}
+END_TEST
+
 START_TEST(repeated_frames_are_not_missing) {
   FrameHistory history;
   history.next(0ms, kNominal);
@@ -225,5 +265,7 @@ int main() {
        a_gap_is_judged_by_the_rhythm_of_the_stream, a_stream_slower_than_its_caps_is_not_blind,
        missing_timestamps_are_taken_as_evenly_spaced, missing_frames_are_told_from_a_mark_alone,
        a_repeated_frame_counts_from_the_last_picture, repeated_frames_without_times_are_counted,
-       repeated_frames_are_not_missing});
+       repeated_frames_are_not_missing, a_picture_that_is_seen_to_stay_leaves_no_gap,
+       a_long_freeze_ends_the_scene, a_frame_may_repeat_a_picture_of_the_last_half_second,
+       pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them});
 }
