@@ -5,6 +5,7 @@
 #if HAVE_ONVIF
 #include <utility>
 
+#include "drivers/onvif/discovery.h"
 #include "drivers/onvif/onvif_head.h"
 #include "heads/password.h"
 #include "heads/soup_client.h"
@@ -24,15 +25,35 @@ constexpr double kMostSpeed = 3600;  // degrees a second, as of pantiltsink
 constexpr char kOptions[] =
     "device, user, password-file, password-env, password-credential, password-text, profile, fingerprint, "
     "range, "
-    "pan-speed, tilt-speed, answer-time, no-feedback, no-absolute, emergency-stop";
+    "pan-speed, tilt-speed, answer-time, home-preset, home-time, no-feedback, no-absolute, emergency-stop";
 
 struct Settings {
   OnvifOptions head;
   SoupClientOptions http;
   PasswordSource password;
   std::string emergency_stop;
-  bool has_device = false;
+  bool has_device = false, discover = false;
 };
+
+constexpr std::chrono::milliseconds kDiscovery{1000};  // the pipeline waits 5 s for a helper, login included
+
+// Takes the one camera that is found. Any machine can answer a probe: it is sent no credentials.
+std::string find_camera(Settings& s) {
+  std::string wrong;
+  const auto found = drivers::onvif::discover(kDiscovery, wrong);
+  if (!wrong.empty()) return wrong;
+  if (found.empty()) return "no ONVIF camera was found on this network: name it (device=http://HOST)";
+  std::string list;
+  for (const auto& camera : found) {
+    if (!list.empty()) list.append(", ");
+    list.append(camera.device);
+    if (!camera.name.empty()) list.append(" (").append(camera.name).append(")");
+  }
+  if (found.size() > 1) return "several ONVIF cameras were found: name one (device=): " + list;
+  if (!s.http.user.empty())
+    return "a camera that was only found is sent no password: name it (device=): " + list;
+  return parse_device(found.front().device, s.head.login.device);
+}
 
 // The number of `word`, above 0 and at most `most`.
 std::string read_positive(const OptionWord& word, double most, double& number) {
@@ -59,6 +80,12 @@ std::string read_number(const OptionWord& word, OnvifOptions& options) {
   if (word.key == "range") return read_range(word.value, options.mechanics);
   if (word.key == "pan-speed") return read_positive(word, kMostSpeed, options.mechanics.full_speed.pan);
   if (word.key == "tilt-speed") return read_positive(word, kMostSpeed, options.mechanics.full_speed.tilt);
+  if (word.key == "home-time") {
+    double seconds = 0;
+    std::string wrong = read_positive(word, 100, seconds);
+    options.home_time = std::chrono::milliseconds(static_cast<int>(seconds * 1000));
+    return wrong;
+  }
   const auto milliseconds = number_of(word.value);
   if (!milliseconds || *milliseconds < 100 || *milliseconds > 10000)
     return "answer-time is 100 to 10000 milliseconds";
@@ -71,15 +98,19 @@ std::string read_word(const OptionWord& word, Settings& s) {
   const auto& [key, value, has_value] = word;
   if (key == "device") {
     s.has_device = true;
+    s.discover = value == "discover";
+    if (s.discover) return {};
     return parse_device(value, s.head.login.device);
   }
-  if (key == "range" || key == "pan-speed" || key == "tilt-speed" || key == "answer-time")
+  if (key == "range" || key == "pan-speed" || key == "tilt-speed" || key == "answer-time" ||
+      key == "home-time")
     return read_number(word, s.head);
   std::string* const text = key == "user"                  ? &s.http.user
                             : key == "password-file"       ? &s.password.file
                             : key == "password-env"        ? &s.password.environment
                             : key == "password-credential" ? &s.password.credential
                             : key == "profile"             ? &s.head.login.profile
+                            : key == "home-preset"         ? &s.head.home_preset
                             : key == "emergency-stop"      ? &s.emergency_stop
                                                            : nullptr;
   if (text) {
@@ -110,7 +141,7 @@ std::string read_words(const std::vector<OptionWord>& words, Settings& s) {
   std::string wrong = read_password(s.password, s.http.password);
   if (wrong.empty() && s.http.user.empty() && !s.http.password.empty())
     return "a password needs a user: give user=";
-  return wrong;
+  return wrong.empty() && s.discover ? find_camera(s) : wrong;
 }
 
 }  // namespace

@@ -59,6 +59,7 @@ struct SoupClient::Call {
   Call& operator=(const Call&) = delete;
 
   void begin();
+  void set_body();
   void read();
   void end(int status, std::string error);
   void fail(const GError* error);
@@ -66,6 +67,7 @@ struct SoupClient::Call {
   static gboolean on_certificate(SoupMessage*, GTlsCertificate* certificate, GTlsCertificateFlags,
                                  gpointer self);
   static gboolean on_login(SoupMessage*, SoupAuth* auth, gboolean again, gpointer self);
+  static void on_restart(Call* call);
   static gboolean on_timeout(gpointer self);
   static void on_headers(GObject* session, GAsyncResult* result, gpointer self);
   static void on_piece(GObject* stream, GAsyncResult* result, gpointer self);
@@ -134,15 +136,25 @@ void SoupClient::Call::begin() {
   message = soup_message_new("POST", request.url.c_str());
   if (!message) return end(0, "its address is no URL");
   soup_message_add_flags(message, SOUP_MESSAGE_NO_REDIRECT);
-  const std::string type = "application/soap+xml; charset=utf-8; action=\"" + request.action + "\"";
-  g_autoptr(GBytes) bytes = g_bytes_new(request.body.data(), request.body.size());
-  soup_message_set_request_body_from_bytes(message, type.c_str(), bytes);
+  set_body();
+  g_signal_connect_swapped(message, "restarted", G_CALLBACK(on_restart), this);
   g_signal_connect(message, "accept-certificate", G_CALLBACK(on_certificate), this);
   g_signal_connect(message, "authenticate", G_CALLBACK(on_login), this);
   timer = g_timeout_source_new(static_cast<guint>(request.timeout.count()));
   g_source_set_callback(timer, on_timeout, this, nullptr);
   g_source_attach(timer, core.context);
   soup_session_send_async(core.session, message, G_PRIORITY_DEFAULT, cancellable, on_headers, this);
+}
+
+void SoupClient::Call::set_body() {
+  const std::string type = "application/soap+xml; charset=utf-8; action=\"" + request.action + "\"";
+  g_autoptr(GBytes) bytes = g_bytes_new(request.body.data(), request.body.size());
+  soup_message_set_request_body_from_bytes(message, type.c_str(), bytes);
+}
+
+// A request that is sent again with a login has lost its body.
+void SoupClient::Call::on_restart(Call* call) {
+  call->set_body();
 }
 
 gboolean SoupClient::Call::on_certificate(SoupMessage*, GTlsCertificate* certificate, GTlsCertificateFlags,

@@ -44,6 +44,9 @@ std::string attribute(const xmlNode* node, const char* name) {
   xmlFree(content);
   return out;
 }
+const xmlNode* token_of(const xmlNode* envelope) {
+  return child(child(child(envelope, kSoap, "Header"), kWsse, "Security"), kWsse, "UsernameToken");
+}
 double number(const std::string& digits) {
   return g_ascii_strtod(digits.c_str(), nullptr);
 }
@@ -97,6 +100,11 @@ OnvifCamera::OnvifCamera(OnvifFaults faults)
 void OnvifCamera::set_clock(std::chrono::seconds off) {
   const std::lock_guard guard(lock_);
   faults_.clock = off;
+}
+
+void OnvifCamera::set_garbage(int answers) {
+  const std::lock_guard guard(lock_);
+  faults_.garbage = answers;
 }
 
 std::chrono::system_clock::time_point OnvifCamera::clock() const {
@@ -247,7 +255,7 @@ HttpReply OnvifCamera::answer(const HttpMessage& message) {
     ++counts_["refused"];
     HttpReply refusal =
         fault("NotAuthorized", "",
-              faults_.repeats_password ? "wrong: " + message.body.substr(0, 0) + faults_.password
+              faults_.repeats_password ? "I was sent " + text(child(token_of(root), kWsse, "Password"))
                                        : "Sender not Authorized");
     if (faults_.http_digest) {
       refusal.status = 401;
@@ -418,6 +426,8 @@ HttpReply OnvifCamera::ptz(const std::string& name, const xmlNode* request) {
   if (name == "GetConfigurationOptions") return options();
   if (text(child(request, kPtz, "ProfileToken")) != "moving")
     return fault("InvalidArgVal", "NoProfile", "no such profile");
+  if (!faults_.redirects.empty())
+    return {.status = 307, .body = {}, .headers = "Location: " + faults_.redirects + "\r\n"};
   if (faults_.errors > 0) {
     --faults_.errors;
     return {.status = 500, .body = "Internal Server Error", .headers = {}};
@@ -430,6 +440,13 @@ HttpReply OnvifCamera::ptz(const std::string& name, const xmlNode* request) {
   if (name == "ContinuousMove") return continuous_move(request);
   if (name == "AbsoluteMove") return absolute_move(request);
   if (name == "Stop") return stop(request);
+  if (name == "GotoHomePosition" ||
+      (name == "GotoPreset" && text(child(request, kPtz, "PresetToken")) == "1")) {
+    to_pan_ = to_tilt_ = 0;
+    to_angle_ = true;
+    return envelope("<tptz:" + name + "Response/>");
+  }
+  if (name == "GotoPreset") return fault("InvalidArgVal", "NoToken", "no such preset");
   return fault("ActionNotSupported", "", "Optional Action Not Implemented");
 }
 

@@ -29,6 +29,7 @@ struct OnvifFaults {
   bool refuses_moves = false;    // all of them
   bool refuses_stop = false;     // by a fault; a ContinuousMove at 0 stops it
   std::string claims_host{};     // the XAddr of its services names this instead
+  std::string redirects{};       // PTZ requests are redirected to this address
   bool bare_ampersand = false;   // in the URI of its services
   bool no_get_services = false;  // only GetCapabilities
   bool media2_only = false;
@@ -54,6 +55,7 @@ class OnvifCamera {
   void set_silent(bool silent) { server_.set_silent(silent); }
   void set_gone(bool gone) { server_.set_gone(gone); }
   void set_clock(std::chrono::seconds off);
+  void set_garbage(int answers);
 
   double pan(), tilt();  // degrees
   double speed();        // of pan, degrees a second

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The ONVIF driver against an emulated camera over loopback HTTP: moves, stops, positions.
+#include "sensing/angles.h"
 #include "support/onvif_rig.h"
 
 #include "support/suite.h"
@@ -170,6 +171,63 @@ START_TEST(a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_spe
 }
 END_TEST
 
+START_TEST(a_camera_without_positions_finds_its_reference_by_a_preset) {
+  using MoveStatus = OnvifFaults::MoveStatus;
+  for (const char* preset : {"home", "1"}) {
+    OnvifFaults faults;
+    faults.positions = false;
+    faults.move_status = *preset == 'h' ? MoveStatus::alive : MoveStatus::absent;
+    OnvifCamera camera(faults);
+    OnvifOptions options = onvif_options(camera);
+    options.home_preset = preset;
+    options.home_time = 1s;
+    OnvifRig rig(options);
+    assert_text(rig.served.line("ready"), "ready 1 velocity home rate 10");
+    ck_assert(rig.served.until([&] { return camera.pan() > 20; }, "move at 80 hold"));
+    rig.served.say("home");
+    assert_text(rig.served.line("homed"), "homed 0 0");
+    ck_assert_double_eq_tol(camera.pan(), 0, .01);
+    ck_assert(rig.served.until([&] { return camera.speed() < 0; }, "move at -45 hold"));
+  }
+}
+END_TEST
+
+START_TEST(a_preset_that_is_not_there_is_a_fault) {
+  OnvifFaults faults;
+  faults.positions = false;
+  OnvifCamera camera(faults);
+  OnvifOptions options = onvif_options(camera);
+  options.home_preset = "2";
+  OnvifRig rig(options);
+  rig.served.line("ready");
+  rig.served.say("home");
+  const std::string fault = rig.served.line("fault");
+  ck_assert_msg(fault.find("NoToken: no such preset") != std::string::npos, "%s", fault.c_str());
+}
+END_TEST
+
+// 9 degrees before the limit of 10 a velocity of 45 is free; 2 degrees before it is 2 / .4 = 5; within half a degree, 0.
+START_TEST(a_velocity_falls_before_a_limit_and_towards_an_angle) {
+  using cerberus::motion::AxisCommand;
+  using Kind = AxisCommand::Kind;
+  using cerberus::sensing::radians;
+  const cerberus::motion::AxisLimits limits{radians(-10), radians(10), radians(90), radians(600)};
+  const AxisCommand right{Kind::velocity, radians(20), 0}, to{Kind::position, radians(30), radians(12)};
+  ck_assert_double_eq_tol(onvif::approach(right, limits, 1, true), 20, 1e-9);
+  ck_assert_double_eq_tol(onvif::approach(right, limits, 8, true), 5, 1e-9);
+  ck_assert_double_eq(onvif::approach(right, limits, 9.6, true), 0);
+  ck_assert_double_eq(onvif::approach(right, limits, 50, true), 0);
+  ck_assert_double_eq_tol(onvif::approach({Kind::velocity, radians(-20), 0}, limits, 50, true), -20, 1e-9);
+  ck_assert_double_eq(onvif::approach(right, limits, std::nullopt, true), 0);
+  ck_assert_double_eq_tol(onvif::approach(right, limits, std::nullopt, false), 20, 1e-9);
+  ck_assert_double_eq_tol(onvif::approach(to, limits, 0, true), 12,
+                          1e-9);  // to the limit: 2 * 10, at most 12
+  ck_assert_double_eq_tol(onvif::approach(to, limits, 7, true), 6, 1e-9);
+  ck_assert_double_eq(onvif::approach(to, limits, 9.7, true), 0);
+  ck_assert_double_eq(onvif::approach({}, limits, 0, true), 0);
+}
+END_TEST
+
 int main() {
   return run_suite("onvif_head", {a_camera_turns_and_stops, pan_is_positive_to_the_right_and_tilt_up,
                                   a_move_has_a_timeout_and_is_sent_again_before_it_is_over,
@@ -181,5 +239,8 @@ int main() {
                                   the_newest_move_waits_for_the_answer_to_the_last_one,
                                   positions_are_reported_and_a_camera_at_its_limit_is_stopped,
                                   a_camera_with_absolute_moves_goes_to_an_angle,
-                                  a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds});
+                                  a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
+                                  a_camera_without_positions_finds_its_reference_by_a_preset,
+                                  a_preset_that_is_not_there_is_a_fault,
+                                  a_velocity_falls_before_a_limit_and_towards_an_angle});
 }

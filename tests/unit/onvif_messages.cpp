@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // ONVIF's messages: what is sent is compared with published examples, what is read was written by hand from the WSDL files
 // with the prefixes, orders and mistakes that cameras show.
-#include <limits>
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <thread>
 
 #include "drivers/onvif/address.h"
 #include "drivers/onvif/answers.h"
+#include "drivers/onvif/discovery.h"
 #include "drivers/onvif/messages.h"
 #include "drivers/onvif/spaces.h"
 #include "heads/soup_client.h"
@@ -225,6 +231,53 @@ START_TEST(presets_and_probe_matches_are_read) {
 }
 END_TEST
 
+// A responder on loopback: the answer of another probe, one that is no XML, then the right one, twice.
+START_TEST(cameras_are_found_by_the_answers_to_the_own_probe) {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof at;
+  ck_assert(::bind(fd, reinterpret_cast<sockaddr*>(&at), size) == 0);
+  ck_assert(::getsockname(fd, reinterpret_cast<sockaddr*>(&at), &size) == 0);
+  std::thread responder([fd] {
+    char bytes[4096];
+    sockaddr_in from{};
+    socklen_t length = sizeof from;
+    const ssize_t got = ::recvfrom(fd, bytes, sizeof bytes, 0, reinterpret_cast<sockaddr*>(&from), &length);
+    const std::string probe(bytes, static_cast<std::size_t>(got));
+    const auto begin = probe.find("uuid:"), end = probe.find('<', begin);
+    const std::string id = probe.substr(begin, end - begin);
+    ck_assert(probe.find("<d:Types>dn:NetworkVideoTransmitter</d:Types>") != probe.npos);
+    const auto answer = [&](const std::string& to, const char* uuid) {
+      return "<e:Envelope xmlns:e=\"http://www.w3.org/2003/05/soap-envelope\" "
+             "xmlns:w=\"http://schemas.xmlsoap.org/ws/2004/08/addressing\" "
+             "xmlns:d=\"http://schemas.xmlsoap.org/ws/2005/04/discovery\"><e:Header><w:RelatesTo>" +
+             to +
+             "</w:RelatesTo></"
+             "e:Header><e:Body><d:ProbeMatches><d:ProbeMatch><w:EndpointReference><w:Address>" +
+             uuid +
+             "</w:Address></w:EndpointReference><d:Scopes>onvif://www.onvif.org/name/Front%20door</d:Scopes>"
+             "<d:XAddrs>http://192.0.2.9/onvif/device_service "
+             "http://127.0.0.1:81/onvif/device_service</d:XAddrs>"
+             "</d:ProbeMatch></d:ProbeMatches></e:Body></e:Envelope>";
+    };
+    for (const std::string& text : {answer("uuid:1-2-3", "urn:uuid:foreign"), std::string("<oops"),
+                                    answer("urn:" + id, "urn:uuid:right"), answer(id, "urn:uuid:right")})
+      ::sendto(fd, text.data(), text.size(), 0, reinterpret_cast<sockaddr*>(&from), length);
+  });
+  std::string wrong;
+  const auto found = discover(200ms, wrong, {"127.0.0.1", ntohs(at.sin_port)});
+  responder.join();
+  ::close(fd);
+  assert_text(wrong, "");
+  ck_assert_uint_eq(found.size(), 1);
+  assert_text(found[0].endpoint, "urn:uuid:right");
+  assert_text(found[0].name, "Front door");
+  assert_text(found[0].device, "http://127.0.0.1:81/onvif/device_service");
+}
+END_TEST
+
 START_TEST(requests_go_to_the_named_host_whatever_the_camera_claims) {
   Address named;
   assert_text(parse_device("192.0.2.7:8080", named), "");
@@ -302,6 +355,7 @@ int main() {
        xml_with_a_document_type_or_too_much_of_it_is_refused, a_bare_ampersand_is_taken_for_itself,
        the_cameras_time_is_read, faults_have_their_innermost_code_and_a_printable_reason,
        services_are_read_from_both_answers, a_status_may_lack_everything_or_hold_what_is_no_number,
-       presets_and_probe_matches_are_read, requests_go_to_the_named_host_whatever_the_camera_claims,
+       presets_and_probe_matches_are_read, cameras_are_found_by_the_answers_to_the_own_probe,
+       requests_go_to_the_named_host_whatever_the_camera_claims,
        degrees_become_the_units_of_the_cameras_spaces, fingerprints_are_read_in_every_notation});
 }

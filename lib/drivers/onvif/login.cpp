@@ -8,6 +8,8 @@ namespace cerberus::drivers::onvif {
 namespace {
 
 constexpr Time kStopTime = std::chrono::milliseconds(500);  // the driver sends Stop again after the login
+constexpr int kMostUnreadable =
+    5;  // answers to the position inquiry; derived: as OnvifParameters::most_unreadable
 
 }  // namespace
 
@@ -18,6 +20,7 @@ void Login::begin(Time now, Time timeout) {
   configuration_.clear();
   seen_profiles_.clear();
   wrong_.clear();
+  unreadable_ = 0;
   refused_ = false;
   timeout_ = timeout;
   soap_.send_passwords_in_clear(options_.password_text);
@@ -144,6 +147,10 @@ void Login::handle(const SoapAnswer& answer, Time now) {
     case Step::stop:
       return send(Step::status, now);
     case Step::status:
+      if (!answer.wrong.empty()) {
+        if (++unreadable_ < kMostUnreadable) return send(step_, now);
+        return fail("has a PTZ service that does not work: " + answer.wrong);
+      }
       camera_.status = read_status(answer.body);
       if (options_.try_absolute && camera_.status && camera_.status->position &&
           !camera_.options.positions.empty())

@@ -71,6 +71,7 @@ class Login {
   std::string configuration_, seen_profiles_;
   std::string wrong_;
   bool refused_ = false;
+  int unreadable_ = 0;  // answers to the position inquiry that are no SOAP
 };
 
 }  // namespace cerberus::drivers::onvif

@@ -31,7 +31,10 @@ bool refuses_space(const onvif::Fault& fault) {
 }  // namespace
 
 OnvifHead::OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions options)
-    : options_(std::move(options)), soap_(std::move(http)), login_(soap_, options_.login) {}
+    : options_(std::move(options)),
+      soap_(std::move(http)),
+      login_(soap_, options_.login),
+      homing_(options_.home_time) {}
 
 std::string OnvifHead::open(const HeadSetup& setup, Time now) {
   limits_ = setup.limits;
@@ -54,7 +57,11 @@ std::string OnvifHead::open(const HeadSetup& setup, Time now) {
 }
 
 HeadAbilities OnvifHead::abilities() const {
-  return {.position = keeps_limits_, .velocity = true, .feedback = positions_, .rate = kParameters.rate};
+  return {.position = keeps_limits_,
+          .velocity = true,
+          .feedback = positions_,
+          .rate = kParameters.rate,
+          .home = !positions_ && !options_.home_preset.empty()};
 }
 
 void OnvifHead::on_login(Time now) {
@@ -90,6 +97,7 @@ void OnvifHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) 
   if (pan != pan_ || tilt != tilt_) sent_angle_ = false;
   pan_ = pan;
   tilt_ = tilt;
+  homing_.end();
   stops_while_moving_ = 0;
   if (pan.kind != Kind::hold || tilt.kind != Kind::hold) return send_move(now);
   if (moved_ && !stopping_) begin_stop(now);
@@ -103,6 +111,7 @@ void OnvifHead::limit(const motion::Limits& limits, Time now) {
 
 void OnvifHead::stop(Time now) noexcept {
   pan_ = tilt_ = {};
+  homing_.end();
   stops_while_moving_ = 0;
   begin_stop(now);
 }
@@ -152,32 +161,23 @@ bool OnvifHead::has_position(Time now) const {
   return position_ && now - position_time_ < kParameters.fresh;
 }
 
-double OnvifHead::predicted(double position, double velocity, Time now) const {
-  return position + velocity * motion::seconds(now - position_time_);
-}
-
 bool OnvifHead::goes_to_an_angle() const {
   const bool angle = pan_.kind == Kind::position || tilt_.kind == Kind::position;
   return angle && pan_.kind != Kind::velocity && tilt_.kind != Kind::velocity;
 }
 
-double OnvifHead::velocity(const AxisCommand& command, const motion::AxisLimits& limits, double position,
-                           double sent, Time now) const {
-  if (command.kind == Kind::hold || !std::isfinite(command.value)) return 0;
-  const bool known = has_position(now);
-  const double wanted = degrees(command.value);
+onvif::PanTilt OnvifHead::wanted_velocity(Time now) const {
+  std::optional<double> pan, tilt;  // by the last report and the velocity in force since
+  if (has_position(now)) {
+    const double seconds = motion::seconds(now - position_time_);
+    pan = position_->pan + sent_velocity_.pan * seconds;
+    tilt = position_->tilt + sent_velocity_.tilt * seconds;
+  }
   // A head that goes to angles keeps the limits itself, for which it needs its position; the others are sent speeds that
   // brake before them.
-  if (!known) return keeps_limits_ || command.kind == Kind::position ? 0 : wanted;
-  const double at = predicted(position, sent, now);
-  if (command.kind == Kind::position) {
-    const double off = std::clamp(wanted, degrees(limits.from), degrees(limits.to)) - at;
-    const double most = degrees(command.speed > 0 ? command.speed : limits.speed);
-    return std::abs(off) < kParameters.arrived ? 0 : std::clamp(kParameters.position_gain * off, -most, most);
-  }
-  const double left = wanted > 0 ? degrees(limits.to) - at : at - degrees(limits.from);
-  if (left < kParameters.arrived) return 0;
-  return std::copysign(std::min(std::abs(wanted), left / kParameters.limit_horizon), wanted);
+  return onvif::to_velocity({onvif::approach(pan_, limits_.pan, pan, keeps_limits_),
+                             onvif::approach(tilt_, limits_.tilt, tilt, keeps_limits_)},
+                            spaces_.front(), options_.mechanics);
 }
 
 void OnvifHead::send_absolute(Time now) {
@@ -203,10 +203,10 @@ void OnvifHead::send_absolute(Time now) {
 
 void OnvifHead::send_move(Time now) {
   if (!online_ || login_.busy() || stopping_ || now < move_refused_until_) return;
+  if (homing_.busy()) return send_home(now);
   if (absolute_ && goes_to_an_angle() && has_position(now)) return send_absolute(now);
-  const Angles position = position_.value_or(Angles{});
-  const Angles wanted{velocity(pan_, limits_.pan, position.pan, sent_velocity_.pan, now),
-                      velocity(tilt_, limits_.tilt, position.tilt, sent_velocity_.tilt, now)};
+  const onvif::PanTilt vector = wanted_velocity(now);
+  const Angles wanted = onvif::from_velocity(vector, options_.mechanics);
   if (wanted.pan == 0 && wanted.tilt == 0) {
     if (moved_) begin_stop(now);
     return;
@@ -221,7 +221,6 @@ void OnvifHead::send_move(Time now) {
   if (moved_ && now - sent_ < (same ? refresh : Time(static_cast<Time::rep>(1e9 / kParameters.rate)))) return;
   std::optional<std::chrono::milliseconds> timeout;
   if (!timeout_refused_) timeout = std::chrono::ceil<std::chrono::milliseconds>(camera_timeout());
-  const onvif::PanTilt vector = onvif::to_velocity(wanted, spaces_.front(), options_.mechanics);
   move_ = send(onvif::continuous_move(camera_.profile, vector, timeout), now);
   sent_velocity_ = wanted;
   sent_angle_ = false;
@@ -229,9 +228,37 @@ void OnvifHead::send_move(Time now) {
   sent_ = now;
 }
 
+void OnvifHead::home(Time now) {
+  stop(now);
+  homing_.want();
+}
+
+void OnvifHead::send_home(Time now) {
+  if (!homing_.wanted() || move_ != 0) return;
+  move_ = send(options_.home_preset == "home" ? onvif::goto_home_position(camera_.profile)
+                                              : onvif::goto_preset(camera_.profile, options_.home_preset),
+               now);
+  homing_.on_sent(now);
+  moved_ = true;
+}
+
+std::optional<HomedLine> OnvifHead::take_homed(Time now) {
+  if (!homing_.take(now)) return std::nullopt;
+  return HomedLine{};
+}
+
+std::optional<SpeedsLine> OnvifHead::take_speeds(Time now) {
+  if (positions_ || sent_velocity_ == reported_) return std::nullopt;
+  reported_ = sent_velocity_;
+  return SpeedsLine{{radians(reported_.pan), radians(reported_.tilt)},
+                    motion::seconds(now - std::max(sent_, stop_sent_))};
+}
+
 void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
   move_ = 0;
   if (answer.good()) return;
+  if (homing_.busy() && answer.fault && !answer.not_authorized()) return refuse(*answer.fault, now);
+  if (homing_.busy()) homing_.want();
   const bool angle = std::exchange(sent_angle_, false);
   sent_velocity_ = {};  // not in force: it is sent again, or something better
   if (!answer.fault) return;
@@ -275,6 +302,7 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   }
   if (!status->moving) return;
   (*status->moving ? seen_moving_ : seen_idle_) = true;
+  homing_.on_move_status(*status->moving, inquiry_sent_);
   if (!*status->moving) {
     verifying_ = false;
     stops_while_moving_ = 0;

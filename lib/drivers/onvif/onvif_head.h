@@ -19,6 +19,8 @@
 #include <vector>
 
 #include "drivers/helper/head_device.h"
+#include "drivers/onvif/approach.h"
+#include "drivers/onvif/homing.h"
 #include "drivers/onvif/login.h"
 #include "drivers/onvif/spaces.h"
 
@@ -28,6 +30,10 @@ struct OnvifOptions {
   onvif::LoginOptions login;
   onvif::Mechanics mechanics;
   bool feedback = true;  // use the positions that the camera reports
+  // The preset that looks straight ahead, by which a camera without positions finds a lost reference; "home" is the
+  // camera's home position; empty: none.
+  std::string home_preset;
+  std::chrono::milliseconds home_time{10000};  // until it is there, where MoveStatus does not say so
   // A camera that has not answered for so long is gone. Derived: reported within 1 s of its last sign.
   std::chrono::milliseconds answer_time{750};
 };
@@ -47,11 +53,8 @@ struct OnvifParameters {
   Time after_refusal = std::chrono::seconds(30);  // cameras lock a user out after some wrong logins
   Time after_fault = std::chrono::seconds(5);     // then a refused move is tried again
   Time fresh = std::chrono::milliseconds(1000);   // an older position is none; derived: five inquiries
-  double rate = 10;            // commands a second; derived: 0.1 s a request on a slow camera
-  double limit_horizon = 0.4;  // seconds before a limit in which a move slows down; derived: two inquiries
-  double least_change = 0.1;   // degrees a second: a smaller change is not sent
-  double position_gain = 2;    // 1/s: velocity towards an angle where AbsoluteMove is refused
-  double arrived = 0.5;        // degrees from an angle or a limit, where such a move ends
+  double rate = 10;           // commands a second; derived: 0.1 s a request on a slow camera
+  double least_change = 0.1;  // degrees a second: a smaller change is not sent
 };
 inline constexpr OnvifParameters kOnvifParameters{};
 
@@ -64,6 +67,10 @@ class OnvifHead final : public HeadDevice {
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
+  void home(Time now) override;
+  std::optional<HomedLine> take_homed(Time now) override;
+  std::optional<SpeedsLine> take_speeds(Time now) override;
+  bool busy() const override { return homing_.busy(); }
   bool stopping() const override { return stopping_ || verifying_; }
   void watch(std::vector<pollfd>& fds) const override;
   Time tick(Time now) override;
@@ -91,14 +98,12 @@ class OnvifHead final : public HeadDevice {
   void send_stops(Time now);
   void send_move(Time now);
   void send_absolute(Time now);
+  void send_home(Time now);
   void send_inquiry(Time now);
   bool goes_to_an_angle() const;
   bool has_position(Time now) const;
-  // Where an axis is now by its last report and the velocity in force, degrees.
-  double predicted(double position, double velocity, Time now) const;
-  // The velocity of an axis that its command asks for now, in degrees a second; slower near a limit.
-  double velocity(const motion::AxisCommand& command, const motion::AxisLimits& limits, double position,
-                  double sent, Time now) const;
+  // The velocities that the commands ask for now, as the camera can execute them.
+  onvif::PanTilt wanted_velocity(Time now) const;
   Time camera_timeout() const;
   unsigned send(const onvif::Request& request, Time now);
 
@@ -128,6 +133,8 @@ class OnvifHead final : public HeadDevice {
   bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
   int stops_while_moving_ = 0;
+  onvif::Angles reported_;  // by take_speeds()
+  onvif::Homing homing_;
   std::optional<PoseLine> pose_;
   std::optional<onvif::Angles> position_;  // last measured
   Time position_time_{};

@@ -54,6 +54,11 @@ PanTilt to_velocity(const Angles& degrees_a_second, const Space& space, const Me
           within(degrees_a_second.tilt / mechanics.full_speed.tilt, space.y), space.uri};
 }
 
+Angles from_velocity(const PanTilt& velocity, const Mechanics& mechanics) {
+  if (velocity.space == kVelocityDegrees) return {velocity.x, velocity.y};
+  return {velocity.x * mechanics.full_speed.pan, velocity.y * mechanics.full_speed.tilt};
+}
+
 std::optional<Space> position_space(const PtzOptions& options, const Mechanics& mechanics) {
   if (const Space* space = find(options.positions, kPositionDegrees)) return *space;
   const Space* space = find(options.positions, kPositionGeneric);

@@ -13,6 +13,7 @@ namespace cerberus::drivers::onvif {
 
 struct Angles {
   double pan = 0, tilt = 0;  // degrees, positive right and up; or degrees a second
+  bool operator==(const Angles&) const = default;
 };
 
 // What a generic space means on this camera.
@@ -26,6 +27,8 @@ struct Mechanics {
 std::vector<Space> velocity_spaces(const PtzOptions& options);
 // A velocity in `space`, within its range.
 PanTilt to_velocity(const Angles& degrees_a_second, const Space& space, const Mechanics& mechanics);
+// The same back: what a velocity within the range means, in degrees a second.
+Angles from_velocity(const PanTilt& velocity, const Mechanics& mechanics);
 
 // The space of positions that can be expressed in degrees; nothing: none.
 std::optional<Space> position_space(const PtzOptions& options, const Mechanics& mechanics);
