@@ -128,6 +128,45 @@ START_TEST(opaque_white_is_white_and_nothing_is_nothing) {
 }
 END_TEST
 
+// Components of one sampling are blended together: planes with and without alpha, with any sampling of chroma, and
+// chroma whose samples take turns.
+START_TEST(components_together_are_blended_as_one_by_one) {
+  std::mt19937 random(13);
+  const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n)); };
+  constexpr int kWidth = 52, kHeight = 20, kPlane = 64 * kHeight;
+  for (int round = 0; round < 200; ++round) {
+    const int shift_x = upto(3), shift_y = upto(2), count = 3 + upto(2);
+    const bool turns = upto(2) == 1;
+    std::vector<std::uint8_t> before(4 * kPlane);
+    for (auto& b : before) b = static_cast<std::uint8_t>(upto(256));
+    std::vector<std::uint8_t> together = before, apart = before;
+    std::vector<std::uint32_t> drawing(static_cast<std::size_t>(kWidth * kHeight));
+    for (auto& p : drawing) p = upto(3) == 0 ? 0xff80c020u : upto(2) == 0 ? 0x80402010u : 0;
+    const int x = upto(9), y = upto(5), width = 1 + upto(kWidth - x), height = 1 + upto(kHeight - y);
+    const auto components = [&](std::vector<std::uint8_t>& to) {
+      std::vector<BlendComponent> all;
+      for (const int i : {0, 1, 1, 3}) {
+        BlendComponent c = kMatrices[i];
+        const bool chroma = i == 1, second = all.size() == 2;
+        c.data = to.data() + (turns && second ? kPlane + 1 : static_cast<int>(all.size()) * kPlane);
+        c.stride = 64;
+        c.step = chroma && turns ? 2 : 1;
+        if (chroma) c.shift_x = turns ? 1 : shift_x, c.shift_y = shift_y;
+        all.push_back(c);
+      }
+      all.resize(static_cast<std::size_t>(count));
+      return all;
+    };
+    blend({drawing.data(), width, height, kWidth}, x, y, components(together));
+    for (const BlendComponent& c : components(apart))
+      blend({drawing.data(), width, height, kWidth}, x, y, {&c, 1});
+    ck_assert_msg(together == apart, "round %d: %d components, chroma of 1/%d x 1/%d", round, count,
+                  1 << shift_x, 1 << shift_y);
+    ck_assert(together != before || width * height < 40);
+  }
+}
+END_TEST
+
 // Every order of four bytes of which one may be none of the picture's: as the components one by one.
 START_TEST(pixels_of_four_bytes_are_blended_as_their_components_are) {
   std::mt19937 random(3);
@@ -169,6 +208,6 @@ int main() {
   return cerberus::tests::run_suite_on_every_target(
       "blend", {every_layout_agrees_with_the_definition,
                 words_of_sixteen_bits_are_drawn_on_in_either_layout_and_byte_order,
-                opaque_white_is_white_and_nothing_is_nothing,
+                opaque_white_is_white_and_nothing_is_nothing, components_together_are_blended_as_one_by_one,
                 pixels_of_four_bytes_are_blended_as_their_components_are});
 }
