@@ -37,11 +37,11 @@ FuserOptions paper_options();
 
 enum class TrackState : std::uint8_t { seen, coasted, stopped };
 
-// A confirmed track of this frame.
+// What the choice of a target depends on, of a confirmed track of this frame: the input of the fuser, which knows no
+// vision. It is less than vision::Track: no speeds, kind, bearing or confidence.
 struct Track {
   std::uint32_t id = 0;                        // not 0
   double x = 0, y = 0, width = 0, height = 0;  // frame pixels
-  double bearing = kUnknown;                   // radians
   double distance = kUnknown;                  // metres
   Time age{};
   TrackState state = TrackState::seen;

@@ -10,7 +10,6 @@
 
 #include "clock_times.hpp"
 #include "fusion/fuser.h"
-#include "sensing/angles.h"
 
 namespace cerberus::plugin {
 
@@ -30,12 +29,9 @@ inline void read_tracks(GstBuffer* buffer, std::vector<fusion::Track>& tracks) {
                       .y = region.y,
                       .width = region.width,
                       .height = region.height,
-                      .bearing = sensing::radians(region.bearing),
                       .distance = region.distance,
                       .age = time_of(region.age),
-                      .state = region.state <= CERBERUS_REGION_STOPPED
-                                   ? static_cast<fusion::TrackState>(region.state)
-                                   : fusion::TrackState::seen});
+                      .state = static_cast<fusion::TrackState>(region.state)});
   }
 }
 
