@@ -10,6 +10,17 @@
 #endif
 
 namespace cerberus::heads {
+namespace {
+
+[[maybe_unused]] std::string read_late_limit(const std::string& text, drivers::Time& limit) {
+  const auto milliseconds = drivers::number_of(text);
+  if (!milliseconds || *milliseconds < 1 || *milliseconds > 10000)
+    return "late-limit=" + text + ": milliseconds, 1 to 10000";
+  limit = drivers::Time(static_cast<drivers::Time::rep>(*milliseconds * 1e6));
+  return {};
+}
+
+}  // namespace
 
 int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
 #if HAVE_STEPPER
@@ -25,13 +36,17 @@ int run_stepper([[maybe_unused]] const std::vector<drivers::OptionWord>& words) 
       wrong = drivers::parse_stepper_axis(value, options.tilt);
     else if (key == "release-delay")
       wrong = drivers::parse_release_delay(value, options.release_delay);
+    else if (key == "late-limit")
+      wrong = read_late_limit(value, options.stale);
     else if (key == "emergency-stop")
       emergency_stop = value;
     else if (key == "record")
       record = value;
     else
-      wrong = "\"" + key +
-              "\" is no option of stepper-gpio: device, pan, tilt, release-delay, emergency-stop, record";
+      wrong =
+          "\"" + key +
+          "\" is no option of stepper-gpio: device, pan, tilt, release-delay, late-limit, emergency-stop, "
+          "record";
     if (!wrong.empty()) return fail(wrong);
   }
   if (options.chip.empty()) return fail("stepper-gpio needs a GPIO chip (device=gpiochip0)");

@@ -68,6 +68,9 @@ def script(commands, keep):
 
 
 def boot(qemu, image, init, commands):
+    module = image.parent / 'i2c-stub.ko'
+    if module.is_file():
+        os.environ['CERBERUS_I2C_STUB'] = str(module.resolve())
     keep = [name for name in os.environ if name.startswith(('GST_', 'G_', 'CK_', 'CERBERUS_', 'LD_LIBRARY', 'PATH'))]
     with tempfile.TemporaryDirectory(prefix='cerberus-machine-') as folder:
         folder = pathlib.Path(folder)

@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <string>
+#include <vector>
 
 namespace simulated {
 
@@ -112,10 +113,15 @@ class Trace {
   Trace(const Trace&) = delete;
 
   int count(const std::string& what) const {
-    std::ifstream file(std::string(kFolder) + "/trace");
     int found = 0;
-    for (std::string line; std::getline(file, line);) found += line.find(what) != line.npos;
+    for (const std::string& line : lines()) found += line.find(what) != line.npos;
     return found;
+  }
+  std::vector<std::string> lines() const {
+    std::ifstream file(std::string(kFolder) + "/trace");
+    std::vector<std::string> all;
+    for (std::string line; std::getline(file, line);) all.push_back(line);
+    return all;
   }
 
  private:

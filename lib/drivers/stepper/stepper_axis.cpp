@@ -40,7 +40,7 @@ std::string in_degrees(double angle) {
 }  // namespace
 
 StepperAxis::StepperAxis(std::string name, const StepperAxisOptions& options, const MotorWiring& wiring,
-                         std::optional<std::size_t> end_stop, std::optional<Time> release_delay,
+                         std::optional<std::size_t> end_stop, std::optional<Time> release_delay, Time stale,
                          LinePort& port)
     : name_(std::move(name)),
       options_(options),
@@ -48,7 +48,8 @@ StepperAxis::StepperAxis(std::string name, const StepperAxisOptions& options, co
       motor_(wiring, port),
       port_(&port),
       end_stop_(end_stop),
-      release_delay_(release_delay) {}
+      release_delay_(release_delay),
+      stale_(stale) {}
 
 double StepperAxis::side() const {
   return options_.home_at > 0 ? 1 : -1;
@@ -220,7 +221,7 @@ void StepperAxis::obey_end_stop(Time now) {
 // Executes the next step if it is due. False: there is none.
 bool StepperAxis::execute(Time now) {
   if (error_ != 0 || schedule_.next() > now) return false;
-  if (now - schedule_.planned() > kStale) {
+  if (now - schedule_.planned() > stale_) {
     const auto late = std::chrono::duration_cast<std::chrono::milliseconds>(now - schedule_.planned());
     schedule_.cut();
     if (std::exchange(homing_, Homing::none) != Homing::none) referenced_ = false;

@@ -2,7 +2,7 @@
 // One axis with a stepper motor: executes its schedule, homes it, switches the motor off at rest. No clock: time is
 // CLOCK_MONOTONIC as a parameter.
 //
-// A step whose planned deadline is missed by more than kStale is not executed: the rest of the schedule is dropped, the
+// A step whose planned deadline is missed by more than `stale` is not executed: the rest of the schedule is dropped, the
 // axis rests where it is, and that is a fault, since replaying steps in a burst loses them.
 #pragma once
 
@@ -20,7 +20,8 @@ class StepperAxis {
  public:
   // name: "pan" or "tilt", for messages. end_stop: index of its input in the port.
   StepperAxis(std::string name, const StepperAxisOptions& options, const MotorWiring& wiring,
-              std::optional<std::size_t> end_stop, std::optional<Time> release_delay, LinePort& port);
+              std::optional<std::size_t> end_stop, std::optional<Time> release_delay, Time stale,
+              LinePort& port);
 
   // The axis looks along `angle` (radians), or homes first and then goes there.
   void start(double angle, const motion::AxisLimits& limits, Time now);
@@ -47,8 +48,6 @@ class StepperAxis {
   // What went wrong in the last kFaultTime, or why the axis cannot be homed; empty: nothing.
   std::string fault(Time now) const { return lost_ || now < fault_end_ ? fault_ : std::string(); }
 
-  // A head at 50 degrees a second is off its plan by one degree then.
-  static constexpr std::chrono::milliseconds kStale{20};
   static constexpr std::chrono::milliseconds kStopTime{
       250};  // half of the 500 ms that a silent pipeline gets
   static constexpr std::chrono::milliseconds kFaultTime{500};
@@ -74,6 +73,7 @@ class StepperAxis {
   LinePort* port_;
   std::optional<std::size_t> end_stop_;
   std::optional<Time> release_delay_;  // nullopt: never
+  Time stale_;
   motion::AxisLimits limits_;
   motion::AxisCommand command_;  // the caller's
   Homing homing_ = Homing::none;

@@ -48,7 +48,7 @@ std::optional<StepperAxis> StepperHead::make_axis(const char* name, const Steppe
                            options.enable_high};
   std::optional<std::size_t> end_stop;
   if (!options.end_stop.empty()) end_stop = inputs++;
-  return StepperAxis(name, options, wiring, end_stop, options_.release_delay, *port_);
+  return StepperAxis(name, options, wiring, end_stop, options_.release_delay, options_.stale, *port_);
 }
 
 std::string StepperHead::open(const HeadSetup& setup, Time now) {

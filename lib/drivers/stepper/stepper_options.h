@@ -41,6 +41,8 @@ struct StepperOptions {
   std::string chip;
   StepperAxisOptions pan, tilt;
   std::optional<Time> release_delay = std::chrono::seconds(1);  // nullopt: the motors stay on
+  // A step that is later than this is refused. A head at 50 degrees a second is off its plan by one degree at 20 ms.
+  Time stale = std::chrono::milliseconds(20);
 };
 
 // Of a 28BYJ-48: gears 32/9 x 22/11 x 26/9 x 31/10 and 64 half steps a turn of the rotor, 4075.7728.

@@ -1,0 +1,315 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// cerberus-head with motors on a GPIO chip that the kernel simulates: every step as the kernel recorded it. The first
+// argument is cerberus-head. Times of a machine within a machine are reported; what is asserted of the ramp are the
+// deadlines that the helper planned.
+#include "simulated.h"
+
+#include <fcntl.h>
+#include <linux/i2c-dev.h>
+#include <linux/i2c.h>
+#include <poll.h>
+#include <sys/ioctl.h>
+#include <sys/syscall.h>
+#include <sys/wait.h>
+
+#include <cmath>
+#include <csignal>
+#include <optional>
+#include <thread>
+
+#include "../support/fake_lines.h"
+#include "../support/suite.h"
+#include "../support/text.h"
+#include "drivers/helper/head_lines.h"
+#include "drivers/helper/helper_head.h"
+#include "drivers/helper/helper_process.h"
+
+using namespace cerberus::drivers;
+using namespace simulated;
+using namespace std::chrono_literals;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
+using Clock = std::chrono::steady_clock;
+using Kind = cerberus::motion::AxisCommand::Kind;
+
+namespace {
+
+std::string program;  // cerberus-head
+constexpr int kContact = 9;
+constexpr char kCoils[] = "--pan=lines=2,3,4,5";
+
+double milliseconds(Clock::duration time) {
+  return std::chrono::duration<double, std::milli>(time).count();
+}
+
+// The helper, and the lines that it sends.
+class Helper {
+ public:
+  Helper(std::vector<std::string> words, const HeadSetup& setup) {
+    words.insert(words.begin(), program);
+    assert_text(process_.start(words), "");
+    send(hello_line(setup, 10s));
+    expect("ready");
+  }
+  void send(const std::string& line) { ck_assert(process_.send(line)); }
+  // Waits for a line that begins with `word`, and returns it.
+  std::string expect(const std::string& word) {
+    for (const auto end = Clock::now() + 60s; Clock::now() < end;) {
+      while (const auto line = lines_.take()) {
+        if (const auto parsed = parse_helper_line(*line))
+          if (const auto* pose = std::get_if<PoseLine>(&*parsed)) pan_ = degrees(pose->pan.position);
+        if (line->starts_with(word)) return *line;
+      }
+      pollfd wait{process_.fd(), POLLIN, 0};
+      ::poll(&wait, 1, 1000);
+      std::string bytes;
+      process_.receive(bytes);
+      lines_.append(bytes);
+      process_.send("alive\n");
+    }
+    ck_abort_msg("the helper never sent '%s'", word.c_str());
+  }
+  // Waits until it says that it looks there.
+  void arrive(double pan) {
+    for (const auto end = Clock::now() + 60s; Clock::now() < end;) {
+      expect("pose");
+      if (std::abs(pan_ - pan) < 0.05) return;
+    }
+    ck_abort_msg("the head is at %g, not at %g", pan_, pan);
+  }
+
+ private:
+  HelperProcess process_;
+  LineBuffer lines_;
+  double pan_ = 0;
+};
+
+// One motor on the lines 2 to 5 of the chip.
+Helper stepper(const Chip& chip, const std::vector<std::string>& more) {
+  std::vector<std::string> words{"stepper-gpio", "--device=" + chip.path(), kCoils, "--late-limit=5000"};
+  words.insert(words.end(), more.begin(), more.end());
+  HeadSetup setup;
+  setup.limits.pan.speed = radians(50);
+  setup.limits.pan.acceleration = radians(500);
+  return Helper(words, setup);
+}
+
+bool coils_off(const Chip& chip) {
+  for (int line = 2; line <= 5; ++line)
+    if (chip.value(line) != 0) return false;
+  return true;
+}
+
+// Waits for the coils to be off. Returns how long it took.
+Clock::duration wait_off(const Chip& chip, Clock::duration most) {
+  const auto begin = Clock::now();
+  while (!coils_off(chip) && Clock::now() - begin < most) std::this_thread::sleep_for(1ms);
+  ck_assert_msg(coils_off(chip), "coils are on after %.0f ms", milliseconds(most));
+  return Clock::now() - begin;
+}
+
+struct Set {
+  int gpio = 0;
+  bool level = false;
+  double time = 0;  // seconds
+};
+
+// Of a line such as "cerberus-head-92 [001] ..... 5.123456: gpio_value: 514 set 1".
+std::optional<Set> parse_set(const std::string& line) {
+  const std::size_t event = line.find(": gpio_value: ");
+  if (event == line.npos) return std::nullopt;
+  Set set;
+  int level = 0;
+  if (std::sscanf(line.c_str() + event, ": gpio_value: %d set %d", &set.gpio, &level) != 2)
+    return std::nullopt;
+  set.level = level != 0;
+  const std::size_t blank = line.rfind(' ', event - 1);
+  set.time = std::strtod(line.c_str() + blank, nullptr);
+  return set;
+}
+
+// A register of the PCA9685 at address 0x40, as i2c-stub keeps it.
+int register_of(int number) {
+  const int bus = ::open("/dev/i2c-0", O_RDWR | O_CLOEXEC);
+  must(bus >= 0 && ::ioctl(bus, I2C_SLAVE_FORCE, 0x40) == 0, "/dev/i2c-0");
+  i2c_smbus_data data{};
+  i2c_smbus_ioctl_data call{I2C_SMBUS_READ, static_cast<__u8>(number), I2C_SMBUS_BYTE_DATA, &data};
+  must(::ioctl(bus, I2C_SMBUS, &call) == 0, "read a register");
+  ::close(bus);
+  return data.byte;
+}
+
+}  // namespace
+
+START_TEST(every_half_step_of_90_degrees_is_in_the_kernels_trace) {
+  const Chip chip(12);
+  const std::string record = "/run/steps";
+  std::vector<Set> sets;
+  {
+    Helper helper = stepper(chip, {"--release-delay=0.5", "--record=" + record});
+    const Trace trace("gpio/gpio_value");
+    helper.send("move to 90 50 hold\n");
+    helper.arrive(90);
+    for (const auto end = Clock::now() + 20s; !coils_off(chip) && Clock::now() < end;) helper.expect("pose");
+    for (const std::string& line : trace.lines())
+      if (const auto set = parse_set(line)) sets.push_back(*set);
+  }
+  ck_assert(coils_off(chip));
+  // The phase in which it rests, a line for each half step, and four to switch off.
+  ck_assert_uint_eq(sets.size(), 1 + 1019 + 4);
+  cerberus::tests::FakeLines lines;
+  lines.levels.resize(4);
+  cerberus::tests::CoilMotor motor;
+  const int first = sets.front().gpio;  // IN1
+  ck_assert(sets.front().level);
+  for (std::size_t k = 0; k < 1 + 1019; ++k) {
+    lines.levels.at(static_cast<std::size_t>(sets[k].gpio - first)) = sets[k].level;
+    motor.follow(lines);
+    ck_assert_int_eq(motor.half_steps(), static_cast<int>(k));  // in order, one at a time
+  }
+  for (std::size_t k = 1 + 1019; k < sets.size(); ++k) ck_assert(!sets[k].level);
+
+  // 50 degrees a second at 500 a second squared: cruising at 566.08 half steps a second, 90 / 50 + 50 / 500 = 1.9 s.
+  std::ifstream file(record);
+  std::vector<double> planned, executed;
+  std::string axis;
+  for (long long count, plan, done; file >> axis >> count >> plan >> done;) {
+    planned.push_back(static_cast<double>(plan) * 1e-9);
+    executed.push_back(static_cast<double>(done) * 1e-9);
+  }
+  ck_assert_uint_eq(planned.size(), 1019);
+  const double step = 360 / 4075.7728395;
+  for (std::size_t k = 1; k < 28;
+       ++k)  // it speeds up over 2.5 degrees; step k is due sqrt(2 (k + .5) step / 500) after the start
+    ck_assert_double_eq_tol(
+        planned[k] - planned[0],
+        std::sqrt(2 * (static_cast<double>(k) + 0.5) * step / 500) - std::sqrt(step / 500), 1e-6);
+  ck_assert_double_eq_tol(planned[600] - planned[500], 100 * step / 50, 1e-6);
+  ck_assert_double_eq_tol(planned.back() - planned.front(), 1.9 - 2 * std::sqrt(step / 500), 2e-3);
+  double latest = 0;
+  for (std::size_t k = 0; k < planned.size(); ++k) latest = std::max(latest, executed[k] - planned[k]);
+  std::printf("90 degrees: %.3f s from the first edge to the last step, latest step %.1f ms\n",
+              sets[1019].time - sets[0].time, latest * 1e3);
+}
+END_TEST
+
+START_TEST(an_open_contact_switches_the_coils_off) {
+  Chip chip(12);
+  Helper helper = stepper(chip, {"--emergency-stop=" + chip.path() + ":" + std::to_string(kContact)});
+  helper.expect("fault the emergency stop is pressed");  // pulled up: as a broken wire
+  helper.expect("emergency pressed");
+  helper.send("move at 20 hold\n");
+  helper.expect("pose");
+  helper.expect("pose");
+  ck_assert(coils_off(chip));
+  chip.pull(kContact, false);
+  helper.expect("emergency released");
+  ck_assert(coils_off(chip));
+  helper.send("move at 20 hold\n");
+  while (coils_off(chip)) std::this_thread::sleep_for(1ms);
+  helper.expect("pose");
+  chip.pull(kContact, true);
+  std::printf("emergency stop: off after %.1f ms\n", milliseconds(wait_off(chip, 5s)));
+  helper.expect("emergency pressed");
+}
+END_TEST
+
+START_TEST(coils_are_off_when_the_pipeline_is_killed) {
+  Clock::duration least = 1h, most{};
+  for (int round = 0; round < 5; ++round) {
+    const Chip chip(12);
+    const pid_t pipeline = ::fork();
+    if (pipeline == 0) {
+      HelperHead head("stepper-gpio");
+      HeadSetup setup;
+      setup.helper = program;
+      setup.device = chip.path();
+      setup.options = "pan='lines=2,3,4,5' late-limit=5000";
+      if (!head.open(setup).empty()) ::_exit(1);
+      if (!head.command({0s, {Kind::velocity, radians(30), 0}, {}}).empty()) ::_exit(2);
+      for (;;) ::pause();
+    }
+    for (const auto end = Clock::now() + 20s; coils_off(chip) && Clock::now() < end;)
+      std::this_thread::sleep_for(1ms);
+    ck_assert(!coils_off(chip));
+    std::this_thread::sleep_for(std::chrono::milliseconds(37 * round));
+    ::kill(pipeline, SIGKILL);
+    const auto took = wait_off(chip, 5s);
+    ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
+    least = std::min(least, took);
+    most = std::max(most, took);
+    // The helper ends: its lines are free again.
+    std::this_thread::sleep_for(300ms);
+  }
+  std::printf("killed pipeline: coils off after %.0f to %.0f ms\n", milliseconds(least), milliseconds(most));
+  ck_assert(least < 500ms);  // promised; of many rounds on an emulated machine one must keep it
+}
+END_TEST
+
+START_TEST(a_chip_that_is_removed_while_the_head_moves_is_said) {
+  Chip chip(12);
+  Helper helper = stepper(chip, {});
+  helper.send("move at 20 hold\n");
+  helper.expect("pose");
+  chip.unplug();
+  const std::string fault = helper.expect("fault");
+  ck_assert_msg(fault.find(chip.path() + " does not answer any more") != std::string::npos, "'%s'",
+                fault.c_str());
+}
+END_TEST
+
+START_TEST(lines_that_are_taken_are_named) {
+  const Chip chip(12);
+  Helper helper = stepper(chip, {});
+  HelperHead second("stepper-gpio");
+  HeadSetup setup;
+  setup.helper = program;
+  setup.device = chip.path();
+  setup.options = "pan='lines=4,5,6,7'";
+  const std::string wrong = second.open(setup);
+  ck_assert_msg(wrong.find("Line 4 of GPIO chip " + chip.path() + " is in use by \"cerberus\"") == 0, "'%s'",
+                wrong.c_str());
+}
+END_TEST
+
+START_TEST(a_servo_on_a_pca9685_gets_its_pulses) {
+  const char* module = std::getenv("CERBERUS_I2C_STUB");
+  if (!module) {
+    std::printf("skipped: the kernel has no i2c-stub\n");
+    return;
+  }
+  const int file = ::open(module, O_RDONLY | O_CLOEXEC);
+  must(file >= 0 && ::syscall(SYS_finit_module, file, "chip_addr=0x40", 0) == 0, "insmod i2c-stub");
+  ::close(file);
+  write_text("/sys/bus/i2c/devices/i2c-0/new_device", "pca9685 0x40");
+  HeadSetup setup;
+  setup.limits.pan = {radians(-45), radians(45), radians(90), radians(600)};
+  {
+    Helper helper({"servo-pwm", "--device=pwmchip0", "--pan=channel=3 slew=90"}, setup);
+    for (const auto& [angle, count] : {std::pair{45, 409.6}, {-45, 204.8}, {0, 307.2}}) {  // of 4096 in 20 ms
+      helper.send("move to " + std::to_string(angle) + " 90 hold\n");
+      helper.arrive(angle);
+      std::this_thread::sleep_for(200ms);  // two periods of an emulated machine
+      const int pulse = (register_of(0x15) & 15) * 256 + register_of(0x14) -
+                        ((register_of(0x13) & 15) * 256 + register_of(0x12));  // LED3_OFF, LED3_ON
+      ck_assert_msg(std::abs(pulse - count) <= 1, "%d counts at %d degrees, not %g", pulse, angle, count);
+    }
+    ck_assert_int_eq(register_of(0xfe), 121);  // prescaler: 25 MHz / (4096 x 50 Hz) - 1
+  }
+  for (const auto end = Clock::now() + 10s; !(register_of(0x15) & 16) && Clock::now() < end;)
+    std::this_thread::sleep_for(10ms);
+  ck_assert(register_of(0x15) & 16);  // full off
+}
+END_TEST
+
+int main(int argc, char** argv) {
+  if (argc < 2) return 2;
+  program = argv[1];
+  return cerberus::tests::run_suite(
+      "hardware_heads",
+      {every_half_step_of_90_degrees_is_in_the_kernels_trace, an_open_contact_switches_the_coils_off,
+       coils_are_off_when_the_pipeline_is_killed, a_chip_that_is_removed_while_the_head_moves_is_said,
+       lines_that_are_taken_are_named, a_servo_on_a_pca9685_gets_its_pulses},
+      120);
+}
