@@ -4,6 +4,7 @@
 #include <cerberus/cerberus.h>
 
 #include "cerberus/private/messages.hpp"
+#include "drivers/head/head_calibration.h"
 #include "drivers/head/head_lease.h"
 #include "shared/choices.hpp"
 #include "shared/poses.hpp"
@@ -65,13 +66,15 @@ struct Posting {
 // A head that is open, or being opened, and that no other sink of this process drives. nullptr: `element` has posted why
 // not. moved, refused: as of the runner.
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
-                                               std::function<void()> moved, std::function<void()> refused) {
+                                               drivers::HeadSetup& setup, std::function<void()> moved,
+                                               std::function<void()> refused) {
   const char* name = s.head.c_str();
   std::string wrong;
   if (!g_utf8_validate(name, -1, nullptr))  // no event could carry it
     wrong.append("The head's name \"").append(s.head).append("\" is no UTF-8: give it another (head=)");
-  const drivers::HeadSetup setup = head_setup(s);
   if (wrong.empty()) wrong = motion::check(setup.limits);
+  if (wrong.empty() && !s.calibration.empty())
+    wrong = drivers::use_calibration(s.calibration, s.driver, setup);
   auto head = drivers::make_head(s.driver);
   if (wrong.empty() && !head)
     wrong.append("There is no head driver \"").append(s.driver).append("\": take one of ") +=
@@ -139,7 +142,9 @@ void HeadSession::refusal_soon() {
 
 bool HeadSession::open() {
   const HeadSettings s = settings.snapshot();
-  auto runner = open_head(GST_ELEMENT(sink), s, [this] { ticker_.wake(); }, [this] { refusal_soon(); });
+  drivers::HeadSetup setup = head_setup(s);
+  auto runner =
+      open_head(GST_ELEMENT(sink), s, setup, [this] { ticker_.wake(); }, [this] { refusal_soon(); });
   if (!runner) return false;
   head = g_intern_string(s.head.c_str());
   camera_name = s.camera_name;
@@ -150,7 +155,7 @@ bool HeadSession::open() {
     in_force_ = s;
     opened_ = true;
   }
-  controller.open(std::move(runner), head_setup(s));
+  controller.open(std::move(runner), setup);
   controller.set_clock_driven(clock_driven);
   configure();  // what has changed meanwhile, too
   Reports out = reports();

@@ -43,6 +43,11 @@ const Property<HeadSettings> kProperties[] = {
         "command", &HeadSettings::command,
         "The helper program of driver=external, run by /bin/sh, which implements the line protocol of heads")
         .read_at_start(),
+    property(
+        "calibration", &HeadSettings::calibration,
+        "File of `cerberus-heads calibrate` with this head's speeds, dead time (in place of latency) and "
+        "backlash")
+        .read_at_start(),
     property("helper-timeout", &HeadSettings::helper_timeout,
              "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
         .read_at_start(),

@@ -8,24 +8,26 @@
 #include <string>
 
 #include "motion/pose.h"
+#include "motion/speed_map.h"
 
 namespace cerberus::drivers {
 
 using motion::Time;
 
 struct HeadSetup {
-  motion::Limits limits;     // have passed motion::check()
-  Time latency{};            // from a command until it takes effect
-  double step = 0;           // radians; the head rests at multiples of it. 0: anywhere
-  double backlash = 0;       // radians of play between motor and camera
-  double noise = 0;          // radians, standard deviation of the position feedback
-  unsigned seed = 0;         // of the noise
-  double pan = 0, tilt = 0;  // radians, position at the start
-  std::string script;        // of scripted_head.h
-  std::string command;       // of the driver external: the helper, run by /bin/sh
-  std::string helper;        // the program that drives real heads
-  std::string device;        // of a real head: serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT
-  std::string options;       // of its driver: "baud=38400 address=2"
+  motion::Limits limits;                     // have passed motion::check()
+  Time latency{};                            // from a command until it takes effect
+  double step = 0;                           // radians; the head rests at multiples of it. 0: anywhere
+  double backlash = 0;                       // radians of play between motor and camera
+  double noise = 0;                          // radians, standard deviation of the position feedback
+  unsigned seed = 0;                         // of the noise
+  double pan = 0, tilt = 0;                  // radians, position at the start
+  motion::SpeedMap pan_speeds, tilt_speeds;  // of a calibration: what the head makes of commanded speeds
+  std::string script;                        // of scripted_head.h
+  std::string command;                       // of the driver external: the helper, run by /bin/sh
+  std::string helper;                        // the program that drives real heads
+  std::string device;   // of a real head: serial:/dev/ttyUSB0, udp:HOST:PORT, tcp:HOST:PORT
+  std::string options;  // of its driver: "baud=38400 address=2"
   Time helper_timeout = std::chrono::milliseconds(500);  // silence after which a helper stops its head
 };
 

@@ -177,15 +177,18 @@ void HelperHead::Core::follow(Time now) {
     if (reckons) return kParameters.follow_gain * (reckoned_axis.position - model_axis.position);
     return corrected ? correction : 0;
   };
-  const auto axis = [&](const AxisState& state, double correction,
-                        const motion::AxisLimits& limits) -> AxisCommand {
+  const auto axis = [&](const AxisState& state, double correction, const motion::AxisLimits& limits,
+                        const motion::SpeedMap& map) -> AxisCommand {
     if (!abilities.velocity) return {Kind::position, state.position, std::abs(state.speed)};
     const double speed = std::clamp(state.speed - correction, -limits.speed, limits.speed);
-    return std::abs(speed) < kParameters.least_change ? AxisCommand{} : AxisCommand{Kind::velocity, speed, 0};
+    return std::abs(speed) < kParameters.least_change
+               ? AxisCommand{}
+               : AxisCommand{Kind::velocity, map.command_for(speed), 0};
   };
-  const std::string line =
-      move_line(axis(ahead.pan, error(ahead.pan, reckoned.pan, pan_correction), setup.limits.pan),
-                axis(ahead.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction), setup.limits.tilt));
+  const std::string line = move_line(
+      axis(ahead.pan, error(ahead.pan, reckoned.pan, pan_correction), setup.limits.pan, setup.pan_speeds),
+      axis(ahead.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction), setup.limits.tilt,
+           setup.tilt_speeds));
   if (line != last_move) send(line);
   last_move = line;
   if (ahead.settled && !measured && (!reckons || reckoned.settled)) follows = false;
@@ -232,7 +235,8 @@ void HelperHead::Core::handle(const HelperLine& line) {
     Pose here;
     if (!std::exchange(reckons, true) && model.state(running_time(), here).empty())
       reckoning.begin(at, {here.pan.position, here.tilt.position});
-    reckoning.turn(at, speeds->speed);
+    reckoning.turn(
+        at, {setup.pan_speeds.actual(speeds->speed.pan), setup.tilt_speeds.actual(speeds->speed.tilt)});
   } else if (const auto* homed = std::get_if<HomedLine>(&line)) {
     if (!std::exchange(homing, std::nullopt)) return;
     measured = running_time();

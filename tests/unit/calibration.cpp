@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A head of known table, dead time and play is measured by frames at 25 a second; and the file of what was measured.
+#include "control/calibration.h"
+
+#include <unistd.h>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "drivers/head/head_calibration.h"
+#include "drivers/simulated/simulated_head.h"
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::control;
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::motion::SpeedMap;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
+using Kind = cerberus::motion::AxisCommand::Kind;
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct Known {
+  double gain = 1;      // actual / commanded speed
+  double backlash = 0;  // degrees
+  Time dead_time = 0ms;
+  double noise = 0;     // degrees a frame
+  int blind_from = -1;  // frames from here on are not measured
+};
+
+AxisCalibration measured(const Known& known, double reach = 60) {
+  SimulatedHead head;
+  HeadSetup setup;
+  setup.latency = known.dead_time;
+  setup.backlash = radians(known.backlash);
+  setup.limits.pan.acceleration = radians(3000);  // ramps of at most 11 ms: half of it is dead time
+  assert_text(head.open(setup), "");
+  AxisCalibration axis(radians(reach), radians(90));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> noise(-known.noise, known.noise);
+  double before = 0, error = 0;
+  int frame = 0;
+  for (Time now = 0s;; now += 40ms, ++frame) {
+    const auto speed = axis.command(now);
+    if (!speed) break;
+    const Kind kind = *speed == 0 ? Kind::hold : Kind::velocity;
+    assert_text(head.command({now, {kind, known.gain * *speed, 0}, {}}), "");
+    cerberus::motion::Pose pose;
+    assert_text(head.state(now, pose), "");
+    const double wrong = radians(noise(random));
+    const bool blind = known.blind_from >= 0 && frame >= known.blind_from;
+    axis.add(now, blind ? kUnknown : pose.pan.position - before + wrong - error);
+    before = pose.pan.position;
+    error = wrong;
+    ck_assert_double_le(std::abs(degrees(pose.pan.position)), 1.1 * reach * std::max(1.0, known.gain));
+  }
+  return axis;
+}
+
+}  // namespace
+
+// Tolerances: speeds 1 %, dead time 10 ms (5 ms of it the ramp), backlash .05 degrees.
+START_TEST(table_dead_time_and_backlash_are_recovered) {
+  const AxisCalibration axis = measured({.gain = 0.8, .backlash = 0.6, .dead_time = 150ms});
+  assert_text(axis.problem(), "");
+  const auto points = axis.speeds().points();
+  ck_assert_uint_eq(points.size(), 4);  // 2, 4, 8, 16; 32 degrees a second do not fit twice into 60 degrees
+  for (const auto& point : points) ck_assert_double_eq_tol(point.actual / point.commanded, 0.8, 0.008);
+  ck_assert_double_eq_tol(axis.dead_time(), 0.15, 0.01);
+  ck_assert_double_eq_tol(degrees(axis.backlash()), 0.6, 0.05);
+}
+END_TEST
+
+START_TEST(a_head_without_play_has_none) {
+  const AxisCalibration axis = measured({.dead_time = 60ms});
+  ck_assert_double_eq_tol(axis.dead_time(), 0.06, 0.01);
+  ck_assert_double_lt(degrees(axis.backlash()), 0.05);
+}
+END_TEST
+
+// .05 degrees of noise a frame: speeds 5 %, dead time 15 ms, backlash .15 degrees.
+START_TEST(noise_of_the_picture_is_averaged) {
+  const AxisCalibration axis =
+      measured({.gain = 1.2, .backlash = 0.4, .dead_time = 200ms, .noise = 0.05}, 90);
+  const auto points = axis.speeds().points();
+  for (const auto& point : points) ck_assert_double_eq_tol(point.actual / point.commanded, 1.2, 0.06);
+  ck_assert_double_eq_tol(axis.dead_time(), 0.2, 0.015);
+  ck_assert_double_eq_tol(degrees(axis.backlash()), 0.4, 0.15);
+}
+END_TEST
+
+START_TEST(what_cannot_be_measured_ends_with_the_reason) {
+  ck_assert(measured({.blind_from = 50}).problem().find("needs light") != std::string::npos);
+  ck_assert(measured({.gain = 3}).problem().find("went further") != std::string::npos);
+  AxisCalibration narrow(radians(2), radians(90));
+  ck_assert(!narrow.command(0s));
+  ck_assert(narrow.problem().find("no room") != std::string::npos);
+}
+END_TEST
+
+START_TEST(a_speed_map_goes_both_ways) {
+  const SpeedMap map({{1, 2}, {3, 3}});
+  ck_assert_double_eq(map.actual(0.5), 1);
+  ck_assert_double_eq(map.actual(-2), -2.5);
+  ck_assert_double_eq(map.actual(6), 6);  // beyond: in the last proportion
+  ck_assert_double_eq(map.command_for(2.5), 2);
+  ck_assert_double_eq(map.command_for(-1), -0.5);
+  ck_assert_double_eq(SpeedMap().actual(-7), -7);
+  ck_assert(!SpeedMap::is_valid({{1, 2}, {2, 2}}));
+  ck_assert(!SpeedMap::is_valid({{0, 2}}));
+}
+END_TEST
+
+namespace {
+
+constexpr char kText[] =
+    "cerberus-calibration = 1\ndriver = visca\ndevice = serial:/dev/ttyUSB0\ndead-time = 0.152\n"
+    "pan-backlash = 0.3\ntilt-backlash = 0.1\npan-speeds = 4:4.2 16:15.1\nstops-alone = 1.4\n";
+
+std::string wrong_with(const std::string& text) {
+  HeadCalibration calibration;
+  return parse_calibration(text, calibration);
+}
+
+}  // namespace
+
+START_TEST(a_calibration_is_written_and_read) {
+  HeadCalibration read;
+  assert_text(parse_calibration(kText, read), "");
+  assert_text(read.device, "serial:/dev/ttyUSB0");
+  ck_assert(read.dead_time == 152ms);
+  ck_assert_double_eq_tol(degrees(read.pan_backlash), 0.3, 1e-12);
+  ck_assert_double_eq_tol(degrees(read.pan.actual(radians(4))), 4.2, 1e-9);
+  ck_assert(read.tilt.points().empty());
+  ck_assert_double_eq(*read.stops_alone, 1.4);
+  assert_text(calibration_text(read), kText);
+}
+END_TEST
+
+START_TEST(wrong_calibrations_are_refused_with_the_line) {
+  assert_text(wrong_with(""), "there is no line `cerberus-calibration = 1`: it is no calibration of a head");
+  assert_text(wrong_with("cerberus-calibration = 2"),
+              "line 1: this version of Cerberus reads calibrations of version 1");
+  assert_text(wrong_with("cerberus-calibration = 1\n# a comment\n\nspeed = 3"),
+              "line 4: a calibration has no \"speed\"");
+  assert_text(wrong_with("hello"), "line 1: \"hello\" is no `key = value`");
+  assert_text(wrong_with("dead-time = 0,15"), "line 1: \"0,15\" cannot be dead-time");
+  assert_text(wrong_with("dead-time = nan"), "line 1: \"nan\" cannot be dead-time");
+  assert_text(wrong_with("pan-speeds = 4:4 3:5"), "line 1: \"4:4 3:5\" cannot be pan-speeds");
+  assert_text(wrong_with("cerberus-calibration = 1"), "it does not name its driver and device");
+}
+END_TEST
+
+START_TEST(a_calibration_of_another_device_is_refused_by_name) {
+  const std::string path = "/tmp/cerberus-calibration-" + std::to_string(::getpid());
+  std::ofstream(path) << kText;
+  HeadCalibration read;
+  assert_text(read_calibration(path, "visca", "serial:/dev/ttyUSB0", read), "");
+  const std::string wrong = read_calibration(path, "visca", "udp:192.0.2.7:52381", read);
+  ck_assert_msg(wrong.find("was measured with the visca head at serial:/dev/ttyUSB0") != std::string::npos,
+                "%s", wrong.c_str());
+  std::remove(path.c_str());
+  ck_assert(read_calibration(path, "visca", "x", read).find("cannot be read: No such file") !=
+            std::string::npos);
+  ck_assert(read_calibration("/tmp", "visca", "x", read).find("cannot be read") != std::string::npos);
+}
+END_TEST
+
+START_TEST(a_device_is_named_without_its_password) {
+  assert_text(calibrated_device("onvif", "http://me:secret@192.0.2.9/onvif", ""), "http://192.0.2.9/onvif");
+  assert_text(calibrated_device("external", "", "/opt/head.py --password=secret"), "/opt/head.py");
+  assert_text(calibrated_device("visca", "udp:192.0.2.7:52381", ""), "udp:192.0.2.7:52381");
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "calibration",
+      {table_dead_time_and_backlash_are_recovered, a_head_without_play_has_none,
+       noise_of_the_picture_is_averaged, what_cannot_be_measured_ends_with_the_reason,
+       a_speed_map_goes_both_ways, a_calibration_is_written_and_read,
+       wrong_calibrations_are_refused_with_the_line, a_calibration_of_another_device_is_refused_by_name,
+       a_device_is_named_without_its_password});
+}
