@@ -59,6 +59,24 @@ START_TEST(a_known_place_shifts_all_positions) {
 }
 END_TEST
 
+// .25 of play, the motor in its middle: the camera starts after .125, and after a reversal when .25 are taken up.
+START_TEST(play_is_taken_up_before_the_camera_turns) {
+  Reckoning head;
+  head.set_play({0.25, 0});
+  head.begin(0s, {});
+  head.turn(0s, {0.5, 0});
+  ck_assert_double_eq(head.at(200ms).pan.position, 0);
+  ck_assert_double_eq(head.at(200ms).pan.speed, 0);
+  ck_assert(!head.at(200ms).settled);
+  ck_assert(head.at(0s).until == 250ms);
+  ck_assert_double_eq(head.at(1s).pan.position, 0.375);
+  ck_assert_double_eq(head.at(1s).pan.speed, 0.5);
+  head.turn(1s, {-0.5, 0});
+  ck_assert_double_eq(head.at(1400ms).pan.position, 0.375);
+  ck_assert_double_eq_tol(head.at(2s).pan.position, 0.125, 1e-12);
+}
+END_TEST
+
 // More changes than are kept: the present stays right.
 START_TEST(a_thousand_changes_leave_no_error) {
   Reckoning head;
@@ -71,7 +89,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "reckoning", {a_position_is_the_sum_of_the_speeds, a_piece_ends_where_the_speed_changes,
-                    an_earlier_speed_replaces_the_later_ones, a_known_place_shifts_all_positions,
-                    a_thousand_changes_leave_no_error});
+      "reckoning", {play_is_taken_up_before_the_camera_turns, a_position_is_the_sum_of_the_speeds,
+                    a_piece_ends_where_the_speed_changes, an_earlier_speed_replaces_the_later_ones,
+                    a_known_place_shifts_all_positions, a_thousand_changes_leave_no_error});
 }

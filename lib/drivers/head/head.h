@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "motion/pan_tilt.h"
 #include "motion/pose.h"
 #include "motion/speed_map.h"
 
@@ -22,6 +23,7 @@ struct HeadSetup {
   double noise = 0;                          // radians, standard deviation of the position feedback
   unsigned seed = 0;                         // of the noise
   double pan = 0, tilt = 0;                  // radians, position at the start
+  motion::PanTilt play;                      // radians, of a real head, as calibrated
   motion::SpeedMap pan_speeds, tilt_speeds;  // of a calibration: what the head makes of commanded speeds
   std::string script;                        // of scripted_head.h
   std::string command;                       // of the driver external: the helper, run by /bin/sh

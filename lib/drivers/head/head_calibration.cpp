@@ -181,7 +181,7 @@ std::string use_calibration(const std::string& path, const std::string& driver, 
   const std::string device = calibrated_device(driver, setup.device, setup.command);
   if (std::string wrong = read_calibration(path, driver, device, calibration); !wrong.empty()) return wrong;
   setup.latency = calibration.dead_time;
-  setup.backlash = std::max(calibration.pan_backlash, calibration.tilt_backlash);
+  setup.play = {calibration.pan_backlash, calibration.tilt_backlash};
   setup.pan_speeds = calibration.pan;
   setup.tilt_speeds = calibration.tilt;
   return {};

@@ -48,7 +48,7 @@ struct Parameters {
 constexpr Parameters kParameters;
 
 // HeadSetup::options as words; blanks part them, single quotes keep them.
-std::vector<std::string> helper_arguments(const std::string& driver, const HeadSetup& setup) {
+std::vector<std::string> own_helper(const std::string& driver, const HeadSetup& setup) {
   std::vector<std::string> words{setup.helper, driver, "--device=" + setup.device};
   bool quoted = false, begun = false;
   for (const char c : setup.options) {
@@ -286,6 +286,11 @@ void HelperHead::Core::run() {
   process.finish();
 }
 
+std::vector<std::string> helper_arguments(const std::string& driver, const HeadSetup& setup) {
+  if (driver == "external") return {"/bin/sh", "-c", "exec " + setup.command};
+  return own_helper(driver, setup);
+}
+
 HelperHead::~HelperHead() {
   close();
 }
@@ -301,11 +306,13 @@ std::string HelperHead::open(const HeadSetup& setup) {
     return "helper-timeout must be 1 ms to 10 s, and is " +
            text::significant(motion::seconds(setup.helper_timeout), 6).string() + " s";
   auto core = std::make_shared<Core>();
-  if (std::string wrong = core->model.open(setup); !wrong.empty()) return wrong;
+  HeadSetup rigid = setup;  // play would hide from the head the turn that takes it up
+  rigid.backlash = 0;
+  core->reckoning.set_play(setup.play);
+  if (std::string wrong = core->model.open(rigid); !wrong.empty()) return wrong;
   std::unique_lock guard(core->lock);
   core->setup = setup;
-  core->arguments = external ? std::vector<std::string>{"/bin/sh", "-c", "exec " + setup.command}
-                             : helper_arguments(driver_, setup);
+  core->arguments = helper_arguments(driver_, setup);
   // Not the whole command: its arguments may hold a password.
   core->name = external ? setup.command.substr(0, setup.command.find(' ')) : driver_ + " of " + setup.device;
   core->epoch = since_start(Clock::now());

@@ -17,6 +17,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/head/head.h"
 #include "drivers/worker.h"
@@ -44,5 +45,8 @@ class HelperHead final : public Head {
   std::shared_ptr<Core> core_;
   std::optional<Worker> worker_;
 };
+
+// The program that serves the driver of this name, and its arguments.
+std::vector<std::string> helper_arguments(const std::string& driver, const HeadSetup& setup);
 
 }  // namespace cerberus::drivers

@@ -25,6 +25,7 @@ class HelperProcess {
   std::string start(const std::vector<std::string>& arguments);
   bool running() const { return fd_ >= 0; }
   int fd() const { return fd_; }
+  pid_t pid() const { return pid_; }  // for a test of what the head does without its helper
   // Never blocks. False: the child is gone, or has not read for so long that the socket is full.
   bool send(std::string_view bytes) noexcept;
   // Appends what has arrived. False: the child has closed its end.

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Measures a head through its camera: control/calibration.h decides, this file connects it with camera and helper.
+#include <cerberus/cerberus.h>
+#include <gst/gst.h>
+#include <gst/video/video.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <limits>
+#include <mutex>
+#include <vector>
+
+#include "control/calibration.h"
+#include "drivers/head/head_calibration.h"
+#include "heads/head_link.h"
+#include "heads/tool.h"
+
+namespace cerberus::heads {
+namespace {
+
+using control::AxisCalibration;
+using motion::Time;
+using sensing::degrees;
+using sensing::radians;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+struct Turned {
+  Time taken{};
+  control::Turn turn{kUnknown, kUnknown};
+};
+
+class Camera {
+ public:
+  explicit Camera(const ToolOptions& options) : fov_(radians(options.horizontal_fov)) {
+    const std::string line = options.source +
+                             " ! cameramotion horizontal-fov=" + std::to_string(options.horizontal_fov) +
+                             " ! fakesink name=end sync=false async=false";
+    GError* error = nullptr;
+    pipeline_ = gst_parse_launch(line.c_str(), &error);
+    if (error) problem_ = error->message;
+    g_clear_error(&error);
+    if (!pipeline_ || !problem_.empty()) return;
+    GstElement* end = gst_bin_get_by_name(GST_BIN(pipeline_), "end");
+    GstPad* pad = gst_element_get_static_pad(end, "sink");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_BUFFER, on_frame, this, nullptr);
+    gst_object_unref(pad);
+    gst_object_unref(end);
+    gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  }
+  ~Camera() {
+    if (!pipeline_) return;
+    gst_element_set_state(pipeline_, GST_STATE_NULL);
+    gst_object_unref(pipeline_);
+  }
+  Camera(const Camera&) = delete;
+
+  // The frames since the last call.
+  std::vector<Turned> take() {
+    const std::lock_guard guard(lock_);
+    return std::exchange(frames_, {});
+  }
+  Time now() const { return Time(static_cast<Time::rep>(gst_element_get_current_running_time(pipeline_))); }
+  // Empty: none.
+  std::string problem() {
+    if (!problem_.empty()) return problem_;
+    GstBus* bus = gst_element_get_bus(pipeline_);
+    const auto ends = static_cast<GstMessageType>(GST_MESSAGE_ERROR | GST_MESSAGE_EOS);
+    GstMessage* message = gst_bus_pop_filtered(bus, ends);
+    gst_object_unref(bus);
+    if (!message) return {};
+    problem_ = "the video ended";
+    if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_ERROR) {
+      g_autoptr(GError) error = nullptr;
+      gst_message_parse_error(message, &error, nullptr);
+      problem_ = error->message;
+    }
+    gst_message_unref(message);
+    return problem_;
+  }
+
+ private:
+  static GstPadProbeReturn on_frame(GstPad* pad, GstPadProbeInfo* info, gpointer self) {
+    static_cast<Camera*>(self)->add(pad, GST_PAD_PROBE_INFO_BUFFER(info));
+    return GST_PAD_PROBE_OK;
+  }
+  void add(GstPad* pad, GstBuffer* buffer) {
+    GstCaps* caps = gst_pad_get_current_caps(pad);
+    GstEvent* segment_event = gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0);
+    GstVideoInfo video;
+    const GstSegment* segment = nullptr;
+    if (segment_event) gst_event_parse_segment(segment_event, &segment);
+    const CerberusCameraMotion* motion = cerberus_buffer_peek_camera_motion(buffer);
+    if (caps && segment && gst_video_info_from_caps(&video, caps)) {
+      Turned frame;
+      frame.taken = Time(static_cast<Time::rep>(
+          gst_segment_to_running_time(segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer))));
+      if (motion) {
+        control::PictureMotion picture{{}, motion->confidence, {video.width, video.height}, 0};
+        std::copy(std::begin(motion->matrix), std::end(motion->matrix), picture.transform.m.begin());
+        const vision::Lens lens(fov_, picture.picture);
+        const std::lock_guard guard(lock_);
+        frame.turn = control::head_turn(picture, lens, look_).value_or(frame.turn);
+        if (std::isfinite(frame.turn.pitch)) look_.tilt += frame.turn.pitch;
+      }
+      const std::lock_guard guard(lock_);
+      frames_.push_back(frame);
+    }
+    if (caps) gst_caps_unref(caps);
+    if (segment_event) gst_event_unref(segment_event);
+  }
+
+  double fov_;
+  GstElement* pipeline_ = nullptr;
+  std::string problem_;
+  std::mutex lock_;
+  std::vector<Turned> frames_;
+  motion::PanTilt look_;
+};
+
+struct Session {
+  const ToolOptions& options;
+  Camera& camera;
+  HeadLink& link;
+  Keys& keys;
+
+  // What ends the work; empty: nothing.
+  std::string serve() {
+    if (keys.pressed()) return "ended by a key";
+    if (std::string wrong = link.serve(5); !wrong.empty()) return wrong;
+    return camera.problem();
+  }
+
+  std::string measure(AxisCalibration& axis, bool is_pan) {
+    std::printf("%s: about %.0f s\n", is_pan ? "pan" : "tilt", axis.seconds_left());
+    std::fflush(stdout);
+    for (;;) {
+      const auto speed = axis.command(camera.now());
+      if (!speed) break;
+      link.turn(is_pan ? *speed : 0, is_pan ? 0 : *speed);
+      if (std::string wrong = serve(); !wrong.empty()) return wrong;
+      for (const Turned& frame : camera.take())
+        axis.add(frame.taken, is_pan ? frame.turn.yaw : frame.turn.pitch);
+    }
+    link.stop();
+    return axis.problem();
+  }
+
+  // Kills the helper while the head turns slowly, and looks whether it stops. Then a new helper stops it.
+  std::string kill_helper(std::optional<double>& stopped) {
+    constexpr double kSpeed = 4, kPatience = 3, kStill = 0.3;  // degrees a second, seconds
+    link.turn(radians(kSpeed), 0);
+    for (const double end = now_seconds() + 1; now_seconds() < end;)
+      if (std::string wrong = serve(); !wrong.empty()) return wrong;
+    link.kill();
+    const double killed = now_seconds();
+    double moved = killed;
+    camera.take();
+    while (now_seconds() - killed < kPatience && now_seconds() - moved < kStill && !keys.pressed()) {
+      g_usleep(10000);
+      for (const Turned& frame : camera.take())
+        if (std::abs(frame.turn.yaw) > radians(kSpeed) / 100) moved = now_seconds();
+    }
+    if (now_seconds() - moved >= kStill) stopped = moved - killed;
+    std::string wrong = link.start(options.driver, options.setup);
+    link.stop();
+    return wrong;
+  }
+};
+
+void report(const drivers::HeadCalibration& found) {
+  std::printf("dead time %.0f ms, backlash %.2f and %.2f degrees\n", motion::seconds(found.dead_time) * 1e3,
+              degrees(found.pan_backlash), degrees(found.tilt_backlash));
+  for (const auto* map : {&found.pan, &found.tilt})
+    for (const auto& point : map->points())
+      std::printf("%s %5.1f is %6.2f degrees a second\n", map == &found.pan ? "pan " : "tilt",
+                  degrees(point.commanded), degrees(point.actual));
+  if (found.stops_alone)
+    std::printf("without its helper the head stopped after %.1f s\n", *found.stops_alone);
+  else
+    std::printf("without its helper the head goes on turning: it needs limits of its own\n");
+}
+
+}  // namespace
+
+int calibrate_head(const ToolOptions& options) {
+  const auto fail = [](const std::string& why) {
+    std::fprintf(stderr, "cerberus-heads: %s\n", why.c_str());
+    return 1;
+  };
+  if (!(options.horizontal_fov > 1 && options.horizontal_fov < 179))
+    return fail("--horizontal-fov is needed: without it no pixel is an angle");
+  const motion::Limits& limits = options.setup.limits;
+  const auto reach = [](const motion::AxisLimits& axis) { return std::min(-axis.from, axis.to); };
+  AxisCalibration pan(reach(limits.pan), limits.pan.speed), tilt(reach(limits.tilt), limits.tilt.speed);
+  char text[400];
+  std::snprintf(text, sizeof text,
+                "The head will move for about %.0f s, at most %.0f degrees to each side and %.0f up and down "
+                "from where "
+                "it looks now. Nothing else may move the camera, and it needs something to see.",
+                pan.seconds_left() + tilt.seconds_left() + 10, degrees(reach(limits.pan)),
+                degrees(reach(limits.tilt)));
+  if (!options.yes && !Keys::ask(text)) return 1;
+  Camera camera(options);
+  for (const double end = now_seconds() + 10; camera.problem().empty() && camera.take().size() < 2;) {
+    if (now_seconds() > end) return fail("no video comes from --source");
+    g_usleep(20000);
+  }
+  if (!camera.problem().empty()) return fail(camera.problem());
+  HeadLink link;
+  if (const std::string wrong = link.start(options.driver, options.setup); !wrong.empty()) return fail(wrong);
+  if (!link.abilities().velocity) return fail("the head goes to angles only: there are no speeds to measure");
+  Keys keys;
+  Session session{options, camera, link, keys};
+  drivers::HeadCalibration found;
+  std::string wrong = session.measure(pan, true);
+  if (wrong.empty() && reach(limits.tilt) > 0) wrong = session.measure(tilt, false);
+  if (wrong.empty()) wrong = session.kill_helper(found.stops_alone);
+  link.stop();
+  link.finish();
+  if (!wrong.empty()) return fail(wrong);
+  found.driver = options.driver;
+  found.device = drivers::calibrated_device(options.driver, options.setup.device, options.setup.command);
+  found.pan = pan.speeds();
+  found.tilt = tilt.speeds();
+  if (found.pan.points().empty()) return fail("the head does not turn, or the picture does not show it");
+  found.dead_time = Time(static_cast<Time::rep>(pan.dead_time() * 1e9));
+  found.pan_backlash = pan.backlash();
+  found.tilt_backlash = tilt.backlash();
+  report(found);
+  std::ofstream file(options.output, std::ios::binary);
+  if (!(file << drivers::calibration_text(found)).flush()) return fail(options.output + " cannot be written");
+  std::printf("written: %s (pantiltsink calibration=%s)\n", options.output.c_str(), options.output.c_str());
+  return 0;
+}
+
+}  // namespace cerberus::heads

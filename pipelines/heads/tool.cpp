@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "heads/tool.h"
+
+#include <gst/gst.h>
+#include <poll.h>
+#include <termios.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include "heads/head_link.h"
+#include "sensing/angles.h"
+
+namespace cerberus::heads {
+namespace {
+
+termios usual;  // of the terminal, before the first Keys
+
+bool has_input() {
+  pollfd wait{STDIN_FILENO, POLLIN, 0};
+  return ::poll(&wait, 1, 0) == 1 && (wait.revents & POLLIN);
+}
+
+}  // namespace
+
+Keys::Keys() : terminal_(::isatty(STDIN_FILENO) && ::tcgetattr(STDIN_FILENO, &usual) == 0) {
+  if (!terminal_) return;
+  termios mode = usual;
+  mode.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
+  ::tcsetattr(STDIN_FILENO, TCSANOW, &mode);
+}
+
+Keys::~Keys() {
+  if (terminal_) ::tcsetattr(STDIN_FILENO, TCSANOW, &usual);
+}
+
+bool Keys::pressed() {
+  return has_input();
+}
+
+bool Keys::ask(const std::string& text) {
+  std::printf("%s\nPress Enter to begin; the first key then ends it. ", text.c_str());
+  std::fflush(stdout);
+  char key = 0;
+  const bool go = ::read(STDIN_FILENO, &key, 1) == 1 && (key == '\n' || key == ' ');
+  std::printf("\n");
+  return go;
+}
+
+int move_head(const ToolOptions& options) {
+  char text[200];
+  std::snprintf(text, sizeof text,
+                "The head will turn at %g degrees a second to the right and %g up, for %g s.", options.pan,
+                options.tilt, options.seconds);
+  if (!options.yes && !Keys::ask(text)) return 1;
+  HeadLink link;
+  std::string wrong = link.start(options.driver, options.setup);
+  Keys keys;
+  if (wrong.empty() && !link.abilities().velocity) wrong = "the head does not turn at speeds";
+  if (wrong.empty()) link.turn(sensing::radians(options.pan), sensing::radians(options.tilt));
+  for (const double end = now_seconds() + options.seconds;
+       wrong.empty() && now_seconds() < end && !keys.pressed();) {
+    wrong = link.serve(20);
+    if (link.pose)
+      std::printf("pan %.2f tilt %.2f\n", sensing::degrees(link.pose->pan.position),
+                  sensing::degrees(link.pose->tilt.position));
+    link.pose.reset();
+  }
+  link.stop();
+  link.finish();
+  if (!wrong.empty()) std::fprintf(stderr, "cerberus-heads: %s\n", wrong.c_str());
+  return wrong.empty() ? 0 : 1;
+}
+
+}  // namespace cerberus::heads
+
+namespace {
+
+using cerberus::heads::ToolOptions;
+using cerberus::sensing::radians;
+
+constexpr char kSummary[] =
+    "Commands:\n"
+    "  list [DEVICE ...]   heads of this machine; a serial port is asked (VISCA) only if it is named\n"
+    "  move DRIVER         turns a head: --pan and --tilt in degrees a second, for --seconds\n"
+    "  calibrate DRIVER    measures a head through its camera (--source, --horizontal-fov) into --output\n"
+    "Drivers: visca, pelco-d, onvif, stepper-gpio, external and what else cerberus-head has.";
+
+// The helper beside this program, or the installed one.
+std::string helper_program(const char* self) {
+  if (const char* named = g_getenv("CERBERUS_HEAD"); named && *named) return named;
+  g_autofree gchar* path = g_file_read_link("/proc/self/exe", nullptr);
+  g_autofree gchar* folder = g_path_get_dirname(path ? path : self);
+  g_autofree gchar* beside = g_build_filename(folder, "cerberus-head", nullptr);
+  return g_file_test(beside, G_FILE_TEST_IS_EXECUTABLE) ? beside : CERBERUS_LIBEXEC "/cerberus-head";
+}
+
+int usage(const char* text) {
+  std::fprintf(stderr, "cerberus-heads: %s (--help says more)\n", text);
+  return 2;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gchar *device = nullptr, *words = nullptr, *command = nullptr, *limits = nullptr, *source = nullptr,
+        *output = nullptr;
+  gdouble pan = 0, tilt = 0, seconds = 1, fov = 0;
+  gboolean yes = FALSE;
+  const GOptionEntry entries[] = {
+      {"device", 0, 0, G_OPTION_ARG_STRING, &device, "As of pantiltsink", "DEVICE"},
+      {"device-options", 0, 0, G_OPTION_ARG_STRING, &words, "As of pantiltsink", "WORDS"},
+      {"command", 0, 0, G_OPTION_ARG_STRING, &command, "The helper of the driver external", "COMMAND"},
+      {"limits", 0, 0, G_OPTION_ARG_STRING, &limits, "Degrees that the head may turn (-60,60,-20,20)",
+       "PAN-MIN,PAN-MAX,TILT-MIN,TILT-MAX"},
+      {"pan", 0, 0, G_OPTION_ARG_DOUBLE, &pan, "Degrees a second to the right", "N"},
+      {"tilt", 0, 0, G_OPTION_ARG_DOUBLE, &tilt, "Degrees a second up", "N"},
+      {"seconds", 0, 0, G_OPTION_ARG_DOUBLE, &seconds, "How long to turn (1)", "N"},
+      {"source", 0, 0, G_OPTION_ARG_STRING, &source, "The head's camera (v4l2src ! videoconvert)",
+       "LAUNCH-LINE"},
+      {"horizontal-fov", 0, 0, G_OPTION_ARG_DOUBLE, &fov, "Degrees that the camera sees over its width", "N"},
+      {"output", 'o', 0, G_OPTION_ARG_STRING, &output, "The calibration's file (head.calibration)", "FILE"},
+      {"yes", 'y', 0, G_OPTION_ARG_NONE, &yes, "Move without asking", nullptr},
+      {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
+  g_autoptr(GOptionContext) context = g_option_context_new("COMMAND");
+  g_option_context_set_summary(context, kSummary);
+  g_option_context_add_main_entries(context, entries, nullptr);
+  g_option_context_add_group(context, gst_init_get_option_group());
+  g_autoptr(GError) error = nullptr;
+  if (!g_option_context_parse(context, &argc, &argv, &error)) return usage(error->message);
+  if (argc < 2) return usage("say list, move or calibrate");
+  const std::string what = argv[1];
+  if (what == "list") return cerberus::heads::list_heads({argv + 2, argv + argc});
+  if (what != "move" && what != "calibrate")
+    return usage("there is no such command: list, move or calibrate");
+  if (argc != 3) return usage("name one driver");
+  ToolOptions options;
+  options.driver = argv[2];
+  options.setup.helper = helper_program(argv[0]);
+  options.setup.device = device ? device : "";
+  options.setup.options = words ? words : "";
+  options.setup.command = command ? command : "";
+  if (options.driver == "external" ? !command : !device)
+    return usage("name the head: --device, or --command of external");
+  double l[4] = {-60, 60, -20, 20};
+  g_auto(GStrv) parts = limits ? g_strsplit(limits, ",", 5) : nullptr;
+  if (limits && g_strv_length(parts) != 4) return usage("--limits has four numbers");
+  for (int i = 0; limits && i < 4; ++i) l[i] = g_ascii_strtod(parts[i], nullptr);
+  auto& head = options.setup.limits;
+  head.pan = {radians(l[0]), radians(l[1])};
+  head.tilt = {radians(l[2]), radians(l[3])};
+  if (const std::string wrong = cerberus::motion::check(head); !wrong.empty()) return usage(wrong.c_str());
+  options.pan = pan;
+  options.tilt = tilt;
+  options.seconds = seconds;
+  if (!(seconds > 0 && seconds <= 60)) return usage("--seconds is up to 60");
+  if (source) options.source = source;
+  options.horizontal_fov = fov;
+  if (output) options.output = output;
+  options.yes = yes;
+  return what == "move" ? cerberus::heads::move_head(options) : cerberus::heads::calibrate_head(options);
+}
