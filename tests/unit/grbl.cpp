@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The example head for GRBL boards, pipelines/heads/grbl.py, against a board on a pseudo-terminal that is written from
+// GRBL 1.1's documentation: jogs are planned one after the other, 0x85 drops them, ? reports.
+#include <poll.h>
+#include <pty.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "drivers/helper/helper_head.h"
+#include "sensing/angles.h"
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
+using Clock = std::chrono::steady_clock;
+using Kind = cerberus::motion::AxisCommand::Kind;
+
+namespace {
+
+class GrblBoard {
+ public:
+  explicit GrblBoard(bool alarm = false) : alarm_(alarm), last_(Clock::now()) {
+    char name[128];
+    if (::openpty(&fd_, &slave_, name, nullptr, nullptr) != 0) std::abort();
+    path_ = name;
+    thread_ = std::thread([this] { run(); });
+  }
+  ~GrblBoard() {
+    end_ = true;
+    thread_.join();
+    ::close(fd_);
+    ::close(slave_);
+  }
+  const std::string& path() const { return path_; }
+  double pan() {
+    const std::lock_guard guard(lock_);
+    advance();
+    return x_;
+  }
+  bool moves() {
+    const std::lock_guard guard(lock_);
+    advance();
+    return !jogs_.empty();
+  }
+  int cancels() const { return cancels_; }
+
+ private:
+  struct Jog {
+    double x, y, seconds;
+  };
+  void advance() {
+    const auto now = Clock::now();
+    double dt = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    while (!jogs_.empty() && dt > 0) {
+      Jog& jog = jogs_.front();
+      const double part = std::min(1.0, dt / jog.seconds);
+      x_ += jog.x * part;
+      y_ += jog.y * part;
+      dt -= jog.seconds * part;
+      jog = {jog.x * (1 - part), jog.y * (1 - part), jog.seconds * (1 - part)};
+      if (part == 1) jogs_.pop_front();
+    }
+  }
+  void answer(const std::string& text) {
+    if (::write(fd_, text.data(), text.size()) < 0) end_ = true;
+  }
+  void obey(const std::string& line) {
+    double x = 0, y = 0, f = 0;
+    if (std::sscanf(line.c_str(), "$J=G91 X%lf Y%lf F%lf", &x, &y, &f) != 3 || !(f > 0) || alarm_)
+      return answer("error:9\r\n");
+    const std::lock_guard guard(lock_);
+    advance();
+    jogs_.push_back({x, y, std::hypot(x, y) / f * 60});
+    answer("ok\r\n");
+  }
+  void run() {
+    std::string line;
+    while (!end_) {
+      pollfd wait{fd_, POLLIN, 0};
+      if (::poll(&wait, 1, 5) != 1) continue;
+      char bytes[256];
+      const ssize_t got = ::read(fd_, bytes, sizeof bytes);
+      for (ssize_t i = 0; i < got; ++i) {
+        if (bytes[i] == '?') {
+          const std::lock_guard guard(lock_);
+          advance();
+          char text[100];
+          std::snprintf(text, sizeof text, "<%s|MPos:%.3f,%.3f,0.000|FS:0,0>\r\n",
+                        alarm_           ? "Alarm"
+                        : !jogs_.empty() ? "Jog"
+                                         : "Idle",
+                        x_, y_);
+          answer(text);
+        } else if (bytes[i] == '\x85' || bytes[i] == '!') {
+          const std::lock_guard guard(lock_);
+          advance();
+          jogs_.clear();
+          ++cancels_;
+        } else if (bytes[i] == '\n') {
+          obey(line);
+          line.clear();
+        } else {
+          line += bytes[i];
+        }
+      }
+    }
+  }
+
+  bool alarm_;
+  std::string path_;
+  int fd_ = -1, slave_ = -1;
+  std::mutex lock_;
+  double x_ = 0, y_ = 0;
+  std::deque<Jog> jogs_;
+  Clock::time_point last_;
+  std::atomic<int> cancels_{0};
+  std::atomic<bool> end_{false};
+  std::thread thread_;
+};
+
+HeadSetup setup_for(const GrblBoard& board) {
+  HeadSetup setup;
+  setup.command =
+      "python3 " + std::string(std::getenv("CERBERUS_SOURCE")) + "/pipelines/heads/grbl.py " + board.path();
+  return setup;
+}
+
+template <typename Holds>
+bool soon(Holds holds) {
+  for (const auto end = Clock::now() + 10s; Clock::now() < end; std::this_thread::sleep_for(5ms))
+    if (holds()) return true;
+  return false;
+}
+
+}  // namespace
+
+START_TEST(a_board_goes_where_it_is_sent_and_rests) {
+  GrblBoard board;
+  HelperHead head("external");
+  assert_text(head.open(setup_for(board)), "");
+  assert_text(head.command({0s, {Kind::position, radians(12), radians(30)}, {}}), "");
+  const auto begin = Clock::now();
+  ck_assert(soon([&] { return std::abs(board.pan() - 12) < 0.7 && !board.moves(); }));
+  cerberus::motion::Pose pose;
+  assert_text(head.state(Clock::now() - begin, pose), "");
+  ck_assert(pose.measured);
+}
+END_TEST
+
+START_TEST(the_end_of_the_pipeline_cancels_the_jogs) {
+  GrblBoard board;
+  {
+    HelperHead head("external");
+    assert_text(head.open(setup_for(board)), "");
+    assert_text(head.command({0s, {Kind::velocity, radians(20), 0}, {}}), "");
+    ck_assert(soon([&] { return board.pan() > 2; }));
+    const int before = board.cancels();
+    head.close();
+    ck_assert(soon([&] { return board.cancels() > before && !board.moves(); }));
+  }
+}
+END_TEST
+
+START_TEST(a_board_is_not_driven_beyond_its_limits) {
+  GrblBoard board;
+  HelperHead head("external");
+  HeadSetup setup = setup_for(board);
+  setup.limits.pan.to = radians(5);
+  assert_text(head.open(setup), "");
+  assert_text(head.command({0s, {Kind::velocity, radians(20), 0}, {}}), "");
+  ck_assert(soon([&] { return board.pan() > 2; }));
+  std::this_thread::sleep_for(500ms);
+  ck_assert_double_le(board.pan(), 5.5);
+}
+END_TEST
+
+START_TEST(a_board_in_alarm_is_refused_with_what_to_do) {
+  GrblBoard board(true);
+  HelperHead head("external");
+  assert_text(head.open(setup_for(board)), "the GRBL board is in alarm: home it ($H) or unlock it ($X)");
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "grbl", {a_board_goes_where_it_is_sent_and_rests, the_end_of_the_pipeline_cancels_the_jogs,
+               a_board_is_not_driven_beyond_its_limits, a_board_in_alarm_is_refused_with_what_to_do});
+}
