@@ -415,6 +415,32 @@ START_TEST(the_learnt_heights_follow_a_tilting_camera) {
 }
 END_TEST
 
+// A picture of 160 x 120 has room for 75 components (one for 256 pixels) and for twice as many regions. 48 pairs, each
+// one component, are 96 people.
+START_TEST(more_people_than_components_fit_are_found_in_pairs) {
+  constexpr Size kSmall{160, 120};
+  constexpr double kTall = 14;
+  Image<std::uint8_t> mask(kSmall);
+  Image<std::uint16_t> labels(kSmall);
+  RegionFinder finder;
+  for (int k = 0; k < 60; ++k) {
+    mask.fill_bytes(0);
+    for (const int foot : {30, 70, 110}) tests::draw_body(mask.view(), 10 + 2 * k, foot, kTall);
+    finder.update(mask.view(), labels.view(), {});
+  }
+  std::span<const Region> regions;
+  for (int k = 0; k < 2; ++k) {
+    mask.fill_bytes(0);
+    for (int row = 0; row < 6; ++row)
+      for (int column = 0; column < 8; ++column)
+        for (const int side : {-3, 3})
+          tests::draw_body(mask.view(), 10 + 20 * column + side, 18 + 20 * row, kTall);
+    regions = finder.update(mask.view(), labels.view(), {});
+  }
+  ck_assert_uint_eq(regions.size(), 96);
+}
+END_TEST
+
 START_TEST(a_mask_full_of_clutter_or_wholly_set_is_survived) {
   RegionFinder finder;
   let_people_walk_by(finder);
@@ -502,6 +528,7 @@ int main() {
                   a_walker_teaches_its_height_from_the_third_frame_on,
                   people_off_and_reset_give_plain_components_again,
                   the_learnt_heights_follow_a_tilting_camera,
+                  more_people_than_components_fit_are_found_in_pairs,
                   a_mask_full_of_clutter_or_wholly_set_is_survived,
                   no_picture_takes_memory_after_the_first});
 }
