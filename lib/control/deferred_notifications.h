@@ -87,8 +87,8 @@ class DeferredNotifications {
   // lock held.
   template <typename SendPose, typename SendNotice>
   void send(SendPose send_pose, SendNotice send_notice) const {
-    if (poses_) queue_.poses.tell([&](const auto& pose) { send_pose(pose.head, pose.thing); });
-    if (notices_) queue_.notices.tell([&](const auto& notice) { send_notice(notice.head, notice.thing); });
+    if (poses_) queue_.poses.deliver([&](const auto& pose) { send_pose(pose.head, pose.thing); });
+    if (notices_) queue_.notices.deliver([&](const auto& notice) { send_notice(notice.head, notice.thing); });
   }
 
  private:

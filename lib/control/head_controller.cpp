@@ -435,14 +435,14 @@ void HeadController::end(std::optional<Time> at, drivers::HeadRunner::Patience p
     const std::lock_guard guard(lock_);
     ended_ = true;
     selector_.follow(0);
-    manual_.expire("its order was over with the stream");
+    manual_.expire("the manual command ended with the stream");
   }
   halt("end of the stream", at, patience, out);
 }
 
 // Reports the expiry of the watchdog.
 void HeadController::on_timeout(Time head, DeferredNotifications& out) {
-  manual_.expire("its order was over when no frame came");
+  manual_.expire("the manual command ended: no frame came");
   report(HeadState::stopped, "no frame came for " + std::to_string(timeout_ / milliseconds(1)) + " ms", head,
          out);
 }
@@ -521,7 +521,7 @@ bool HeadController::automatic(std::optional<Time> at, DeferredNotifications& ou
   const std::lock_guard guard(lock_);
   if (!runner_ || manual_.authority() == Authority::emergency_stop) return false;
   selector_.follow(0);
-  end_manual("told to go on by itself", at, out);
+  end_manual("automatic again", at, out);
   return true;
 }
 
@@ -530,7 +530,7 @@ bool HeadController::follow(std::uint32_t id, std::optional<Time> at, DeferredNo
   if (!runner_ || ended_ || id == 0 || manual_.authority() == Authority::emergency_stop) return false;
   selector_.follow(id);
   law_.reset();  // another target
-  end_manual("told to follow somebody", at, out);
+  end_manual("a track was chosen", at, out);
   return true;
 }
 

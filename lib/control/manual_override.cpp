@@ -19,7 +19,7 @@ bool ManualOverride::move(double pan, double tilt, bool relative, const motion::
     tilt += base(command_.tilt, here.tilt);
   }
   const bool inside = limits.pan.holds(pan) && limits.tilt.holds(tilt);
-  set(inside ? "told to move" : "told to move beyond a limit: as far as it",
+  set(inside ? "manual command: move" : "manual command: move, as far as the limit",
       {.time = {},
        .pan = {AxisCommand::Kind::position, limits.pan.clamp(pan), limits.pan.speed},
        .tilt = {AxisCommand::Kind::position, limits.tilt.clamp(tilt), limits.tilt.speed}});
@@ -31,7 +31,7 @@ bool ManualOverride::turn(double pan, double tilt) {
   const auto axis = [](double speed) {
     return speed == 0 ? AxisCommand{} : AxisCommand{AxisCommand::Kind::velocity, speed, 0};
   };
-  set("told to turn", {.time = {}, .pan = axis(pan), .tilt = axis(tilt)});
+  set("manual command: turn", {.time = {}, .pan = axis(pan), .tilt = axis(tilt)});
   return true;
 }
 

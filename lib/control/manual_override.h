@@ -36,7 +36,7 @@ class ManualOverride {
   bool lapse(motion::Time now);
   // Commands the head to brake and stay.
   void stop() {
-    if (!emergency_) set("told to stop", {});
+    if (!emergency_) set("manual command: stop", {});
   }
   // The emergency stop was pressed or released.
   void emergency(bool pressed);

@@ -44,10 +44,10 @@ void TargetSelector::apply_override(const Observation& frame, motion::Time time,
   following_ = answer == here;
   if (following_) {
     selection.goal = {.action = fusion::Action::track, .target = middle};
-    selection.reason = "told to follow " + std::to_string(id);
+    selection.reason = "follows the chosen track " + std::to_string(id);
   } else if (answer == awaited && selection.goal.action == fusion::Action::track) {
     selection.goal = {};
-    selection.reason = "waits for " + std::to_string(id) + ", which it was told to follow";
+    selection.reason = "waits for the chosen track " + std::to_string(id);
   }
 }
 

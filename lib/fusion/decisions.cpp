@@ -30,7 +30,7 @@ Interval Decisions::limits() const {
 void Decisions::restart() {
   fuser_.reset();
   last_.reset();
-  heard_ = Time::zero();
+  sensor_time_ = Time::zero();
 }
 
 void Decisions::begin_anew() {
@@ -59,12 +59,12 @@ Decisions::Outcome Decisions::decide(const Frame& frame, Time at) {
     fuser_.set_geometry(geometry);
   }
   Outcome outcome{fuser_.update({.time = frame.time,
-                                 .heard = heard_,
+                                 .sensor_time = sensor_time_,
                                  .tracks = tracks_,
                                  .sensors = std::span(snapshot.sensors).first(snapshot.count),
                                  .pan = sensing::radians(snapshot.pan_degrees),
                                  .base_yaw_rate = sensing::radians(snapshot.base_degrees)}),
-                  snapshot, heard_};
+                  snapshot, sensor_time_};
   // The name outlives the rule table.
   auto name = names_.find(outcome.decision.rule_name);
   if (name == names_.end()) name = names_.emplace(outcome.decision.rule_name).first;
@@ -75,13 +75,14 @@ Decisions::Outcome Decisions::decide(const Frame& frame, Time at) {
 
 // A decision between two frames may have used later readings than this frame's: they stay in use. Where the difference
 // is larger than any disorder, running time began anew.
-Time Decisions::not_before_last(Time heard, bool live) const {
-  const bool later = heard < heard_ && heard_ - heard < sensing::Timeline<Reading>::kDisorder;
-  return live && later ? heard_ : heard;
+Time Decisions::not_before_last(Time sensor_time, bool live) const {
+  const bool later =
+      sensor_time < sensor_time_ && sensor_time_ - sensor_time < sensing::Timeline<Reading>::kDisorder;
+  return live && later ? sensor_time_ : sensor_time;
 }
 
-bool Decisions::may_follow(Time heard) const {
-  return last_ && heard - last_->heard <= kBetween;
+bool Decisions::may_follow(Time sensor_time) const {
+  return last_ && sensor_time - last_->sensor_time <= kBetween;
 }
 
 Decisions::Outcome Decisions::decide_frame(const Frame& frame, bool live) {
@@ -91,7 +92,7 @@ Decisions::Outcome Decisions::decide_frame(const Frame& frame, bool live) {
   return outcome;
 }
 
-std::optional<Decisions::Outcome> Decisions::decide_between(const Frame& frame, Time heard) {
+std::optional<Decisions::Outcome> Decisions::decide_between(const Frame& frame, Time sensor_time) {
   const auto same = [&](auto part) {
     return std::ranges::equal(std::span(frame.snapshot.*part).first(frame.snapshot.count),
                               std::span(last_->snapshot.*part).first(last_->snapshot.count));
@@ -99,9 +100,9 @@ std::optional<Decisions::Outcome> Decisions::decide_between(const Frame& frame, 
   // Other sensors are for the next frame.
   if (!same(&SensorSnapshot::bearings) || !same(&SensorSnapshot::fields_of_view)) return std::nullopt;
   if (same(&SensorSnapshot::sensors)) return std::nullopt;
-  heard_ = std::max(heard, heard_ + Time(1));
+  sensor_time_ = std::max(sensor_time, sensor_time_ + Time(1));
   last_ = frame;
-  return decide(frame, heard_);
+  return decide(frame, sensor_time_);
 }
 
 }  // namespace cerberus::fusion

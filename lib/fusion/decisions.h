@@ -31,37 +31,37 @@ class Decisions {
   void end();               // of the stream, or a flush: there is no last frame any more
   void forget();            // everything
 
-  // For the frame of `time`, with the readings until `heard`. live: between() may follow before the next frame.
-  // observe(Time heard, std::vector<Track>&) -> SensorSnapshot replaces the tracks by those of the frame.
+  // For the frame of `time`, with the readings until `sensor_time`. live: between() may follow before the next frame.
+  // observe(Time sensor_time, std::vector<Track>&) -> SensorSnapshot replaces the tracks by those of the frame.
   template <typename Observe>
-  Outcome frame(Time time, Time heard, bool live, Observe&& observe) {
+  Outcome frame(Time time, Time sensor_time, bool live, Observe&& observe) {
     const std::lock_guard guard(lock_);
-    heard_ = not_before_last(heard, live);
-    const Frame frame{time, heard_, observe(heard_, tracks_)};
+    sensor_time_ = not_before_last(sensor_time, live);
+    const Frame frame{time, sensor_time_, observe(sensor_time_, tracks_)};
     return decide_frame(frame, live);
   }
-  // Until the next frame: the last one once more, with the readings until `heard`. Nothing: no sensor has changed since
-  // the last decision, or there is no live frame of the last second.
-  // listen(Time heard, Time frame_time, SensorSnapshot&) brings the snapshot of the last frame up to `heard`.
+  // Until the next frame: the last one once more, with the readings until `sensor_time`. Nothing: no sensor has
+  // changed since the last decision, or there is no live frame of the last second.
+  // listen(Time sensor_time, Time frame_time, SensorSnapshot&) brings the snapshot of the last frame up to it.
   template <typename Listen>
-  std::optional<Outcome> between(Time heard, Listen&& listen) {
+  std::optional<Outcome> between(Time sensor_time, Listen&& listen) {
     const std::lock_guard guard(lock_);
-    if (!may_follow(heard)) return std::nullopt;
-    heard = std::max(heard, heard_);
+    if (!may_follow(sensor_time)) return std::nullopt;
+    sensor_time = std::max(sensor_time, sensor_time_);
     Frame frame = *last_;
-    listen(heard, frame.time, frame.snapshot);
-    return decide_between(frame, heard);
+    listen(sensor_time, frame.time, frame.snapshot);
+    return decide_between(frame, sensor_time);
   }
 
   // Calls publish(Time, const Outcome&) for each change that was decided and not published yet, in their order.
   template <typename Publish>
   void publish_changes(Publish&& publish) {
-    changes_.tell([&](const Change& change) { publish(change.time, change.outcome); });
+    changes_.deliver([&](const Change& change) { publish(change.time, change.outcome); });
   }
 
  private:
   struct Frame {
-    Time time, heard;
+    Time time, sensor_time;
     SensorSnapshot snapshot;
   };
   struct Change {
@@ -72,10 +72,10 @@ class Decisions {
     static bool replaces(const Change& newer, const Change& older);
   };
   // All with the lock held. `at`: the time with which a change is published.
-  Time not_before_last(Time heard, bool live) const;
-  bool may_follow(Time heard) const;
+  Time not_before_last(Time sensor_time, bool live) const;
+  bool may_follow(Time sensor_time) const;
   Outcome decide_frame(const Frame& frame, bool live);
-  std::optional<Outcome> decide_between(const Frame& frame, Time heard);
+  std::optional<Outcome> decide_between(const Frame& frame, Time sensor_time);
   Outcome decide(const Frame& frame, Time at);
   void restart();
 
@@ -84,7 +84,7 @@ class Decisions {
   Fuser fuser_;
   std::vector<Track> tracks_;                 // of the last frame
   std::set<std::string, std::less<>> names_;  // of all rules that have decided
-  Time heard_{};                              // by the last decision
+  Time sensor_time_{};                        // by the last decision
   std::optional<Frame> last_;                 // of a live stream
   threads::InOrder<Change> changes_{Change::replaces};
 };

@@ -54,7 +54,7 @@ struct Fuser::State {
   // The state that reset() clears.
   struct Memory {
     bool begun = false;
-    Time time{}, heard = kLongAgo;
+    Time time{}, sensor_time = kLongAgo;
 
     Follower follower;  // the camera's part
 
@@ -109,9 +109,9 @@ void Fuser::State::read_sensors(const Input& input) {
   // A turning base triggers its own sensors, and a module holds its output for a while after the turn.
   const bool turning = std::abs(input.base_yaw_rate) > sensing::kDoubtfulTurn;  // false for NaN
   if (turning || m.turning) m.tainted |= ones;  // also detections between two frames
-  if (m.turning && !turning) m.turned = input.heard;
+  if (m.turning && !turning) m.turned = input.sensor_time;
   m.turning = turning;
-  if (!turning && !within(sensing::kDoubtLinger, m.turned, input.heard)) m.tainted = 0;
+  if (!turning && !within(sensing::kDoubtLinger, m.turned, input.sensor_time)) m.tainted = 0;
   m.tainted &= ones;
   m.doubtful = m.tainted;
 
@@ -142,7 +142,8 @@ void Fuser::State::watch_sweep(const Input& input) {
   const Interval& sweep = m.places[m.place].sweep;
   m.seen_left = m.seen_left || input.pan <= sweep.from + kEdge;
   m.seen_right = m.seen_right || input.pan >= sweep.to - kEdge;
-  if (m.places.count < 2 || !m.seen_left || !m.seen_right || input.heard - m.arrived < options.dwell) return;
+  if (m.places.count < 2 || !m.seen_left || !m.seen_right || input.sensor_time - m.arrived < options.dwell)
+    return;
   look_at((m.place + 1) % m.places.count);
 }
 
@@ -171,7 +172,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     else
       m.place = 0;
   }
-  if (m.fired == 0 && !within(options.return_delay, m.detected, input.heard)) {
+  if (m.fired == 0 && !within(options.return_delay, m.detected, input.sensor_time)) {
     forget_places();
     next.limited = !options.limits.holds(0);
     return say(Action::zero, 7, "zero");
@@ -183,7 +184,7 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
   const double pan = std::clamp(input.pan, options.limits.from, options.limits.to);  // NaN stays NaN
   const Action action = approach(place, pan, m.inside, options.hysteresis);
   const bool inside = action == Action::search;
-  if (inside && !m.inside) m.arrived = input.heard;
+  if (inside && !m.inside) m.arrived = input.sensor_time;
   m.inside = inside;
   next.sector = inside ? place.sweep : place.wanted;
   next.limited = place.limited;
@@ -234,7 +235,7 @@ Decision Fuser::State::by_table(const Input& input, Decision next) {
     }
     case Action::zero:
       next.limited = !limits.holds(0);
-      if (within(options.return_delay, m.detected, input.heard)) {
+      if (within(options.return_delay, m.detected, input.sensor_time)) {
         next.action = Action::hold;
         next.rule = 0;
         next.rule_name = "return";
@@ -258,7 +259,7 @@ Decision Fuser::State::decide(const Input& input) {
   next.doubtful = m.doubtful;
   next.invalid = m.invalid;
   next.camera_found = m.follower.found(options.camera_hold, input.time);
-  if (next.camera_found || m.fired != 0) m.detected = input.heard;
+  if (next.camera_found || m.fired != 0) m.detected = input.sensor_time;
   next = options.rules == RuleSet::table ? by_table(input, next) : complete(input, next);
 
   // A person who stopped is detected neither by the camera nor by the PIR sensors, but is still there: rule 7 waits.
@@ -313,13 +314,13 @@ const Decision& Fuser::update(const Input& input) {
   if (state.memory.begun && input.time < state.memory.time) reset();
   const bool first = !state.memory.begun;
   Input now = input;
-  now.heard = std::max({input.heard, input.time, state.memory.heard});
+  now.sensor_time = std::max({input.sensor_time, input.time, state.memory.sensor_time});
   if (first)
     state.memory.detected =
-        now.heard;  // a detection before the first frame is possible, so return_delay starts here
+        now.sensor_time;  // a detection before the first frame is possible, so return_delay starts here
   state.memory.begun = true;
   state.memory.time = now.time;
-  state.memory.heard = now.heard;
+  state.memory.sensor_time = now.sensor_time;
 
   const Decision next = state.decide(now);
   const Decision& old = state.decision;

@@ -49,7 +49,7 @@ struct Track {
 
 struct Input {
   Time time{};                            // running time of the frame and its tracks
-  Time heard = Time::min();               // running time of sensors, pan and base, if that is later
+  Time sensor_time = Time::min();         // running time of sensors, pan and base, if that is later
   std::span<const Track> tracks;          // any order
   std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
   double pan = kUnknown;                  // radians
@@ -96,8 +96,9 @@ class Fuser {
 
   // Clears tracks, detections and timers (flush, DISCONT, new segment). Options, geometry and table are kept.
   void reset();
-  // Decides for one frame. A time before that of the last frame resets first; an earlier `heard` is raised to the last
-  // one. Timers expire during long gaps as with frames. The same frame may be passed again with newer sensor readings.
+  // Decides for one frame. A time before that of the last frame resets first; an earlier `sensor_time` is raised to
+  // the last one. Timers expire during long gaps as with frames. The same frame may be passed again with newer sensor
+  // readings.
   const Decision& update(const Input& input);
 
  private:

@@ -255,9 +255,9 @@ class Checker {
     });
   }
 
-  // Joins neighbouring pieces with the same verdict and calls tell(joined piece, verdict) for each verdict except 0.
-  template <typename Verdict, typename Tell>
-  void for_each_run(const Verdict& verdict, const Tell& tell) {
+  // Joins neighbouring pieces with the same verdict and calls take(joined piece, verdict) for each verdict except 0.
+  template <typename Verdict, typename Take>
+  void for_each_run(const Verdict& verdict, const Take& take) {
     Piece run = pieces_.front();
     int what = verdict(0);
     for (std::size_t i = 1; i < pieces_.size(); ++i) {
@@ -267,11 +267,11 @@ class Checker {
         run.to_included = pieces_[i].to_included;
         continue;
       }
-      if (what != 0) tell(run, what);
+      if (what != 0) take(run, what);
       run = pieces_[i];
       what = next;
     }
-    if (what != 0) tell(run, what);
+    if (what != 0) take(run, what);
   }
 
   const RuleTable& table_;

@@ -78,32 +78,32 @@ bool SensorInputs::frame_came(Time time, Time max_wait, std::vector<SilentSource
   return !flushing_;
 }
 
-void SensorInputs::give_up_silent(Time heard, Time patience, std::vector<SilentSource>& silent) {
+void SensorInputs::give_up_silent(Time sensor_time, Time patience, std::vector<SilentSource>& silent) {
   const std::lock_guard guard(lock_);
   for (SensorSource* source : sources_) {
     if (!source->linked || source->given_up || source->live == false) continue;
-    if (!source->spoken) source->spoken = heard;  // patience begins with the first frame
-    if (heard - *source->spoken <= patience) continue;
+    if (!source->spoken) source->spoken = sensor_time;  // patience begins with the first frame
+    if (sensor_time - *source->spoken <= patience) continue;
     source->given_up = true;
     silent.push_back({source->name, source->history.ended()});
   }
 }
 
-void SensorInputs::read(Time heard, SensorSnapshot& snapshot) {
+void SensorInputs::read(Time sensor_time, SensorSnapshot& snapshot) {
   snapshot.count = 0;
-  snapshot.told = true;
+  snapshot.geometry_known = true;
   unsigned place = 0;
   for (SensorSource* source : sources_) {
     for (; place < source->index; ++place) {
       snapshot.add(unknown_sensor());
-      snapshot.told = false;
+      snapshot.geometry_known = false;
     }
     ++place;
-    Reading reading = source->history.at(heard);
-    source->history.forget_before(heard);
+    Reading reading = source->history.at(sensor_time);
+    source->history.forget_before(sensor_time);
     if (!reading.array) {
       reading = unknown_sensor();
-      snapshot.told = false;
+      snapshot.geometry_known = false;
     }
     if (!source->linked || source->given_up) reading.values.fill(kInvalid);
     snapshot.add(reading);

@@ -41,9 +41,9 @@ class SensorInputs {
   // (Time::max(): without end, zero: not at all); groups that are still missing then are given up and added to
   // `silent`. False: the video was flushed meanwhile.
   bool frame_came(Time time, Time max_wait, std::vector<SilentSource>& silent);
-  // For a video that does not wait: gives up the linked groups without a reading in the last `patience` before `heard`,
-  // but for recordings, whose last reading stays true.
-  void give_up_silent(Time heard, Time patience, std::vector<SilentSource>& silent);
+  // For a video that does not wait: gives up the linked groups without a reading in the last `patience` before
+  // `sensor_time`, but for recordings, whose last reading stays true.
+  void give_up_silent(Time sensor_time, Time patience, std::vector<SilentSource>& silent);
   void begin_video();  // a new stream, or after a flush
   void end_video() { set(video_ended_, true); }
   void set_flushing(bool flushing) { set(flushing_, flushing); }
@@ -69,9 +69,9 @@ class SensorInputs {
   int places_besides(const SensorSource& source) const;
 
  protected:
-  // Puts the readings at `heard` in place of the snapshot's sensors, and forgets what no later frame can ask for. With
-  // the lock held.
-  void read(Time heard, SensorSnapshot& snapshot);
+  // Puts the readings at `sensor_time` in place of the snapshot's sensors, and forgets what no later frame can ask
+  // for. With the lock held.
+  void read(Time sensor_time, SensorSnapshot& snapshot);
   void forget();  // all but the groups' places; with the lock held
 
   std::mutex lock_;

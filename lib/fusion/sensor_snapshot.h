@@ -15,11 +15,11 @@ struct SensorSnapshot {
   std::array<double, sensing::kMaxSensors> bearings{}, fields_of_view{};  // radians
   std::size_t count = 0;
   double pan_degrees = kUnknown;
-  double base_degrees = kUnknown;  // a second
-  bool pan_on_frame = false;       // the frame carried the pose
-  bool base_heard = false;         // the rate came as an event, which the PIR sources have received too
-  bool told = true;                // the geometry of all sensors is known, none is assumed
-  const char* stranger = nullptr;  // interned: another head, whose pose was received
+  double base_degrees = kUnknown;    // a second
+  bool pan_on_frame = false;         // the frame carried the pose
+  bool base_received = false;        // the rate came as an event, which the PIR sources have received too
+  bool geometry_known = true;        // the geometry of all sensors is known, none is assumed
+  const char* other_head = nullptr;  // interned: another head, whose pose was received
 
   // Appends the sensors of one group; those beyond sensing::kMaxSensors are dropped.
   void add(const Reading& reading);

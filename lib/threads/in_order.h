@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A queue through which several threads publish items in the order in which they were put in. One thread at a time
 // delivers, without holding a lock, because a callback may take long or call back. An item may therefore be delivered
-// by another thread, after tell() has returned to the thread that put it in. Thread-safe; allocates only in the
+// by another thread, after deliver() has returned to the thread that put it in. Thread-safe; allocates only in the
 // constructor.
 #pragma once
 
@@ -36,25 +36,25 @@ class InOrder {
     const std::lock_guard guard(lock_);
     while (waiting_ > 0) take();
   }
-  // Delivers the waiting items by tell(const T&), unless another thread is delivering. Call it after put(), without a
+  // Delivers the waiting items by deliver(const T&), unless another thread is delivering. Call it after put(), without a
   // lock that other threads need.
-  template <typename Tell>
-  void tell(Tell&& tell) {
+  template <typename Deliver>
+  void deliver(Deliver&& deliver) {
     std::unique_lock guard(lock_);
-    if (telling_) return;
+    if (delivering_) return;
     const Turn turn(*this, guard);
     while (waiting_ > 0) {
       const T thing = take();
       guard.unlock();
-      tell(thing);
+      deliver(thing);
       guard.lock();
     }
   }
   // Waits until no other thread is delivering, so that every item put in before has been delivered when the caller has
-  // called tell(). Returns at once inside a delivery, and after `limit`: a callback may itself wait for the caller.
+  // called deliver(). Returns at once inside a delivery, and after `limit`: a callback may itself wait for the caller.
   void wait(std::chrono::nanoseconds limit) {
     std::unique_lock guard(lock_);
-    idle_.wait_for(guard, limit, [&] { return !telling_ || teller_ == std::this_thread::get_id(); });
+    idle_.wait_for(guard, limit, [&] { return !delivering_ || deliverer_ == std::this_thread::get_id(); });
   }
 
  private:
@@ -62,12 +62,12 @@ class InOrder {
   class Turn {
    public:
     Turn(InOrder& order, std::unique_lock<std::mutex>& guard) : order_(order), guard_(guard) {
-      order_.telling_ = true;
-      order_.teller_ = std::this_thread::get_id();
+      order_.delivering_ = true;
+      order_.deliverer_ = std::this_thread::get_id();
     }
     ~Turn() {
       if (!guard_.owns_lock()) guard_.lock();
-      order_.telling_ = false;
+      order_.delivering_ = false;
       order_.idle_.notify_all();
     }
     Turn(const Turn&) = delete;
@@ -106,8 +106,8 @@ class InOrder {
   std::mutex lock_;
   std::vector<T> things_ = std::vector<T>(kMost);  // on the heap, so that the owner stays small
   std::size_t first_ = 0, waiting_ = 0;
-  bool telling_ = false;
-  std::thread::id teller_;  // the thread that delivers, while telling_
+  bool delivering_ = false;
+  std::thread::id deliverer_;  // the thread that delivers, while delivering_
   std::condition_variable idle_;
 };
 

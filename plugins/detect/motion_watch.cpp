@@ -143,7 +143,7 @@ void MotionWatch::announce(MotionEvents::Change change, std::span<const TrackEve
 }
 
 void MotionWatch::post() {
-  messages_.tell(
+  messages_.deliver(
       [&](const Message& m) { gst_element_post_message(element_, gst_message_ref(m.message.get())); });
 }
 

@@ -12,22 +12,23 @@ bool is_named(const CerberusPose& pose, const std::string& head) {
   return head.empty() || head == pose.head;
 }
 
-void Inputs::listen(Time heard, Time frame_time, const std::string& head, SensorSnapshot& snapshot) {
+void Inputs::listen(Time sensor_time, Time frame_time, const std::string& head, SensorSnapshot& snapshot) {
   const std::lock_guard guard(lock_);
-  read(heard, snapshot);
-  const auto* pose = poses_.entry_at(heard);
+  read(sensor_time, snapshot);
+  const auto* pose = poses_.entry_at(sensor_time);
   if (pose && is_named(pose->value, head) && (pose->time > frame_time || !snapshot.pan_on_frame))
-    cerberus_pose_evaluate(&pose->value, clock_time(heard), &snapshot.pan_degrees, nullptr);
-  if (const auto rate = base_.at(heard)) snapshot.base_degrees = *rate;
+    cerberus_pose_evaluate(&pose->value, clock_time(sensor_time), &snapshot.pan_degrees, nullptr);
+  if (const auto rate = base_.at(sensor_time)) snapshot.base_degrees = *rate;
 }
 
-SensorSnapshot Inputs::at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame) {
+SensorSnapshot Inputs::at(Time time, Time sensor_time, const std::string& head, bool by_event,
+                          GstBuffer* frame) {
   SensorSnapshot snapshot;
   const CerberusPose* on_frame = cerberus_buffer_peek_pose(frame);
   const CerberusBase* seen = cerberus_buffer_peek_base(frame);
   const std::lock_guard guard(lock_);
-  read(heard, snapshot);
-  snapshot.stranger = stranger_;
+  read(sensor_time, snapshot);
+  snapshot.other_head = other_head_;
 
   const CerberusPose* pose = on_frame && is_named(*on_frame, head) ? on_frame : nullptr;
   snapshot.pan_on_frame = pose != nullptr;
@@ -40,7 +41,7 @@ SensorSnapshot Inputs::at(Time time, Time heard, const std::string& head, bool b
   if (pose) cerberus_pose_evaluate(pose, clock_time(taken_), &snapshot.pan_degrees, nullptr);
   if (const auto rate = base_.at(time)) {
     snapshot.base_degrees = *rate;
-    snapshot.base_heard = true;
+    snapshot.base_received = true;
   } else if (seen) {
     snapshot.base_degrees = seen->yaw_rate;
   }
@@ -55,9 +56,9 @@ void Inputs::add_pose(const CerberusPose& pose) {
   poses_.insert(time_of(pose.valid_from), pose);
 }
 
-void Inputs::add_stranger(const CerberusPose& pose) {
+void Inputs::add_other_head(const CerberusPose& pose) {
   const std::lock_guard guard(lock_);
-  stranger_ = pose.head;
+  other_head_ = pose.head;
 }
 
 void Inputs::add_base(double degrees_a_second, Time from) {
@@ -95,7 +96,7 @@ void Inputs::forget() {
   for (fusion::SensorSource* source : sources_) static_cast<PirPad*>(source)->reset();
   poses_.clear();
   base_.clear();
-  stranger_ = nullptr;
+  other_head_ = nullptr;
   SensorInputs::forget();
 }
 

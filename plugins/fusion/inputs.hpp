@@ -25,17 +25,17 @@ bool is_named(const CerberusPose& pose, const std::string& head);
 class Inputs : public fusion::SensorInputs {
  public:
   // ---- the thread that decides: the video's, or a PIR thread between two frames
-  // Pan of the head of this name (empty: any) and base at `time`, sensors at `heard`. The pose on `frame` has priority
-  // over a pose event (by_event: they count), a base event over the base on `frame`: an application knows its robot.
-  // Forgets what no later frame can ask for.
-  SensorSnapshot at(Time time, Time heard, const std::string& head, bool by_event, GstBuffer* frame);
-  // Brings the snapshot of the frame of `frame_time` up to `heard`: the sensors' readings; the pan by the newest pose
-  // event, unless the frame carried a pose that is not older; the base's rate, where an event has reported it.
-  void listen(Time heard, Time frame_time, const std::string& head, SensorSnapshot& snapshot);
+  // Pan of the head of this name (empty: any) and base at `time`, sensors at `sensor_time`. The pose on `frame` has
+  // priority over a pose event (by_event: they count), a base event over the base on `frame`: an application knows its
+  // robot. Forgets what no later frame can ask for.
+  SensorSnapshot at(Time time, Time sensor_time, const std::string& head, bool by_event, GstBuffer* frame);
+  // Brings the snapshot of the frame of `frame_time` up to `sensor_time`: the sensors' readings; the pan by the newest
+  // pose event, unless the frame carried a pose that is not older; the base's rate, where an event has reported it.
+  void listen(Time sensor_time, Time frame_time, const std::string& head, SensorSnapshot& snapshot);
 
   // ---- upstream events
   void add_pose(const CerberusPose& pose);
-  void add_stranger(const CerberusPose& pose);  // of another head than the one that counts
+  void add_other_head(const CerberusPose& pose);  // of another head than the one that counts
   void add_base(double degrees_a_second, Time from);
 
   // ---- PIR pads (those of pir_pad.hpp), in the order of their numbers
@@ -49,7 +49,7 @@ class Inputs : public fusion::SensorInputs {
  private:
   sensing::Timeline<CerberusPose> poses_;
   sensing::BaseRates base_;
-  const char* stranger_ = nullptr;
+  const char* other_head_ = nullptr;
   Time taken_{};  // of the picture on the last frame
 };
 

@@ -35,7 +35,7 @@ bool refuse(GstElement* element, GstPad* pad, const std::string& fault) {
   return false;
 }
 
-// Of sensors that tell volts nothing is known any more.
+// Resets the model of sensors that send volts: their state is unknown.
 void begin_levels(PirPad& pir) {
   pir.levels.begin(pir.info.format == CERBERUS_PIR_LEVEL ? pir.info.sensors : 0, pir.level);
   pir.faults.fill(sensing::PirFault::none);

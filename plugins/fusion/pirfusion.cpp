@@ -99,8 +99,8 @@ struct State {  // video thread only
   GstSegment segment;
   std::optional<bool> live;  // nothing: not known
   Time time{};               // of the last frame
-  double base_told = 0;      // to the PIR pads, degrees a second
-  Time base_told_at{};
+  double base_sent = 0;      // to the PIR pads, degrees a second
+  Time base_sent_at{};
   int rules_sensors = 0;  // of which the rules speak; 0: any number
   fusion::SettingsCheck misfits;
 
@@ -172,7 +172,7 @@ void apply_settings(CerberusPirFusion* self) {
 // Until when readings count for a frame of `time`. Live, until now: a frame comes an exposure, a transfer and the whole
 // analysis after its time, and 60 ms are all that may pass from a sensor's edge to the motors. But a recording of
 // sensors may be ahead of the video, and is not believed before its time.
-Time heard_until(CerberusPirFusion* self, Time time, bool live) {
+Time sensor_time_of(CerberusPirFusion* self, Time time, bool live) {
   return live ? std::max(time, clock_now(self).value_or(time)) : time;
 }
 
@@ -188,7 +188,7 @@ void warn_of(CerberusPirFusion* self, const std::vector<fusion::SilentSource>& s
   }
 }
 
-void tell_changes(CerberusPirFusion* self) {
+void publish_changes(CerberusPirFusion* self) {
   self->priv->decisions.publish_changes([self](Time time, const fusion::Decisions::Outcome& outcome) {
     const CerberusFusion fusion = as_fusion(outcome);
     const CerberusStamp stamp = self->priv->stamps.at(clock_time(time));
@@ -205,14 +205,14 @@ void decide_between_frames(CerberusPirFusion* self) {
   Private& priv = *self->priv;
   const std::string head = priv.settings.snapshot().head;
   const auto outcome =
-      priv.decisions.between(*now, [&](Time heard, Time frame_time, SensorSnapshot& snapshot) {
-        priv.inputs.listen(heard, frame_time, head, snapshot);
+      priv.decisions.between(*now, [&](Time sensor_time, Time frame_time, SensorSnapshot& snapshot) {
+        priv.inputs.listen(sensor_time, frame_time, head, snapshot);
       });
   if (!outcome) return;
   CerberusFusion fusion = as_fusion(*outcome);
   cerberus_fusion_set_head(&fusion, head.c_str());
   gst_pad_push_event(priv.src, cerberus_event_new_fusion(&fusion));
-  tell_changes(self);
+  publish_changes(self);
 }
 
 void warn_of_misfits(CerberusPirFusion* self, const Settings& s, const SensorSnapshot& moment) {
@@ -236,16 +236,16 @@ void pass_base_on(CerberusPirFusion* self, Time time, const SensorSnapshot& mome
   constexpr double kMatters = 1;  // degrees a second
   const auto doubtful = [](double rate) { return std::abs(sensing::radians(rate)) > sensing::kDoubtfulTurn; };
   State& state = *self->priv->state;
-  const double told = state.base_told;
+  const double sent = state.base_sent;
   const double rate = std::isfinite(moment.base_degrees) ? moment.base_degrees : 0;
-  if (moment.base_heard) return;
+  if (moment.base_received) return;
   const bool same =
-      rate == told || (rate != 0 && std::abs(rate - told) < kMatters && doubtful(rate) == doubtful(told));
-  const Time since = time - state.base_told_at;
+      rate == sent || (rate != 0 && std::abs(rate - sent) < kMatters && doubtful(rate) == doubtful(sent));
+  const Time since = time - state.base_sent_at;
   const bool fresh = since >= Time::zero() && since < sensing::kBaseLifetime / 2;
   if (same && (fresh || rate == 0)) return;
-  state.base_told = rate;
-  state.base_told_at = time;
+  state.base_sent = rate;
+  state.base_sent_at = time;
   CerberusBase base;
   cerberus_base_init(&base);
   base.yaw_rate = rate;
@@ -271,15 +271,15 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     const Time max_wait = settings.max_wait == GST_CLOCK_TIME_NONE ? Time::max() : time_of(settings.max_wait);
     if (!priv.inputs.frame_came(state.time, waits ? max_wait : Time::zero(), silent))
       return GST_FLOW_FLUSHING;
-    const Time heard = heard_until(self, state.time, state.live == true);
+    const Time sensor_time = sensor_time_of(self, state.time, state.live == true);
     if (!waits && settings.lost_after > 0)
-      priv.inputs.give_up_silent(heard, time_of(settings.lost_after), silent);
+      priv.inputs.give_up_silent(sensor_time, time_of(settings.lost_after), silent);
     warn_of(self, silent, waits ? settings.max_wait : settings.lost_after);
     const CerberusPose* carried = cerberus_buffer_peek_pose(buffer.get());
     const bool by_event = !(carried && is_named(*carried, settings.head)) &&
                           (state.live == true || priv.pose_thread.poses_count(GST_ELEMENT(self)));
     const auto outcome = priv.decisions.frame(
-        state.time, heard, state.live == true, [&](Time until, std::vector<fusion::Track>& tracks) {
+        state.time, sensor_time, state.live == true, [&](Time until, std::vector<fusion::Track>& tracks) {
           read_tracks(buffer.get(), tracks);
           return priv.inputs.at(state.time, until, settings.head, by_event, buffer.get());
         });
@@ -289,7 +289,7 @@ GstFlowReturn video_chain(GstPad* pad, GstObject* parent, GstBuffer* taken) {
     buffer.reset(gst_buffer_make_writable(buffer.release()));
     cerberus_buffer_set_fusion(buffer.get(), &fusion);
     priv.stamps.mark(pad, buffer.get(), clock_time(state.time), settings.camera_name);
-    tell_changes(self);
+    publish_changes(self);
     return gst_pad_push(priv.src, buffer.release());
   });
 }
@@ -357,7 +357,7 @@ void listen(Private& priv, GstEvent* event) {
     priv.pose_thread.on_pose(pose->head);
     priv.inputs.add_pose(*pose);
   } else if (pose)
-    priv.inputs.add_stranger(*pose);
+    priv.inputs.add_other_head(*pose);
   else if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
     priv.inputs.add_base(base->yaw_rate, time_of(base->valid_from));
 }

@@ -275,8 +275,7 @@ GstFlowReturn agree_again(CerberusPirSrc* self) {
   return GST_PAD_IS_FLUSHING(GST_BASE_SRC_PAD(self)) ? GST_FLOW_FLUSHING : GST_FLOW_NOT_NEGOTIATED;
 }
 
-// What ends in EOS behind an error message would end so in any
-// case; behind GST_FLOW_ERROR the base class would tell it again.
+// Returns EOS after an error message was posted: for GST_FLOW_ERROR the base class would post another one.
 GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
   Private& priv = *self->priv;
   for (;;) {

@@ -9,15 +9,15 @@
 namespace cerberus::plugin {
 
 // The C API's actions are lib's, number by number.
-constexpr CerberusFusionAction told(fusion::Action action) {
+constexpr CerberusFusionAction to_c(fusion::Action action) {
   return static_cast<CerberusFusionAction>(action);
 }
-static_assert(told(fusion::Action::track) == CERBERUS_FUSION_TRACK &&
-              told(fusion::Action::turn_left) == CERBERUS_FUSION_TURN_LEFT &&
-              told(fusion::Action::turn_right) == CERBERUS_FUSION_TURN_RIGHT &&
-              told(fusion::Action::search) == CERBERUS_FUSION_SEARCH &&
-              told(fusion::Action::zero) == CERBERUS_FUSION_ZERO &&
-              told(fusion::Action::hold) == CERBERUS_FUSION_HOLD);
+static_assert(to_c(fusion::Action::track) == CERBERUS_FUSION_TRACK &&
+              to_c(fusion::Action::turn_left) == CERBERUS_FUSION_TURN_LEFT &&
+              to_c(fusion::Action::turn_right) == CERBERUS_FUSION_TURN_RIGHT &&
+              to_c(fusion::Action::search) == CERBERUS_FUSION_SEARCH &&
+              to_c(fusion::Action::zero) == CERBERUS_FUSION_ZERO &&
+              to_c(fusion::Action::hold) == CERBERUS_FUSION_HOLD);
 
 // The choice of a target. Each module registers the enumeration under a name of its own.
 inline GType register_target_choice(const char* name) {

@@ -11,15 +11,15 @@ class Complaint {
  public:
   // `wrong`: the present failure; empty: none. Returns true if it is to be posted: it is new or has changed.
   bool is_new(std::string_view wrong) {
-    if (wrong == told_) return false;
-    told_ = wrong;
-    return !told_.empty();
+    if (wrong == reported_) return false;
+    reported_ = wrong;
+    return !reported_.empty();
   }
   // Begins anew: the next failure is posted again.
-  void forget() { told_.clear(); }
+  void forget() { reported_.clear(); }
 
  private:
-  std::string told_;
+  std::string reported_;
 };
 
 }  // namespace cerberus::plugin

@@ -135,7 +135,7 @@ gboolean transform_size(GstBaseTransform* trans, GstPadDirection, GstCaps*, gsiz
   return get_unit_size(trans, others, size);
 }
 
-void tell_reach(GstBaseTransform* trans, Private& self) {
+void publish_reach(GstBaseTransform* trans, Private& self) {
   const auto& geometry = self.state.view.geometry();
   self.pan_reach = degrees(geometry.pan_reach());
   self.tilt_reach = degrees(geometry.tilt_reach());
@@ -162,7 +162,7 @@ gboolean set_caps(GstBaseTransform* trans, GstCaps* in, GstCaps* out) {
                              ("%" GST_PTR_FORMAT " to %" GST_PTR_FORMAT, in, out));
     if (!wrong.empty()) return FALSE;
     state.warned = false;
-    tell_reach(trans, self);
+    publish_reach(trans, self);
     return TRUE;
   });
 }
@@ -177,7 +177,7 @@ void apply_settings(GstBaseTransform* trans, Private& self) {
   state.settings = *changed;
   if (!moved) return;
   if (const std::string wrong = state.view.set_angles(*changed); wrong.empty())
-    tell_reach(trans, self);
+    publish_reach(trans, self);
   else
     CERBERUS_ELEMENT_WARNING(trans, RESOURCE, SETTINGS, ("%s The old angles stay.", wrong.c_str()),
                              (nullptr));
@@ -234,7 +234,7 @@ void attach_base(GstBuffer* in, GstBuffer* out) {
 // the last frame may have been lost on its way to the head.
 constexpr Time kLost = std::chrono::milliseconds(500);
 
-// Tells the head that no frame is taken from running time `begin` until `in`.
+// Announces to the head that no frame is taken from running time `begin` until `in`.
 void push_gap(GstBaseTransform* trans, std::optional<Time> begin, GstBuffer* in) {
   const GstClockTime until = GST_BUFFER_PTS(in);
   if (!begin || !GST_CLOCK_TIME_IS_VALID(until)) return;
@@ -319,10 +319,10 @@ GstFlowReturn make_frame(GstBaseTransform* trans, GstBuffer* in, GstBuffer* out)
   if (state.view.draw(in, place, state.settings.inset, out)) return GST_FLOW_OK;
 
   // The buffer has no valid picture: the output is black and marked by a flag.
-  const bool told = GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_CORRUPTED) || state.warned;
+  const bool reported = GST_BUFFER_FLAG_IS_SET(in, GST_BUFFER_FLAG_CORRUPTED) || state.warned;
   gst_buffer_memset(out, 0, 0, gst_buffer_get_size(out));
   GST_BUFFER_FLAG_SET(out, GST_BUFFER_FLAG_CORRUPTED);
-  if (!told) {
+  if (!reported) {
     state.warned = true;
     CERBERUS_ELEMENT_WARNING(trans, STREAM, DECODE,
                              ("A buffer does not hold the picture that its caps promise."),
@@ -352,7 +352,7 @@ gboolean sink_event(GstBaseTransform* trans, GstEvent* event) {
   Private& self = *cerberus_virtual_ptz_self(trans)->priv;
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_START) self.feed.interrupt(true);
   if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP) {
-    // Before the others hear of it: what they tell from now on is of the new time.
+    // Before the event goes on: poses that are published after it are of the new time.
     self.feed.forget();
     self.feed.interrupt(false);
     self.state.times.forget();

@@ -68,7 +68,7 @@ GST_START_TEST(the_chosen_one_is_followed_whatever_the_usual_choice_is_until_aut
     scene.assert_looks_at(kFirst);
     fail_unless(scene.rig.follow(2));
     scene.frames(1);
-    scene.assert_says("told to follow 2");
+    scene.assert_says("follows the chosen track 2");
     scene.frames(500);
     scene.assert_looks_at(kSecond);
     scene.assert_says("");  // nothing more
@@ -89,9 +89,9 @@ GST_START_TEST(while_the_chosen_track_is_away_no_other_is_followed) {
     scene.assert_looks_at(kSecond);
     scene.frames(120, true, false);  // 4.8 s
     scene.assert_looks_at(kSecond);
-    scene.assert_says("waits for 2, which it was told to follow");
+    scene.assert_says("waits for the chosen track 2");
     scene.frames(10);
-    scene.assert_says("told to follow 2");
+    scene.assert_says("follows the chosen track 2");
     scene.frames(120, true, false);
     scene.assert_looks_at(kSecond);
     scene.assert_no_warning();

@@ -153,7 +153,7 @@ GST_END_TEST
 
 GST_START_TEST(an_order_that_goes_on_says_so) {
   for (const Answers answers : {Answers::at_once, Answers::on_a_thread})
-    assert_said("manual stopped, manual (told to move), stopped manual", answers, [answers] {
+    assert_said("manual stopped, manual (manual command: move), stopped manual", answers, [answers] {
       Rig rig(answers == Answers::on_a_thread ? scripted("") : "", Source::live);
       fail_unless(rig.call("move-to", 90, 0));
       gst_element_set_state(rig.element, GST_STATE_PAUSED);

@@ -223,13 +223,13 @@ GST_START_TEST(rules_for_another_number_of_sensors_are_warned_of_once) {
   for (const int sensors : {1, 2, 5}) {
     const std::string text = said("rules=paper", sensors);
     fail_unless(
-        text.starts_with("rules=paper speaks of 3 PIR sensors, and there are " + std::to_string(sensors)),
+        text.starts_with("rules=paper is for 3 PIR sensors, and there are " + std::to_string(sensors)),
         "%s", text.c_str());
   }
   fail_unless(said("rules=paper", 3).empty());
   fail_unless(said("rules=complete", 5).empty());
   fail_unless(said(two.property(), 2).empty());
-  fail_unless(said(two.property(), 3).starts_with(two.path() + " speaks of 2 PIR sensors, and there are 3"));
+  fail_unless(said(two.property(), 3).starts_with(two.path() + " is for 2 PIR sensors, and there are 3"));
 }
 GST_END_TEST
 

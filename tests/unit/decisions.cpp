@@ -26,12 +26,13 @@ struct Stream {
   Decisions decisions{inputs};
 
   Stream() { inputs.set_flushing(false); }
-  Decisions::Outcome frame(Time time, Time heard, std::uint8_t value, bool live = true) {
-    return decisions.frame(time, heard, live, [&](Time, std::vector<Track>&) { return snapshot_of(value); });
+  Decisions::Outcome frame(Time time, Time sensor_time, std::uint8_t value, bool live = true) {
+    return decisions.frame(time, sensor_time, live,
+                           [&](Time, std::vector<Track>&) { return snapshot_of(value); });
   }
-  std::optional<Decisions::Outcome> between(Time heard, std::uint8_t value, double bearing = 0) {
+  std::optional<Decisions::Outcome> between(Time sensor_time, std::uint8_t value, double bearing = 0) {
     return decisions.between(
-        heard, [&](Time, Time, SensorSnapshot& snapshot) { snapshot = snapshot_of(value, bearing); });
+        sensor_time, [&](Time, Time, SensorSnapshot& snapshot) { snapshot = snapshot_of(value, bearing); });
   }
   std::vector<Time> published() {
     std::vector<Time> times;

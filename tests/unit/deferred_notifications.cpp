@@ -57,19 +57,19 @@ START_TEST(a_full_queue_loses_statuses_and_neither_a_warning_nor_another_heads_s
   out.add(Notice(Status{HeadState::fault, "of a", {}, {}}));
   head = "b";
   for (int k = 0; k < 300; ++k) out.add(Notice(Status{HeadState::turning, std::to_string(k), {}, {}}));
-  std::string told;
+  std::string sent;
   int statuses = 0;
   out.send([](const char*, const motion::Pose&) {},
            [&](const char* whose, const Notice& notice) {
              if (const auto* fault = std::get_if<Fault>(&notice))
-               told += std::string(whose) + " " + fault->what + ". ";
+               sent += std::string(whose) + " " + fault->what + ". ";
              if (const auto* status = std::get_if<Status>(&notice)) {
-               if (*whose == 'a') told += "a " + status->reason + ". ";
+               if (*whose == 'a') sent += "a " + status->reason + ". ";
                statuses += *whose == 'b';
-               if (status->reason == "299") told += "b 299. ";
+               if (status->reason == "299") sent += "b 299. ";
              }
            });
-  ck_assert_str_eq(told.c_str(), "a no power. a too hot. a of a. b 299. ");
+  ck_assert_str_eq(sent.c_str(), "a no power. a too hot. a of a. b 299. ");
   ck_assert_int_eq(statuses, 253);
 }
 END_TEST

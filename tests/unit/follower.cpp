@@ -6,7 +6,7 @@ using namespace stream;
 
 START_TEST(a_track_is_followed_and_kept_half_a_second) {
   Stream stream;
-  stream.tracks = {somebody(7)};
+  stream.tracks = {person(7)};
   const Decision& decision = stream.frame();
   assert_says(decision, Action::track, 1, "camera");
   ck_assert(decision.camera_found && decision.target == 7);
@@ -22,7 +22,7 @@ END_TEST
 
 START_TEST(the_one_followed_is_kept_though_others_are_nearer) {
   Stream stream;
-  Track far = somebody(1), near = somebody(2);
+  Track far = person(1), near = person(2);
   far.distance = 9;
   near.distance = 3;
   stream.tracks = {far};
@@ -37,7 +37,7 @@ START_TEST(the_one_followed_is_kept_though_others_are_nearer) {
 END_TEST
 
 START_TEST(a_target_is_chosen_by_nearness_size_or_newness) {
-  Track near = somebody(1), large = somebody(2), newest = somebody(3);
+  Track near = person(1), large = person(2), newest = person(3);
   near.distance = 2;
   large.distance = 5;
   large.width = 200;
@@ -61,7 +61,7 @@ END_TEST
 
 START_TEST(without_distances_the_lowest_feet_are_the_nearest) {
   Stream stream;
-  Track high = somebody(1), low = somebody(2);
+  Track high = person(1), low = person(2);
   low.y = 90;
   stream.tracks = {high, low};
   ck_assert_int_eq(stream.frame().target, 2);
@@ -70,8 +70,7 @@ END_TEST
 
 START_TEST(a_seen_track_precedes_a_stopped_one_and_a_coasted_one) {
   Stream stream;
-  Track coasted = somebody(1, TrackState::coasted), stopped = somebody(2, TrackState::stopped),
-        seen = somebody(3);
+  Track coasted = person(1, TrackState::coasted), stopped = person(2, TrackState::stopped), seen = person(3);
   coasted.distance = 1;
   stopped.distance = 2;
   seen.distance = 8;
@@ -85,9 +84,9 @@ END_TEST
 
 START_TEST(a_stopped_track_is_followed_for_half_a_minute_and_then_left) {
   Stream stream;
-  stream.tracks = {somebody(7)};
+  stream.tracks = {person(7)};
   const Decision& decision = stream.frame();
-  stream.tracks = {somebody(7, TrackState::stopped)};
+  stream.tracks = {person(7, TrackState::stopped)};
   stream.frame();
   stream.frames(30s - 1ms);
   assert_says(decision, Action::track, 1, "camera");
@@ -95,10 +94,10 @@ START_TEST(a_stopped_track_is_followed_for_half_a_minute_and_then_left) {
   ck_assert_int_eq(decision.target, 0);
   stream.frames(6s);
   assert_says(decision, Action::zero, 7, "zero");
-  stream.tracks = {somebody(7)};  // moves again
+  stream.tracks = {person(7)};  // moves again
   stream.frame();
   ck_assert_int_eq(decision.target, 7);
-  stream.tracks = {somebody(7, TrackState::stopped)};  // and has another half minute
+  stream.tracks = {person(7, TrackState::stopped)};  // and has another half minute
   stream.frame();
   stream.frames(29s);
   ck_assert_int_eq(decision.target, 7);
@@ -107,10 +106,10 @@ END_TEST
 
 START_TEST(a_track_that_moves_in_between_has_another_half_minute) {
   Stream stream;
-  stream.tracks = {somebody(7)};
+  stream.tracks = {person(7)};
   const Decision& decision = stream.frame();
   for (const TrackState state : {TrackState::stopped, TrackState::seen, TrackState::stopped}) {
-    stream.tracks = {somebody(7, state)};
+    stream.tracks = {person(7, state)};
     stream.frames(20s);
     ck_assert_int_eq(decision.target, 7);
   }
@@ -120,9 +119,9 @@ END_TEST
 START_TEST(rule_7_waits_for_a_stopped_person_even_when_the_track_is_gone) {
   for (const FuserOptions& options : {FuserOptions{}, paper_options()}) {
     Stream stream(options);
-    stream.tracks = {somebody(7)};
+    stream.tracks = {person(7)};
     const Decision& decision = stream.frame();
-    stream.tracks = {somebody(7, TrackState::stopped)};
+    stream.tracks = {person(7, TrackState::stopped)};
     stream.frame();
     stream.tracks.clear();
     stream.frames(10s);

@@ -43,7 +43,7 @@ END_TEST
 
 START_TEST(the_head_returns_five_seconds_after_the_last_detection) {
   Stream stream;
-  stream.tracks = {somebody(7)};
+  stream.tracks = {person(7)};
   const Decision& decision = stream.frame();
   stream.tracks.clear();
   stream.frames(500ms - kFrame);  // the last frame with "camera found"
@@ -127,9 +127,9 @@ END_TEST
 START_TEST(sensors_and_base_have_a_time_of_their_own) {
   Fuser fuser;
   std::vector<std::uint8_t> sensors{1, 0, 0};
-  const auto hear = [&](Time frame, Time heard, double yaw_rate) -> const Decision& {
+  const auto hear = [&](Time frame, Time sensor_time, double yaw_rate) -> const Decision& {
     return fuser.update({.time = frame,
-                         .heard = heard,
+                         .sensor_time = sensor_time,
                          .tracks = {},
                          .sensors = sensors,
                          .pan = 0,
@@ -166,7 +166,7 @@ START_TEST(the_paper_holds_where_it_has_no_track) {
   stream.sensors = {0, 0, 0};  // no return delay
   stream.frame();
   assert_says(decision, Action::zero, 7, "rule 7");
-  stream.tracks = {somebody(3)};
+  stream.tracks = {person(3)};
   stream.sensors = {1, 1, 1};
   stream.frame();
   assert_says(decision, Action::track, 1, "rule 1");
@@ -249,7 +249,7 @@ END_TEST
 
 START_TEST(time_that_goes_back_starts_anew) {
   Stream stream;
-  stream.tracks = {somebody(7, TrackState::stopped)};
+  stream.tracks = {person(7, TrackState::stopped)};
   stream.sensors = {1, 0, 0};
   stream.frames(100s);
   stream.tracks.clear();
@@ -262,7 +262,7 @@ END_TEST
 
 START_TEST(a_long_gap_lets_every_timer_expire) {
   Stream stream;
-  stream.tracks = {somebody(7)};
+  stream.tracks = {person(7)};
   stream.sensors = {1, 0, 0};
   stream.frame();
   stream.tracks.clear();

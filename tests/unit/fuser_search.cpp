@@ -138,7 +138,7 @@ START_TEST(a_search_ends_when_a_person_is_found) {
   stream.sensors = {1, 0, 0};
   const Decision& decision = stream.frame();
   ck_assert(decision.action == Action::search);
-  stream.tracks = {somebody(1)};
+  stream.tracks = {person(1)};
   stream.frame();
   assert_says(decision, Action::track, 1, "camera");
   ck_assert(std::isnan(decision.sector.from));
@@ -171,7 +171,7 @@ START_TEST(equally_near_sectors_go_to_the_sensor_that_fired_last) {
   for (const bool left_first : {true, false}) {
     Stream stream;
     stream.fuser.set_geometry(apart);
-    stream.tracks = {somebody(1)};  // busy with a person ahead
+    stream.tracks = {person(1)};  // busy with a person ahead
     stream.sensors = {left_first, !left_first};
     stream.frame();
     stream.sensors = {1, 1};

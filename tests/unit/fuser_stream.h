@@ -19,7 +19,7 @@ using cerberus::sensing::radians;
 
 constexpr Time kFrame = 40ms;
 
-inline Track somebody(std::uint32_t id, TrackState state = TrackState::seen) {
+inline Track person(std::uint32_t id, TrackState state = TrackState::seen) {
   return {.id = id, .x = 100, .y = 50, .width = 40, .height = 100, .age = 1s, .state = state};
 }
 

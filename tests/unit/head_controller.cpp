@@ -374,14 +374,14 @@ START_TEST(a_manual_command_takes_precedence_until_automatic) {
   Rig rig;
   ck_assert(rig.controller.move(radians(30), radians(-10), false, {}, rig.out));
   ck_assert(rig.record->commands.empty());  // without a clock it is given with the next frame
-  rig.assert_status(HeadState::manual, "told to move");
+  rig.assert_status(HeadState::manual, "manual command: move");
   rig.process(Rig::with(0s, Action::turn_left));
   assert_goes(rig.command().pan, 30, 90);
   assert_goes(rig.command().tilt, -10, 90);
   ck_assert(rig.controller.stop({}, rig.out));
   rig.process(Rig::with(40ms, Action::turn_left));
   ck_assert(holds(rig.command().pan) && holds(rig.command().tilt));
-  rig.assert_status(HeadState::manual, "told to stop");
+  rig.assert_status(HeadState::manual, "manual command: stop");
   ck_assert(rig.controller.automatic({}, rig.out));
   rig.process(Rig::with(80ms, Action::turn_left));
   assert_turns(rig.command().pan, -40);
@@ -806,7 +806,7 @@ START_TEST(after_a_fault_a_manual_command_is_reported_again) {
   rig.assert_status(HeadState::fault, "no power");
   rig.record->failure.clear();
   rig.process(Rig::with(40ms, Action::hold));
-  rig.assert_status(HeadState::manual, "told to move");
+  rig.assert_status(HeadState::manual, "manual command: move");
 }
 END_TEST
 

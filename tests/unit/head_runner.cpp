@@ -132,15 +132,15 @@ END_TEST
 
 START_TEST(a_refusal_is_reported_and_nothing_else) {
   Pipe gate;
-  std::promise<void> told;
+  std::promise<void> reported;
   HeadRunner runner(
-      make_head("scripted"), {}, [] { ck_abort_msg("it did not move"); }, [&] { told.set_value(); });
+      make_head("scripted"), {}, [] { ck_abort_msg("it did not move"); }, [&] { reported.set_value(); });
   HeadSetup setup;
   setup.script = "open wait " + gate.reader() + "; open fail no such port";
   ck_assert(runner.open(setup, 1ms) == Answer::late);
   ck_assert(runner.refusal().empty());
   gate.close_writer();
-  told.get_future().wait();
+  reported.get_future().wait();
   assert_text(runner.refusal(), "no such port");
   assert_text(runner.refusal(), "");
 }

@@ -24,9 +24,9 @@ void put_all(InOrder<int, 4>& order, const Numbers& numbers) {
 
 // All items that are delivered now.
 template <typename Order>
-Numbers told(Order& order) {
+Numbers delivered(Order& order) {
   Numbers all;
-  order.tell([&](int number) { all.push_back(number); });
+  order.deliver([&](int number) { all.push_back(number); });
   return all;
 }
 
@@ -34,9 +34,9 @@ START_TEST(the_first_item_is_delivered_first_and_once) {
   InOrder<int, 4> order;
   for (int k = 0; k < 10; ++k) {  // and so it is when the places begin anew
     put_all(order, {3 * k, 3 * k + 1, 3 * k + 2});
-    ck_assert((told(order) == Numbers{3 * k, 3 * k + 1, 3 * k + 2}));
+    ck_assert((delivered(order) == Numbers{3 * k, 3 * k + 1, 3 * k + 2}));
   }
-  ck_assert(told(order).empty());
+  ck_assert(delivered(order).empty());
 }
 END_TEST
 
@@ -47,11 +47,11 @@ START_TEST(an_item_put_in_by_a_listener_is_delivered_next) {
     all.push_back(number);
     if (number > 3) return;
     order.put(number + 10);
-    order.tell(listener);  // a delivery is in progress: nothing is delivered within it
+    order.deliver(listener);  // a delivery is in progress: nothing is delivered within it
     ck_assert_int_eq(all.back(), number);
   };
   put_all(order, {1, 2});
-  order.tell(listener);
+  order.deliver(listener);
   ck_assert((all == Numbers{1, 2, 11, 12}));
 }
 END_TEST
@@ -62,7 +62,7 @@ START_TEST(a_thread_blocked_by_a_listener_delivers_for_the_others_too) {
   Numbers all;
   order.put(1);
   std::thread teller([&] {
-    order.tell([&](int number) {
+    order.deliver([&](int number) {
       all.push_back(number);
       if (number > 1) return;
       kept.set_value();
@@ -71,7 +71,7 @@ START_TEST(a_thread_blocked_by_a_listener_delivers_for_the_others_too) {
   });
   kept.get_future().wait();
   order.put(2);
-  ck_assert(told(order).empty());  // and no item waits
+  ck_assert(delivered(order).empty());  // and no item waits
   go.set_value();
   teller.join();
   ck_assert((all == Numbers{1, 2}));
@@ -81,9 +81,9 @@ END_TEST
 START_TEST(of_more_items_than_can_wait_the_oldest_are_never_delivered) {
   InOrder<int, 4> order;
   put_all(order, {1, 2, 3, 4, 5, 6});
-  ck_assert((told(order) == Numbers{3, 4, 5, 6}));
+  ck_assert((delivered(order) == Numbers{3, 4, 5, 6}));
   put_all(order, {7});
-  ck_assert((told(order) == Numbers{7}));
+  ck_assert((delivered(order) == Numbers{7}));
 }
 END_TEST
 
@@ -96,7 +96,7 @@ struct Delivery {
   Delivery() {
     order.put(1);
     thread = std::thread([this] {
-      order.tell([this](int) {
+      order.deliver([this](int) {
         kept.set_value();
         released.get_future().wait();
         over = true;
@@ -128,7 +128,7 @@ START_TEST(a_listener_does_not_wait_for_itself) {
   InOrder<int, 4> order;
   order.put(1);
   int listened = 0;
-  order.tell([&](int) {
+  order.deliver([&](int) {
     order.wait(std::chrono::hours(1));
     ++listened;
   });
@@ -143,22 +143,22 @@ constexpr auto kSameKind = [](const int& a, const int& b) { return (a < 10) == (
 START_TEST(of_more_items_than_can_wait_rare_ones_stay) {
   InOrder<int, 4> order(kSameKind);
   put_all(order, {10, 1, 2, 3, 4, 5});
-  ck_assert((told(order) == Numbers{10, 3, 4, 5}));
+  ck_assert((delivered(order) == Numbers{10, 3, 4, 5}));
   put_all(order, {1, 10, 2, 3, 20, 4, 5});  // also where the places begin anew, and in the middle
-  ck_assert((told(order) == Numbers{3, 20, 4, 5}));
+  ck_assert((delivered(order) == Numbers{3, 20, 4, 5}));
   put_all(order, {1, 10, 2, 3, 4});
-  ck_assert((told(order) == Numbers{10, 2, 3, 4}));
+  ck_assert((delivered(order) == Numbers{10, 2, 3, 4}));
   put_all(order, {10, 1, 2, 3, 20});  // the oldest that is replaced, by whomever
-  ck_assert((told(order) == Numbers{1, 2, 3, 20}));
+  ck_assert((delivered(order) == Numbers{1, 2, 3, 20}));
 }
 END_TEST
 
 START_TEST(where_none_is_replaced_the_oldest_goes) {
   InOrder<int, 4> order([](const int& a, const int& b) { return a == b; });
   put_all(order, {1, 2, 3, 4, 5, 6});
-  ck_assert((told(order) == Numbers{3, 4, 5, 6}));
+  ck_assert((delivered(order) == Numbers{3, 4, 5, 6}));
   put_all(order, {1, 2, 3, 4, 3, 5});
-  ck_assert((told(order) == Numbers{2, 4, 3, 5}));
+  ck_assert((delivered(order) == Numbers{2, 4, 3, 5}));
 }
 END_TEST
 
@@ -166,16 +166,16 @@ START_TEST(cleared_items_are_not_delivered) {
   InOrder<int, 4> order;
   put_all(order, {1, 2, 3});
   order.clear();
-  ck_assert(told(order).empty());
+  ck_assert(delivered(order).empty());
   put_all(order, {4, 5, 6, 7});
   Numbers all;
-  order.tell([&](int number) {  // nor by the delivery in progress
+  order.deliver([&](int number) {  // nor by the delivery in progress
     all.push_back(number);
     if (number == 5) order.clear();
   });
   ck_assert((all == Numbers{4, 5}));
   put_all(order, {8});
-  ck_assert((told(order) == Numbers{8}));
+  ck_assert((delivered(order) == Numbers{8}));
 }
 END_TEST
 
@@ -184,12 +184,12 @@ START_TEST(after_a_listener_that_throws_the_next_one_receives_the_rest) {
   put_all(order, {1, 2});
   bool thrown = false;
   try {
-    order.tell([](int) { throw std::runtime_error("no"); });
+    order.deliver([](int) { throw std::runtime_error("no"); });
   } catch (const std::runtime_error&) {
     thrown = true;
   }
   ck_assert(thrown);
-  ck_assert((told(order) == Numbers{2}));
+  ck_assert((delivered(order) == Numbers{2}));
 }
 END_TEST
 
@@ -197,7 +197,7 @@ START_TEST(nothing_is_kept_of_delivered_or_dropped_items) {
   InOrder<std::shared_ptr<int>, 2> order;
   const auto mine = std::make_shared<int>(1);
   order.put(mine);
-  order.tell([](const auto&) {});
+  order.deliver([](const auto&) {});
   ck_assert_int_eq(mine.use_count(), 1);
   for (int k = 0; k < 5; ++k) order.put(mine);
   ck_assert_int_eq(mine.use_count(), 3);
@@ -217,7 +217,7 @@ START_TEST(of_each_thread_the_numbers_come_in_its_order) {
     threads.emplace_back([&, who] {
       for (int k = 0; k < kEach; ++k) {
         order.put(who * kEach + k);
-        order.tell([&](int number) {
+        order.deliver([&](int number) {
           ck_assert_int_eq(telling.fetch_add(1), 0);
           all.push_back(number);
           telling.fetch_sub(1);
@@ -237,7 +237,7 @@ START_TEST(nothing_is_allocated) {
   const auto before = cerberus::tests::allocations();
   for (int k = 0; k < 1000; ++k) {
     order.put(k);
-    if (k % 7 == 0) order.tell([&](int number) { sum += number; });
+    if (k % 7 == 0) order.deliver([&](int number) { sum += number; });
   }
   ck_assert_uint_eq(cerberus::tests::allocations() - before, 0);
   ck_assert_int_gt(sum, 0);
@@ -248,7 +248,7 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "what several threads tell, in order",
+      "in_order",
       {the_first_item_is_delivered_first_and_once, an_item_put_in_by_a_listener_is_delivered_next,
        a_thread_blocked_by_a_listener_delivers_for_the_others_too,
        of_more_items_than_can_wait_the_oldest_are_never_delivered, of_more_items_than_can_wait_rare_ones_stay,

@@ -40,7 +40,7 @@ START_TEST(an_absolute_move_goes_there_whatever_the_pose) {
   ck_assert(manual.move(radians(30), radians(-10), false, looking(5, 5), kLimits));
   ck_assert(manual.active());
   assert_goes(manual, 30, -10);
-  ck_assert_str_eq(manual.reason(), "told to move");
+  ck_assert_str_eq(manual.reason(), "manual command: move");
 }
 END_TEST
 
@@ -60,7 +60,7 @@ START_TEST(beyond_a_limit_the_head_goes_as_far_as_the_limit) {
   ManualOverride manual;
   ck_assert(manual.move(radians(70), radians(-21), false, {}, kLimits));
   assert_goes(manual, 60, -20);
-  ck_assert_str_eq(manual.reason(), "told to move beyond a limit: as far as it");
+  ck_assert_str_eq(manual.reason(), "manual command: move, as far as the limit");
 }
 END_TEST
 

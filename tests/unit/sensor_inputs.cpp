@@ -126,7 +126,7 @@ START_TEST(places_without_a_group_count_as_one_invalid_sensor) {
   one.append(0s, 1), four.append(0s, 0);
   const SensorSnapshot snapshot = inputs.at(1s);  // places 0, 1 (two sensors), 2, 3, 4
   const std::uint8_t expected[] = {kInvalid, 1, 1, kInvalid, kInvalid, 0};
-  ck_assert(snapshot.count == 6 && !snapshot.told);
+  ck_assert(snapshot.count == 6 && !snapshot.geometry_known);
   for (int i = 0; i < 6; ++i) ck_assert_int_eq(snapshot.sensors[i], expected[i]);
   ck_assert_int_eq(inputs.places_besides(one), 4);
   ck_assert_int_eq(inputs.places_besides(four), 5);

@@ -146,12 +146,12 @@ END_TEST
 
 START_TEST(a_refusal_is_reported_while_the_runner_exists) {
   Pipe gate;
-  std::promise<void> told;
+  std::promise<void> reported;
   SensorRunner runner;
   const SensorSetup setup = script("open wait " + gate.reader() + "; open fail no such thing");
-  runner.begin(scripted(), setup, [&] { told.set_value(); });
+  runner.begin(scripted(), setup, [&] { reported.set_value(); });
   gate.close_writer();
-  told.get_future().wait();
+  reported.get_future().wait();
   ck_assert(runner.opened() && runner.error().text == "no such thing" && !runner.recording());
   {
     Pipe closed;

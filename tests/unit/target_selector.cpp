@@ -62,7 +62,7 @@ START_TEST(the_chosen_track_goes_before_every_decision_while_it_is_there) {
   selector.follow(9);
   const auto here = selector.on_frame({kTracks, decision(Action::track, {}, 4)}, 0s, 0);
   ck_assert(here.goal.target->x == 320);
-  ck_assert_str_eq(here.reason.c_str(), "told to follow 9");
+  ck_assert_str_eq(here.reason.c_str(), "follows the chosen track 9");
   const auto only_four = std::span(kTracks).first(1);
   const auto away = selector.on_frame({only_four, decision(Action::track, {}, 4)}, 1s, 0);
   ck_assert(away.goal.action == Action::hold && away.lost == 0);
