@@ -88,4 +88,26 @@ void Enlarger::show_labels(vision::View<const std::uint16_t> plane, const Canvas
   });
 }
 
+void Enlarger::show_boxes(vision::GrayView plane, std::span<const vision::Box> boxes, const Canvas& canvas) {
+  show(plane, 1, canvas);
+  const std::uint32_t color = word(identity_color(1));
+  const std::vector<int>& columns = this->columns(plane.width, canvas.width);
+  for (const vision::Box& box : boxes) {
+    const auto inside = [](double from, double extent, double at, double by) {
+      return at >= from + by && at < from + extent - by;
+    };
+    for (int y = 0; y < canvas.height; ++y) {
+      const int row = nearest(y, canvas.height, plane.height);
+      if (!inside(box.y, box.height, row, 0)) continue;
+      const bool edge = !inside(box.y, box.height, row, 1);
+      auto* words = reinterpret_cast<std::uint32_t*>(canvas.row(y));
+      for (int x = 0; x < canvas.width; ++x) {
+        const int column = columns[static_cast<std::size_t>(x)];
+        if (inside(box.x, box.width, column, 0) && (edge || !inside(box.x, box.width, column, 1)))
+          words[x] = color;
+      }
+    }
+  }
+}
+
 }  // namespace cerberus::overlay

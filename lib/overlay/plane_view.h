@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "vision/geometry/box.h"
 #include "vision/image/image.h"
 
 namespace cerberus::overlay {
@@ -33,6 +35,8 @@ class Enlarger {
   void show(vision::GrayView plane, double gain, const Canvas& canvas);
   // Shows each label in its colour, 0 as black; only on a canvas of colours.
   void show_labels(vision::View<const std::uint16_t> plane, const Canvas& canvas);
+  // Shows grey levels with the outlines of boxes, pixels of the plane, inside their edges; only on a canvas of colours.
+  void show_boxes(vision::GrayView plane, std::span<const vision::Box> boxes, const Canvas& canvas);
 
  private:
   const std::vector<int>& columns(int from, int to);

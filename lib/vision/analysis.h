@@ -9,10 +9,12 @@
 #include <cassert>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "threads/shared.h"
 #include "vision/background/foreground_mask.h"
+#include "vision/burnt_in/burnt_in_boxes.h"
 #include "vision/change/three_frame_difference.h"
 #include "vision/detection/regions.h"
 #include "vision/ego_motion/camera_motion.h"
@@ -64,10 +66,10 @@ struct Differences {
 };
 
 struct Foreground {
-  GrayPicture mask;               // 0 or 255; none once the regions stage has taken it over, see FoundRegions
-  bool burnt_in_changed = false;  // Detector::burnt_in() is worth a report since this frame
-  ForegroundMaskResult result;    // threshold and noise
-  FuzzyThresholdOptions chosen_with;  // how the threshold was chosen from the histogram
+  GrayPicture mask;             // 0 or 255; none once the regions stage has taken it over, see FoundRegions
+  ForegroundMaskResult result;  // threshold and noise
+  FuzzyThresholdOptions chosen_with;     // how the threshold was chosen from the histogram
+  std::optional<BurntInBoxes> burnt_in;  // left out of the mask; none where it is not learnt
 };
 
 struct FoundRegions {

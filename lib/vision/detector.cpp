@@ -64,7 +64,8 @@ void Detector::measure_camera(Analysis& record, DetectorFrame& frame, const std:
   if (frame.fresh) camera_.reset();
   CameraMotionResult& result = record.camera.write();
   result = camera_.update((*record.luma)->view(),
-                          prior ? std::optional(prior->rescaled(frame.size, size)) : std::nullopt);
+                          prior ? std::optional(prior->rescaled(frame.size, size)) : std::nullopt,
+                          frame.burnt_in.empty() ? burnt_in_.boxes() : frame.burnt_in);
   result.transform = result.still ? Transform{} : result.transform.rescaled(size, frame.size);
   result.residual *= static_cast<double>(frame.size.width) / size.width;
   frame.motion = {result.transform, result.still};
@@ -110,11 +111,13 @@ void Detector::find_foreground(Analysis& record, const DetectorFrame& frame) {
   out.mask = gray(luma.size());
   out.result = foreground_->update(input, out.mask->view());
   out.chosen_with = options_.foreground.threshold;
-  out.burnt_in_changed = options_.burnt_in && burnt_in_.update({luma, input.current, out.result.threshold,
-                                                                input.motion, input.still, frame.seconds},
-                                                               out.mask->view());
+  if (!options_.burnt_in) return;
+  const bool changed =
+      burnt_in_.update({luma, input.current, out.result.threshold, input.motion, input.still, frame.seconds},
+                       out.mask->view());
   // A turning camera has written over the scene that the background model learnt meanwhile.
-  if (out.burnt_in_changed && !input.still) foreground_->reset();
+  if (changed && !input.still) foreground_->reset();
+  out.burnt_in = burnt_in_.found();
 }
 
 void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "vision/analysis.h"
-#include "vision/detection/burnt_in.h"
+#include "vision/burnt_in/burnt_in.h"
 #include "vision/detection/limits.h"
 #include "vision/detection/zones.h"
 #include "vision/duplicate_frames.h"
@@ -53,8 +53,9 @@ struct DetectorFrame {
   struct Look {
     double pan = 0, tilt = 0;  // radians
   };
-  std::optional<Look> look;  // of the camera when the frame was taken, if a head's pose gives it
-  bool everything = false;   // D(k-1) and the labels are made too: an element reads them
+  std::optional<Look> look;       // of the camera when the frame was taken, if a head's pose gives it
+  std::span<const Box> burnt_in;  // analysis pixels, as learnt by a later stage elsewhere: no scene
+  bool everything = false;        // D(k-1) and the labels are made too: an element reads them
 };
 
 // Each stage function writes its own field and needs those before it, except the camera: `frame.motion` holds its

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+#include <cstring>
 #include <iterator>
 
 #include "cerberus/private/messages.hpp"
@@ -26,12 +26,20 @@ constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
 // With the flags of the record's query: the elements downstream are not asked.
 constexpr guint kNothingFurther = 1u << 31;
 
+// The upstream event by which the element that learns what is burnt in tells the one that measures the camera.
+constexpr char kBurntIn[] = "cerberus-burnt-in";
+
+bool same_box(const vision::Box& a, const vision::Box& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
 }  // namespace
 
 bool Detection::start() {
   GST_DEBUG_CATEGORY_INIT(detection_debug, "cerberusdetection", 0, "the stages of detection");
   State& state = state_.emplace();
   carrier_.forget();
+  burnt_in_ = {};
   watch_.begin(GST_ELEMENT(base));
   refresh();
   // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
@@ -52,7 +60,17 @@ void Detection::end_of_stream() {
 }
 
 void Detection::upstream_event(GstEvent* event) {
-  if (measures_camera()) carrier_.hear(event, snapshot().head);
+  if (!measures_camera()) return;
+  carrier_.hear(event, snapshot().head);
+  const GstStructure* structure = gst_event_get_structure(event);
+  if (!structure || !gst_structure_has_name(structure, kBurntIn)) return;
+  g_autoptr(GBytes) bytes = nullptr;
+  gst_structure_get(structure, "boxes", G_TYPE_BYTES, &bytes, nullptr);
+  const std::lock_guard lock(burnt_in_lock_);
+  burnt_in_.count = std::min(bytes ? g_bytes_get_size(bytes) / sizeof(vision::Box) : 0, burnt_in_.box.size());
+  if (burnt_in_.count)
+    std::memcpy(burnt_in_.box.data(), g_bytes_get_data(bytes, nullptr),
+                burnt_in_.count * sizeof(vision::Box));
 }
 
 // What this element wants of records from upstream.
@@ -122,7 +140,15 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
     frame.everything = how == KEEP_PLANES_ALWAYS || (how == KEEP_PLANES_AUTO && frame.everything);
     keep = frame.everything || (last_ == Stage::regions && (frame.wanted & kRecordForTracks));
   }
-  if (has(Stage::camera)) measure_camera(*record, frame);
+  vision::BurntInBoxes burnt_in;
+  if (has(Stage::camera)) {
+    {
+      const std::lock_guard lock(burnt_in_lock_);
+      burnt_in = burnt_in_;
+    }
+    frame.burnt_in = burnt_in.boxes();
+    measure_camera(*record, frame);
+  }
   if (!known) state.detector.complete(*record, frame, last_);
   publish_threshold(frame.buffer, *record);
   if (last_ == Stage::regions) publish_regions(frame.buffer, *record);
@@ -211,26 +237,26 @@ void Detection::publish_threshold(GstBuffer* buffer, const vision::Analysis& rec
   facts.offset = record.differences->result.offset;
   set_threshold_facts(buffer, facts);
   state_->facts = facts;
-  if (has(Stage::foreground) && record.foreground->burnt_in_changed) report_burnt_in(record);
+  if (has(Stage::foreground) && record.foreground->burnt_in) publish_burnt_in(record);
 }
 
-void Detection::report_burnt_in(const vision::Analysis& record) {
-  const vision::Size size = (*record.luma)->size();
-  const double sx = static_cast<double>(record.frame.width) / size.width;
-  const double sy = static_cast<double>(record.frame.height) / size.height;
-  std::string text;
-  for (const vision::Box& b : state_->detector.burnt_in()) {
-    char box[80];
-    std::snprintf(box, sizeof box, "%s%ldx%ld+%ld+%ld", text.empty() ? "" : ", ", std::lround(b.width * sx),
-                  std::lround(b.height * sy), std::lround(b.x * sx), std::lround(b.y * sy));
-    text += box;
-  }
-  if (text.empty()) return;
-  CERBERUS_ELEMENT_INFO(
-      base, STREAM, DECODE,
-      ("The camera writes into its pictures; left out: %s (frame pixels, width x height + left + top).",
-       text.c_str()),
-      ("burnt-in=false turns this off"));
+void Detection::publish_burnt_in(const vision::Analysis& record) {
+  const vision::BurntInBoxes& found = *record.foreground->burnt_in;
+  if (const std::string text = new_boxes(found, (*record.luma)->size(), record.frame); !text.empty())
+    CERBERUS_ELEMENT_INFO(
+        base, STREAM, DECODE,
+        ("The camera writes into its pictures; left out: %s (frame pixels, width x height + left + top).",
+         text.c_str()),
+        ("burnt-in=false turns this off"));
+  std::vector<vision::Box>& sent = state_->sent_burnt_in;
+  const auto boxes = found.boxes();
+  if (has(Stage::camera) || std::ranges::equal(boxes, sent, same_box)) return;
+  sent.assign(boxes.begin(), boxes.end());
+  g_autoptr(GBytes) bytes = g_bytes_new(boxes.data(), boxes.size_bytes());
+  gst_pad_push_event(
+      GST_BASE_TRANSFORM_SINK_PAD(base),
+      gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
+                           gst_structure_new(kBurntIn, "boxes", G_TYPE_BYTES, bytes, nullptr)));
 }
 
 void Detection::attach_published(GstBuffer* buffer) {

@@ -5,6 +5,7 @@
 
 #include <cerberus/cerberus.h>
 
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,7 @@ class Detection : public Analyser {
     std::vector<CerberusRegion> published;
     CerberusCameraMotion motion{};             // of the last picture
     std::optional<ThresholdFacts> facts;       // likewise
+    std::vector<vision::Box> sent_burnt_in;    // upstream
     double repeated = 0;                       // seconds for which it has been repeated
     GstClockTime shown = GST_CLOCK_TIME_NONE;  // running time of the last frame, repeated or not
     Stamps stamps;
@@ -68,7 +70,7 @@ class Detection : public Analyser {
   void apply(const DetectSettings& settings);
   vision::Record obtain(const Frame& frame, bool regions_known);
   void measure_camera(vision::Analysis& record, Frame& frame);
-  void report_burnt_in(const vision::Analysis& record);
+  void publish_burnt_in(const vision::Analysis& record);
   void publish_threshold(GstBuffer* buffer, const vision::Analysis& record);
   void publish_regions(GstBuffer* buffer, const vision::Analysis& record);
   void publish_tracks(GstBuffer* buffer, const vision::Analysis& record);
@@ -81,7 +83,9 @@ class Detection : public Analyser {
 
   const vision::Stage first_, last_;
   std::optional<State> state_;
-  HeadMotionMonitor carrier_;  // receives poses in any thread, so not part of the state
+  std::mutex burnt_in_lock_;
+  vision::BurntInBoxes burnt_in_;  // from an element downstream, in any thread
+  HeadMotionMonitor carrier_;      // receives poses in any thread, so not part of the state
   Answer<guint> answer_;
   MotionWatch watch_;
 };

@@ -8,8 +8,9 @@
  * three frames of the scene were seen; and for two when `area` is changed from `all` while frames flow, as what the
  * other areas need of the third frame is not kept for `all`.
  *
- * What the camera writes into its own pictures is learnt and left out (`burnt-in`). An info message with the boxes in
- * frame pixels says what was found.
+ * What the camera writes into its own pictures is learnt and left out (`burnt-in`). An info message says where, once for
+ * each box, in frame pixels. The private event `cerberus-burnt-in` takes the boxes upstream to `cameramotion`, which
+ * measures nothing there from the next frame on, or a few frames later where a queue lies in between.
  *
  * ## Example
  * |[

@@ -12,11 +12,13 @@
  * - `stage=difference`, `previous-difference`: the registered differences D(k), D(k-1), times `gain`.
  * - `stage=mask`: 0 or 255, the moving area; behind `motionregions` the cleaned one that regions are made from.
  * - `stage=labels`: one colour a connected part of the mask: what regions are made from.
+ * - `stage=burnt-in`: the analysed picture, with the outlines of what is left out because the camera has written it
+ *   (`burnt-in` of `fuzzythreshold` and `motiondetect`).
  * - `stage=histogram`: how the threshold was chosen, after the paper's figures 2 and 3: histogram of the difference,
  *   memberships, indices of fuzziness (with the options of `fuzzythreshold`), the threshold that was used.
  *
  * Pads: `sink` takes raw video in every format that the stages read; `src` gives GRAY8 (or BGRx) for the grey
- * stages, BGRx for labels and histogram. Regions, threshold and camera motion stay on the buffers, so that
+ * stages, BGRx for labels, burnt-in and histogram. Regions, threshold and camera motion stay on the buffers, so that
  * motionoverlay and motionjson work behind it. With it in the pipeline the stages leave their record on the buffers.
  * Where a picture is missing there the output is black; one warning message names the cause.
  *
@@ -82,7 +84,8 @@ enum Stage {
   STAGE_PREVIOUS_DIFFERENCE,
   STAGE_MASK,
   STAGE_LABELS,
-  STAGE_HISTOGRAM
+  STAGE_HISTOGRAM,
+  STAGE_BURNT_IN
 };
 
 GType stage_type() {
@@ -93,6 +96,7 @@ GType stage_type() {
       {STAGE_MASK, "Moving area, as regions are made from it", "mask"},
       {STAGE_LABELS, "Connected parts of the mask, a colour each", "labels"},
       {STAGE_HISTOGRAM, "How the threshold was chosen", "histogram"},
+      {STAGE_BURNT_IN, "Where the camera writes into its pictures", "burnt-in"},
       {0, nullptr, nullptr}};
   static const GType type = g_enum_register_static("CerberusMotionViewStage", values);
   return type;
@@ -130,7 +134,7 @@ CERBERUS_DEFINE_TYPE(CerberusMotionView, cerberus_motion_view, GstBaseTransform,
                      Private)
 
 bool is_colour(int stage) {
-  return stage == STAGE_LABELS || stage == STAGE_HISTOGRAM;
+  return stage >= STAGE_LABELS;
 }
 
 // The picture of the record that a grey stage shows; an empty view where it is not there.
@@ -140,6 +144,7 @@ vision::GrayView picture_of(const vision::Analysis& record, int stage) {
   };
   switch (stage) {
     case STAGE_LUMA:
+    case STAGE_BURNT_IN:
       return view(*record.luma);
     case STAGE_DIFFERENCE:
       return view(record.differences->current);
@@ -216,6 +221,11 @@ bool show(State& state, const Settings& settings, GstBuffer* in, const overlay::
   }
   const vision::GrayView picture = picture_of(*record, stage);
   if (picture.empty()) return false;
+  if (stage == STAGE_BURNT_IN) {
+    if (!record->foreground || !record->foreground->burnt_in) return false;
+    state.enlarger.show_boxes(picture, record->foreground->burnt_in->boxes(), canvas);
+    return true;
+  }
   const bool difference = stage == STAGE_DIFFERENCE || stage == STAGE_PREVIOUS_DIFFERENCE;
   state.enlarger.show(picture, difference ? settings.gain : 1, canvas);
   return true;

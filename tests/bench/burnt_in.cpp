@@ -10,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -35,6 +36,9 @@ constexpr vision::Size kFrame{640, 480};
 constexpr double kRate = 30, kSeconds = 20, kLearnt = 5;
 constexpr double kTurn = 160;  // frame pixels a second: 20 degrees where 640 see 80
 
+constexpr char kOutdoor[] = "outdoor", kOutdoorFile[] = "pano_outdoor_4k/examplepano.jpg ! jpegdec";
+constexpr double kOutdoorScale = 1.4;
+
 struct Panorama {
   const char* name;
   Frames picture;
@@ -56,43 +60,92 @@ struct Run {
   }
 };
 
-// The camera stands, or turns to and fro. The noise is the same in every run.
+// What the camera shows of a panorama: it stands, or turns to and fro; with something written into its picture, or not.
+// The noise is the same in every run.
+class Camera {
+ public:
+  Camera(const Panorama& panorama, bool sweeps, std::optional<std::pair<Writing, Corner>> what)
+      : panorama_(panorama), sweeps_(sweeps), what_(what), noise_(65536) {
+    std::normal_distribution<double> normal(0, 2);
+    for (auto& n : noise_) n = static_cast<std::int8_t>(std::lround(normal(random_)));
+  }
+  // The frame `n` of kRate a second; frames are drawn in order.
+  vision::GrayView draw(int n) {
+    const double t = n / kRate, scale = panorama_.scale;
+    const auto grey = panorama_.picture.grey(0);
+    const double reach = grey.width / 4.0, turn = std::fmod(sweeps_ ? kTurn * scale * t : 0, 4 * reach);
+    const double offset = turn < reach ? turn : turn < 3 * reach ? 2 * reach - turn : turn - 4 * reach;
+    const vision::MutableGrayView out = frame_.view();
+    resampler_.draw({grey.data, grey.width, grey.height, grey.stride, 1, 1},
+                    {out.data, kFrame.width, kFrame.height, out.stride, 1, 1},
+                    {grey.width / 2.0 - kFrame.width * scale / 2 + offset,
+                     grey.height / 2.0 - kFrame.height * scale / 2, scale, scale});
+    std::size_t at = random_() % 65536;
+    for (int y = 0; y < kFrame.height; ++y)
+      for (int x = 0; x < kFrame.width; ++x)
+        out.at(x, y) = static_cast<std::uint8_t>(std::clamp(out.at(x, y) + noise_[at++ & 65535], 0, 255));
+    if (what_) write_into(out, what_->first, what_->second, t);
+    return out;
+  }
+
+ private:
+  const Panorama& panorama_;
+  const bool sweeps_;
+  const std::optional<std::pair<Writing, Corner>> what_;
+  std::mt19937 random_{7};
+  std::vector<std::int8_t> noise_;
+  vision::Image<std::uint8_t> frame_{kFrame};
+  vision::WindowResampler resampler_;
+};
+
+void step(tests::Chain& chain, vision::GrayView frame, double rate) {
+  chain.step({frame.data, frame.width, frame.height, frame.stride, 1, false, 0, 0, 0}, 1 / rate);
+}
+
 Run watch(const Panorama& p, bool sweep, std::optional<std::pair<Writing, Corner>> what, bool learn) {
-  vision::Image<std::uint8_t> frame(kFrame);
-  vision::WindowResampler resampler;
+  Camera camera(p, sweep, what);
   tests::Chain chain;
   chain.set_burnt_in(learn);
   Run run;
-  std::mt19937 random(7);
-  std::vector<std::int8_t> noise(65536);
-  std::normal_distribution<double> normal(0, 2);
-  for (auto& n : noise) n = static_cast<std::int8_t>(std::lround(normal(random)));
-  const auto grey = p.picture.grey(0);
   for (int n = 0; n < kSeconds * kRate; ++n) {
-    const double t = n / kRate;
-    const double way = sweep ? kTurn * p.scale * t : 0, reach = grey.width / 4.0;
-    const double turn = std::fmod(way, 4 * reach);
-    const double offset = turn < reach ? turn : turn < 3 * reach ? 2 * reach - turn : turn - 4 * reach;
-    resampler.draw({grey.data, grey.width, grey.height, grey.stride, 1, 1},
-                   {frame.view().data, kFrame.width, kFrame.height, frame.view().stride, 1, 1},
-                   {grey.width / 2.0 - kFrame.width * p.scale / 2 + offset,
-                    grey.height / 2.0 - kFrame.height * p.scale / 2, p.scale, p.scale});
-    std::size_t at = random() % 65536;
-    for (int y = 0; y < kFrame.height; ++y)
-      for (int x = 0; x < kFrame.width; ++x) {
-        std::uint8_t& v = frame.view().at(x, y);
-        v = static_cast<std::uint8_t>(std::clamp(v + noise[at++ & 65535], 0, 255));
-      }
-    if (what) write_into(frame.view(), what->first, what->second, t);
-    chain.step({frame.view().data, kFrame.width, kFrame.height, frame.view().stride, 1, false, 0, 0, 0},
-               1 / kRate);
+    step(chain, camera.draw(n), kRate);
     run.learnt += !chain.burnt_in().empty();
-    if (t < kLearnt) continue;
+    if (n / kRate < kLearnt) continue;
     ++run.regions.frames, ++run.tracks.frames;
     run.regions.with_object += !chain.regions().empty();
     run.tracks.with_object += !chain.tracks().empty();
   }
   return run;
+}
+
+// CPU time that learning adds, as a share of the time without it. Both run on the same frames in turn, five times; a
+// frame's time is the shortest of five, because other programs disturb single ones.
+double added_cost(const Panorama& p, bool sweep, std::optional<std::pair<Writing, Corner>> what) {
+  constexpr int kFrames = 240, kRounds = 5;
+  std::vector<vision::Image<std::uint8_t>> frames(kFrames);
+  Camera camera(p, sweep, what);
+  for (int n = 0; n < kFrames; ++n) {
+    const vision::GrayView view = camera.draw(n);
+    frames[n].resize(kFrame);
+    for (int y = 0; y < kFrame.height; ++y) std::copy_n(view.row(y), kFrame.width, frames[n].view().row(y));
+  }
+  std::vector<double> shortest[2];
+  for (auto& times : shortest) times.assign(kFrames, 1e9);
+  for (int round = 0; round < kRounds; ++round) {
+    tests::Chain chains[2];
+    chains[1].set_burnt_in(true);
+    for (int n = 0; n < kFrames; ++n)
+      for (const int which : {(n + round) % 2, (n + round + 1) % 2}) {
+        const double begin = thread_seconds();
+        step(chains[which], frames[n].view(), kRate);
+        double& least = shortest[which][n];
+        least = std::min(least, thread_seconds() - begin);
+      }
+  }
+  const auto sum = [](const std::vector<double>& times) {
+    return std::accumulate(times.begin(), times.end(), 0.0);
+  };
+  return sum(shortest[1]) / sum(shortest[0]) - 1;
 }
 
 // Grey frames of a video, one after the other: a long one does not fit into memory.
@@ -132,7 +185,7 @@ WithPeople people(const std::string& source, const People& truth, double ends,
   WithPeople result;
   for_each_grey(source, [&](vision::MutableGrayView frame, int n) {
     if (what) write_into(frame, what->first, what->second, n / kVideoRate);
-    chain.step({frame.data, frame.width, frame.height, frame.stride, 1, false, 0, 0, 0}, 1 / kVideoRate);
+    step(chain, frame, kVideoRate);
     std::vector<vision::Box> learnt, found, there;
     const double scale = 1.0 * frame.width / chain.analysis_size().width;
     for (const auto& b : chain.burnt_in())
@@ -169,18 +222,43 @@ constexpr Writing kWritings[] = {Writing::sans_clock, Writing::monospace_clock, 
 constexpr Corner kCorners[] = {Corner::top_left, Corner::top_right, Corner::bottom_left,
                                Corner::bottom_right};
 
+std::optional<Panorama> load(const std::filesystem::path& data, const char* name, const char* source,
+                             double scale) {
+  auto picture = load_frames("filesrc location=" + (data / source).string(), "GRAY8", 0, 0, 1);
+  if (!picture) return std::nullopt;
+  return Panorama{name, std::move(*picture), scale};
+}
+
+bool cost(const std::filesystem::path& data, Asked& asked) {
+  const auto p = load(data, kOutdoor, kOutdoorFile, kOutdoorScale);
+  if (!p) return false;
+  std::puts(
+      "\nCPU time that learning adds, as a share of that of detection, 320 x 240 at 30 frames a second");
+  for (const bool sweep : {false, true})
+    for (const bool clock : {false, true}) {
+      const auto what =
+          clock ? std::optional(std::pair{Writing::sans_clock, Corner::top_left}) : std::nullopt;
+      const std::string name =
+          std::string("camera ") + (sweep ? "sweeps" : "stands") + (clock ? ", sans clock" : ", nothing");
+      const double added = added_cost(*p, sweep, what);
+      std::printf("  %-50s %.4f%s\n", name.c_str(), added, asked.at_most(name, added, .02, false).c_str());
+      std::fflush(stdout);
+    }
+  return true;
+}
+
 // On a panorama nothing is an object. `before`: without learning, too.
 bool nobody(const std::filesystem::path& data, bool before, Asked& asked) {
   double worst_regions = 0, worst_tracks = 0, worst_learnt = 0, worst_logo = 0;
   std::printf("Share of the frames after 5 s with a region and with a track, worst of four corners%s\n",
               before ? "; in brackets without learning" : "");
   for (const auto& [name, source, scale] :
-       {std::tuple{"outdoor", "pano_outdoor_4k/examplepano.jpg ! jpegdec", 1.4},
+       {std::tuple{kOutdoor, kOutdoorFile, kOutdoorScale},
         {"gallery", "pano_indoor/st_fagans_interior_1k_tonemapped.png ! pngdec", .4},
         {"studio", "pano_indoor/studio_small_03_1k_tonemapped.png ! pngdec", .4}}) {
-    auto picture = load_frames("filesrc location=" + (data / source).string(), "GRAY8", 0, 0, 1);
-    if (!picture) return false;
-    const Panorama p{name, std::move(*picture), scale};
+    const auto loaded = load(data, name, source, scale);
+    if (!loaded) return false;
+    const Panorama& p = *loaded;
     for (const bool sweep : {false, true}) {
       const char* camera = sweep ? "sweeps" : "stands";
       const Run plain = watch(p, sweep, {}, true);
@@ -252,7 +330,10 @@ int main(int argc, char** argv) {
     return 77;
   }
   Asked asked;
-  if (!nobody(*data, argc > 1 && std::string(argv[1]) == "--before", asked)) return 1;
+  const std::string option = argc > 1 ? argv[1] : "";
+  if (!cost(*data, asked)) return 1;
+  if (option == "--cost") return 0;
+  if (!nobody(*data, option == "--before", asked)) return 1;
   with_people(*data, *vtest, asked);
   return asked.verdict();
 }

@@ -326,7 +326,7 @@ GST_START_TEST(the_histogram_is_drawn_at_every_size) {
 GST_END_TEST
 
 GST_START_TEST(a_missing_plane_is_black_and_warned_of_once) {
-  for (const char* stage : {"difference", "previous-difference", "mask", "labels", "histogram"}) {
+  for (const char* stage : {"difference", "previous-difference", "mask", "labels", "histogram", "burnt-in"}) {
     const std::string caps = caps_string("I420", 64, 48);
     Harness harness = started(std::string("motionview stage=") + stage, caps);
     Bus bus(harness.get());
@@ -543,6 +543,39 @@ GST_START_TEST(upstream_may_use_any_stride_and_nothing_is_delayed) {
 }
 GST_END_TEST
 
+// A box of 6 x 4 samples at (3, 2) in a picture of 32 x 24, enlarged twice: its outline is the two pixels of a sample wide.
+GST_START_TEST(what_is_burnt_in_is_outlined_over_the_picture) {
+  const std::string caps = caps_string("I420", 64, 48);
+  Harness harness = started("motionview stage=burnt-in", caps);
+  GstBuffer* in = new_frame(info_of(caps));
+  add_plane(in, LUMA, 32, 24, ramp);
+  vision::BurntInBoxes& found = open(records::on(in, last_frame)->foreground).burnt_in.emplace();
+  found.box[found.count++] = {3, 2, 6, 4};
+  const Picture p = shown(harness.get(), in);
+  for (int y = 0; y < 48; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const int u = x / 2, v = y / 2;
+      const bool inside = u >= 3 && u <= 8 && v >= 2 && v <= 5;
+      const bool outline = inside && (u == 3 || u == 8 || v == 2 || v == 5);
+      fail_unless_equals_int(p.at(x, y), outline ? 0xe69f00 : guint32(ramp(u, v)) * 0x010101);
+    }
+}
+GST_END_TEST
+
+// Learnt, and nothing found; not learnt.
+GST_START_TEST(burnt_in_is_warned_of_where_it_is_not_learnt_only) {
+  for (const bool learns : {true, false}) {
+    Harness harness = started(
+        std::string("motiondetect burnt-in=") + (learns ? "true" : "false") + " ! motionview stage=burnt-in",
+        scene::caps("GRAY8", scene::kWidth, scene::kHeight));
+    Bus bus(harness.get());
+    for (int k = 0; k < 4; ++k)
+      fail_unless_equals_int(shown(harness.get(), scene::grey_buffer(scene::World{}, k)).all(0), !learns);
+    fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING), learns ? 0 : 1);
+  }
+}
+GST_END_TEST
+
 static Suite* motionview_suite() {
   watch_library_log();
   Suite* s = suite_create("motionview");
@@ -558,6 +591,8 @@ static Suite* motionview_suite() {
   tcase_add_test(tc, the_curves_are_those_of_the_options_that_were_used);
   tcase_add_test(tc, each_option_of_the_threshold_moves_the_curves);
   tcase_add_test(tc, the_histogram_is_drawn_at_every_size);
+  tcase_add_test(tc, what_is_burnt_in_is_outlined_over_the_picture);
+  tcase_add_test(tc, burnt_in_is_warned_of_where_it_is_not_learnt_only);
   tcase_add_test(tc, a_missing_plane_is_black_and_warned_of_once);
   tcase_add_test(tc, each_stage_that_misses_its_plane_is_warned_of_once);
   tcase_add_test(tc, a_repeated_picture_shows_the_last_mask_unless_it_is_from_before_a_break);

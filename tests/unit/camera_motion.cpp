@@ -321,6 +321,31 @@ START_TEST(the_steady_state_allocates_nothing_and_memory_is_small) {
 }
 END_TEST
 
+// A large clock keeps its place before a wall on which little is seen: with its patches the camera stands.
+START_TEST(a_box_that_shows_no_scene_has_no_say_in_the_motion) {
+  const Box clock{40, 30, 240, 120};
+  const Scene scene(6), writing(7);
+  const Transform truth = Transform::translation(6, 0);
+  const auto seen = [&](const Transform& motion) {
+    Image<std::uint8_t> image = picture(scene, motion);
+    paste(picture(writing), image.view(), static_cast<int>(clock.x), static_cast<int>(clock.y),
+          static_cast<int>(clock.width), static_cast<int>(clock.height));
+    for (int y = 150; y < 210; ++y) std::fill_n(image.view().row(y), kSize.width, std::uint8_t{90});
+    return image;
+  };
+  const Image<std::uint8_t> earlier = seen({}), later = seen(truth);
+  const auto motion = [&](std::span<const Box> before, std::span<const Box> now) {
+    CameraMotion camera;
+    camera.update(earlier.view(), {}, before);
+    return camera.update(later.view(), {}, now).transform;
+  };
+  ck_assert_double_gt(disagreement(motion({}, {}), truth), 3);
+  ck_assert_double_lt(disagreement(motion({&clock, 1}, {&clock, 1}), truth), 0.5);
+  // Learnt after the patches were chosen.
+  ck_assert_double_lt(disagreement(motion({}, {&clock, 1}), truth), 0.5);
+}
+END_TEST
+
 int main() {
   return run_suite(
       "camera_motion",
@@ -336,6 +361,7 @@ int main() {
        a_camera_before_a_blank_wall_is_measured_again_from_the_first_wide_object,
        an_exposure_step_in_mid_pan_is_no_cut_and_costs_no_accuracy,
        the_heads_pose_finds_what_no_search_reaches_and_a_wrong_one_is_not_believed,
+       a_box_that_shows_no_scene_has_no_say_in_the_motion,
        odd_sizes_work_and_nothing_outside_the_picture_is_read,
        the_same_frames_give_the_same_numbers_whatever_becomes_of_them_afterwards,
        the_steady_state_allocates_nothing_and_memory_is_small});

@@ -54,7 +54,8 @@ struct CameraMotion::State {
   CameraMotionOptions options;
   Pyramid reference, current;  // current: of the caller's picture, valid only during update()
   Relief reference_relief, current_relief;
-  PatchSites sites;  // of the reference
+  PatchSites sites;               // of the reference
+  std::span<const Box> excluded;  // of the caller, valid only during update()
   Image<std::int32_t> scratch;
   int reference_age = 0;      // frames since the reference
   PatchMatches::Share share;  // of the fit, on the level where it is highest
@@ -108,7 +109,7 @@ std::size_t CameraMotion::bytes() const {
 
 void CameraMotion::State::next_reference(bool keep) {
   if (keep && ++reference_age < kParameters.reference_age) return;
-  sites.choose(current, noise, scratch);
+  sites.choose(current, noise, scratch, excluded);
   reference.take(current);
   std::swap(reference_relief, current_relief);
   reference_age = 0;
@@ -347,11 +348,14 @@ CameraMotionResult CameraMotion::State::estimate(const std::optional<Transform>&
   return result;
 }
 
-CameraMotionResult CameraMotion::update(GrayView picture, const std::optional<Transform>& prior) {
+CameraMotionResult CameraMotion::update(GrayView picture, const std::optional<Transform>& prior,
+                                        std::span<const Box> excluded) {
   State& s = *state_;
   if (picture.empty()) return {};
   if (s.reference.size() != picture.size()) s.scene_age = 0;
   const int level = search_level(picture.size());
+  s.excluded = excluded;
+  s.sites.exclude(excluded);
   s.current.borrow(picture, 1);
   if (s.scene_age > 0)
     if (const auto result = s.confirm_still()) return *result;

@@ -5,8 +5,10 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "vision/ego_motion/motion_fit.h"
+#include "vision/geometry/box.h"
 #include "vision/geometry/transform.h"
 #include "vision/image/image.h"
 
@@ -42,8 +44,9 @@ class CameraMotion {
   // `prior`: the motion of the picture that follows from the head's poses (frame k-1 to k, analysis pixels). It serves
   // as a first guess; where the turn bends the picture (a homography), the model is also fitted on top of the prior,
   // and the better of both fits is used. A change of picture size resets by itself. A cut is recognised here and starts
-  // a scene (scene_age 1).
-  CameraMotionResult update(GrayView picture, const std::optional<Transform>& prior = std::nullopt);
+  // a scene (scene_age 1). `excluded`: parts that show no scene (burnt_in.h), analysis pixels; no patch of them is used.
+  CameraMotionResult update(GrayView picture, const std::optional<Transform>& prior = std::nullopt,
+                            std::span<const Box> excluded = {});
   // Bytes in use, for the memory budget.
   std::size_t bytes() const;
 

@@ -37,9 +37,16 @@ constexpr struct Parameters {
 
 constexpr int kMargin = 1;  // blocks start one pixel inside, so that every pixel has all its neighbours
 
+// x, y: centre of a patch of `side` pixels.
+bool touches(std::span<const Box> boxes, double x, double y, double side) {
+  const Box patch{x - side / 2, y - side / 2, side, side};
+  return std::ranges::any_of(boxes, [&](const Box& b) { return overlap_area(b, patch) > 0; });
+}
+
 }  // namespace
 
-void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch) {
+void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch,
+                        std::span<const Box> excluded) {
   const Parameters& q = kParameters;
   count = 0;
   const Size size = pyramid.size();
@@ -65,6 +72,8 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
   const double pixel_noise = noise / (1 << level);
   const double least =
       kPatch * kPatch * std::max(q.least_gradient, q.noise_gradient * 2 * pixel_noise * pixel_noise);
+  const double scale = 1 << level;
+  const auto centre = [&](int block) { return (kMargin + (block + 1) * kBlock) * scale - 0.5; };
   for (int cy = 0; cy < cells_y; ++cy) {
     const int y0 = cy * (down - 1) / cells_y, y1 = std::max((cy + 1) * (down - 1) / cells_y, y0 + 1);
     for (; known < std::min(y1 + 1, down); ++known)
@@ -86,14 +95,15 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
           const double large = 0.5 * (a + c) + spread, small = 0.5 * (a + c) - spread;
           if (large < least) continue;
           const double score = small + q.edge * large;
-          if (score > best) best = score, best_x = x, best_y = y;
+          if (score <= best) continue;
+          if (!excluded.empty() && touches(excluded, centre(x), centre(y), kPatch << level)) continue;
+          best = score, best_x = x, best_y = y;
         }
       }
       if (best <= 0 || count == MotionSamples::kMax) continue;
-      const float scale = static_cast<float>(1 << level);
       PatchSite& s = site[count++];
-      s.x = static_cast<float>(kMargin + (best_x + 1) * kBlock) * scale - 0.5f;
-      s.y = static_cast<float>(kMargin + (best_y + 1) * kBlock) * scale - 0.5f;
+      s.x = static_cast<float>(centre(best_x));
+      s.y = static_cast<float>(centre(best_y));
       s.region = static_cast<std::uint8_t>(4 * std::min(3, static_cast<int>(4 * s.y / size.height)) +
                                            std::min(3, static_cast<int>(4 * s.x / size.width)));
     }
@@ -103,6 +113,20 @@ void PatchSites::choose(const Pyramid& pyramid, double noise, Image<std::int32_t
       for (int y = 0; y < kSide; ++y)
         std::copy_n(pyramid.level(0).row(corner->y - 1 + y) + corner->x - 1, kSide,
                     kept_.view().row(i) + kSide * y);
+}
+
+void PatchSites::exclude(std::span<const Box> excluded) {
+  if (excluded.empty()) return;
+  int kept = 0;
+  for (int i = 0; i < count; ++i) {
+    if (touches(excluded, site[i].x, site[i].y, kPatch)) continue;
+    if (kept < i) {
+      site[kept] = site[i];
+      std::copy_n(kept_.view().row(i), kept_.size().width, kept_.view().row(kept));
+    }
+    ++kept;
+  }
+  count = kept;
 }
 
 PatchFollower PatchSites::follower(int i) const {

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include "vision/ego_motion/motion_fit.h"
 #include "vision/ego_motion/motion_kernels.h"
+#include "vision/geometry/box.h"
 #include "vision/image/image.h"
 #include "vision/image/pyramid.h"
 
@@ -66,8 +68,11 @@ struct PatchSites {
   std::array<PatchSite, MotionSamples::kMax> site;
 
   // noise: standard deviation of a pixel of level 0, grey levels; the texture of a patch must exceed it. Allocates only
-  // when the size changes.
-  void choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch);
+  // when the size changes. excluded: pixels of level 0 that show no scene (burnt_in.h); no patch touches them.
+  void choose(const Pyramid& pyramid, double noise, Image<std::int32_t>& scratch,
+              std::span<const Box> excluded = {});
+  // Drops the patches that touch `excluded`.
+  void exclude(std::span<const Box> excluded);
   // Returns the follower on level 0. The pixels that it needs were copied: the picture may be gone.
   PatchFollower follower(int i) const;
   std::size_t bytes() const { return kept_.bytes(); }  // beside the object itself

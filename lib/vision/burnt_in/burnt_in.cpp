@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/burnt_in/burnt_in.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::vision {
+
+namespace {
+
+constexpr int kWhole = 255;  // a share of 1
+constexpr std::uint8_t kCandidate = 1, kTaken = 2;
+
+RecurrentChanges::Time milliseconds(double seconds) {
+  return static_cast<RecurrentChanges::Time>(std::lround(1000 * seconds));
+}
+
+}  // namespace
+
+void BurntIn::reset() {
+  changes_.reset();
+  edges_.reset();
+  std::fill(foreground_.begin(), foreground_.end(), std::uint8_t{0});
+  places_.clear();
+  found_ = published_ = {};
+  now_ = searched_ = 0;
+  standing_ = 0;
+}
+
+void BurntIn::prepare(Size size) {
+  if (size == grid_.size) return;
+  const BlockGrid grid(size);
+  changes_.resize(grid);
+  edges_.resize(grid);
+  foreground_.assign(grid.count(), 0);
+  candidate_.assign(grid.count(), 0);
+  stack_.reserve(grid.count());
+  bits_.assign(2 * static_cast<std::size_t>(grid.words), 0);
+  places_.reserve(BurntInBoxes::kMost);
+  reported_ = {};
+  grid_ = grid;  // last: what threw is tried again
+  reset();
+}
+
+bool BurntIn::is_active(const Place& p) const {
+  for (int y = p.top; y < p.bottom; ++y)
+    for (int x = p.left; x < p.right; ++x)
+      if (changes_.changed(grid_.at(x, y))) return true;
+  return false;
+}
+
+// Grows a box to the left (step -1) or right by the columns that change, unless the blocks above or below change, too.
+void BurntIn::grow_row(Place& p, int step) {
+  const int top = std::max(p.top - parameters_.near, 0),
+            bottom = std::min(p.bottom + parameters_.near, grid_.rows);
+  const auto any = [&](int x, int from, int end, auto&& is) {
+    for (int y = std::max(from, 0); y < std::min(end, grid_.rows); ++y)
+      if (is(grid_.at(x, y))) return true;
+    return false;
+  };
+  const auto changes = [&](std::size_t b) { return changes_.changed(b); };
+  const auto continues = [&](std::size_t b) {
+    return changes_.changed(b) || foreground_[b] > kWhole * parameters_.continues;
+  };
+  for (int x = step < 0 ? p.left - 1 : p.right, empty = 0;
+       x >= 0 && x < grid_.columns && empty <= parameters_.gap; x += step) {
+    if (!any(x, top, bottom, changes)) {
+      ++empty;
+      continue;
+    }
+    if (any(x, top - parameters_.far, top, continues) || any(x, bottom, bottom + parameters_.far, continues))
+      return;
+    empty = 0;
+    Place grown = p;
+    grown.left = std::min(p.left, x), grown.right = std::max(p.right, x + 1);
+    if (is_too_large(grown)) return;
+    p = grown;
+  }
+}
+
+// What changes in the same frame and in the same row as something learnt belongs to it: the tens with the seconds, the
+// minutes with the tens.
+void BurntIn::grow_rows() {
+  for (Place& p : places_) {
+    if (!is_active(p)) continue;
+    p.quiet = 0;
+    p.changes = true;
+    for (const int step : {-1, 1}) grow_row(p, step);
+  }
+  publish(0);
+}
+
+void BurntIn::average_foreground(GrayView mask) {
+  for (int row = 0; row < grid_.rows; ++row) {
+    const std::size_t begin = grid_.at(0, row);
+    find_blocks(mask, 0, parameters_.least_foreground, grid_, row, bits_, candidate_.data() + begin);
+    for (std::size_t first = begin; first < begin + grid_.stride(); first += BlockGrid::kWord) {
+      if (!load_counts(candidate_.data() + first) && !load_counts(foreground_.data() + first)) continue;
+      for (std::size_t i = first; i < first + BlockGrid::kWord; ++i) {
+        const int target = candidate_[i] ? kWhole : 0;
+        foreground_[i] = static_cast<std::uint8_t>(foreground_[i] +
+                                                   (target - foreground_[i]) / parameters_.foreground_memory);
+      }
+    }
+  }
+}
+
+// Returns whether there is no foreground around a place; nor, where the camera stands, changes since the place began to
+// change.
+bool BurntIn::is_quiet_around(const Place& p, bool still) const {
+  RecurrentChanges::Time begun = milliseconds(now_);
+  if (still)
+    for (int y = p.top; y < p.bottom; ++y)
+      for (int x = p.left; x < p.right; ++x)
+        if (candidate_[grid_.at(x, y)]) begun = std::min(begun, changes_.begun(grid_.at(x, y)));
+  const auto goes_on = [&](std::size_t b) {
+    return foreground_[b] > kWhole * parameters_.continues ||
+           (still && changes_.last(b) && changes_.last(b) >= begun);
+  };
+  const int near = parameters_.near, far = parameters_.far, beside = still ? far : 0;
+  int going_on = 0, around = 0;
+  for (int y = std::max(p.top - far, 0); y < std::min(p.bottom + far, grid_.rows); ++y)
+    for (int x = std::max(p.left - beside, 0); x < std::min(p.right + beside, grid_.columns); ++x) {
+      if (x >= p.left - near && x < p.right + near && y >= p.top - near && y < p.bottom + near) continue;
+      ++around;
+      going_on += goes_on(grid_.at(x, y));
+    }
+  return going_on <= static_cast<int>(parameters_.around * around);
+}
+
+bool BurntIn::changes_together(const Place& p) const {
+  const auto for_candidates = [&](auto&& each) {
+    for (int y = p.top; y < p.bottom; ++y)
+      for (int x = p.left; x < p.right; ++x)
+        if (candidate_[grid_.at(x, y)]) each(changes_.last(grid_.at(x, y)));
+  };
+  RecurrentChanges::Time newest = 0;
+  for_candidates([&](auto last) { newest = std::max(newest, last); });
+  const double within = 1000 * parameters_.together_frames * period_;
+  int all = 0, together = 0;
+  for_candidates([&](auto last) { ++all, together += newest - last <= within; });
+  return together >= parameters_.together * all;
+}
+
+bool BurntIn::is_too_large(const Place& p) const {
+  return p.right - p.left > parameters_.widest * grid_.columns ||
+         p.bottom - p.top > parameters_.highest * grid_.rows;
+}
+
+// Grows a place by foreground that lasts beside its static edges: of a running count only the outline is static, and a
+// box behind writing is wider than its letters. Above and below, the place grows by half its height at most: a part of
+// a person followed by the head has more foreground there.
+void BurntIn::grow_foreground(Place& p) const {
+  const auto is_foreground = [&](int left, int top, int right, int bottom) {
+    int n = 0;
+    for (int y = top; y < bottom; ++y)
+      for (int x = left; x < right; ++x) n += foreground_[grid_.at(x, y)] > kWhole * parameters_.belongs;
+    return n > std::floor(parameters_.grows * std::max(right - left, bottom - top));
+  };
+  for (const int step : {-1, 1})
+    for (int x = step < 0 ? p.left - 1 : p.right, empty = 0;
+         x >= 0 && x < grid_.columns && empty <= parameters_.gap; x += step) {
+      if (!is_foreground(x, p.top, x + 1, p.bottom)) {
+        ++empty;
+        continue;
+      }
+      empty = 0;
+      p.left = std::min(p.left, x), p.right = std::max(p.right, x + 1);
+    }
+  const int margin = std::max((p.bottom - p.top) / 2, 1), top = std::max(p.top - margin, 0),
+            bottom = std::min(p.bottom + margin, grid_.rows);
+  while (p.top > top && is_foreground(p.left, p.top - 1, p.right, p.top)) --p.top;
+  while (p.bottom < bottom && is_foreground(p.left, p.bottom, p.right, p.bottom + 1)) ++p.bottom;
+}
+
+// Marks the blocks with some evidence; returns whether one has enough.
+bool BurntIn::any_candidates(bool still) {
+  const auto now = milliseconds(now_);
+  bool any = false;
+  for (std::size_t first = 0; first < candidate_.size(); first += BlockGrid::kWord) {
+    if (still) {
+      for (std::size_t i = first; i < first + BlockGrid::kWord; ++i)
+        any |= candidate_[i] = changes_.is_candidate(i, now);
+      continue;
+    }
+    const std::uint64_t candidates = edges_.candidates(first);
+    store_counts(candidates, candidate_.data() + first);
+    for (std::size_t i = first; candidates && i < first + BlockGrid::kWord; ++i) any |= edges_.is_strong(i);
+  }
+  return any;
+}
+
+// The box of the candidates that are connected with (x0, y0), across gaps between digits. count: of its blocks; strong:
+// one has enough evidence.
+BurntIn::Place BurntIn::take_component(int x0, int y0, bool still, int& count, bool& strong) {
+  Place place{x0, y0, x0 + 1, y0 + 1};
+  stack_.clear();
+  const auto push = [&](int x, int y) {
+    std::uint8_t& candidate = candidate_[grid_.at(x, y)];
+    if (candidate != kCandidate) return;
+    candidate = kTaken;
+    stack_.push_back(y * grid_.columns + x);
+  };
+  push(x0, y0);
+  for (count = 0, strong = false; !stack_.empty(); ++count) {
+    const int x = stack_.back() % grid_.columns, y = stack_.back() / grid_.columns, gap = parameters_.gap;
+    stack_.pop_back();
+    strong |= still || edges_.is_strong(grid_.at(x, y));
+    place = {std::min(place.left, x), std::min(place.top, y), std::max(place.right, x + 1),
+             std::max(place.bottom, y + 1)};
+    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid_.rows - 1); ++v)
+      for (int u = std::max(x - gap, 0); u <= std::min(x + gap, grid_.columns - 1); ++u) push(u, v);
+  }
+  return place;
+}
+
+void BurntIn::search(bool still) {
+  if (!any_candidates(still)) return;
+  for (int y = 0; y < grid_.rows; ++y)
+    for (int x = 0; x < grid_.columns; ++x) {
+      if (candidate_[grid_.at(x, y)] != kCandidate) continue;
+      int count = 0;
+      bool strong = false;
+      Place place = take_component(x, y, still, count, strong);
+      if (count < parameters_.least_blocks || !strong) continue;
+      if (!still) grow_foreground(place);
+      if (is_too_large(place) || !is_quiet_around(place, still)) continue;
+      if (still && !changes_together(place)) continue;
+      place.changes = still;
+      add(place);
+    }
+}
+
+// Joins what overlaps or touches.
+void BurntIn::add(const Place& found) {
+  for (Place& p : places_) {
+    if (found.left > p.right + parameters_.gap || found.right < p.left - parameters_.gap ||
+        found.top > p.bottom || found.bottom < p.top)
+      continue;
+    p.changes |= found.changes;
+    if (found.changes) p.quiet = 0;
+    Place joined = p;
+    joined.left = std::min(p.left, found.left), joined.top = std::min(p.top, found.top);
+    joined.right = std::max(p.right, found.right), joined.bottom = std::max(p.bottom, found.bottom);
+    if (!is_too_large(joined)) p = joined;
+    return;
+  }
+  if (places_.size() < BurntInBoxes::kMost) places_.push_back(found);
+}
+
+// compared: static edges were compared in this frame.
+void BurntIn::forget(double seconds, bool compared) {
+  for (Place& p : places_) {
+    if (p.changes && standing_ > 0) p.quiet += seconds;
+    if (!compared) continue;
+    int fixed = 0, moved = 0;
+    for (int y = p.top; y < p.bottom; ++y)
+      for (int x = p.left; x < p.right; ++x)
+        fixed += edges_.fixed(grid_.at(x, y)), moved += edges_.moved(grid_.at(x, y));
+    if (edges_.has_edges(fixed) && 2 * fixed >= moved)
+      p.against = 0;
+    else if (edges_.has_edges(moved))
+      p.against += seconds;
+  }
+  std::erase_if(places_, [&](const Place& p) {
+    if (p.quiet <= parameters_.keep && p.against <= parameters_.keep_against) return false;
+    for (int y = p.top; y < p.bottom; ++y)
+      for (int x = p.left; x < p.right; ++x) {
+        const std::size_t block = grid_.at(x, y);
+        changes_.forget(block);
+        edges_.forget(block);
+        foreground_[block] = 0;
+      }
+    return true;
+  });
+}
+
+// seconds: since the last search; 0 between searches.
+void BurntIn::publish(double seconds) {
+  const BurntInBoxes before = found_;
+  found_ = {};
+  const int margin = parameters_.margin;
+  for (Place& p : places_) {
+    const double left = std::max(p.left * BlockGrid::kWidth - margin, 0),
+                 top = std::max(p.top * BlockGrid::kHeight - margin, 0);
+    const Box box{left, top, std::min(p.right * BlockGrid::kWidth + margin, grid_.size.width) - left,
+                  std::min(p.bottom * BlockGrid::kHeight + margin, grid_.size.height) - top};
+    const auto is_same = [&](const Box& b) {
+      return b.x == box.x && b.y == box.y && b.width == box.width && b.height == box.height;
+    };
+    p.unchanged = std::ranges::any_of(before.boxes(), is_same) ? p.unchanged + seconds : 0;
+    const auto overlaps = [&](const Box& other) { return overlap_area(box, other) > 0; };
+    if (p.unchanged >= parameters_.settled && reported_.count < BurntInBoxes::kMost &&
+        std::ranges::none_of(reported_.boxes(), overlaps)) {
+      reported_.box[reported_.count++] = box;
+      found_.is_new.set(found_.count);
+    }
+    found_.box[found_.count++] = box;
+  }
+}
+
+// Seconds since the last frame, guessed where they are not known.
+double BurntIn::measure_time(double seconds) {
+  if (!(seconds > 0)) seconds = period_ > 0 ? period_ : parameters_.usual_period;
+  period_ = period_ > 0 ? period_ + parameters_.period_rate * (seconds - period_) : seconds;
+  return seconds;
+}
+
+void BurntIn::look_for(const BurntInInput& in, GrayView mask, double seconds) {
+  const bool compared = edges_.compare(in.picture);
+  average_foreground(mask);
+  search(in.still);
+  forget(seconds, compared);
+  edges_.renew(in.picture, now_, period_);
+  publish(seconds);
+}
+
+bool BurntIn::update(const BurntInInput& in, MutableGrayView mask) {
+  prepare(mask.size());
+  now_ += measure_time(in.seconds);
+  found_.is_new.reset();
+  standing_ = in.still ? standing_ + 1 : 0;
+  if (in.still && standing_ > parameters_.standing &&
+      changes_.update(in.difference, in.threshold, milliseconds(now_), period_))
+    grow_rows();
+  edges_.follow(in.motion);
+  const double since = now_ - searched_;
+  if (since >= parameters_.search_period - period_ / 2) {
+    searched_ = now_;
+    look_for(in, mask, since);
+  }
+  clear_boxes(boxes(), mask);
+  return is_changed();
+}
+
+bool BurntIn::is_changed() {
+  bool same = found_.count == published_.count;
+  for (std::size_t i = 0; same && i < found_.count; ++i)
+    same = intersection_over_union(found_.box[i], published_.box[i]) >= parameters_.same_box;
+  if (!same) published_ = found_;
+  return !same;
+}
+
+std::size_t BurntIn::bytes() const {
+  return sizeof *this + changes_.bytes() + edges_.bytes() + foreground_.capacity() + candidate_.capacity() +
+         stack_.capacity() * sizeof(std::int32_t) + bits_.capacity() * sizeof(std::uint64_t);
+}
+
+}  // namespace cerberus::vision
