@@ -286,7 +286,7 @@ bool nobody(const std::filesystem::path& data, bool before, Asked& asked) {
     }
   }
   std::printf("  %-50s %.3f%s\n", "frames with a blinking logo", worst_logo,
-              asked.at_most("frames with a blinking logo", worst_logo, .01, false).c_str());
+              asked.at_most("frames with a blinking logo", worst_logo, .01).c_str());
   for (const auto& [name, figure, most] : {std::tuple{"frames with a region", worst_regions, .01},
                                            {"frames with a track", worst_tracks, .01},
                                            {"frames with a box where nothing is written", worst_learnt, 0.}})

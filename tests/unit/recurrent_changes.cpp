@@ -30,9 +30,10 @@ double candidate_after(double seconds, const std::function<bool(int)>& changes, 
       for (int y = 4 * kY; y < 4 * kY + 4; ++y)
         for (int x = 8 * kX; x < 8 * kX + 8; ++x) difference.view().at(x, y) = 100;
     }
-    const auto now = static_cast<RecurrentChanges::Time>(1000 * n / kRate);
-    recurrent.update(difference.view(), 10, now, 1.0 / kRate);
-    if (recurrent.is_candidate(grid.at(kX, kY), now)) return 1.0 * n / kRate;
+    recurrent.set_time(1.0 * n / kRate, 1.0 / kRate);
+    recurrent.update(difference.view(), 10);
+    if (n % 5 == 0) recurrent.forget_old();
+    if (recurrent.is_candidate(grid.at(kX, kY))) return 1.0 * n / kRate;
   }
   return -1;
 }
@@ -86,17 +87,36 @@ START_TEST(changes_are_no_longer_evidence_two_seconds_after_the_last) {
   const BlockGrid grid(kSize);
   recurrent.resize(grid);
   Image<std::uint8_t> difference(kSize);
-  RecurrentChanges::Time now = 0;
   for (int n = 1; n <= 8 * kRate; ++n) {
     difference.fill_bytes(0);
     if (n <= 6 * kRate && n % kRate == 0)
       for (int y = 4 * kY; y < 4 * kY + 4; ++y)
         difference.view().at(8 * kX + 2, y) = difference.view().at(8 * kX + 5, y) = 100;
-    now = static_cast<RecurrentChanges::Time>(1000 * n / kRate);
-    recurrent.update(difference.view(), 10, now, 1.0 / kRate);
-    if (n == 6 * kRate) ck_assert(recurrent.is_candidate(grid.at(kX, kY), now));
+    recurrent.set_time(1.0 * n / kRate, 1.0 / kRate);
+    recurrent.update(difference.view(), 10);
+    if (n == 6 * kRate) ck_assert(recurrent.is_candidate(grid.at(kX, kY)));
   }
-  ck_assert(!recurrent.is_candidate(grid.at(kX, kY), now));
+  ck_assert(!recurrent.is_candidate(grid.at(kX, kY)));
+}
+END_TEST
+
+// 16 bits of 4 ms are 262 s.
+START_TEST(a_clock_is_a_candidate_for_hours_and_one_change_in_an_hour_is_none) {
+  RecurrentChanges recurrent;
+  const BlockGrid grid(kSize);
+  recurrent.resize(grid);
+  Image<std::uint8_t> none(kSize), clock(kSize);
+  clock.view().at(8 * kX, 4 * kY) = 100;
+  for (int second = 1; second <= 1200; ++second) {
+    clock.view().at(0, 0) = second % 300 == 1 ? 100 : 0;  // another block
+    for (int n = 0; n < 5; ++n) {
+      recurrent.set_time(second + 0.2 * n, 0.04);
+      recurrent.update(n == 0 ? clock.view() : none.view(), 10);
+      recurrent.forget_old();
+    }
+    if (second > 5) ck_assert_msg(recurrent.is_candidate(grid.at(kX, kY)), "after %d s", second);
+    ck_assert(!recurrent.is_candidate(0));
+  }
 }
 END_TEST
 
@@ -106,5 +126,6 @@ int main() {
                             a_count_that_runs_in_every_frame_is_a_candidate_after_three_seconds,
                             changes_of_several_frames_in_a_row_are_none, changes_at_no_interval_are_none,
                             changes_of_a_third_of_the_picture_are_those_of_the_light,
-                            changes_are_no_longer_evidence_two_seconds_after_the_last});
+                            changes_are_no_longer_evidence_two_seconds_after_the_last,
+                            a_clock_is_a_candidate_for_hours_and_one_change_in_an_hour_is_none});
 }

@@ -8,12 +8,8 @@ namespace cerberus::vision {
 
 namespace {
 
-constexpr int kWhole = 255;  // a share of 1
-constexpr std::uint8_t kCandidate = 1, kTaken = 2;
-
-RecurrentChanges::Time milliseconds(double seconds) {
-  return static_cast<RecurrentChanges::Time>(std::lround(1000 * seconds));
-}
+constexpr int kWhole = 255;                                    // a share of 1
+constexpr std::uint8_t kCandidate = 1, kTaken = 2, kDone = 3;  // marks of a search
 
 }  // namespace
 
@@ -34,7 +30,6 @@ void BurntIn::prepare(Size size) {
   edges_.resize(grid);
   foreground_.assign(grid.count(), 0);
   candidate_.assign(grid.count(), 0);
-  stack_.reserve(grid.count());
   bits_.assign(2 * static_cast<std::size_t>(grid.words), 0);
   places_.reserve(BurntInBoxes::kMost);
   reported_ = {};
@@ -108,14 +103,13 @@ void BurntIn::average_foreground(GrayView mask) {
 // Returns whether there is no foreground around a place; nor, where the camera stands, changes since the place began to
 // change.
 bool BurntIn::is_quiet_around(const Place& p, bool still) const {
-  RecurrentChanges::Time begun = milliseconds(now_);
+  double begun = 0;  // seconds ago
   if (still)
     for (int y = p.top; y < p.bottom; ++y)
       for (int x = p.left; x < p.right; ++x)
-        if (candidate_[grid_.at(x, y)]) begun = std::min(begun, changes_.begun(grid_.at(x, y)));
+        if (candidate_[grid_.at(x, y)]) begun = std::max(begun, changes_.since_begin(grid_.at(x, y)));
   const auto goes_on = [&](std::size_t b) {
-    return foreground_[b] > kWhole * parameters_.continues ||
-           (still && changes_.last(b) && changes_.last(b) >= begun);
+    return foreground_[b] > kWhole * parameters_.continues || (still && changes_.since_change(b) <= begun);
   };
   const int near = parameters_.near, far = parameters_.far, beside = still ? far : 0;
   int going_on = 0, around = 0;
@@ -132,13 +126,13 @@ bool BurntIn::changes_together(const Place& p) const {
   const auto for_candidates = [&](auto&& each) {
     for (int y = p.top; y < p.bottom; ++y)
       for (int x = p.left; x < p.right; ++x)
-        if (candidate_[grid_.at(x, y)]) each(changes_.last(grid_.at(x, y)));
+        if (candidate_[grid_.at(x, y)]) each(changes_.since_change(grid_.at(x, y)));
   };
-  RecurrentChanges::Time newest = 0;
-  for_candidates([&](auto last) { newest = std::max(newest, last); });
-  const double within = 1000 * parameters_.together_frames * period_;
+  double newest = parameters_.keep;  // seconds ago; a candidate has changed later
+  for_candidates([&](double ago) { newest = std::min(newest, ago); });
+  const double within = newest + parameters_.together_frames * period_;
   int all = 0, together = 0;
-  for_candidates([&](auto last) { ++all, together += newest - last <= within; });
+  for_candidates([&](double ago) { ++all, together += ago <= within; });
   return together >= parameters_.together * all;
 }
 
@@ -175,12 +169,11 @@ void BurntIn::grow_foreground(Place& p) const {
 
 // Marks the blocks with some evidence; returns whether one has enough.
 bool BurntIn::any_candidates(bool still) {
-  const auto now = milliseconds(now_);
   bool any = false;
   for (std::size_t first = 0; first < candidate_.size(); first += BlockGrid::kWord) {
     if (still) {
       for (std::size_t i = first; i < first + BlockGrid::kWord; ++i)
-        any |= candidate_[i] = changes_.is_candidate(i, now);
+        any |= candidate_[i] = changes_.is_candidate(i);
       continue;
     }
     const std::uint64_t candidates = edges_.candidates(first);
@@ -190,27 +183,38 @@ bool BurntIn::any_candidates(bool still) {
   return any;
 }
 
-// The box of the candidates that are connected with (x0, y0), across gaps between digits. count: of its blocks; strong:
-// one has enough evidence.
+// Whether a candidate is connected with a block that was taken, across gaps between digits.
+bool BurntIn::touches_taken(int x, int y) const {
+  const int gap = parameters_.gap;
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid_.rows - 1); ++v)
+    for (int u = std::max(x - gap, 0); u <= std::min(x + gap, grid_.columns - 1); ++u)
+      if (candidate_[grid_.at(u, v)] == kTaken) return true;
+  return false;
+}
+
+// The box of the candidates that are connected with (x0, y0), found by sweeps over the box, as far as it has grown, and
+// its neighbours: needs no memory beside the marks. count: of its blocks; strong: one has enough evidence.
 BurntIn::Place BurntIn::take_component(int x0, int y0, bool still, int& count, bool& strong) {
-  Place place{x0, y0, x0 + 1, y0 + 1};
-  stack_.clear();
-  const auto push = [&](int x, int y) {
-    std::uint8_t& candidate = candidate_[grid_.at(x, y)];
-    if (candidate != kCandidate) return;
-    candidate = kTaken;
-    stack_.push_back(y * grid_.columns + x);
-  };
-  push(x0, y0);
-  for (count = 0, strong = false; !stack_.empty(); ++count) {
-    const int x = stack_.back() % grid_.columns, y = stack_.back() / grid_.columns, gap = parameters_.gap;
-    stack_.pop_back();
+  Place place{x0, y0, x0, y0};
+  const auto take = [&](int x, int y) {
+    candidate_[grid_.at(x, y)] = kTaken;
+    ++count;
     strong |= still || edges_.is_strong(grid_.at(x, y));
     place = {std::min(place.left, x), std::min(place.top, y), std::max(place.right, x + 1),
              std::max(place.bottom, y + 1)};
-    for (int v = std::max(y - 1, 0); v <= std::min(y + 1, grid_.rows - 1); ++v)
-      for (int u = std::max(x - gap, 0); u <= std::min(x + gap, grid_.columns - 1); ++u) push(u, v);
+  };
+  count = 0, strong = false;
+  take(x0, y0);
+  for (int before = 0; before < count;) {
+    before = count;
+    const int gap = parameters_.gap, top = std::max(place.top - 1, 0), left = std::max(place.left - gap, 0);
+    for (int y = top; y < std::min(place.bottom + 1, grid_.rows); ++y)
+      for (int x = left; x < std::min(place.right + gap, grid_.columns); ++x)
+        if (candidate_[grid_.at(x, y)] == kCandidate && touches_taken(x, y)) take(x, y);
   }
+  for (int y = place.top; y < place.bottom; ++y)
+    for (int x = place.left; x < place.right; ++x)
+      if (std::uint8_t& c = candidate_[grid_.at(x, y)]; c == kTaken) c = kDone;
   return place;
 }
 
@@ -312,16 +316,17 @@ void BurntIn::look_for(const BurntInInput& in, GrayView mask, double seconds) {
   search(in.still);
   forget(seconds, compared);
   edges_.renew(in.picture, now_, period_);
+  changes_.forget_old();
   publish(seconds);
 }
 
 bool BurntIn::update(const BurntInInput& in, MutableGrayView mask) {
   prepare(mask.size());
   now_ += measure_time(in.seconds);
+  changes_.set_time(now_, period_);
   found_.is_new.reset();
   standing_ = in.still ? standing_ + 1 : 0;
-  if (in.still && standing_ > parameters_.standing &&
-      changes_.update(in.difference, in.threshold, milliseconds(now_), period_))
+  if (in.still && standing_ > parameters_.standing && changes_.update(in.difference, in.threshold))
     grow_rows();
   edges_.follow(in.motion);
   const double since = now_ - searched_;
@@ -343,7 +348,7 @@ bool BurntIn::is_changed() {
 
 std::size_t BurntIn::bytes() const {
   return sizeof *this + changes_.bytes() + edges_.bytes() + foreground_.capacity() + candidate_.capacity() +
-         stack_.capacity() * sizeof(std::int32_t) + bits_.capacity() * sizeof(std::uint64_t);
+         bits_.capacity() * sizeof(std::uint64_t);
 }
 
 }  // namespace cerberus::vision

@@ -60,7 +60,7 @@ class BurntIn {
     double around = 0.1;
     // Share of a box's blocks that must have changed within so many frames of one another. Derived: a digit changes as a
     // whole, a person's parts one after the other.
-    double together = 0.6, together_frames = 2;
+    double together = 0.6, together_frames = 2.5;
     // Share of a row or column of blocks that must be foreground for a box to grow over it.
     double grows = 0.25;
     // Share of the picture's width and height that writing has at most. Derived: three lines, or a large logo.
@@ -107,6 +107,7 @@ class BurntIn {
   void grow_row(Place& place, int step);
   bool any_candidates(bool still);
   void search(bool still);
+  bool touches_taken(int x, int y) const;
   Place take_component(int x, int y, bool still, int& count, bool& strong);
   void grow_foreground(Place& place) const;
   bool is_quiet_around(const Place& place, bool still) const;
@@ -123,7 +124,6 @@ class BurntIn {
   StaticEdges edges_;
   std::vector<std::uint8_t> foreground_;  // of a block: share of searches, 1/255
   std::vector<std::uint8_t> candidate_;   // scratch of the search, of a block
-  std::vector<std::int32_t> stack_;       // likewise
   std::vector<std::uint64_t> bits_;       // scratch, two sampled rows
   double now_ = 0, searched_ = 0, period_ = 0;
   int standing_ = 0;  // frames

@@ -15,7 +15,7 @@ namespace cerberus::vision {
 
 // Analysis pixels.
 struct BurntInBoxes {
-  static constexpr std::size_t kMost = 16;
+  static constexpr std::size_t kMost = 8;
   std::array<Box, kMost> box;
   std::size_t count = 0;
   std::bitset<kMost> is_new;  // found, grown to its size, and not overlapping one that was new before

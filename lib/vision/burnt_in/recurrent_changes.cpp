@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 
 namespace cerberus::vision {
 
@@ -40,11 +41,17 @@ bool RecurrentChanges::keeps_time(Block& b, double seconds) const {
   return same;
 }
 
+void RecurrentChanges::set_time(double now, double period) {
+  const auto ticks = static_cast<std::uint64_t>(std::llround(now / kTick));
+  now_ = static_cast<Time>(ticks) ? static_cast<Time>(ticks) : Time{1};
+  period_ = period;
+}
+
 // A change in one or two frames counts once it was followed by rest and the next one comes, if it comes in time.
-void RecurrentChanges::note(Block& b, Time now) {
-  const double ago = b.last ? (now - b.last) / kMilli : parameters_.stale;
+void RecurrentChanges::note(Block& b) {
+  const double ago = b.last ? seconds_since(b.last) : parameters_.stale;
   if (ago >= parameters_.stale) {
-    b = {now, now, now, 0, 1, 0};
+    b = {now_, now_, now_, 0, 1, 0};
     return;
   }
   if (ago < parameters_.in_a_row * period_) {
@@ -58,9 +65,26 @@ void RecurrentChanges::note(Block& b, Time now) {
       ++b.changes;
     if (b.changes == 0) b.first = b.last;
     b.frames = 1;
-    if (ago >= rest()) b.since = now;
+    if (ago >= rest()) b.since = now_;
   }
-  b.last = now;
+  b.last = now_;
+}
+
+void RecurrentChanges::forget_old() {
+  if (grid_.rows == 0) return;
+  aged_ = (aged_ + 1) % grid_.rows;
+  const auto longest = static_cast<Time>(parameters_.stale / kTick);
+  for (std::size_t i = grid_.at(0, aged_); i < grid_.at(0, aged_) + grid_.stride(); ++i) {
+    Block& b = blocks_[i];
+    if (!b.last) continue;
+    if (seconds_since(b.last) >= parameters_.stale) {
+      b = {};
+      continue;
+    }
+    // What goes on for longer began that long ago at least.
+    for (Time* began : {&b.since, &b.first})
+      if (seconds_since(*began) > parameters_.stale) *began = static_cast<Time>(now_ - longest);
+  }
 }
 
 // Writes changed_ and returns the number of blocks that have changed.
@@ -72,30 +96,36 @@ std::size_t RecurrentChanges::find_changes(GrayView difference, int threshold) {
   return count;
 }
 
-bool RecurrentChanges::update(GrayView difference, int threshold, Time now, double period) {
-  period_ = period;
+bool RecurrentChanges::update(GrayView difference, int threshold) {
   const std::size_t count = find_changes(difference, threshold);
   if (count == 0 || static_cast<double>(count) >= parameters_.whole_picture * grid_.columns * grid_.rows)
     return false;
   for (std::size_t first = 0; first < changed_.size(); first += BlockGrid::kWord) {
     if (!load_counts(changed_.data() + first)) continue;
     for (std::size_t i = first; i < first + BlockGrid::kWord; ++i)
-      if (changed_[i]) note(blocks_[i], now);
+      if (changed_[i]) note(blocks_[i]);
   }
   return true;
 }
 
-bool RecurrentChanges::is_candidate(std::size_t block, Time now) const {
+bool RecurrentChanges::is_candidate(std::size_t block) const {
   const Block& b = blocks_[block];
   if (!b.last) return false;
-  const double ago = (now - b.last) / kMilli;
-  if (ago < rest() && b.last - b.since >= kMilli * parameters_.enough_busy) return true;
-  return is_recurrent(b) && ago < parameters_.recent && b.last - b.first >= kMilli * parameters_.enough_time;
+  const double ago = seconds_since(b.last);
+  if (ago < rest() && seconds_since(b.since) - ago >= parameters_.enough_busy) return true;
+  return is_recurrent(b) && ago < parameters_.recent &&
+         seconds_since(b.first) - ago >= parameters_.enough_time;
 }
 
-RecurrentChanges::Time RecurrentChanges::begun(std::size_t block) const {
+double RecurrentChanges::since_begin(std::size_t block) const {
   const Block& b = blocks_[block];
-  return is_recurrent(b) ? b.first : b.since;
+  if (!b.last) return std::numeric_limits<double>::infinity();
+  return seconds_since(is_recurrent(b) ? b.first : b.since);
+}
+
+double RecurrentChanges::since_change(std::size_t block) const {
+  const Block& b = blocks_[block];
+  return b.last ? seconds_since(b.last) : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace cerberus::vision

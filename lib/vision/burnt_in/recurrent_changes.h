@@ -13,11 +13,9 @@
 namespace cerberus::vision {
 
 // A moving person changes the picture for several frames in a row, and at no interval. Own method. Times are
-// milliseconds of the caller's own count, from 1 on.
+// kept in 16 bits, in steps of 4 ms: forget_old() keeps them from running over.
 class RecurrentChanges {
  public:
-  using Time = std::uint32_t;
-
   struct Parameters {
     // Grey levels by which a pixel must change to count, Th at least. Tried: at 48 bench-burnt_in no longer learns the
     // sans clock of a standing camera; with Th alone a person swaying in time is learnt (unit test places with
@@ -56,22 +54,29 @@ class RecurrentChanges {
 
   void resize(const BlockGrid& grid);
   void reset();
-  // Counts the changes of a frame. difference: D(k); threshold: Th; period: seconds between frames, smoothed. Returns
-  // whether some blocks have changed, but not so many that it was the light.
-  bool update(GrayView difference, int threshold, Time now, double period);
+  // The time of the next frame, seconds; period: between frames, smoothed.
+  void set_time(double now, double period);
+  // Counts the changes of that frame. difference: D(k); threshold: Th. Returns whether some blocks have changed, but not
+  // so many that it was the light.
+  bool update(GrayView difference, int threshold);
+  // Forgets what is older than `stale`, in one row of blocks a call. To be called a few times a second.
+  void forget_old();
 
   // In the frame that update() was called for last.
   bool changed(std::size_t block) const { return changed_[block]; }
-  bool is_candidate(std::size_t block, Time now) const;
-  // When the changes began that make the block a candidate, and when it changed last; 0: never.
-  Time begun(std::size_t block) const;
-  Time last(std::size_t block) const { return blocks_[block].last; }
+  bool is_candidate(std::size_t block) const;
+  // Seconds since the changes began that make the block a candidate, and since the last one; infinity: never.
+  double since_begin(std::size_t block) const;
+  double since_change(std::size_t block) const;
   void forget(std::size_t block) { blocks_[block] = {}; }
   std::size_t bytes() const {
     return blocks_.capacity() * sizeof(Block) + changed_.capacity() + bits_.capacity() * 8;
   }
 
  private:
+  using Time = std::uint16_t;  // 0: never
+  static constexpr double kTick = 0.004;
+
   struct Block {
     Time last = 0, since = 0;    // last change, and since when there was one in every frame
     Time first = 0;              // of the changes that are counted
@@ -80,15 +85,18 @@ class RecurrentChanges {
     std::uint8_t changes = 0;    // changes at once that were followed by rest
   };
 
+  double seconds_since(Time then) const { return static_cast<Time>(now_ - then) * kTick; }
   std::size_t find_changes(GrayView difference, int threshold);
-  void note(Block& block, Time now);
+  void note(Block& block);
   double rest() const;
   bool keeps_time(Block& block, double seconds) const;
   bool is_recurrent(const Block& block) const { return block.changes + 1 >= parameters_.enough_changes; }
 
   Parameters parameters_;
   BlockGrid grid_;
-  double period_ = 0;
+  double period_ = 0;  // seconds
+  Time now_ = 1;
+  int aged_ = 0;  // row of blocks that was aged last
   std::vector<Block> blocks_;
   std::vector<std::uint8_t> changed_;  // of a block: 0 or 1
   std::vector<std::uint64_t> bits_;    // of two sampled rows
