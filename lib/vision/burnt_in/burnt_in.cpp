@@ -261,7 +261,7 @@ void BurntIn::forget(double seconds, bool compared) {
     for (int y = p.top; y < p.bottom; ++y)
       for (int x = p.left; x < p.right; ++x)
         fixed += edges_.fixed(grid_.at(x, y)), moved += edges_.moved(grid_.at(x, y));
-    if (edges_.has_edges(fixed) && 2 * fixed >= moved)
+    if (edges_.has_edges(fixed) && parameters_.contrary * fixed >= moved)
       p.against = 0;
     else if (edges_.has_edges(moved))
       p.against += seconds;

@@ -69,6 +69,10 @@ class BurntIn {
     int gap = 2, least_blocks = 2;
     // Analysis pixels that are left out around the blocks. Derived: the width of the blur.
     int margin = 2;
+    // Other edges for each static one of a box, beyond which a comparison is contrary evidence. Swept: at 2 the sans clock
+    // of a sweeping camera, between whose thin digits the scene moves, is forgotten after 17 s (bench-burnt_in, outdoor:
+    // .078 of the frames), 3 and 4 serve (.000).
+    int contrary = 3;
     // Seconds without any evidence, and of contrary evidence, after which a box is forgotten.
     double keep = 30, keep_against = 3;
     // Seconds without growth after which a box is reported. Derived: five searches.
