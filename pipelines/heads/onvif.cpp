@@ -110,7 +110,7 @@ std::string read_word(const OptionWord& word, Settings& s) {
                             : key == "password-env"        ? &s.password.environment
                             : key == "password-credential" ? &s.password.credential
                             : key == "profile"             ? &s.head.login.profile
-                            : key == "home-preset"         ? &s.head.home_preset
+                            : key == "home-preset"         ? &s.head.login.preset
                             : key == "emergency-stop"      ? &s.emergency_stop
                                                            : nullptr;
   if (text) {
@@ -138,6 +138,8 @@ std::string read_words(const std::vector<OptionWord>& words, Settings& s) {
   if (!s.has_device) return "onvif needs a camera (device=http://HOST)";
   if (!s.http.fingerprint.empty() && !s.head.login.device.encrypted)
     return "fingerprint needs an encrypted connection: write device=https://HOST";
+  s.head.home = s.head.login.preset == "home";
+  if (s.head.home) s.head.login.preset.clear();
   std::string wrong = read_password(s.password, s.http.password);
   if (wrong.empty() && s.http.user.empty() && !s.http.password.empty())
     return "a password needs a user: give user=";

@@ -447,6 +447,10 @@ HttpReply OnvifCamera::ptz(const std::string& name, const xmlNode* request) {
     return envelope("<tptz:" + name + "Response/>");
   }
   if (name == "GotoPreset") return fault("InvalidArgVal", "NoToken", "no such preset");
+  if (name == "GetPresets")
+    return envelope(
+        "<tptz:GetPresetsResponse><tptz:Preset token=\"1\"><tt:Name>ahead</tt:Name></tptz:Preset>"
+        "<tptz:Preset token=\"2\"><tt:Name>gone</tt:Name></tptz:Preset></tptz:GetPresetsResponse>");
   return fault("ActionNotSupported", "", "Optional Action Not Implemented");
 }
 

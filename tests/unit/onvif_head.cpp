@@ -173,13 +173,14 @@ END_TEST
 
 START_TEST(a_camera_without_positions_finds_its_reference_by_a_preset) {
   using MoveStatus = OnvifFaults::MoveStatus;
-  for (const char* preset : {"home", "1"}) {
+  for (const char* preset : {"home", "ahead"}) {
     OnvifFaults faults;
     faults.positions = false;
     faults.move_status = *preset == 'h' ? MoveStatus::alive : MoveStatus::absent;
     OnvifCamera camera(faults);
     OnvifOptions options = onvif_options(camera);
-    options.home_preset = preset;
+    options.home = *preset == 'h';
+    if (!options.home) options.login.preset = preset;
     options.home_time = 1s;
     OnvifRig rig(options);
     assert_text(rig.served.line("ready"), "ready 1 velocity home rate 10");
@@ -197,12 +198,33 @@ START_TEST(a_preset_that_is_not_there_is_a_fault) {
   faults.positions = false;
   OnvifCamera camera(faults);
   OnvifOptions options = onvif_options(camera);
-  options.home_preset = "2";
+  options.login.preset = "gone";  // listed, and not there
   OnvifRig rig(options);
   rig.served.line("ready");
   rig.served.say("home");
   const std::string fault = rig.served.line("fault");
   ck_assert_msg(fault.find("NoToken: no such preset") != std::string::npos, "%s", fault.c_str());
+}
+END_TEST
+
+START_TEST(a_preset_that_is_not_listed_is_named_with_those_that_are) {
+  OnvifCamera camera;
+  OnvifOptions options = onvif_options(camera);
+  options.login.preset = "door";
+  OnvifRig rig(options);
+  const std::string fault = rig.served.line("fault");
+  ck_assert_msg(fault.ends_with("has no preset \"door\"; it has 1 (ahead), 2 (gone)"), "%s", fault.c_str());
+}
+END_TEST
+
+// Seven requests of .9 s would take longer than the pipeline waits.
+START_TEST(a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known) {
+  OnvifCamera camera({.delay = 900ms});
+  OnvifOptions options = onvif_options_with_range(camera);
+  options.answer_time = 3s;
+  OnvifRig rig(options);
+  assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
+  ck_assert(rig.served.until([&] { return camera.speed() > 44; }, "move at 45 hold"));
 }
 END_TEST
 
@@ -242,5 +264,7 @@ int main() {
                                   a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
                                   a_camera_without_positions_finds_its_reference_by_a_preset,
                                   a_preset_that_is_not_there_is_a_fault,
+                                  a_preset_that_is_not_listed_is_named_with_those_that_are,
+                                  a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known,
                                   a_velocity_falls_before_a_limit_and_towards_an_angle});
 }

@@ -56,6 +56,8 @@ void Login::send(Step step, Time now) {
         return get_configuration_options(configuration_);
       case Step::stop:
         return stop(camera_.profile);
+      case Step::presets:
+        return get_presets(camera_.profile);
       case Step::status:
         return get_status(camera_.profile);
       case Step::absolute:
@@ -106,6 +108,26 @@ void Login::after_profiles(const SoapAnswer& answer, Time now) {
   fail("has no profile \"" + options_.profile + "\" that can pan and tilt; it has " + seen_profiles_);
 }
 
+// A preset by token or name.
+void Login::after_presets(const SoapAnswer& answer, Time now) {
+  std::string seen;
+  for (const Preset& preset : read_presets(answer.body)) {
+    if (preset.token == options_.preset || (camera_.preset.empty() && preset.name == options_.preset))
+      camera_.preset = preset.token;
+    if (!seen.empty()) seen.append(", ");
+    seen.append(preset.token);
+    if (!preset.name.empty()) seen.append(" (").append(preset.name).append(")");
+  }
+  if (!camera_.preset.empty()) return send(Step::status, now);
+  fail("has no preset \"" + options_.preset + "\"" + (seen.empty() ? "" : "; it has " + seen));
+}
+
+bool Login::cut_short() {
+  soap_.cancel(id_);
+  id_ = 0;
+  return !camera_.profile.empty();
+}
+
 void Login::handle(const SoapAnswer& answer, Time now) {
   id_ = 0;
   if (!answer.arrived && step_ != Step::stop) return fail("cannot be reached: " + answer.wrong);
@@ -145,7 +167,9 @@ void Login::handle(const SoapAnswer& answer, Time now) {
       camera_.options = read_configuration_options(answer.body).value_or(PtzOptions{});
       return send(Step::stop, now);
     case Step::stop:
-      return send(Step::status, now);
+      return send(options_.preset.empty() ? Step::status : Step::presets, now);
+    case Step::presets:
+      return after_presets(answer, now);
     case Step::status:
       if (!answer.wrong.empty()) {
         if (++unreadable_ < kMostUnreadable) return send(step_, now);

@@ -14,6 +14,7 @@ struct LoginOptions {
   std::string profile;         // token or name; empty: the first that can pan and tilt
   bool password_text = false;  // passwords in clear also without TLS
   bool try_absolute = true;
+  std::string preset;  // token or name of a preset to look up; empty: none
 };
 
 // What the camera is, after a login.
@@ -22,6 +23,7 @@ struct Camera {
   std::string profile;
   PtzOptions options;
   std::optional<PtzStatus> status;  // nothing: it has none
+  std::string preset;               // token of the preset that was looked up
   bool absolute = false;            // it takes an AbsoluteMove to its own position
 };
 
@@ -31,6 +33,8 @@ class Login {
   // Begins anew. timeout: of each request.
   void begin(Time now, Time timeout);
   bool busy() const { return id_ != 0; }
+  // Gives up what is still to be asked for. False: not even the profile is known.
+  bool cut_short();
   bool owns(unsigned id) const { return id != 0 && id == id_; }
   // An answer that it owns.
   void handle(const SoapAnswer& answer, Time now);
@@ -49,6 +53,7 @@ class Login {
     profiles_media2,
     options,
     stop,
+    presets,
     status,
     absolute
   };
@@ -59,6 +64,7 @@ class Login {
   bool choose(const std::vector<Profile>& profiles);
   void after_services(const SoapAnswer& answer, Time now);
   void after_profiles(const SoapAnswer& answer, Time now);
+  void after_presets(const SoapAnswer& answer, Time now);
   Address service(const std::string& claimed) const;
 
   SoapClient& soap_;

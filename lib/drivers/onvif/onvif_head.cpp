@@ -49,7 +49,8 @@ std::string OnvifHead::open(const HeadSetup& setup, Time now) {
     while (const auto answer = soap_.take(now + elapsed()))
       if (login_.owns(answer->id)) login_.handle(*answer, now + elapsed());
   }
-  if (login_.busy()) return camera_name() + " does not answer in time";
+  // A slow camera is driven without what could not be asked for: its positions and absolute moves.
+  if (login_.busy() && !login_.cut_short()) return camera_name() + " does not answer in time";
   if (!login_.wrong().empty()) return camera_name() + " " + login_.wrong();
   on_login(now + elapsed());
   keeps_limits_ = absolute_;
@@ -61,7 +62,7 @@ HeadAbilities OnvifHead::abilities() const {
           .velocity = true,
           .feedback = positions_,
           .rate = kParameters.rate,
-          .home = !positions_ && !options_.home_preset.empty()};
+          .home = !positions_ && (options_.home || !camera_.preset.empty())};
 }
 
 void OnvifHead::on_login(Time now) {
@@ -235,8 +236,8 @@ void OnvifHead::home(Time now) {
 
 void OnvifHead::send_home(Time now) {
   if (!homing_.wanted() || move_ != 0) return;
-  move_ = send(options_.home_preset == "home" ? onvif::goto_home_position(camera_.profile)
-                                              : onvif::goto_preset(camera_.profile, options_.home_preset),
+  move_ = send(options_.home ? onvif::goto_home_position(camera_.profile)
+                             : onvif::goto_preset(camera_.profile, camera_.preset),
                now);
   homing_.on_sent(now);
   moved_ = true;

@@ -30,9 +30,9 @@ struct OnvifOptions {
   onvif::LoginOptions login;
   onvif::Mechanics mechanics;
   bool feedback = true;  // use the positions that the camera reports
-  // The preset that looks straight ahead, by which a camera without positions finds a lost reference; "home" is the
-  // camera's home position; empty: none.
-  std::string home_preset;
+  // A camera without positions finds a lost reference by its home position, or by the preset of the login, which looks
+  // straight ahead.
+  bool home = false;
   std::chrono::milliseconds home_time{10000};  // until it is there, where MoveStatus does not say so
   // A camera that has not answered for so long is gone. Derived: reported within 1 s of its last sign.
   std::chrono::milliseconds answer_time{750};
