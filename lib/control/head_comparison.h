@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Compares the turn of the picture with the turn of the head that carries the camera, from frame to frame. What the head
-// does not explain is a turn of the base below it, or a fault of the head (slip.h). Not thread-safe; allocates nothing.
+// Compares the turn of the picture with the turn of the head that carries the camera, from frame to frame. What the
+// head does not explain is a turn of the base below it, or a fault of the head (slip.h). Not thread-safe; allocates
+// nothing.
 #pragma once
 
 #include <optional>

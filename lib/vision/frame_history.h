@@ -21,14 +21,12 @@ class FrameHistory {
     double smoothing = .1;        // weight of a new distance in the usual one: about the last ten frames
     double missing_factor = 1.5;  // usual distances from which on a frame is missing: half way to two
     double least_seconds = 1e-4;  // a smaller distance is no time of a camera, whatever the timestamps say
-    int late_frames =
-        8;  // frames in a row that are older than assumed, after which their times are used again
+    int late_frames = 8;  // in a row that are older than assumed, after which their times are used again
     // Seconds for which a repeated picture stands for the stream: no gap is counted within. Derived: a source of two
     // frames a second, of which another element has made more; slower ones are too slow to follow people.
     double longest_repeat = .5;
     int lost_pictures = 5;  // pictures in a row that may be lost within a scene: a fifth of a second of video
-    double unknown_distance =
-        .04;  // seconds, where neither caps nor frames have shown one: 25 frames a second
+    double unknown_distance = .04;  // seconds, where neither caps nor frames have shown one: 25 a second
   };
 
   FrameHistory() = default;
@@ -69,8 +67,8 @@ class FrameHistory {
   Parameters parameters_;
   bool any_ = false;  // a frame of this scene was seen
   int lost_ = 0;      // since the last picture
-  double held_ = 0;   // seconds for which the last picture is known to have stayed, at most longest_repeat
   int repeats_ = 0;   // likewise
+  double held_ = 0;   // seconds for which the last picture is known to have stayed, at most longest_repeat
   std::optional<Time> previous_;  // of the last picture
   std::optional<Time> shown_;     // of the last frame, repeated or not
   std::optional<Time> stamp_;     // of the last frame of this scene that had a time at all

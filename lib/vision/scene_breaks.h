@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Detects a stream whose scenes end before a track can be confirmed, for a reason that is not in the picture: frames are
-// dropped between the stages, or timestamps jump. Nothing can be found in it, without a visible cause. Not thread-safe.
+// Detects a stream whose scenes end before a track can be confirmed, for a reason that is not in the picture: frames
+// are dropped between the stages, or timestamps jump. Nothing can be found in it, without a visible cause. Not
+// thread-safe.
 #pragma once
 
 namespace cerberus::vision {

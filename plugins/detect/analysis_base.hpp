@@ -3,16 +3,16 @@
 // the element's Analyser with its context.
 //
 // The base decides what is not thinking: caps (progressive, 32 x 32 to 8192 x 8192: the pad templates), when history
-// ends (see vision::FrameHistory and below), the camera's motion as found on the buffer, buffers that hold no picture, the property
-// analysis-width, and that no exception leaves.
+// ends (see vision::FrameHistory and below), the camera's motion as found on the buffer, buffers that hold no picture,
+// the property analysis-width, and that no exception leaves.
 //
 // A frame is `fresh` (every stage forgets the past) after start, a caps change, a flush, a new
 // segment, DISCONT, a gap in time, a step back as wide as one, several buffers in a row without a
 // usable picture, a cut seen by `cameramotion`, and when it is not known how the camera moved since
 // the last frame seen here. Frames dropped between the stages, or in front of all, end nothing: see
 // camera_path.hpp. Nor do small steps back, which are a matter of the timestamps only. A buffer with the flag GAP, as
-// `videorate` marks duplicates, repeats the last picture: no stage looks at it, and the last result stands. A frame that
-// the first stage recognises as such a duplicate gets the flag.
+// `videorate` marks duplicates, repeats the last picture: no stage looks at it, and the last result stands. A frame
+// that the first stage recognises as such a duplicate gets the flag.
 #pragma once
 
 #include <gst/base/gstbasetransform.h>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Posts when motion starts and ends (lib's MotionEvents) and what each track does (TrackEvents), in a live pipeline also
-// when frames stop coming: then both end by the pipeline's clock. Messages are posted without a lock, in the order in which they arise.
+// Posts when motion starts and ends (lib's MotionEvents) and what each track does (TrackEvents), in a live pipeline
+// also when frames stop coming: then both end by the pipeline's clock. Messages are posted without a lock, in the order
+// in which they arise.
 #pragma once
 
 #include <cerberus/cerberus.h>

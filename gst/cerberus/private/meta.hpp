@@ -42,8 +42,8 @@ inline std::optional<Rescaling> rescaling(GQuark type, gpointer data) {
   return sizes;
 }
 
-// The part of the memory that is the picture, where a crop in place (`videocrop` before a sink that crops) has written it
-// on the buffer. No transform function is called then.
+// The part of the memory that is the picture, where a crop in place (`videocrop` before a sink that crops) has written
+// it on the buffer. No transform function is called then.
 using Crop = std::array<guint, 4>;  // x, y, width, height
 inline Crop crop_of(GstBuffer* buffer) {
   const GstVideoCropMeta* crop = gst_buffer_get_video_crop_meta(buffer);
