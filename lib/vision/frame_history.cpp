@@ -39,7 +39,8 @@ FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal) 
   else if (any_)
     follow(step, time, rhythm);
   step.broken = any_ && step.fresh;
-  step.repeatable = !step.fresh && step.seconds <= parameters_.longest_repeat;
+  ordered_ = time && (step.fresh || (ordered_ && !step.backwards && late_ == 0));
+  step.repeatable = !step.fresh && ordered_ && step.seconds <= parameters_.longest_repeat;
   if (step.fresh) {
     stamp_.reset();
     late_ = 0;

@@ -46,11 +46,12 @@ class FrameHistory {
   std::optional<Time> previous() const { return previous_; }
 
   struct Step {
-    bool fresh = true;        // no predecessor: everything learnt from earlier frames is dropped
-    bool broken = false;      // there was a predecessor, but the time ended the scene
-    bool backwards = false;   // older than the frame before; if only a little, its time counts as unknown
-    bool repeatable = false;  // the previous frame is recent enough to be repeated by this one
-    double seconds = 0;       // since the previous frame; 0: none, or not known
+    bool fresh = true;       // no predecessor: everything learnt from earlier frames is dropped
+    bool broken = false;     // there was a predecessor, but the time ended the scene
+    bool backwards = false;  // older than the frame before; if only a little, its time counts as unknown
+    bool repeatable =
+        false;  // the previous frame is recent enough to be repeated by this one, as times in order tell
+    double seconds = 0;            // since the previous frame; 0: none, or not known
     std::optional<Time> previous;  // running time of the previous frame, where it has one
   };
 
@@ -75,6 +76,7 @@ class FrameHistory {
   Time clock_{};                  // the time that was assumed for it
   int late_ = 0;                  // frames in a row that were older than that
   double usual_ = 0;              // smoothed distance between frames, s
+  bool ordered_ = true;           // all frames of this scene had times, each later than the one before
 };
 
 }  // namespace cerberus::vision

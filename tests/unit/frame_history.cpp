@@ -236,6 +236,19 @@ START_TEST(a_frame_may_repeat_a_picture_of_the_last_half_second) {
 }
 END_TEST
 
+START_TEST(where_times_are_out_of_order_no_frame_repeats_another) {
+  FrameHistory history;
+  history.next(0ms, kNominal);
+  ck_assert(history.next(kStep, kNominal).repeatable);
+  ck_assert(!history.next(kStep, kNominal).repeatable);
+  ck_assert(!history.next(2 * kStep, kNominal).repeatable);  // for the rest of the scene
+  history.drop();
+  history.next(5s, kNominal);
+  ck_assert(history.next(5s + kStep, kNominal).repeatable);
+  ck_assert(!history.next(std::nullopt, kNominal).repeatable);
+}
+END_TEST
+
 START_TEST(pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them) {
   FrameHistory history;
   history.next(std::nullopt, .1);
@@ -267,5 +280,6 @@ int main() {
        a_repeated_frame_counts_from_the_last_picture, repeated_frames_without_times_are_counted,
        repeated_frames_are_not_missing, a_picture_that_is_seen_to_stay_leaves_no_gap,
        a_long_freeze_ends_the_scene, a_frame_may_repeat_a_picture_of_the_last_half_second,
+       where_times_are_out_of_order_no_frame_repeats_another,
        pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them});
 }
