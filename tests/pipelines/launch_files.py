@@ -123,13 +123,40 @@ def test_live(kind):
     assert any(map(coloured, pictures)), 'no box was shown'
 
 
+def recorded_file():
+    """The one file that the recorder wrote into this folder."""
+    found = list(pathlib.Path('recordings').rglob('*.mp4'))
+    assert len(found) == 1, f'not one recording: {found}'
+    return str(found[0])
+
+
 def test_record(kind):
-    finish(start('record', SOURCE=source(kind), FILE='out.mkv', JSON='out.jsonl'))
+    """The ball moves all the time: one event from the first frame, which lies in its pre-roll, to the last."""
+    os.mkdir('recordings')
+    finish(start('record', SOURCE=source(kind), FOLDER='recordings', NAME='yard', JSON='out.jsonl'))
     count = check_lines('out.jsonl', kind)
-    check_players_can_play('out.mkv', 'matroskademux')
-    pictures = decode('out.mkv')
+    path = recorded_file()
+    assert '_yard_1.mp4' in path, path
+    check_players_can_play(path, 'qtdemux')
+    pictures = decode(path)
     assert len(pictures) == count, f'{len(pictures)} frames in the recording, {count} lines'
     assert not any(map(coloured, pictures)), 'the recording is not the original picture'
+
+
+def test_record_streams(kind):
+    """A large and a small stream of the same scene, each with its own source."""
+    os.mkdir('recordings')
+    if kind == 'live':
+        small = ball(frames=FRAMES, width=160, height=120, live=True, name='small')
+    else:
+        small = source(kind) + ' ! videoscale ! video/x-raw,width=160,height=120'
+    main_stream = (f'{source(kind)} ! videoconvert ! video/x-raw,format=I420 ! '
+                   'x264enc tune=zerolatency key-int-max=25 ! h264parse')
+    finish(start('record-streams', MAIN=main_stream, SUB=small, FOLDER='recordings'))
+    path = recorded_file()
+    check_players_can_play(path, 'qtdemux')
+    pictures = decode(path)
+    assert least(kind) <= len(pictures) <= most(kind), f'{len(pictures)} frames in the recording'
 
 
 def test_stages(kind):

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// When an event begins and ends, from triggers alone: it lasts from its first trigger until `post_roll` after the last
+// one, and a trigger within `join` of that end continues it. Knows no frames. Not thread-safe.
+#pragma once
+
+#include <algorithm>
+
+#include "record/unit.h"
+
+namespace cerberus::record {
+
+class EventCycle {
+ public:
+  struct Settings {
+    Time post_roll = std::chrono::seconds(5);
+    Time join = std::chrono::seconds(2);
+  };
+
+  void configure(const Settings& settings) { settings_ = settings; }
+
+  // Something happened at `time`: an event begins, or the present one goes on. Returns true if one begins.
+  bool trigger(Time time) {
+    const bool begins = !active_;
+    if (begins) begin_ = last_ = time;
+    active_ = true;
+    last_ = std::max(last_, time);
+    return begins;
+  }
+  // As trigger(), and the event lasts until release().
+  bool hold(Time time) {
+    held_ = true;
+    return trigger(time);
+  }
+  // The event ends `post_roll` after `time`, or after a later trigger.
+  void release(Time time) {
+    if (held_ && active_) last_ = std::max(last_, time);
+    held_ = false;
+  }
+
+  bool active() const { return active_; }
+  bool held() const { return held_; }
+  Time begin() const { return begin_; }  // its first trigger
+  // What is decoded later than this does not belong to the event, as far as is known now.
+  Time end() const { return held_ ? Time::max() : last_ + settings_.post_roll; }
+  // Whether a trigger at `time`, or a later one, is another event's.
+  bool over(Time time) const { return !held_ && time > end() + settings_.join; }
+
+  // The event is closed; the next trigger begins another one.
+  void close() { active_ = held_ = false; }
+
+ private:
+  Settings settings_;
+  bool active_ = false, held_ = false;
+  Time begin_{}, last_{};
+};
+
+}  // namespace cerberus::record

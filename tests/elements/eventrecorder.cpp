@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The recorder's files: which frames, at which times, in which container.
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <fstream>
+#include <memory>
+
+#include "recorder_rig.h"
+
+using namespace recorder_rig;
+
+namespace {
+
+// Times in a file are in its track's scale, which may be rounded to a millisecond (Matroska).
+bool near(GstClockTime a, GstClockTime b) {
+  return GST_CLOCK_DIFF(a, b) <= gint64{GST_MSECOND} && GST_CLOCK_DIFF(b, a) <= gint64{GST_MSECOND};
+}
+
+}  // namespace
+
+GST_START_TEST(an_event_becomes_one_file_with_its_pre_roll_and_post_roll) {
+  Rig rig;
+  rig.start();
+  rig.play_to(57);
+  rig.start_event();  // 57 - 25 = 32: the GOP of 30
+  rig.play_to(80);
+  rig.stop_event();  // and 10 frames
+  rig.play_to(200);
+  rig.finish();
+  const auto files = rig.folder.files();
+  fail_unless_equals_int(files.size(), 1);
+  fail_unless(files[0] == rig.folder.path() + "/1.mp4");
+  const auto frames = read_back(files[0]);
+  fail_unless(numbers_of(frames) == range(30, 90));
+  for (const Frame& frame : frames) {
+    fail_unless(near(frame.pts, (frame.number - 30) * kFrame));
+    fail_unless(frame.keyframe == (frame.number % 10 == 0));
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(messages_say_what_became_of_a_file) {
+  Rig rig;
+  g_object_set(rig.element, "camera-name", "yard", nullptr);
+  rig.start();
+  rig.play_to(57);
+  rig.start_event();
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  rig.play_to(60);
+  rig.stop_event();
+  rig.play_to(200);
+  g_autoptr(GstStructure) ended = rig.wait_for_file("ended");
+  for (const GstStructure* facts : {started, ended}) {
+    guint event = 0, part = 0;
+    guint64 begin = 0, trigger = 0;
+    fail_unless(gst_structure_get(facts, "event", G_TYPE_UINT, &event, "part", G_TYPE_UINT, &part,
+                                  "running-time", G_TYPE_UINT64, &begin, "trigger", G_TYPE_UINT64, &trigger,
+                                  nullptr));
+    fail_unless_equals_int(event, 1);
+    fail_unless_equals_int(part, 1);
+    fail_unless_equals_uint64(begin, 30 * kFrame);
+    fail_unless_equals_uint64(trigger, 57 * kFrame);
+    fail_unless_equals_string(gst_structure_get_string(facts, "reason"), "test");
+    fail_unless_equals_string(gst_structure_get_string(facts, "camera-name"), "yard");
+    fail_unless(gst_structure_get_string(facts, "location") == rig.folder.path() + "/1.mp4");
+  }
+  guint64 duration = 0, size = 0;
+  gboolean last = FALSE;
+  fail_unless(gst_structure_get(ended, "duration", G_TYPE_UINT64, &duration, "size", G_TYPE_UINT64, &size,
+                                "last", G_TYPE_BOOLEAN, &last, nullptr));
+  fail_unless_equals_uint64(duration, 40 * kFrame);
+  fail_unless_equals_uint64(size, std::filesystem::file_size(rig.folder.path() + "/1.mp4"));
+  fail_unless(last);
+}
+GST_END_TEST
+
+GST_START_TEST(files_are_readable_by_owner_and_group_only) {
+  Rig rig;
+  rig.start();
+  rig.play_to(30);
+  rig.start_event();
+  rig.finish();
+  struct stat about{};
+  fail_unless(stat((rig.folder.path() + "/1.mp4").c_str(), &about) == 0);
+  fail_unless_equals_int(about.st_mode & 0777 & ~0640, 0);
+}
+GST_END_TEST
+
+GST_START_TEST(the_pre_roll_is_on_disk_before_another_frame_comes) {
+  Rig rig;
+  rig.start();
+  rig.play_to(100);
+  rig.start_event();
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  const std::string file = gst_structure_get_string(started, "location");
+  // 25 frames and more of 64 bytes: the fragment of the first .5 s.
+  while (std::filesystem::file_size(file) < 12 * 64) g_usleep(1000);
+  fail_unless(rig.folder.files().size() == 1);
+}
+GST_END_TEST
+
+GST_START_TEST(a_file_that_is_never_closed_plays_up_to_its_last_second) {
+  Rig rig(250);
+  rig.start();
+  rig.play_to(100);
+  rig.start_event();
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  const std::string file = gst_structure_get_string(started, "location");
+  rig.play_to(300);
+  // As kill -9 leaves it: what is on disk, once the writer rests.
+  for (auto size = std::filesystem::file_size(file), last = size - size; size != last || size < 275 * 64;) {
+    last = size;
+    g_usleep(50 * 1000);
+    size = std::filesystem::file_size(file);
+  }
+  const std::string copy = rig.folder.path() + "/killed.mp4";
+  std::filesystem::copy_file(file, copy);
+  const auto frames = read_back(copy);
+  fail_unless(frames.size() >= 301 - 25, "%d frames", static_cast<int>(frames.size()));
+  fail_unless(numbers_of(frames) == range(0, static_cast<guint32>(frames.size()) - 1));
+}
+GST_END_TEST
+
+GST_START_TEST(stopping_without_end_of_stream_completes_the_file) {
+  Rig rig;
+  rig.start();
+  rig.play_to(30);
+  rig.start_event();
+  rig.play_to(60);
+  rig.stop();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(0, 60));
+}
+GST_END_TEST
+
+GST_START_TEST(the_element_records_again_after_it_was_stopped) {
+  Rig rig;
+  for (int round = 0; round < 2; ++round) {
+    rig.next = 0;
+    rig.start();
+    rig.play_to(30);
+    rig.start_event();
+    rig.play_to(60);
+    rig.finish();
+    rig.stop();
+  }
+  const auto files = rig.folder.files();
+  fail_unless_equals_int(files.size(), 2);
+  for (const auto& file : files) fail_unless(numbers_of(read_back(file)) == range(0, 60));
+}
+GST_END_TEST
+
+// x264enc's stamps begin at 1000 hours, and its decoding times lie before its segment.
+GST_START_TEST(stamps_that_begin_at_1000_hours_and_b_frames_become_times_from_zero) {
+  constexpr GstClockTime kHours = 1000 * 3600 * GST_SECOND;
+  Rig rig;
+  rig.video.reset();
+  rig.video = std::make_unique<Stream>(rig.element, "video", kH264, kHours);
+  rig.start();
+  // Shown 0 3 1 2 | 4 7 5 6: decoded two frames before a keyframe is shown.
+  const guint32 order[] = {0, 3, 1, 2};
+  for (guint32 k = 0; k < 100; ++k) {
+    const guint32 shown = k / 4 * 4 + order[k % 4];
+    rig.video->push(unit(shown, kHours + shown * kFrame, k % 20 == 0, kHours + k * kFrame - 2 * kFrame));
+    if (k == 60) rig.start_event();  // at the decoding time of 58, so from 33: the GOP of 20
+  }
+  rig.finish();
+  const auto frames = read_back(rig.folder.path() + "/1.mp4");
+  fail_unless_equals_int(frames.size(), 80);
+  const GstClockTime first = frames[0].pts;
+  fail_unless(first <= 3 * kFrame, "the file begins at %" GST_TIME_FORMAT, GST_TIME_ARGS(first));
+  for (guint32 k = 0; k < 80; ++k) {
+    const guint32 shown = 20 + k / 4 * 4 + order[k % 4];
+    fail_unless_equals_int(frames[k].number, shown);
+    fail_unless(near(frames[k].pts, first + (shown - 20) * kFrame), "frame %u is at %" GST_TIME_FORMAT, shown,
+                GST_TIME_ARGS(frames[k].pts));
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(jpeg_is_recorded_into_matroska) {
+  Rig rig(1, "image/jpeg, width=320, height=240, framerate=25/1");
+  g_object_set(rig.element, "container", 1, nullptr);  // mp4
+  rig.start();
+  rig.play_to(50);
+  rig.start_event();
+  rig.play_to(60);
+  rig.finish();
+  const auto frames = read_back(rig.folder.path() + "/1.mkv");
+  fail_unless(numbers_of(frames) == range(25, 60));
+  for (const Frame& frame : frames) fail_unless(near(frame.pts, (frame.number - 25) * kFrame));
+}
+GST_END_TEST
+
+GST_START_TEST(h264_is_recorded_into_matroska_on_request) {
+  Rig rig;
+  gst_util_set_object_arg(G_OBJECT(rig.element), "container", "matroska");
+  rig.start();
+  rig.play_to(50);
+  rig.start_event();
+  rig.play_to(60);
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mkv")) == range(20, 60));
+}
+GST_END_TEST
+
+GST_START_TEST(sound_is_recorded_with_the_video_of_its_time) {
+  Rig rig;
+  rig.audio = std::make_unique<Stream>(rig.element, "audio_0", kAac);
+  rig.start();
+  for (guint32 k = 0; k <= 120; ++k) {  // a packet a frame, half a frame later
+    rig.play_to(k);
+    rig.audio->push(unit(k, k * kFrame + kFrame / 2, true));
+    if (k == 57) rig.start_event();
+  }
+  rig.finish();
+  const std::string file = rig.folder.path() + "/1.mp4";
+  fail_unless(numbers_of(read_back(file)) == range(30, 120));
+  const auto packets = read_back(file, "audio_0");
+  fail_unless(numbers_of(packets) == range(30, 120));
+  for (const Frame& packet : packets)
+    fail_unless(near(packet.pts, (packet.number - 30) * kFrame + kFrame / 2),
+                "packet %u is at %" GST_TIME_FORMAT, packet.number, GST_TIME_ARGS(packet.pts));
+}
+GST_END_TEST
+
+GST_START_TEST(sound_that_falls_silent_does_not_hold_the_video_up) {
+  Rig rig;
+  rig.audio = std::make_unique<Stream>(rig.element, "audio_0", kAac);
+  rig.start();
+  rig.play_to(30);
+  rig.start_event();
+  rig.audio->push(unit(30, 30 * kFrame, true));
+  g_autoptr(GstStructure) started = rig.wait_for_file("started");
+  const std::string file = gst_structure_get_string(started, "location");
+  rig.play_to(300);
+  while (std::filesystem::file_size(file) < 250 * 64) g_usleep(1000);  // while the audio's stream goes on
+  rig.finish();
+  fail_unless(numbers_of(read_back(file)) == range(0, 300));
+}
+GST_END_TEST
+
+GST_START_TEST(a_change_of_caps_in_mid_event_begins_another_file) {
+  Rig rig;
+  rig.start();
+  rig.play_to(39);
+  rig.start_event();
+  rig.play_to(69);
+  rig.video->set_caps(
+      "video/x-h264, stream-format=avc, alignment=au, width=640, height=480, framerate=25/1, "
+      "codec_data=(buffer)0142c01effe100046742c01e01000268ce");
+  rig.play_to(99);
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(10, 69));
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1-2.mp4")) == range(70, 99));
+}
+GST_END_TEST
+
+GST_START_TEST(a_flush_ends_an_event_and_recording_goes_on_behind_it) {
+  Rig rig;
+  rig.start();
+  rig.play_to(30);
+  rig.start_event();
+  rig.play_to(40);
+  fail_unless(rig.video->send(gst_event_new_flush_start()));
+  fail_unless(rig.video->send(gst_event_new_flush_stop(TRUE)));
+  rig.video->push_segment();
+  rig.next = 0;
+  rig.play_to(20);
+  rig.start_event();
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(0, 40));
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/2.mp4")) == range(0, 20));
+}
+GST_END_TEST
+
+GST_START_TEST(times_that_fall_back_end_an_event) {
+  Rig rig;
+  rig.start();
+  rig.play_to(60);
+  rig.start_event();
+  rig.play_to(70);
+  rig.next = 0;
+  rig.play_to(20);
+  rig.start_event();
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(30, 70));
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/2.mp4")) == range(0, 20));
+}
+GST_END_TEST
+
+// Every frame once, whatever the GOP and the events, in files of at most two seconds.
+GST_START_TEST(no_frame_is_lost_or_doubled_between_the_files_of_an_event) {
+  const int gops[] = {1, 7, 25, 250};
+  for (const bool with_audio : {false, true}) {
+    Rig rig(gops[__i__]);
+    g_object_set(rig.element, "longest-file", 2 * GST_SECOND, nullptr);
+    if (with_audio) rig.audio = std::make_unique<Stream>(rig.element, "audio_0", kAac);
+    rig.start();
+    const auto play_to = [&](guint32 last) {
+      for (guint32 k = rig.next; k <= last; ++k) {
+        rig.play_to(k);
+        if (rig.audio) rig.audio->push(unit(k, k * kFrame, true));
+      }
+    };
+    play_to(40);
+    rig.start_event();
+    play_to(300);
+    rig.stop_event();
+    play_to(320);
+    rig.start_event();
+    play_to(600);
+    rig.finish();
+    std::vector<guint32> all;
+    for (const auto& file : rig.folder.files()) {
+      const auto frames = read_back(file);
+      fail_unless(frames.front().keyframe);
+      fail_unless(numbers_of(frames) == range(frames.front().number, frames.back().number));
+      for (const auto& frame : frames) all.push_back(frame.number);
+      if (with_audio) fail_unless(numbers_of(read_back(file, "audio_0")) == numbers_of(frames));
+    }
+    std::sort(all.begin(), all.end());
+    fail_unless(all == range(all.front(), 600), "GOP %d", gops[__i__]);
+    fail_unless(all.front() <= 15);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(two_recorders_in_one_folder_overwrite_nothing) {
+  Rig a, b;
+  g_object_set(b.element, "location", a.folder.path().c_str(), nullptr);
+  for (Rig* rig : {&a, &b}) {
+    rig->start();
+    rig->play_to(30);
+    rig->start_event();
+  }
+  a.finish();
+  b.finish();
+  const auto files = a.folder.files();
+  fail_unless_equals_int(files.size(), 2);
+  for (const auto& file : files) fail_unless(numbers_of(read_back(file)) == range(0, 30));
+}
+GST_END_TEST
+
+static Suite* eventrecorder_suite() {
+  watch_library_log();
+  Suite* suite = suite_create("eventrecorder");
+  TCase* tests = tcase_create("files");
+  tcase_add_test(tests, an_event_becomes_one_file_with_its_pre_roll_and_post_roll);
+  tcase_add_test(tests, messages_say_what_became_of_a_file);
+  tcase_add_test(tests, files_are_readable_by_owner_and_group_only);
+  tcase_add_test(tests, the_pre_roll_is_on_disk_before_another_frame_comes);
+  tcase_add_test(tests, a_file_that_is_never_closed_plays_up_to_its_last_second);
+  tcase_add_test(tests, stopping_without_end_of_stream_completes_the_file);
+  tcase_add_test(tests, the_element_records_again_after_it_was_stopped);
+  tcase_add_test(tests, stamps_that_begin_at_1000_hours_and_b_frames_become_times_from_zero);
+  tcase_add_test(tests, jpeg_is_recorded_into_matroska);
+  tcase_add_test(tests, h264_is_recorded_into_matroska_on_request);
+  tcase_add_test(tests, sound_is_recorded_with_the_video_of_its_time);
+  tcase_add_test(tests, sound_that_falls_silent_does_not_hold_the_video_up);
+  tcase_add_test(tests, a_change_of_caps_in_mid_event_begins_another_file);
+  tcase_add_test(tests, a_flush_ends_an_event_and_recording_goes_on_behind_it);
+  tcase_add_test(tests, times_that_fall_back_end_an_event);
+  tcase_add_test(tests, two_recorders_in_one_folder_overwrite_nothing);
+  tcase_add_loop_test(tests, no_frame_is_lost_or_doubled_between_the_files_of_an_event, 0, 4);
+  suite_add_tcase(suite, tests);
+  return suite;
+}
+
+GST_CHECK_MAIN(eventrecorder)
