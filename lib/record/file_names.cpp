@@ -94,7 +94,7 @@ std::string expand_name(std::string_view pattern, const NameFacts& facts) {
     replace_words(length ? std::string_view(text.data(), length) : part, facts, component);
     // %D and a user's locale may hold slashes.
     std::ranges::replace(component, '/', '-');
-    if (component == "." || component == ".." || component.empty()) component = "_";
+    if (component == "." || component == ".." || component.empty()) component.assign(1, '_');
     if (!result.empty()) result += '/';
     result += component.substr(0, kLongestComponent);
   });

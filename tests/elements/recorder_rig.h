@@ -194,9 +194,9 @@ struct Rig {
   // Frames up to `last`, 25 a second.
   void play_to(guint32 last) {
     for (; next <= last; ++next)
-      fail_unless_equals_int(
-          video->push(unit(next, next * kFrame, next % static_cast<guint32>(gop) == 0, next * kFrame)),
-          GST_FLOW_OK);
+      fail_unless_equals_int(video->push(unit(next, next * kFrame, next % static_cast<guint32>(gop) == 0,
+                                              next * kFrame, frame_size)),
+                             GST_FLOW_OK);
   }
   void start_event() { g_signal_emit_by_name(element, "start-event", "test"); }
   void stop_event() { g_signal_emit_by_name(element, "stop-event"); }
@@ -225,6 +225,7 @@ struct Rig {
   Folder folder;
   int gop;
   guint32 next = 0;
+  gsize frame_size = 64;
   GstElement* element;
   GstBus* bus;
   std::unique_ptr<Stream> video, audio, analysis;
