@@ -243,6 +243,18 @@ START_TEST(damaged_files_are_refused_or_read_but_never_harm) {
 }
 END_TEST
 
+// toml++ 3.3 has undefined behaviour for these; found by tests/fuzz/rules.cpp.
+START_TEST(letters_beyond_ascii_stand_in_quotes_and_comments_only) {
+  assert_refused("sensors = 2\nS\xd0\xbb = 1\n",
+                 "f.toml:2: letters beyond ASCII stand in quotes or comments only");
+  assert_refused("\xef\xbb\xbf\xc3\xa4 = 1\n", "letters beyond ASCII");
+  assert_refused("'a' = \"\"\"\n\"\"\"\n\xc3\xa4 = 1\n", "f.toml:3: letters beyond ASCII");
+  const RuleFile file =
+      parse_rules("\xef\xbb\xbf# gr\xc3\xbc\xc3\x9f\nsensors = 2\n[[rule]]\naction = \"hold\"\n", "f.toml");
+  ck_assert_msg(file.table.has_value(), "%s", file.error.c_str());
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "rule_file",
@@ -250,5 +262,6 @@ int main() {
        what_is_left_out_has_a_default, a_gap_and_a_contradiction_are_named, a_mistake_is_named_with_its_line,
        all_mistakes_are_reported_at_once, a_file_that_cannot_be_read_is_named, a_pipe_is_refused_at_once,
        a_file_that_may_not_be_read_is_named, a_file_is_read_as_its_text_is,
-       damaged_files_are_refused_or_read_but_never_harm});
+       damaged_files_are_refused_or_read_but_never_harm,
+       letters_beyond_ascii_stand_in_quotes_and_comments_only});
 }
