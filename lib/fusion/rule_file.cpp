@@ -222,31 +222,41 @@ class Reader {
 toml::source_index line_of_foreign_letter(std::string_view text) {
   toml::source_index line = 1;
   std::string_view quotes;  // what ends the string at this place; empty: it is none
-  bool comment = false;
+  bool comment = false, foreign = false;
+  char before = '\n';  // the last character outside of strings that is no blank
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    const bool ascii = static_cast<unsigned char>(c) < 0x80;
     if (c == '\n') {
+      if (quotes.size() == 1 && foreign) return line;  // a string that does not end is none
       ++line;
       comment = false;
+      before = c;
       if (quotes.size() == 1) quotes = {};
     } else if (comment) {
       continue;
     } else if (!quotes.empty()) {
+      foreign = foreign || !ascii;
       if (c == '\\' && quotes.front() == '"')
         ++i;
       else if (text.substr(i).starts_with(quotes))
         i += std::exchange(quotes, {}).size() - 1;
+    } else if (!ascii) {
+      return line;
     } else if (c == '#') {
       comment = true;
-    } else if (c == '"' || c == '\'') {
+    } else if ((c == '"' || c == '\'') &&
+               std::string_view("\n=[,{.").find(before) != std::string_view::npos) {
       const std::string_view triple = text.substr(i, 3);
       quotes = triple.size() == 3 && triple[1] == c && triple[2] == c ? triple : text.substr(i, 1);
       i += quotes.size() - 1;
-    } else if (static_cast<unsigned char>(c) >= 0x80) {
-      return line;
+      foreign = false;
+      before = c;
+    } else if (c != ' ' && c != '\t' && c != '\r') {
+      before = c;
     }
   }
-  return 0;
+  return !quotes.empty() && foreign ? line : 0;
 }
 
 // Parses the text; reports an error and returns nullopt if it is not TOML.

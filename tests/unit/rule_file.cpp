@@ -245,6 +245,8 @@ END_TEST
 
 // toml++ 3.3 has undefined behaviour for these; found by tests/fuzz/rules.cpp.
 START_TEST(letters_beyond_ascii_stand_in_quotes_and_comments_only) {
+  assert_refused("a = 6\"\xc3\xa4\"\n", "f.toml:1: letters beyond ASCII");  // no string begins there
+  assert_refused("a = \"\xc3\xa4\n", "f.toml:1: letters beyond ASCII");     // none ends there
   assert_refused("sensors = 2\nS\xd0\xbb = 1\n",
                  "f.toml:2: letters beyond ASCII stand in quotes or comments only");
   assert_refused("\xef\xbb\xbf\xc3\xa4 = 1\n", "letters beyond ASCII");
