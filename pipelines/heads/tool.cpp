@@ -37,7 +37,7 @@ Keys::~Keys() {
 }
 
 bool Keys::pressed() {
-  return has_input();
+  return terminal_ && has_input();
 }
 
 bool Keys::ask(const std::string& text) {
