@@ -6,6 +6,9 @@
 #include <cstdio>
 #include <filesystem>
 
+#if HAVE_ONVIF
+#include "drivers/onvif/discovery.h"
+#endif
 #include "drivers/transport/byte_stream.h"
 #include "drivers/visca/visca.h"
 #include "heads/tool.h"
@@ -24,6 +27,18 @@ void list_folder(const char* folder, const char* begin, const char* kind, int& f
     std::printf("%s%s\n", kind, entry.path().c_str());
     ++found;
   }
+}
+
+// Cameras that answer a probe on this network. They are sent nothing else.
+void list_onvif([[maybe_unused]] int& found) {
+#if HAVE_ONVIF
+  std::string wrong;
+  for (const auto& camera : onvif::discover(std::chrono::milliseconds(1500), wrong)) {
+    std::printf("onvif %s%s%s\n", camera.device.c_str(), camera.name.empty() ? "" : "  ",
+                camera.name.c_str());
+    ++found;
+  }
+#endif
 }
 
 // Asks for a position, which moves nothing. Returns whether a camera answered.
@@ -78,6 +93,7 @@ int list_heads(const std::vector<std::string>& named) {
   list_folder("/dev", "gpiochip", "stepper-gpio ", found);
   list_folder("/dev", "video", "v4l2 (if it has pan and tilt) ", found);
   list_folder("/sys/class/pwm", "pwmchip", "servo-pwm ", found);
+  list_onvif(found);
   std::printf(
       found ? "Not asked. A serial port is asked where it is named: cerberus-heads list serial:/dev/ttyUSB0\n"
             : "Nothing found. Network cameras are named: cerberus-heads list udp:HOST:52381\n");
