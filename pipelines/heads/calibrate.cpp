@@ -203,7 +203,8 @@ int calibrate_head(const ToolOptions& options) {
                 degrees(reach(limits.tilt)));
   if (!options.yes && !Keys::ask(text)) return 1;
   Camera camera(options);
-  for (const double end = now_seconds() + 10; camera.problem().empty() && camera.take().size() < 2;) {
+  const double end = now_seconds() + 10;
+  for (std::size_t seen = 0; camera.problem().empty() && seen < 2; seen += camera.take().size()) {
     if (now_seconds() > end) return fail("no video comes from --source");
     g_usleep(20000);
   }
