@@ -427,7 +427,7 @@ HttpReply OnvifCamera::ptz(const std::string& name, const xmlNode* request) {
   if (text(child(request, kPtz, "ProfileToken")) != "moving")
     return fault("InvalidArgVal", "NoProfile", "no such profile");
   if (!faults_.redirects.empty())
-    return {.status = 307, .body = {}, .headers = "Location: " + faults_.redirects + "\r\n"};
+    return {.status = 303, .body = {}, .headers = "Location: " + faults_.redirects + "\r\n"};
   if (faults_.errors > 0) {
     --faults_.errors;
     return {.status = 500, .body = "Internal Server Error", .headers = {}};

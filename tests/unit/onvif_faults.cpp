@@ -146,7 +146,7 @@ START_TEST(a_redirection_is_not_followed) {
   OnvifCamera camera(faults);
   OnvifRig rig(onvif_options(camera), admin());
   assert_holds(rig.served.line("fault"),
-               "has a PTZ service that does not work: it answers what is no SOAP (HTTP 307)");
+               "has a PTZ service that does not work: it answers what is no SOAP (HTTP 303)");
   ck_assert(other.requests().empty());
 }
 END_TEST

@@ -114,7 +114,7 @@ START_TEST(a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well) {
   std::this_thread::sleep_for(100ms);  // it is on its way
   rig.served.hang_up();
   ck_assert_int_eq(rig.served.status(), 0);
-  std::this_thread::sleep_for(100ms);
+  std::this_thread::sleep_for(500ms);  // the move is obeyed, whatever has ended before
   ck_assert_double_eq(camera.speed(), 0);
   ck_assert_int_ge(camera.count("ContinuousMove"), 1);
 }
