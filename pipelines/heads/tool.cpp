@@ -83,7 +83,8 @@ using cerberus::sensing::radians;
 
 constexpr char kSummary[] =
     "Commands:\n"
-    "  list [DEVICE ...]   heads of this machine and ONVIF cameras of this network; a serial port is asked (VISCA) only if it is named\n"
+    "  list [DEVICE ...]   heads of this machine and ONVIF cameras of this network; a serial port is asked "
+    "(VISCA) only if it is named\n"
     "  move DRIVER         turns a head: --pan and --tilt in degrees a second, for --seconds\n"
     "  calibrate DRIVER    measures a head through its camera (--source, --horizontal-fov) into --output\n"
     "Drivers: visca, pelco-d, onvif, stepper-gpio, external and what else cerberus-head has.";

@@ -20,11 +20,12 @@ using namespace cerberus::bench;
 namespace {
 
 constexpr vision::Size kPicture{768, 576}, kWindow{320, 240};
-constexpr double kWideFov = 60;     // degrees: any will do, the window counts in pixels
-constexpr double kSpeed = 12;       // pixels a frame
-constexpr double kReach = 192;      // pixels to each side of the middle; beyond it the truth ends
-constexpr int kPhases = 8;          // ways that begin evenly spread along the path; as many places of rest
-constexpr double kLeastSeen = 0.5;  // of a person, inside the window: with less there is no person, and no mistake either
+constexpr double kWideFov = 60;  // degrees: any will do, the window counts in pixels
+constexpr double kSpeed = 12;    // pixels a frame
+constexpr double kReach = 192;   // pixels to each side of the middle; beyond it the truth ends
+constexpr int kPhases = 8;       // ways that begin evenly spread along the path; as many places of rest
+constexpr double kLeastSeen =
+    0.5;  // of a person, inside the window: with less there is no person, and no mistake either
 
 // Somewhere on the path there and back again.
 double along(double way) {
@@ -52,7 +53,8 @@ vision::Box clip(const vision::Box& b, double left, double top) {
 }
 
 // The pose of frame `number`, as its head would publish it while frame `number - 1` is analysed.
-void send_pose(GstElement* pipeline, const Window& window, int number, GstClockTime from, GstClockTime until) {
+void send_pose(GstElement* pipeline, const Window& window, int number, GstClockTime from,
+               GstClockTime until) {
   CerberusPose pose;
   cerberus_pose_init(&pose);
   const double seconds = static_cast<double>(until - from) / GST_SECOND;

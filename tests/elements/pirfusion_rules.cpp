@@ -223,8 +223,8 @@ GST_START_TEST(rules_for_another_number_of_sensors_are_warned_of_once) {
   for (const int sensors : {1, 2, 5}) {
     const std::string text = said("rules=paper", sensors);
     fail_unless(
-        text.starts_with("rules=paper is for 3 PIR sensors, and there are " + std::to_string(sensors)),
-        "%s", text.c_str());
+        text.starts_with("rules=paper is for 3 PIR sensors, and there are " + std::to_string(sensors)), "%s",
+        text.c_str());
   }
   fail_unless(said("rules=paper", 3).empty());
   fail_unless(said("rules=complete", 5).empty());

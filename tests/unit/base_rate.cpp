@@ -60,7 +60,8 @@ START_TEST(a_picture_that_goes_left_is_a_base_that_turns_right) {
   ck_assert_double_lt(degrees(turn.yaw), 8);
   ck_assert_double_eq_tol(turn.pitch, 0, radians(0.3));
   const Turn down = base_turn(Transform::translation(0, -10), kLens, kSize, {}, {});
-  ck_assert_double_lt(down.pitch, radians(-1.5));  // a point that moves up is seen from a camera that turns down
+  ck_assert_double_lt(down.pitch,
+                      radians(-1.5));  // a point that moves up is seen from a camera that turns down
 }
 END_TEST
 

@@ -16,7 +16,7 @@ using sensing::degrees;
 using sensing::radians;
 using Kind = AxisCommand::Kind;
 
-constexpr double kTie = 1e-6;  // of a step: rounding of the division
+constexpr double kTie = 1e-6;                  // of a step: rounding of the division
 constexpr double kSecond = radians(1) / 3600;  // of arc
 
 std::string in_degrees(double angle) {
