@@ -60,7 +60,7 @@ GST_START_TEST(a_head_on_its_way_beyond_a_new_limit_stops_at_it) {
     fail_unless(std::fabs(poses.back().*axis.position - axis.limit) < 1e-9);
     // And none of the application's is obeyed any further.
     send(rig, axis);
-    fail_unless(rig.messages().back().reason.find("beyond a limit") != std::string::npos);
+    fail_unless(rig.messages().back().reason.find("as far as the limit") != std::string::npos);
     for (const CerberusPose& pose : act(rig, CERBERUS_FUSION_HOLD, 155, 25))
       fail_unless(std::fabs(pose.*axis.position) <= std::fabs(axis.limit) + 1e-9);
   }
