@@ -158,6 +158,13 @@ void HeadController::remember(std::vector<Pose>& poses) {
   }
 }
 
+// Returns the command of the manual override, given at `now`.
+HeadCommand HeadController::manual_at(Time now) const {
+  HeadCommand command = manual_.command();
+  command.time = now;
+  return command;
+}
+
 // Gives the driver a command in its own, uncorrected angles.
 void HeadController::order(drivers::HeadCommand command) {
   correction_.to_driver(command);
@@ -279,9 +286,7 @@ HeadCommand HeadController::decide(const Frame& frame, Time now, DeferredNotific
   if (manual_.active()) {
     manual_.lapse(now);
     report_manual(now, out);
-    command.pan = manual_.command().pan;
-    command.tilt = manual_.command().tilt;
-    return command;
+    return manual_at(now);
   }
   const Time taken = frame.repeats.value_or(frame.running) + epoch_;
   const auto estimate = correction_.position();
@@ -327,7 +332,7 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   // Time until which at least no frame came: the expected time of the frame before this one, or the end of the gap.
   const Time unseen = frame.seen ? now - frame.length : now + frame.length;
   if (const Time deadline = watchdog_.deadline(); deadline < unseen) {
-    const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}};
+    const HeadCommand brake{std::max(deadline, published_ - setup_.latency), {}, {}, true};
     latest_ = std::max(latest_, brake.time);
     guard.unlock();
     const Answer answer = runner->ask(brake, brake.time, horizon, poses, kFramePatience);
@@ -379,11 +384,11 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   const Time now = head_time(at);
   if (watchdog_.bites(now)) {
     homing_ = false;
-    order({now, {}, {}});
+    order({now, {}, {}, true});
     on_timeout(now, out);
   }
   if (!halted_ && manual_.lapse(now)) {
-    order({now, {}, {}});
+    order(manual_at(now));
     report_manual(now, out);
   }
   guard.unlock();
@@ -454,8 +459,7 @@ void HeadController::resume(std::optional<Time> at, DeferredNotifications& out) 
   if (runner_ && std::exchange(limits_wait_, false))
     runner_->limit(earliest(at), correction_.limits(setup_.limits));
   if (at && clock_driven_) manual_.lapse(head_time(*at));
-  if (runner_ && manual_.active() && clock_driven_ && at)
-    order({head_time(*at), manual_.command().pan, manual_.command().tilt});
+  if (runner_ && manual_.active() && clock_driven_ && at) order(manual_at(head_time(*at)));
   report_manual(latest_, out);
 }
 
@@ -474,7 +478,7 @@ void HeadController::apply_manual(std::optional<Time> at, DeferredNotifications&
   law_.reset();
   const Time now = at && clock_driven_ ? head_time(*at) : latest_;
   homing_ = false;
-  if (clock_driven_ && !halted_) order({now, manual_.command().pan, manual_.command().tilt});
+  if (clock_driven_ && !halted_) order(manual_at(now));
   if (manual_.authority() == Authority::emergency_stop)
     report_manual(now, out);
   else

@@ -97,6 +97,7 @@ class HeadController {
   void confine_law();
   void remember(std::vector<motion::Pose>& poses);
   void correct(const Frame& frame, Time now, DeferredNotifications& out);
+  drivers::HeadCommand manual_at(Time now) const;
   void order(drivers::HeadCommand command);
   void publish(const std::vector<motion::Pose>& poses, Time until, DeferredNotifications& out);
   void report(HeadState state, std::string reason, Time head, DeferredNotifications& out);

@@ -36,18 +36,19 @@ class ManualOverride {
   bool lapse(motion::Time now);
   // Commands the head to brake and stay.
   void stop() {
-    if (!emergency_) set("manual command: stop", {});
+    if (!emergency_) set("manual command: stop", kStop);
   }
   // The emergency stop was pressed or released.
   void emergency(bool pressed);
   // Replaces an expired command: the head stays at rest, and no decision moves it.
   void expire(const char* reason) {
-    if (active_ && !emergency_) set(reason, {});
+    if (active_ && !emergency_) set(reason, kStop);
   }
   // Ends the override. Returns true if it was active; it is not ended during an emergency stop.
   bool end();
 
  private:
+  static constexpr drivers::HeadCommand kStop{.time = {}, .pan = {}, .tilt = {}, .stop = true};
   void set(const char* reason, const drivers::HeadCommand& command);
 
   bool active_ = false, emergency_ = false;

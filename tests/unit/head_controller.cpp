@@ -757,6 +757,42 @@ START_TEST(a_turn_by_hand_becomes_a_stop_after_500_ms_unless_it_is_repeated) {
 }
 END_TEST
 
+// A head that looks for its reference obeys no hold before it has found it; what must stop it is a stop.
+START_TEST(a_stop_an_expired_order_and_the_watchdog_command_more_than_a_hold) {
+  Options options;
+  options.clock_driven = true;
+  options.watchdog = 500ms;
+  Rig rig(options);
+  rig.process(Rig::with(0s, Action::hold));
+  ck_assert(holds(rig.command().pan) && !rig.command().stop);  // of the control law
+  rig.controller.tick(600ms, rig.out);
+  ck_assert(holds(rig.command().pan) && rig.command().stop);
+  assert_time(rig.command().time, 600ms);
+  rig.controller.turn(radians(20), 0, 1s, rig.out);
+  ck_assert(!rig.command().stop);
+  rig.controller.tick(1500ms, rig.out);
+  ck_assert(holds(rig.command().pan) && rig.command().stop);
+  rig.controller.move(radians(20), 0, false, 2s, rig.out);
+  ck_assert(!rig.command().stop);
+  rig.controller.stop(2100ms, rig.out);
+  ck_assert(holds(rig.command().pan) && rig.command().stop);
+  assert_time(rig.command().time, 2100ms);
+  rig.controller.halt("paused", 2200ms, 10s, rig.out);
+  rig.controller.resume(3s, rig.out);
+  ck_assert(rig.command().stop);  // it latches
+  // The same where frames drive the head.
+  options.clock_driven = false;
+  Rig stepped(options);
+  stepped.process(Rig::with(0s, Action::turn_right));
+  stepped.process(Rig::with(2s, Action::turn_right));
+  ck_assert_uint_eq(stepped.record->commands.size(), 3);
+  ck_assert(stepped.record->commands[1].stop && !stepped.record->commands[2].stop);
+  stepped.controller.stop({}, stepped.out);
+  stepped.process(Rig::with(2040ms, Action::turn_right));
+  ck_assert(stepped.command().stop);
+}
+END_TEST
+
 START_TEST(moves_expire_only_with_a_manual_timeout) {
   Options options;
   options.clock_driven = true;
@@ -872,6 +908,7 @@ int main() {
                            the_head_s_time_goes_on_when_running_time_begins_anew,
                            a_fault_is_reported_once_and_the_state_returns_after_it,
                            a_turn_by_hand_becomes_a_stop_after_500_ms_unless_it_is_repeated,
+                           a_stop_an_expired_order_and_the_watchdog_command_more_than_a_hold,
                            moves_expire_only_with_a_manual_timeout,
                            the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
                            after_a_fault_a_manual_command_is_reported_again,

@@ -178,6 +178,49 @@ START_TEST(of_commands_given_meanwhile_only_the_newest_counts) {
 }
 END_TEST
 
+namespace {
+
+// A scripted head that notes which commands were stops.
+class StopNoter final : public Head {
+ public:
+  explicit StopNoter(std::shared_ptr<std::string> notes) : notes_(std::move(notes)) {}
+  std::string open(const HeadSetup& setup) override { return head_->open(setup); }
+  void close() noexcept override { head_->close(); }
+  void stop(Time now) noexcept override { head_->stop(now); }
+  std::string command(const HeadCommand& command) override {
+    *notes_ += command.stop ? "stop " : "command ";
+    return head_->command(command);
+  }
+  std::string limit(Time now, const Limits& limits) override { return head_->limit(now, limits); }
+  std::string state(Time time, Pose& pose) override { return head_->state(time, pose); }
+
+ private:
+  std::shared_ptr<std::string> notes_;
+  std::unique_ptr<Head> head_ = make_head("scripted");
+};
+
+}  // namespace
+
+START_TEST(a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does) {
+  for (const bool moves : {false, true}) {
+    Pipe gate, record;
+    auto notes = std::make_shared<std::string>();
+    HeadRunner runner(std::make_unique<StopNoter>(notes), {});
+    HeadSetup setup;
+    setup.script = "record " + record.writer() + "; command wait " + gate.reader();
+    ck_assert(runner.open(setup, 10s) == Answer::done);
+    record.line();
+    runner.command(go(1s, 0.125));
+    record.line();  // blocked in it now
+    runner.command({2s, {}, {}, true});
+    runner.command(moves ? go(3s, 0.25) : HeadCommand{3s, {}, {}});
+    gate.close_writer();
+    record.line();  // the third; the second one was superseded
+    assert_text(*notes, moves ? "command command " : "command stop ");
+  }
+}
+END_TEST
+
 START_TEST(a_stop_beats_the_commands_before_it) {
   Pipe gate, record;
   auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
@@ -348,7 +391,8 @@ int main() {
        the_second_caller_waits_no_longer_than_its_patience_and_is_interrupted,
        new_limits_come_before_the_command_that_waits,
        a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
-       of_commands_given_meanwhile_only_the_newest_counts, a_stop_beats_the_commands_before_it,
+       of_commands_given_meanwhile_only_the_newest_counts,
+       a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does, a_stop_beats_the_commands_before_it,
        a_blocked_driver_keeps_its_lease_and_closes_by_itself, a_driver_that_does_not_open_returns_the_reason,
        a_thousand_heads_come_and_go});
 }

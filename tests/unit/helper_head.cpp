@@ -112,6 +112,23 @@ START_TEST(a_helper_receives_the_command) {
 }
 END_TEST
 
+// A hold does not end homing, which a stop does.
+START_TEST(a_stop_is_sent_as_the_stop_of_the_protocol_and_a_hold_is_not) {
+  const Recorder helper("position velocity");
+  HelperHead head("external");
+  assert_text(head.open(setup_with(helper.command())), "");
+  assert_text(head.command({0s, {}, {}}), "");
+  assert_text(head.command({1s, {}, {}, true}), "");
+  assert_text(head.command({2s, {}, {}}), "");
+  head.close();
+  const auto lines = helper.until("eof");
+  ck_assert_uint_eq(lines.size(), 7);
+  assert_text(lines[1], "move hold hold");
+  assert_text(lines[2], "stop");
+  assert_text(lines[3], "move hold hold");
+}
+END_TEST
+
 START_TEST(a_head_with_speed_commands_only_brakes_at_the_target) {
   const Recorder helper("velocity rate 100");
   HelperHead head("external");
@@ -285,6 +302,7 @@ int main() {
   return cerberus::tests::run_suite(
       "helper_head",
       {the_shipped_example_goes_where_it_is_sent_and_reports_it, a_helper_receives_the_command,
+       a_stop_is_sent_as_the_stop_of_the_protocol_and_a_hold_is_not,
        a_head_with_speed_commands_only_brakes_at_the_target, a_helper_receives_a_line_well_within_its_timeout,
        limits_that_come_in_move_a_head_that_rests_beyond_them,
        the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,

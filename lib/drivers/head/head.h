@@ -36,6 +36,8 @@ struct HeadSetup {
 struct HeadCommand {
   Time time{};  // time of the command; one earlier than the last one is stale and refused
   motion::AxisCommand pan, tilt;
+  // Both axes hold, and the device also ends what it does without a command, as homing. A plain hold does not end that.
+  bool stop = false;
 };
 
 class Head {

@@ -64,7 +64,17 @@ struct HeadRunner::Core {
   void serve(std::unique_lock<std::mutex>& guard);
   unsigned long hand_over(std::unique_lock<std::mutex>& guard);
   std::string carry_out(const Batch& batch);
+  void set_command(const HeadCommand& command);
 };
+
+// A later hold does not revoke a stop that still waits.
+void HeadRunner::Core::set_command(const HeadCommand& command) {
+  constexpr motion::AxisCommand kHold;
+  const bool keeps_stop = todo.command && todo.command->stop && command.pan == kHold && command.tilt == kHold;
+  todo.stop.reset();
+  todo.command = command;
+  todo.command->stop = command.stop || keeps_stop;
+}
 
 std::string HeadRunner::Core::carry_out(const Batch& batch) {
   if (batch.open) unopened = head->open(*batch.open);
@@ -199,8 +209,7 @@ HeadRunner::Answer HeadRunner::stop(Time now, Patience patience) {
 
 void HeadRunner::command(const HeadCommand& command) {
   std::unique_lock guard(core_->lock);
-  core_->todo.stop.reset();
-  core_->todo.command = command;
+  core_->set_command(command);
   core_->hand_over(guard);
 }
 
@@ -224,10 +233,7 @@ HeadRunner::Answer HeadRunner::ask(const std::optional<HeadCommand>& command, Ti
   if (!core_->answer.wait_until(guard, deadline, [this] { return !core_->asking; })) return Answer::late;
   if (core_->blocks && core_->interrupts > 0) return Answer::interrupted;
   core_->asking = true;
-  if (command) {
-    core_->todo.stop.reset();
-    core_->todo.command = command;
-  }
+  if (command) core_->set_command(*command);
   core_->todo.question = Question{from, until};
   const Answer answer =
       wait(guard, core_->hand_over(guard), deadline - std::chrono::steady_clock::now(), true);

@@ -101,6 +101,7 @@ struct HelperHead::Core {
   void handle(const HelperLine& line);
   void send(const std::string& line);
   void send_command();
+  void send_stop();
   void follow(Time now);
   void check_homing(Time now);
   void poke() const {
@@ -163,6 +164,13 @@ void HelperHead::Core::send_command() {
   const std::string line = move_line(last.pan, last.tilt);
   if (line != last_move) send(line);
   last_move = line;
+}
+
+// The protocol's stop, which ends homing, too.
+void HelperHead::Core::send_stop() {
+  follows = false;
+  last_move.clear();
+  send("stop\n");
 }
 
 // Makes the head do what the model does.
@@ -347,10 +355,8 @@ void HelperHead::stop(Time now) noexcept {
   const std::lock_guard guard(core_->lock);
   core_->model.stop(now);
   core_->last.pan = core_->last.tilt = {};
-  core_->follows = false;
   core_->homing.reset();
-  core_->last_move.clear();
-  core_->send("stop\n");
+  core_->send_stop();
 }
 
 std::string HelperHead::command(const HeadCommand& command) {
@@ -365,7 +371,10 @@ std::string HelperHead::command(const HeadCommand& command) {
     if (const std::string wrong = c.start(); !wrong.empty()) c.lose(wrong);
   if (!c.fault.empty()) return c.fault;
   if (!c.ready) return "the head's helper has been started again and is not ready yet";
-  c.send_command();
+  if (command.stop)
+    c.send_stop();
+  else
+    c.send_command();
   c.poke();
   return std::exchange(c.notice, {});
 }
