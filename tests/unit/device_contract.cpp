@@ -326,7 +326,12 @@ START_TEST(an_emergency_stop_ends_what_moves_it) {
   ck_assert(!plant->powered());
   const double there = plant->pan();
   guarded.move({Kind::velocity, radians(50), 0}, {}, now);
+  Limits narrow = setup().limits;  // the head is beyond them, and still neither these nor a stop move it
+  narrow.pan.to = radians(5);
+  guarded.limit(narrow, now);
+  guarded.stop(now);
   run(1s);
+  ck_assert(!plant->powered());
   contact.inputs[0] = false;
   run(1s);
   ck_assert(!guarded.emergency());

@@ -155,6 +155,54 @@ START_TEST(a_stop_brakes_and_holds_and_the_end_gives_no_pulse) {
 }
 END_TEST
 
+START_TEST(a_stop_does_not_bring_a_servo_back_within_limits_that_were_moved) {
+  Chip chip;
+  ServoHead head(options(chip, "channel=0"));
+  head.open(setup(), 0s);
+  head.move({Kind::position, radians(36), 10}, {}, 0s);
+  Time now = run(head, 0s, 2s);
+  ck_assert_int_eq(chip.read("duty_cycle"), 1900000);
+  cerberus::motion::Limits narrow = setup().limits;
+  narrow.pan.to = radians(9);
+  head.limit(narrow, now);
+  head.stop(now);
+  ck_assert(!head.stopping());
+  run(head, now, 2s);
+  ck_assert_int_eq(chip.read("duty_cycle"), 1900000);
+}
+END_TEST
+
+// The channel of a chip that returned may appear late. The opening waits for that, tick() does not: it tries again.
+START_TEST(a_chip_that_returns_without_its_channel_holds_up_nothing) {
+  Chip chip;
+  const std::string channel = chip.folder() + "/pwm0/";
+  std::filesystem::remove(channel + "enable");
+  std::filesystem::create_symlink("/dev/full", channel + "enable");  // every write fails
+  ServoHead head(options(chip, "channel=0"));
+  assert_text(head.open(setup(), 0s), "");
+  head.move({Kind::position, radians(36), 10}, {}, 0s);
+  Time now = run(head, 0s, 100ms);
+  ck_assert(head.fault().find("does not answer any more") != std::string::npos);
+  std::filesystem::rename(channel + "duty_cycle", channel + "away");
+  std::filesystem::remove(channel + "enable");
+  std::ofstream(channel + "enable") << "0\n";
+  using Clock = std::chrono::steady_clock;
+  auto shortest = Clock::duration::max();  // of three: the machine may be busy
+  for (int k = 0; k < 3; ++k) {
+    now += 1s;
+    const auto begin = Clock::now();
+    now = head.tick(now);
+    shortest = std::min(shortest, Clock::now() - begin);
+  }
+  ck_assert(shortest < PwmChannel::kPatience / 2);
+  ck_assert(!head.fault().empty());
+  std::filesystem::rename(channel + "away", channel + "duty_cycle");
+  now = run(head, now, 1100ms);
+  assert_text(head.fault(), "");
+  ck_assert_int_eq(chip.read("enable"), 0);  // it stands until the next move
+}
+END_TEST
+
 START_TEST(limits_beyond_the_servo_and_a_missing_chip_are_named) {
   Chip chip;
   ServoHead head(options(chip, "channel=0 trim=2"));
@@ -185,5 +233,7 @@ int main() {
                                     {angles_become_pulses, the_pulse_turns_no_faster_than_allowed,
                                      pulses_end_whole_and_begin_with_the_width_they_ended_with,
                                      a_stop_brakes_and_holds_and_the_end_gives_no_pulse,
+                                     a_stop_does_not_bring_a_servo_back_within_limits_that_were_moved,
+                                     a_chip_that_returns_without_its_channel_holds_up_nothing,
                                      limits_beyond_the_servo_and_a_missing_chip_are_named});
 }

@@ -282,6 +282,34 @@ START_TEST(an_end_stop_on_the_way_stops_the_axis) {
 }
 END_TEST
 
+START_TEST(an_axis_that_was_stopped_while_it_homed_moves_only_when_it_is_sent_somewhere) {
+  for (const bool released : {false, true}) {
+    Bench bench("lines=1,2,3,4 end-stop=9@-100 homing-speed=20");
+    bench.zero = -37;
+    bench.lines.inputs = {false};
+    bench.open();
+    bench.run(1s);
+    ck_assert(bench.head.busy());
+    if (released)
+      bench.head.release(bench.lines.now);
+    else
+      bench.head.stop(bench.lines.now);
+    bench.run(300ms);
+    ck_assert(!bench.head.busy() && !bench.lit());
+    const int there = bench.motor.half_steps();
+    bench.move({});  // as the control law does in its dead band, and a fault's end
+    bench.head.limit({}, bench.lines.now);
+    bench.run(2s);
+    ck_assert(!bench.head.busy());
+    ck_assert_int_eq(bench.motor.half_steps(), there);
+    bench.go(25);
+    ck_assert(bench.head.busy());
+    bench.run(30s);
+    ck_assert_double_eq_tol(bench.angle() + bench.zero, 25, 0.2);
+  }
+}
+END_TEST
+
 START_TEST(a_hard_stop_is_run_against_only_when_asked_for) {
   Bench quiet(kCoils);
   quiet.open();
@@ -372,6 +400,29 @@ START_TEST(an_open_contact_switches_off_and_a_closed_one_moves_nothing) {
 }
 END_TEST
 
+START_TEST(a_contact_whose_chip_was_away_is_read_again) {
+  FakeLines lines, contact;
+  contact.inputs = {false};
+  StepperHead head(options(kCoils), std::make_unique<FakePort>(lines));
+  EmergencyStop guarded(head, std::make_unique<FakePort>(contact), "17");
+  assert_text(guarded.open({}, 0s), "");
+  Time now{};
+  const auto run = [&](Time length) {
+    for (const Time end = now + length; now < end;) now = std::min(end, guarded.tick(now));
+  };
+  run(1s);
+  contact.open = false;  // reading its line fails from now on
+  contact.open_error = "There is no GPIO chip";
+  run(3s);
+  ck_assert(guarded.emergency());
+  ck_assert_msg(guarded.fault().find("cannot be read") != std::string::npos, "'%s'", guarded.fault().c_str());
+  contact.open_error.clear();
+  run(1060ms);  // tried once a second, and closed for 50 ms
+  ck_assert(!guarded.emergency());
+  assert_text(guarded.fault(), "");
+}
+END_TEST
+
 START_TEST(options_that_cannot_be_are_named) {
   StepperAxisOptions axis;
   assert_text(parse_stepper_axis("", axis), "lines= is missing: name four coils, or STEP,DIR or STEP,DIR,EN");
@@ -413,5 +464,7 @@ int main() {
        a_switch_that_is_never_pressed_ends_the_search_and_is_said, an_end_stop_on_the_way_stops_the_axis,
        a_hard_stop_is_run_against_only_when_asked_for, a_chip_that_goes_away_is_said_and_used_again,
        both_axes_move_at_once, an_open_contact_switches_off_and_a_closed_one_moves_nothing,
+       a_contact_whose_chip_was_away_is_read_again,
+       an_axis_that_was_stopped_while_it_homed_moves_only_when_it_is_sent_somewhere,
        options_that_cannot_be_are_named});
 }

@@ -24,15 +24,25 @@ void EmergencyStop::limit(const motion::Limits& limits, Time now) {
 
 Time EmergencyStop::tick(Time now) {
   bool level = true;
+  if (error_ != 0) reopen(now);
   error_ = port_->get(0, level);
   if (error_ != 0 || level) {  // a line that cannot be read counts as open
     if (!open_) device_.release(now);
     open_ = true;
+    if (error_ == 0) next_open_ = now;
     open_until_ = now + kClosed;
   } else if (now >= open_until_) {
     open_ = false;
   }
   return std::min(device_.tick(now), now + Time(kPeriod));
+}
+
+// The chip may have been unplugged and be there again: its line must then be requested anew.
+void EmergencyStop::reopen(Time now) {
+  if (now < next_open_) return;
+  next_open_ = now + kReopen;
+  port_->close();
+  port_->open({}, {}, {line_});
 }
 
 void EmergencyStop::watch(std::vector<pollfd>& fds) const {

@@ -22,7 +22,8 @@ class EmergencyStop final : public HeadDevice {
   HeadAbilities abilities() const override { return device_.abilities(); }
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
-  void stop(Time now) noexcept override { device_.stop(now); }
+  // A device that is released stays so: its stop would brake with its motors.
+  void stop(Time now) noexcept override { open_ ? device_.release(now) : device_.stop(now); }
   void release(Time now) noexcept override { device_.release(now); }
   bool busy() const override { return device_.busy(); }
   bool stopping() const override { return device_.stopping(); }
@@ -41,13 +42,17 @@ class EmergencyStop final : public HeadDevice {
   static constexpr std::chrono::milliseconds kPeriod{5};
   // The contact bounces: it counts as closed again after this time.
   static constexpr std::chrono::milliseconds kClosed{50};
+  // A line that cannot be read is requested again this often.
+  static constexpr std::chrono::milliseconds kReopen{1000};
 
  private:
+  void reopen(Time now);
+
   HeadDevice& device_;
   std::unique_ptr<LinePort> port_;
   std::string line_;
   bool open_ = false;  // the contact, or nothing is known of it
-  Time open_until_{};
+  Time open_until_{}, next_open_{};
   int error_ = 0;
 };
 

@@ -106,6 +106,7 @@ class Server {
       obeyed_ = true;
     } else if (const auto* limits = std::get_if<LimitsLine>(&*line)) {
       device_.limit(limits->limits, now);
+      obeyed_ = true;  // a head beyond them returns
     } else if (std::get_if<StopLine>(&*line)) {
       device_.stop(now);
       obeyed_ = false;
@@ -159,7 +160,7 @@ class Server {
   std::vector<pollfd> fds_;
   Time timeout_{}, heard_{};
   bool greeted_ = false, ended_ = false, failed_ = false;
-  bool obeyed_ = false;  // a move was carried out and no stop came after it
+  bool obeyed_ = false;  // a line that may move the head was carried out and no stop came after it
   bool silent_ = false;  // the head was stopped by the timeout
   bool emergency_ = false;
   std::string fault_;

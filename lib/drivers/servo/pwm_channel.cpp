@@ -31,7 +31,8 @@ int write_file(const std::string& path, long long number) {
 
 }  // namespace
 
-int PwmChannel::open(const std::string& chip, int channel, Time period, std::string& step) {
+int PwmChannel::open(const std::string& chip, int channel, Time period, std::chrono::milliseconds patience,
+                     std::string& step) {
   close();
   const std::string folder = chip + "/pwm" + std::to_string(channel);
   if (::access(folder.c_str(), F_OK) != 0) {
@@ -39,10 +40,11 @@ int PwmChannel::open(const std::string& chip, int channel, Time period, std::str
     if (const int error = write_file(step, channel)) return error;
   }
   step = folder + "/duty_cycle";
-  for (auto waited = std::chrono::milliseconds(0); waited < kPatience && duty_ < 0;
-       waited += std::chrono::milliseconds(20)) {
+  constexpr std::chrono::milliseconds kPause{20};
+  duty_ = ::open(step.c_str(), O_WRONLY | O_CLOEXEC);
+  for (auto waited = kPause; waited <= patience && duty_ < 0; waited += kPause) {
+    std::this_thread::sleep_for(kPause);
     duty_ = ::open(step.c_str(), O_WRONLY | O_CLOEXEC);
-    if (duty_ < 0) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   if (duty_ < 0) return errno;
   int error = write_number(duty_, 0);  // a pulse longer than the new period would be refused

@@ -20,14 +20,16 @@ class PwmChannel {
   PwmChannel& operator=(const PwmChannel&) = delete;
 
   // chip: the chip's folder. Exports the channel if need be and sets its period; no pulse is given yet. Waits up to
-  // kPatience for the rights that udev gives to a new channel. step: which file was refused.
-  int open(const std::string& chip, int channel, Time period, std::string& step);
+  // `patience` for the rights that udev gives to a new channel. step: which file was refused.
+  int open(const std::string& chip, int channel, Time period, std::chrono::milliseconds patience,
+           std::string& step);
   void close() noexcept;  // leaves the pulses as they are
   bool is_open() const { return duty_ >= 0; }
   // Width of the pulses, from the next period on; 0: none.
   int set_width(Time width) noexcept;
   int enable(bool on) noexcept;
 
+  // derived: udev has changed the rights of a new channel by then
   static constexpr std::chrono::milliseconds kPatience{400};
 
  private:

@@ -44,10 +44,10 @@ ServoHead::~ServoHead() {
   }
 }
 
-std::string ServoHead::open_axis(const char* name, Axis& axis) {
+std::string ServoHead::open_axis(const char* name, Axis& axis, std::chrono::milliseconds patience) {
   if (!axis.there()) return {};
   std::string step;
-  const int error = axis.channel.open(options_.chip, axis.options.channel, options_.period, step);
+  const int error = axis.channel.open(options_.chip, axis.options.channel, options_.period, patience, step);
   axis.enabled = false;
   axis.width = Time::zero();
   axis.error = 0;
@@ -86,7 +86,7 @@ std::string ServoHead::open(const HeadSetup& setup, Time now) {
              in_degrees(limits.to) + " are beyond what the servo reaches, " + in_degrees(reach.from) +
              " to " + in_degrees(reach.to) + " (range and trim): set " + name + "-min and " + name + "-max";
     set_limits(axis, limits);
-    return open_axis(name, axis);
+    return open_axis(name, axis, PwmChannel::kPatience);
   };
   if (std::string wrong = prepare("pan", pan_, setup.limits.pan, setup.pan); !wrong.empty()) return wrong;
   return prepare("tilt", tilt_, setup.limits.tilt, setup.tilt);
@@ -123,10 +123,13 @@ void ServoHead::limit(const motion::Limits& limits, Time now) {
 void ServoHead::halt(Axis& axis, Time now) noexcept {
   if (!axis.there()) return;
   axis.command = {};
+  const motion::AxisState here = axis.plan.at(now);
   AxisLimits limits = axis.limits;
-  limits.acceleration =
-      std::max(limits.acceleration, std::abs(axis.plan.at(now).speed) / motion::seconds(kStopTime));
-  axis.plan = motion::Plan::make(now, axis.plan.at(now), {}, limits);
+  limits.acceleration = std::max(limits.acceleration, std::abs(here.speed) / motion::seconds(kStopTime));
+  // The stop of a servo beyond limits that were moved does not bring it back.
+  limits.from = std::min(limits.from, here.position);
+  limits.to = std::max(limits.to, here.position);
+  axis.plan = motion::Plan::make(now, here, {}, limits);
   axis.moves = axis.plan.end() > now;
   axis.rest_since = now;
 }
@@ -180,7 +183,9 @@ Time ServoHead::tick(Time now) {
   if (gone_) {
     if (now < next_open_) return next_open_;
     next_open_ = now + kReopen;
-    if (!open_axis("pan", pan_).empty() || !open_axis("tilt", tilt_).empty()) return next_open_;
+    // Without patience: tick() must not block, and the next try is due soon.
+    constexpr std::chrono::milliseconds kOnce{0};
+    if (!open_axis("pan", pan_, kOnce).empty() || !open_axis("tilt", tilt_, kOnce).empty()) return next_open_;
     gone_ = false;
     fault_.clear();
     for (Axis* axis : {&pan_, &tilt_}) {

@@ -54,7 +54,7 @@ class ServoHead final : public HeadDevice {
 
     bool there() const { return options.channel >= 0; }
   };
-  std::string open_axis(const char* name, Axis& axis);
+  std::string open_axis(const char* name, Axis& axis, std::chrono::milliseconds patience);
   void order(Axis& axis, const motion::AxisCommand& command, Time now);
   void halt(Axis& axis, Time now) noexcept;
   void drive(Axis& axis, Time now);

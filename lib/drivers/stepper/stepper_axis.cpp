@@ -75,7 +75,11 @@ void StepperAxis::command(const AxisCommand& command, Time now) {
   command_ = command;
   stopping_ = false;
   if (homing() || lost_) return;
-  if (!referenced_) return begin_homing(now);
+  if (!referenced_) {
+    // A hold moves nothing: an axis that lost its position looks for it only on the way to a commanded one.
+    if (command.kind != AxisCommand::Kind::hold) begin_homing(now);
+    return;
+  }
   plan(command, now);
 }
 

@@ -26,7 +26,7 @@ class StepperAxis {
   // The axis looks along `angle` (radians), or homes first and then goes there.
   void start(double angle, const motion::AxisLimits& limits, Time now);
   void limit(const motion::AxisLimits& limits, Time now);
-  // While the axis homes, the newest command waits.
+  // While the axis homes, the newest command waits. An axis that needs homing begins it with a command that moves.
   void command(const motion::AxisCommand& command, Time now);
   // Brakes within kStopTime, lets the rotor settle and switches the motor off.
   void stop(Time now);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The loop of a helper process and its emergency stop, over a device of the test's own. Only the silence itself takes time.
+#include "drivers/helper/helper_loop.h"
+
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <future>
+#include <string>
+
+#include "drivers/helper/emergency_stop.h"
+#include "support/fake_lines.h"
+#include "support/suite.h"
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+
+namespace {
+
+// Reports its first stop.
+class NotingDevice final : public HeadDevice {
+ public:
+  std::string open(const HeadSetup&, Time) override { return {}; }
+  HeadAbilities abilities() const override { return {.velocity = true}; }
+  void move(const cerberus::motion::AxisCommand&, const cerberus::motion::AxisCommand&, Time) override {}
+  void limit(const cerberus::motion::Limits&, Time) override { limited.set_value(); }
+  void stop(Time) noexcept override {
+    if (!std::exchange(stopped_, true)) stopped.set_value();
+  }
+  void release(Time) noexcept override { ++releases; }
+  bool stopping() const override { return false; }
+  void watch(std::vector<pollfd>&) const override {}
+  Time tick(Time now) override { return now + 1s; }
+  std::optional<PoseLine> take_pose(Time) override { return std::nullopt; }
+  std::string fault() const override { return {}; }
+
+  std::promise<void> limited, stopped;
+  int releases = 0;
+
+ private:
+  bool stopped_ = false;
+};
+
+}  // namespace
+
+START_TEST(silence_after_other_limits_stops_a_head_that_returns_within_them) {
+  NotingDevice device;
+  int ends[2];
+  ck_assert_int_eq(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  auto status = std::async(std::launch::async, [&] { return serve_head(ends[1], ends[1], device); });
+  const std::string text =
+      "cerberus-head 1 timeout 0.05 limits -170 170 -45 45 speed 90 90 acceleration 600 600 start 0 0\n"
+      "limits -10 10 -10 10\n";
+  ck_assert_int_eq(::send(ends[0], text.data(), text.size(), MSG_NOSIGNAL), static_cast<int>(text.size()));
+  auto stopped = device.stopped.get_future();
+  ck_assert(device.limited.get_future().wait_for(10s) == std::future_status::ready);
+  ck_assert(stopped.wait_for(10s) == std::future_status::ready);
+  ::close(ends[0]);
+  ck_assert_int_eq(status.get(), 0);
+  ::close(ends[1]);
+}
+END_TEST
+
+START_TEST(a_stop_while_the_emergency_contact_is_open_releases) {
+  NotingDevice device;
+  cerberus::tests::FakeLines contact;
+  contact.inputs = {true};
+  EmergencyStop guarded(device, std::make_unique<cerberus::tests::FakePort>(contact), "26");
+  ck_assert(guarded.open({}, 0s).empty());
+  ck_assert_int_eq(device.releases, 1);
+  guarded.stop(1ms);
+  ck_assert_int_eq(device.releases, 2);
+  ck_assert(device.stopped.get_future().wait_for(0s) == std::future_status::timeout);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite("helper_loop",
+                                    {silence_after_other_limits_stops_a_head_that_returns_within_them,
+                                     a_stop_while_the_emergency_contact_is_open_releases});
+}
