@@ -130,6 +130,32 @@ START_TEST(positions_are_asked_for_and_a_head_at_its_limit_stops) {
 }
 END_TEST
 
+START_TEST(an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head) {
+  constexpr std::array<std::uint8_t, 7> kPanAnswer{0xff, 1, 0, 0x59, 0x0b, 0xb8, 0x1d};
+  constexpr std::array<std::uint8_t, 7> kTiltAnswer{0xff, 1, 0, 0x5b, 0, 0, 0x5c};
+  Line line;
+  PelcoHead head(options_for(line, true));
+  head.open({}, 0s);
+  line.answer(kTiltAnswer);
+  line.answer(kPanAnswer);
+  head.tick(100ms);
+  ck_assert(head.take_pose(100ms));
+  head.move({Kind::velocity, 0.3, 0}, {}, 200ms);
+  for (Time t = 300ms; t <= 1s; t += 100ms) {  // pan reports on, tilt does not
+    line.answer(kPanAnswer);
+    head.tick(t);
+    const auto pose = head.take_pose(t);
+    if (pose) ck_assert_double_eq_tol(pose->age, cerberus::motion::seconds(t - 100ms), 1e-9);
+    if (t > 500ms) ck_assert(!pose);  // 400 ms after tilt's
+  }
+  assert_text(head.fault(), "");
+  line.answer(kPanAnswer);
+  head.tick(1200ms);
+  ck_assert(head.fault().find("does not answer") != std::string::npos);
+  ck_assert(head.stopping());
+}
+END_TEST
+
 START_TEST(what_cannot_be_is_named) {
   Line line;
   PelcoOptions options = options_for(line);
@@ -143,6 +169,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "pelco_head", {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
-                     positions_are_asked_for_and_a_head_at_its_limit_stops, what_cannot_be_is_named});
+      "pelco_head",
+      {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
+       positions_are_asked_for_and_a_head_at_its_limit_stops,
+       an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head, what_cannot_be_is_named});
 }

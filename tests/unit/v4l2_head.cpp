@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cerrno>
 #include <map>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "support/suite.h"
@@ -26,7 +28,8 @@ struct Camera {
   std::map<std::uint32_t, std::int32_t> values;
   std::vector<std::pair<std::uint32_t, std::int32_t>> sets;
   int open_error = 0, set_error = 0;
-  bool reads = true;
+  std::optional<std::int32_t> refuses;  // this value, once
+  std::set<std::uint32_t> unread;       // controls that cannot be read
 };
 
 class FakeControls final : public CameraControls {
@@ -39,12 +42,13 @@ class FakeControls final : public CameraControls {
     return found == camera_.ranges.end() ? std::nullopt : std::optional(found->second);
   }
   int get(std::uint32_t control, std::int32_t& value) noexcept override {
-    if (!camera_.reads || !camera_.ranges.contains(control)) return EINVAL;
+    if (camera_.unread.contains(control) || !camera_.ranges.contains(control)) return EINVAL;
     value = camera_.values[control];
     return 0;
   }
   int set(std::uint32_t control, std::int32_t value) noexcept override {
     if (camera_.set_error != 0) return camera_.set_error;
+    if (camera_.refuses == value) return camera_.refuses.reset(), EIO;
     const ControlRange range = camera_.ranges.at(control);
     // As the kernel: what is beyond is clamped.
     value = std::clamp(value, range.least, range.most);
@@ -188,6 +192,86 @@ START_TEST(a_stop_that_is_refused_is_set_again) {
 }
 END_TEST
 
+// Whatever the camera did not take: it may still turn at the speed before.
+START_TEST(a_camera_that_refuses_a_speed_is_stopped_before_it_is_given_up) {
+  Bench bench;
+  bench.camera = with_speeds(-160);
+  bench.camera.ranges[id::kTiltSpeed].least = -120;
+  bench.options.pan_speed = bench.options.tilt_speed = 80;
+  bench.open();
+  bench.head->move({Kind::velocity, radians(-20), 0}, {}, 0s);
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], -40);
+  bench.camera.refuses = -80;  // one write fails, the next ones do not
+  bench.head->move({Kind::velocity, radians(-40), 0}, {}, bench.now);
+  bench.run(50ms);
+  ck_assert(!bench.head->fault().empty());
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
+  ck_assert(!bench.head->stopping());
+}
+END_TEST
+
+START_TEST(a_camera_that_may_turn_and_is_gone_is_stopped_as_soon_as_it_is_back) {
+  Bench bench;
+  bench.camera = with_speeds(-160);
+  bench.camera.ranges[id::kTiltSpeed].least = -120;
+  bench.options.pan_speed = bench.options.tilt_speed = 80;
+  bench.open();
+  bench.head->move({Kind::velocity, radians(-20), 0}, {}, 0s);
+  bench.run(100ms);
+  bench.camera.set_error = bench.camera.open_error = EIO;
+  bench.head->move({Kind::velocity, radians(-40), 0}, {}, bench.now);
+  bench.run(500ms);
+  ck_assert(bench.head->stopping());  // the process does not end before it has stopped the camera
+  bench.camera.set_error = bench.camera.open_error = 0;
+  bench.run(200ms);
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
+  ck_assert(!bench.head->stopping());
+  assert_text(bench.head->fault(), "");
+}
+END_TEST
+
+START_TEST(an_axis_that_ceases_to_report_makes_no_pose) {
+  for (const bool speed : {false, true}) {
+    Bench bench;
+    bench.camera = speed ? with_speeds(-160) : with_angles();
+    if (speed) bench.camera.ranges[id::kTiltSpeed].least = -120;
+    bench.options.pan_speed = bench.options.tilt_speed = 80;
+    assert_text(bench.open(), "");
+    bench.run(100ms);
+    ck_assert(bench.head->take_pose(bench.now));
+    bench.camera.unread = {id::kTiltAbsolute};
+    bench.run(100ms);
+    ck_assert(!bench.head->take_pose(bench.now));
+    ck_assert(!bench.head->fault().empty());
+    bench.run(2s);
+    ck_assert(!bench.head->take_pose(bench.now));
+    ck_assert(!bench.head->fault().empty());
+    bench.camera.unread.clear();
+    bench.run(1100ms);
+    assert_text(bench.head->fault(), "");
+    ck_assert(bench.head->take_pose(bench.now));
+  }
+}
+END_TEST
+
+START_TEST(a_camera_that_never_reports_one_of_its_axes_has_no_feedback) {
+  Bench bench;
+  bench.camera = with_speeds(-160);
+  bench.camera.ranges[id::kTiltSpeed].least = -120;
+  bench.camera.unread = {id::kTiltAbsolute};
+  bench.options.pan_speed = bench.options.tilt_speed = 80;
+  assert_text(bench.open(), "");
+  ck_assert(!bench.head->abilities().feedback);
+  // The axis that reports keeps its limits nevertheless.
+  bench.head->move({Kind::velocity, radians(20), 0}, {}, 0s);
+  bench.camera.values[id::kPanAbsolute] = 120 * 3600;
+  bench.run(100ms);
+  ck_assert(!bench.head->take_pose(bench.now));
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
+  assert_text(bench.head->fault(), "");
+}
+END_TEST
+
 START_TEST(a_speed_whose_minimum_is_wrong_is_not_used) {
   for (const std::int32_t least : {0, 1, -1}) {
     Bench bench;
@@ -262,6 +346,10 @@ int main() {
       {angles_go_in_arc_seconds_on_the_cameras_grid_along_the_plan, a_stop_leaves_little_to_stop,
        limits_between_two_steps_are_not_passed,
        speeds_are_shares_of_the_fastest_and_a_camera_at_its_limit_stops, a_stop_that_is_refused_is_set_again,
+       a_camera_that_refuses_a_speed_is_stopped_before_it_is_given_up,
+       a_camera_that_may_turn_and_is_gone_is_stopped_as_soon_as_it_is_back,
+       an_axis_that_ceases_to_report_makes_no_pose,
+       a_camera_that_never_reports_one_of_its_axes_has_no_feedback,
        a_speed_whose_minimum_is_wrong_is_not_used, relative_moves_add_up, what_cannot_be_is_named,
        a_camera_that_goes_away_is_said_and_used_again});
 }

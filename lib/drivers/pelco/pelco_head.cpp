@@ -37,7 +37,9 @@ std::string PelcoHead::open(const HeadSetup& setup, Time now) {
 }
 
 void PelcoHead::on_connected(Time now) {
-  pan_time_ = now;
+  pan_at_.reset();
+  tilt_at_.reset();
+  new_pose_ = false;
   home_at_.reset();
   stop(now);  // it stands until the next move
 }
@@ -56,10 +58,7 @@ PanTilt PelcoHead::speeds_of(int pan, int tilt) const {
 }
 
 void PelcoHead::drive(int pan, int tilt, Time now) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const PanTilt measured{pan_degrees_ ? radians(*pan_degrees_) : kNan,
-                         tilt_degrees_ ? radians(*tilt_degrees_) : kNan};
-  const PanTilt allowed = confined(speeds_of(pan, tilt), measured, now);
+  const PanTilt allowed = confined(speeds_of(pan, tilt), measured_, now);
   if (allowed.pan == 0) pan = 0;
   if (allowed.tilt == 0) tilt = 0;
   if (pan == pan_ && tilt == tilt_) return;
@@ -118,9 +117,10 @@ void PelcoHead::read(Time now) {
   }
   while (const auto position = answers_.take()) {
     if (position->address != options_.address) continue;
-    (position->axis == pelco::Axis::pan ? pan_degrees_ : tilt_degrees_) = position->degrees;
-    new_pose_ = pan_degrees_ && tilt_degrees_;
-    pan_time_ = now;
+    const bool is_pan = position->axis == pelco::Axis::pan;
+    (is_pan ? measured_.pan : measured_.tilt) = radians(position->degrees);
+    (is_pan ? pan_at_ : tilt_at_) = now;
+    new_pose_ = pan_at_ && tilt_at_ && now - std::min(*pan_at_, *tilt_at_) <= kPairAge;
   }
 }
 
@@ -128,8 +128,9 @@ Time PelcoHead::tick(Time now) {
   if (Time next; !is_there(now, next)) return next;
   read(now);
   if (!stream_.is_open()) return now;
-  // A head that is limited by its own positions must report them.
-  set_silent(options_.feedback && pan_degrees_ && now - pan_time_ > kSilence, now);
+  // A head that is limited by its own positions must report them, those of either axis.
+  const auto silent = [now](std::optional<Time> reported) { return reported && now - *reported > kSilence; };
+  set_silent(silent(pan_at_) || silent(tilt_at_), now);
   if (!home_at_) drive(pan_, tilt_, now);  // stops at a limit
   const Time again = stops_owed_ > 0 ? Time(kStopAgain) : Time(kRepeat);
   if ((stops_owed_ > 0 || pan_ != 0 || tilt_ != 0) && now - sent_ >= again) {
@@ -146,8 +147,8 @@ Time PelcoHead::tick(Time now) {
 
 std::optional<PoseLine> PelcoHead::take_pose(Time now) {
   if (!std::exchange(new_pose_, false)) return std::nullopt;
-  return PoseLine{
-      {radians(*pan_degrees_), 0, 0}, {radians(*tilt_degrees_), 0, 0}, motion::seconds(now - pan_time_)};
+  const Time oldest = std::min(*pan_at_, *tilt_at_);
+  return PoseLine{{measured_.pan, 0, 0}, {measured_.tilt, 0, 0}, motion::seconds(now - oldest)};
 }
 
 }  // namespace cerberus::drivers

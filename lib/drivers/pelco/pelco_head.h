@@ -5,6 +5,7 @@
 // by the speeds that it was sent, and finds its reference by going to a preset, where the options name one.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,6 +32,7 @@ class PelcoHead final : public StreamDevice {
   explicit PelcoHead(const PelcoOptions& options)
       : StreamDevice("Pelco-D head", options.device, options.baud), options_(options) {
     reports_ = options.feedback;
+    measured_ = {kUnknown, kUnknown};
   }
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
@@ -47,10 +49,13 @@ class PelcoHead final : public StreamDevice {
   static constexpr std::chrono::milliseconds kStopAgain{50};  // a frame takes 29 ms at 2400 baud
   static constexpr int kStops = 5;
   static constexpr std::chrono::milliseconds kSilence{
-      1000};                           // without a position, of a head that reports them
+      1000};  // without a position, of a head that reports them
+  // Older positions of the two axes make no pose. derived: each is queried every kRepeat, and one answer may be lost
+  static constexpr std::chrono::milliseconds kPairAge{400};
   static constexpr double kRate = 10;  // commands a second
 
  private:
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   void on_connected(Time now) override;
   void send(const pelco::Frame& frame) { stream_.write(frame); }
   motion::PanTilt speeds_of(int pan, int tilt) const;
@@ -61,10 +66,11 @@ class PelcoHead final : public StreamDevice {
   pelco::Answers answers_;
   int pan_ = 0, tilt_ = 0;  // steps in force
   int stops_owed_ = 0;
-  Time sent_{}, asked_{}, pan_time_{};
+  Time sent_{}, asked_{};
   std::optional<Time> home_at_;  // when the head has reached its preset
   pelco::Axis next_query_ = pelco::Axis::pan;
-  std::optional<double> pan_degrees_, tilt_degrees_;
+  motion::PanTilt measured_;              // radians, as reported last; NaN: never
+  std::optional<Time> pan_at_, tilt_at_;  // when, on this connection
   bool new_pose_ = false;
 };
 

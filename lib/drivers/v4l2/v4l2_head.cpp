@@ -108,13 +108,42 @@ std::string V4l2Head::connect(Time now) {
     axis->moves = false;
   }
   if (std::string wrong = choose_mode(); !wrong.empty()) return wrong;
-  reads_ = false;
-  if (mode_ != Mode::relative) {
-    const bool pan = read_position(pan_), tilt = read_position(tilt_);
-    reads_ = pan || tilt;
+  for (Axis* axis : {&pan_, &tilt_}) {
+    const bool reads = mode_ != Mode::relative && read_position(*axis);
+    if (axis->reads && !reads)
+      return "the camera " + options_.device + " does not report its " + axis->name + " any more";
+    axis->reads = reads;
+    axis->plan = motion::Plan(axis->position, now);
   }
-  for (Axis* axis : {&pan_, &tilt_}) axis->plan = motion::Plan(axis->position, now);
+  // A position that lacks an axis is none: the pipeline would take the missing one as measured.
+  reads_ = (pan_.reads || !drives(pan_)) && (tilt_.reads || !drives(tilt_)) && (pan_.reads || tilt_.reads);
+  connected_ = true;
   return {};
+}
+
+bool V4l2Head::drives(const Axis& axis) const {
+  return mode_ == Mode::speed ? axis.speeds.has_value() : axis.angles.has_value();
+}
+
+// Stops the camera, if it still takes that, and closes its device.
+void V4l2Head::disconnect(Time now) noexcept {
+  stop_owed_ = false;
+  stop(now);
+  controls_->close();
+  connected_ = false;
+  next_open_ = now + (stop_owed_ ? Time(kStopAgain) : Time(kReopen));
+}
+
+// Returns whether the camera is there again. It then stands until the next move.
+bool V4l2Head::reconnect(Time now) {
+  if (connected_) disconnect(now);
+  if (now < next_open_) return false;
+  next_open_ = now + (stop_owed_ ? Time(kStopAgain) : Time(kReopen));
+  if (!connect(now).empty()) return false;
+  lost_ = stop_owed_ = false;
+  fault_.clear();
+  stop(now);
+  return true;
 }
 
 std::string V4l2Head::open(const HeadSetup& setup, Time now) {
@@ -137,7 +166,7 @@ HeadAbilities V4l2Head::abilities() const {
   return {.position = !speed, .velocity = true, .feedback = reads_, .rate = 20};
 }
 
-bool V4l2Head::read_position(Axis& axis) {
+bool V4l2Head::read_position(Axis& axis) noexcept {
   std::int32_t value = 0;
   if (!axis.angles || controls_->get(axis.absolute, value) != 0) return false;
   axis.position = value * kSecond;
@@ -148,12 +177,13 @@ void V4l2Head::lose(int error) {
   if (!fault_.empty()) return;
   fault_ = "the camera " + options_.device + " does not obey any more (" + std::strerror(error) + ")";
   lost_ = true;
+  stop_owed_ = mode_ == Mode::speed;
 }
 
 void V4l2Head::set_speed(Axis& axis, double speed) {
   if (!axis.speeds) return;
-  // A camera that tells where it is goes no further than the limits.
-  if (reads_ &&
+  // A camera that reports its position goes no further than the limits.
+  if (axis.reads &&
       ((speed > 0 && axis.position >= axis.limits.to) || (speed < 0 && axis.position <= axis.limits.from)))
     speed = 0;
   const auto value = static_cast<std::int32_t>(
@@ -196,8 +226,8 @@ void V4l2Head::stop(Time now) noexcept {
     axis->command = {};
     if (mode_ != Mode::speed) {
       // Where it is, or where it was sent last.
-      read_position(*axis);
-      axis->moves = axis->moves && reads_;
+      const bool known = axis->reads && read_position(*axis);
+      axis->moves = axis->moves && known;
       axis->plan = motion::Plan(axis->position, now);
     } else if (axis->speeds) {
       // Whatever is believed to be in force; set again by tick() until the camera takes it.
@@ -212,13 +242,17 @@ void V4l2Head::send_angle(Axis& axis, double angle) {
   int error = 0;
   if (mode_ == Mode::absolute && axis.angles) {
     std::int32_t value = on_grid(angle / kSecond, *axis.angles);
-    // A step may be a whole degree: towards the inside of the limits.
+    // A step may be a whole degree: an angle within the limits is rounded towards their inside.
+    constexpr double kHair = 1e-9;  // radians: rounding of the multiplication
     const int step = std::max(1, axis.angles->step);
-    if (value * kSecond > axis.limits.to + 1e-9 && value - step >= axis.angles->least) value -= step;
-    if (value * kSecond < axis.limits.from - 1e-9 && value + step <= axis.angles->most) value += step;
+    const bool below = angle <= axis.limits.to + kHair, above = angle >= axis.limits.from - kHair;
+    if (below && value * kSecond > axis.limits.to + kHair && value - step >= axis.angles->least)
+      value -= step;
+    if (above && value * kSecond < axis.limits.from - kHair && value + step <= axis.angles->most)
+      value += step;
     if (axis.sent != value) error = controls_->set(axis.absolute, value);
     axis.sent = value;
-    if (!reads_) axis.position = value * kSecond;
+    if (!axis.reads) axis.position = value * kSecond;
   } else if (mode_ == Mode::relative && axis.ways) {
     const int step = std::max(1, axis.ways->step);
     const double steps = (angle - axis.position) / kSecond / step;
@@ -232,16 +266,7 @@ void V4l2Head::send_angle(Axis& axis, double angle) {
 }
 
 Time V4l2Head::tick(Time now) {
-  if (lost_) {
-    if (next_open_ < now - Time(kReopen) || next_open_ == Time{}) next_open_ = now + kReopen;
-    if (now < next_open_) return next_open_;
-    next_open_ = now + kReopen;
-    if (!connect(now).empty()) return next_open_;
-    lost_ = false;
-    fault_.clear();
-    next_open_ = {};
-    stop(now);
-  }
+  if (lost_ && !reconnect(now)) return next_open_;
   if (now < next_) return next_;
   next_ = now + kPeriod;
   if (stop_owed_) {
@@ -253,22 +278,17 @@ Time V4l2Head::tick(Time now) {
     axis->moves = now < axis->plan.end();
     send_angle(*axis, axis->plan.at(now + Time(kPeriod)).position);
   }
-  if (reads_ && !lost_) {
-    const bool pan = read_position(pan_), tilt = read_position(tilt_);
-    if (!pan && !tilt)
+  for (Axis* axis : {&pan_, &tilt_}) {
+    if (lost_ || !axis->reads) continue;
+    if (!read_position(*axis))
       lose(ENODEV);
-    else
-      new_pose_ = true;
-    for (Axis* axis : {&pan_, &tilt_})
-      if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
-        set_speed(*axis, *axis->sent * axis->fastest / axis->speeds->most);
+    else if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
+      set_speed(*axis, *axis->sent * axis->fastest / axis->speeds->most);
   }
-  if (lost_) {
-    controls_->close();
-    next_open_ = now + kReopen;
-    return next_open_;
-  }
-  return next_;
+  new_pose_ = reads_ && !lost_;
+  if (!lost_) return next_;
+  disconnect(now);
+  return next_open_;
 }
 
 std::optional<PoseLine> V4l2Head::take_pose(Time) {

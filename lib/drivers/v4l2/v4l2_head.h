@@ -10,6 +10,9 @@
 //
 // Kernels before December 2025 report the minimum of a UVC speed wrongly (1 or 0 in place of -max), and a negative speed is
 // then clamped to a crawl in the other direction: speeds are used only where the minimum is -max.
+//
+// A camera that refuses a speed may still turn at the one before: it is stopped before its device is closed, and until it
+// has taken the stop the device is opened again every kStopAgain.
 #pragma once
 
 #include <memory>
@@ -40,7 +43,7 @@ class V4l2Head final : public HeadDevice {
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
-  bool stopping() const override { return stop_owed_ && fault_.empty(); }
+  bool stopping() const override { return stop_owed_; }
   void watch(std::vector<pollfd>&) const override {}
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
@@ -49,6 +52,7 @@ class V4l2Head final : public HeadDevice {
 
   static constexpr std::chrono::milliseconds kPeriod{50};  // between two positions that are sent or read
   static constexpr std::chrono::milliseconds kReopen{1000};
+  static constexpr std::chrono::milliseconds kStopAgain{200};  // while a camera that is gone may turn
 
  private:
   using Mode = V4l2Options::Mode;
@@ -62,6 +66,7 @@ class V4l2Head final : public HeadDevice {
     motion::AxisCommand command;
     motion::Plan plan;                 // but for speeds
     bool moves = false;                // the plan, or its end was not sent yet
+    bool reads = false;                // the camera reports its position
     std::optional<std::int32_t> sent;  // speed or angle in force
   };
   static Axis axis(const char* name, std::uint32_t speed, std::uint32_t absolute, std::uint32_t relative) {
@@ -75,10 +80,13 @@ class V4l2Head final : public HeadDevice {
   void plan(Axis& axis, const motion::AxisCommand& command, Time now);
   void send_angle(Axis& axis, double angle);
   std::string connect(Time now);
+  void disconnect(Time now) noexcept;
+  bool reconnect(Time now);
   std::string choose_mode();
+  bool drives(const Axis& axis) const;
   std::string check_range(const Axis& axis) const;
   void set_speed(Axis& axis, double speed);
-  bool read_position(Axis& axis);
+  bool read_position(Axis& axis) noexcept;
   void lose(int error);
   void check(int error) {
     if (error != 0) lose(error);
@@ -91,8 +99,11 @@ class V4l2Head final : public HeadDevice {
   Axis tilt_ =
       axis("tilt", camera_control::kTiltSpeed, camera_control::kTiltAbsolute, camera_control::kTiltRelative);
   Mode mode_ = Mode::automatic;
-  bool reads_ = false;  // the camera tells its position
-  bool stop_owed_ = false, lost_ = false, new_pose_ = false;
+  bool reads_ = false;  // the camera reports the positions of all axes that it drives
+  bool connected_ = false;
+  bool stop_owed_ = false;  // the camera may turn at a speed
+  bool lost_ = false;       // it does not obey, or does not report any more
+  bool new_pose_ = false;
   Time next_{}, next_open_{};
   std::string fault_;
 };
