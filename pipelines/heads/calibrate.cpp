@@ -147,21 +147,29 @@ struct Session {
     return axis.problem();
   }
 
-  // Kills the helper while the head turns slowly, and looks whether it stops. Then a new helper stops it.
-  std::string kill_helper(std::optional<double>& stopped) {
-    constexpr double kSpeed = 4, kPatience = 3, kStill = 0.3;  // degrees a second, seconds
-    link.turn(radians(kSpeed), 0);
-    for (const double end = now_seconds() + 1; now_seconds() < end;)
+  // Kills the helper while the head turns slowly, and looks whether it stops. Then a new helper stops it: at once if the
+  // picture shows the head beyond its reach.
+  std::string kill_helper(const control::TimeoutTrial& trial, double position, double at_most,
+                          std::optional<double>& stopped) {
+    constexpr double kStill = 0.3;                     // seconds
+    const double least = std::abs(trial.speed) / 100;  // radians a frame: less is noise of the measurement
+    double moved = 0;
+    const auto watch = [&] {
+      for (const Turned& frame : camera.take()) {
+        if (std::abs(frame.turn.yaw) > least) moved = now_seconds();
+        if (std::isfinite(frame.turn.yaw)) position += frame.turn.yaw;
+      }
+      return std::abs(position) < at_most;
+    };
+    camera.take();
+    link.turn(trial.speed, 0);
+    for (const double end = now_seconds() + trial.lead; now_seconds() < end && watch();)
       if (std::string wrong = serve(); !wrong.empty()) return wrong;
     link.kill();
-    const double killed = now_seconds();
-    double moved = killed;
-    camera.take();
-    while (now_seconds() - killed < kPatience && now_seconds() - moved < kStill && !keys.pressed()) {
+    const double killed = moved = now_seconds();
+    while (now_seconds() - killed < trial.patience && now_seconds() - moved < kStill && watch() &&
+           !keys.pressed())
       g_usleep(10000);
-      for (const Turned& frame : camera.take())
-        if (std::abs(frame.turn.yaw) > radians(kSpeed) / 100) moved = now_seconds();
-    }
     if (now_seconds() - moved >= kStill) stopped = moved - killed;
     std::string wrong = link.start(options.driver, options.setup);
     link.stop();
@@ -169,7 +177,7 @@ struct Session {
   }
 };
 
-void report(const drivers::HeadCalibration& found) {
+void report(const drivers::HeadCalibration& found, bool tried_timeout) {
   std::printf("dead time %.0f ms, backlash %.2f and %.2f degrees\n", motion::seconds(found.dead_time) * 1e3,
               degrees(found.pan_backlash), degrees(found.tilt_backlash));
   for (const auto* map : {&found.pan, &found.tilt})
@@ -178,6 +186,8 @@ void report(const drivers::HeadCalibration& found) {
                   degrees(point.commanded), degrees(point.actual));
   if (found.stops_alone)
     std::printf("without its helper the head stopped after %.1f s\n", *found.stops_alone);
+  else if (!tried_timeout)
+    std::printf("whether it stops without its helper was not tried: the limits leave no room for it\n");
   else
     std::printf("without its helper the head goes on turning: it needs limits of its own\n");
 }
@@ -217,7 +227,9 @@ int calibrate_head(const ToolOptions& options) {
   drivers::HeadCalibration found;
   std::string wrong = session.measure(pan, true);
   if (wrong.empty() && reach(limits.tilt) > 0) wrong = session.measure(tilt, false);
-  if (wrong.empty()) wrong = session.kill_helper(found.stops_alone);
+  const auto trial = control::plan_timeout_trial(pan.speeds(), pan.position(), reach(limits.pan));
+  if (wrong.empty() && trial)
+    wrong = session.kill_helper(*trial, pan.position(), reach(limits.pan), found.stops_alone);
   link.stop();
   link.finish();
   if (!wrong.empty()) return fail(wrong);
@@ -229,7 +241,7 @@ int calibrate_head(const ToolOptions& options) {
   found.dead_time = Time(static_cast<Time::rep>(pan.dead_time() * 1e9));
   found.pan_backlash = pan.backlash();
   found.tilt_backlash = tilt.backlash();
-  report(found);
+  report(found, trial.has_value());
   std::ofstream file(options.output, std::ios::binary);
   if (!(file << drivers::calibration_text(found)).flush()) return fail(options.output + " cannot be written");
   std::printf("written: %s (pantiltsink calibration=%s)\n", options.output.c_str(), options.output.c_str());

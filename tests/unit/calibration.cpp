@@ -107,6 +107,26 @@ START_TEST(what_cannot_be_measured_ends_with_the_reason) {
 }
 END_TEST
 
+// The helper is killed: nothing stops a device that has no Timeout. 1 s with a helper, 3 s without, 1 s for the next one.
+START_TEST(the_trial_of_the_device_s_own_timeout_stays_within_the_limits) {
+  const auto wide = plan_timeout_trial({}, 0, radians(30));
+  ck_assert(wide);
+  ck_assert_double_eq_tol(degrees(wide->speed), 4, 1e-9);                                    // 20 degrees
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, 0, radians(15))->speed), 2, 1e-9);  // 10 degrees
+  ck_assert(!plan_timeout_trial({}, 0, radians(9)));
+  // Towards the farther end, which leaves 15 + 6 degrees.
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, radians(6), radians(15))->speed), -4, 1e-9);
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, radians(-6), radians(15))->speed), 4, 1e-9);
+  // A device whose step for 4 degrees a second makes 7 of it would go 35 degrees.
+  const SpeedMap fast({{radians(2), radians(3)}, {radians(4), radians(7)}});
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial(fast, 0, radians(30))->speed), 2, 1e-9);
+  for (double reach = 1; reach < 60; reach += 0.7)
+    for (double at = -reach; at <= reach; at += 0.3)
+      if (const auto trial = plan_timeout_trial(fast, radians(at), radians(reach)))
+        ck_assert_double_le(std::abs(at + 5 * degrees(fast.actual(trial->speed))), reach + 1e-9);
+}
+END_TEST
+
 START_TEST(a_speed_map_goes_both_ways) {
   const SpeedMap map({{1, 2}, {3, 3}});
   ck_assert_double_eq(map.actual(0.5), 1);
@@ -187,7 +207,7 @@ int main() {
       "calibration",
       {table_dead_time_and_backlash_are_recovered, a_head_without_play_has_none,
        noise_of_the_picture_is_averaged, what_cannot_be_measured_ends_with_the_reason,
-       a_speed_map_goes_both_ways, a_calibration_is_written_and_read,
-       wrong_calibrations_are_refused_with_the_line, a_calibration_of_another_device_is_refused_by_name,
-       a_device_is_named_without_its_password});
+       the_trial_of_the_device_s_own_timeout_stays_within_the_limits, a_speed_map_goes_both_ways,
+       a_calibration_is_written_and_read, wrong_calibrations_are_refused_with_the_line,
+       a_calibration_of_another_device_is_refused_by_name, a_device_is_named_without_its_password});
 }
