@@ -37,7 +37,7 @@ class Board:
         for line in lines:
             if line.startswith((b'ok', b'error')):
                 self.waiting = max(0, self.waiting - 1)
-            if status := re.match(rb'<(\w+)[^|]*\|MPos:([-\d.]+),([-\d.]+)', line):
+            if status := re.match(rb'<([\w:]+)\|MPos:([-\d.]+),([-\d.]+)', line):
                 self.state, reported = status[1].decode(), True
                 self.position = [float(status[2]), float(status[3])]
         return reported
@@ -50,12 +50,14 @@ class Board:
     def stop(self):
         self.send(CANCEL)
         self.waiting = 0
-        for _ in range(20):  # a second
+        for tries in range(20):  # a second
             self.send(b'?')
-            if self.receive(STEP) and self.state not in ('Jog', 'Run'):
-                return
-            if _ > 4:
+            if self.receive(STEP) and self.state not in ('Jog', 'Run', 'Hold:1'):
+                break
+            if tries > 4 and self.state != 'Hold:1':
                 self.send(HOLD)
+        if self.state == 'Hold:0':  # it stands and keeps its position; without a reset it would carry out no jog again
+            self.send(RESET)
 
 
 def run(board, hello):
@@ -101,8 +103,6 @@ if words[:2] != ['cerberus-head', '1']:
 try:
     grbl = Board(sys.argv[1])
     grbl.stop()
-    if grbl.state == 'Hold':
-        grbl.send(RESET)
     if grbl.state in ('', 'Alarm'):
         sys.exit(print('fault the GRBL board', 'is in alarm: home it ($H) or unlock it ($X)' if grbl.state else
                        'does not answer', flush=True))

@@ -32,7 +32,9 @@ namespace {
 
 class GrblBoard {
  public:
-  explicit GrblBoard(bool alarm = false) : alarm_(alarm), last_(Clock::now()) {
+  // deaf: it overlooks the jog cancel, and the feed hold holds it until a reset.
+  explicit GrblBoard(bool alarm = false, bool deaf = false)
+      : alarm_(alarm), deaf_(deaf), last_(Clock::now()) {
     char name[128];
     if (::openpty(&fd_, &slave_, name, nullptr, nullptr) != 0) std::abort();
     path_ = name;
@@ -56,6 +58,7 @@ class GrblBoard {
     return !jogs_.empty();
   }
   int cancels() const { return cancels_; }
+  bool held() const { return held_; }
 
  private:
   struct Jog {
@@ -84,6 +87,7 @@ class GrblBoard {
       return answer("error:9\r\n");
     const std::lock_guard guard(lock_);
     advance();
+    if (held_) return answer("error:9\r\n");  // locked out
     jogs_.push_back({x, y, std::hypot(x, y) / f * 60});
     answer("ok\r\n");
   }
@@ -101,13 +105,19 @@ class GrblBoard {
           char text[100];
           std::snprintf(text, sizeof text, "<%s|MPos:%.3f,%.3f,0.000|FS:0,0>\r\n",
                         alarm_           ? "Alarm"
+                        : held_          ? "Hold:0"
                         : !jogs_.empty() ? "Jog"
                                          : "Idle",
                         x_, y_);
           answer(text);
+        } else if (bytes[i] == '\x18') {
+          held_ = false;
+          answer("\r\nGrbl 1.1h ['$' for help]\r\n");
         } else if (bytes[i] == '\x85' || bytes[i] == '!') {
+          if (deaf_ && bytes[i] == '\x85') continue;
           const std::lock_guard guard(lock_);
           advance();
+          held_ = deaf_;
           jogs_.clear();
           ++cancels_;
         } else if (bytes[i] == '\n') {
@@ -120,7 +130,8 @@ class GrblBoard {
     }
   }
 
-  bool alarm_;
+  bool alarm_, deaf_;
+  std::atomic<bool> held_{false};
   std::string path_;
   int fd_ = -1, slave_ = -1;
   std::mutex lock_;
@@ -188,6 +199,21 @@ START_TEST(a_board_is_not_driven_beyond_its_limits) {
 }
 END_TEST
 
+START_TEST(a_board_that_only_a_feed_hold_stops_moves_again_after_it) {
+  GrblBoard board(false, true);
+  HelperHead head("external");
+  assert_text(head.open(setup_for(board)), "");
+  assert_text(head.command({0s, {Kind::velocity, radians(20), 0}, {}}), "");
+  ck_assert(soon([&] { return board.pan() > 1; }));
+  const int before = board.cancels();
+  head.stop(1ms);
+  ck_assert(soon([&] { return board.cancels() > before && !board.held(); }));
+  const double there = board.pan();
+  assert_text(head.command({10s, {Kind::velocity, radians(20), 0}, {}}), "");
+  ck_assert(soon([&] { return board.pan() > there + 1; }));
+}
+END_TEST
+
 START_TEST(a_board_in_alarm_is_refused_with_what_to_do) {
   GrblBoard board(true);
   HelperHead head("external");
@@ -197,6 +223,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "grbl", {a_board_goes_where_it_is_sent_and_rests, the_end_of_the_pipeline_cancels_the_jogs,
-               a_board_is_not_driven_beyond_its_limits, a_board_in_alarm_is_refused_with_what_to_do});
+      "grbl",
+      {a_board_goes_where_it_is_sent_and_rests, the_end_of_the_pipeline_cancels_the_jogs,
+       a_board_is_not_driven_beyond_its_limits, a_board_that_only_a_feed_hold_stops_moves_again_after_it,
+       a_board_in_alarm_is_refused_with_what_to_do});
 }
