@@ -43,8 +43,9 @@ constexpr double kVolts = 1000;
 const Property<PirSettings> kProperties[] = {
     property(
         "driver", &S::driver,
-        "Where the readings come from: gpio (lines of a GPIO chip), iio (an A/D converter), replay (a file), "
-        "scripted (the script property, for tests)"),
+        "Where the readings come from: gpio (lines of a GPIO chip), iio (an A/D converter), evdev (an input "
+        "device), external (a program or a microcontroller), replay (a file), scripted (the script property, "
+        "for tests)"),
     property(
         "bearings", &S::bearings,
         "Where each sensor looks: degrees, separated by commas, 0 ahead, positive to the right. As many as "
@@ -53,9 +54,10 @@ const Property<PirSettings> kProperties[] = {
     property("heartbeat", &S::heartbeat,
              "Nanoseconds between buffers when nothing changes, at least 1 ms; a change is sent at once in "
              "any case"),
-    property("is-live", &S::is_live,
-             "Play replay and scripted readings in real time, as a live source; gpio and iio are live in any "
-             "case"),
+    property(
+        "is-live", &S::is_live,
+        "Play replay and scripted readings in real time, as a live source; the other drivers are live in "
+        "any case"),
     property(
         "preset", &S::preset, preset_type,
         "The sensor module: sets active-low, warm-up and field-of-view. A property that was set itself wins"),
@@ -86,11 +88,23 @@ const Property<PirSettings> kProperties[] = {
     property("leds-blue", &S::leds_blue,
              "gpio: an output line for each sensor, high while it does not detect; empty = no such LEDs"),
     property("bias", &S::bias, bias_type, "gpio: the resistor inside the chip on the sensors' lines"),
+    property(
+        "device", &S::device,
+        "evdev: path (/dev/input/event3) or name of the input device; external: serial:/dev/ttyUSB0, or the "
+        "path of a FIFO"),
+    property("codes", &S::codes,
+             "evdev: a key or switch for each sensor, as key:30, switch:11 or BTN_0, separated by commas"),
+    property("command", &S::command,
+             "external: a program, run by /bin/sh, that writes a line at each change"),
+    property(
+        "device-options", &S::device_options,
+        "external: 'baud=115200 silence=3 volts': of the serial port; seconds without a line after which "
+        "readings are invalid, 0 = never; the lines contain volts"),
     property("iio-device", &S::iio_device, "iio: the converter's name or id"),
     property("channels", &S::channels,
              "iio: the number of a voltage channel for each sensor, separated by commas"),
     property("threshold", &S::threshold, -kVolts, kVolts,
-             "Volts between low and high, where volts are measured: iio, recordings in volts"),
+             "Volts between low and high, where volts are measured: iio, external, recordings in volts"),
     property("hysteresis", &S::hysteresis, 0, kVolts,
              "Volts between switching to high and switching to low, threshold in the middle; 0 = none"),
     property("sample-interval", &S::sample_interval, "iio: nanoseconds between samples, at least 1 ms"),
@@ -172,7 +186,10 @@ drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors) {
   setup.red = split(settings.leds_red);
   setup.blue = split(settings.leds_blue);
   setup.bias = static_cast<drivers::LineBias>(settings.bias);
-  setup.device = settings.iio_device;
+  setup.device = settings.driver == "iio" ? settings.iio_device : settings.device;
+  setup.codes = split(settings.codes);
+  setup.command = settings.command;
+  setup.options = settings.device_options;
   setup.channels = split(settings.channels);
   setup.level = {settings.threshold, settings.hysteresis};
   setup.interval = std::max(time_of(settings.sample_interval), sensing::Time(std::chrono::milliseconds(1)));

@@ -36,6 +36,8 @@ struct PirSettings {
   std::string lines, leds_red, leds_blue;
   int bias = static_cast<int>(drivers::SensorSetup{}.bias);
 
+  std::string device, codes, device_options, command;
+
   std::string iio_device = "iio:device0";
   std::string channels = "0,1,2";
   double threshold = sensing::LevelOptions{}.threshold;

@@ -14,6 +14,11 @@
  * - `gpio`: lines of a GPIO chip, edges with the kernel's time stamps; LEDs on output lines (`leds-red` while a sensor
  *   detects, `leds-blue` while it does not). Live.
  * - `iio`: channels of an A/D converter, compared with `threshold`. Live.
+ * - `evdev`: keys or switches of an input device (`device`, `codes`), as PIR receivers have them that the kernel shows
+ *   so. A device that vanishes is a warning, its readings are invalid, and it is used again when it returns. Live.
+ * - `external`: a program (`command`) or a microcontroller at a serial port or FIFO (`device`) that sends a line at each
+ *   change (docs/manual/sensor-protocol.md). One that ends, vanishes or is silent is a warning, its readings are
+ *   invalid, and it is used again when it returns. Live.
  * - `replay`: a file of `seconds,level,level,...` lines or of JSON lines with `time` (or `pts`) and `pir`, as
  *   `motionjson` writes them; ends with the file. What was measured is written with its unit, `seconds,0.1V,3.2V,...`
  *   (in JSON: `volts` in place of `pir`), and compared with `threshold`. Not live unless `is-live`.
@@ -36,6 +41,9 @@
  * |[
  * gst-launch-1.0 -m pirsrc driver=scripted script="0,0,0,0; 1,1,0,0; 3,0,0,0" ! fakesink
  * gst-launch-1.0 pirsrc script="0,0.1V,0V,0V; 1,3.2V,0V,0V; 2,0V,0V,0V" ! application/x-pir,format=level ! fakesink
+ * gst-launch-1.0 pirsrc driver=external command="python3 pipelines/sensors/example.py" ! fakesink
+ * gst-launch-1.0 pirsrc driver=external device=serial:/dev/ttyUSB0 ! fakesink
+ * gst-launch-1.0 pirsrc driver=evdev device="PIR receiver" codes=BTN_0,BTN_1,BTN_2 ! fakesink
  * gst-launch-1.0 pirsrc driver=gpio chip=gpiochip0 lines=17,27,22 leds-red=5,6,13 preset=am312 ! fakesink
  * ]|
  *
@@ -187,9 +195,10 @@ bool open_sensors(CerberusPirSrc* self) {
   priv.running = true;
   guard.unlock();
   if (settings.driver == "scripted" && settings.script.empty())
-    CERBERUS_ELEMENT_WARNING(
-        self, RESOURCE, SETTINGS,
-        ("driver=scripted without a script has no readings. Set driver to gpio, iio or replay."), (nullptr));
+    CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
+                             ("driver=scripted without a script has no readings. Set driver to gpio, iio, "
+                              "evdev, external or replay."),
+                             (nullptr));
   return true;
 }
 
@@ -235,8 +244,8 @@ bool fits_downstream(CerberusPirSrc* self) {
   g_autofree gchar* gift = gst_caps_to_string(given);
   CERBERUS_ELEMENT_ERROR(self, CORE, NEGOTIATION,
                          ("The element downstream of pirsrc accepts %s, and the sensors give %s. Volts "
-                          "(format=level) come from driver=iio "
-                          "and from recordings in volts only.",
+                          "(format=level) come from driver=iio, from driver=external with "
+                          "device-options=volts and from recordings in volts only.",
                           wish, gift),
                          (nullptr));
   return false;
@@ -303,6 +312,7 @@ GstFlowReturn next_buffer(CerberusPirSrc* self, GstBuffer** buffer) {
     if (step == SensorArray::Step::reading) {
       news.time = priv.last = std::max(priv.last, running_time(self, news.reading.time));
       news.info = priv.info;
+      news.outage = priv.sensors.outage_change();
       news.stamp = Stamps::now(GST_CLOCK_TIME_NONE, priv.live, priv.settings.snapshot().camera_name);
       for (int i = 0; i < priv.sensors.count(); ++i) {
         if (!(news.reading.faulty >> i & 1)) continue;
@@ -447,10 +457,10 @@ void cerberus_pir_src_class_init(CerberusPirSrcClass* klass) {
   src->query = query;
   GST_PUSH_SRC_CLASS(klass)->create = create;
   gst_element_class_add_static_pad_template(GST_ELEMENT_CLASS(klass), &src_template);
-  gst_element_class_set_static_metadata(
-      GST_ELEMENT_CLASS(klass), "PIR sensors", "Source/Sensor",
-      "Readings of passive infrared sensors from GPIO lines, an A/D converter or a file",
-      "The Cerberus developers");
+  gst_element_class_set_static_metadata(GST_ELEMENT_CLASS(klass), "PIR sensors", "Source/Sensor",
+                                        "Readings of passive infrared sensors from GPIO lines, an A/D "
+                                        "converter, an input device, a program or a file",
+                                        "The Cerberus developers");
 }
 
 }  // namespace

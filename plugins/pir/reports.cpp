@@ -52,6 +52,13 @@ void report_fault(GstElement* element, int sensor, sensing::PirFault fault, doub
       (nullptr));
 }
 
+void report_outage(GstElement* element, const std::string& outage) {
+  if (outage.empty())
+    CERBERUS_ELEMENT_INFO(element, RESOURCE, READ, ("The PIR sensors work again."), (nullptr));
+  else
+    CERBERUS_ELEMENT_WARNING(element, RESOURCE, READ, ("%s.", outage.c_str()), (nullptr));
+}
+
 GstBuffer* publish(GstBaseSrc* source, const News& news) {
   GstElement* element = GST_ELEMENT(source);
   const drivers::SensorReading& reading = news.reading;
@@ -65,6 +72,7 @@ GstBuffer* publish(GstBaseSrc* source, const News& news) {
   for (guint i = 0; i < count; ++i)
     if (reading.faulty >> i & 1)
       report_fault(element, static_cast<int>(i), news.faults[i], news.info.bearings[i], news.places[i]);
+  if (news.outage) report_outage(element, *news.outage);
   if (reading.changed) {
     CerberusStamp stamp = news.stamp;
     stamp.running_time = gst_segment_to_running_time(&source->segment, GST_FORMAT_TIME, news.time);

@@ -6,6 +6,7 @@
 #include <gst/base/gstbasesrc.h>
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "drivers/sensor/sensor_array.h"
@@ -16,6 +17,8 @@ void report_error(GstElement* element, const drivers::SensorError& error);
 // Posts a warning that names the sensor (index from 0) by its number and place; without a fault, that it works again.
 void report_fault(GstElement* element, int sensor, sensing::PirFault fault, double bearing,
                   const std::string& place);
+// Posts a warning that says why nothing is known of the sensors, or, where it says nothing, that they work again.
+void report_outage(GstElement* element, const std::string& outage);
 
 // The results of one step of the sensors, to be published without the lock.
 struct News {
@@ -25,6 +28,7 @@ struct News {
   CerberusStamp stamp;  // of the reading; its running time is set when it is published
   std::array<sensing::PirFault, sensing::kMaxSensors> faults{};
   std::array<std::string, sensing::kMaxSensors> places;
+  std::optional<std::string> outage;  // if it changed
 };
 
 // Posts it, and makes a buffer of it.

@@ -263,7 +263,7 @@ GST_START_TEST(a_wrong_setting_is_an_error_that_names_it) {
   const GQuark resource = GST_RESOURCE_ERROR;
   const gint settings = GST_RESOURCE_ERROR_SETTINGS, not_found = GST_RESOURCE_ERROR_NOT_FOUND;
   fail_unless(says(Source("driver=radar").refusal(resource, settings),
-                   "no PIR driver \"radar\". Drivers: gpio, iio, replay, scripted"));
+                   "no PIR driver \"radar\". Drivers: evdev, external, gpio, iio, replay, scripted"));
   fail_unless(says(Source("bearings=\"\"").refusal(resource, settings), "1 to 16"));
   fail_unless(says(Source("bearings=0,north").refusal(resource, settings), "\"north\" is no direction"));
   fail_unless(says(Source("bearings=0,,1").refusal(resource, settings), "\"\" is no direction"));

@@ -47,6 +47,10 @@ std::vector<Backend> backends() {
   good.script = "0,0V,3.1V,0V; 1,3V,3V,0.2V";
   bad.script = "0,0V,3.1V,high";
   all.push_back({"scripted", good, bad, "\"high\" is no reading"});
+  good = bad = {};
+  good.command = "echo levels 0 1 0; exec cat";
+  bad.device = "/nowhere/fifo";
+  all.push_back({"external", good, bad, "/nowhere/fifo"});
   if (const char* chip = std::getenv("CERBERUS_GPIO_CHIP")) {
     good = bad = {};
     good.chip = bad.chip = chip;
@@ -77,6 +81,13 @@ std::unique_ptr<Sensor> opened(const Backend& backend) {
   return sensor;
 }
 
+// What the sensor begins with. A command is not as quick as a device.
+SensorError begin(const Backend& backend, Sensor& sensor, std::vector<SensorEdge>& edges) {
+  pollfd waiting{sensor.fd(), POLLIN, 0};
+  if (backend.driver == "external") ck_assert_int_eq(poll(&waiting, 1, 20000), 1);
+  return sensor.read(sensor.recorded() ? 0s : monotonic(), edges);
+}
+
 Time now_of(const Sensor& sensor) {
   return sensor.recorded() ? 0s : monotonic();
 }
@@ -86,7 +97,7 @@ START_TEST(the_first_edges_tell_where_each_line_stands) {
     auto sensor = opened(backend);
     const Time before = now_of(*sensor);
     std::vector<SensorEdge> edges;
-    ck_assert(!sensor->read(now_of(*sensor), edges));
+    ck_assert(!begin(backend, *sensor, edges));
     ck_assert_int_eq(static_cast<int>(edges.size()), 3);
     for (int i = 0; i < 3; ++i) {
       ck_assert_int_eq(edges[i].sensor, i);
@@ -131,7 +142,7 @@ START_TEST(closing_is_safe_at_any_time_and_opening_begins_anew) {
       const SensorError error = sensor->open(backend.good);
       if (error) ck_abort_msg("%s: %s", backend.driver.c_str(), error.text.c_str());
       edges.clear();
-      ck_assert(!sensor->read(now_of(*sensor), edges));
+      ck_assert(!begin(backend, *sensor, edges));
       ck_assert_int_eq(static_cast<int>(edges.size()), 3);
       sensor->stop();
       sensor->stop();
@@ -174,7 +185,7 @@ END_TEST
 START_TEST(only_what_is_in_memory_and_never_waits_opens_at_once) {
   SensorSetup setup;
   setup.script = "0,0,0,0; 1,1,0,0";
-  for (const char* driver : {"gpio", "iio", "replay", "scripted"})
+  for (const char* driver : {"evdev", "external", "gpio", "iio", "replay", "scripted"})
     ck_assert(make_sensor(driver)->opens_at_once(setup) == (driver == std::string("scripted")));
   for (const char* waits : {"open wait 7; 0,0,0,0", "0,0,0,0; wait 7 8"}) {
     setup.script = waits;
@@ -184,14 +195,17 @@ START_TEST(only_what_is_in_memory_and_never_waits_opens_at_once) {
 END_TEST
 
 START_TEST(every_driver_is_known_by_name) {
-  ck_assert(sensor_drivers() == "gpio, iio, replay, scripted");
+  ck_assert(sensor_drivers() == "evdev, external, gpio, iio, replay, scripted");
   ck_assert(!make_sensor("none such") && !is_device("none such"));
-  ck_assert(is_device("gpio") && is_device("iio") && !is_device("replay") && !is_device("scripted"));
-  for (const char* driver : {"gpio", "iio"}) {  // on a machine without, or in a build without: a clear word
+  for (const char* device : {"evdev", "external", "gpio", "iio"}) ck_assert(is_device(device));
+  ck_assert(!is_device("replay") && !is_device("scripted"));
+  for (const char* driver :
+       {"evdev", "gpio", "iio"}) {  // on a machine without, or in a build without: a clear word
     if (std::getenv("CERBERUS_GPIO_CHIP")) continue;
     SensorSetup setup;
     setup.chip = setup.device = "attic";
     setup.lines = setup.channels = {"0", "1", "2"};
+    setup.codes = {"key:0", "key:1", "key:2"};
     const SensorError error = make_sensor(driver)->open(setup);
     ck_assert(error.fault == SensorFault::not_found || error.fault == SensorFault::missing);
     ck_assert(says(error.text, error.fault == SensorFault::missing ? "build again" : "attic"));

@@ -25,12 +25,12 @@
 #include <variant>
 
 #include "drivers/head/head.h"
+#include "drivers/transport/line_buffer.h"
 #include "motion/pan_tilt.h"
 
 namespace cerberus::drivers {
 
 inline constexpr int kHeadProtocol = 1;
-inline constexpr std::size_t kMostLine = 512;  // bytes, the line feed included
 
 // What the helper can do with its head.
 struct HeadAbilities {
@@ -104,18 +104,5 @@ std::optional<PipelineLine> parse_pipeline_line(std::string_view line);
 // names another version or neither `position` nor `velocity`. Unknown words at the end of `ready` are skipped, so that
 // later versions can add abilities.
 std::optional<HelperLine> parse_helper_line(std::string_view line);
-
-// Cuts bytes that arrive in pieces into lines. A line that is too long is dropped whole.
-class LineBuffer {
- public:
-  void append(std::string_view bytes);
-  // The oldest complete line without its line feed; nothing when there is none.
-  std::optional<std::string> take();
-
- private:
-  std::string bytes_;
-  std::size_t line_begin_ = 0;  // of the line that is not complete yet
-  bool overlong_ = false;       // the rest of a dropped line is still to come
-};
 
 }  // namespace cerberus::drivers

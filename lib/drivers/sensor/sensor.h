@@ -23,7 +23,8 @@ struct SensorEdge {
   int sensor = 0;
   bool level = false;                                     // of the line, before polarity; may repeat
   float volts = std::numeric_limits<float>::quiet_NaN();  // what was measured; NaN: nothing is
-  bool known = true;  // false: from now on nothing is known of the line, until its next edge
+  bool known = true;      // false: from now on nothing is known of the line, until its next edge
+  bool restarts = false;  // where nothing is known: the sensor may have lost its supply, and warms up again
 };
 
 class Sensor {
@@ -38,13 +39,16 @@ class Sensor {
   // Readable when read() has something; -1: a recording, or not open.
   virtual int fd() const { return -1; }
   // Appends what happened until `now`, oldest first. The first edge of each sensor is the level that it began with.
-  // An error is final: close.
+  // An error is final: close. (What may pass is an outage.)
   virtual SensorError read(Time now, std::vector<SensorEdge>& edges) = 0;
   // Lights the LEDs: red while a sensor detects, blue while it does not, none while its reading is invalid.
   virtual SensorError show(std::span<const sensing::Presence>) { return {}; }
 
   // Where a sensor is connected, for messages: "line 17 of gpiochip0".
   virtual std::string place(int sensor) const = 0;
+  // Why nothing is known of the sensors for now, a sentence for a user without its point; the driver goes on trying.
+  // Empty: it works. Changes in read() only.
+  virtual std::string outage() const { return {}; }
   // Every edge has its volts, and there is one for each sample.
   virtual bool measures() const { return false; }
   virtual bool recorded() const { return false; }        // what it is before open() may change with that
@@ -53,7 +57,7 @@ class Sensor {
   virtual Time end() const { return sensing::kNever; }   // of a recording: the end of its data
 };
 
-// "gpio", "iio", "replay", "scripted"; nullptr for an unknown name. A driver that was left out of the build exists,
+// "evdev", "external", "gpio", "iio", "replay", "scripted"; nullptr for an unknown name. A driver that was left out of the build exists,
 // and its open() returns that as an error.
 std::unique_ptr<Sensor> make_sensor(std::string_view driver);
 std::string sensor_drivers();             // all names, for error messages

@@ -68,6 +68,13 @@ SensorError SensorArray::error() const {
   return opening_ && opening_->opened() ? opening_->error() : error_;
 }
 
+std::optional<std::string> SensorArray::outage_change() {
+  std::string now = sensor_ ? sensor_->outage() : std::string();
+  if (now == outage_) return std::nullopt;
+  outage_ = now;
+  return now;
+}
+
 int SensorArray::fd() const {
   if (opening_) return opening_->fd();
   return sensor_ ? sensor_->fd() : -1;
@@ -85,6 +92,7 @@ void SensorArray::close() noexcept {
   next_edge_ = 0;
   last_ = {};
   error_ = {};
+  outage_.clear();
   beat_ = {};
   tell_samples_ = sampled_ = false;
   begun_ = false;
@@ -92,10 +100,11 @@ void SensorArray::close() noexcept {
 
 namespace {
 
-// Returns a model in its initial state without warm-up: the caller that makes the sensor valid again has waited for it.
-sensing::PirModel begin_again(const sensing::PirModel& model) {
+// Returns a model in its initial state. Unless the sensor itself restarts it is not warmed up: the caller that makes it
+// valid again has waited for that.
+sensing::PirModel begin_again(const sensing::PirModel& model, const sensing::PirOptions& all, bool restarts) {
   sensing::PirOptions options = model.options();
-  options.warm_up = {};
+  options.warm_up = restarts ? all.warm_up : Time();
   return sensing::PirModel(options);
 }
 
@@ -122,7 +131,7 @@ void SensorArray::let_pass(Time until) {
     if (edge.known)
       model.edge(edge.time, edge.level);
     else
-      model = begin_again(model);
+      model = begin_again(model, options_, edge.restarts);
     if (std::isnan(edge.volts)) continue;
     volts_[static_cast<std::size_t>(edge.sensor)] = edge.volts;
     sampled_ = true;

@@ -6,6 +6,8 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "drivers/sensor/sensor.h"
@@ -64,6 +66,9 @@ class SensorArray {
   int count() const { return static_cast<int>(models_.size()); }
   sensing::PirFault fault(int sensor) const { return models_[static_cast<std::size_t>(sensor)].fault(); }
   std::string place(int sensor) const { return sensor_ ? sensor_->place(sensor) : std::string(); }
+  // The sensors' outage (Sensor::outage()) if it changed since the last call: a sentence without its point, or empty for
+  // an end.
+  std::optional<std::string> outage_change();
   int fd() const;
   bool recorded() const { return recorded_; }
 
@@ -87,6 +92,7 @@ class SensorArray {
   std::array<float, sensing::kMaxSensors> volts_{};
   bool tell_samples_ = false, sampled_ = false;  // sampled_: since the last reading
   SensorError error_;
+  std::string outage_;  // as outage_change() returned it
   Time heartbeat_{}, beat_{}, end_{};
   bool begun_ = false;
 };

@@ -53,6 +53,7 @@ struct SensorRunner::Core {
   std::vector<SensorEdge> edges;
   SensorError error;
   std::vector<std::string> places;
+  std::string outage;
   bool measures = false, recorded = false;
 
   Core(std::unique_ptr<Sensor> taken, std::function<void()> told)
@@ -73,17 +74,20 @@ struct SensorRunner::Core {
   void run(const SensorSetup& setup);
   bool open(const SensorSetup& setup);
   void watch(bool good);
-  bool hear(const std::vector<SensorEdge>& found, SensorError wrong);
+  bool publish(const std::vector<SensorEdge>& found, SensorError wrong);
 };
 
 // False: nothing more will come.
-bool SensorRunner::Core::hear(const std::vector<SensorEdge>& found, SensorError wrong) {
+bool SensorRunner::Core::publish(const std::vector<SensorEdge>& found, SensorError wrong) {
+  std::string why = sensor->outage();
   const std::lock_guard guard(lock);
+  const bool changed = why != outage;
+  outage = std::move(why);
   const std::size_t room = kMost - std::min(found.size(), kMost);
   if (edges.size() > room) edges.erase(edges.begin(), edges.end() - static_cast<std::ptrdiff_t>(room));
   edges.insert(edges.end(), found.begin(), found.end());
   error = std::move(wrong);
-  if (!found.empty() || error) ::eventfd_write(news, 1);
+  if (!found.empty() || error || changed) ::eventfd_write(news, 1);
   return !error;
 }
 
@@ -93,7 +97,7 @@ bool SensorRunner::Core::open(const SensorSetup& setup) {
   SensorError wrong = sensor->open(setup);
   const bool recording = sensor->recorded();
   if (!wrong && !recording) wrong = sensor->read(now(), found);
-  const bool good = hear(found, std::move(wrong));
+  const bool good = publish(found, std::move(wrong));
   {
     const std::lock_guard guard(lock);
     for (int i = 0; i < setup.sensors; ++i) places.push_back(sensor->place(i));
@@ -111,6 +115,7 @@ void SensorRunner::Core::watch(bool good) {
   std::vector<SensorEdge> found;
   std::array<pollfd, 2> fds{{{hints, POLLIN, 0}, {sensor->fd(), POLLIN, 0}}};
   for (;;) {
+    fds[1].fd = sensor->fd();  // another one after an outage; -1, which poll() skips, during it
     if (::poll(fds.data(), good ? 2 : 1, good ? kLookMs : -1) < 0) continue;  // EINTR
     std::optional<Leds> lit;
     {
@@ -125,7 +130,7 @@ void SensorRunner::Core::watch(bool good) {
     found.clear();
     if (lit) wrong = sensor->show(std::span(lit->readings).first(lit->count));
     if (!wrong) wrong = sensor->read(now(), found);
-    good = hear(found, std::move(wrong));
+    good = publish(found, std::move(wrong));
   }
   sensor->close();
 }
@@ -208,6 +213,12 @@ bool SensorRunner::measures() const {
   if (!core_) return false;
   const std::lock_guard guard(core_->lock);
   return core_->measures;
+}
+
+std::string SensorRunner::outage() const {
+  if (!core_) return {};
+  const std::lock_guard guard(core_->lock);
+  return core_->outage;
 }
 
 }  // namespace cerberus::drivers

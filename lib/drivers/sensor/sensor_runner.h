@@ -40,6 +40,7 @@ class SensorRunner final : public Sensor {
   SensorError show(std::span<const sensing::Presence> readings) override;
   std::string place(int sensor) const override;
   bool measures() const override;
+  std::string outage() const override;
 
  private:
   struct Core;

@@ -26,8 +26,12 @@ struct SensorSetup {
   std::vector<std::string> lines, red, blue;
   LineBias bias = LineBias::as_is;
 
+  // evdev: path or name of the input device; keys and switches as in input_codes.h, one a sensor.
+  // external: serial:/dev/ttyUSB0, or the path of a FIFO; or a command; options as in external_sensor.h.
   // iio: name (dummy) or id (iio:device0) of the converter, channel numbers, one a sensor.
   std::string device;
+  std::vector<std::string> codes;
+  std::string command, options;
   std::vector<std::string> channels;
   Time interval = std::chrono::milliseconds(10);  // between samples
 

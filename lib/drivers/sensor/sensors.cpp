@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "drivers/evdev/evdev_sensor.h"
+#include "drivers/external/external_sensor.h"
 #include "drivers/recorded/replay_sensor.h"
 #include "drivers/recorded/scripted_sensor.h"
 #include "drivers/sensor/sensor.h"
@@ -46,7 +48,9 @@ struct Driver {
   std::unique_ptr<Sensor> (*make)();
 };
 
-constexpr std::array<Driver, 4> kDrivers{{
+constexpr std::array<Driver, 6> kDrivers{{
+    {"evdev", true, make<EvdevSensor>},
+    {"external", true, make<ExternalSensor>},
 #if HAVE_GPIOD
     {"gpio", true, make<GpioSensor>},
 #else
