@@ -26,7 +26,8 @@ constexpr GstClockTime kLongestConfirmTime = 3600 * GST_SECOND;
 // With the flags of the record's query: the elements downstream are not asked.
 constexpr guint kNothingFurther = 1u << 31;
 
-// The upstream event by which the element that learns what is burnt in tells the one that measures the camera.
+// The upstream event of the element that learns what is burnt in, for the one that measures the camera. Its boxes are
+// in pixels of an analysed picture of `width` x `height`.
 constexpr char kBurntIn[] = "cerberus-burnt-in";
 
 bool same_box(const vision::Box& a, const vision::Box& b) {
@@ -39,7 +40,10 @@ bool Detection::start() {
   GST_DEBUG_CATEGORY_INIT(detection_debug, "cerberusdetection", 0, "the stages of detection");
   State& state = state_.emplace();
   carrier_.forget();
-  burnt_in_ = {};
+  {
+    const std::lock_guard lock(burnt_in_lock_);
+    burnt_in_ = {};
+  }
   watch_.begin(GST_ELEMENT(base));
   refresh();
   // Zones that cannot be read stop the start; a typo while playing keeps the zones that were there.
@@ -65,8 +69,11 @@ void Detection::upstream_event(GstEvent* event) {
   const GstStructure* structure = gst_event_get_structure(event);
   if (!structure || !gst_structure_has_name(structure, kBurntIn)) return;
   g_autoptr(GBytes) bytes = nullptr;
-  gst_structure_get(structure, "boxes", G_TYPE_BYTES, &bytes, nullptr);
+  vision::Size size;
+  gst_structure_get(structure, "boxes", G_TYPE_BYTES, &bytes, "width", G_TYPE_INT, &size.width, "height",
+                    G_TYPE_INT, &size.height, nullptr);
   const std::lock_guard lock(burnt_in_lock_);
+  burnt_in_size_ = size;
   burnt_in_.count = std::min(bytes ? g_bytes_get_size(bytes) / sizeof(vision::Box) : 0, burnt_in_.box.size());
   if (burnt_in_.count)
     std::memcpy(burnt_in_.box.data(), g_bytes_get_data(bytes, nullptr),
@@ -144,7 +151,7 @@ Analyser::Outcome Detection::analyse(Frame& frame) {
   if (has(Stage::camera)) {
     {
       const std::lock_guard lock(burnt_in_lock_);
-      burnt_in = burnt_in_;
+      if (burnt_in_size_ == (*record->luma)->size()) burnt_in = burnt_in_;
     }
     frame.burnt_in = burnt_in.boxes();
     measure_camera(*record, frame);
@@ -237,26 +244,29 @@ void Detection::publish_threshold(GstBuffer* buffer, const vision::Analysis& rec
   facts.offset = record.differences->result.offset;
   set_threshold_facts(buffer, facts);
   state_->facts = facts;
-  if (has(Stage::foreground) && record.foreground->burnt_in) publish_burnt_in(record);
+  if (has(Stage::foreground)) publish_burnt_in(record);
 }
 
 void Detection::publish_burnt_in(const vision::Analysis& record) {
-  const vision::BurntInBoxes& found = *record.foreground->burnt_in;
-  if (const std::string text = new_boxes(found, (*record.luma)->size(), record.frame); !text.empty())
+  const vision::BurntInBoxes found = record.foreground->burnt_in.value_or(vision::BurntInBoxes{});
+  const vision::Size size = (*record.luma)->size();
+  if (const std::string text = new_boxes(found, size, record.frame); !text.empty())
     CERBERUS_ELEMENT_INFO(
         base, STREAM, DECODE,
         ("The camera writes into its pictures; left out: %s (frame pixels, width x height + left + top).",
          text.c_str()),
         ("burnt-in=false turns this off"));
-  std::vector<vision::Box>& sent = state_->sent_burnt_in;
+  if (has(Stage::camera)) return;
+  auto& sent = state_->sent_burnt_in;
   const auto boxes = found.boxes();
-  if (has(Stage::camera) || std::ranges::equal(boxes, sent, same_box)) return;
-  sent.assign(boxes.begin(), boxes.end());
+  if (sent && std::ranges::equal(boxes, *sent, same_box)) return;
+  sent.emplace(boxes.begin(), boxes.end());
   g_autoptr(GBytes) bytes = g_bytes_new(boxes.data(), boxes.size_bytes());
   gst_pad_push_event(
       GST_BASE_TRANSFORM_SINK_PAD(base),
       gst_event_new_custom(GST_EVENT_CUSTOM_UPSTREAM,
-                           gst_structure_new(kBurntIn, "boxes", G_TYPE_BYTES, bytes, nullptr)));
+                           gst_structure_new(kBurntIn, "boxes", G_TYPE_BYTES, bytes, "width", G_TYPE_INT,
+                                             size.width, "height", G_TYPE_INT, size.height, nullptr)));
 }
 
 void Detection::attach_published(GstBuffer* buffer) {

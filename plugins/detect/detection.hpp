@@ -53,11 +53,11 @@ class Detection : public Analyser {
     vision::CameraPath path;
     std::vector<vision::Region> found;  // by another element upstream
     std::vector<CerberusRegion> published;
-    CerberusCameraMotion motion{};             // of the last picture
-    std::optional<ThresholdFacts> facts;       // likewise
-    std::vector<vision::Box> sent_burnt_in;    // upstream
-    double repeated = 0;                       // seconds for which it has been repeated
-    GstClockTime shown = GST_CLOCK_TIME_NONE;  // running time of the last frame, repeated or not
+    CerberusCameraMotion motion{};                          // of the last picture
+    std::optional<ThresholdFacts> facts;                    // likewise
+    std::optional<std::vector<vision::Box>> sent_burnt_in;  // upstream; none: nothing yet
+    double repeated = 0;                                    // seconds for which it has been repeated
+    GstClockTime shown = GST_CLOCK_TIME_NONE;               // running time of the last frame, repeated or not
     Stamps stamps;
     std::string zones;  // as last read
     NothingFound no_regions, no_tracks;
@@ -85,6 +85,7 @@ class Detection : public Analyser {
   std::optional<State> state_;
   std::mutex burnt_in_lock_;
   vision::BurntInBoxes burnt_in_;  // from an element downstream, in any thread
+  vision::Size burnt_in_size_;     // of the picture in whose pixels they are
   HeadMotionMonitor carrier_;      // receives poses in any thread, so not part of the state
   Answer<guint> answer_;
   MotionWatch watch_;

@@ -17,8 +17,9 @@
  * warning, and ends no scene unless more than five come in a row.
  *
  * A buffer with the flag GAP repeats the last picture, as duplicates of `videorate` do, and carries its result on: see
- * `motiontrack`. Elements in between may take the flag off (`videoscale` of GStreamer 1.22): a frame that equals the last
- * picture in every pixel, where that one differed from its predecessor, gets the flag, for at most half a second. Where
+ * `motiontrack`. Elements in between may take the flag off (`videoscale` of GStreamer 1.22): a frame whose analysed
+ * picture (of `analysis-width`) equals the last one in every pixel, where that one differed from its predecessor, gets
+ * the flag, for at most half a second. Where
  * nothing differs for longer, or from the start, the scene is still and is analysed.
  *
  * Pads: one sink, one src, raw progressive video in system memory, 32x32 to 8192x8192.

@@ -120,6 +120,33 @@ GST_START_TEST(the_stages_one_by_one_give_what_motiondetect_gives) {
 }
 GST_END_TEST
 
+// The list is published again when it changes: the last one is empty when nothing is learnt any longer.
+GST_START_TEST(the_measuring_element_receives_that_nothing_is_learnt_any_longer) {
+  Line line("fuzzythreshold");
+  Film film{true};
+  std::vector<gsize> lengths;
+  for (int n = 0; n < (kSeconds + 1) * kRate; ++n) {
+    if (n == kSeconds * kRate) g_object_set(line.harness->element, "burnt-in", FALSE, nullptr);
+    gst_buffer_unref(line.through(film.frame(n)));
+    while (GstEvent* event = gst_harness_try_pull_upstream_event(line.harness)) {
+      if (gst_event_has_name(event, "cerberus-burnt-in")) {
+        g_autoptr(GBytes) boxes = nullptr;
+        int width = 0, height = 0;
+        fail_unless(gst_structure_get(gst_event_get_structure(event), "boxes", G_TYPE_BYTES, &boxes, "width",
+                                      G_TYPE_INT, &width, "height", G_TYPE_INT, &height, nullptr));
+        fail_unless(width == kWidth && height == kHeight);
+        lengths.push_back(g_bytes_get_size(boxes) / sizeof(Box));
+      }
+      gst_event_unref(event);
+    }
+  }
+  fail_unless(lengths.size() >= 3);
+  fail_unless_equals_int(lengths.front(), 0);  // what another element said before is true no longer
+  fail_unless_equals_int(lengths[lengths.size() - 2], film.writing.size());
+  fail_unless_equals_int(lengths.back(), 0);
+}
+GST_END_TEST
+
 static Suite* burnt_in_suite() {
   watch_library_log();
   Suite* suite = suite_create("burnt_in");
@@ -128,6 +155,7 @@ static Suite* burnt_in_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, each_box_is_reported_once_and_no_object_is_left);
   tcase_add_test(tests, without_the_property_nothing_is_reported_and_the_clock_is_an_object);
+  tcase_add_test(tests, the_measuring_element_receives_that_nothing_is_learnt_any_longer);
   tcase_add_test(tests, the_stages_one_by_one_give_what_motiondetect_gives);
   return suite;
 }

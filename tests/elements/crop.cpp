@@ -143,6 +143,13 @@ GST_START_TEST(a_crop_in_place_behind_the_detector_makes_its_result_unknown) {
     copy = gst_buffer_copy(out);
     fail_unless_equals_int(Regions(copy).size(), 1);
     gst_buffer_unref(copy);
+    // So is a fact about the picture, also where one of the whole picture was there before.
+    CerberusCameraMotion motion;
+    cerberus_camera_motion_init(&motion);
+    fail_unless(cerberus_buffer_set_camera_motion(out, &motion));
+    copy = gst_buffer_copy(out);
+    fail_unless(cerberus_buffer_peek_camera_motion(copy));
+    gst_buffer_unref(copy);
     gst_buffer_unref(out);
   }
   fail_unless(line.messages(GST_MESSAGE_WARNING).empty());

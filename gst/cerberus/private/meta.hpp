@@ -78,6 +78,11 @@ class ValueMeta {
     if (!gst_buffer_is_writable(buffer)) return FALSE;
     GstMeta* meta = gst_buffer_get_meta(buffer, kInfo()->api);
     if (!value) return !meta || gst_buffer_remove_meta(buffer, meta);
+    if (meta && kInPixels && reinterpret_cast<Meta*>(meta)->crop != crop_of(buffer)) {
+      const Value copy = *value;  // which may stand in the meta that goes
+      gst_buffer_remove_meta(buffer, meta);
+      return set(buffer, &copy);  // a copy of the buffer takes the metas in turn: the crop's comes first now
+    }
     if (!meta) meta = gst_buffer_add_meta(buffer, kInfo(), nullptr);
     if (!meta) return FALSE;
     value_of(meta) = *value;

@@ -71,10 +71,16 @@ void RecurrentChanges::note(Block& b) {
 }
 
 void RecurrentChanges::forget_old() {
-  if (grid_.rows == 0) return;
-  aged_ = (aged_ + 1) % grid_.rows;
+  // At low frame rates a row a call would take longer than the times count.
+  for (int rows = std::min(period_ > kLongPeriod ? grid_.rows : 1, grid_.rows); rows > 0; --rows) {
+    aged_ = (aged_ + 1) % grid_.rows;
+    forget_old(aged_);
+  }
+}
+
+void RecurrentChanges::forget_old(int row) {
   const auto longest = static_cast<Time>(parameters_.stale / kTick);
-  for (std::size_t i = grid_.at(0, aged_); i < grid_.at(0, aged_) + grid_.stride(); ++i) {
+  for (std::size_t i = grid_.at(0, row); i < grid_.at(0, row) + grid_.stride(); ++i) {
     Block& b = blocks_[i];
     if (!b.last) continue;
     if (seconds_since(b.last) >= parameters_.stale) {

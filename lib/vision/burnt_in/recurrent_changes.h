@@ -59,7 +59,8 @@ class RecurrentChanges {
   // Counts the changes of that frame. difference: D(k); threshold: Th. Returns whether some blocks have changed, but not
   // so many that it was the light.
   bool update(GrayView difference, int threshold);
-  // Forgets what is older than `stale`, in one row of blocks a call. To be called a few times a second.
+  // Forgets what is older than `stale`, in one row of blocks a call, below one frame a second in all rows. To be called a
+  // few times a second, or in every frame.
   void forget_old();
 
   // In the frame that update() was called for last.
@@ -76,6 +77,9 @@ class RecurrentChanges {
  private:
   using Time = std::uint16_t;  // 0: never
   static constexpr double kTick = 0.004;
+  // Seconds between frames beyond which all rows are aged in each of them. Derived: 16 bits of 4 ms are 262 s; up to 200
+  // rows of blocks take less.
+  static constexpr double kLongPeriod = 1;
 
   struct Block {
     Time last = 0, since = 0;    // last change, and since when there was one in every frame
@@ -88,6 +92,7 @@ class RecurrentChanges {
   double seconds_since(Time then) const { return static_cast<Time>(now_ - then) * kTick; }
   std::size_t find_changes(GrayView difference, int threshold);
   void note(Block& block);
+  void forget_old(int row);
   double rest() const;
   bool keeps_time(Block& block, double seconds) const;
   bool is_recurrent(const Block& block) const { return block.changes + 1 >= parameters_.enough_changes; }

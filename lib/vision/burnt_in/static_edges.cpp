@@ -63,7 +63,7 @@ void StaticEdges::rate_blocks(std::size_t first) {
   for (std::size_t i = first; i < first + BlockGrid::kWord; ++i) {
     if (is_static(fixed_[i], moved_[i])) {
       score_[i] = static_cast<std::uint8_t>(std::min(score_[i] + parameters_.score, most));
-      if (!(references_[i] & kPresent))
+      if (references_[i] < kPresent - 1)
         references_[i] = static_cast<std::uint8_t>((references_[i] + 1) | kPresent);
     } else if (score_[i] > 0 && has_edges(moved_[i]) && moved_[i] > 2 * fixed_[i]) {
       if (--score_[i] == 0) references_[i] &= kPresent;
