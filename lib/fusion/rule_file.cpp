@@ -237,7 +237,7 @@ toml::source_index line_of_foreign_letter(std::string_view text) {
       continue;
     } else if (!quotes.empty()) {
       foreign = foreign || !ascii;
-      if (c == '\\' && quotes.front() == '"')
+      if (c == '\\' && quotes.front() == '"' && !text.substr(i + 1).starts_with('\n'))
         ++i;
       else if (text.substr(i).starts_with(quotes))
         i += std::exchange(quotes, {}).size() - 1;

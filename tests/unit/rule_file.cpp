@@ -251,6 +251,8 @@ START_TEST(letters_beyond_ascii_stand_in_quotes_and_comments_only) {
                  "f.toml:2: letters beyond ASCII stand in quotes or comments only");
   assert_refused("\xef\xbb\xbf\xc3\xa4 = 1\n", "letters beyond ASCII");
   assert_refused("'a' = \"\"\"\n\"\"\"\n\xc3\xa4 = 1\n", "f.toml:3: letters beyond ASCII");
+  assert_refused("a = \"\"\"b \\\n c\"\"\"\n\xc3\xa4 = 1\n",
+                 "f.toml:3: letters beyond ASCII");  // b and c: one line
   const RuleFile file =
       parse_rules("\xef\xbb\xbf# gr\xc3\xbc\xc3\x9f\nsensors = 2\n[[rule]]\naction = \"hold\"\n", "f.toml");
   ck_assert_msg(file.table.has_value(), "%s", file.error.c_str());
