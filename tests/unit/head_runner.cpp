@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "drivers/head/head_lease.h"
 #include "support/pipe.h"
 #include "support/suite.h"
 #include "support/text.h"
@@ -350,6 +351,26 @@ START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
 }
 END_TEST
 
+START_TEST(a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not) {
+  Pipe gate, record;
+  auto lease = lease_head("gate");
+  ck_assert(lease && !lease_head("gate", 1h));  // in use
+  auto runner =
+      runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
+  record.line();
+  runner->command(go(1s, 0.125));
+  record.line();
+  runner->set_close_patience(1ms);
+  runner.reset();
+  ck_assert(!lease_head("gate", 1ms));  // its driver has not returned
+  auto next = std::async(std::launch::async, [] { return lease_head("gate", 1h); });
+  ck_assert(lease_head("another") != nullptr);
+  gate.close_writer();
+  ck_assert(next.get() != nullptr);
+  ck_assert(lease_head("gate") != nullptr);  // returned again
+}
+END_TEST
+
 START_TEST(a_driver_that_does_not_open_returns_the_reason) {
   HeadRunner runner(make_head("scripted"), {});
   HeadSetup setup;
@@ -393,6 +414,7 @@ int main() {
        a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
        of_commands_given_meanwhile_only_the_newest_counts,
        a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does, a_stop_beats_the_commands_before_it,
-       a_blocked_driver_keeps_its_lease_and_closes_by_itself, a_driver_that_does_not_open_returns_the_reason,
-       a_thousand_heads_come_and_go});
+       a_blocked_driver_keeps_its_lease_and_closes_by_itself,
+       a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not,
+       a_driver_that_does_not_open_returns_the_reason, a_thousand_heads_come_and_go});
 }

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <utility>
 
+#include "drivers/head/head_lease.h"
+
 namespace cerberus::drivers {
 
 namespace {
@@ -178,6 +180,7 @@ HeadRunner::~HeadRunner() {
   core_->moved.silence();
   core_->refused.silence();
   std::unique_lock guard(core_->lock);
+  announce_return(core_->lease);
   core_->todo = {};
   core_->todo.quit = true;
   core_->hand_over(guard);
