@@ -38,8 +38,9 @@ const GstMetaInfo* gst_meta_register(GType api, const gchar* impl, gsize size, G
 
 GST_START_TEST(a_meta_that_two_modules_need_at_once_is_registered_once) {
   scene::Line detects("motiondetect"), shows("motionview stage=luma");
-  std::thread one([&] { gst_buffer_unref(detects.through(scene::grey_buffer({}, 0))); });
-  std::thread other([&] { gst_buffer_unref(shows.through(scene::grey_buffer({}, 0))); });
+  GstBuffer *first = scene::grey_buffer({}, 0), *second = scene::grey_buffer({}, 0);
+  std::thread one([&] { gst_buffer_unref(detects.through(first)); });
+  std::thread other([&] { gst_buffer_unref(shows.through(second)); });
   one.join();
   other.join();
   fail_unless_equals_int(registrations, 1);
