@@ -159,6 +159,9 @@ drivers::HeadSetup head_setup(const HeadSettings& s) {
           .seed = static_cast<unsigned>(s.seed),
           .pan = radians(s.start_pan),
           .tilt = radians(s.start_tilt),
+          .play = {},  // of a calibration file, as the speeds
+          .pan_speeds = {},
+          .tilt_speeds = {},
           .script = s.script,
           .command = s.command,
           .helper = helper_program(),
