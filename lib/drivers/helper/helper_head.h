@@ -5,12 +5,7 @@
 // The process of the pipeline may die at any moment; the helper then sees the end of its input and stops the head. It
 // stops it as well when no line has come for helper-timeout. A thread here sends `alive` four times in that time.
 //
-// The pose is dead-reckoned: a model of the head (SimulatedHead) carries out the same commands with the same limits and
-// latency. Where the helper reports positions, the difference to the model at the time of the measurement corrects it.
-// A helper without positions may report the speeds that its steps give; the pose is then their integral from
-// the time at which they take effect (motion/reckoning.h), and the head is made to follow the model.
-// A head that only turns at speeds is given the speeds of the model's motion, so it brakes before its limits; one that
-// only goes to angles is given the model's angles.
+// helper_client.h has what is sent and what becomes of the answers.
 #pragma once
 
 #include <memory>

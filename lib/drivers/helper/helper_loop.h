@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The main loop of a helper process: lines in, a head moved, lines out (head_lines.h).
-//
-// The head stops at the end of the input, after `quit`, and when no line has come for the timeout of the first line; a
-// line after such a silence brings `stopped silence` first, and the next `move` is obeyed again. Lines that are not of
-// the protocol are skipped.
+// The main loop of a helper process: lines in, a head moved, lines out (head_server.h). The head stops at the end of the
+// input, after `quit`, and after a silence.
 #pragma once
 
 #include "drivers/helper/head_device.h"

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/helper/head_server.h"
+
+#include <algorithm>
+
+namespace cerberus::drivers {
+
+void HeadServer::obey(const std::string& text, Time now) {
+  const auto line = parse_pipeline_line(text);
+  if (!line) return;
+  heard_ = now;
+  if (const auto* hello = std::get_if<HelloLine>(&*line)) {
+    if (greeted_) return;
+    timeout_ = hello->setup.helper_timeout;
+    greeted_ = true;
+    const std::string wrong = device_.open(hello->setup, now);
+    if (!wrong.empty()) {
+      send_("fault " + wrong);
+      ended_ = failed_ = true;
+      return;
+    }
+    send_(ready_line(device_.abilities()));
+    return;
+  }
+  if (!greeted_) return;
+  if (std::exchange(silent_, false)) send_("stopped silence");
+  if (const auto* move = std::get_if<MoveLine>(&*line)) {
+    device_.move(move->pan, move->tilt, now);
+    obeyed_ = true;
+  } else if (std::get_if<HomeLine>(&*line)) {
+    device_.home(now);
+    obeyed_ = true;
+  } else if (const auto* limits = std::get_if<LimitsLine>(&*line)) {
+    device_.limit(limits->limits, now);
+    obeyed_ = true;  // a head beyond them returns
+  } else if (std::get_if<StopLine>(&*line)) {
+    device_.stop(now);
+    obeyed_ = false;
+  } else if (std::get_if<QuitLine>(&*line)) {
+    ended_ = true;
+  }
+}
+
+Time HeadServer::serve(Time now) {
+  if (!greeted_ || ended_) return motion::kNever;
+  Time next = device_.tick(now);
+  if (at_work() && now - heard_ >= timeout_) {
+    device_.stop(now);
+    obeyed_ = false;
+    silent_ = true;
+    next = now;  // what tick() returned is of the plan before
+  }
+  report(now);
+  return std::min(next, at_work() ? heard_ + timeout_ : motion::kNever);
+}
+
+void HeadServer::report(Time now) {
+  if (const std::string fault = device_.fault(); fault != fault_) {
+    fault_ = fault;
+    send_(fault.empty() ? "recovered" : "fault " + fault);
+  }
+  // After `recovered`, so that a command that answers it is obeyed.
+  if (const bool pressed = device_.emergency(); pressed != emergency_) {
+    emergency_ = pressed;
+    send_(pressed ? "emergency pressed" : "emergency released");
+  }
+  if (const auto pose = device_.take_pose(now)) send_(pose_line(*pose));
+  if (const auto speeds = device_.take_speeds(now)) send_(speeds_line(*speeds));
+  if (const auto homed = device_.take_homed(now)) send_(homed_line(*homed));
+}
+
+}  // namespace cerberus::drivers

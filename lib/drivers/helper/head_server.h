@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The helper's end of the line protocol (head_lines.h): what a device does for the lines of a pipeline, and which lines
+// report it. No descriptor and no clock: helper_loop.h connects both, and a test has its own time.
+//
+// The device stops when no line has come for the timeout of the first line; a line after such a silence brings
+// `stopped silence` first, and the next `move` is obeyed again. Lines that are not of the protocol are skipped.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "drivers/helper/head_device.h"
+
+namespace cerberus::drivers {
+
+class HeadServer {
+ public:
+  using Send = std::function<void(std::string line)>;  // without its line feed
+  HeadServer(HeadDevice& device, Send send) : device_(device), send_(std::move(send)) {}
+
+  // Carries out a line of the pipeline, without its line feed.
+  void obey(const std::string& text, Time now);
+  // Lets the device work, stops it after a silence, and reports. Returns when it must be called again at the latest.
+  Time serve(Time now);
+
+  bool greeted() const { return greeted_; }  // the device was opened, or could not be
+  bool failed() const { return failed_; }    // it could not be
+  bool ended() const { return ended_; }      // by `quit`, or failed
+
+ private:
+  bool at_work() const { return obeyed_ || (device_.busy() && !silent_); }
+  void report(Time now);
+
+  HeadDevice& device_;
+  Send send_;
+  Time timeout_{}, heard_{};
+  bool greeted_ = false, ended_ = false, failed_ = false;
+  bool obeyed_ = false;  // a line that may move the head was carried out and no stop came after it
+  bool silent_ = false;  // the head was stopped by the timeout
+  bool emergency_ = false;
+  std::string fault_;
+};
+
+}  // namespace cerberus::drivers

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "drivers/helper/helper_client.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cerberus::drivers {
+namespace {
+
+using motion::AxisCommand;
+using motion::AxisState;
+using motion::Pose;
+using Kind = AxisCommand::Kind;
+
+struct Parameters {
+  Time fresh =
+      std::chrono::milliseconds(500);  // feedback older than this corrects nothing and measures no pose
+  double correction_gain =
+      0.3;                     // share of the difference to a reported pose; derived: settles in ten reports
+  double least_change = 1e-4;  // radians a second: slower changes of a speed are not sent
+  // Radians a second for each radian between the model and the reckoned pose when a command takes effect. derived: a
+  // step that is 20 % too fast at 20 degrees a second stays within 1.3 degrees.
+  double follow_gain = 3;
+  // derived: 340 degrees at a camera's slow 10 degrees a second, and its start
+  Time home_timeout = std::chrono::seconds(45);
+};
+constexpr Parameters kParameters;
+
+}  // namespace
+
+std::string HelperClient::open(const HeadSetup& setup) {
+  HeadSetup rigid = setup;  // play would hide from the head the turn that takes it up
+  rigid.backlash = 0;
+  reckoning_.set_play(setup.play);
+  if (std::string wrong = model_.open(rigid); !wrong.empty()) return wrong;
+  setup_ = setup;
+  return {};
+}
+
+void HelperClient::begin(Time now) {
+  ready_ = pressed_ = false;
+  fault_.clear();
+  last_move_.clear();
+  pan_correction_ = tilt_correction_ = 0;
+  measured_.reset();
+  homing_.reset();
+  reckons_ = false;
+  HeadSetup here = setup_;
+  if (Pose pose; model_.state(now, pose).empty()) {
+    here.pan = pose.pan.position;
+    here.tilt = pose.tilt.position;
+  }
+  send_(hello_line(here, setup_.helper_timeout));
+}
+
+void HelperClient::lose(std::string why) {
+  ready_ = false;
+  fault_ = std::move(why);
+}
+
+bool HelperClient::is_fresh(Time now) const {
+  return measured_ && now - *measured_ < kParameters.fresh;
+}
+
+void HelperClient::send_command(Time now) {
+  const auto direct = [this](const AxisCommand& c) {
+    return c.kind == Kind::hold || (c.kind == Kind::position && abilities_.position) ||
+           (c.kind == Kind::velocity && abilities_.velocity && abilities_.position);
+  };
+  follows_ = !direct(last_.pan) || !direct(last_.tilt);
+  if (follows_) {
+    next_follow_ = Time{};
+    follow(now);
+    return;
+  }
+  const std::string line = move_line(last_.pan, last_.tilt);
+  if (line != last_move_) send_(line);
+  last_move_ = line;
+}
+
+// The protocol's stop, which ends homing, too.
+void HelperClient::send_stop() {
+  follows_ = false;
+  last_move_.clear();
+  send_("stop\n");
+}
+
+// Makes the head do what the model does.
+void HelperClient::follow(Time now) {
+  if (now < next_follow_) return;
+  next_follow_ = now + period();
+  Pose ahead;
+  if (!model_.state(now + setup_.latency, ahead).empty()) return;
+  const bool corrected = is_fresh(now) && !reckons_;
+  const Pose reckoned = reckoning_.at(now + setup_.latency);
+  const auto error = [&](const AxisState& model_axis, const AxisState& reckoned_axis, double correction) {
+    if (reckons_) return kParameters.follow_gain * (reckoned_axis.position - model_axis.position);
+    return corrected ? correction : 0;
+  };
+  const auto axis = [&](const AxisState& state, double correction, const motion::AxisLimits& limits,
+                        const motion::SpeedMap& map) -> AxisCommand {
+    if (!abilities_.velocity) return {Kind::position, state.position, std::abs(state.speed)};
+    const double speed = std::clamp(state.speed - correction, -limits.speed, limits.speed);
+    return std::abs(speed) < kParameters.least_change
+               ? AxisCommand{}
+               : AxisCommand{Kind::velocity, map.command_for(speed), 0};
+  };
+  const std::string line = move_line(
+      axis(ahead.pan, error(ahead.pan, reckoned.pan, pan_correction_), setup_.limits.pan, setup_.pan_speeds),
+      axis(ahead.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction_), setup_.limits.tilt,
+           setup_.tilt_speeds));
+  if (line != last_move_) send_(line);
+  last_move_ = line;
+  if (ahead.settled && !measured_ && (!reckons_ || reckoned.settled)) follows_ = false;
+}
+
+void HelperClient::check_homing(Time now) {
+  if (!homing_ || now - *homing_ < kParameters.home_timeout) return;
+  homing_.reset();
+  send_("stop\n");
+  notice_ = "the head did not find its reference";
+}
+
+void HelperClient::handle(const std::string& text, Time now) {
+  const auto line = parse_helper_line(text);
+  if (line) take(*line, now);
+}
+
+void HelperClient::take(const HelperLine& line, Time now) {
+  if (const auto* came = std::get_if<ReadyLine>(&line)) {
+    abilities_ = came->abilities;
+    ready_ = true;
+    fault_.clear();
+  } else if (const auto* reported = std::get_if<FaultLine>(&line)) {
+    const bool first = fault_.empty();
+    fault_ = reported->text;
+    if (first) send_("stop\n");
+  } else if (std::get_if<RecoveredLine>(&line)) {
+    fault_.clear();
+    last_move_.clear();
+  } else if (const auto* emergency = std::get_if<EmergencyLine>(&line)) {
+    pressed_ = emergency->pressed;
+    was_pressed_ = was_pressed_ || pressed_;
+  } else if (const auto* halted = std::get_if<StoppedLine>(&line)) {
+    notice_ = "the helper stopped the head: " + halted->text;
+    last_move_.clear();
+  } else if (const auto* pose = std::get_if<PoseLine>(&line)) {
+    const Time at = now - Time(static_cast<Time::rep>(std::min(pose->age, 10.0) * 1e9));
+    measured_ = at;
+    if (reckons_) return reckoning_.place(at, {pose->pan.position, pose->tilt.position});
+    Pose expected;
+    if (!model_.state(at, expected).empty()) return;
+    const auto correct = [](double& correction, double difference) {
+      correction += kParameters.correction_gain * (difference - correction);
+    };
+    correct(pan_correction_, pose->pan.position - expected.pan.position);
+    correct(tilt_correction_, pose->tilt.position - expected.tilt.position);
+  } else if (const auto* speeds = std::get_if<SpeedsLine>(&line)) {
+    const Time at = now - Time(static_cast<Time::rep>(std::min(speeds->age, 1.0) * 1e9)) + setup_.latency;
+    Pose here;
+    if (!std::exchange(reckons_, true) && model_.state(now, here).empty())
+      reckoning_.begin(at, {here.pan.position, here.tilt.position});
+    reckoning_.turn(
+        at, {setup_.pan_speeds.actual(speeds->speed.pan), setup_.tilt_speeds.actual(speeds->speed.tilt)});
+  } else if (const auto* homed = std::get_if<HomedLine>(&line)) {
+    if (!std::exchange(homing_, std::nullopt)) return;
+    measured_ = now;
+    reckons_ = true;
+    reckoning_.begin(*measured_, homed->at);
+  }
+}
+
+std::string HelperClient::accept(const HeadCommand& command) {
+  if (std::string wrong = model_.command(command); !wrong.empty()) return wrong;
+  last_ = command;
+  if (std::exchange(homing_, std::nullopt)) last_move_.clear();
+  return {};
+}
+
+std::string HelperClient::execute(Time now) {
+  if (!fault_.empty()) return fault_;
+  if (!ready_) return "the head's helper has been started again and is not ready yet";
+  if (last_.stop)
+    send_stop();
+  else
+    send_command(now);
+  return std::exchange(notice_, {});
+}
+
+void HelperClient::stop(Time now) noexcept {
+  model_.stop(now);
+  last_.pan = last_.tilt = {};
+  homing_.reset();
+  send_stop();
+}
+
+std::string HelperClient::limit(Time now, const motion::Limits& limits) {
+  if (std::string wrong = model_.limit(now, limits); !wrong.empty()) return wrong;
+  setup_.limits = limits;
+  send_(limits_line(limits));
+  // The model returns within the limits from wherever it rests: a head that only turns at speeds must be driven there.
+  Pose ahead;
+  const bool moves = model_.state(now + setup_.latency, ahead).empty() && !ahead.settled;
+  if (moves && !abilities_.position) {
+    follows_ = true;
+    next_follow_ = Time{};
+  }
+  return {};
+}
+
+std::string HelperClient::home(Time now) {
+  if (!ready_ || !abilities_.home) return "the head has no way to find its reference";
+  const AxisCommand zero{Kind::position, 0, setup_.limits.pan.speed};
+  if (std::string wrong = model_.command({now, zero, zero}); !wrong.empty()) return wrong;
+  follows_ = false;
+  homing_ = now;
+  send_("home\n");
+  return {};
+}
+
+Time HelperClient::serve(Time now) {
+  if (is_following()) follow(now);
+  check_homing(now);
+  return is_following() ? next_follow_ : motion::kNever;
+}
+
+std::string HelperClient::state(Time time, Pose& pose) {
+  if (std::string wrong = model_.state(time, pose); !wrong.empty()) return wrong;
+  if (reckons_) pose = reckoning_.at(time);
+  pose.measured = is_fresh(time);
+  if (reckons_ || !pose.measured) return {};
+  pose.pan.position += pan_correction_;
+  pose.tilt.position += tilt_correction_;
+  return {};
+}
+
+}  // namespace cerberus::drivers

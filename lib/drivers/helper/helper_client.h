@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The pipeline's end of the line protocol (head_lines.h): which lines make a head do what it is commanded, and its pose
+// from the lines that come back. No process, no thread and no clock: helper_head.h has them, and a test has its own
+// time. All times are running times.
+//
+// The pose is dead-reckoned: a model of the head (SimulatedHead) carries out the same commands with the same limits and
+// latency. Where the helper reports positions, the difference to the model at the time of the measurement corrects it.
+// A helper without positions may report the speeds that its steps give; the pose is then their integral from
+// the time at which they take effect (motion/reckoning.h), and the head is made to follow the model.
+// A head that only turns at speeds is given the speeds of the model's motion, so it brakes before its limits; one that
+// only goes to angles is given the model's angles.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "drivers/head/head.h"
+#include "drivers/helper/head_lines.h"
+#include "drivers/simulated/simulated_head.h"
+#include "motion/reckoning.h"
+
+namespace cerberus::drivers {
+
+class HelperClient {
+ public:
+  using Send = std::function<void(const std::string& line)>;  // with its line feed
+  explicit HelperClient(Send send) : send_(std::move(send)) {}
+
+  // The head of the next helpers. Returns what is wrong with the setup; nothing is sent.
+  std::string open(const HeadSetup& setup);
+  // A helper was started: greets it.
+  void begin(Time now);
+  // A line of the helper, without its line feed.
+  void handle(const std::string& text, Time now);
+  // The helper is gone, for this reason. begin() is for its successor.
+  void lose(std::string why);
+
+  // A command is taken over, which the model carries out from now on, and then sent. Both return an error for the user.
+  std::string accept(const HeadCommand& command);
+  std::string execute(Time now);
+  void stop(Time now) noexcept;
+  std::string limit(Time now, const motion::Limits& limits);
+  std::string home(Time now);
+  // Sends what is due. Returns when it must be called again at the latest; motion::kNever: not by itself.
+  Time serve(Time now);
+
+  std::string state(Time time, motion::Pose& pose);
+  bool emergency() { return std::exchange(was_pressed_, pressed_) || pressed_; }
+  bool ready() const { return ready_; }
+  const std::string& fault() const { return fault_; }
+  const HeadSetup& setup() const { return setup_; }
+
+ private:
+  void take(const HelperLine& line, Time now);
+  void send_command(Time now);
+  void send_stop();
+  void follow(Time now);
+  void check_homing(Time now);
+  bool is_following() const { return ready_ && follows_ && fault_.empty(); }
+  // Whether the last report is young enough to correct the model with.
+  bool is_fresh(Time now) const;
+  Time period() const { return Time(static_cast<Time::rep>(1e9 / abilities_.rate)); }
+
+  Send send_;
+  HeadSetup setup_;
+  SimulatedHead model_;
+  HeadAbilities abilities_;
+  bool ready_ = false, follows_ = false;
+  bool pressed_ = false, was_pressed_ = false;  // the emergency stop: now; since the last emergency()
+  std::string fault_;                           // of the head, as the helper reports it
+  std::string notice_;                          // what the next execute() returns, once
+  HeadCommand last_;                            // of the caller
+  std::string last_move_;                       // as sent
+  Time next_follow_{};
+  double pan_correction_ = 0, tilt_correction_ = 0;  // radians: what to add to the model
+  std::optional<Time> measured_;                     // time of the last report
+  motion::Reckoning reckoning_;                      // of a head that reports speeds instead of positions
+  bool reckons_ = false;                             // it does
+  std::optional<Time> homing_;                       // since when the head looks for its reference
+};
+
+}  // namespace cerberus::drivers
