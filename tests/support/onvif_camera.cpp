@@ -94,8 +94,10 @@ std::string space2d(const char* element, const char* uri, double x, double y) {
 
 }  // namespace
 
-OnvifCamera::OnvifCamera(OnvifFaults faults)
-    : faults_(std::move(faults)), server_([this](const HttpMessage& message) { return answer(message); }) {}
+OnvifCamera::OnvifCamera(OnvifFaults faults, const SteppedTime* time)
+    : faults_(std::move(faults)),
+      time_(time),
+      server_([this](const HttpMessage& message) { return answer(message); }) {}
 
 void OnvifCamera::set_clock(std::chrono::seconds off) {
   const std::lock_guard guard(lock_);
@@ -149,22 +151,22 @@ void OnvifCamera::halt(Clock::time_point now) {
 
 double OnvifCamera::pan() {
   const std::lock_guard guard(lock_);
-  advance(Clock::now());
+  advance(now_of(time_));
   return pan_;
 }
 double OnvifCamera::tilt() {
   const std::lock_guard guard(lock_);
-  advance(Clock::now());
+  advance(now_of(time_));
   return tilt_;
 }
 double OnvifCamera::speed() {
   const std::lock_guard guard(lock_);
-  advance(Clock::now());
+  advance(now_of(time_));
   return pan_speed_;
 }
 OnvifCamera::Clock::time_point OnvifCamera::stopped() {
   const std::lock_guard guard(lock_);
-  advance(Clock::now());
+  advance(now_of(time_));
   return stopped_;
 }
 int OnvifCamera::count(const std::string& operation) {
@@ -234,7 +236,7 @@ bool OnvifCamera::logged_in(const HttpMessage& message, const xmlNode* header) c
 
 HttpReply OnvifCamera::answer(const HttpMessage& message) {
   const std::lock_guard guard(lock_);
-  advance(Clock::now());
+  advance(now_of(time_));
   requests_.push_back(message.body);
   const std::unique_ptr<xmlDoc, decltype(&xmlFreeDoc)> document(
       xmlReadMemory(message.body.data(), static_cast<int>(message.body.size()), nullptr, nullptr,
@@ -380,14 +382,14 @@ HttpReply OnvifCamera::continuous_move(const xmlNode* request) {
   timeout_ = timeout;
   // The durations that this test sends have seconds only.
   const double seconds = timeout.starts_with("PT") ? number(timeout.substr(2)) : 0;
-  const auto due = Clock::now() + faults_.move_delay;
+  const auto due = now_of(time_) + faults_.move_delay + faults_.dead_time;
   const auto until =
       timeout.empty() || faults_.ignores_timeout
           ? Clock::time_point::max()
           : due + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   late_.push_back({due, x * kPanSpeed, y * kTiltSpeed, until});
-  if (x == 0 && y == 0) halt(Clock::now());
-  advance(Clock::now());
+  if (x == 0 && y == 0 && faults_.dead_time.count() == 0) halt(now_of(time_));
+  advance(now_of(time_));
   HttpReply reply = envelope("<tptz:ContinuousMoveResponse/>");
   reply.delay = faults_.move_delay;
   return reply;
@@ -417,8 +419,10 @@ HttpReply OnvifCamera::stop(const xmlNode* request) {
   }
   if (faults_.swallows_stops > 0 && (pan_speed_ != 0 || tilt_speed_ != 0))
     --faults_.swallows_stops;
+  else if (faults_.dead_time.count() > 0)
+    late_.push_back({now_of(time_) + faults_.dead_time, 0, 0, Clock::time_point::max()});
   else
-    halt(Clock::now());
+    halt(now_of(time_));
   return envelope("<tptz:StopResponse/>");
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "support/http_server.h"
+#include "support/stepped_time.h"
 
 struct _xmlNode;
 
@@ -37,10 +38,12 @@ struct OnvifFaults {
   bool repeats_password = false;            // in the reason of a fault
   std::chrono::milliseconds delay{0};       // of every answer
   std::chrono::milliseconds move_delay{0};  // moves are obeyed and answered so late
-  int errors = 0;                           // as many PTZ requests are answered by HTTP 500 without SOAP
-  int garbage = 0;                          // likewise by something that is no XML
-  int swallows_stops = 0;                   // as many stops are acknowledged and not obeyed
-  int loses_stops = 0;                      // as many are neither obeyed nor answered
+  std::chrono::milliseconds dead_time{
+      0};                  // from a move or stop, which are answered before, until it turns so
+  int errors = 0;          // as many PTZ requests are answered by HTTP 500 without SOAP
+  int garbage = 0;         // likewise by something that is no XML
+  int swallows_stops = 0;  // as many stops are acknowledged and not obeyed
+  int loses_stops = 0;     // as many are neither obeyed nor answered
 };
 
 class OnvifCamera {
@@ -49,7 +52,9 @@ class OnvifCamera {
   static constexpr double kPanSpeed = 100, kTiltSpeed = 50;  // degrees a second at velocity 1
   static constexpr double kPanEnd = 170, kTiltEnd = 90;  // degrees at the end 1 of the generic position space
 
-  explicit OnvifCamera(OnvifFaults faults = {});
+  // time: of a test, which passes requests by answer(); nullptr: the steady clock.
+  explicit OnvifCamera(OnvifFaults faults = {}, const SteppedTime* time = nullptr);
+  HttpReply answer(const HttpMessage& message);
   std::string device() const { return "http://127.0.0.1:" + std::to_string(server_.port()); }
   int port() const { return server_.port(); }
   void set_silent(bool silent) { server_.set_silent(silent); }
@@ -66,7 +71,6 @@ class OnvifCamera {
   std::string timeout();
 
  private:
-  HttpReply answer(const HttpMessage& message);
   HttpReply obey(const std::string& space, const _xmlNode* request);
   HttpReply ptz(const std::string& name, const _xmlNode* request);
   HttpReply services(bool capabilities);
@@ -84,11 +88,12 @@ class OnvifCamera {
   void halt(Clock::time_point now);
 
   OnvifFaults faults_;
+  const SteppedTime* time_;
   std::mutex lock_;
   double pan_ = 0, tilt_ = 0, pan_speed_ = 0, tilt_speed_ = 0;
   bool to_angle_ = false;
   double to_pan_ = 0, to_tilt_ = 0;
-  Clock::time_point last_ = Clock::now(), stopped_{}, until_ = Clock::time_point::max();
+  Clock::time_point last_ = now_of(time_), stopped_{}, until_ = Clock::time_point::max();
   struct Late {
     Clock::time_point due;
     double pan, tilt;

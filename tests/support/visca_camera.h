@@ -24,6 +24,8 @@
 #include <thread>
 #include <vector>
 
+#include "support/stepped_time.h"
+
 namespace cerberus::tests {
 
 struct ViscaFaults {
@@ -44,7 +46,9 @@ class ViscaCamera {
   using Clock = std::chrono::steady_clock;
   enum class Line { serial, udp, tcp };
 
-  explicit ViscaCamera(Line line, ViscaFaults faults = {}) : line_(line), faults_(faults) {
+  // time: it has no thread then, and step() lets it work.
+  explicit ViscaCamera(Line line, ViscaFaults faults = {}, const SteppedTime* time = nullptr)
+      : line_(line), faults_(faults), time_(time) {
     if (line == Line::serial) {
       char name[128];
       if (::openpty(&fd_, &slave_, name, nullptr, nullptr) != 0) std::abort();
@@ -66,16 +70,21 @@ class ViscaCamera {
       device_ =
           (line == Line::udp ? "udp:127.0.0.1:" : "tcp:127.0.0.1:") + std::to_string(ntohs(at.sin_port));
     }
-    last_ = Clock::now();
-    thread_ = std::thread([this] { run(); });
+    last_ = now_of(time_);
+    if (!time_) thread_ = std::thread([this] { run(); });
   }
   ~ViscaCamera() {
     end_ = true;
-    thread_.join();
+    if (thread_.joinable()) thread_.join();
     for (const int fd : {fd_, slave_, listener_})
       if (fd >= 0) ::close(fd);
   }
   const std::string& device() const { return device_; }
+  // Obeys what has come.
+  void step() {
+    while (work(0)) {
+    }
+  }
   double pan() { return state(pan_.position); }  // degrees
   double tilt() { return state(tilt_.position); }
   double speed() { return state(pan_.speed); }  // degrees a second
@@ -115,7 +124,7 @@ class ViscaCamera {
     last_ = time;
   }
   void advance() {
-    const auto now = Clock::now();
+    const auto now = now_of(time_);
     for (; !coming_.empty() && coming_.front().from <= now; coming_.pop_front()) {
       turn_until(coming_.front().from);
       homing_ = false;
@@ -132,59 +141,60 @@ class ViscaCamera {
     return homing_ && pan_.position == 0 && tilt_.position == 0;
   }
   void run() {
-    std::vector<std::uint8_t> bytes;
-    while (!end_) {
-      if (has_come_home()) {
-        homing_ = false;
-        answer({0x90, 0x52, 0xff});
-      }
-      if (hang_up_.exchange(false) && line_ == Line::tcp && fd_ >= 0) ::close(fd_), fd_ = -1;
-      if (line_ == Line::tcp && fd_ < 0) {
-        pollfd wait{listener_, POLLIN, 0};
-        if (::poll(&wait, 1, 5) == 1) fd_ = ::accept(listener_, nullptr, nullptr);
-        continue;
-      }
-      pollfd wait{fd_, POLLIN, 0};
-      if (::poll(&wait, 1, 5) != 1) continue;
-      std::uint8_t piece[512];
-      peer_size_ = sizeof peer_;
-      const ssize_t got = line_ == Line::udp ? ::recvfrom(fd_, piece, sizeof piece, 0,
-                                                          reinterpret_cast<sockaddr*>(&peer_), &peer_size_)
-                                             : ::read(fd_, piece, sizeof piece);
-      if (got <= 0) {
-        if (line_ == Line::tcp) ::close(fd_), fd_ = -1;
-        continue;
-      }
-      std::size_t skip = 0;
-      if (line_ == Line::udp && faults_.header) {
-        if (got < 9) continue;
-        if (piece[0] == 0x02) {  // the sequence number begins anew
-          if (drops_resets_ > 0)
-            --drops_resets_;
-          else
-            next_ = 0;
-          continue;
-        }
-        skip = 8;
-        std::memcpy(header_, piece, 8);
-        const std::uint32_t number =
-            static_cast<std::uint32_t>(piece[4]) << 24 | piece[5] << 16 | piece[6] << 8 | piece[7];
-        if (faults_.strict && number != next_) {
-          const std::uint8_t error[10] = {0x02,     0x01,     0,        2,    piece[4],
-                                          piece[5], piece[6], piece[7], 0x0f, 0x01};
-          ::sendto(fd_, error, sizeof error, 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
-          continue;
-        }
-        next_ = number + 1;
-      }
-      bytes.insert(bytes.end(), piece + skip, piece + got);
-      for (std::size_t i = 0; i < bytes.size(); ++i)
-        if (bytes[i] == 0xff) {
-          obey({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(i) + 1});
-          bytes.erase(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-          i = static_cast<std::size_t>(-1);
-        }
+    while (!end_) work(5);
+  }
+  // Waits for so many milliseconds. Returns whether something came.
+  bool work(int patience) {
+    if (has_come_home()) {
+      homing_ = false;
+      answer({0x90, 0x52, 0xff});
     }
+    if (hang_up_.exchange(false) && line_ == Line::tcp && fd_ >= 0) ::close(fd_), fd_ = -1;
+    if (line_ == Line::tcp && fd_ < 0) {
+      pollfd wait{listener_, POLLIN, 0};
+      if (::poll(&wait, 1, patience) == 1) fd_ = ::accept(listener_, nullptr, nullptr);
+      return fd_ >= 0;
+    }
+    pollfd wait{fd_, POLLIN, 0};
+    if (::poll(&wait, 1, patience) != 1) return false;
+    std::uint8_t piece[512];
+    peer_size_ = sizeof peer_;
+    const ssize_t got = line_ == Line::udp ? ::recvfrom(fd_, piece, sizeof piece, 0,
+                                                        reinterpret_cast<sockaddr*>(&peer_), &peer_size_)
+                                           : ::read(fd_, piece, sizeof piece);
+    if (got <= 0) {
+      if (line_ == Line::tcp) ::close(fd_), fd_ = -1;
+      return true;
+    }
+    std::size_t skip = 0;
+    if (line_ == Line::udp && faults_.header) {
+      if (got < 9) return true;
+      if (piece[0] == 0x02) {  // the sequence number begins anew
+        if (drops_resets_ > 0)
+          --drops_resets_;
+        else
+          next_ = 0;
+        return true;
+      }
+      skip = 8;
+      std::memcpy(header_, piece, 8);
+      const std::uint32_t number =
+          static_cast<std::uint32_t>(piece[4]) << 24 | piece[5] << 16 | piece[6] << 8 | piece[7];
+      if (faults_.strict && number != next_) {
+        const std::uint8_t error[10] = {0x02, 0x01, 0, 2, piece[4], piece[5], piece[6], piece[7], 0x0f, 0x01};
+        ::sendto(fd_, error, sizeof error, 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
+        return true;
+      }
+      next_ = number + 1;
+    }
+    bytes_.insert(bytes_.end(), piece + skip, piece + got);
+    for (std::size_t i = 0; i < bytes_.size(); ++i)
+      if (bytes_[i] == 0xff) {
+        obey({bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(i) + 1});
+        bytes_.erase(bytes_.begin(), bytes_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        i = static_cast<std::size_t>(-1);
+      }
+    return true;
   }
   void answer(std::vector<std::uint8_t> message) {
     std::this_thread::sleep_for(faults_.delay);
@@ -238,7 +248,7 @@ class ViscaCamera {
       static constexpr double kTilts[] = {.3, 1,  1.5, 2.2, 3.6, 4.7, 6,  8,  10, 12,
                                           15, 18, 23,  30,  39,  48,  59, 69, 80};
       const std::lock_guard guard(lock_);
-      coming_.push_back({Clock::now() + faults_.dead_time,
+      coming_.push_back({now_of(time_) + faults_.dead_time,
                          m[6] == 3 ? 0 : kSpeeds[m[4]] * (m[6] == 2 ? 1 : -1),
                          m[7] == 3 ? 0 : kTilts[std::min<int>(m[5], 18)] * (m[7] == 1 ? 1 : -1)});
       advance();
@@ -252,6 +262,8 @@ class ViscaCamera {
 
   Line line_;
   ViscaFaults faults_;
+  const SteppedTime* time_;
+  std::vector<std::uint8_t> bytes_;  // of a message that is not complete yet
   std::string device_;
   int fd_ = -1, slave_ = -1, listener_ = -1;
   std::uint8_t header_[8]{};

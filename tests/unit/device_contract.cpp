@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What every driver of a real head promises to the helper process, whatever it drives. Each driver runs with a plant of
 // its own, which derives the head's angle from what was written to the hardware: edges of lines, pulse widths, controls.
-#include <stdlib.h>
-#include <sys/stat.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <random>
 
 #include "drivers/helper/emergency_stop.h"
-#include "drivers/servo/servo_head.h"
-#include "drivers/stepper/stepper_head.h"
-#include "drivers/v4l2/v4l2_head.h"
-#include "support/fake_lines.h"
+#include "support/head_plants.h"
 #include "support/suite.h"
 #include "support/text.h"
 
@@ -27,135 +18,17 @@ using namespace std::chrono_literals;
 using cerberus::sensing::degrees;
 using cerberus::sensing::radians;
 using cerberus::tests::assert_text;
-using cerberus::tests::CoilMotor;
+using cerberus::tests::CameraPlant;
 using cerberus::tests::FakeLines;
 using cerberus::tests::FakePort;
+using cerberus::tests::HeadPlant;
+using cerberus::tests::ServoPlant;
+using cerberus::tests::StepperPlant;
 using Kind = AxisCommand::Kind;
 
 namespace {
 
-// A head's hardware and its driver.
-struct Plant {
-  virtual ~Plant() = default;
-  virtual HeadDevice& device() = 0;
-  virtual void elapse(Time now) = 0;     // the hardware's own motion until `now`
-  virtual double pan() const = 0;        // degrees
-  virtual double precision() const = 0;  // degrees
-  virtual bool powered() const = 0;      // something moves it, or could
-};
-
-struct StepperPlant final : Plant {
-  FakeLines lines, replayed;
-  CoilMotor motor;
-  std::size_t seen = 0;
-  std::optional<StepperHead> head;
-  StepperPlant() {
-    StepperOptions options;
-    options.chip = "chip0";
-    assert_text(parse_stepper_axis("lines=1,2,3,4", options.pan), "");
-    assert_text(parse_stepper_axis("lines=5,6,7,8", options.tilt), "");
-    head.emplace(options, std::make_unique<FakePort>(lines));
-  }
-  HeadDevice& device() override { return *head; }
-  void elapse(Time now) override {
-    for (; seen < lines.edges.size(); ++seen) {
-      replayed.levels.resize(8);
-      replayed.levels[lines.edges[seen].line] = lines.edges[seen].level;
-      const bool last_one =
-          seen + 1 == lines.edges.size() || lines.edges[seen + 1].time != lines.edges[seen].time;
-      if (last_one) motor.follow(replayed);
-    }
-    lines.now = now;
-  }
-  double pan() const override { return motor.half_steps() * 360 / 4075.7728395; }
-  double precision() const override { return 0.0883; }
-  bool powered() const override { return std::count(lines.levels.begin(), lines.levels.end(), true) > 0; }
-};
-
-struct ServoPlant final : Plant {
-  std::string folder;
-  std::optional<ServoHead> head;
-  double angle = 0;
-  ServoPlant() {
-    char name[] = "/tmp/cerberus-pwm-XXXXXX";
-    folder = ::mkdtemp(name);
-    for (const char* channel : {"/pwm0", "/pwm1"}) {
-      ::mkdir((folder + channel).c_str(), 0755);
-      for (const char* file : {"/period", "/duty_cycle", "/enable"})
-        std::ofstream(folder + channel + file) << "0\n";
-    }
-    ServoOptions options;
-    options.chip = folder;
-    assert_text(parse_servo_axis("channel=0 pulse=500,2500 range=-180,180", options.pan), "");
-    assert_text(parse_servo_axis("channel=1", options.tilt), "");
-    head.emplace(options);
-  }
-  ~ServoPlant() override {
-    head.reset();
-    std::filesystem::remove_all(folder);
-  }
-  long read(const char* file) const {
-    std::ifstream in(folder + file);
-    long value = 0;
-    in >> value;
-    return value;
-  }
-  HeadDevice& device() override { return *head; }
-  void elapse(Time) override {
-    const long width = read("/pwm0/duty_cycle");
-    if (read("/pwm0/enable") == 1 && width > 0) angle = static_cast<double>(width - 1500000) * 180 / 1e6;
-  }
-  double pan() const override { return angle; }
-  double precision() const override { return 0.01; }
-  bool powered() const override { return read("/pwm0/enable") == 1; }
-};
-
-struct CameraPlant final : Plant, CameraControls {
-  std::int32_t set_angle = 0;
-  double angle = 0;  // arc-seconds
-  Time at{};
-  std::optional<V4l2Head> head;
-  struct Lent final : CameraControls {
-    CameraPlant& plant;
-    explicit Lent(CameraPlant& p) : plant(p) {}
-    int open(const std::string& name) override { return plant.open(name); }
-    void close() noexcept override {}
-    std::optional<ControlRange> query(std::uint32_t id) override { return plant.query(id); }
-    int get(std::uint32_t id, std::int32_t& value) noexcept override { return plant.get(id, value); }
-    int set(std::uint32_t id, std::int32_t value) noexcept override { return plant.set(id, value); }
-  };
-  CameraPlant() {
-    V4l2Options options;
-    options.device = "/dev/video9";
-    head.emplace(options, std::make_unique<Lent>(*this));
-  }
-  int open(const std::string&) override { return 0; }
-  void close() noexcept override {}
-  std::optional<ControlRange> query(std::uint32_t id) override {
-    if (id == camera_control::kPanAbsolute || id == camera_control::kTiltAbsolute)
-      return ControlRange{-648000, 648000, 360};
-    return std::nullopt;
-  }
-  int get(std::uint32_t id, std::int32_t& value) noexcept override {
-    value = id == camera_control::kPanAbsolute ? static_cast<std::int32_t>(std::lround(angle)) : 0;
-    return 0;
-  }
-  int set(std::uint32_t id, std::int32_t value) noexcept override {
-    if (id == camera_control::kPanAbsolute) set_angle = value;
-    return 0;
-  }
-  HeadDevice& device() override { return *head; }
-  void elapse(Time now) override {  // 100 degrees a second
-    const double most = seconds(now - at) * 100 * 3600;
-    angle += std::clamp(set_angle - angle, -most, most);
-    at = now;
-  }
-  double pan() const override { return angle / 3600; }
-  double precision() const override { return 0.1; }
-  bool powered() const override { return std::lround(angle) != set_angle; }
-};
-
-std::unique_ptr<Plant> make_plant(int index) {
+std::unique_ptr<HeadPlant> make_plant(int index) {
   if (index == 0) return std::make_unique<StepperPlant>();
   if (index == 1) return std::make_unique<ServoPlant>();
   return std::make_unique<CameraPlant>();
@@ -171,7 +44,7 @@ HeadSetup setup() {
 }
 
 struct Rig {
-  std::unique_ptr<Plant> plant;
+  std::unique_ptr<HeadPlant> plant;
   HeadDevice& head;
   Time now{};
   double least = 0, most = 0;

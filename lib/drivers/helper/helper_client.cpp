@@ -89,26 +89,31 @@ void HelperClient::send_stop() {
 void HelperClient::follow(Time now) {
   if (now < next_follow_) return;
   next_follow_ = now + period();
-  Pose ahead;
-  if (!model_.state(now + setup_.latency, ahead).empty()) return;
+  // The model's motion from the time when this line takes effect until the next line does.
+  const Time begin = now + setup_.latency;
+  Pose ahead, next;
+  if (!model_.state(begin, ahead).empty() || !model_.state(begin + period(), next).empty()) return;
   const bool corrected = is_fresh(now) && !reckons_;
-  const Pose reckoned = reckoning_.at(now + setup_.latency);
+  const Pose reckoned = reckoning_.at(begin);
   const auto error = [&](const AxisState& model_axis, const AxisState& reckoned_axis, double correction) {
     if (reckons_) return kParameters.follow_gain * (reckoned_axis.position - model_axis.position);
     return corrected ? correction : 0;
   };
-  const auto axis = [&](const AxisState& state, double correction, const motion::AxisLimits& limits,
-                        const motion::SpeedMap& map) -> AxisCommand {
-    if (!abilities_.velocity) return {Kind::position, state.position, std::abs(state.speed)};
-    const double speed = std::clamp(state.speed - correction, -limits.speed, limits.speed);
+  const auto axis = [&](const AxisState& from, const AxisState& to, double correction,
+                        const motion::AxisLimits& limits, const motion::SpeedMap& map) -> AxisCommand {
+    // The mean, not the speed at its begin: a head that rests would begin to turn a period later.
+    const double mean = (to.position - from.position) / motion::seconds(period());
+    if (!abilities_.velocity) return {Kind::position, to.position, std::abs(mean)};
+    const double speed = std::clamp(mean - correction, -limits.speed, limits.speed);
     return std::abs(speed) < kParameters.least_change
                ? AxisCommand{}
                : AxisCommand{Kind::velocity, map.command_for(speed), 0};
   };
-  const std::string line = move_line(
-      axis(ahead.pan, error(ahead.pan, reckoned.pan, pan_correction_), setup_.limits.pan, setup_.pan_speeds),
-      axis(ahead.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction_), setup_.limits.tilt,
-           setup_.tilt_speeds));
+  const std::string line =
+      move_line(axis(ahead.pan, next.pan, error(ahead.pan, reckoned.pan, pan_correction_), setup_.limits.pan,
+                     setup_.pan_speeds),
+                axis(ahead.tilt, next.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction_),
+                     setup_.limits.tilt, setup_.tilt_speeds));
   if (line != last_move_) send_(line);
   last_move_ = line;
   if (ahead.settled && !measured_ && (!reckons_ || reckoned.settled)) follows_ = false;
@@ -147,6 +152,7 @@ void HelperClient::take(const HelperLine& line, Time now) {
   } else if (const auto* pose = std::get_if<PoseLine>(&line)) {
     const Time at = now - Time(static_cast<Time::rep>(std::min(pose->age, 10.0) * 1e9));
     measured_ = at;
+    reported_ = {pose->pan.position, pose->tilt.position};
     if (reckons_) return reckoning_.place(at, {pose->pan.position, pose->tilt.position});
     Pose expected;
     if (!model_.state(at, expected).empty()) return;
@@ -229,8 +235,14 @@ std::string HelperClient::state(Time time, Pose& pose) {
   if (reckons_) pose = reckoning_.at(time);
   pose.measured = is_fresh(time);
   if (reckons_ || !pose.measured) return {};
-  pose.pan.position += pan_correction_;
-  pose.tilt.position += tilt_correction_;
+  // A correction that lags behind a head that brakes leads beyond no limit, unless the head is there.
+  const auto correct = [](double position, double correction, double reported,
+                          const motion::AxisLimits& limits) {
+    return std::clamp(position + correction, std::min({limits.from, position, reported}),
+                      std::max({limits.to, position, reported}));
+  };
+  pose.pan.position = correct(pose.pan.position, pan_correction_, reported_.pan, setup_.limits.pan);
+  pose.tilt.position = correct(pose.tilt.position, tilt_correction_, reported_.tilt, setup_.limits.tilt);
   return {};
 }
 

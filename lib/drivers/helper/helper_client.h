@@ -76,6 +76,7 @@ class HelperClient {
   Time next_follow_{};
   double pan_correction_ = 0, tilt_correction_ = 0;  // radians: what to add to the model
   std::optional<Time> measured_;                     // time of the last report
+  motion::PanTilt reported_;                         // its position
   motion::Reckoning reckoning_;                      // of a head that reports speeds instead of positions
   bool reckons_ = false;                             // it does
   std::optional<Time> homing_;                       // since when the head looks for its reference

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The ONVIF driver and the emulated camera (onvif_camera.h) in a test's own time, without HTTP between them.
+#pragma once
+
+#include <sys/eventfd.h>
+#include <unistd.h>
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "drivers/onvif/onvif_head.h"
+#include "support/head_plants.h"
+#include "support/onvif_camera.h"
+
+namespace cerberus::tests {
+
+// Hands requests to the camera, which obeys at once; its answer needs `answer_time`. The answers of the login, which
+// waits for them in real time, need none.
+class SteppedHttp final : public drivers::onvif::HttpClient {
+ public:
+  SteppedHttp(OnvifCamera& camera, const SteppedTime& time, std::chrono::milliseconds answer_time)
+      : camera_(camera), time_(time), answer_time_(answer_time) {}
+  ~SteppedHttp() override { ::close(fd_); }
+  void post(const drivers::onvif::HttpRequest& request) override {
+    if (request.body.find("ContinuousMove") != std::string::npos) logged_in_ = true;
+    const auto path = request.url.find('/', request.url.find("//") + 2);
+    const HttpReply reply =
+        camera_.answer({path == std::string::npos ? "/" : request.url.substr(path), "", request.body});
+    if (reply.lost) return;
+    const auto delay = logged_in_ ? answer_time_ + reply.delay : std::chrono::milliseconds(0);
+    answers_.push_back({time_.now() + delay, {request.id, reply.status, reply.body, ""}});
+  }
+  void cancel(unsigned id) override {
+    std::erase_if(answers_, [id](const Late& late) { return late.answer.id == id; });
+  }
+  std::optional<drivers::onvif::HttpAnswer> take() override {
+    if (answers_.empty() || answers_.front().due > time_.now()) return std::nullopt;
+    auto answer = std::move(answers_.front().answer);
+    answers_.pop_front();
+    return answer;
+  }
+  int fd() const override { return fd_; }
+  const std::string& user() const override { return user_; }
+  std::optional<drivers::onvif::UsernameToken> token(const std::string&, bool) override {
+    return std::nullopt;
+  }
+  std::chrono::milliseconds utc() const override { return std::chrono::milliseconds(1'800'000'000'000); }
+
+ private:
+  struct Late {
+    std::chrono::nanoseconds due;
+    drivers::onvif::HttpAnswer answer;
+  };
+  OnvifCamera& camera_;
+  const SteppedTime& time_;
+  std::chrono::milliseconds answer_time_;
+  bool logged_in_ = false;
+  std::deque<Late> answers_;
+  std::string user_;
+  int fd_ = ::eventfd(1, EFD_CLOEXEC | EFD_NONBLOCK);  // always readable
+};
+
+// A camera without positions.
+struct OnvifPlant final : HeadPlant {
+  SteppedTime time;
+  mutable OnvifCamera camera;
+  std::optional<drivers::OnvifHead> head;
+  explicit OnvifPlant(std::chrono::milliseconds dead_time = {},
+                      std::chrono::milliseconds answer_time = std::chrono::milliseconds(20))
+      : camera({.move_status = OnvifFaults::MoveStatus::absent, .positions = false, .dead_time = dead_time},
+               &time) {
+    drivers::OnvifOptions options;
+    must(drivers::onvif::parse_device(camera.device(), options.login.device));
+    options.mechanics.full_speed = {OnvifCamera::kPanSpeed, OnvifCamera::kTiltSpeed};
+    options.login.try_absolute = false;
+    options.feedback = false;
+    head.emplace(std::make_unique<SteppedHttp>(camera, time, answer_time), options);
+  }
+  drivers::HeadDevice& device() override { return *head; }
+  void elapse(Time now) override { time.set(now); }
+  double pan() const override { return camera.pan(); }
+  double tilt() const override { return camera.tilt(); }
+  double precision() const override { return 1.5; }
+  std::size_t actions() const override {
+    return static_cast<std::size_t>(camera.count("ContinuousMove") + camera.count("Stop"));
+  }
+  bool powered() const override { return camera.speed() != 0; }
+};
+
+}  // namespace cerberus::tests
