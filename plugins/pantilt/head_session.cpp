@@ -147,7 +147,7 @@ bool HeadSession::open() {
   drivers::HeadSetup setup = head_setup(s);
   auto runner =
       open_head(GST_ELEMENT(sink), s, setup, [this] { ticker_.wake(); }, [this] { refusal_soon(); });
-  if (!runner) return false;
+  if (!runner || !gyro.start(sink, s.base_gyro)) return false;
   head = g_intern_string(s.head.c_str());
   camera_name = s.camera_name;
   stamps.reset();
@@ -167,6 +167,7 @@ bool HeadSession::open() {
 }
 
 void HeadSession::close() {
+  gyro.stop();
   pause();
   halt("stopped");
   controller.close(kClosePatience);

@@ -10,6 +10,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "base_gyro.hpp"
 #include "cerberus/private/element.hpp"
 #include "control/head_controller.h"
 #include "head_settings.hpp"
@@ -28,6 +29,7 @@ struct HeadSession {
   GstBaseSink* sink = nullptr;
   Adjustable<HeadSettings> settings;
   control::HeadController controller;
+  BaseGyro gyro;
   std::atomic<const char*> head = nullptr;  // its name, interned; of the last one, if none is open
   std::atomic<double> field_of_view = 0;    // degrees
   std::atomic<bool> clock_driven = false, playing = false;

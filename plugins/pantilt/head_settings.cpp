@@ -48,6 +48,10 @@ const Property<HeadSettings> kProperties[] = {
         "File of `cerberus-heads calibrate` with this head's speeds, dead time (in place of latency) and "
         "backlash")
         .read_at_start(),
+    property("base-gyro", &HeadSettings::base_gyro,
+             "IIO gyro on the body that carries the head, by name or id, and which of its axes points up, as "
+             "'mpu6050 axis=-y' (z): its yaw rate is sent upstream as the base's")
+        .read_at_start(),
     property("helper-timeout", &HeadSettings::helper_timeout,
              "Nanoseconds of silence, 1 ms to 10 s, after which the helper process of a real head stops it")
         .read_at_start(),

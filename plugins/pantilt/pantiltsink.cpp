@@ -63,6 +63,10 @@
  * no frame the head follows no other track; after 5 s, also if it never came, a warning names it and
  * the usual choice continues. `auto` ends the choice, and so does each of the other signals: the last one counts.
  *
+ * A gyro of the kernel's IIO on the body that carries the head (`base-gyro`) measures how fast that turns: the rate goes
+ * upstream as the event `cerberus-base`. Its bias is learnt while the robot stands, by the picture or by a `cerberus-base`
+ * of rate 0 that the application sends to this element; until then, and while the application reports rates, none is sent.
+ *
  * Drivers: `simulated` (speed, acceleration, latency, step size, backlash and noise are properties), `scripted` (for
  * tests: follows `script`), `external` (a program that `command` names) and those of real heads: `visca`,
  * `pelco-d`, `onvif`, `v4l2` (a camera at `device`), `stepper-gpio` and `servo-pwm` (motors on the GPIO or PWM chip
@@ -232,6 +236,7 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
     session.stamps.frame(GST_BASE_SINK_PAD(session.sink), buffer, clock_time(*taken), session.camera_name);
     if (!GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) {
       frame.motion = motion_of(self.state, buffer, *taken);
+      session.gyro.on_frame(buffer, frame.motion, frame.lens, *taken);
       self.state.taken = taken;
     } else {
       frame.repeats = std::min(self.state.taken, taken);
@@ -366,6 +371,11 @@ GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, Gs
   return done;
 }
 
+gboolean cerberus_pan_tilt_sink_send_event(GstElement* element, GstEvent* event) {
+  guarded(element, [&] { cerberus_pan_tilt_sink_self(element)->priv->session.gyro.on_event(event); });
+  return GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->send_event(element, event);
+}
+
 // Action signals: act(controller, now, reports) for the application.
 template <typename Act>
 gboolean manual(CerberusPanTiltSink* sink, Act act) {
@@ -438,6 +448,7 @@ void cerberus_pan_tilt_sink_class_init(CerberusPanTiltSinkClass* klass) {
 
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   element->change_state = cerberus_pan_tilt_sink_change_state;
+  element->send_event = cerberus_pan_tilt_sink_send_event;
   gst_element_class_set_static_metadata(element, "Pan-tilt head", "Sink/Video/Device",
                                         "Turns a pan-tilt head towards what camera and sensors found",
                                         "The Cerberus developers");
