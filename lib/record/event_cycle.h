@@ -45,6 +45,12 @@ class EventCycle {
   // Whether a trigger at `time`, or a later one, is another event's.
   bool over(Time time) const { return !held_ && time > end() + settings_.join; }
 
+  // Times begin anew at `time`, where no earlier trigger has a meaning: an event that is held goes on from there.
+  void restart(Time time) {
+    if (!held_) close();
+    begin_ = last_ = time;
+  }
+
   // The event is closed; the next trigger begins another one.
   void close() { active_ = held_ = false; }
 

@@ -30,6 +30,7 @@ void EventRecorder::push_video(Unit unit) {
   const Time decode = unit.decode;
   if (!video_.push(std::move(unit), file_ != 0)) return;
   newest_ = decode;
+  if (std::exchange(begins_anew_, false)) cycle_.restart(decode);
   advance(false);
 }
 
@@ -51,7 +52,10 @@ void EventRecorder::expect_analysis() {
 }
 
 void EventRecorder::analysed(Time time) {
-  analysed_ = std::max(analysed_.value_or(time), time);
+  const bool falls =
+      analysed_.value_or(kNothing) != kNothing && time < *analysed_ - parameters_.most_reordering;
+  while (falls && !ahead_.empty() && ahead_.front().first > time) ahead_.pop();  // they are of before
+  analysed_ = falls ? time : std::max(analysed_.value_or(time), time);
   advance(false);
 }
 
@@ -117,7 +121,14 @@ void EventRecorder::finish() {
 }
 
 void EventRecorder::reset() {
-  finish();
+  if (!video_.empty()) advance(true);
+  const bool goes_on = cycle_.held();
+  if (cycle_.active()) close_file(!goes_on);
+  cycle_.restart(Time{});
+  begins_anew_ = goes_on;
+  ahead_.clear();
+  newest_ = Time{};
+  retry_at_.reset();
   video_.clear();
   for (AudioTrack& track : audio_)
     while (!track.units.empty()) track.pop();
@@ -162,12 +173,16 @@ bool EventRecorder::is_over() const {
   return !keyframe || *keyframe >= next_;
 }
 
-void EventRecorder::end_event() {
+void EventRecorder::close_file(bool last) {
   if (file_) {
     close_previous();
-    files_.close({file_, last_shown_, true});
+    files_.close({file_, last_shown_, last});
   }
   file_ = 0;
+}
+
+void EventRecorder::end_event() {
+  close_file(true);
   cycle_.close();
 }
 

@@ -56,6 +56,9 @@ struct Parameters {
   // How long after its time a trigger may arrive that is not the analysis's. Chosen: above the delay of a bus message
   // and of a sensor's debouncing. Guarded by the test of the end of the stream.
   Time trigger_delay = std::chrono::seconds(1);
+  // Where the analysis's times fall back by more, its stream has begun anew. Chosen: above every reordering of frames
+  // (16 frames of H.264 at 25 a second), below any seek. Guarded by the tests of times that fall back.
+  Time most_reordering = std::chrono::seconds(1);
   // Pause after a file that failed. Chosen: a full disk is reported twelve times a minute at most.
   Time retry = std::chrono::seconds(5);
 };
@@ -80,6 +83,7 @@ class EventRecorder {
   void push_audio(int track, Unit unit);
   // An analysis will come; it has reported everything up to `time`; no more of it comes.
   void expect_analysis();
+  // Times that fall back by more than Parameters::most_reordering begin anew, too.
   void analysed(Time time);
   void end_analysis();
   // Something happened at `time`, which counts once the video is there: an event begins, or the present one goes on.
@@ -92,7 +96,8 @@ class EventRecorder {
 
   // No more units come: open files are closed.
   void finish();
-  // As finish(), and forgets the units: the next ones are of another stream or time.
+  // Closes the open files and forgets the units and every time: the next ones are of another stream or time. An event
+  // of start() goes on there in another file, from the first keyframe on; any other event ends.
   void reset();
 
   bool recording() const { return file_ != 0; }
@@ -129,6 +134,7 @@ class EventRecorder {
   void split();
   bool is_over() const;
   void end_event();
+  void close_file(bool last);
   void close_previous();
   void evict();
 
@@ -154,6 +160,7 @@ class EventRecorder {
   Time last_shown_{};     // presentation of its last frame
   Time previous_shown_{};
   std::optional<Time> retry_at_;
+  bool begins_anew_ = false;  // the next unit is the first one of another time
 };
 
 }  // namespace cerberus::record

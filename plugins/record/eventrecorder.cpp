@@ -614,6 +614,7 @@ void end(CerberusEventRecorder* self) {
   {
     const std::lock_guard guard(priv.lock);
     priv.recorder.end_analysis();
+    priv.recorder.finish();
     priv.recorder.reset();
     for (auto& input : priv.inputs) {
       input->eos = false;

@@ -124,7 +124,11 @@ void Writer::run() {
           queued_ -= gst_buffer_get_size(write->buffer.get());
       } else if (stopping_) {
         const auto now = std::chrono::steady_clock::now();
-        if (deadline == std::chrono::steady_clock::time_point::max()) deadline = now + kLongestStop;
+        if (deadline == std::chrono::steady_clock::time_point::max()) {
+          deadline = now + kLongestStop;
+          for (auto& [number, file] : files_)
+            if (!file.closing) file.pipeline->finish();
+        }
         if (files_.empty() || now >= deadline) break;
       }
     }

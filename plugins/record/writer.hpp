@@ -32,7 +32,8 @@ class Writer {
 
   ~Writer() { stop(); }
   void start(Report report);
-  // Closes all files, waits for them (at most ten seconds), and ends the thread.
+  // Carries out every call of before, completes the files that are still open, waits for them (at most ten seconds),
+  // and ends the thread.
   void stop();
 
   void open(std::shared_ptr<const FileSpec> spec);

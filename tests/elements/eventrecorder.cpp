@@ -256,7 +256,7 @@ GST_START_TEST(a_change_of_caps_in_mid_event_begins_another_file) {
 }
 GST_END_TEST
 
-GST_START_TEST(a_flush_ends_an_event_and_recording_goes_on_behind_it) {
+GST_START_TEST(a_started_event_goes_on_in_another_file_behind_a_flush) {
   Rig rig;
   rig.start();
   rig.play_to(30);
@@ -267,14 +267,13 @@ GST_START_TEST(a_flush_ends_an_event_and_recording_goes_on_behind_it) {
   rig.video->push_segment();
   rig.next = 0;
   rig.play_to(20);
-  rig.start_event();
   rig.finish();
   fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(0, 40));
-  fail_unless(numbers_of(read_back(rig.folder.path() + "/2.mp4")) == range(0, 20));
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1-2.mp4")) == range(0, 20));
 }
 GST_END_TEST
 
-GST_START_TEST(times_that_fall_back_end_an_event) {
+GST_START_TEST(a_started_event_goes_on_where_times_fall_back_until_it_is_stopped) {
   Rig rig;
   rig.start();
   rig.play_to(60);
@@ -282,10 +281,11 @@ GST_START_TEST(times_that_fall_back_end_an_event) {
   rig.play_to(70);
   rig.next = 0;
   rig.play_to(20);
-  rig.start_event();
+  rig.stop_event();  // and 10 frames
+  rig.play_to(100);
   rig.finish();
   fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(30, 70));
-  fail_unless(numbers_of(read_back(rig.folder.path() + "/2.mp4")) == range(0, 20));
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1-2.mp4")) == range(0, 30));
 }
 GST_END_TEST
 
@@ -359,8 +359,8 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, sound_is_recorded_with_the_video_of_its_time);
   tcase_add_test(tests, sound_that_falls_silent_does_not_hold_the_video_up);
   tcase_add_test(tests, a_change_of_caps_in_mid_event_begins_another_file);
-  tcase_add_test(tests, a_flush_ends_an_event_and_recording_goes_on_behind_it);
-  tcase_add_test(tests, times_that_fall_back_end_an_event);
+  tcase_add_test(tests, a_started_event_goes_on_in_another_file_behind_a_flush);
+  tcase_add_test(tests, a_started_event_goes_on_where_times_fall_back_until_it_is_stopped);
   tcase_add_test(tests, two_recorders_in_one_folder_overwrite_nothing);
   tcase_add_loop_test(tests, no_frame_is_lost_or_doubled_between_the_files_of_an_event, 0, 4);
   suite_add_tcase(suite, tests);

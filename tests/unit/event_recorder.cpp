@@ -348,6 +348,84 @@ START_TEST(after_a_reset_nothing_of_before_is_written) {
 }
 END_TEST
 
+START_TEST(a_reset_forgets_the_time_of_before) {
+  Rig rig(4, 5, 3, 0);
+  rig.play_to(1000);
+  rig.recorder.reset();
+  ck_assert(rig.recorder.newest() == Time{});
+  rig.recorder.start(rig.recorder.newest(), "doorbell");  // before the first frame of the new time
+  rig.next = 0;
+  rig.play_to(10);
+  rig.recorder.finish();
+  ck_assert(rig.span(1) == Span(0, 10));
+}
+END_TEST
+
+START_TEST(a_pause_after_a_failure_does_not_last_beyond_a_reset) {
+  Rig rig(4, 5, 3, 0);
+  rig.play_to(1000);
+  rig.recorder.start(seconds(1000), "start");
+  rig.recorder.file_failed(1, true);  // another is tried at 1005
+  rig.recorder.reset();
+  rig.next = 0;
+  rig.play_to(2);
+  rig.recorder.finish();
+  ck_assert(rig.span(2) == Span(0, 2));
+}
+END_TEST
+
+START_TEST(a_started_event_goes_on_where_times_fall_back_and_ends_when_it_is_stopped) {
+  Rig rig(4, 5, 3, 0);
+  rig.play_to(1000);
+  rig.recorder.start(seconds(1000), "doorbell");
+  rig.recorder.reset();
+  ck_assert(rig.file(1).closed && !rig.file(1).end.last);
+  ck_assert(rig.recorder.active());
+  rig.next = 100;
+  rig.play_to(140);
+  ck_assert_uint_eq(rig.files.all.size(), 2);
+  ck_assert_uint_eq(rig.file(2).start.event, 1);
+  ck_assert_uint_eq(rig.file(2).start.part, 2);
+  ck_assert_str_eq(rig.file(2).start.reason.c_str(), "doorbell");
+  ck_assert(!rig.file(2).closed);
+  rig.recorder.stop(seconds(140));
+  rig.play_to(160);
+  ck_assert(rig.span(2) == Span(100, 143));  // the times of before do not lengthen it
+  ck_assert(rig.file(2).closed && rig.file(2).end.last);
+}
+END_TEST
+
+START_TEST(an_event_of_triggers_ends_where_times_fall_back) {
+  Rig rig(4, 5, 3, 0);
+  rig.play_to(1000);
+  rig.recorder.trigger(seconds(1000), "track");
+  rig.recorder.reset();
+  ck_assert(rig.file(1).closed && rig.file(1).end.last);
+  rig.next = 0;
+  rig.play_to(2000);
+  ck_assert_uint_eq(rig.files.all.size(), 1);
+}
+END_TEST
+
+START_TEST(an_analysis_whose_times_fall_back_triggers_in_the_new_time) {
+  Rig rig(1, 2, 3, 0);
+  rig.play_to(1000);
+  rig.recorder.analysed(seconds(1000));
+  rig.recorder.reset();
+  // Of the old time still, behind the video's jump.
+  rig.recorder.trigger(seconds(1001), "track");
+  rig.recorder.analysed(seconds(1001));
+  rig.next = 0;
+  for (int second = 0; second <= 60; ++second) {
+    rig.play_to(second);
+    if (second == 20) rig.recorder.trigger(seconds(20), "track");
+    rig.recorder.analysed(seconds(second));
+  }
+  ck_assert_uint_eq(rig.files.all.size(), 1);
+  ck_assert(rig.span(1) == Span(18, 23));
+}
+END_TEST
+
 START_TEST(b_frames_are_cut_in_the_order_of_decoding) {
   // I0 P3 B1 B2 | I4 P7 B5 B6 | ...: a frame a second, decoded 2 s before a P would be shown.
   Files files;
@@ -503,6 +581,11 @@ int main() {
                             a_file_that_failed_later_is_continued_at_the_next_keyframe,
                             the_end_of_the_stream_closes_the_file,
                             after_a_reset_nothing_of_before_is_written,
+                            a_reset_forgets_the_time_of_before,
+                            a_pause_after_a_failure_does_not_last_beyond_a_reset,
+                            a_started_event_goes_on_where_times_fall_back_and_ends_when_it_is_stopped,
+                            an_event_of_triggers_ends_where_times_fall_back,
+                            an_analysis_whose_times_fall_back_triggers_in_the_new_time,
                             b_frames_are_cut_in_the_order_of_decoding,
                             audio_begins_with_the_first_frame_and_late_audio_goes_into_the_file_of_its_time,
                             audio_without_video_does_not_pile_up})
