@@ -70,19 +70,12 @@
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 
-#include <algorithm>
-#include <limits>
-
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/text.hpp"
-#include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
+#include "shared/frame_line.hpp"
 #include "shared/properties.hpp"
-#include "shared/record.hpp"
 #include "shared/stamps.hpp"
-#include "text/json_line.h"
-#include "text/utc.h"
 
 namespace {
 
@@ -94,11 +87,6 @@ GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS("video/x-raw(ANY)"));
 GstStaticPadTemplate src_template =
     GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_JSON_LINES_CAPS));
-
-constexpr int kPixelDecimals = 2;
-constexpr int kShareDecimals = 3;
-constexpr int kCameraDigits = 9;
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 struct Settings {
   std::string camera_name;
@@ -123,99 +111,6 @@ struct Private {
 
 CERBERUS_DEFINE_TYPE(CerberusMotionJson, cerberus_motion_json, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
-
-void write_object(cerberus::text::JsonLine& line, const CerberusRegion& region) {
-  line.open('{').key("id");
-  if (region.tracked)
-    line.integer(region.id);
-  else
-    line.null();
-  line.key("type").string(region.person ? "person" : "motion");
-  line.key("kind").string(cerberus_region_kind_get_nick(region.kind));
-  line.key("state").string(cerberus_region_state_get_nick(region.state));
-  line.key("x").fixed(region.x, kPixelDecimals).key("y").fixed(region.y, kPixelDecimals);
-  line.key("w").fixed(region.width, kPixelDecimals).key("h").fixed(region.height, kPixelDecimals);
-  line.key("vx").fixed(region.vx, kPixelDecimals).key("vy").fixed(region.vy, kPixelDecimals);
-  line.key("confidence").fixed(region.confidence, kShareDecimals);
-  line.key("bearing").fixed(region.bearing, kPixelDecimals);
-  line.key("distance").fixed(region.distance, kPixelDecimals).close('}');
-}
-
-// Writes the fields of a system with a head and sensors.
-void write_system(cerberus::text::JsonLine& line, GstBuffer* buffer, GstClockTime time) {
-  if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
-    const auto look =
-        cerberus::plugin::look_of(*pose, time).value_or(cerberus::motion::PanTilt{kUnknown, kUnknown});
-    line.key("pose").open('{').key("pan").fixed(cerberus::sensing::degrees(look.pan), kPixelDecimals);
-    line.key("tilt").fixed(cerberus::sensing::degrees(look.tilt), kPixelDecimals);
-    line.key("moving").boolean(pose->moving != FALSE).close('}');
-  }
-  if (const CerberusBase* base = cerberus_buffer_peek_base(buffer))
-    line.key("base").open('{').key("yaw-rate").fixed(base->yaw_rate, kPixelDecimals).close('}');
-  const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
-  if (!fusion) return;
-  line.key("pir").open('[');
-  for (guint i = 0; i < std::min<guint>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i)
-    line.integer(fusion->sensors[i]);
-  line.close(']').key("fusion").open('{').key("rule").integer(fusion->rule);
-  line.key("name").text(cerberus::printable(fusion->rule_name ? fusion->rule_name : ""));
-  line.key("action").string(cerberus_fusion_action_get_nick(fusion->action)).key("target");
-  if (fusion->target)
-    line.integer(fusion->target);
-  else
-    line.null();
-  line.close('}');
-}
-
-void write_stamp(cerberus::text::JsonLine& line, const CerberusStamp& stamp) {
-  if (GST_CLOCK_TIME_IS_VALID(stamp.utc)) {
-    line.key("utc").string(cerberus::text::Utc(cerberus::plugin::time_of(stamp.utc)));
-    line.key("utc-source").string(cerberus_utc_source_get_nick(stamp.utc_source));
-  }
-  if (stamp.camera_name) line.key("camera-name").text(cerberus::printable(stamp.camera_name));
-}
-
-std::string_view write_line(State& state, GstBuffer* buffer, const CerberusStamp& stamp) {
-  cerberus::text::JsonLine& line = state.line;
-  line.clear();
-  line.open('{').key("pts");
-  if (GST_BUFFER_PTS_IS_VALID(buffer))
-    line.integer(GST_BUFFER_PTS(buffer));
-  else
-    line.null();
-  line.key("frame").integer(state.frame);
-  write_stamp(line, stamp);
-  line.key("width").integer(state.width).key("height").integer(state.height);
-
-  line.key("threshold");
-  const auto* facts = cerberus::plugin::threshold_facts_of(buffer);
-  if (facts && facts->result.ready)
-    line.integer(facts->result.threshold);
-  else
-    line.null();
-
-  line.key("camera");
-  if (const auto* camera = cerberus_buffer_peek_camera_motion(buffer)) {
-    line.open('[');
-    for (const double n : camera->matrix) line.significant(n, kCameraDigits);
-    line.close(']').key("confidence").fixed(camera->confidence, kShareDecimals);
-  } else {
-    line.null().key("confidence").null();
-  }
-
-  line.key("objects");
-  if (cerberus_buffer_regions_known(buffer)) {
-    line.open('[');
-    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-    for (guint i = 0; i < regions->len; ++i)
-      write_object(line, *static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
-    line.close(']');
-  } else {
-    line.null();
-  }
-  write_system(line, buffer, stamp.running_time);
-  return line.close('}').finish();
-}
 
 gboolean cerberus_motion_json_start(GstBaseTransform* transform) {
   State& state = cerberus_motion_json_self(transform)->priv->state;
@@ -266,7 +161,8 @@ GstFlowReturn cerberus_motion_json_generate_output(GstBaseTransform* transform, 
     const CerberusStamp stamp = state.stamps.frame(GST_BASE_TRANSFORM_SINK_PAD(transform), in,
                                                    cerberus::plugin::running_time_of(transform->segment, in),
                                                    priv.settings.snapshot().camera_name);
-    const std::string_view line = write_line(state, in, stamp);
+    const std::string_view line =
+        cerberus::plugin::write_frame_line(state.line, in, stamp, {state.frame, state.width, state.height});
     *out = gst_buffer_new_memdup(line.data(), line.size());
     gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
     GST_BUFFER_OFFSET(*out) = state.frame;
