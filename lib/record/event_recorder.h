@@ -9,6 +9,7 @@
 // late analysis changes nothing but the size of the ring. Not thread-safe.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -103,7 +104,11 @@ class EventRecorder {
   bool recording() const { return file_ != 0; }
   bool active() const { return cycle_.active(); }
   Time newest() const { return newest_; }  // decode time of the newest video unit
-  Time lag() const;                        // of the analysis behind the video; below zero: ahead
+  // The time up to which the analysis of the video is there, or is awaited no more.
+  Time reached() const { return analysed_ ? std::max(*analysed_, newest_ - parameters_.most_lag) : newest_; }
+  // Presentation of the ring's oldest unit: no file to come begins before it.
+  Time oldest() const { return video_.empty() ? Time::min() : video_[video_.begin()].presentation; }
+  Time lag() const;  // of the analysis behind the video; below zero: ahead
   std::size_t bytes() const;
 
  private:

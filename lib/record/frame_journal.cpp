@@ -111,11 +111,12 @@ void FrameJournal::assign(Entry& entry, Span& span) {
   note.picture.reset();
 }
 
-// In the order of time: each note up to what the files are known to have.
-void FrameJournal::assign_notes() {
+// In the order of time: each note up to what the files are known to have, and no earlier one is to come.
+void FrameJournal::assign_notes(Time reached) {
   for (Entry& entry : notes_) {
     if (entry.file) continue;
     const Time time = entry.note.time;
+    if (time > reached) return;
     const auto found = std::ranges::find_if(spans_, [time](const Span& span) { return span.has(time); });
     if (found == spans_.end()) continue;
     if (!found->closed && found->until == Time::max() && time > found->written) return;
@@ -132,17 +133,17 @@ void FrameJournal::complete_spans(Time reached) {
 }
 
 void FrameJournal::advance(Time reached, Time kept) {
-  assign_notes();
+  assign_notes(reached);
   complete_spans(reached);
-  if (!spans_.empty()) kept = std::min(kept, spans_.front().begin);
   while (!notes_.empty() && notes_.front().note.time < kept) {
+    if (!notes_.front().file && span_at(notes_.front().note.time)) break;
     bytes_ -= notes_.front().note.line.size();
     notes_.pop_front();
   }
 }
 
 void FrameJournal::reset() {
-  assign_notes();
+  assign_notes(Time::max());
   complete_spans(Time::max());
   notes_.clear();
   bytes_ = 0;

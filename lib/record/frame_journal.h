@@ -23,10 +23,10 @@ using Picture = std::shared_ptr<void>;
 // What was found in one frame.
 struct Note {
   Time time{};
-  std::string line;                    // JSON, one object and a line feed; empty: none
-  std::vector<std::uint32_t> tracks;   // identities
+  std::string line;                     // JSON, one object and a line feed; empty: none
+  std::vector<std::uint32_t> tracks;    // identities
   std::vector<std::string_view> kinds;  // of the objects; texts that live as long as the program
-  std::string rule;                    // of the fusion; empty: none that acts
+  std::string rule;                     // of the fusion; empty: none that acts
   Picture picture;
   double score = 0;  // of the picture, see best_moment.h
 };
@@ -67,7 +67,8 @@ class FrameJournal {
   };
 
   explicit FrameJournal(JournalOutput& output) : output_(output) {}
-  FrameJournal(JournalOutput& output, const Parameters& parameters) : output_(output), parameters_(parameters) {}
+  FrameJournal(JournalOutput& output, const Parameters& parameters)
+      : output_(output), parameters_(parameters) {}
 
   // Whether a picture of the frame at `time` would be kept: ask before copying one.
   bool wants_picture(Time time, double score) const;
@@ -106,7 +107,7 @@ class FrameJournal {
   };
   const Span* span_at(Time time) const;
   void assign(Entry& entry, Span& span);
-  void assign_notes();
+  void assign_notes(Time reached);
   void complete_spans(Time reached);
   void drop_pictures();
 

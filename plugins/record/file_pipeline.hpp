@@ -19,11 +19,11 @@ namespace cerberus::plugin {
 struct FileSpec {
   record::FileStart start;
   std::vector<std::shared_ptr<GstCaps>> caps;  // one a track; nullptr: not in this file
-  std::string folder;                          // exists already
-  std::string name;                            // below it, without the ending
+  std::string name;                            // below the folder of the recordings, without the ending
   bool mp4 = true;                             // else Matroska
   std::string camera;
-  GstClockTime utc = GST_CLOCK_TIME_NONE;  // of the first frame
+  GstClockTime utc = GST_CLOCK_TIME_NONE;  // of the first frame, where it is known
+  GstClockTime when = 0;                   // the same; else the system's clock when the file began
 };
 
 // What went wrong, in words for a user and for a developer.

@@ -49,19 +49,21 @@ void Files::open(const record::FileStart& start) {
   spec->start = start;
   for (const int format : start.formats)
     spec->caps.push_back(format < 0 ? nullptr : formats_[static_cast<std::size_t>(format)]);
-  spec->folder = settings_.folder;
   spec->mp4 = settings_.mp4_allowed && fits_mp4(start);
   const CerberusStamp stamp = stamps_.at(clock_time(std::max(start.begin, record::Time::zero())));
   spec->camera = stamp.camera_name ? stamp.camera_name : settings_.camera;
   spec->utc = stamp.utc;
   const GstClockTime now = static_cast<GstClockTime>(g_get_real_time()) * GST_USECOND;
-  const GstClockTime when = GST_CLOCK_TIME_IS_VALID(stamp.utc) ? stamp.utc : now;
-  spec->name = record::expand_name(settings_.name, {time_of(when), spec->camera, start.event, start.part});
+  spec->when = GST_CLOCK_TIME_IS_VALID(stamp.utc) ? stamp.utc : now;
+  spec->name =
+      record::expand_name(settings_.name, {time_of(spec->when), spec->camera, start.event, start.part});
   origins_[start.file] = start.origin;
+  journal_.open(start);
   writer_.open(std::move(spec));
 }
 
 void Files::write(std::uint32_t file, int track, const record::Unit& unit) {
+  if (track == 0) journal_.written(file, unit.presentation);
   const auto origin = origins_.find(file);
   if (origin == origins_.end() || abandoned_.contains(file)) return;
   if (!patient_ && writer_.pending() > kMostPending) {
@@ -86,7 +88,18 @@ void Files::write(std::uint32_t file, int track, const record::Unit& unit) {
 void Files::close(const record::FileEnd& end) {
   origins_.erase(end.file);
   abandoned_.erase(end.file);
-  writer_.close(end);
+  journal_.close(end);
+}
+
+// The line begins with the time in the file, which is known only now.
+void Files::write_line(std::uint32_t file, record::Time time, std::string_view line) {
+  std::string text = "{\"file-time\":" + std::to_string(time.count()) + ',';
+  text += line.substr(1);
+  writer_.write_line(file, std::move(text));
+}
+
+void Files::complete(const record::FileEnd& end, record::Findings findings) {
+  writer_.close(end, std::move(findings));
 }
 
 }  // namespace cerberus::plugin

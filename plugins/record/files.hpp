@@ -6,15 +6,16 @@
 #include <map>
 #include <set>
 
+#include "record/frame_journal.h"
 #include "shared/stamps.hpp"
 #include "writer.hpp"
 
 namespace cerberus::plugin {
 
-class Files final : public record::FileWriter {
+class Files final : public record::FileWriter, public record::JournalOutput {
  public:
   struct Settings {
-    std::string folder, name, camera;
+    std::string name, camera;
     bool mp4_allowed = true, matroska_allowed = true;
   };
 
@@ -24,6 +25,8 @@ class Files final : public record::FileWriter {
   // `wait`: the caller waits for the disk by itself, so that nothing is given up.
   void set_patient(bool patient) { patient_ = patient; }
   Stamps& stamps() { return stamps_; }
+  // What was found in the frames, until their files are known.
+  record::FrameJournal& journal() { return journal_; }
   // A number for the caps; equal caps have one.
   int format_of(GstCaps* caps);
   void forget();
@@ -31,6 +34,11 @@ class Files final : public record::FileWriter {
   void open(const record::FileStart& start) override;
   void write(std::uint32_t file, int track, const record::Unit& unit) override;
   void close(const record::FileEnd& end) override;
+  // A file could not be written.
+  void drop(std::uint32_t file) { journal_.drop(file); }
+
+  void write_line(std::uint32_t file, record::Time time, std::string_view line) override;
+  void complete(const record::FileEnd& end, record::Findings findings) override;
 
  private:
   bool fits_mp4(const record::FileStart& start) const;
@@ -38,6 +46,7 @@ class Files final : public record::FileWriter {
   Writer& writer_;
   Settings settings_;
   Stamps stamps_;
+  record::FrameJournal journal_{*this};
   bool patient_ = false;
   std::vector<std::shared_ptr<GstCaps>> formats_;
   std::map<std::uint32_t, record::Time> origins_;  // of the open files

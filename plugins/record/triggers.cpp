@@ -26,13 +26,17 @@ std::optional<Trigger> trigger_of(const CerberusFusion& fusion, const TriggerSet
   return std::nullopt;
 }
 
-std::optional<Trigger> track_trigger(GstBuffer* buffer) {
+bool stands_in_zone(const CerberusRegion& region, const TriggerSettings& settings) {
+  return settings.zones.contains({region.x, region.y, region.width, region.height}, settings.frame);
+}
+
+std::optional<Trigger> track_trigger(GstBuffer* buffer, const TriggerSettings& settings) {
   if (!cerberus_buffer_regions_known(buffer)) return std::nullopt;
   g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   std::optional<Trigger> found;
   for (guint k = 0; k < regions->len; ++k) {
     const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, k));
-    if (!region->tracked) continue;
+    if (!region->tracked || !stands_in_zone(*region, settings)) continue;
     if (region->state != CERBERUS_REGION_STOPPED)
       return Trigger{Trigger::Kind::moment, "track " + std::to_string(region->id)};
     found = Trigger{Trigger::Kind::carry_on, "track " + std::to_string(region->id)};
@@ -44,7 +48,7 @@ std::optional<Trigger> track_trigger(GstBuffer* buffer) {
 
 std::optional<Trigger> trigger_of(GstBuffer* buffer, const TriggerSettings& settings) {
   std::optional<Trigger> found;
-  if (settings.track) found = track_trigger(buffer);
+  if (settings.track) found = track_trigger(buffer, settings);
   if (found && found->kind == Trigger::Kind::moment) return found;
   if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer))
     if (auto decided = trigger_of(*fusion, settings)) return decided;
@@ -58,7 +62,8 @@ std::optional<Trigger> trigger_of(GstMessage* message, const TriggerSettings& se
     return motion->state == CERBERUS_MOTION_STARTED ? Trigger{Trigger::Kind::hold, "motion"}
                                                     : Trigger{Trigger::Kind::release, "motion"};
   if (g_autoptr(CerberusTrack) track = cerberus_message_parse_track(message)) {
-    if (!settings.track || track->state == CERBERUS_TRACK_LEFT) return std::nullopt;
+    if (!settings.track || track->state == CERBERUS_TRACK_LEFT || !stands_in_zone(track->region, settings))
+      return std::nullopt;
     return Trigger{Trigger::Kind::moment, "track " + std::to_string(track->region.id)};
   }
   if (g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message))

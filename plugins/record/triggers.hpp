@@ -7,10 +7,14 @@
 #include <optional>
 #include <string>
 
+#include "record/trigger_zones.h"
+
 namespace cerberus::plugin {
 
 struct TriggerSettings {
   bool track = true, fusion = false, pir = false;
+  record::TriggerZones zones;  // of tracks
+  vision::Size frame;          // of the frames whose pixels the tracks are in; zero: not known
 };
 
 struct Trigger {

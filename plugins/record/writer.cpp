@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "writer.hpp"
 
-#include <fcntl.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
+
+#include "frame_notes.hpp"
+#include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
 
@@ -18,32 +17,15 @@ namespace {
 using namespace std::chrono_literals;
 constexpr auto kLongestStop = 10s;  // a disk that takes longer is not waited for
 constexpr auto kLook = 20ms;        // how often the pipelines' levels are read while bytes wait
-constexpr int kMostNamesakes = 1000;
+constexpr auto kRetention = 10s;    // how often retention is applied
 
-// Makes a file that nothing else has made: `name`, `name~1`, `name~2` ... with the ending. Throws what went wrong.
-std::string claim(const FileSpec& spec) {
-  const std::filesystem::path base = std::filesystem::path(spec.folder) / spec.name;
-  const auto fail = [](const std::string& path, int error) {
-    throw std::runtime_error("\"" + path + "\": " + std::strerror(error));
-  };
-  // Only below the folder: if that itself is gone (a disk that is not mounted), nothing is made in its place.
-  struct stat about{};
-  if (stat(spec.folder.c_str(), &about) != 0) fail(spec.folder, errno);
-  std::error_code error;
-  std::filesystem::create_directories(base.parent_path(), error);
-  if (error) fail(base.parent_path().string(), error.value());
-  for (int k = 0; k < kMostNamesakes; ++k) {
-    const std::string path =
-        base.string() + (k ? '~' + std::to_string(k) : std::string()) + (spec.mp4 ? ".mp4" : ".mkv");
-    const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0640);
-    if (fd >= 0) {
-      ::close(fd);
-      return path;
-    }
-    if (errno != EEXIST) fail(path, errno);
+std::string comma_separated(const auto& values, auto text_of) {
+  std::string text;
+  for (const auto& value : values) {
+    if (!text.empty()) text += ',';
+    text += text_of(value);
   }
-  fail(base.string(), EEXIST);
-  return {};
+  return text;
 }
 
 std::uint64_t size_of(const std::string& path) {
@@ -53,11 +35,18 @@ std::uint64_t size_of(const std::string& path) {
 
 }  // namespace
 
-void Writer::start(Report report) {
+void Writer::start(const record::Archive::Settings& archive, Report report, Warn warn) {
   stop();
   report_ = std::move(report);
+  warn_ = std::move(warn);
   stopping_ = false;
-  thread_ = std::thread([this] { run(); });
+  folder_ = archive.folder;
+  archive_.open(archive, surroundings());
+  pass_complaints();
+  thread_ = std::thread([this] {
+    run();
+    archive_.close();
+  });
 }
 
 void Writer::stop() {
@@ -86,8 +75,18 @@ void Writer::write(std::uint32_t file, int track, GstBuffer* buffer) {
   const std::uint64_t bytes = gst_buffer_get_size(buffer);
   enqueue(Write{file, track, {buffer, gst_buffer_unref}}, bytes);
 }
-void Writer::close(const record::FileEnd& end) {
-  enqueue(Close{end});
+void Writer::write_line(std::uint32_t file, std::string line) {
+  const std::uint64_t bytes = line.size();
+  enqueue(Line{file, std::move(line)}, bytes);
+}
+void Writer::close(const record::FileEnd& end, record::Findings findings) {
+  enqueue(Close{end, std::move(findings)});
+}
+void Writer::set_limits(const record::Limits& limits) {
+  enqueue(Limit{limits});
+}
+void Writer::keep(const std::string& path, bool keep) {
+  enqueue(Keep{path, keep});
 }
 void Writer::abandon(std::uint32_t file, const std::string& reason) {
   enqueue(Abandon{file, reason});
@@ -108,6 +107,7 @@ void Writer::wait_below(std::uint64_t bytes, const std::function<bool()>& go_on)
 
 void Writer::run() {
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  auto next_retention = std::chrono::steady_clock::now() + kRetention;
   while (true) {
     std::optional<Command> command;
     {
@@ -116,12 +116,14 @@ void Writer::run() {
       if (level_ > 0 || stopping_)
         changed_.wait_for(guard, kLook, [this] { return !commands_.empty(); });
       else
-        changed_.wait(guard, ready);
+        changed_.wait_until(guard, next_retention, ready);
       if (!commands_.empty()) {
         command = std::move(commands_.front());
         commands_.pop_front();
         if (const auto* write = std::get_if<Write>(&*command))
           queued_ -= gst_buffer_get_size(write->buffer.get());
+        else if (const auto* line = std::get_if<Line>(&*command))
+          queued_ -= line->text.size();
       } else if (stopping_) {
         const auto now = std::chrono::steady_clock::now();
         if (deadline == std::chrono::steady_clock::time_point::max()) {
@@ -133,6 +135,10 @@ void Writer::run() {
       }
     }
     if (command) std::visit([this](auto& each) { execute(each); }, *command);
+    if (std::chrono::steady_clock::now() >= next_retention) {
+      retain();
+      next_retention = std::chrono::steady_clock::now() + kRetention;
+    }
     std::uint64_t level = 0;
     for (const auto& [number, file] : files_) level += file.pipeline->level();
     {
@@ -146,33 +152,108 @@ void Writer::run() {
 }
 
 void Writer::execute(Open& command) {
-  File file{command.spec, {}, nullptr, {}, false};
-  const std::uint32_t number = command.spec->start.file;
-  try {
-    file.path = claim(*command.spec);
-    file.pipeline = std::make_unique<FilePipeline>(
-        *command.spec, file.path,
-        [this, number](std::shared_ptr<const FileFault> fault) { enqueue(Ended{number, std::move(fault)}); });
-  } catch (const std::exception& error) {
-    report_end(file, FileReport::State::failed, {error.what(), ""});
-    return;
+  const FileSpec& spec = *command.spec;
+  File file;
+  file.spec = command.spec;
+  const std::uint32_t number = spec.start.file;
+  file.row.camera = spec.camera;
+  file.row.event = spec.start.event;
+  file.row.part = spec.start.part;
+  file.row.begin = file.row.end = time_of(spec.when);
+  file.row.reason = spec.start.reason;
+  std::string fault = archive_.begin(file.row, spec.name, spec.mp4 ? ".mp4" : ".mkv", file.lock);
+  if (fault.empty()) {
+    file.path = folder_ + '/' + file.row.file;
+    try {
+      file.pipeline = std::make_unique<FilePipeline>(spec, file.path,
+                                                     [this, number](std::shared_ptr<const FileFault> error) {
+                                                       enqueue(Ended{number, std::move(error)});
+                                                     });
+    } catch (const std::exception& error) {
+      fault = error.what();
+      archive_.discard(file.row);
+    }
   }
-  report_({FileReport::State::started, file.spec, file.path, {}, 0, {}});
+  pass_complaints();
+  if (!fault.empty()) return report_end(file, FileReport::State::failed, {fault, ""});
+  report_({FileReport::State::started, file.spec, file.path, {}, {}, {}, 0, {}});
   files_.emplace(number, std::move(file));
 }
 
 void Writer::execute(Write& command) {
   const auto found = files_.find(command.file);
   if (found == files_.end()) return;
-  found->second.pipeline->push(command.track, gst_buffer_ref(command.buffer.get()));
+  File& file = found->second;
+  if (command.track == 0) file.last = std::max(file.last, GST_BUFFER_PTS(command.buffer.get()));
+  file.pipeline->push(command.track, gst_buffer_ref(command.buffer.get()));
+}
+
+void Writer::execute(Line& command) {
+  const auto found = files_.find(command.file);
+  if (found == files_.end() || found->second.without_lines) return;
+  File& file = found->second;
+  int error = file.lines ? 0 : archive_.add_lines(file.row, file.lines);
+  if (!error) error = file.lines.write(command.text.data(), command.text.size());
+  if (!error) return;
+  file.without_lines = true;
+  warn_("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
+}
+
+void Writer::save_picture(File& file, const record::Picture& picture) {
+  std::string fault;
+  record::OpenFile to;
+  if (GstSample* jpeg = encode_jpeg(picture, fault)) {
+    GstMapInfo map;
+    if (gst_buffer_map(gst_sample_get_buffer(jpeg), &map, GST_MAP_READ)) {
+      int error = archive_.add_picture(file.row, to);
+      if (!error) error = to.write(map.data, map.size);
+      if (!error) error = to.sync();
+      if (error) fault = std::strerror(error);
+      gst_buffer_unmap(gst_sample_get_buffer(jpeg), &map);
+    }
+    gst_sample_unref(jpeg);
+  }
+  if (!fault.empty()) warn_("the picture beside " + record::in_quotes(file.path) + ": " + fault);
 }
 
 void Writer::execute(Close& command) {
   const auto found = files_.find(command.end.file);
   if (found == files_.end()) return;
-  found->second.end = command.end;
-  found->second.closing = true;
-  found->second.pipeline->finish();
+  File& file = found->second;
+  file.end = command.end;
+  file.closing = true;
+  file.pipeline->finish();
+  const record::Findings& findings = command.findings;
+  file.row.tracks =
+      comma_separated(findings.tracks, [](std::uint32_t track) { return std::to_string(track); });
+  file.row.kinds = comma_separated(findings.kinds, [](std::string_view kind) { return std::string(kind); });
+  file.row.rule = findings.rule;
+  if (findings.picture) save_picture(file, findings.picture);
+}
+
+void Writer::execute(Limit& command) {
+  archive_.set_limits(command.limits);
+}
+
+void Writer::execute(Keep& command) {
+  if (const std::string fault = archive_.keep(command.path, command.keep); !fault.empty()) warn_(fault);
+  pass_complaints();
+}
+
+record::Surroundings Writer::surroundings() const {
+  const auto microseconds = [](gint64 time) { return record::Time(std::chrono::microseconds(time)); };
+  return {microseconds(g_get_real_time()), microseconds(g_get_monotonic_time()),
+          record::Folder(folder_).free_bytes().value_or(G_MAXUINT64)};
+}
+
+void Writer::retain() {
+  for (const std::string& name : archive_.retain(surroundings()))
+    report_({FileReport::State::deleted, nullptr, folder_ + '/' + name, {}, {}, {}, 0, {}});
+  pass_complaints();
+}
+
+void Writer::pass_complaints() {
+  for (const std::string& text : archive_.take_complaints()) warn_(text);
 }
 
 void Writer::execute(Abandon& command) {
@@ -205,10 +286,22 @@ void Writer::fail(std::uint32_t number, const FileFault& fault) {
   check_done();
 }
 
+// What is acknowledged is on the disk, and in the index.
 void Writer::report_end(File& file, FileReport::State state, const FileFault& fault) {
   const std::uint64_t bytes = size_of(file.path);
-  if (state == FileReport::State::failed && bytes == 0 && !file.path.empty()) unlink(file.path.c_str());
-  report_({state, file.spec, file.path, file.end, bytes, fault});
+  if (!file.path.empty()) {
+    file.row.end = file.row.begin + time_of(file.last);
+    if (const int error = file.lines.sync(); error)
+      warn_("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
+    if (bytes == 0)
+      archive_.discard(file.row);
+    else
+      archive_.finish(file.row, file.lock);
+  }
+  const auto path_of = [&](const std::string& name) { return name.empty() ? name : folder_ + '/' + name; };
+  report_({state, file.spec, file.path, path_of(file.row.lines), path_of(file.row.picture), file.end, bytes,
+           fault});
+  retain();
 }
 
 void Writer::check_done() {

@@ -3,6 +3,7 @@
 // ones it holds. Nothing is encoded or decoded.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -29,11 +30,12 @@ class Folder {
   }
   ~Folder() { std::filesystem::remove_all(path_); }
   const std::string& path() const { return path_; }
-  // All files below it, sorted.
-  std::vector<std::string> files() const {
+  // The files below it with one of these endings, sorted; those of the recordings without what is beside them.
+  std::vector<std::string> files(const std::vector<std::string>& endings = {".mp4", ".mkv"}) const {
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(path_))
-      if (entry.is_regular_file()) found.push_back(entry.path().string());
+      if (entry.is_regular_file() && std::ranges::count(endings, entry.path().extension().string()))
+        found.push_back(entry.path().string());
     std::sort(found.begin(), found.end());
     return found;
   }
@@ -172,7 +174,7 @@ struct Rig {
     bus = gst_bus_new();
     gst_element_set_bus(element, bus);
     g_object_set(element, "location", folder.path().c_str(), "file-name", "{event}", "pre-roll", GST_SECOND,
-                 "post-roll", 400 * GST_MSECOND, "join", guint64{0}, nullptr);
+                 "post-roll", 400 * GST_MSECOND, "join", guint64{0}, "retention-free", 0, nullptr);
     video = std::make_unique<Stream>(element, "video", caps);
   }
   ~Rig() {

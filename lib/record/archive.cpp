@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "record/archive.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+
+namespace cerberus::record {
+
+namespace {
+
+constexpr int kMostNamesakes = 1000;
+constexpr std::string_view kLines = ".jsonl", kPicture = ".jpg";
+constexpr const char* kVideos[] = {".mp4", ".mkv"};
+
+std::string without_ending(const std::string& file) {
+  return file.substr(0, file.rfind('.'));
+}
+
+bool ends_with_any(const std::string& name, std::initializer_list<std::string_view> endings) {
+  return std::ranges::any_of(endings, [&](std::string_view ending) { return name.ends_with(ending); });
+}
+
+// Whether all names of a row are those of a recording: other programs may write rows, and rows are deleted with files.
+bool is_recording(const Recording& row) {
+  return Folder::is_name(row.file) && ends_with_any(row.file, {kVideos[0], kVideos[1]}) &&
+         (row.lines.empty() || row.lines == without_ending(row.file) + std::string(kLines)) &&
+         (row.picture.empty() || row.picture == without_ending(row.file) + std::string(kPicture));
+}
+
+}  // namespace
+
+void Archive::complain(std::string text) {
+  if (text.empty() || text == last_complaint_) return;
+  last_complaint_ = text;
+  complaints_.push_back(std::move(text));
+}
+
+std::vector<std::string> Archive::take_complaints() {
+  return std::exchange(complaints_, {});
+}
+
+std::string Archive::index_path() const {
+  return (std::filesystem::path(settings_.folder) / settings_.index).string();
+}
+
+void Archive::open(const Settings& settings, const Surroundings& now) {
+  settings_ = settings;
+  folder_ = Folder(settings.folder);
+  last_complaint_.clear();
+  retention_ = Retention();
+  index_.close();
+  if (settings.index.empty()) return;
+  bool damaged = false;
+  std::string fault = index_.open(index_path(), damaged);
+  if (damaged) {
+    const std::string aside = index_path() + ".damaged";
+    complain(fault + "; it is now " + in_quotes(aside) + ", and another one is begun");
+    if (std::rename(index_path().c_str(), aside.c_str()) != 0) return;
+    for (const char* journal : {"-wal", "-shm"}) std::remove((index_path() + journal).c_str());
+    fault = index_.open(index_path(), damaged);
+  }
+  complain(fault);
+  if (!index_.is_open()) return;
+  reconcile();
+  retain(now);
+}
+
+void Archive::close() {
+  index_.close();
+}
+
+void Archive::measure(Recording& recording) const {
+  recording.bytes = 0;
+  for (const std::string* name : {&recording.file, &recording.lines, &recording.picture})
+    if (!name->empty()) recording.bytes += folder_.size(*name).value_or(0);
+}
+
+// Returns false where the row is not to be: its files are deleted then.
+bool Archive::restore(Recording& row) {
+  const auto size = folder_.size(row.file);
+  if (!size || (row.open && *size == 0)) return false;
+  if (!row.open) return true;
+  // Of a process that ended: what it had written.
+  for (auto [name, ending] : {std::pair(&row.lines, kLines), std::pair(&row.picture, kPicture)})
+    if (const std::string there = without_ending(row.file) + std::string(ending); folder_.size(there))
+      *name = there;
+  row.end = std::max(row.begin, Time(folder_.changed(row.file)));
+  row.open = false;
+  return true;
+}
+
+void Archive::reconcile() {
+  std::vector<Recording> rows;
+  complain(index_.read(rows));
+  const auto missing = [this](const Recording& row) { return !row.open && !folder_.size(row.file); };
+  if (!rows.empty() && std::ranges::all_of(rows, missing)) {
+    complain("none of the files of the index is in " + in_quotes(settings_.folder) +
+             ": is its disk mounted? The rows stay until one of them is");
+    return;
+  }
+  for (Recording& row : rows) {
+    if (!is_recording(row)) {
+      complain("the index names " + in_quotes(row.file) +
+               ", which is no recording of this folder: the row is removed");
+      complain(index_.remove(row.id));
+      continue;
+    }
+    if (row.open && folder_.in_use(row.file)) continue;  // of another recorder
+    const Recording before = row;
+    if (!restore(row)) {
+      discard(row);
+      continue;
+    }
+    measure(row);
+    if (row.open != before.open || row.bytes != before.bytes) complain(index_.update(row));
+  }
+}
+
+std::string Archive::begin(Recording& recording, const std::string& name, std::string_view ending,
+                           OpenFile& file) {
+  const auto failed = [&](int error) {
+    return in_quotes(folder_.path_of(recording.file)) + ": " + std::strerror(error);
+  };
+  recording.file = name + std::string(ending);
+  if (!folder_.free_bytes()) return failed(errno);  // the folder is gone: the file's fault, not the index's
+  for (int k = 0; k < kMostNamesakes; ++k) {
+    const std::string base = name + (k ? '~' + std::to_string(k) : std::string());
+    recording.file = base + std::string(ending);
+    recording.id = 0;
+    const auto taken_by = [&](std::string_view other) { return folder_.exists(base + std::string(other)); };
+    if (std::ranges::any_of(kVideos, taken_by) || taken_by(kLines) || taken_by(kPicture)) continue;
+    bool taken = false;
+    if (index_.is_open()) {
+      const std::string fault = index_.add(recording, taken);
+      if (taken) continue;
+      complain(fault);
+    }
+    const int error = folder_.create(recording.file, file);
+    if (!error) return {};
+    if (recording.id) complain(index_.remove(recording.id));
+    recording.id = 0;
+    if (error != EEXIST) return failed(error);
+  }
+  return failed(EEXIST);
+}
+
+int Archive::add_lines(Recording& recording, OpenFile& file) const {
+  const std::string name = without_ending(recording.file) + std::string(kLines);
+  const int error = folder_.create(name, file);
+  if (!error) recording.lines = name;
+  return error;
+}
+
+int Archive::add_picture(Recording& recording, OpenFile& file) const {
+  const std::string name = without_ending(recording.file) + std::string(kPicture);
+  const int error = folder_.create(name, file);
+  if (!error) recording.picture = name;
+  return error;
+}
+
+void Archive::finish(Recording& recording, const OpenFile& file) {
+  if (const int error = file.sync(); error)
+    complain(in_quotes(folder_.path_of(recording.file)) + ": " + std::strerror(error));
+  measure(recording);
+  recording.open = false;
+  if (index_.is_open()) complain(index_.update(recording));
+}
+
+// The video last: as long as it is there, the row is, too.
+bool Archive::remove_files(const Recording& recording) {
+  const std::string base = without_ending(recording.file);
+  for (const std::string& name : {base + std::string(kLines), base + std::string(kPicture), recording.file}) {
+    const int error = folder_.remove(name);
+    if (!error) continue;
+    complain(in_quotes(folder_.path_of(name)) + " cannot be deleted: " + std::strerror(error));
+    return false;
+  }
+  return true;
+}
+
+void Archive::discard(const Recording& recording) {
+  if (remove_files(recording) && index_.is_open() && recording.id) complain(index_.remove(recording.id));
+}
+
+std::vector<std::string> Archive::retain(const Surroundings& now) {
+  std::vector<std::string> deleted;
+  std::vector<Recording> rows;
+  if (!index_.is_open()) return deleted;
+  complain(index_.read(rows));
+  std::erase_if(rows, [](const Recording& row) { return !is_recording(row); });
+  std::vector<Candidate> candidates;
+  for (Recording& row : rows) {
+    if (row.open) measure(row);
+    candidates.push_back({row.id, row.end, row.bytes, row.keep, row.open});
+  }
+  for (const std::int64_t id : retention_.expired(candidates, settings_.limits, now)) {
+    const auto row = std::ranges::find(rows, id, &Recording::id);
+    if (!remove_files(*row)) continue;
+    complain(index_.remove(id));
+    deleted.push_back(row->file);
+  }
+  return deleted;
+}
+
+std::string Archive::keep(const std::string& file, bool keep) {
+  if (!index_.is_open()) return "there is no index of recordings";
+  std::string name = file;
+  if (name.starts_with(settings_.folder + '/')) name.erase(0, settings_.folder.size() + 1);
+  return index_.set_keep(name, keep);
+}
+
+}  // namespace cerberus::record

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The recordings of one folder: their names, their rows in the index, their deletion. A recording is a video file and,
+// beside it under the same name, JSON lines (.jsonl) and a picture (.jpg); all three and the row live and die together.
+//
+// Order: row, file, ..., file complete and on the disk, row closed. What a killed process leaves open is put right at the
+// next start. Recordings go on where the index fails; such faults are complaints. Not thread-safe.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "record/folder.h"
+#include "record/index.h"
+#include "record/retention.h"
+
+namespace cerberus::record {
+
+class Archive {
+ public:
+  struct Settings {
+    std::string folder;
+    std::string index;  // a path; relative: below the folder; empty: no index, and so no retention
+    Limits limits;
+  };
+
+  // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it; one
+  // that a process left open is closed with what is there; one of a file without content is removed with it. A damaged
+  // index is renamed to NAME.damaged and begun anew.
+  void open(const Settings& settings, const Surroundings& now);
+  void set_limits(const Limits& limits) { settings_.limits = limits; }
+  void close();
+
+  // Makes the file of a recording: `name` and `ending`, or where that is taken `name`~1, `name`~2 ... Fills in
+  // `recording`'s file and id. Returns what is wrong; an empty string: nothing.
+  std::string begin(Recording& recording, const std::string& name, std::string_view ending, OpenFile& file);
+  // Makes a file beside it, and notes its name in `recording`. Returns an errno.
+  int add_lines(Recording& recording, OpenFile& file) const;
+  int add_picture(Recording& recording, OpenFile& file) const;
+  // Closes the row of a recording whose files are complete. `files` are written to the disk before.
+  void finish(Recording& recording, const OpenFile& file);
+  // Deletes the files and the row.
+  void discard(const Recording& recording);
+
+  // Applies retention. Returns the files that were deleted.
+  std::vector<std::string> retain(const Surroundings& now);
+  // Sets or clears `keep` of a file, by its name or its path. Returns what is wrong.
+  std::string keep(const std::string& file, bool keep);
+
+  // The faults of the index and of deletions since the last call, each once until it changes.
+  std::vector<std::string> take_complaints();
+
+ private:
+  void complain(std::string text);
+  std::string index_path() const;
+  void reconcile();
+  bool restore(Recording& row);
+  bool remove_files(const Recording& recording);
+  void measure(Recording& recording) const;
+
+  Settings settings_;
+  Folder folder_{"."};
+  Index index_;
+  Retention retention_;
+  std::vector<std::string> complaints_;
+  std::string last_complaint_;
+};
+
+}  // namespace cerberus::record

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "record/index.h"
+
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+
+#include "record/folder.h"
+
+namespace cerberus::record {
+
+namespace {
+
+constexpr int kPatience = 2000;  // ms that another process's change is waited for
+
+// The step from version k to k + 1 of the tables. Steps are never changed, only added.
+constexpr std::array kMigrations = {
+    "CREATE TABLE recordings ("
+    " id INTEGER PRIMARY KEY AUTOINCREMENT,"
+    " file TEXT NOT NULL UNIQUE,"         // below the folder of the recordings
+    " lines TEXT NOT NULL DEFAULT '',"    // JSON lines, ''
+    " picture TEXT NOT NULL DEFAULT '',"  // JPEG, ''
+    " camera TEXT NOT NULL DEFAULT '',"
+    " event INTEGER NOT NULL DEFAULT 0,"
+    " part INTEGER NOT NULL DEFAULT 1,"
+    " begin INTEGER NOT NULL,"  // ns since 1970, UTC
+    " end INTEGER NOT NULL,"
+    " reason TEXT NOT NULL DEFAULT '',"
+    " tracks TEXT NOT NULL DEFAULT '',"  // '4,7'
+    " kinds TEXT NOT NULL DEFAULT '',"   // 'group,person-like'
+    " rule TEXT NOT NULL DEFAULT '',"
+    " size INTEGER NOT NULL DEFAULT 0,"  // bytes of file, lines and picture
+    " open INTEGER NOT NULL DEFAULT 1,"
+    " keep INTEGER NOT NULL DEFAULT 0);"
+    "CREATE INDEX recordings_by_begin ON recordings (begin);",
+};
+
+// Other programs may write rows: a time that differences would overflow with becomes 1970 or a far future.
+Time plausible(std::int64_t nanoseconds) {
+  return Time(std::clamp(nanoseconds, std::int64_t{0}, Time::max().count() / 4));
+}
+
+constexpr char kColumns[] =
+    "file, lines, picture, camera, event, part, begin, end, reason, tracks, kinds, rule, size, open";
+
+}  // namespace
+
+// A prepared statement whose parameters are bound in order. Texts are bound without a copy: they outlive it.
+class Index::Statement {
+ public:
+  Statement(sqlite3* database, const std::string& sql) {
+    sqlite3_prepare_v2(database, sql.c_str(), -1, &statement_, nullptr);
+  }
+  ~Statement() { sqlite3_finalize(statement_); }
+  Statement(const Statement&) = delete;
+  Statement& operator=(const Statement&) = delete;
+
+  Statement& bind(std::string_view text) {
+    sqlite3_bind_text(statement_, ++bound_, text.data(), static_cast<int>(text.size()), SQLITE_STATIC);
+    return *this;
+  }
+  Statement& bind(std::int64_t number) {
+    sqlite3_bind_int64(statement_, ++bound_, number);
+    return *this;
+  }
+  // SQLITE_ROW, SQLITE_DONE, or an error; SQLITE_MISUSE where the statement could not be prepared.
+  int step() { return statement_ ? sqlite3_step(statement_) : SQLITE_MISUSE; }
+  std::int64_t number(int column) { return sqlite3_column_int64(statement_, column); }
+  std::string text(int column) {
+    const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+    return bytes ? std::string(bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column)))
+                 : std::string();
+  }
+  Statement& bind(const Recording& row) {
+    bind(row.file).bind(row.lines).bind(row.picture).bind(row.camera);
+    bind(std::int64_t{row.event}).bind(std::int64_t{row.part}).bind(row.begin.count()).bind(row.end.count());
+    bind(row.reason).bind(row.tracks).bind(row.kinds).bind(row.rule);
+    return bind(static_cast<std::int64_t>(row.bytes)).bind(std::int64_t{row.open});
+  }
+
+ private:
+  sqlite3_stmt* statement_ = nullptr;
+  int bound_ = 0;
+};
+
+void Index::Closer::operator()(sqlite3* database) const {
+  sqlite3_close_v2(database);
+}
+
+Index::Index() = default;
+Index::~Index() = default;
+
+bool Index::available() {
+  return true;
+}
+
+std::string Index::fault() const {
+  return std::string("the index of recordings: ") + sqlite3_errmsg(database_.get());
+}
+
+std::string Index::run(const char* sql) {
+  return sqlite3_exec(database_.get(), sql, nullptr, nullptr, nullptr) == SQLITE_OK ? std::string() : fault();
+}
+
+std::string Index::open(const std::string& path, bool& damaged) {
+  close();
+  damaged = false;
+  // Made here, so that its mode is ours; SQLite gives its journal files the same one.
+  const int made = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, 0640);
+  if (made < 0) return "the index of recordings " + in_quotes(path) + ": " + std::strerror(errno);
+  ::close(made);
+  sqlite3* database = nullptr;
+  const int result =
+      sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READWRITE | SQLITE_OPEN_FULLMUTEX, nullptr);
+  database_.reset(database);
+  if (result != SQLITE_OK) {
+    std::string text = database ? fault() : "out of memory";
+    close();
+    return text;
+  }
+  sqlite3_busy_timeout(database, kPatience);
+  sqlite3_extended_result_codes(database, 1);
+  // FULL: what is acknowledged outlasts a power cut. A schema that calls functions of its own is not trusted.
+  std::string text =
+      run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF;");
+  if (text.empty()) {
+    Statement check(database, "PRAGMA quick_check(1)");
+    if (check.step() != SQLITE_ROW || check.text(0) != "ok") {
+      text = "the index of recordings " + in_quotes(path) + " is damaged";
+      damaged = true;
+    }
+  }
+  if (text.empty()) text = migrate();
+  const int code = sqlite3_errcode(database);
+  damaged |= !text.empty() && (code == SQLITE_NOTADB || code == SQLITE_CORRUPT);
+  if (!text.empty()) close();
+  return text;
+}
+
+void Index::close() {
+  database_.reset();
+}
+
+// In one transaction, so that two recorders that start together do it once.
+std::string Index::migrate() {
+  if (std::string text = run("BEGIN IMMEDIATE"); !text.empty()) return text;
+  std::string text;
+  std::int64_t version = 0;
+  {
+    Statement read(database_.get(), "PRAGMA user_version");
+    if (read.step() == SQLITE_ROW) version = read.number(0);
+  }
+  if (version < 0 || version > static_cast<std::int64_t>(kMigrations.size()))
+    text = "the index of recordings has version " + std::to_string(version) +
+           ", which is newer than this program: update it, or name another index";
+  for (auto k = static_cast<std::size_t>(version); text.empty() && k < kMigrations.size(); ++k) {
+    text = run(kMigrations[k]);
+    if (text.empty()) text = run(("PRAGMA user_version = " + std::to_string(k + 1)).c_str());
+  }
+  const std::string ended = run(text.empty() ? "COMMIT" : "ROLLBACK");
+  return text.empty() ? ended : text;
+}
+
+std::string Index::add(Recording& recording, bool& taken) {
+  taken = false;
+  Statement insert(database_.get(), std::string("INSERT INTO recordings (") + kColumns +
+                                        ") VALUES (?,?,?,?,?,?,?,?,?,?,?,?,?,?)");
+  const int result = insert.bind(recording).step();
+  taken = result == SQLITE_CONSTRAINT_UNIQUE;
+  if (result != SQLITE_DONE) return fault();
+  recording.id = sqlite3_last_insert_rowid(database_.get());
+  return {};
+}
+
+std::string Index::update(Recording& recording) {
+  Statement change(database_.get(), std::string("UPDATE recordings SET (") + kColumns +
+                                        ") = (?,?,?,?,?,?,?,?,?,?,?,?,?,?) WHERE id = ?");
+  if (change.bind(recording).bind(recording.id).step() != SQLITE_DONE) return fault();
+  if (sqlite3_changes(database_.get()) > 0) return {};
+  bool taken = false;
+  return add(recording, taken);
+}
+
+std::string Index::remove(std::int64_t id) {
+  Statement statement(database_.get(), "DELETE FROM recordings WHERE id = ?");
+  return statement.bind(id).step() == SQLITE_DONE ? std::string() : fault();
+}
+
+std::string Index::set_keep(std::string_view file, bool keep) {
+  Statement statement(database_.get(), "UPDATE recordings SET keep = ? WHERE file = ?");
+  if (statement.bind(std::int64_t{keep}).bind(file).step() != SQLITE_DONE) return fault();
+  if (sqlite3_changes(database_.get()) == 0) return "the index of recordings has no file " + in_quotes(file);
+  return {};
+}
+
+std::string Index::read(std::vector<Recording>& rows) {
+  rows.clear();
+  Statement select(database_.get(),
+                   std::string("SELECT ") + kColumns + ", id, keep FROM recordings ORDER BY id");
+  int result = SQLITE_DONE;
+  while ((result = select.step()) == SQLITE_ROW) {
+    Recording& row = rows.emplace_back();
+    row.file = select.text(0), row.lines = select.text(1), row.picture = select.text(2),
+    row.camera = select.text(3);
+    row.event = static_cast<std::uint32_t>(select.number(4));
+    row.part = static_cast<std::uint32_t>(select.number(5));
+    row.begin = plausible(select.number(6)), row.end = plausible(select.number(7));
+    row.reason = select.text(8), row.tracks = select.text(9), row.kinds = select.text(10),
+    row.rule = select.text(11);
+    row.bytes = static_cast<std::uint64_t>(std::max<std::int64_t>(0, select.number(12)));
+    row.open = select.number(13) != 0;
+    row.id = select.number(14);
+    row.keep = select.number(15) != 0;
+  }
+  return result == SQLITE_DONE ? std::string() : fault();
+}
+
+}  // namespace cerberus::record

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The index of recordings: an SQLite database with a row a file, which other programs may read while it is written (WAL)
+// and whose column `keep` they may set. Every method that can fail returns what is wrong in words for a user; an empty
+// string: nothing. Not thread-safe; several processes may have the same database open.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "record/unit.h"
+
+struct sqlite3;
+
+namespace cerberus::record {
+
+// A row. Names of files are relative to the folder of the recordings; an empty one: there is none.
+struct Recording {
+  std::int64_t id = 0;  // rises with time
+  std::string file, lines, picture;
+  std::string camera;
+  std::uint32_t event = 0, part = 1;
+  Time begin{}, end{};        // UTC, since 1970
+  std::string reason;         // the trigger
+  std::string tracks, kinds;  // identities, kinds of object; parted by commas
+  std::string rule;           // of the fusion
+  std::uint64_t bytes = 0;    // of all its files
+  bool open = true;           // is being written, or was when the process ended
+  bool keep = false;          // retention leaves it
+};
+
+class Index {
+ public:
+  // Whether this build has SQLite; without it open() always fails.
+  static bool available();
+
+  Index();
+  ~Index();
+
+  // Opens the database or makes it (mode 0640), and brings older versions of its tables up to the present one. Fails for
+  // a file that is no database or is damaged (`damaged` becomes true), and for one of a newer version.
+  std::string open(const std::string& path, bool& damaged);
+  void close();
+  bool is_open() const { return database_ != nullptr; }
+
+  // Adds a row, and sets its id. `taken` becomes true if there is a row with that file.
+  std::string add(Recording& recording, bool& taken);
+  // Overwrites all of a row but `keep`; adds it anew if it is gone.
+  std::string update(Recording& recording);
+  std::string remove(std::int64_t id);
+  std::string set_keep(std::string_view file, bool keep);
+  // Reads the rows by rising id.
+  std::string read(std::vector<Recording>& rows);
+
+ private:
+  class Statement;
+  std::string run(const char* sql);
+  std::string migrate();
+  std::string fault() const;
+
+  struct Closer {
+    void operator()(sqlite3* database) const;
+  };
+  std::unique_ptr<sqlite3, Closer> database_;
+};
+
+}  // namespace cerberus::record

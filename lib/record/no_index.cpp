@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The index of a build without SQLite (meson option `sqlite`): there is none.
+#include "record/index.h"
+
+namespace cerberus::record {
+
+namespace {
+constexpr char kNone[] = "this build has no index of recordings: it was made without SQLite";
+}
+
+void Index::Closer::operator()(sqlite3*) const {}
+Index::Index() = default;
+Index::~Index() = default;
+bool Index::available() {
+  return false;
+}
+std::string Index::open(const std::string&, bool& damaged) {
+  damaged = false;
+  return kNone;
+}
+void Index::close() {}
+std::string Index::add(Recording&, bool& taken) {
+  taken = false;
+  return kNone;
+}
+std::string Index::update(Recording&) {
+  return kNone;
+}
+std::string Index::remove(std::int64_t) {
+  return kNone;
+}
+std::string Index::set_keep(std::string_view, bool) {
+  return kNone;
+}
+std::string Index::read(std::vector<Recording>&) {
+  return kNone;
+}
+
+}  // namespace cerberus::record

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "session.hpp"
+
+#include <algorithm>
+
+#include "shared/clock_times.hpp"
+
+namespace cerberus::plugin {
+
+namespace {
+
+// A stream that is not live waits while more bytes than this wait for the disk.
+constexpr guint64 kPatience = 16 << 20;
+// Where times fall back by more than this the stream has begun anew. Derived: above every reordering of frames.
+constexpr record::Time kBroken = record::Parameters{}.most_reordering;
+
+// The buffer as a unit, with running times. False where it has none.
+bool read_unit(const Input& input, GstBuffer* buffer, record::Unit& unit) {
+  const auto running = [&](GstClockTime time) -> std::optional<record::Time> {
+    if (!GST_CLOCK_TIME_IS_VALID(time) || input.segment.format != GST_FORMAT_TIME) return std::nullopt;
+    guint64 result = 0;
+    const int sign = gst_segment_to_running_time_full(&input.segment, GST_FORMAT_TIME, time, &result);
+    if (sign == 0) return std::nullopt;
+    return sign * time_of(result);
+  };
+  const auto presented = running(GST_BUFFER_PTS(buffer)), decoded = running(GST_BUFFER_DTS(buffer));
+  if (!presented && !decoded) return false;
+  unit.presentation = presented ? *presented : *decoded;
+  unit.decode = decoded ? *decoded : *presented;
+  unit.bytes = gst_buffer_get_size(buffer);
+  unit.format = input.format;
+  unit.keyframe = !GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DELTA_UNIT);
+  unit.payload = record::Payload(gst_buffer_ref(buffer),
+                                 [](void* payload) { gst_buffer_unref(static_cast<GstBuffer*>(payload)); });
+  return true;
+}
+
+void forget_stream(Input& input) {
+  input.eos = false;
+  input.decode.reset();
+  gst_segment_init(&input.segment, GST_FORMAT_UNDEFINED);
+}
+
+}  // namespace
+
+Input& Session::add_input(GstPad* pad, int track) {
+  auto input = std::make_unique<Input>();
+  input->pad = pad;
+  input->track = track;
+  forget_stream(*input);
+  const std::lock_guard guard(lock_);
+  inputs_.push_back(std::move(input));
+  return *inputs_.back();
+}
+
+void Session::remove_input(GstPad* pad) {
+  const std::lock_guard guard(lock_);
+  const auto found = std::ranges::find(inputs_, pad, [](const auto& input) { return input->pad; });
+  if (found == inputs_.end()) return;
+  if ((*found)->track == kAnalysisTrack)
+    recorder_.end_analysis();
+  else
+    recorder_.set_audio_format((*found)->track, -1);
+  inputs_.erase(found);
+}
+
+int Session::next_audio_track() {
+  const std::lock_guard guard(lock_);
+  return tracks_++;
+}
+
+// Also once the analysis has ended: the metadata that the encoded video carries is the same.
+bool Session::has_analysis() const {
+  for (const auto& input : inputs_)
+    if (input->track == kAnalysisTrack && gst_pad_is_linked(input->pad)) return true;
+  return false;
+}
+
+// The settings that may change while the element runs. Under the lock.
+void Session::apply_settings() {
+  const auto changed = settings_.changes();
+  if (!changed) return;
+  recorder_.configure(event_settings(*changed));
+  triggers_.track = changed->trigger_track;
+  triggers_.fusion = changed->trigger_fusion;
+  triggers_.pir = changed->trigger_pir;
+  camera_name_ = changed->camera_name;
+  wanted_ = {changed->json_lines, changed->picture};
+  files_.configure(file_settings(*changed));
+  writer_.set_limits(archive_settings(*changed).limits);
+  if (changed->trigger_zones == zones_) return;
+  zones_ = changed->trigger_zones;
+  if (const std::string fault = triggers_.zones.parse(zones_); !fault.empty())
+    warn_("trigger-" + fault + "; the zones of before stay");
+}
+
+// Under the lock.
+void Session::apply(const Trigger& trigger, record::Time time) {
+  using Kind = Trigger::Kind;
+  if (trigger.kind == Kind::hold)
+    recorder_.start(time, trigger.reason);
+  else if (trigger.kind == Kind::release)
+    recorder_.stop(time);
+  else if (trigger.kind == Kind::moment || recorder_.active())
+    recorder_.trigger(time, trigger.reason);
+}
+
+void Session::begin(Writer::Report report, Writer::Warn warn) {
+  const RecorderSettings settings = settings_.snapshot();
+  live_.reset();
+  warn_ = warn;
+  writer_.start(archive_settings(settings), std::move(report), std::move(warn));
+  const std::lock_guard guard(lock_);
+  settings_.refresh();
+  apply_settings();
+  for (const auto& input : inputs_) {
+    input->notes.reset();
+    input->stamps.reset();
+  }
+  if (has_analysis()) recorder_.expect_analysis();
+}
+
+// Also without EOS the files are complete: Ctrl-C of gst-launch.
+void Session::end() {
+  {
+    const std::lock_guard guard(lock_);
+    recorder_.end_analysis();
+    recorder_.finish();
+    recorder_.reset();
+    files_.journal().reset();
+    for (auto& input : inputs_) forget_stream(*input);
+  }
+  writer_.stop();
+  const std::lock_guard guard(lock_);
+  files_.forget();
+}
+
+bool Session::set_caps(Input& input, GstCaps* caps) {
+  const std::lock_guard guard(lock_);
+  if (input.track <= 0) {
+    input.notes.set_caps(caps);
+    if (input.track == kAnalysisTrack || !has_analysis()) triggers_.frame = input.notes.size();
+    if (input.track == kAnalysisTrack) return true;
+    if (input.notes.size().width <= 0) return false;
+  }
+  input.format = files_.format_of(caps);
+  if (input.track > 0) recorder_.set_audio_format(input.track, input.format);
+  return true;
+}
+
+void Session::set_segment(Input& input, GstEvent* event) {
+  const std::lock_guard guard(lock_);
+  gst_event_copy_segment(event, &input.segment);
+}
+
+void Session::begin_stream(Input& input) {
+  const std::lock_guard guard(lock_);
+  input.eos = false;
+}
+
+// The video's times begin anew. Under the lock.
+void Session::restart() {
+  recorder_.reset();
+  files_.journal().reset();
+}
+
+void Session::flush(Input& input) {
+  const std::lock_guard guard(lock_);
+  forget_stream(input);
+  if (input.track == 0) restart();
+}
+
+void Session::gap(Input& input, GstEvent* event) {
+  if (input.track != kAnalysisTrack) return;
+  GstClockTime time = GST_CLOCK_TIME_NONE;
+  gst_event_parse_gap(event, &time, nullptr);
+  const std::lock_guard guard(lock_);
+  const GstClockTime running = gst_segment_to_running_time(&input.segment, GST_FORMAT_TIME, time);
+  if (!GST_CLOCK_TIME_IS_VALID(running)) return;
+  recorder_.analysed(time_of(running));
+  advance_journal();
+}
+
+void Session::add_note(Input& input, GstBuffer* buffer, const CerberusStamp& stamp, record::Time time) {
+  if (auto note = input.notes.note(buffer, stamp, time, files_.journal(), wanted_))
+    files_.journal().add(std::move(*note));
+}
+
+void Session::advance_journal() {
+  files_.journal().advance(recorder_.reached(), recorder_.oldest());
+}
+
+bool Session::add_video(Input& input, GstBuffer* buffer) {
+  record::Unit unit;
+  if (!read_unit(input, buffer, unit)) return false;
+  if (!live_) live_ = is_live(input.pad);
+  files_.set_patient(!live_.value_or(true));
+  if (input.decode && unit.decode < *input.decode - kBroken) {
+    GST_WARNING_OBJECT(input.pad, "times fall back: the stream begins anew");
+    restart();
+  } else if (input.decode) {
+    unit.decode = std::max(unit.decode, *input.decode);
+  }
+  input.decode = unit.decode;
+  const record::Time time = unit.presentation;
+  const CerberusStamp stamp = files_.stamps().frame(
+      input.pad, buffer, clock_time(std::max(time, record::Time::zero())), camera_name_);
+  recorder_.push_video(std::move(unit));
+  if (!has_analysis()) {
+    add_note(input, buffer, stamp, time);
+    if (const auto trigger = trigger_of(buffer, triggers_)) apply(*trigger, time);
+  }
+  advance_journal();
+  return true;
+}
+
+bool Session::add_audio(Input& input, GstBuffer* buffer) {
+  record::Unit unit;
+  if (!read_unit(input, buffer, unit)) return false;
+  unit.keyframe = true;
+  recorder_.push_audio(input.track, std::move(unit));
+  return true;
+}
+
+bool Session::add_analysis(Input& input, GstBuffer* buffer) {
+  const GstClockTime time = running_time_of(input.segment, buffer);
+  if (!GST_CLOCK_TIME_IS_VALID(time)) return false;
+  const CerberusStamp stamp = input.stamps.frame(input.pad, buffer, time, camera_name_);
+  add_note(input, buffer, stamp, time_of(time));
+  if (const auto trigger = trigger_of(buffer, triggers_)) apply(*trigger, time_of(time));
+  recorder_.analysed(time_of(time));
+  advance_journal();
+  return true;
+}
+
+bool Session::add(Input& input, GstBuffer* buffer) {
+  const std::lock_guard guard(lock_);
+  if (input.track > 0) return add_audio(input, buffer);
+  apply_settings();
+  return input.track == 0 ? add_video(input, buffer) : add_analysis(input, buffer);
+}
+
+void Session::wait_for_disk(GstPad* pad) {
+  bool live = true;
+  {
+    const std::lock_guard guard(lock_);
+    live = live_.value_or(true);
+  }
+  if (!live) writer_.wait_below(kPatience, [pad] { return !GST_PAD_IS_FLUSHING(pad); });
+}
+
+// What the analysis has yet to report may need frames of before: the end is that of all pads.
+bool Session::end_of_stream(Input& input) {
+  const std::lock_guard guard(lock_);
+  input.eos = true;
+  if (input.track == kAnalysisTrack) recorder_.end_analysis();
+  for (const auto& each : inputs_)
+    if (!each->eos && gst_pad_is_linked(each->pad)) return false;
+  recorder_.finish();
+  files_.journal().reset();
+  return true;
+}
+
+void Session::start_event(const char* reason) {
+  const std::lock_guard guard(lock_);
+  recorder_.start(recorder_.newest(), reason ? reason : "application");
+}
+
+void Session::stop_event() {
+  const std::lock_guard guard(lock_);
+  recorder_.stop(recorder_.newest());
+}
+
+void Session::handle(GstMessage* message) {
+  const std::lock_guard guard(lock_);
+  GstClockTime time = GST_CLOCK_TIME_NONE;
+  if (const auto trigger = trigger_of(message, triggers_, time))
+    apply(*trigger, GST_CLOCK_TIME_IS_VALID(time) ? time_of(time) : recorder_.newest());
+}
+
+void Session::handle(GstEvent* event) {
+  const std::lock_guard guard(lock_);
+  if (const auto trigger = trigger_of(event, triggers_)) apply(*trigger, recorder_.newest());
+}
+
+void Session::file_failed(std::uint32_t file, bool empty) {
+  const std::lock_guard guard(lock_);
+  files_.drop(file);
+  recorder_.file_failed(file, empty);
+}
+
+}  // namespace cerberus::plugin

@@ -1,0 +1,313 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "record/archive.h"
+
+#include <check.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <filesystem>
+#include <fstream>
+
+#include "support/suite.h"
+#include "support/temporary_folder.h"
+
+using namespace cerberus;
+using namespace cerberus::record;
+namespace fs = std::filesystem;
+using std::chrono::days;
+using std::chrono::hours;
+
+namespace {
+
+constexpr Surroundings kNow{days(1000), hours(1), 1 << 30};
+
+// An archive of a folder of its own.
+struct Rig {
+  Rig() { open(); }
+  void open(const Limits& limits = {}) {
+    archive.open({folder.path, "index.sqlite", limits}, kNow);
+    complaints = archive.take_complaints();
+  }
+  // A recording of so many bytes and 10 of JSON, which ended on a day.
+  Recording record(const std::string& name, int day, std::size_t bytes = 100) {
+    Recording row = begin(name, day);
+    write(row.file, bytes);
+    archive.finish(row, file);
+    file.close();
+    return row;
+  }
+  // The same, not closed.
+  Recording begin(const std::string& name, int day) {
+    Recording row;
+    row.begin = row.end = days(day);
+    ck_assert_str_eq(archive.begin(row, name, ".mp4", file).c_str(), "");
+    OpenFile lines;
+    ck_assert_int_eq(archive.add_lines(row, lines), 0);
+    ck_assert_int_eq(lines.write("{\"a\":100}\n", 10), 0);
+    return row;
+  }
+  void write(const std::string& name, std::size_t bytes) const {
+    std::ofstream(folder.path + '/' + name) << std::string(bytes, 'x');
+  }
+  bool has(const std::string& name) const { return fs::exists(folder.path + '/' + name); }
+  std::vector<Recording> rows() const {
+    Index index;
+    bool damaged = false;
+    std::vector<Recording> read;
+    ck_assert_str_eq(index.open(folder.path + "/index.sqlite", damaged).c_str(), "");
+    ck_assert_str_eq(index.read(read).c_str(), "");
+    return read;
+  }
+
+  TemporaryFolder folder;
+  Archive archive;
+  OpenFile file;
+  std::vector<std::string> complaints;
+};
+
+using Names = std::vector<std::string>;
+
+}  // namespace
+
+START_TEST(a_recording_has_its_files_and_a_row_that_is_open_until_it_is_finished) {
+  Rig rig;
+  Recording row = rig.begin("a/b", 999);
+  ck_assert(rig.has("a/b.mp4") && rig.has("a/b.jsonl"));
+  ck_assert(rig.rows().at(0).open);
+  rig.write("a/b.mp4", 500);
+  rig.archive.finish(row, rig.file);
+  const Recording closed = rig.rows().at(0);
+  ck_assert(!closed.open);
+  ck_assert_uint_eq(closed.bytes, 510);
+  ck_assert_str_eq(closed.lines.c_str(), "a/b.jsonl");
+  struct stat about{};
+  for (const char* name : {"/a/b.mp4", "/a/b.jsonl"}) {
+    ck_assert_int_eq(stat((rig.folder.path + name).c_str(), &about), 0);
+    ck_assert_int_eq(about.st_mode & 0777 & ~0640, 0);
+  }
+}
+END_TEST
+
+START_TEST(a_name_that_is_taken_in_the_folder_or_the_index_gets_a_number) {
+  Rig rig;
+  rig.write("a.jpg", 1);
+  ck_assert_str_eq(rig.record("a", 999).file.c_str(), "a~1.mp4");
+  ck_assert_str_eq(rig.record("a", 999).file.c_str(), "a~2.mp4");
+  fs::remove(rig.folder.path + "/a~2.mp4");
+  fs::remove(rig.folder.path + "/a~2.jsonl");  // the row is there
+  ck_assert_str_eq(rig.record("a", 999).file.c_str(), "a~3.mp4");
+}
+END_TEST
+
+START_TEST(names_that_lead_out_of_the_folder_are_refused) {
+  Rig rig;
+  const TemporaryFolder outside;
+  fs::create_directory_symlink(outside.path, rig.folder.path + "/link");
+  fs::create_symlink(outside.path + "/there.mp4", rig.folder.path + "/file.mp4");
+  for (const std::string name : {"../a", "/tmp/a", "a/../../b", "link/a", "a//b", "a/./b"}) {
+    Recording row;
+    ck_assert_msg(!rig.archive.begin(row, name, ".mp4", rig.file).empty(), "\"%s\" was made", name.c_str());
+  }
+  ck_assert(fs::is_empty(outside.path));
+  ck_assert_str_eq(rig.record("file", 999).file.c_str(),
+                   "file~1.mp4");  // through the link nothing is written
+  ck_assert(fs::is_empty(outside.path));
+  ck_assert_uint_eq(rig.rows().size(), 1);
+}
+END_TEST
+
+START_TEST(a_folder_that_is_gone_is_not_made) {
+  Rig rig;
+  fs::rename(rig.folder.path, rig.folder.path + "-away");
+  Recording row;
+  const std::string fault = rig.archive.begin(row, "a", ".mp4", rig.file);
+  ck_assert(fault.find(rig.folder.path) != std::string::npos);
+  ck_assert(!fs::exists(rig.folder.path));
+  fs::rename(rig.folder.path + "-away", rig.folder.path);
+}
+END_TEST
+
+START_TEST(retention_deletes_file_lines_picture_and_row_together_and_empty_folders) {
+  Rig rig;
+  rig.record("old/a", 990);
+  Recording kept = rig.record("old/b", 990);
+  rig.record("new/c", 999);
+  rig.write("old/a.jpg", 5);
+  ck_assert_str_eq(rig.archive.keep(rig.folder.path + "/old/b.mp4", true).c_str(), "");
+  const Names expected = {"old/a.mp4"};
+  ck_assert(rig.archive.retain(kNow) == expected);
+  ck_assert(!rig.has("old/a.mp4") && !rig.has("old/a.jsonl") && !rig.has("old/a.jpg"));
+  ck_assert(rig.has("old/b.mp4") && rig.has("old/b.jsonl") && rig.has("new/c.mp4"));
+  ck_assert_uint_eq(rig.rows().size(), 2);
+  ck_assert_str_eq(rig.archive.keep("old/b.mp4", false).c_str(), "");
+  ck_assert_uint_eq(rig.archive.retain(kNow).size(), 1);
+  ck_assert(!rig.has("old") && rig.has("new"));
+}
+END_TEST
+
+START_TEST(a_recording_that_is_being_written_is_not_deleted) {
+  Rig rig;
+  rig.begin("a", 900);
+  rig.record("b", 999);
+  rig.archive.set_limits({days(7), 1, 0});
+  ck_assert(rig.archive.retain(kNow) == Names{"b.mp4"});
+  ck_assert(rig.has("a.mp4"));
+}
+END_TEST
+
+START_TEST(what_a_killed_process_left_is_closed_with_what_is_there) {
+  Rig rig;
+  rig.record("closed", 999);
+  const Recording open = rig.begin("open", 999);
+  rig.write("open.mp4", 300);
+  rig.begin("empty", 999);  // closes the lock of the one before, as the end of a process does
+  rig.file.close();
+  rig.open();
+  ck_assert_uint_eq(rig.complaints.size(), 0);
+  const auto rows = rig.rows();
+  ck_assert_uint_eq(rows.size(), 2);
+  ck_assert_str_eq(rows[1].file.c_str(), "open.mp4");
+  ck_assert_str_eq(rows[1].lines.c_str(), "open.jsonl");
+  ck_assert(!rows[1].open && rows[1].end > open.begin);
+  ck_assert_uint_eq(rows[1].bytes, 310);
+  ck_assert(!rig.has("empty.mp4") && !rig.has("empty.jsonl"));
+}
+END_TEST
+
+START_TEST(what_another_recorder_is_writing_is_left_alone) {
+  Rig rig;
+  rig.begin("open", 999);
+  Archive other;
+  other.open({rig.folder.path, "index.sqlite", {}}, kNow);
+  ck_assert(rig.rows().at(0).open);
+  ck_assert(rig.has("open.mp4"));
+}
+END_TEST
+
+START_TEST(a_row_whose_file_is_gone_is_removed_with_what_is_beside_it) {
+  Rig rig;
+  rig.record("a", 999);
+  rig.record("b", 999);
+  fs::remove(rig.folder.path + "/a.mp4");
+  rig.open();
+  ck_assert(!rig.has("a.jsonl"));
+  ck_assert_uint_eq(rig.rows().size(), 1);
+}
+END_TEST
+
+START_TEST(rows_stay_where_no_file_is_there_because_a_disk_is_not_mounted) {
+  Rig rig;
+  rig.record("a", 999);
+  rig.record("b", 999);
+  for (const char* name : {"/a.mp4", "/b.mp4"})
+    fs::rename(rig.folder.path + name, rig.folder.path + name + ".away");
+  rig.open();
+  ck_assert_uint_eq(rig.complaints.size(), 1);
+  ck_assert_uint_eq(rig.rows().size(), 2);
+}
+END_TEST
+
+START_TEST(files_of_others_are_never_touched_whatever_the_index_says) {
+  Rig rig;
+  const TemporaryFolder outside;
+  std::ofstream(outside.path + "/precious.mp4") << "x";
+  rig.write("notes.txt", 10);
+  rig.write("film.mp4", 10);  // without a row
+  rig.record("a", 999);
+  {
+    Index index;
+    bool damaged = false, taken = false;
+    ck_assert_str_eq(index.open(rig.folder.path + "/index.sqlite", damaged).c_str(), "");
+    for (const std::string& name : {"../" + fs::path(outside.path).filename().string() + "/precious.mp4",
+                                    outside.path + "/precious.mp4", std::string("notes.txt")}) {
+      Recording row;
+      row.file = name;
+      row.open = false;
+      row.begin = row.end = days(1);
+      ck_assert_str_eq(index.add(row, taken).c_str(), "");
+    }
+    Recording row;
+    row.file = "b.mp4";
+    row.lines = "notes.txt";  // another file's name in a row of ours
+    row.begin = row.end = days(1);
+    ck_assert_str_eq(index.add(row, taken).c_str(), "");
+  }
+  rig.archive.retain(kNow);
+  rig.open({days(7), 1, std::uint64_t{1} << 60});  // everything is too much
+  ck_assert(fs::exists(outside.path + "/precious.mp4"));
+  ck_assert(rig.has("notes.txt") && rig.has("film.mp4"));
+  ck_assert(!rig.has("a.mp4"));
+  ck_assert(rig.rows().empty());
+  ck_assert_uint_ge(rig.complaints.size(), 1);
+}
+END_TEST
+
+START_TEST(a_damaged_index_is_put_aside_and_recording_goes_on) {
+  Rig rig;
+  rig.record("a", 999);
+  rig.archive.close();
+  rig.write("index.sqlite", 5000);
+  rig.open();
+  ck_assert_uint_eq(rig.complaints.size(), 1);
+  ck_assert(rig.complaints[0].find("index.sqlite.damaged") != std::string::npos);
+  ck_assert(rig.has("index.sqlite.damaged") && rig.has("a.mp4"));
+  rig.record("b", 999);
+  ck_assert_uint_eq(rig.rows().size(), 1);
+}
+END_TEST
+
+START_TEST(a_deletion_that_fails_is_reported_once_and_the_row_stays) {
+  if (geteuid() == 0) return;  // root may delete everything
+  Rig rig;
+  rig.record("old/a", 900);
+  rig.record("b", 999);
+  chmod((rig.folder.path + "/old").c_str(), 0500);
+  for (int k = 0; k < 3; ++k) ck_assert(rig.archive.retain(kNow).empty());
+  ck_assert_uint_eq(rig.archive.take_complaints().size(), 1);
+  ck_assert_uint_eq(rig.rows().size(), 2);
+  chmod((rig.folder.path + "/old").c_str(), 0700);
+}
+END_TEST
+
+START_TEST(without_an_index_files_are_made_all_the_same_and_nothing_is_deleted) {
+  const TemporaryFolder folder;
+  Archive archive;
+  archive.open({folder.path, "", {Time(1), 1, 0}}, kNow);
+  Recording row;
+  OpenFile file;
+  ck_assert_str_eq(archive.begin(row, "a", ".mkv", file).c_str(), "");
+  ck_assert_int_eq(file.write("x", 1), 0);
+  archive.finish(row, file);
+  ck_assert(archive.retain(kNow).empty());
+  ck_assert(archive.take_complaints().empty());
+  ck_assert(fs::exists(folder.path + "/a.mkv"));
+  ck_assert_str_ne(archive.keep("a.mkv", true).c_str(), "");
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("archive");
+  TCase* cases = tcase_create("archive");
+  for (const TTest* test : {a_recording_has_its_files_and_a_row_that_is_open_until_it_is_finished,
+                            a_name_that_is_taken_in_the_folder_or_the_index_gets_a_number,
+                            names_that_lead_out_of_the_folder_are_refused, a_folder_that_is_gone_is_not_made,
+                            retention_deletes_file_lines_picture_and_row_together_and_empty_folders,
+                            a_recording_that_is_being_written_is_not_deleted,
+                            what_a_killed_process_left_is_closed_with_what_is_there,
+                            what_another_recorder_is_writing_is_left_alone,
+                            a_row_whose_file_is_gone_is_removed_with_what_is_beside_it,
+                            rows_stay_where_no_file_is_there_because_a_disk_is_not_mounted,
+                            files_of_others_are_never_touched_whatever_the_index_says,
+                            a_damaged_index_is_put_aside_and_recording_goes_on,
+                            a_deletion_that_fails_is_reported_once_and_the_row_stays,
+                            without_an_index_files_are_made_all_the_same_and_nothing_is_deleted})
+    tcase_add_test(cases, test);
+  suite_add_tcase(suite, cases);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}

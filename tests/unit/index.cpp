@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "record/index.h"
+
+#include <check.h>
+#include <fcntl.h>
+#include <sqlite3.h>
+#include <sys/stat.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "support/suite.h"
+#include "support/temporary_folder.h"
+
+using namespace cerberus;
+using namespace cerberus::record;
+
+namespace {
+
+Recording row(const std::string& file) {
+  Recording made;
+  made.file = file;
+  made.camera = "yard's";
+  made.event = 3;
+  made.part = 2;
+  made.begin = Time(1'795'389'333'736'236'000);
+  made.end = made.begin + std::chrono::seconds(9);
+  made.reason = "track 7";
+  return made;
+}
+
+std::vector<Recording> rows_of(Index& index) {
+  std::vector<Recording> rows;
+  ck_assert_str_eq(index.read(rows).c_str(), "");
+  return rows;
+}
+
+void open(Index& index, const std::string& path) {
+  bool damaged = true;
+  ck_assert_str_eq(index.open(path, damaged).c_str(), "");
+  ck_assert(!damaged);
+}
+
+// What the program of SQLite itself reads from the database.
+std::string ask(const std::string& path, const char* sql) {
+  sqlite3* database = nullptr;
+  ck_assert_int_eq(sqlite3_open(path.c_str(), &database), SQLITE_OK);
+  std::string text;
+  sqlite3_exec(
+      database, sql,
+      [](void* to, int columns, char** values, char**) {
+        for (int k = 0; k < columns; ++k)
+          *static_cast<std::string*>(to) += std::string(values[k] ? values[k] : "-") + '|';
+        return 0;
+      },
+      &text, nullptr);
+  sqlite3_close(database);
+  return text;
+}
+
+}  // namespace
+
+START_TEST(a_row_is_read_as_it_was_written) {
+  const TemporaryFolder folder;
+  Index index;
+  open(index, folder.path + "/i.sqlite");
+  Recording written = row("a/b.mp4");
+  bool taken = true;
+  ck_assert_str_eq(index.add(written, taken).c_str(), "");
+  ck_assert(!taken);
+  written.lines = "a/b.jsonl", written.picture = "a/b.jpg", written.tracks = "4,7", written.kinds = "group";
+  written.rule = "sector", written.bytes = 1ULL << 40, written.open = false;
+  ck_assert_str_eq(index.update(written).c_str(), "");
+  const auto rows = rows_of(index);
+  ck_assert_uint_eq(rows.size(), 1);
+  const Recording& read = rows[0];
+  ck_assert_int_eq(read.id, written.id);
+  ck_assert_str_eq(read.file.c_str(), "a/b.mp4");
+  ck_assert_str_eq(read.lines.c_str(), "a/b.jsonl");
+  ck_assert_str_eq(read.picture.c_str(), "a/b.jpg");
+  ck_assert_str_eq(read.camera.c_str(), "yard's");
+  ck_assert(read.event == 3 && read.part == 2 && read.begin == written.begin && read.end == written.end);
+  ck_assert_str_eq(read.reason.c_str(), "track 7");
+  ck_assert_str_eq(read.tracks.c_str(), "4,7");
+  ck_assert_str_eq(read.kinds.c_str(), "group");
+  ck_assert_str_eq(read.rule.c_str(), "sector");
+  ck_assert(read.bytes == 1ULL << 40 && !read.open && !read.keep);
+}
+END_TEST
+
+START_TEST(the_database_is_one_that_others_read_by_its_documented_columns) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/i.sqlite";
+  Index index;
+  open(index, path);
+  Recording written = row("b.mp4");
+  bool taken = false;
+  index.add(written, taken);
+  const std::string read =
+      ask(path,
+          "SELECT camera, begin, end, tracks, kinds, rule, picture, size, keep, open FROM recordings");
+  ck_assert_str_eq(read.c_str(), "yard's|1795389333736236000|1795389342736236000|||||0|0|1|");
+  const std::string modes = ask(path, "PRAGMA journal_mode; PRAGMA user_version");
+  ck_assert_str_eq(modes.c_str(), "wal|1|");
+  struct stat about{};
+  ck_assert_int_eq(stat(path.c_str(), &about), 0);
+  ck_assert_int_eq(about.st_mode & 0777 & ~0640, 0);
+}
+END_TEST
+
+START_TEST(a_file_has_one_row) {
+  const TemporaryFolder folder;
+  Index index;
+  open(index, folder.path + "/i.sqlite");
+  Recording a = row("a.mp4"), b = row("a.mp4");
+  bool taken = false;
+  index.add(a, taken);
+  ck_assert_str_ne(index.add(b, taken).c_str(), "");
+  ck_assert(taken);
+  ck_assert_uint_eq(rows_of(index).size(), 1);
+}
+END_TEST
+
+START_TEST(keep_is_what_was_set_last_and_updates_leave_it) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/i.sqlite";
+  Index index;
+  open(index, path);
+  Recording a = row("a.mp4");
+  bool taken = false;
+  index.add(a, taken);
+  ask(path, "UPDATE recordings SET keep = 1");  // another program
+  a.open = false;
+  ck_assert_str_eq(index.update(a).c_str(), "");
+  ck_assert(rows_of(index)[0].keep);
+  ck_assert_str_eq(index.set_keep("a.mp4", false).c_str(), "");
+  ck_assert(!rows_of(index)[0].keep);
+  ck_assert(index.set_keep("b.mp4", true).find("b.mp4") != std::string::npos);
+}
+END_TEST
+
+START_TEST(a_row_that_was_removed_meanwhile_is_written_anew) {
+  const TemporaryFolder folder;
+  Index index;
+  open(index, folder.path + "/i.sqlite");
+  Recording a = row("a.mp4");
+  bool taken = false;
+  index.add(a, taken);
+  ck_assert_str_eq(index.remove(a.id).c_str(), "");
+  ck_assert(rows_of(index).empty());
+  ck_assert_str_eq(index.update(a).c_str(), "");
+  ck_assert(rows_of(index).at(0).file == "a.mp4");
+}
+END_TEST
+
+START_TEST(two_recorders_write_into_one_index) {
+  const TemporaryFolder folder;
+  Index a, b;
+  open(a, folder.path + "/i.sqlite");
+  open(b, folder.path + "/i.sqlite");
+  bool taken = false;
+  for (int k = 0; k < 20; ++k) {
+    Recording one = row(std::to_string(k) + "a.mp4"), two = row(std::to_string(k) + "b.mp4");
+    ck_assert_str_eq(a.add(one, taken).c_str(), "");
+    ck_assert_str_eq(b.add(two, taken).c_str(), "");
+  }
+  ck_assert_uint_eq(rows_of(a).size(), 40);
+}
+END_TEST
+
+START_TEST(an_index_of_a_newer_version_is_refused_and_stays_as_it_is) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/i.sqlite";
+  ask(path, "CREATE TABLE recordings (wholly INTEGER, other TEXT); PRAGMA user_version = 99");
+  Index index;
+  bool damaged = true;
+  const std::string fault = index.open(path, damaged);
+  ck_assert(fault.find("99") != std::string::npos);
+  ck_assert(!damaged && !index.is_open());
+  ck_assert(ask(path, "PRAGMA user_version") == "99|");
+}
+END_TEST
+
+START_TEST(a_file_that_is_no_database_is_damaged_and_one_that_cannot_be_made_is_not) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/i.sqlite";
+  std::ofstream(path) << std::string(5000, 'x');
+  Index index;
+  bool damaged = false;
+  ck_assert_str_ne(index.open(path, damaged).c_str(), "");
+  ck_assert(damaged);
+  const std::string fault = index.open(folder.path + "/nowhere/i.sqlite", damaged);
+  ck_assert(fault.find("nowhere") != std::string::npos);
+  ck_assert(!damaged);
+}
+END_TEST
+
+START_TEST(any_bytes_are_refused_or_read_and_never_end_the_program) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/i.sqlite";
+  {
+    Index index;
+    open(index, path);
+    bool taken = false;
+    for (int k = 0; k < 30; ++k) {
+      Recording a = row(std::to_string(k) + ".mp4");
+      index.add(a, taken);
+    }
+  }
+  std::ifstream file(path, std::ios::binary);
+  const std::string sound((std::istreambuf_iterator<char>(file)), {});
+  std::mt19937 random(7);
+  for (int round = 0; round < 60; ++round) {
+    std::string bytes = sound;
+    for (int k = 0; k < 1 + round; ++k) bytes[random() % bytes.size()] = static_cast<char>(random());
+    if (round % 5 == 0) bytes.resize(random() % bytes.size());
+    std::ofstream(path, std::ios::binary) << bytes;
+    for (const char* journal : {"-wal", "-shm"}) std::filesystem::remove(path + journal);
+    Index index;
+    bool damaged = false;
+    std::vector<Recording> rows;
+    if (index.open(path, damaged).empty()) index.read(rows);
+    for (const Recording& each : rows) ck_assert(each.begin >= Time::zero() && each.end >= Time::zero());
+  }
+}
+END_TEST
+
+int main() {
+  Suite* suite = suite_create("index");
+  TCase* cases = tcase_create("index");
+  for (const TTest* test :
+       {a_row_is_read_as_it_was_written, the_database_is_one_that_others_read_by_its_documented_columns,
+        a_file_has_one_row, keep_is_what_was_set_last_and_updates_leave_it,
+        a_row_that_was_removed_meanwhile_is_written_anew, two_recorders_write_into_one_index,
+        an_index_of_a_newer_version_is_refused_and_stays_as_it_is,
+        a_file_that_is_no_database_is_damaged_and_one_that_cannot_be_made_is_not,
+        any_bytes_are_refused_or_read_and_never_end_the_program})
+    tcase_add_test(cases, test);
+  suite_add_tcase(suite, cases);
+  SRunner* runner = srunner_create(suite);
+  srunner_run_all(runner, CK_ENV);
+  const int failed = srunner_ntests_failed(runner);
+  srunner_free(runner);
+  return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
