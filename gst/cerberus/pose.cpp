@@ -21,6 +21,7 @@ constexpr cerberus::Field kFields[] = {
     {"tilt-speed", Type::angle, offsetof(CerberusPose, tilt_speed)},
     {"pan-acceleration", Type::angle, offsetof(CerberusPose, pan_acceleration)},
     {"tilt-acceleration", Type::angle, offsetof(CerberusPose, tilt_acceleration)},
+    {"field-of-view", Type::angle, offsetof(CerberusPose, field_of_view)},
 };
 
 void straight_ahead(CerberusPose& pose) {
@@ -41,8 +42,9 @@ void write(GstStructure* to, const CerberusPose& pose) {
 }
 
 bool read(const GstStructure* from, CerberusPose& pose) {
-  return cerberus::read_fields(from, kFields, &pose) && GST_CLOCK_TIME_IS_VALID(pose.valid_from) &&
-         pose.valid_until >= pose.valid_from;
+  cerberus::read_known_fields(from, std::span(kFields).last(1), &pose);  // it may be absent
+  return cerberus::read_fields(from, std::span(kFields).first(std::size(kFields) - 1), &pose) &&
+         GST_CLOCK_TIME_IS_VALID(pose.valid_from) && pose.valid_until >= pose.valid_from;
 }
 
 }  // namespace

@@ -37,6 +37,7 @@ typedef enum { CERBERUS_POSE_COMMANDED, CERBERUS_POSE_MEASURED } CerberusPoseSou
  * @source: commanded or measured
  * @moving: the head moves
  * @settled: the head stands where it was sent
+ * @field_of_view: degrees that the camera sees over the frame's width, as the head's zoom says; 0: not known
  *
  * Where a pan-tilt head looks: one piece of its plan, of constant acceleration.
  */
@@ -48,6 +49,7 @@ typedef struct _CerberusPose {
   GstClockTime valid_from, valid_until;
   CerberusPoseSource source;
   gboolean moving, settled;
+  gdouble field_of_view;
 
   /*< private >*/
   gpointer _cerberus_reserved[GST_PADDING];

@@ -44,7 +44,10 @@ struct Lost {  // the chosen track is on no frame any more: a warning
   std::uint32_t id = 0;
   bool operator==(const Lost&) const = default;
 };
-using Notice = std::variant<Status, Refusal, Fault, Lost>;
+struct UnknownZoom {  // the head has a zoom, and what it sees is not known: a warning
+  bool operator==(const UnknownZoom&) const = default;
+};
+using Notice = std::variant<Status, Refusal, Fault, Lost, UnknownZoom>;
 
 // The notifications of all threads that were not sent yet. Each entry names its head, because the sender may drive
 // another one when it sends.

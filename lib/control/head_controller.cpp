@@ -61,6 +61,7 @@ void HeadController::open(std::unique_ptr<drivers::HeadRunner> runner, const dri
   latest_ = epoch_ = published_ = Time::zero();
   newest_.reset();
   late_since_ = motion::kNever;
+  zoom_reported_ = false;
   Pose start;
   start.pan.position = setup.pan;
   start.tilt.position = setup.tilt;
@@ -192,9 +193,16 @@ void HeadController::correct(const Frame& frame, Time now, DeferredNotifications
   report(HeadState::homing, "its pose is too uncertain: it looks for its reference", now, out);
 }
 
+double HeadController::field_of_view(Time running, double otherwise) const {
+  const std::lock_guard guard(lock_);
+  const double seen = runner_ ? history_.at(running + epoch_).field_of_view : 0;
+  return seen > 0 ? seen : otherwise;
+}
+
 // Publishes the pieces from `published_` on, the last one cut at `until` (kNever: only the first, as it is).
 void HeadController::publish(const std::vector<Pose>& poses, Time until, DeferredNotifications& out) {
   if (poses.empty()) return;
+  if (std::isnan(poses.front().field_of_view) && !std::exchange(zoom_reported_, true)) out.add(UnknownZoom{});
   if (until == motion::kNever) {
     out.add(running(poses.front()));
     return;

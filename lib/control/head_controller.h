@@ -88,6 +88,9 @@ class HeadController {
 
   // Interrupts waiting calls, as HeadRunner::interrupt().
   void interrupt(bool on);
+  // Returns what the camera saw at this running time as the head's zoom says, radians over the frame's width;
+  // `otherwise` where it says nothing.
+  double field_of_view(Time running, double otherwise) const;
   // Returns the running time of the last processed frame.
   std::optional<Time> newest() const;
 
@@ -129,6 +132,7 @@ class HeadController {
   bool ended_ = false;          // the stream
   Time latest_{}, epoch_{};     // head time of the last command; head time = running time + epoch
   Time published_{};            // head time until which poses were published
+  bool zoom_reported_ = false;  // that what the head sees is not known
   bool fresh_ = true;           // no pose was published since running time may have begun anew
   std::optional<Time> newest_;  // running
   Time timeout_{}, manual_timeout_{};

@@ -16,6 +16,10 @@ struct Pose {
   bool settled = true;    // the head rests at its setpoint and no command is pending
   bool measured = false;  // from the head's position feedback; false: from the commands
 
+  double field_of_view =
+      0;  // radians that the camera sees over the frame's width, as the head's zoom says; 0: it says
+          // nothing; NaN: it has a zoom, and what it sees is not known
+
   bool moving() const { return pan.moving() || tilt.moving(); }
   // Returns the same piece with its state at `time`, which is limited to the piece.
   Pose at(Time time) const;

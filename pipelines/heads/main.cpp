@@ -25,6 +25,7 @@ struct Options {
   gint baud = 0, address = 1;
   gboolean no_header = FALSE, no_feedback = FALSE, feedback = FALSE;
   gdouble pan_speed = PelcoOptions{}.pan_speed, tilt_speed = PelcoOptions{}.tilt_speed;
+  gdouble zoom = ViscaOptions{}.zoom;
   gint home_preset = 0;
   gdouble home_time = PelcoOptions{}.home_time;
   gchar* speeds = nullptr;
@@ -40,6 +41,7 @@ int run_visca(const Options& o) {
   options.address = o.address;
   options.header = !o.no_header;
   options.feedback = !o.no_feedback;
+  options.zoom = o.zoom;
   if (o.speeds)
     if (const std::string wrong = visca::parse_speed_table(o.speeds, options.speeds); !wrong.empty())
       return fail(wrong);
@@ -81,6 +83,8 @@ int main(int argc, char** argv) {
        nullptr},
       {"no-feedback", 0, 0, G_OPTION_ARG_NONE, &o.no_feedback, "Do not ask the camera for its position",
        nullptr},
+      {"zoom", 0, 0, G_OPTION_ARG_DOUBLE, &o.zoom, "Position of a VISCA camera's zoom to keep, 0 to 1.92",
+       "N"},
       {"feedback", 0, 0, G_OPTION_ARG_NONE, &o.feedback, "Ask a Pelco-D head for its position", nullptr},
       {"pan-speed", 0, 0, G_OPTION_ARG_DOUBLE, &o.pan_speed,
        "Degrees a second of a Pelco-D head's fastest pan (40)", "N"},

@@ -23,11 +23,15 @@ int run_v4l2([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
     } else if (key == "pan-speed" || key == "tilt-speed") {
       if (!number || *number <= 0 || *number > 3600) return fail(key + "=" + value + ": degrees a second");
       (key == "pan-speed" ? options.pan_speed : options.tilt_speed) = *number;
+    } else if (key == "zoom") {
+      if (!number || *number < 0 || *number > 1)
+        return fail("zoom=" + value + ": 0 to 1 of the zoom's range");
+      options.zoom = *number;
     } else if (key == "emergency-stop") {
       emergency_stop = value;
     } else {
       return fail("\"" + key +
-                  "\" is no option of v4l2: device, mode, pan-speed, tilt-speed, emergency-stop");
+                  "\" is no option of v4l2: device, mode, pan-speed, tilt-speed, zoom, emergency-stop");
     }
   }
   if (options.device.empty()) return fail("v4l2 needs a camera (device=/dev/video0)");

@@ -56,6 +56,14 @@ struct Posting {
     CERBERUS_ELEMENT_WARNING(sink, RESOURCE, WRITE, ("The head \"%s\" fails: %s", head, fault.what.c_str()),
                              (nullptr));
   }
+  void operator()(const control::UnknownZoom&) const {
+    CERBERUS_ELEMENT_WARNING(
+        sink, RESOURCE, SETTINGS,
+        ("The head \"%s\" has a zoom, and every angle depends on it: set zoom-table, or keep "
+         "the zoom by lock-zoom.",
+         head),
+        (nullptr));
+  }
   void operator()(const control::Lost& lost) const {
     CERBERUS_ELEMENT_WARNING(
         sink, RESOURCE, NOT_FOUND,
@@ -77,6 +85,7 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
   if (wrong.empty()) wrong = motion::check(setup.limits);
   if (wrong.empty() && !s.calibration.empty())
     wrong = drivers::use_calibration(s.calibration, s.driver, setup);
+  if (wrong.empty()) wrong = setup.zoom_table.parse(s.zoom_table);
   auto head = drivers::make_head(s.driver);
   if (wrong.empty() && !head)
     wrong.append("There is no head driver \"").append(s.driver).append("\": take one of ") +=

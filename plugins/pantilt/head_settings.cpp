@@ -6,6 +6,7 @@
 #include "shared/choices.hpp"
 #include "shared/stamps.hpp"
 #include "shared/times.hpp"
+#include "text/numbers.h"
 
 namespace cerberus::plugin {
 
@@ -58,6 +59,14 @@ const Property<HeadSettings> kProperties[] = {
     property("horizontal-fov", &HeadSettings::horizontal_fov, 0, 179,
              "Angle in degrees that the lens sees over the frame's whole width; 0 = unknown, then nothing "
              "can be tracked"),
+    property("zoom-table", &HeadSettings::zoom_table,
+             "What a head with a zoom sees: positions (0 = widest, 1 = longest) and degrees over the frame's "
+             "width, '0 60; 0.5 20; 1 3.2'; it then takes the place of horizontal-fov; empty = not known")
+        .read_at_start(),
+    property("lock-zoom", &HeadSettings::lock_zoom, -1, motion::kMostZoom,
+             "Position at which the zoom of a visca or v4l2 camera is kept, 0 = widest, 1 = longest; -1 = "
+             "it is left alone")
+        .read_at_start(),
     property("pan-min", &HeadSettings::pan_min, -kMostDegrees, kMostDegrees,
              "How far the head turns to the left, degrees, at most 0"),
     property("pan-max", &HeadSettings::pan_max, -kMostDegrees, kMostDegrees,
@@ -166,11 +175,14 @@ drivers::HeadSetup head_setup(const HeadSettings& s) {
           .play = {},  // of a calibration file, as the speeds
           .pan_speeds = {},
           .tilt_speeds = {},
+          .zoom_table = {},  // parsed when the head is opened
+          .lock_zoom = s.lock_zoom >= 0 ? std::optional(s.lock_zoom) : std::nullopt,
           .script = s.script,
           .command = s.command,
           .helper = helper_program(),
           .device = s.device,
-          .options = s.device_options,
+          .options = s.lock_zoom >= 0 ? s.device_options + " zoom=" + text::rounded(s.lock_zoom, 4).string()
+                                      : s.device_options,
           .helper_timeout = time_of(s.helper_timeout)};
 }
 

@@ -23,6 +23,10 @@
  * the name of this head or of any) is executed at once as if the last frame carried it: in the same states and within
  * the same limits, and only while frames with decisions come. A target is followed with frames alone.
  *
+ * A head that reports its zoom (`visca`, `onvif`, `v4l2`, `external`) sees what `zoom-table` says, which counts in place
+ * of `horizontal-fov` and is part of its poses (`field-of-view`); `lock-zoom` keeps the zoom instead. With neither a
+ * warning says that every angle depends on it.
+ *
  * The newest frame counts: one whose running time is not newer than the last one's is dropped. The element never waits
  * for the clock and sends no QoS events upstream.
  *
@@ -228,7 +232,8 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
       .running = *taken,
       .length = length,
       .now = session.now().value_or(*taken),
-      .lens = vision::Lens(radians(session.field_of_view), {info.width, info.height}),
+      .lens = vision::Lens(session.controller.field_of_view(*taken, radians(session.field_of_view)),
+                           {info.width, info.height}),
       .capture = std::nullopt,
       .motion = std::nullopt,
       .repeats = std::nullopt};

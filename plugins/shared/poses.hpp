@@ -21,7 +21,8 @@ inline motion::Pose from_c(const CerberusPose& pose) {
           .tilt = {sensing::radians(pose.tilt), sensing::radians(pose.tilt_speed),
                    sensing::radians(pose.tilt_acceleration)},
           .settled = pose.settled != FALSE,
-          .measured = pose.source == CERBERUS_POSE_MEASURED};
+          .measured = pose.source == CERBERUS_POSE_MEASURED,
+          .field_of_view = sensing::radians(pose.field_of_view)};
 }
 
 inline CerberusPose to_c(const motion::Pose& pose) {
@@ -38,6 +39,7 @@ inline CerberusPose to_c(const motion::Pose& pose) {
   out.source = pose.measured ? CERBERUS_POSE_MEASURED : CERBERUS_POSE_COMMANDED;
   out.moving = pose.moving();
   out.settled = pose.settled;
+  out.field_of_view = pose.field_of_view > 0 ? sensing::degrees(pose.field_of_view) : 0;  // NaN is not known
   return out;
 }
 

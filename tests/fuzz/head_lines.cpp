@@ -33,6 +33,9 @@ void read(std::string_view text) {
       check(std::isfinite(pose->pan.position) && pose->age >= 0 && parse_helper_line(pose_line(*pose)));
     if (const auto* speeds = std::get_if<SpeedsLine>(&*line))
       check(std::isfinite(speeds->speed.pan) && parse_helper_line(speeds_line(*speeds)));
+    if (const auto* zoom = std::get_if<ZoomLine>(&*line))
+      check(zoom->position >= 0 && zoom->position <= cerberus::motion::kMostZoom &&
+            parse_helper_line(zoom_line(*zoom)));
     if (const auto* ready = std::get_if<ReadyLine>(&*line))
       check(ready->abilities.rate >= 1 && ready->abilities.rate <= 1000);
   }

@@ -31,6 +31,7 @@ namespace cerberus::tests {
 struct ViscaFaults {
   bool acknowledges = true;
   bool reports = true;     // answers position inquiries
+  bool zooms = false;      // has a zoom; without one it refuses its commands, as Sony's cameras do
   bool header = true;      // expects the header of VISCA over IP, over UDP
   int refuses = 0;         // as many moves are answered by "buffer full"
   int loses_answers = 0;   // as many acknowledgements are lost
@@ -85,6 +86,8 @@ class ViscaCamera {
     while (work(0)) {
     }
   }
+  void set_zoom(int position) { zoom_ = position; }
+  int zoom() const { return zoom_; }
   double pan() { return state(pan_.position); }  // degrees
   double tilt() { return state(tilt_.position); }
   double speed() { return state(pan_.speed); }  // degrees a second
@@ -223,6 +226,18 @@ class ViscaCamera {
       reply.push_back(0xff);
       return answer(reply);
     }
+    if (m.size() == 5 && m[1] == 0x09 && m[2] == 0x04 && m[3] == 0x47) {  // CAM_ZoomPosInq
+      const int z = zoom_;
+      if (!faults_.zooms) return answer({0x90, 0x60, 0x02, 0xff});
+      const auto nibble = [z](int shift) { return static_cast<std::uint8_t>(z >> shift & 15); };
+      return answer({0x90, 0x50, nibble(12), nibble(8), nibble(4), nibble(0), 0xff});
+    }
+    if (m.size() == 9 && m[1] == 0x01 && m[2] == 0x04 && m[3] == 0x47) {  // CAM_Zoom Direct
+      if (!faults_.zooms) return answer({0x90, 0x60, 0x02, 0xff});
+      zoom_ = m[4] << 12 | m[5] << 8 | m[6] << 4 | m[7];
+      answer({0x90, 0x41, 0xff});
+      return answer({0x90, 0x51, 0xff});
+    }
     if (m == std::vector<std::uint8_t>{0x81, 0x01, 0x06, 0x04, 0xff}) {
       {
         const std::lock_guard guard(lock_);
@@ -262,6 +277,7 @@ class ViscaCamera {
 
   Line line_;
   ViscaFaults faults_;
+  std::atomic<int> zoom_ = 0;  // 0000 to 4000 hex
   const SteppedTime* time_;
   std::vector<std::uint8_t> bytes_;  // of a message that is not complete yet
   std::string device_;

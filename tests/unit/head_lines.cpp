@@ -73,6 +73,14 @@ START_TEST(a_pose_is_in_degrees) {
 }
 END_TEST
 
+START_TEST(a_zoom_is_0_to_2) {
+  ck_assert_double_eq(parsed<ZoomLine>("zoom 0.25").position, .25);
+  assert_text(zoom_line({.position = .25}), "zoom 0.25");
+  for (const char* wrong : {"zoom", "zoom -0.1", "zoom 2.1", "zoom nan", "zoom 0.5 1"})
+    ck_assert_msg(!parse_helper_line(wrong), "%s", wrong);
+}
+END_TEST
+
 START_TEST(faults_keep_their_words) {
   assert_text(parsed<FaultLine>("fault no port /dev/ttyUSB0: permission denied").text,
               "no port /dev/ttyUSB0: permission denied");
@@ -201,7 +209,7 @@ int main() {
   return cerberus::tests::run_suite(
       "head_lines", {the_first_line_has_version_timeout_limits_and_start, a_move_has_a_command_for_each_axis,
                      numbers_that_are_none_hold, ready_lists_abilities_and_skips_those_of_later_versions,
-                     a_pose_is_in_degrees, faults_keep_their_words,
+                     a_pose_is_in_degrees, a_zoom_is_0_to_2, faults_keep_their_words,
                      what_is_no_line_of_the_protocol_is_refused, what_a_pipeline_writes_a_helper_reads,
                      what_a_helper_writes_a_pipeline_reads, any_bytes_are_parsed_without_harm,
                      lines_come_whole_however_their_bytes_arrive, a_line_that_is_too_long_is_dropped_whole});

@@ -188,9 +188,11 @@ START_TEST(a_status_may_lack_everything_or_hold_what_is_no_number) {
   };
   const auto whole = status(
       "<tt:Position><tt:PanTilt x=\"-0.5\" y=\"+2.5E-1\" space=\"s\"/><tt:Zoom "
-      "x=\"0\"/></tt:Position><tt:MoveStatus>"
+      "x=\"0.75\"/></tt:Position><tt:MoveStatus>"
       "<tt:PanTilt>MOVING</tt:PanTilt></tt:MoveStatus>");
   ck_assert(whole && whole->position && whole->moving == true);
+  ck_assert_double_eq(whole->zoom.value_or(-1), 0.75);
+  ck_assert(!status("<tt:Position><tt:Zoom x=\"1.5\"/></tt:Position>")->zoom);
   ck_assert_double_eq(whole->position->x.from, -0.5);
   ck_assert_double_eq(whole->position->y.from, 0.25);
   for (const char* wrong :

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "support/says.h"
 #include "support/suite.h"
 #include "support/text.h"
 
@@ -300,6 +301,39 @@ START_TEST(relative_moves_add_up) {
 }
 END_TEST
 
+START_TEST(the_zoom_is_a_share_of_its_range) {
+  Bench bench;
+  bench.camera = with_angles();
+  bench.camera.ranges[id::kZoomAbsolute] = {100, 500, 1};
+  bench.camera.values[id::kZoomAbsolute] = 200;
+  assert_text(bench.open(), "");
+  ck_assert(!bench.head->take_zoom());
+  bench.run(100ms);
+  ck_assert_double_eq(bench.head->take_zoom().value_or(-1), .25);
+  bench.camera.unread = {id::kZoomAbsolute};
+  bench.head->take_zoom();
+  bench.run(100ms);
+  ck_assert(!bench.head->take_zoom());
+  assert_text(bench.head->fault(), "");  // it turns all the same
+}
+END_TEST
+
+START_TEST(a_locked_zoom_is_set_and_kept) {
+  Bench bench;
+  bench.camera = with_angles();
+  bench.camera.ranges[id::kZoomAbsolute] = {100, 500, 10};
+  bench.options.zoom = .5;
+  assert_text(bench.open(), "");
+  bench.run(100ms);
+  ck_assert_int_eq(bench.camera.values[id::kZoomAbsolute], 300);
+  bench.camera.values[id::kZoomAbsolute] = 420;  // somebody turned the ring
+  bench.run(100ms);
+  ck_assert_int_eq(bench.camera.values[id::kZoomAbsolute], 300);
+  bench.camera.ranges.erase(id::kZoomAbsolute);
+  ck_assert(says(bench.open(), "/dev/video9 has no zoom to lock"));
+}
+END_TEST
+
 START_TEST(what_cannot_be_is_named) {
   Bench bench;
   assert_text(bench.open(),
@@ -350,6 +384,7 @@ int main() {
        a_camera_that_may_turn_and_is_gone_is_stopped_as_soon_as_it_is_back,
        an_axis_that_ceases_to_report_makes_no_pose,
        a_camera_that_never_reports_one_of_its_axes_has_no_feedback,
-       a_speed_whose_minimum_is_wrong_is_not_used, relative_moves_add_up, what_cannot_be_is_named,
+       a_speed_whose_minimum_is_wrong_is_not_used, relative_moves_add_up, the_zoom_is_a_share_of_its_range,
+       a_locked_zoom_is_set_and_kept, what_cannot_be_is_named,
        a_camera_that_goes_away_is_said_and_used_again});
 }

@@ -53,6 +53,11 @@ END_TEST
 START_TEST(other_messages_are_those_of_the_manual) {
   assert_text(hex(home(1)), "81 01 06 04 ff");
   assert_text(hex(position_inquiry(3)), "83 09 06 12 ff");
+  assert_text(hex(zoom(1, 0)), "81 01 04 47 00 00 00 00 ff");
+  assert_text(hex(zoom(2, 0.5)), "82 01 04 47 02 00 00 00 ff");
+  assert_text(hex(zoom(1, 1)), "81 01 04 47 04 00 00 00 ff");
+  assert_text(hex(zoom(1, 7)), "81 01 04 47 07 0a 0c 00 ff");  // the end of the digital zoom
+  assert_text(hex(zoom_inquiry(1)), "81 09 04 47 ff");
   assert_text(hex(interface_clear()), "88 01 00 01 ff");
   assert_text(hex(address_set()), "88 30 01 ff");
 }
@@ -76,6 +81,17 @@ START_TEST(replies_are_distinguished) {
   for (const Message& other :
        {bytes({0x90, 0xff}), bytes({}), bytes({0x90, 0x50, 1, 2, 0xff}), bytes({0x10, 0x41, 0xff})})
     ck_assert(parse_reply(other).kind == Kind::other);
+}
+END_TEST
+
+START_TEST(a_zoom_is_four_nibbles_of_which_4000_are_the_optical_one) {
+  for (const auto& [units, position] :
+       {std::pair{0x0000, 0.0}, std::pair{0x1000, .25}, std::pair{0x4000, 1.0}}) {
+    const Reply reply = parse_reply(bytes({0x90, 0x50, units >> 12, 0, 0, 0, 0xff}));
+    ck_assert(reply.kind == Reply::Kind::zoom);
+    ck_assert_double_eq(reply.zoom, position);
+  }
+  ck_assert_double_eq(parse_reply(bytes({0x90, 0x50, 15, 15, 15, 15, 0xff})).zoom, 0x7ac0 / 16384.0);
 }
 END_TEST
 
@@ -158,6 +174,7 @@ int main() {
       "visca",
       {drives_are_those_of_the_manual, positions_are_four_nibbles_of_14_4_to_a_degree,
        other_messages_are_those_of_the_manual, replies_are_distinguished,
+       a_zoom_is_four_nibbles_of_which_4000_are_the_optical_one,
        speeds_become_the_nearest_step_and_slow_ones_none, a_speed_table_of_ones_own_is_read_or_refused,
        the_header_of_visca_over_ip_is_built_and_taken_off, a_stream_that_loses_bytes_is_cut_right_again,
        any_bytes_are_parsed_without_harm});

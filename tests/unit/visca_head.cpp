@@ -295,6 +295,39 @@ START_TEST(a_camera_without_positions_is_stopped_a_little_beyond_its_limits) {
 }
 END_TEST
 
+START_TEST(the_position_of_the_zoom_is_reported) {
+  ViscaCamera camera(ViscaCamera::Line::serial, {.zooms = true});
+  camera.set_zoom(0x2000);
+  Served served(options_for(camera));
+  ck_assert_str_eq(served.line("zoom").c_str(), "zoom 0.5");
+  camera.set_zoom(0x4000);
+  ck_assert_str_eq(served.line("zoom").c_str(), "zoom 1");
+}
+END_TEST
+
+START_TEST(a_locked_zoom_is_set_at_the_begin) {
+  for (const bool acknowledges : {true, false}) {
+    ViscaCamera camera(ViscaCamera::Line::udp, {.acknowledges = acknowledges, .zooms = true});
+    ViscaOptions options = options_for(camera);
+    options.zoom = .25;
+    Served served(options);
+    ck_assert(served.until([&] { return camera.zoom() == 0x1000; }));
+  }
+}
+END_TEST
+
+// A refusal of its zoom counts for no move and no stop.
+START_TEST(a_camera_without_a_zoom_turns_and_stops_all_the_same) {
+  ViscaCamera camera(ViscaCamera::Line::serial);
+  ViscaOptions options = options_for(camera);
+  options.zoom = .25;
+  Served served(options);
+  ck_assert(served.until([&] { return camera.pan() > 3; }, "move at 20 hold"));
+  served.say("stop");
+  ck_assert(served.until([&] { return camera.speed() == 0; }));
+}
+END_TEST
+
 START_TEST(what_cannot_be_opened_is_named) {
   const auto refusal = [](const char* device, int baud = 9600) {
     ViscaOptions options;
@@ -330,7 +363,9 @@ int main() {
         the_answer_to_a_move_is_not_taken_for_that_to_the_stop,
         a_camera_that_counts_is_driven_after_its_reset_was_lost,
         a_camera_without_positions_reports_the_speeds_of_its_steps,
-        a_camera_without_positions_is_stopped_a_little_beyond_its_limits, what_cannot_be_opened_is_named})
+        a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
+        the_position_of_the_zoom_is_reported, a_locked_zoom_is_set_at_the_begin,
+        a_camera_without_a_zoom_turns_and_stops_all_the_same, what_cannot_be_opened_is_named})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);
   SRunner* runner = srunner_create(suite);

@@ -5,11 +5,13 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "motion/pan_tilt.h"
 #include "motion/pose.h"
 #include "motion/speed_map.h"
+#include "motion/zoom_table.h"
 
 namespace cerberus::drivers {
 
@@ -25,6 +27,8 @@ struct HeadSetup {
   double pan = 0, tilt = 0;                  // radians, position at the start
   motion::PanTilt play;                      // radians, of a real head, as calibrated
   motion::SpeedMap pan_speeds, tilt_speeds;  // of a calibration: what the head makes of commanded speeds
+  motion::ZoomTable zoom_table{};            // what a real head sees at the positions of its zoom
+  std::optional<double> lock_zoom{};         // the position at which a real head's zoom is kept
   std::string script;                        // of scripted_head.h
   std::string command;                       // of the driver external: the helper, run by /bin/sh
   std::string helper;                        // the program that drives real heads

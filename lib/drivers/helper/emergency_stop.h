@@ -32,6 +32,7 @@ class EmergencyStop final : public HeadDevice {
   std::optional<PoseLine> take_pose(Time now) override { return device_.take_pose(now); }
   bool emergency() const override { return open_; }
   std::optional<SpeedsLine> take_speeds(Time now) override { return device_.take_speeds(now); }
+  std::optional<double> take_zoom() override { return device_.take_zoom(); }
   void home(Time now) override {
     if (!open_) device_.home(now);
   }

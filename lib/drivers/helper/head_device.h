@@ -40,6 +40,8 @@ class HeadDevice {
   // Of a device without feedback: the speeds that it was commanded last, in which its steps are counted, if they have
   // changed since the last call.
   virtual std::optional<SpeedsLine> take_speeds(Time) { return std::nullopt; }
+  // The position of the zoom (head_lines.h) since the last call, if it was read anew.
+  virtual std::optional<double> take_zoom() { return std::nullopt; }
   // Begins to look for the reference (abilities().home); any other command ends it.
   virtual void home(Time) {}
   // Once: the reference was found, and the device stands there.

@@ -109,6 +109,13 @@ std::optional<HelperLine> parse_homed(Words words) {
   return HomedLine{{radians(*pan), radians(*tilt)}};
 }
 
+std::optional<HelperLine> parse_zoom(Words words) {
+  const auto position = words.number();
+  if (!position || *position < 0 || *position > motion::kMostZoom || !words.next().empty())
+    return std::nullopt;
+  return ZoomLine{*position};
+}
+
 std::optional<motion::Limits> parse_stops(Words& words, motion::Limits limits = {}) {
   for (double* stop : {&limits.pan.from, &limits.pan.to, &limits.tilt.from, &limits.tilt.to}) {
     const auto angle = words.number();
@@ -188,6 +195,12 @@ std::string homed_line(const HomedLine& homed) {
   return line;
 }
 
+std::string zoom_line(const ZoomLine& zoom) {
+  std::string line = "zoom";
+  append(line, zoom.position);
+  return line;
+}
+
 std::optional<PipelineLine> parse_pipeline_line(std::string_view text) {
   Words words(text);
   const std::string_view word = words.next();
@@ -244,6 +257,7 @@ std::optional<HelperLine> parse_helper_line(std::string_view line) {
   if (word == "ready") return parse_ready(words);
   if (word == "pose") return parse_pose(words);
   if (word == "speeds") return parse_speeds(words);
+  if (word == "zoom") return parse_zoom(words);
   if (word == "homed") return parse_homed(words);
   if (word == "fault" && !words.rest().empty()) return FaultLine{words.rest()};
   if (word == "recovered" && words.rest().empty()) return RecoveredLine{};

@@ -14,6 +14,7 @@
 //     ready 1 [position] [velocity] [feedback] [home] [rate N]
 //     pose PAN TILT PAN-SPEED TILT-SPEED AGE
 //     speeds PAN TILT AGE               of a head without feedback: what its steps make of the last `move`
+//     zoom POSITION                     0: the widest, 1: the longest focal length
 //     homed PAN TILT                    the reference was found; the head stands there
 //     fault TEXT | recovered | stopped TEXT | emergency pressed | emergency released
 #pragma once
@@ -52,6 +53,9 @@ struct SpeedsLine {
   motion::PanTilt speed;  // radians a second
   double age = 0;         // seconds since they were commanded
 };
+struct ZoomLine {
+  double position = 0;  // 0 to motion::kMostZoom
+};
 struct HomedLine {
   motion::PanTilt at;  // radians
 };
@@ -66,8 +70,8 @@ struct EmergencyLine {
   bool pressed = false;  // the device's emergency stop
 };
 // What a helper sends.
-using HelperLine = std::variant<ReadyLine, PoseLine, SpeedsLine, HomedLine, FaultLine, RecoveredLine,
-                                StoppedLine, EmergencyLine>;
+using HelperLine = std::variant<ReadyLine, PoseLine, SpeedsLine, HomedLine, ZoomLine, FaultLine,
+                                RecoveredLine, StoppedLine, EmergencyLine>;
 
 struct HelloLine {
   HeadSetup setup;  // limits, start and helper_timeout; the rest as by default
@@ -94,6 +98,7 @@ std::string ready_line(const HeadAbilities& abilities);
 std::string pose_line(const PoseLine& pose);
 std::string speeds_line(const SpeedsLine& speeds);
 std::string homed_line(const HomedLine& homed);
+std::string zoom_line(const ZoomLine& zoom);
 
 // One line without its line feed. Nothing: it is no line of this protocol, a number is not finite, its limits are not
 // those of a head (motion::check(); `limits` alone may exclude zero: those of a corrected head are shifted), or its

@@ -66,6 +66,10 @@ void HeadServer::report(Time now) {
   }
   if (const auto pose = device_.take_pose(now)) send_(pose_line(*pose));
   if (const auto speeds = device_.take_speeds(now)) send_(speeds_line(*speeds));
+  if (const auto zoom = device_.take_zoom(); zoom && zoom != zoom_) {
+    zoom_ = zoom;
+    send_(zoom_line({*zoom}));
+  }
   if (const auto homed = device_.take_homed(now)) send_(homed_line(*homed));
 }
 

@@ -40,6 +40,7 @@ class HeadServer {
   bool silent_ = false;  // the head was stopped by the timeout
   bool emergency_ = false;
   std::string fault_;
+  std::optional<double> zoom_;  // as sent
 };
 
 }  // namespace cerberus::drivers

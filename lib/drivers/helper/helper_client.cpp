@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace cerberus::drivers {
 namespace {
@@ -44,6 +45,7 @@ void HelperClient::begin(Time now) {
   pan_correction_ = tilt_correction_ = 0;
   measured_.reset();
   homing_.reset();
+  zoom_.reset();
   reckons_ = false;
   HeadSetup here = setup_;
   if (Pose pose; model_.state(now, pose).empty()) {
@@ -60,6 +62,12 @@ void HelperClient::lose(std::string why) {
 
 bool HelperClient::is_fresh(Time now) const {
   return measured_ && now - *measured_ < kParameters.fresh;
+}
+
+double HelperClient::field_of_view() const {
+  if (!zoom_) return 0;
+  if (!setup_.zoom_table.empty()) return setup_.zoom_table.field_of_view(*zoom_);
+  return setup_.lock_zoom ? 0 : std::numeric_limits<double>::quiet_NaN();
 }
 
 void HelperClient::send_command(Time now) {
@@ -168,6 +176,8 @@ void HelperClient::take(const HelperLine& line, Time now) {
       reckoning_.begin(at, {here.pan.position, here.tilt.position});
     reckoning_.turn(
         at, {setup_.pan_speeds.actual(speeds->speed.pan), setup_.tilt_speeds.actual(speeds->speed.tilt)});
+  } else if (const auto* zoom = std::get_if<ZoomLine>(&line)) {
+    zoom_ = zoom->position;
   } else if (const auto* homed = std::get_if<HomedLine>(&line)) {
     if (!std::exchange(homing_, std::nullopt)) return;
     measured_ = now;
@@ -233,6 +243,7 @@ Time HelperClient::serve(Time now) {
 std::string HelperClient::state(Time time, Pose& pose) {
   if (std::string wrong = model_.state(time, pose); !wrong.empty()) return wrong;
   if (reckons_) pose = reckoning_.at(time);
+  pose.field_of_view = field_of_view();
   pose.measured = is_fresh(time);
   if (reckons_ || !pose.measured) return {};
   // A correction that lags behind a head that brakes leads beyond no limit, unless the head is there.

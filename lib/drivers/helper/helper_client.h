@@ -58,6 +58,7 @@ class HelperClient {
   void send_stop();
   void follow(Time now);
   void check_homing(Time now);
+  double field_of_view() const;  // as in motion::Pose
   bool is_following() const { return ready_ && follows_ && fault_.empty(); }
   // Whether the last report is young enough to correct the model with.
   bool is_fresh(Time now) const;
@@ -79,6 +80,7 @@ class HelperClient {
   motion::PanTilt reported_;                         // its position
   motion::Reckoning reckoning_;                      // of a head that reports speeds instead of positions
   bool reckons_ = false;                             // it does
+  std::optional<double> zoom_;                       // position, as the helper reports it
   std::optional<Time> homing_;                       // since when the head looks for its reference
 };
 

@@ -155,6 +155,8 @@ std::optional<PtzStatus> read_status(XmlElement body) {
   const XmlElement pan_tilt = element.child("Position").child("PanTilt");
   const auto x = pan_tilt.number("x"), y = pan_tilt.number("y");
   if (x && y) status.position = Space{pan_tilt.attribute("space"), {*x, *x}, {*y, *y}};
+  const auto zoom = element.child("Position").child("Zoom").number("x");
+  if (zoom && *zoom >= 0 && *zoom <= 1) status.zoom = zoom;
   const std::string moving = element.child("MoveStatus").child("PanTilt").text();
   if (moving == "MOVING" || moving == "IDLE") status.moving = moving == "MOVING";
   return status;

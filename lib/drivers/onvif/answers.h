@@ -65,6 +65,7 @@ std::optional<PtzOptions> read_configuration_options(XmlElement body);
 struct PtzStatus {
   std::optional<Space>
       position;                // x.from, y.from hold the position and uri its space, empty: the default one
+  std::optional<double> zoom;  // 0 to 1
   std::optional<bool> moving;  // MoveStatus, if it is IDLE or MOVING
 };
 std::optional<PtzStatus> read_status(XmlElement body);

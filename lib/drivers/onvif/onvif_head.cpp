@@ -292,6 +292,7 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   if (answer.not_authorized()) return log_in_again(now);
   const auto status = onvif::read_status(answer.body);
   if (!status) return;
+  if (status->zoom) zoom_ = status->zoom;
   if (positions_ && status->position) {
     const auto at =
         onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);

@@ -75,6 +75,7 @@ class OnvifHead final : public HeadDevice {
   void watch(std::vector<pollfd>& fds) const override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
+  std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
   std::string fault() const override { return fault_; }
 
  private:
@@ -128,8 +129,9 @@ class OnvifHead final : public HeadDevice {
   bool moved_ = false;          // a move was sent, and no stop after it is acknowledged
   bool stops_by_zero_ = false;  // Stop is refused: a move at speed 0 takes its place
   bool timeout_refused_ = false, positions_ = false;
-  bool absolute_ = false;      // AbsoluteMove works
-  bool keeps_limits_ = false;  // it did at the start, so that the pipeline sends angles and bare speeds
+  bool absolute_ = false;       // AbsoluteMove works
+  bool keeps_limits_ = false;   // it did at the start, so that the pipeline sends angles and bare speeds
+  std::optional<double> zoom_;  // read, and not taken yet
   bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
   int stops_while_moving_ = 0;

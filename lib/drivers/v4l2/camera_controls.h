@@ -29,6 +29,7 @@ namespace camera_control {
 inline constexpr std::uint32_t kPanRelative = 0x009a0904, kTiltRelative = 0x009a0905;
 inline constexpr std::uint32_t kPanAbsolute = 0x009a0908, kTiltAbsolute = 0x009a0909;
 inline constexpr std::uint32_t kPanSpeed = 0x009a0920, kTiltSpeed = 0x009a0921;
+inline constexpr std::uint32_t kZoomAbsolute = 0x009a090d;  // no unit
 }  // namespace camera_control
 
 }  // namespace cerberus::drivers

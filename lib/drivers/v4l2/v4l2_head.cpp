@@ -107,6 +107,10 @@ std::string V4l2Head::connect(Time now) {
     axis->command = {};
     axis->moves = false;
   }
+  zooms_ = controls_->query(camera_control::kZoomAbsolute);
+  if (zooms_ && zooms_->most <= zooms_->least) zooms_.reset();
+  if (options_.zoom >= 0 && !zooms_)
+    return "the camera " + options_.device + " has no zoom to lock (lock-zoom)";
   if (std::string wrong = choose_mode(); !wrong.empty()) return wrong;
   for (Axis* axis : {&pan_, &tilt_}) {
     const bool reads = mode_ != Mode::relative && read_position(*axis);
@@ -265,6 +269,19 @@ void V4l2Head::send_angle(Axis& axis, double angle) {
   check(error);
 }
 
+// Reads the zoom, and sets it where it is to be kept. A camera that refuses either turns all the same.
+void V4l2Head::check_zoom() {
+  if (!zooms_ || lost_) return;
+  const double range = static_cast<double>(zooms_->most) - zooms_->least;
+  std::int32_t value = 0;
+  if (controls_->get(camera_control::kZoomAbsolute, value) != 0) return;
+  if (options_.zoom >= 0) {
+    const std::int32_t wanted = on_grid(zooms_->least + std::min(options_.zoom, 1.0) * range, *zooms_);
+    if (value != wanted && controls_->set(camera_control::kZoomAbsolute, wanted) == 0) value = wanted;
+  }
+  zoom_ = std::clamp((value - static_cast<double>(zooms_->least)) / range, 0.0, 1.0);
+}
+
 Time V4l2Head::tick(Time now) {
   if (lost_ && !reconnect(now)) return next_open_;
   if (now < next_) return next_;
@@ -285,6 +302,7 @@ Time V4l2Head::tick(Time now) {
     else if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
       set_speed(*axis, *axis->sent * axis->fastest / axis->speeds->most);
   }
+  check_zoom();
   new_pose_ = reads_ && !lost_;
   if (!lost_) return next_;
   disconnect(now);

@@ -30,6 +30,7 @@ struct V4l2Options {
   std::string device;  // /dev/video0
   Mode mode = Mode::automatic;
   double pan_speed = 0, tilt_speed = 0;  // degrees a second of the fastest step; 0: not known
+  double zoom = -1;  // the position of the zoom to keep, 0 to 1 of its range; negative: whatever it is
 };
 
 class V4l2Head final : public HeadDevice {
@@ -47,6 +48,7 @@ class V4l2Head final : public HeadDevice {
   void watch(std::vector<pollfd>&) const override {}
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
+  std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
   std::string fault() const override { return fault_; }
   V4l2Options::Mode mode() const { return mode_; }  // the one in use, once it is open
 
@@ -88,6 +90,7 @@ class V4l2Head final : public HeadDevice {
   void set_speed(Axis& axis, double speed);
   bool read_position(Axis& axis) noexcept;
   void lose(int error);
+  void check_zoom();
   void check(int error) {
     if (error != 0) lose(error);
   }
@@ -104,6 +107,8 @@ class V4l2Head final : public HeadDevice {
   bool stop_owed_ = false;  // the camera may turn at a speed
   bool lost_ = false;       // it does not obey, or does not report any more
   bool new_pose_ = false;
+  std::optional<ControlRange> zooms_;
+  std::optional<double> zoom_;  // read, and not taken yet
   Time next_{}, next_open_{};
   std::string fault_;
 };

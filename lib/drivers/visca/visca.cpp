@@ -10,6 +10,8 @@ namespace cerberus::drivers::visca {
 namespace {
 
 constexpr std::uint8_t kEnd = 0xff;
+constexpr double kOpticalZoom = 0x4000;              // end of the optical zoom
+constexpr double kMostZoom = 0x7ac0 / kOpticalZoom;  // end of the digital one: 1.918
 constexpr int kMostPanStep = 0x18, kMostTiltStep = 0x17;
 
 std::uint8_t head(int address) {
@@ -125,6 +127,19 @@ Message position_inquiry(int address) {
   return {head(address), 0x09, 0x06, 0x12, kEnd};
 }
 
+Message zoom(int address, double position) {
+  Message message{head(address), 0x01, 0x04, 0x47};
+  const long units = std::lround(std::clamp(position, 0.0, kMostZoom) * kOpticalZoom);
+  for (int shift = 12; shift >= 0; shift -= 4)
+    message.push_back(static_cast<std::uint8_t>(units >> shift & 15));
+  message.push_back(kEnd);
+  return message;
+}
+
+Message zoom_inquiry(int address) {
+  return {head(address), 0x09, 0x04, 0x47, kEnd};
+}
+
 Message interface_clear() {
   return {0x88, 0x01, 0x00, 0x01, kEnd};
 }
@@ -149,6 +164,12 @@ Reply parse_reply(std::span<const std::uint8_t> m) {
     reply.kind = Reply::Kind::position;
     reply.pan = read_position(m.subspan(2, 4));
     reply.tilt = read_position(m.subspan(6, 4));
+  }
+  if (m[1] == 0x50 && m.size() == 7) {
+    reply.kind = Reply::Kind::zoom;
+    unsigned units = 0;
+    for (const std::uint8_t nibble : m.subspan(2, 4)) units = units << 4 | (nibble & 15u);
+    reply.zoom = std::min(units / kOpticalZoom, kMostZoom);
   }
   return reply;
 }

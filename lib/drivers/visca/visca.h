@@ -38,16 +38,20 @@ Message stop(int address);
 Message absolute(int address, double pan, double tilt, int pan_step, int tilt_step);
 Message home(int address);
 Message position_inquiry(int address);
+// CAM_Zoom Direct and CAM_ZoomPosInq. position: 0 to 1 of the optical zoom (0000 to 4000 hex), digital zoom up to 1.918 (7ac0).
+Message zoom(int address, double position);
+Message zoom_inquiry(int address);
 Message interface_clear();  // broadcast
 Message address_set();      // broadcast: numbers the chain
 
 struct Reply {
-  enum class Kind : std::uint8_t { ack, completion, position, error, other };
+  enum class Kind : std::uint8_t { ack, completion, position, zoom, error, other };
   Kind kind = Kind::other;
   int address = 0;  // of the camera that answers
   int socket = 0;   // of an ack, completion or error
   int error = 0;    // 0x02 syntax, 0x03 buffer full, 0x04 cancelled, 0x05 no socket, 0x41 not executable
   double pan = 0, tilt = 0;  // degrees, of a position
+  double zoom = 0;           // of a zoom: as in zoom()
 };
 // One message with its 0xff.
 Reply parse_reply(std::span<const std::uint8_t> message);

@@ -17,6 +17,10 @@ using motion::PanTilt;
 using sensing::degrees;
 using sensing::radians;
 
+// The zoom is set again where it is off by more than this share of its range.
+constexpr double kZoomSlack = 0.01;
+// A zoom takes some seconds from one end to the other.
+constexpr Time kZoomPatience = std::chrono::seconds(5);
 // No answer at all for so long means that the camera is gone.
 constexpr Time kSilence = std::chrono::milliseconds(800);
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
@@ -58,6 +62,8 @@ void ViscaHead::on_connected(Time now) {
     send(visca::interface_clear());
   }
   stop(now);  // it stands until the next move
+  zoom_unanswered_ = 0;
+  if (options_.zoom >= 0) send_zoom(now);
 }
 
 std::string ViscaHead::open(const HeadSetup& setup, Time now) {
@@ -159,6 +165,28 @@ void ViscaHead::send_drive(Time now) {
   set_speeds(allowed, now);
 }
 
+void ViscaHead::send_zoom(Time now) {
+  zoom_sent_ = now;
+  send_order(Order::zoom, visca::zoom(options_.address, options_.zoom), now);
+}
+
+void ViscaHead::on_zoom(double position, Time now) {
+  zoom_ = position;
+  zoom_unanswered_ = 0;
+  if (options_.zoom < 0 || stopping_ || now - zoom_sent_ < kZoomPatience) return;
+  if (std::abs(position - options_.zoom) > kZoomSlack) send_zoom(now);
+}
+
+// While no order waits for its answer: a camera without a zoom refuses, and the refusal must not count for an order.
+void ViscaHead::ask_zoom(Time now) {
+  if (!options_.feedback || waiting() || zoom_unanswered_ >= kZoomInquiries ||
+      now - zoom_asked_ < kZoomPeriod)
+    return;
+  zoom_asked_ = now;
+  ++zoom_unanswered_;
+  send(visca::zoom_inquiry(options_.address));
+}
+
 // The order that an answer belongs to; nothing: to none that is still waited for.
 std::optional<ViscaHead::Sent> ViscaHead::answered(std::uint32_t sequence) {
   auto at = unanswered_orders_.begin();
@@ -181,6 +209,7 @@ void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time n
     pose_time_ = now;
     return;
   }
+  if (reply.kind == Kind::zoom) return on_zoom(reply.zoom, now);
   if (reply.kind == Kind::completion) {  // the end of what was acknowledged before
     const bool home = homing_ && reply.socket == *homing_;
     if (!home) return;
@@ -200,6 +229,7 @@ void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time n
   // Refused: what was sent last is not in force, and is sent again; a stop by tick().
   if (!sent) return;
   if (sent->order == Order::home) homing_.reset();
+  if (sent->order == Order::zoom) return;
   if (!stopping_) sent_pan_ = sent_tilt_ = INT32_MIN;
 }
 
@@ -243,6 +273,7 @@ Time ViscaHead::tick(Time now) {
     send(visca::position_inquiry(options_.address));
     if (reports_ && !unanswered_) unanswered_ = now;
   }
+  ask_zoom(now);
   return now + (stopping_ || pan_ != sent_pan_ || tilt_ != sent_tilt_ ? Time(std::chrono::milliseconds(10))
                                                                       : Time(kInquiryPeriod) / 2);
 }

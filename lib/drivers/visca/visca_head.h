@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/transport/stream_device.h"
@@ -24,6 +25,7 @@ struct ViscaOptions {
   int address = 1;       // 1 to 7, of a serial chain; 1 over IP
   bool header = true;    // over UDP
   bool feedback = true;  // ask for positions
+  double zoom = -1;      // the position of the zoom to keep (visca.h); negative: whatever it is
   visca::SpeedTable speeds = visca::default_speed_table();
 };
 
@@ -44,18 +46,21 @@ class ViscaHead final : public StreamDevice {
   std::optional<HomedLine> take_homed(Time now) override;
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
+  std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
 
   static constexpr std::chrono::milliseconds kAnswerTime{
       200};  // VISCA: an answer within 16 ms; slow firmwares need more
   static constexpr std::chrono::milliseconds kStopAgain{100};
   static constexpr int kStopsWithoutAnswer = 5;  // to a camera that never acknowledged anything
   static constexpr std::chrono::milliseconds kInquiryPeriod{100};
+  static constexpr std::chrono::milliseconds kZoomPeriod{500};
+  static constexpr int kZoomInquiries = 3;  // without an answer, after which the camera is asked no more
   static constexpr std::chrono::milliseconds kForgotten{1000};  // an answer that has not come by then is lost
   static constexpr double kRate =
       20;  // commands a second: a frame of 16 bytes at 9600 baud takes 17 ms both ways
 
  private:
-  enum class Order : std::uint8_t { move, stop, home };
+  enum class Order : std::uint8_t { move, stop, home, zoom };
   struct Sent {
     Order order = Order::move;
     std::uint32_t sequence = 0;
@@ -68,6 +73,9 @@ class ViscaHead final : public StreamDevice {
   void send_order(Order order, const visca::Message& message, Time now);
   void send_drive(Time now);
   void repeat_stop(Time now);
+  void ask_zoom(Time now);
+  void send_zoom(Time now);
+  void on_zoom(double position, Time now);
   void read(Time now);
   void handle(const visca::Reply& reply, std::uint32_t sequence, Time now);
   std::optional<Sent> answered(std::uint32_t sequence);
@@ -89,6 +97,9 @@ class ViscaHead final : public StreamDevice {
   bool homed_ = false;
   std::optional<PoseLine> pose_, last_pose_;
   Time pose_time_{};
+  std::optional<double> zoom_;  // read, and not taken yet
+  Time zoom_asked_{}, zoom_sent_{};
+  int zoom_unanswered_ = 0;  // inquiries
 };
 
 }  // namespace cerberus::drivers
