@@ -32,7 +32,9 @@ struct Run {
   int waited = 0;  // annotated frames with the middle inside before the choice
   int chosen_at = -1, annotated = 0, middle = 0, most = 0, tracked = 0;
   std::function<vision::Box(int)> window;  // of a frame; none: by the pose that it carries
-  std::set<guint> carriers;                // tracks that had the person's box
+  std::function<bool()> stop;              // orders to the head; none: by the signals of the element `head`
+  std::function<bool(guint)> follow;
+  std::set<guint> carriers;  // tracks that had the person's box
 };
 
 inline vision::Box window_at(double pan, double tilt) {
@@ -55,7 +57,19 @@ inline GstPadProbeReturn look(GstPad* pad, GstPadProbeInfo* info, gpointer data)
   GstElement* head = GST_PAD_PARENT(pad);
   gboolean obeyed = TRUE;
   const int frame = run.frame++;
-  if (frame == 0) g_signal_emit_by_name(head, "stop", &obeyed);
+  const auto order_stop = [&] {
+    if (run.stop)
+      obeyed = run.stop();
+    else
+      g_signal_emit_by_name(head, "stop", &obeyed);
+  };
+  const auto order_follow = [&](guint track) {
+    if (run.follow)
+      obeyed = run.follow(track);
+    else
+      g_signal_emit_by_name(head, "follow", track, &obeyed);
+  };
+  if (frame == 0) order_stop();
   const vision::Box window = run.window ? run.window(frame) : window_of(buffer);
   const std::vector<Person>* people = nullptr;
   const Person* person = nullptr;
@@ -83,7 +97,7 @@ inline GstPadProbeReturn look(GstPad* pad, GstPadProbeInfo* info, gpointer data)
   if (run.chosen == 0 && seen && frame >= run.first) {
     run.chosen = has;
     run.chosen_at = frame;
-    g_signal_emit_by_name(head, "follow", has, &obeyed);
+    order_follow(has);
   }
   if (!obeyed) std::fprintf(stderr, "bench: the head does not obey\n");
   g_ptr_array_unref(tracks);

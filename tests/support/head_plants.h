@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <filesystem>
 #include <fstream>
 #include <memory>
@@ -139,8 +140,14 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
     std::int32_t wanted = 0;  // arc-seconds
     double angle = 0;
   };
+  struct Coming {
+    Time due{};
+    Axis* axis;
+    std::int32_t value;
+  };
   Axis pan_axis, tilt_axis;
-  Time at{};
+  Time at{}, delay;
+  std::deque<Coming> coming;  // written, and not obeyed yet
   std::size_t writes = 0;
   std::optional<drivers::V4l2Head> head;
   struct Lent final : drivers::CameraControls {
@@ -152,8 +159,8 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
     int get(std::uint32_t id, std::int32_t& value) noexcept override { return plant.get(id, value); }
     int set(std::uint32_t id, std::int32_t value) noexcept override { return plant.set(id, value); }
   };
-  // Looks along these angles (degrees) at the start.
-  explicit CameraPlant(double pan = 0, double tilt = 0) {
+  // Looks along these angles (degrees) at the start. dead_time: from a write until it is obeyed.
+  explicit CameraPlant(double pan = 0, double tilt = 0, Time dead_time = {}) : delay(dead_time) {
     for (const auto& [axis, angle] : {std::pair{&pan_axis, pan}, std::pair{&tilt_axis, tilt}}) {
       axis->wanted = static_cast<std::int32_t>(std::lround(angle * 10)) * 360;
       axis->angle = axis->wanted;
@@ -175,12 +182,18 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
     return 0;
   }
   int set(std::uint32_t id, std::int32_t value) noexcept override {
-    axis(id).wanted = value;
+    coming.push_back({at + delay, &axis(id), value});
+    obey(at);
     ++writes;
     return 0;
   }
   drivers::HeadDevice& device() override { return *head; }
+  void obey(Time now) {
+    for (; !coming.empty() && coming.front().due <= now; coming.pop_front())
+      coming.front().axis->wanted = coming.front().value;
+  }
   void elapse(Time now) override {
+    obey(now);
     const double most = motion::seconds(now - at) * 100 * 3600;
     for (Axis* axis : {&pan_axis, &tilt_axis})
       axis->angle += std::clamp(axis->wanted - axis->angle, -most, most);

@@ -82,6 +82,10 @@ START_TEST(angles_become_pulses) {
   ck_assert_int_eq(chip.read("enable"), 1);
   ck_assert_int_eq(chip.read("duty_cycle"), 1700000);     // 1500 us + 18 / 90 of 1000 us
   ck_assert_int_eq(chip.read("duty_cycle", 1), 1500000);  // the trim takes -9 to the middle
+  const auto pose = head.take_pose(2s);                   // it is where its plan is
+  ck_assert(pose && head.abilities().feedback);
+  ck_assert_double_eq_tol(pose->pan.position, radians(18), 1e-9);
+  ck_assert_double_eq_tol(pose->tilt.position, radians(-9), 1e-9);
   head.move({Kind::position, radians(18), 10}, {Kind::position, radians(11), 10}, 2s);
   run(head, 2s, 2s);
   ck_assert_int_eq(chip.read("duty_cycle", 1), 1300000);  // 20 / 180 of 1800 us, downwards

@@ -93,9 +93,8 @@ std::string ServoHead::open(const HeadSetup& setup, Time now) {
 }
 
 HeadAbilities ServoHead::abilities() const {
-  // A servo that is slower than the limits says where its plan is; else the pipeline's own model is the same.
-  const bool slower = options_.pan.slew > 0 || options_.tilt.slew > 0;
-  return {.position = true, .velocity = true, .feedback = slower, .rate = kRate};
+  // The position of a servo is its plan, which is better than what the picture shows of it.
+  return {.position = true, .velocity = true, .feedback = true, .rate = kRate};
 }
 
 void ServoHead::order(Axis& axis, const AxisCommand& command, Time now) {
@@ -211,7 +210,7 @@ Time ServoHead::tick(Time now) {
 }
 
 std::optional<PoseLine> ServoHead::take_pose(Time now) {
-  if (!abilities().feedback || gone_ || now < next_report_) return std::nullopt;
+  if (gone_ || now < next_report_) return std::nullopt;
   next_report_ = now + kReport;
   return PoseLine{pan_.plan.at(now), tilt_.plan.at(now), 0};
 }
