@@ -7,7 +7,7 @@ namespace cerberus::plugin {
 
 namespace {
 
-// Bytes that may wait for the disk. Derived: a minute of 8 Mbit/s. Guarded by the test of a disk that takes nothing.
+// Bytes that may wait for the disk. Derived: a minute of 8 Mbit/s. Guarded by the test of a disk that does not answer.
 constexpr std::uint64_t kMostPending = 64 << 20;
 
 bool is_one_of(GstCaps* caps, std::initializer_list<const char*> names) {
