@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A recorder is killed (kill -9) at random moments: every recording whose end was reported is whole and in the index,
+// every other one plays as far as it was written, and the next start puts the index right.
+//
+// CERBERUS_KILLS=100: so many moments instead of a few.
+#include <signal.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <optional>
+#include <random>
+
+#include "record/index.h"
+#include "recorder_rig.h"
+
+using namespace recorder_rig;
+namespace record = cerberus::record;
+
+extern char** environ;
+
+namespace {
+
+constexpr int kUsualKills = 8;
+constexpr char kInto[] = "CERBERUS_RECORD_INTO";  // the folder, for the program that is to be killed
+constexpr int kReports = 9;                       // its file descriptor
+
+}  // namespace
+
+// Records one event after the other, and reports each file whose end was reported, with its first and last frame, until
+// the process is killed.
+GST_START_TEST(records_until_killed) {
+  const char* folder = getenv(kInto);
+  FILE* reports = fdopen(kReports, "w");
+  Rig rig;
+  g_object_set(rig.element, "location", folder, "file-name", "{camera}_{event}", "camera-name",
+               std::to_string(getpid()).c_str(), nullptr);
+  rig.analysis =
+      std::make_unique<Stream>(rig.element, "analysis", "video/x-raw, format=GRAY8, width=320, height=240");
+  rig.frame_size = 2000;
+  rig.start();
+  const auto play_to = [&](guint32 last) {
+    while (rig.next <= last) {
+      const guint32 number = rig.next;
+      rig.play_to(number);
+      GstBuffer* buffer = gst_buffer_new_allocate(nullptr, 320 * 240, nullptr);
+      gst_buffer_memset(buffer, 0, 100, 320 * 240);
+      GST_BUFFER_PTS(buffer) = number * kFrame;
+      rig.analysis->push(buffer);
+    }
+  };
+  for (guint32 first = 0;; first += 200) {
+    play_to(first + 60);
+    rig.start_event();  // the pre-roll begins at the GOP of first + 30
+    play_to(first + 100);
+    rig.stop_event();
+    play_to(first + 199);
+    g_autoptr(GstStructure) ended = rig.wait_for_file("ended");
+    fprintf(reports, "%u %u %s\n", first + 30, first + 110, gst_structure_get_string(ended, "location"));
+    fflush(reports);
+  }
+}
+GST_END_TEST
+
+namespace {
+
+struct Acknowledged {
+  guint32 first, last;
+  std::string file;
+};
+
+// Runs the recorder for so many milliseconds after its first recording, kills it, and returns what it acknowledged.
+std::vector<Acknowledged> run_and_kill(const std::string& folder, int milliseconds) {
+  int ends[2];
+  fail_unless(pipe(ends) == 0);
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], kReports);
+  posix_spawn_file_actions_addclose(&actions, ends[0]);
+  char program[] = "/proc/self/exe";
+  char* arguments[] = {program, nullptr};
+  const std::string into = std::string(kInto) + '=' + folder;
+  std::vector<char*> environment;
+  for (char** each = environ; *each; ++each)
+    if (!g_str_has_prefix(*each, "CK_FORK=")) environment.push_back(*each);
+  for (const std::string& text : {into, std::string("CK_FORK=no")})
+    environment.push_back(strdup(text.c_str()));
+  environment.push_back(nullptr);
+  pid_t child = 0;
+  fail_unless_equals_int(posix_spawn(&child, program, &actions, nullptr, arguments, environment.data()), 0);
+  for (std::size_t k = environment.size() - 3; k + 1 < environment.size(); ++k) free(environment[k]);
+  posix_spawn_file_actions_destroy(&actions);
+  close(ends[1]);
+  FILE* output = fdopen(ends[0], "r");
+  std::vector<Acknowledged> all;
+  char file[1000];
+  Acknowledged next;
+  bool killed = false;
+  while (fscanf(output, "%u %u %999s", &next.first, &next.last, file) == 3) {
+    next.file = file;
+    all.push_back(next);
+    if (killed) continue;
+    g_usleep(static_cast<gulong>(milliseconds) * 1000);
+    kill(child, SIGKILL);
+    killed = true;  // what was reported before is still in the pipe
+  }
+  fclose(output);
+  int status = 0;
+  waitpid(child, &status, 0);
+  fail_unless(killed && WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL);
+  return all;
+}
+
+std::vector<record::Recording> rows_of(const std::string& folder) {
+  record::Index index;
+  bool damaged = false;
+  const std::string fault = index.open(folder + "/recordings.sqlite", damaged);  // checks its integrity
+  fail_unless(fault.empty(), "%s", fault.c_str());
+  std::vector<record::Recording> rows;
+  fail_unless(index.read(rows).empty());
+  return rows;
+}
+
+void check_acknowledged(const std::vector<Acknowledged>& all, const std::string& folder) {
+  const auto rows = rows_of(folder);
+  for (const Acknowledged& each : all) {
+    fail_unless(numbers_of(read_back(each.file)) == range(each.first, each.last), "%s", each.file.c_str());
+    const std::string name = std::filesystem::path(each.file).filename();
+    const auto row = std::ranges::find(rows, name, &record::Recording::file);
+    fail_unless(row != rows.end() && !row->open, "%s has no closed row", name.c_str());
+    const std::string base = each.file.substr(0, each.file.rfind('.'));
+    guint64 bytes = 0;
+    for (const char* ending : {".mp4", ".jsonl", ".jpg"}) bytes += std::filesystem::file_size(base + ending);
+    fail_unless_equals_uint64(row->bytes, bytes);
+  }
+}
+
+// What was not acknowledged: whole frames from a keyframe on, without a hole.
+void check_open(const std::vector<Acknowledged>& all, const std::string& folder) {
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string file = entry.path();
+    if (entry.path().extension() != ".mp4" || entry.file_size() < 41 * 2000)
+      continue;  // before its first fragment
+    if (std::ranges::count(all, file, &Acknowledged::file)) continue;
+    const auto frames = read_back(file);
+    fail_unless(!frames.empty() && frames[0].keyframe, "%s", file.c_str());
+    const guint32 first = frames[0].number;
+    fail_unless(numbers_of(frames) == range(first, first + static_cast<guint32>(frames.size()) - 1), "%s",
+                file.c_str());
+  }
+}
+
+// The next start closes every row, and each file that holds anything has one.
+void check_restart(const std::string& folder) {
+  {
+    Rig rig;
+    g_object_set(rig.element, "location", folder.c_str(), nullptr);
+    fail_if(gst_element_set_state(rig.element, GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE);
+  }
+  const auto rows = rows_of(folder);
+  for (const auto& row : rows) {
+    fail_if(row.open, "%s is still open", row.file.c_str());
+    fail_unless(std::filesystem::exists(folder + '/' + row.file));
+  }
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".mp4" || entry.file_size() == 0) continue;
+    const std::string name = entry.path().filename();
+    fail_unless(std::ranges::count(rows, name, &record::Recording::file) == 1, "%s has no row", name.c_str());
+  }
+}
+
+}  // namespace
+
+GST_START_TEST(a_killed_recorder_loses_nothing_that_it_acknowledged) {
+  const char* wanted = getenv("CERBERUS_KILLS");
+  const int kills = wanted ? std::max(1, atoi(wanted)) : kUsualKills;
+  std::mt19937 random(std::random_device{}());
+  Folder folder;
+  std::vector<Acknowledged> all;
+  for (int k = 0; k < kills; ++k) {
+    const auto more = run_and_kill(folder.path(), static_cast<int>(random() % 100));
+    all.insert(all.end(), more.begin(), more.end());
+    check_acknowledged(more, folder.path());
+    check_open(all, folder.path());
+    if (k % 4 == 3) check_restart(folder.path());
+  }
+  check_restart(folder.path());
+  check_acknowledged(all, folder.path());
+}
+GST_END_TEST
+
+static Suite* recorder_killed_suite() {
+  Suite* suite = suite_create("recorder killed");
+  TCase* tests = tcase_create("killed");
+  tcase_set_timeout(tests, getenv("CERBERUS_KILLS") ? 1000 : 60);
+  if (getenv(kInto))
+    tcase_add_test(tests, records_until_killed);
+  else
+    tcase_add_test(tests, a_killed_recorder_loses_nothing_that_it_acknowledged);
+  suite_add_tcase(suite, tests);
+  return suite;
+}
+
+GST_CHECK_MAIN(recorder_killed)
