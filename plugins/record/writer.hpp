@@ -13,7 +13,7 @@
 #include <variant>
 
 #include "file_pipeline.hpp"
-#include "record/archive.h"
+#include "record/archive/archive.h"
 #include "record/frame_journal.h"
 
 namespace cerberus::plugin {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "record/archive.h"
+#include "record/archive/archive.h"
 
 #include <check.h>
 #include <sys/stat.h>

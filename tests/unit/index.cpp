@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "record/index.h"
+#include "record/archive/index.h"
 
 #include <check.h>
 #include <fcntl.h>
@@ -98,8 +98,7 @@ START_TEST(the_database_is_one_that_others_read_by_its_documented_columns) {
   bool taken = false;
   index.add(written, taken);
   const std::string read =
-      ask(path,
-          "SELECT camera, begin, end, tracks, kinds, rule, picture, size, keep, open FROM recordings");
+      ask(path, "SELECT camera, begin, end, tracks, kinds, rule, picture, size, keep, open FROM recordings");
   ck_assert_str_eq(read.c_str(), "yard's|1795389333736236000|1795389342736236000|||||0|0|1|");
   const std::string modes = ask(path, "PRAGMA journal_mode; PRAGMA user_version");
   ck_assert_str_eq(modes.c_str(), "wal|1|");

@@ -10,9 +10,9 @@
 #include <string_view>
 #include <vector>
 
-#include "record/folder.h"
-#include "record/index.h"
-#include "record/retention.h"
+#include "record/archive/folder.h"
+#include "record/archive/index.h"
+#include "record/archive/retention.h"
 
 namespace cerberus::record {
 
@@ -25,7 +25,7 @@ class Archive {
   };
 
   // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it; one
-  // that a process left open is closed with what is there; one of a file without content is removed with it. A damaged
+  // that a process left open is closed with what is there (an MP4 file is repaired); one of a file without content is removed with it. A damaged
   // index is renamed to NAME.damaged and begun anew.
   void open(const Settings& settings, const Surroundings& now);
   void set_limits(const Limits& limits) { settings_.limits = limits; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "record/index.h"
+#include "record/archive/index.h"
 
 #include <fcntl.h>
 #include <sqlite3.h>
@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "record/folder.h"
+#include "record/archive/folder.h"
 
 namespace cerberus::record {
 

@@ -31,6 +31,7 @@ class OpenFile {
     return *this;
   }
   explicit operator bool() const { return fd_ >= 0; }
+  int descriptor() const { return fd_; }
   // Appends all of it, or returns an errno.
   int write(const void* bytes, std::size_t size) const;
   // Waits until what is written is on the disk.
@@ -53,6 +54,8 @@ class Folder {
   // Makes a file (mode 0640) that is not there yet, and the folders in its name (mode 0750); never the folder itself, which
   // may be a disk that is not mounted. EEXIST: there is something of that name.
   int create(const std::string& name, OpenFile& file) const;
+  // Opens a regular file for reading and writing, without a lock.
+  int open(const std::string& name, OpenFile& file) const;
   // Whether there is anything of that name.
   bool exists(const std::string& name) const;
   // The size of a regular file; nullopt: there is none.

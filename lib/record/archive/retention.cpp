@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "record/retention.h"
+#include "record/archive/retention.h"
 
 #include <algorithm>
 

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "record/archive.h"
+#include "record/archive/archive.h"
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+
+#include "record/archive/mp4_repair.h"
 
 namespace cerberus::record {
 
@@ -89,6 +91,8 @@ bool Archive::restore(Recording& row) {
       *name = there;
   row.end = std::max(row.begin, Time(folder_.changed(row.file)));
   row.open = false;
+  OpenFile video;
+  if (row.file.ends_with(kVideos[0]) && folder_.open(row.file, video) == 0) repair_mp4(video.descriptor());
   return true;
 }
 

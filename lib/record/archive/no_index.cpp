@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The index of a build without SQLite (meson option `sqlite`): there is none.
-#include "record/index.h"
+#include "record/archive/index.h"
 
 namespace cerberus::record {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "record/folder.h"
+#include "record/archive/folder.h"
 
 #include <fcntl.h>
 #include <sys/file.h>
@@ -107,6 +107,18 @@ int Folder::create(const std::string& name, OpenFile& file) const {
     if (error != ENOENT) return error;
   }
   return error;
+}
+
+int Folder::open(const std::string& name, OpenFile& file) const {
+  OpenFile parent;
+  int fd = -1;
+  std::string last;
+  if (const int error = open_parent(path_, name, false, parent, fd, last); error) return error;
+  const int opened = openat(fd, last.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (opened < 0) return errno;
+  file = OpenFile(opened);
+  struct stat about{};
+  return fstat(opened, &about) == 0 && S_ISREG(about.st_mode) ? 0 : EINVAL;
 }
 
 bool Folder::exists(const std::string& name) const {
