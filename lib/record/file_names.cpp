@@ -92,8 +92,10 @@ std::string expand_name(std::string_view pattern, const NameFacts& facts) {
     const std::size_t length = std::strftime(text.data(), text.size(), conversions.c_str(), &local);
     std::string component;
     replace_words(length ? std::string_view(text.data(), length) : part, facts, component);
-    // %D and a user's locale may hold slashes.
+    // %D and a user's locale may hold slashes; %n and %t are control characters.
     std::ranges::replace(component, '/', '-');
+    std::ranges::replace_if(
+        component, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == 127; }, '_');
     if (component == "." || component == ".." || component.empty()) component.assign(1, '_');
     if (!result.empty()) result += '/';
     result += component.substr(0, kLongestComponent);

@@ -50,6 +50,7 @@ END_TEST
 START_TEST(slashes_of_conversions_and_odd_components_stay_within_the_folder) {
   check("11-22-26", named("%D", {kMoment, "", 1, 1}));
   check("a/_/b", named("a/./b", {kMoment, "", 1, 1}));
+  check("a_b_c", named("a%nb%tc", {kMoment, "", 1, 1}));  // a line feed and a tabulator
   ck_assert_uint_le(named("{camera}", {kMoment, std::string(1000, 'x'), 1, 1}).size(), 200);
 }
 END_TEST
