@@ -96,6 +96,11 @@ Receiver& plug(const std::string& path = "/dev/input/event3") {
   return receivers[path];
 }
 
+// Tests share a process where check does not fork.
+void unplug_all() {
+  receivers.clear();
+}
+
 std::string read(EvdevSensor& sensor, Time now) {
   std::vector<SensorEdge> edges;
   if (const SensorError error = sensor.read(now, edges)) return error.text;
@@ -122,6 +127,7 @@ void must_refuse(const SensorSetup& how, SensorFault fault, const std::string& w
 }
 
 START_TEST(it_begins_with_the_levels_and_goes_on_with_events_and_their_stamps) {
+  unplug_all();
   Receiver& receiver = plug();
   receiver.on = {kSecond, kCover};
   EvdevSensor sensor;
@@ -134,6 +140,7 @@ START_TEST(it_begins_with_the_levels_and_goes_on_with_events_and_their_stamps) {
 END_TEST
 
 START_TEST(other_keys_and_repeated_ones_are_no_edges) {
+  unplug_all();
   Receiver& receiver = plug();
   EvdevSensor sensor;
   ck_assert(!sensor.open(setup()));
@@ -146,6 +153,7 @@ START_TEST(other_keys_and_repeated_ones_are_no_edges) {
 END_TEST
 
 START_TEST(after_dropped_events_the_levels_are_read_anew) {
+  unplug_all();
   Receiver& receiver = plug();
   EvdevSensor sensor;
   ck_assert(!sensor.open(setup()));
@@ -160,11 +168,12 @@ START_TEST(after_dropped_events_the_levels_are_read_anew) {
 END_TEST
 
 START_TEST(a_receiver_that_vanishes_is_an_outage_and_is_opened_again) {
+  unplug_all();
   plug();
   EvdevSensor sensor;
   ck_assert(!sensor.open(setup()));
   must_read(sensor, 1s, "0:0@1000 1:0@1000 2:0@1000");
-  receivers.clear();
+  unplug_all();
   must_read(sensor, 2s, "0:!@2000 1:!@2000 2:!@2000");
   ck_assert_int_eq(sensor.fd(), -1);
   ck_assert(says(sensor.outage(), "/dev/input/event3 (PIR receiver) is gone (No such device)"));
@@ -177,11 +186,12 @@ START_TEST(a_receiver_that_vanishes_is_an_outage_and_is_opened_again) {
 END_TEST
 
 START_TEST(a_receiver_that_returns_under_another_number_is_known_by_its_name) {
+  unplug_all();
   plug();
   EvdevSensor sensor;
   ck_assert(!sensor.open(setup()));
   read(sensor, 1s);
-  receivers.clear();
+  unplug_all();
   read(sensor, 2s);
   plug().name = "a keyboard";  // has taken its path
   must_read(sensor, 3s, "");
@@ -192,6 +202,7 @@ START_TEST(a_receiver_that_returns_under_another_number_is_known_by_its_name) {
 END_TEST
 
 START_TEST(events_before_the_end_count) {
+  unplug_all();
   Receiver& receiver = plug();
   EvdevSensor sensor;
   ck_assert(!sensor.open(setup()));
@@ -203,6 +214,7 @@ START_TEST(events_before_the_end_count) {
 END_TEST
 
 START_TEST(a_device_is_found_by_its_name) {
+  unplug_all();
   plug("/dev/input/event0").name = "a keyboard";
   plug("/dev/input/event1").open_error = EACCES;
   plug("/dev/input/event3").on = {kSecond};
@@ -216,6 +228,7 @@ START_TEST(a_device_is_found_by_its_name) {
 END_TEST
 
 START_TEST(what_is_wrong_is_named_and_so_is_the_remedy) {
+  unplug_all();
   must_refuse(setup(), SensorFault::not_found,
               "There is no input device \"/dev/input/event3\". This machine has none");
   plug().open_error = EACCES;
