@@ -92,6 +92,7 @@ ARROWS = VISION | {
     'control': ('drivers', 'fusion', 'vision'),
     'sim': ('vision', 'sensing', 'motion'),
     'record': ('vision',),
+    'publish': (),
 }
 BELOW_ALL = ('text', 'threads')
 FOR_ALL = {'sensing/angles.h'}  # degrees and radians
