@@ -151,12 +151,35 @@ void HeadSession::refusal_soon() {
       this, nullptr);
 }
 
+// False: an error was posted. A gyro that cannot be opened is an error later.
+bool HeadSession::start_gyro(const std::string& which) {
+  const auto publish = [this](motion::Time time, double rate) {
+    CerberusBase base;
+    cerberus_base_init(&base);
+    base.yaw_rate = sensing::degrees(rate);
+    base.valid_from = clock_time(time);
+    gst_pad_push_event(GST_BASE_SINK_PAD(sink), cerberus_event_new_base(&base));
+  };
+  const auto report = [this](const drivers::SensorError& error, bool final) {
+    if (final)
+      CERBERUS_ELEMENT_ERROR(sink, RESOURCE, OPEN_READ, (error.text), (error.detail));
+    else if (error)
+      CERBERUS_ELEMENT_WARNING(sink, RESOURCE, READ, (error.text + " The picture's estimate counts."),
+                               (error.detail));
+    else
+      CERBERUS_ELEMENT_INFO(sink, RESOURCE, READ, ("The base's gyro works again."), (nullptr));
+  };
+  const std::string wrong = gyro.start(which, {[this] { return now(); }, publish, report});
+  if (!wrong.empty()) CERBERUS_ELEMENT_ERROR(sink, RESOURCE, SETTINGS, (wrong + " (base-gyro)."), (nullptr));
+  return wrong.empty();
+}
+
 bool HeadSession::open() {
   const HeadSettings s = settings.snapshot();
   drivers::HeadSetup setup = head_setup(s);
   auto runner =
       open_head(GST_ELEMENT(sink), s, setup, [this] { ticker_.wake(); }, [this] { refusal_soon(); });
-  if (!runner || !gyro.start(sink, s.base_gyro)) return false;
+  if (!runner || !start_gyro(s.base_gyro)) return false;
   head = g_intern_string(s.head.c_str());
   camera_name = s.camera_name;
   stamps.reset();

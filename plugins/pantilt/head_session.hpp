@@ -10,8 +10,8 @@
 #include <atomic>
 #include <mutex>
 
-#include "base_gyro.hpp"
 #include "cerberus/private/element.hpp"
+#include "control/gyro/base_gyro.h"
 #include "control/head_controller.h"
 #include "head_settings.hpp"
 #include "shared/clock_times.hpp"
@@ -29,7 +29,7 @@ struct HeadSession {
   GstBaseSink* sink = nullptr;
   Adjustable<HeadSettings> settings;
   control::HeadController controller;
-  BaseGyro gyro;
+  control::BaseGyro gyro;
   std::atomic<const char*> head = nullptr;  // its name, interned; of the last one, if none is open
   std::atomic<double> field_of_view = 0;    // degrees
   std::atomic<bool> clock_driven = false, playing = false;
@@ -71,6 +71,7 @@ struct HeadSession {
   std::string camera_name;
 
  private:
+  bool start_gyro(const std::string& which);
   void refusal_soon();
   bool start_ticker();
   GstClockTime tick(GstClockTime time);

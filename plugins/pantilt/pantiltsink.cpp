@@ -98,6 +98,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "head_session.hpp"
+#include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/complaint.hpp"
 #include "shared/times.hpp"
@@ -241,7 +242,9 @@ GstFlowReturn on_frame(Private& self, GstBuffer* buffer, GstClockTime pts, GstCl
     session.stamps.frame(GST_BASE_SINK_PAD(session.sink), buffer, clock_time(*taken), session.camera_name);
     if (!GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) {
       frame.motion = motion_of(self.state, buffer, *taken);
-      session.gyro.on_frame(buffer, frame.motion, frame.lens, *taken);
+      const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
+      const auto look = look_of(buffer, clock_time(*taken)).value_or(motion::PanTilt{});
+      session.gyro.frame(*taken, frame.motion, frame.lens, look, !pose || !pose->moving);
       self.state.taken = taken;
     } else {
       frame.repeats = std::min(self.state.taken, taken);
@@ -377,7 +380,9 @@ GstStateChangeReturn cerberus_pan_tilt_sink_change_state(GstElement* element, Gs
 }
 
 gboolean cerberus_pan_tilt_sink_send_event(GstElement* element, GstEvent* event) {
-  guarded(element, [&] { cerberus_pan_tilt_sink_self(element)->priv->session.gyro.on_event(event); });
+  HeadSession& session = cerberus_pan_tilt_sink_self(element)->priv->session;
+  if (g_autoptr(CerberusBase) base = cerberus_event_parse_base(event))
+    guarded(element, [&] { session.gyro.robot(time_of(base->valid_from), radians(base->yaw_rate)); });
   return GST_ELEMENT_CLASS(cerberus_pan_tilt_sink_parent_class())->send_event(element, event);
 }
 

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/helper/option_words.h"
 #include "text/numbers.h"
 
 namespace cerberus::plugin {
+
+using drivers::comma_list;
 
 namespace {
 
@@ -117,20 +120,6 @@ const Property<PirSettings> kProperties[] = {
              "Name of the camera that the sensors belong to, for messages; empty = none"),
 };
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  if (list.empty()) return parts;
-  for (std::size_t at = 0;;) {
-    const auto end = list.find(',', at);
-    std::string part = list.substr(at, end == list.npos ? end : end - at);
-    part.erase(0, part.find_first_not_of(' '));
-    part.erase(part.find_last_not_of(' ') + 1);
-    parts.push_back(std::move(part));
-    if (end == list.npos) return parts;
-    at = end + 1;
-  }
-}
-
 guint id_of(std::string_view name) {
   const auto found = std::ranges::find(kProperties, name, &Property<PirSettings>::name);
   return static_cast<guint>(found - std::begin(kProperties)) + 1;
@@ -163,7 +152,7 @@ void apply_preset(PirSettings& settings, const PirChosen& chosen) {
 std::string pir_info(const PirSettings& settings, CerberusPirInfo& info) {
   cerberus_pir_info_init(&info);
   info.field_of_view = settings.field_of_view;
-  const auto words = split(settings.bearings);
+  const auto words = comma_list(settings.bearings);
   if (words.empty() || words.size() > CERBERUS_PIR_MAX_SENSORS)
     return "bearings=\"" + settings.bearings + "\" must name 1 to 16 directions";
   info.sensors = static_cast<guint>(words.size());
@@ -182,15 +171,15 @@ drivers::SensorSetup sensor_setup(const PirSettings& settings, guint sensors) {
   drivers::SensorSetup setup;
   setup.sensors = static_cast<int>(sensors);
   setup.chip = settings.chip;
-  setup.lines = split(settings.lines);
-  setup.red = split(settings.leds_red);
-  setup.blue = split(settings.leds_blue);
+  setup.lines = comma_list(settings.lines);
+  setup.red = comma_list(settings.leds_red);
+  setup.blue = comma_list(settings.leds_blue);
   setup.bias = static_cast<drivers::LineBias>(settings.bias);
   setup.device = settings.driver == "iio" ? settings.iio_device : settings.device;
-  setup.codes = split(settings.codes);
+  setup.codes = comma_list(settings.codes);
   setup.command = settings.command;
   setup.options = settings.device_options;
-  setup.channels = split(settings.channels);
+  setup.channels = comma_list(settings.channels);
   setup.level = {settings.threshold, settings.hysteresis};
   setup.interval = std::max(time_of(settings.sample_interval), sensing::Time(std::chrono::milliseconds(1)));
   setup.location = settings.location;

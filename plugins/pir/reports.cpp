@@ -4,35 +4,25 @@
 #include <algorithm>
 #include <cerberus/private/messages.hpp>
 #include <cmath>
+#include <iterator>
 
 namespace cerberus::plugin {
 
-using drivers::SensorFault;
-
 void report_error(GstElement* element, const drivers::SensorError& error) {
-  switch (error.fault) {
-    case SensorFault::none:
-      return;
-    case SensorFault::settings:
-    case SensorFault::missing:
-      CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (error.text), (error.detail));
-      return;
-    case SensorFault::not_found:
-      CERBERUS_ELEMENT_ERROR(element, RESOURCE, NOT_FOUND, (error.text), (error.detail));
-      return;
-    case SensorFault::busy:
-      CERBERUS_ELEMENT_ERROR(element, RESOURCE, BUSY, (error.text), (error.detail));
-      return;
-    case SensorFault::denied:
-      CERBERUS_ELEMENT_ERROR(element, RESOURCE, NOT_AUTHORIZED, (error.text), (error.detail));
-      return;
-    case SensorFault::data:
-      CERBERUS_ELEMENT_ERROR(element, STREAM, DECODE, (error.text), (error.detail));
-      return;
-    case SensorFault::gone:
-      CERBERUS_ELEMENT_ERROR(element, RESOURCE, READ, (error.text), (error.detail));
-      return;
-  }
+  constexpr int kCodes[] = {0,  // in the order of SensorFault
+                            GST_RESOURCE_ERROR_SETTINGS,
+                            GST_RESOURCE_ERROR_NOT_FOUND,
+                            GST_RESOURCE_ERROR_BUSY,
+                            GST_RESOURCE_ERROR_NOT_AUTHORIZED,
+                            GST_RESOURCE_ERROR_SETTINGS,
+                            GST_STREAM_ERROR_DECODE,
+                            GST_RESOURCE_ERROR_READ};
+  static_assert(static_cast<std::size_t>(drivers::SensorFault::gone) + 1 == std::size(kCodes));
+  if (!error) return;
+  const GQuark domain = error.fault == drivers::SensorFault::data ? GST_STREAM_ERROR : GST_RESOURCE_ERROR;
+  detail::post(element, GST_MESSAGE_ERROR, domain, kCodes[static_cast<int>(error.fault)],
+               detail::words(error.text), detail::words(error.detail), nullptr,
+               {GST_CAT_DEFAULT, __FILE__, GST_FUNCTION, __LINE__});
 }
 
 void report_fault(GstElement* element, int sensor, sensing::PirFault fault, double bearing,

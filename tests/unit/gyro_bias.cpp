@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-#include "control/gyro_bias.h"
+#include "control/gyro/gyro_bias.h"
 
 #include <cmath>
 #include <functional>

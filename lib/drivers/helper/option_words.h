@@ -20,6 +20,8 @@ OptionWord option_word(std::string_view text);
 std::vector<OptionWord> option_words(std::string_view text);
 // The parts of a list that a character parts; empty parts are kept.
 std::vector<std::string> split(std::string_view text, char separator);
+// The parts of a list with commas, without blanks around them; none of an empty text.
+std::vector<std::string> comma_list(std::string_view text);
 // A finite number with a point in every locale; nothing for any other text.
 std::optional<double> number_of(std::string_view text);
 
