@@ -233,9 +233,12 @@ struct ViscaPlant final : HeadPlant {
   mutable ViscaCamera camera;
   std::optional<drivers::ViscaHead> head;
   explicit ViscaPlant(std::chrono::milliseconds dead_time = {})
-      : camera(ViscaCamera::Line::udp, {.reports = false, .dead_time = dead_time}, &time) {
+      : ViscaPlant(ViscaFaults{.reports = false, .dead_time = dead_time}) {}
+  // Without position inquiries: the driver would wait for the first answer in real time.
+  explicit ViscaPlant(const ViscaFaults& faults) : camera(ViscaCamera::Line::udp, faults, &time) {
     drivers::ViscaOptions options;
     options.device = camera.device();
+    options.header = faults.header;
     options.feedback = false;
     head.emplace(options);
   }
@@ -243,6 +246,7 @@ struct ViscaPlant final : HeadPlant {
   void elapse(Time now) override {
     camera.step();
     time.set(now);
+    camera.step();
   }
   double pan() const override { return camera.pan(); }
   double tilt() const override { return camera.tilt(); }

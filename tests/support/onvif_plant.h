@@ -5,7 +5,9 @@
 #include <sys/eventfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,9 +31,13 @@ class SteppedHttp final : public drivers::onvif::HttpClient {
     const auto path = request.url.find('/', request.url.find("//") + 2);
     const HttpReply reply =
         camera_.answer({path == std::string::npos ? "/" : request.url.substr(path), "", request.body});
-    if (reply.lost) return;
-    const auto delay = logged_in_ ? answer_time_ + reply.delay : std::chrono::milliseconds(0);
-    answers_.push_back({time_.now() + delay, {request.id, reply.status, reply.body, ""}});
+    const auto delay = !logged_in_  ? std::chrono::milliseconds(0)
+                       : reply.lost ? request.timeout
+                                    : answer_time_ + reply.delay;
+    drivers::onvif::HttpAnswer answer{request.id, reply.status, reply.body, ""};
+    if (reply.lost) answer = {request.id, 0, "", "it timed out"};
+    answers_.push_back({time_.now() + delay, std::move(answer)});
+    std::ranges::stable_sort(answers_, {}, &Late::due);
   }
   void cancel(unsigned id) override {
     std::erase_if(answers_, [id](const Late& late) { return late.answer.id == id; });
@@ -63,20 +69,25 @@ class SteppedHttp final : public drivers::onvif::HttpClient {
   int fd_ = ::eventfd(1, EFD_CLOEXEC | EFD_NONBLOCK);  // always readable
 };
 
-// A camera without positions.
 struct OnvifPlant final : HeadPlant {
   SteppedTime time;
   mutable OnvifCamera camera;
   std::optional<drivers::OnvifHead> head;
-  explicit OnvifPlant(std::chrono::milliseconds dead_time = {},
-                      std::chrono::milliseconds answer_time = std::chrono::milliseconds(20))
-      : camera({.move_status = OnvifFaults::MoveStatus::absent, .positions = false, .dead_time = dead_time},
-               &time) {
+  // A camera without positions.
+  explicit OnvifPlant(std::chrono::milliseconds dead_time = {})
+      : OnvifPlant(
+            {.move_status = OnvifFaults::MoveStatus::absent, .positions = false, .dead_time = dead_time},
+            [](drivers::OnvifOptions& options) { options.feedback = false; }, std::chrono::milliseconds(20)) {
+  }
+  // adjust: changes the options, which are those of a camera that is turned at speeds.
+  OnvifPlant(OnvifFaults faults, const std::function<void(drivers::OnvifOptions&)>& adjust,
+             std::chrono::milliseconds answer_time)
+      : camera(std::move(faults), &time) {
     drivers::OnvifOptions options;
     must(drivers::onvif::parse_device(camera.device(), options.login.device));
     options.mechanics.full_speed = {OnvifCamera::kPanSpeed, OnvifCamera::kTiltSpeed};
     options.login.try_absolute = false;
-    options.feedback = false;
+    if (adjust) adjust(options);
     head.emplace(std::make_unique<SteppedHttp>(camera, time, answer_time), options);
   }
   drivers::HeadDevice& device() override { return *head; }

@@ -81,10 +81,12 @@ class ViscaCamera {
       if (fd >= 0) ::close(fd);
   }
   const std::string& device() const { return device_; }
-  // Obeys what has come.
+  // Obeys what has come, and sends the answers that are due.
   void step() {
     while (work(0)) {
     }
+    for (; !late_.empty() && late_.front().due <= now_of(time_); late_.pop_front())
+      deliver(late_.front().message);
   }
   void set_zoom(int position) { zoom_ = position; }
   int zoom() const { return zoom_; }
@@ -200,13 +202,19 @@ class ViscaCamera {
     return true;
   }
   void answer(std::vector<std::uint8_t> message) {
-    std::this_thread::sleep_for(faults_.delay);
+    if (!time_) std::this_thread::sleep_for(faults_.delay);
     if (line_ == Line::udp && faults_.header) {
       const std::uint8_t head[8] = {
           1,          0x11,       0,          static_cast<std::uint8_t>(message.size()),
           header_[4], header_[5], header_[6], header_[7]};
       message.insert(message.begin(), head, head + 8);
     }
+    if (time_ && faults_.delay.count() > 0)
+      late_.push_back({now_of(time_) + faults_.delay, std::move(message)});
+    else
+      deliver(message);
+  }
+  void deliver(const std::vector<std::uint8_t>& message) {
     if (line_ == Line::udp)
       ::sendto(fd_, message.data(), message.size(), 0, reinterpret_cast<sockaddr*>(&peer_), peer_size_);
     else if (line_ == Line::tcp)
@@ -235,6 +243,7 @@ class ViscaCamera {
     if (m.size() == 9 && m[1] == 0x01 && m[2] == 0x04 && m[3] == 0x47) {  // CAM_Zoom Direct
       if (!faults_.zooms) return answer({0x90, 0x60, 0x02, 0xff});
       zoom_ = m[4] << 12 | m[5] << 8 | m[6] << 4 | m[7];
+      if (!faults_.acknowledges) return;
       answer({0x90, 0x41, 0xff});
       return answer({0x90, 0x51, 0xff});
     }
@@ -288,6 +297,11 @@ class ViscaCamera {
   std::mutex lock_;
   Axis pan_, tilt_;  // degrees, degrees a second
   std::deque<Drive> coming_;
+  struct Late {
+    Clock::time_point due;
+    std::vector<std::uint8_t> message;
+  };
+  std::deque<Late> late_;  // answers
   std::atomic<bool> homing_{false};
   std::atomic<int> homes_{0};
   std::uint32_t next_ = 0;

@@ -129,69 +129,6 @@ START_TEST(a_stop_is_sent_as_the_stop_of_the_protocol_and_a_hold_is_not) {
 }
 END_TEST
 
-START_TEST(a_head_with_speed_commands_only_brakes_at_the_target) {
-  const Recorder helper("velocity rate 100");
-  HelperHead head("external");
-  HeadSetup setup = setup_with(helper.command());
-  setup.limits.pan.acceleration =
-      radians(60);  // a third of a second to full speed: many lines, however busy the machine
-  assert_text(head.open(setup), "");
-  assert_text(head.command({0s, {Kind::position, radians(6), radians(20)}, {}}), "");
-  const auto lines = helper.until("move hold hold", 6);
-  double most = 0;
-  for (const std::string& line : lines) {
-    double speed = 0;
-    if (std::sscanf(line.c_str(), "move at %lf hold", &speed) == 1) most = std::max(most, speed);
-  }
-  ck_assert_double_gt(most, 15);
-  ck_assert_double_le(most, 20.0001);
-}
-END_TEST
-
-// It stands at 30 degrees; limits of 10 degrees turn it back.
-START_TEST(limits_that_come_in_move_a_head_that_rests_beyond_them) {
-  const Recorder helper("velocity rate 100");
-  HelperHead head("external");
-  HeadSetup setup = setup_with(helper.command());
-  setup.pan = radians(30);
-  assert_text(head.open(setup), "");
-  assert_text(head.command({0s, {}, {}}), "");
-  setup.limits.pan.from = radians(-10);
-  setup.limits.pan.to = radians(10);
-  assert_text(head.limit(100ms, setup.limits), "");
-  const auto lines = helper.until("move hold hold", 5);
-  ck_assert(
-      std::ranges::any_of(lines, [](const std::string& line) { return line.starts_with("move at -"); }));
-}
-END_TEST
-
-// 20 degrees a second are commanded, and the helper's steps make 10 of it: the head is where 10 lead.
-START_TEST(the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on) {
-  HelperHead head("external");
-  HeadSetup setup = setup_with(
-      "sh -c 'read hello; echo ready 1 velocity; while read line; do case $line in move*) echo speeds 10 0 "
-      "0;; "
-      "esac; done'");
-  setup.latency = 200ms;
-  const auto begin = Clock::now();
-  assert_text(head.open(setup), "");
-  const Time sent = Clock::now() - begin;
-  assert_text(head.command({sent, {Kind::velocity, radians(20), 0}, {}}), "");
-  std::this_thread::sleep_for(300ms);
-  const Time received = Clock::now() - begin;
-  Pose pose;
-  assert_text(head.state(sent + 150ms, pose), "");
-  ck_assert_double_eq(pose.pan.position, 0);  // the dead time is not over
-  assert_text(head.state(received + 2s, pose), "");
-  ck_assert_double_eq_tol(degrees(pose.pan.speed), 10, 1e-9);
-  const double least = 10 * cerberus::motion::seconds(2s - 200ms),
-               most = 10 * cerberus::motion::seconds(received + 2s - sent - 200ms);
-  ck_assert_double_gt(degrees(pose.pan.position), least);
-  ck_assert_double_le(degrees(pose.pan.position), most + 1e-6);
-  ck_assert(!pose.measured);
-}
-END_TEST
-
 START_TEST(a_head_that_found_its_reference_is_there_and_measured_for_a_moment) {
   HelperHead head("external");
   assert_text(
@@ -303,9 +240,7 @@ int main() {
       "helper_head",
       {the_shipped_example_goes_where_it_is_sent_and_reports_it, a_helper_receives_the_command,
        a_stop_is_sent_as_the_stop_of_the_protocol_and_a_hold_is_not,
-       a_head_with_speed_commands_only_brakes_at_the_target, a_helper_receives_a_line_well_within_its_timeout,
-       limits_that_come_in_move_a_head_that_rests_beyond_them,
-       the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
+       a_helper_receives_a_line_well_within_its_timeout,
        a_head_that_found_its_reference_is_there_and_measured_for_a_moment, a_head_without_a_reference_says_so,
        a_helper_that_cannot_open_its_head_reports_the_reason, an_emergency_stop_between_two_looks_is_seen,
        a_helper_that_ended_is_reported_and_started_again,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The ONVIF driver against an emulated camera over loopback HTTP: moves, stops, positions.
+// The ONVIF driver against an emulated camera: moves, stops, positions. Most of it in the test's own time; over loopback
+// HTTP and in real time what needs both.
 #include "sensing/angles.h"
+#include "support/onvif_plant.h"
 #include "support/onvif_rig.h"
+#include "support/stepped_helper.h"
 
 #include "support/suite.h"
 #include "support/text.h"
@@ -10,6 +13,26 @@ using namespace cerberus::drivers;
 using namespace cerberus::tests;
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
+
+namespace {
+
+// In the test's own time.
+struct Rig {
+  OnvifPlant plant;
+  OnvifCamera& camera = plant.camera;
+  SteppedHelper served;
+
+  explicit Rig(OnvifFaults faults = {}, const std::function<void(OnvifOptions&)>& adjust = {})
+      : plant(std::move(faults), adjust, 2ms), served(plant) {}
+};
+
+// With the position range of the emulated camera, so that it has positions.
+void with_range(OnvifOptions& options) {
+  options.mechanics.least = onvif::Angles{-OnvifCamera::kPanEnd, -OnvifCamera::kTiltEnd};
+  options.mechanics.most = onvif::Angles{OnvifCamera::kPanEnd, OnvifCamera::kTiltEnd};
+}
+
+}  // namespace
 
 START_TEST(a_camera_turns_and_stops) {
   OnvifCamera camera;
@@ -25,23 +48,21 @@ START_TEST(a_camera_turns_and_stops) {
 END_TEST
 
 START_TEST(pan_is_positive_to_the_right_and_tilt_up) {
-  OnvifCamera camera;
-  OnvifRig rig(camera);
+  Rig rig;
   rig.served.line("ready");
   rig.served.say("move at -20 at 10");
-  ck_assert(rig.served.until([&] { return camera.pan() < -1 && camera.tilt() > .5; }));
+  ck_assert(rig.served.until([&] { return rig.camera.pan() < -1 && rig.camera.tilt() > .5; }));
 }
 END_TEST
 
 START_TEST(a_move_has_a_timeout_and_is_sent_again_before_it_is_over) {
-  OnvifCamera camera;
-  OnvifRig rig(camera);
+  Rig rig;
   rig.served.line("ready");
   rig.served.say("move at 20 hold");
-  ck_assert(rig.served.until([&] { return camera.pan() > 30; }));  // 1.5 s: longer than the Timeout
-  assert_text(camera.timeout(), "PT1S");
-  ck_assert_double_eq_tol(camera.speed(), 20, 1e-9);
-  ck_assert_int_le(camera.count("ContinuousMove"), 5);
+  ck_assert(rig.served.until([&] { return rig.camera.pan() > 30; }));  // 1.5 s: longer than the Timeout
+  assert_text(rig.camera.timeout(), "PT1S");
+  ck_assert_double_eq_tol(rig.camera.speed(), 20, 1e-9);
+  ck_assert_int_le(rig.camera.count("ContinuousMove"), 5);
 }
 END_TEST
 
@@ -63,102 +84,86 @@ START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_sec
 END_TEST
 
 START_TEST(the_camera_stops_by_its_own_timeout_when_the_helper_is_gone) {
-  OnvifCamera camera;
-  auto head = std::make_unique<OnvifHead>(
-      std::make_unique<cerberus::heads::SoupClient>(cerberus::heads::SoupClientOptions{}),
-      onvif_options(camera));
-  const auto now = [] { return std::chrono::duration_cast<Time>(Clock::now().time_since_epoch()); };
-  assert_text(head->open({}, now()), "");
-  for (const auto end = Clock::now() + 5s; camera.speed() == 0 && Clock::now() < end;
-       std::this_thread::sleep_for(5ms)) {
-    head->move({cerberus::motion::AxisCommand::Kind::velocity, .5, 0}, {}, now());
-    head->tick(now());
-  }
-  ck_assert(camera.speed() > 0);
-  head.reset();  // as by kill -9
-  for (const auto end = Clock::now() + 5s; camera.speed() != 0 && Clock::now() < end;)
-    std::this_thread::sleep_for(5ms);
-  ck_assert(camera.speed() == 0);
+  Rig rig;
+  ck_assert(rig.served.until([&] { return rig.camera.speed() > 44; }, "move at 45 hold"));
+  const Time killed = rig.served.now();  // from now on the helper does nothing
+  rig.plant.elapse(killed + 900ms);
+  ck_assert_double_gt(rig.camera.speed(), 44);
+  rig.plant.elapse(killed + 1s);  // the Timeout
+  ck_assert_double_eq(rig.camera.speed(), 0);
 }
 END_TEST
 
 START_TEST(a_stop_is_sent_until_the_camera_acknowledges_it) {
-  OnvifCamera deaf({.ignores_timeout = true, .loses_stops = 4});
-  OnvifRig rig(deaf);
+  Rig rig({.ignores_timeout = true, .loses_stops = 4});
   rig.served.line("ready");
-  ck_assert(rig.served.until([&] { return deaf.speed() > 44; }, "move at 45 hold"));
+  ck_assert(rig.served.until([&] { return rig.camera.speed() > 44; }, "move at 45 hold"));
   rig.served.hang_up();
   ck_assert_int_eq(rig.served.status(), 0);
-  ck_assert_double_eq(deaf.speed(), 0);
+  ck_assert_double_eq(rig.camera.speed(), 0);
 }
 END_TEST
 
 // MoveStatus is the only sign that the camera still moves.
 START_TEST(a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again) {
-  OnvifCamera camera({.ignores_timeout = true, .swallows_stops = 2});
-  OnvifRig rig(camera);
+  Rig rig({.ignores_timeout = true, .swallows_stops = 2});
   rig.served.line("ready");
   rig.served.say("move at 45 hold");
-  ck_assert(rig.served.until([&] { return camera.pan() > 30; }));
+  ck_assert(rig.served.until([&] { return rig.camera.pan() > 30; }));
   rig.served.hang_up();
   ck_assert_int_eq(rig.served.status(), 0);
-  ck_assert_double_eq(camera.speed(), 0);
+  ck_assert_double_eq(rig.camera.speed(), 0);
 }
 END_TEST
 
 START_TEST(a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well) {
-  OnvifCamera camera({.ignores_timeout = true, .move_delay = 400ms});
-  OnvifRig rig(camera);
+  Rig rig({.ignores_timeout = true, .move_delay = 400ms});
   rig.served.line("ready");
   rig.served.say("move at 45 hold");
-  std::this_thread::sleep_for(100ms);  // it is on its way
+  rig.served.run(100ms);  // it is on its way
   rig.served.hang_up();
   ck_assert_int_eq(rig.served.status(), 0);
-  std::this_thread::sleep_for(500ms);  // the move is obeyed, whatever has ended before
-  ck_assert_double_eq(camera.speed(), 0);
-  ck_assert_int_ge(camera.count("ContinuousMove"), 1);
+  rig.served.run(500ms);  // the move is obeyed, whatever has ended before
+  ck_assert_double_eq(rig.camera.speed(), 0);
+  ck_assert_int_ge(rig.camera.count("ContinuousMove"), 1);
 }
 END_TEST
 
 START_TEST(the_newest_move_waits_for_the_answer_to_the_last_one) {
-  OnvifCamera camera({.delay = 150ms});
-  OnvifRig rig(camera);
+  Rig rig({.delay = 150ms});
   rig.served.line("ready");
-  const int before = camera.count("ContinuousMove");
+  const int before = rig.camera.count("ContinuousMove");
   for (int k = 1; k <= 40; ++k) {  // 0.4 s
     rig.served.say("move at " + std::to_string(k) + " hold");
-    std::this_thread::sleep_for(10ms);
+    rig.served.run(10ms);
   }
-  ck_assert(rig.served.until([&] { return std::abs(camera.speed() - 40) < 1e-9; }));
-  ck_assert_int_le(camera.count("ContinuousMove") - before, 6);
+  ck_assert(rig.served.until([&] { return std::abs(rig.camera.speed() - 40) < 1e-9; }));
+  ck_assert_int_le(rig.camera.count("ContinuousMove") - before, 6);
 }
 END_TEST
 
 START_TEST(positions_are_reported_and_a_camera_at_its_limit_is_stopped) {
-  OnvifCamera camera;
-  OnvifRig rig(onvif_options_with_range(camera));
+  Rig rig({}, with_range);
   assert_text(rig.served.line("ready"), "ready 1 velocity feedback rate 10");
   rig.served.say("limits -10 10 -10 10");
-  ck_assert(rig.served.until([&] { return camera.pan() > 8 && camera.speed() == 0; }, "move at 45 hold"));
-  ck_assert_double_le(camera.pan(), 10.5);
+  ck_assert(
+      rig.served.until([&] { return rig.camera.pan() > 8 && rig.camera.speed() == 0; }, "move at 45 hold"));
+  ck_assert_double_le(rig.camera.pan(), 10.5);
   const std::string pose = rig.served.line("pose");
   ck_assert_msg(pose.starts_with("pose "), "%s", pose.c_str());
-  ck_assert(rig.served.until([&] { return camera.speed() < -40; }, "move at -45 hold"));
+  ck_assert(rig.served.until([&] { return rig.camera.speed() < -40; }, "move at -45 hold"));
 }
 END_TEST
 
 START_TEST(a_camera_with_absolute_moves_goes_to_an_angle) {
-  OnvifCamera camera({.degrees = true});
-  OnvifOptions options = onvif_options(camera);
-  options.login.try_absolute = true;
-  OnvifRig rig(options);
+  Rig rig({.degrees = true}, [](OnvifOptions& options) { options.login.try_absolute = true; });
   assert_text(rig.served.line("ready"), "ready 1 position velocity feedback rate 10");
   rig.served.line("pose");
   rig.served.say("move to 30 60 to -5 20");
   ck_assert(rig.served.until(
-      [&] { return std::abs(camera.pan() - 30) < .01 && std::abs(camera.tilt() + 5) < .01; }));
-  ck_assert_int_eq(camera.count("AbsoluteMove"), 2);  // one asked whether it works
-  ck_assert_int_eq(camera.count("ContinuousMove"), 0);
+      [&] { return std::abs(rig.camera.pan() - 30) < .01 && std::abs(rig.camera.tilt() + 5) < .01; }));
+  ck_assert_int_eq(rig.camera.count("AbsoluteMove"), 2);  // one asked whether it works
+  ck_assert_int_eq(rig.camera.count("ContinuousMove"), 0);
 }
 END_TEST
 
@@ -177,18 +182,17 @@ START_TEST(a_camera_without_positions_finds_its_reference_by_a_preset) {
     OnvifFaults faults;
     faults.positions = false;
     faults.move_status = *preset == 'h' ? MoveStatus::alive : MoveStatus::absent;
-    OnvifCamera camera(faults);
-    OnvifOptions options = onvif_options(camera);
-    options.home = *preset == 'h';
-    if (!options.home) options.login.preset = preset;
-    options.home_time = 1s;
-    OnvifRig rig(options);
+    Rig rig(faults, [preset](OnvifOptions& options) {
+      options.home = *preset == 'h';
+      if (!options.home) options.login.preset = preset;
+      options.home_time = 1s;
+    });
     assert_text(rig.served.line("ready"), "ready 1 velocity home rate 10");
-    ck_assert(rig.served.until([&] { return camera.pan() > 20; }, "move at 80 hold"));
+    ck_assert(rig.served.until([&] { return rig.camera.pan() > 20; }, "move at 80 hold"));
     rig.served.say("home");
     assert_text(rig.served.line("homed"), "homed 0 0");
-    ck_assert_double_eq_tol(camera.pan(), 0, .01);
-    ck_assert(rig.served.until([&] { return camera.speed() < 0; }, "move at -45 hold"));
+    ck_assert_double_eq_tol(rig.camera.pan(), 0, .01);
+    ck_assert(rig.served.until([&] { return rig.camera.speed() < 0; }, "move at -45 hold"));
   }
 }
 END_TEST
@@ -217,11 +221,11 @@ START_TEST(a_preset_that_is_not_listed_is_named_with_those_that_are) {
 }
 END_TEST
 
-// Seven requests of .9 s would take longer than the pipeline waits.
+// Seven requests of .18 s take longer than the login may.
 START_TEST(a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known) {
-  OnvifCamera camera({.delay = 900ms});
+  OnvifCamera camera({.delay = 180ms});
   OnvifOptions options = onvif_options_with_range(camera);
-  options.answer_time = 3s;
+  options.login_time = 900ms;
   OnvifRig rig(options);
   assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
   ck_assert(rig.served.until([&] { return camera.speed() > 44; }, "move at 45 hold"));

@@ -54,6 +54,17 @@ Time HeadServer::serve(Time now) {
   return std::min(next, at_work() ? heard_ + timeout_ : motion::kNever);
 }
 
+Time HeadServer::finish(Time now) {
+  constexpr std::chrono::milliseconds kLook{20};
+  if (!finish_by_) {
+    finish_by_ = now + kStopPatience;
+    device_.stop(now);
+  }
+  const Time next = device_.tick(now);
+  if (!device_.stopping() || now >= *finish_by_) return motion::kNever;
+  return std::min({next, *finish_by_, now + Time(kLook)});
+}
+
 void HeadServer::report(Time now) {
   if (const std::string fault = device_.fault(); fault != fault_) {
     fault_ = fault;

@@ -7,12 +7,16 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "drivers/helper/head_device.h"
 
 namespace cerberus::drivers {
+
+// How long the process waits at its end for the device to acknowledge the stop.
+inline constexpr std::chrono::milliseconds kStopPatience{4500};
 
 class HeadServer {
  public:
@@ -23,6 +27,10 @@ class HeadServer {
   void obey(const std::string& text, Time now);
   // Lets the device work, stops it after a silence, and reports. Returns when it must be called again at the latest.
   Time serve(Time now);
+
+  // The line has ended: stops the device, in the first call. Returns when it must be called again at the latest;
+  // motion::kNever: the device stands, or kStopPatience is over.
+  Time finish(Time now);
 
   bool greeted() const { return greeted_; }  // the device was opened, or could not be
   bool failed() const { return failed_; }    // it could not be
@@ -41,6 +49,7 @@ class HeadServer {
   bool emergency_ = false;
   std::string fault_;
   std::optional<double> zoom_;  // as sent
+  std::optional<Time> finish_by_;
 };
 
 }  // namespace cerberus::drivers

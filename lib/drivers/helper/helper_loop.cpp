@@ -68,18 +68,13 @@ class Loop {
 
   void finish() {
     Time now = now_is();
-    device_.stop(now);
-    const Time end = now + kStopPatience;
-    do {
-      const Time next = device_.tick(now);
-      if (!device_.stopping()) return;
+    for (Time next = server_.finish(now); next != motion::kNever; next = server_.finish(now)) {
       fds_.clear();
       device_.watch(fds_);
-      const Time left = std::min({next, end, now + std::chrono::milliseconds(20)}) - now;
       ::poll(fds_.data(), fds_.size(),
-             static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(left).count()));
+             static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(next - now).count()));
       now = now_is();
-    } while (now < end);
+    }
   }
 
   int in_, out_;

@@ -7,9 +7,6 @@
 
 namespace cerberus::drivers {
 
-// How long the process waits at its end for the device to acknowledge the stop.
-inline constexpr std::chrono::milliseconds kStopPatience{4500};
-
 // Serves until the end. in, out: descriptors of the socket. Returns the process's exit status.
 int serve_head(int in, int out, HeadDevice& device);
 

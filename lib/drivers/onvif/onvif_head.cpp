@@ -42,8 +42,8 @@ std::string OnvifHead::open(const HeadSetup& setup, Time now) {
   const auto elapsed = [&] {
     return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now() - begin);
   };
-  login_.begin(now, kParameters.login_time);
-  while (login_.busy() && elapsed() < kParameters.login_time) {
+  login_.begin(now, options_.login_time);
+  while (login_.busy() && elapsed() < options_.login_time) {
     pollfd wait{soap_.fd(), POLLIN, 0};
     ::poll(&wait, 1, 20);
     while (const auto answer = soap_.take(now + elapsed()))

@@ -33,13 +33,13 @@ struct OnvifOptions {
   // A camera without positions finds a lost reference by its home position, or by the preset of the login, which looks
   // straight ahead.
   bool home = false;
-  std::chrono::milliseconds home_time{10000};  // until it is there, where MoveStatus does not say so
+  std::chrono::milliseconds home_time{10000};         // until it is there, where MoveStatus does not say so
+  Time login_time = std::chrono::milliseconds(4500);  // derived: the pipeline waits 5 s for a helper
   // A camera that has not answered for so long is gone. Derived: reported within 1 s of its last sign.
   std::chrono::milliseconds answer_time{750};
 };
 
 struct OnvifParameters {
-  Time login_time = std::chrono::milliseconds(4500);  // derived: the pipeline waits 5 s for a helper
   Time request_time =
       std::chrono::milliseconds(2000);  // derived: then the next move is worth more than an answer
   Time stop_again = std::chrono::milliseconds(150);  // derived: three tries within helper-timeout
@@ -61,7 +61,7 @@ inline constexpr OnvifParameters kOnvifParameters{};
 class OnvifHead final : public HeadDevice {
  public:
   OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions options);
-  // Blocks up to OnvifParameters::login_time.
+  // Blocks up to OnvifOptions::login_time.
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The pipeline's end of the line protocol in the test's own time: which lines follow a command, and the pose that comes of
+// the answers.
+#include "drivers/helper/helper_client.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "sensing/angles.h"
+#include "support/suite.h"
+#include "support/text.h"
+
+using namespace cerberus::drivers;
+using namespace std::chrono_literals;
+using cerberus::motion::Pose;
+using cerberus::motion::seconds;
+using cerberus::sensing::degrees;
+using cerberus::sensing::radians;
+using cerberus::tests::assert_text;
+using Kind = cerberus::motion::AxisCommand::Kind;
+
+namespace {
+
+struct Rig {
+  struct Sent {
+    Time time{};
+    std::string line;
+  };
+  std::vector<Sent> sent;
+  Time now{};
+  HelperClient client{[this](const std::string& line) { sent.push_back({now, line}); }};
+
+  Rig(const HeadSetup& setup, const char* ready) {
+    assert_text(client.open(setup), "");
+    client.begin(0s);
+    sent.clear();
+    client.handle(ready, 0s);
+  }
+  void command(const HeadCommand& command) {
+    now = command.time;
+    assert_text(client.accept(command), "");
+    assert_text(client.execute(now), "");
+  }
+  void run(Time until) {
+    while (now < until) {
+      const Time next = client.serve(now);
+      now = std::min(until, std::max(next, now + 1ms));
+    }
+  }
+  Pose at(Time time) {
+    Pose pose;
+    assert_text(client.state(time, pose), "");
+    return pose;
+  }
+  // Degrees a second of pan in a line `move`; 0: hold.
+  static double speed_of(const std::string& line) {
+    double speed = 0;
+    return std::sscanf(line.c_str(), "move at %lf", &speed) == 1 ? speed : 0;
+  }
+  // Degrees that a head turns by the speeds that it was sent.
+  double way() const {
+    double sum = 0;
+    for (std::size_t i = 0; i < sent.size(); ++i)
+      sum += speed_of(sent[i].line) * seconds((i + 1 < sent.size() ? sent[i + 1].time : now) - sent[i].time);
+    return sum;
+  }
+};
+
+}  // namespace
+
+// 6 degrees at 20 degrees a second, ramps of 60 degrees a second squared: a third of a second each, and none between.
+START_TEST(a_head_with_speed_commands_only_brakes_at_the_target) {
+  HeadSetup setup;
+  setup.limits.pan.acceleration = radians(60);
+  Rig rig(setup, "ready 1 velocity rate 100");
+  rig.command({0s, {Kind::position, radians(6), radians(20)}, {}});
+  rig.run(2s);
+  double most = 0;
+  for (const auto& [time, line] : rig.sent) most = std::max(most, Rig::speed_of(line));
+  ck_assert_double_le(most, std::sqrt(6 * 60.0) + 1e-6);  // 18.97, where both ramps meet
+  ck_assert_double_gt(most, 18.5);
+  ck_assert_double_eq_tol(rig.way(), 6, 1e-3);
+  assert_text(rig.sent.back().line, "move hold hold\n");
+}
+END_TEST
+
+// The mean speed of its first period of 100 ms at 600 degrees a second squared is 30 degrees a second.
+START_TEST(a_head_that_rests_is_sent_a_speed_with_the_command) {
+  HeadSetup setup;
+  setup.limits.pan.acceleration = radians(600);
+  setup.latency = 150ms;
+  Rig rig(setup, "ready 1 velocity rate 10");
+  rig.command({1s, {Kind::velocity, radians(80), 0}, {}});
+  ck_assert_uint_eq(rig.sent.size(), 1);
+  ck_assert_double_eq_tol(Rig::speed_of(rig.sent[0].line), 30, 1e-6);
+}
+END_TEST
+
+START_TEST(a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period) {
+  HeadSetup setup;
+  setup.limits.pan.acceleration = radians(600);
+  Rig rig(setup, "ready 1 position rate 10");
+  rig.command({1s, {Kind::velocity, radians(80), 0}, {}});
+  double angle = 0, speed = 0;
+  ck_assert_int_eq(std::sscanf(rig.sent[0].line.c_str(), "move to %lf %lf hold", &angle, &speed), 2);
+  ck_assert_double_eq_tol(angle, 3, 1e-6);
+  ck_assert_double_eq_tol(speed, 30, 1e-6);
+}
+END_TEST
+
+// It stands at 30 degrees; limits of 10 degrees turn it back.
+START_TEST(limits_that_come_in_move_a_head_that_rests_beyond_them) {
+  HeadSetup setup;
+  setup.pan = radians(30);
+  Rig rig(setup, "ready 1 velocity rate 100");
+  rig.command({0s, {}, {}});
+  setup.limits.pan.from = radians(-10);
+  setup.limits.pan.to = radians(10);
+  rig.now = 100ms;
+  assert_text(rig.client.limit(rig.now, setup.limits), "");
+  rig.run(5s);
+  ck_assert_double_eq_tol(rig.way(), -20, 0.01);
+  assert_text(rig.sent.back().line, "move hold hold\n");
+}
+END_TEST
+
+// 20 degrees a second are commanded, and the helper's steps make 10 of it: the head is where 10 lead.
+START_TEST(the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on) {
+  HeadSetup setup;
+  setup.latency = 200ms;
+  Rig rig(setup, "ready 1 velocity rate 10");
+  rig.command({0s, {Kind::velocity, radians(20), 0}, {}});
+  rig.client.handle("speeds 10 0 0.05", 100ms);  // in force since 50 ms
+  ck_assert_double_eq(rig.at(240ms).pan.position, 0);
+  ck_assert_double_eq_tol(degrees(rig.at(250ms + 2s).pan.position), 20, 1e-9);
+  ck_assert_double_eq_tol(degrees(rig.at(250ms + 2s).pan.speed), 10, 1e-9);
+  ck_assert(!rig.at(2s).measured);
+}
+END_TEST
+
+// The model stands at the limit of 10 degrees while the head still reported 12 degrees more than the model.
+START_TEST(a_correction_leads_beyond_no_limit_unless_the_head_reports_that) {
+  HeadSetup setup;
+  setup.limits.pan.to = radians(10);
+  Rig rig(setup, "ready 1 position velocity feedback");
+  rig.command({0s, {Kind::velocity, radians(20), 0}, {}});
+  const double model = degrees(rig.at(250ms).pan.position);
+  for (int k = 0; k < 20; ++k) rig.client.handle("pose " + std::to_string(model + 4.5) + " 0 0 0 0", 250ms);
+  ck_assert_double_eq_tol(degrees(rig.at(250ms).pan.position), model + 4.5, 0.01);
+  ck_assert_double_eq_tol(degrees(rig.at(740ms).pan.position), 10, 1e-9);
+  for (int k = 0; k < 20; ++k) rig.client.handle("pose 13 0 0 0 0", 2s);  // it is there
+  ck_assert_double_eq_tol(degrees(rig.at(2s).pan.position), 13, 0.01);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite("helper_client",
+                                    {a_head_with_speed_commands_only_brakes_at_the_target,
+                                     a_head_that_rests_is_sent_a_speed_with_the_command,
+                                     a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period,
+                                     limits_that_come_in_move_a_head_that_rests_beyond_them,
+                                     the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
+                                     a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
+}
