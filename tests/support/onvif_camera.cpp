@@ -109,6 +109,11 @@ void OnvifCamera::set_garbage(int answers) {
   faults_.garbage = answers;
 }
 
+void OnvifCamera::lose_stops(int requests) {
+  const std::lock_guard guard(lock_);
+  faults_.loses_stops = requests;
+}
+
 std::chrono::system_clock::time_point OnvifCamera::clock() const {
   return std::chrono::system_clock::now() + faults_.clock;
 }

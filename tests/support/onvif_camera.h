@@ -61,6 +61,7 @@ class OnvifCamera {
   void set_gone(bool gone) { server_.set_gone(gone); }
   void set_clock(std::chrono::seconds off);
   void set_garbage(int answers);
+  void lose_stops(int requests);
 
   double pan(), tilt();  // degrees
   double speed();        // of pan, degrees a second

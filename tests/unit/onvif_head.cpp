@@ -95,12 +95,13 @@ START_TEST(the_camera_stops_by_its_own_timeout_when_the_helper_is_gone) {
 END_TEST
 
 START_TEST(a_stop_is_sent_until_the_camera_acknowledges_it) {
-  Rig rig({.ignores_timeout = true, .loses_stops = 4});
-  rig.served.line("ready");
+  Rig rig({.ignores_timeout = true});
   ck_assert(rig.served.until([&] { return rig.camera.speed() > 44; }, "move at 45 hold"));
+  rig.camera.lose_stops(3);
   rig.served.hang_up();
-  ck_assert_int_eq(rig.served.status(), 0);
+  rig.served.run(500ms);
   ck_assert_double_eq(rig.camera.speed(), 0);
+  ck_assert_int_eq(rig.served.status(), 0);
 }
 END_TEST
 
