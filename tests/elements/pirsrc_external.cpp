@@ -88,6 +88,14 @@ GST_START_TEST(another_number_of_sensors_is_an_error) {
 }
 GST_END_TEST
 
+GST_START_TEST(the_example_of_the_manual_works) {
+  Source source("command=\"exec python3 " CERBERUS_SOURCE_ROOT "/pipelines/sensors/example.py\"");
+  source.play();
+  source.must_read({1, 0, 0});  // the walk begins straight ahead
+  fail_unless(source.pop(GST_MESSAGE_WARNING) == nullptr);
+}
+GST_END_TEST
+
 GST_START_TEST(what_is_missing_is_named) {
   fail_unless(
       says(Source("").refusal(GST_RESOURCE_ERROR, GST_RESOURCE_ERROR_SETTINGS), "a command or a device"));
@@ -108,6 +116,7 @@ static Suite* pirsrc_external_suite() {
   tcase_add_test(tests, lines_become_readings_at_once);
   tcase_add_test(tests, a_program_that_ends_is_a_warning_and_its_return_an_info);
   tcase_add_test(tests, another_number_of_sensors_is_an_error);
+  tcase_add_test(tests, the_example_of_the_manual_works);
   tcase_add_test(tests, what_is_missing_is_named);
   return suite;
 }
