@@ -15,7 +15,7 @@ namespace cerberus::bench {
 
 using vision::Box;
 
-People read_people(const std::filesystem::path& file) {
+People read_people(const std::filesystem::path& file, double truth_ends) {
   People people;
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {
@@ -23,8 +23,9 @@ People read_people(const std::filesystem::path& file) {
     std::istringstream fields(line);
     double frame, id, x, y, w, h;
     if (!(fields >> frame >> id >> x >> y >> w >> h)) continue;
+    if (double flag; fields >> flag && flag == 0) continue;
     auto& list = people[static_cast<int>(frame) - 1];
-    if (x + w <= kTruthEnds) list.push_back({static_cast<int>(id), {x, y, w, h}});
+    if (x + w <= truth_ends) list.push_back({static_cast<int>(id), {x, y, w, h}});
   }
   return people;
 }

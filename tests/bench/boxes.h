@@ -26,8 +26,9 @@ using People = std::map<int, std::vector<Person>>;  // by frame, from 0
 // vtest.avi's truth ends here: boxes that go on beyond it are left out on both sides.
 constexpr double kTruthEnds = 736;
 
-// frame (from 1), id, x, y, w, h a line.
-People read_people(const std::filesystem::path& file);
+// frame (from 1), id, x, y, w, h and perhaps a flag a line; 0 in the flag: not to be scored. Boxes that end beyond
+// `truth_ends` are left out.
+People read_people(const std::filesystem::path& file, double truth_ends = kTruthEnds);
 // What is on the frame.
 std::vector<vision::Box> found_boxes(GstBuffer* frame);
 // Greedy by overlap, IoU >= 0.5.

@@ -24,83 +24,58 @@ std::vector<std::uint32_t> sums_of(const std::vector<std::pair<unsigned, unsigne
 
 }  // namespace
 
-START_TEST(a_score_is_the_gain_of_core_and_sides_less_the_price) {
-  // Six columns of 10 rows, the box is four wide with one on either side: columns 1 to 4.
-  const auto sums = sums_of({{0, 10}, {3, 10}, {10, 10}, {7, 9}, {1, 10}, {0, 10}});
-  const BoxRow row{sums.data(), 4, 1, 0, 6, 10};
-  int scores[3];
-  const int core = (10 + 7) * kCoreMoving + (0 + 2) * kCoreStill,
-            sides = (3 + 1) * kSideMoving + (7 + 9) * kSideStill;
-  const int highest = score_boxes(row, 0, 3, scores);
-  ck_assert_int_eq(scores[1], core + sides - 4 * 10 * kPrice);
-  ck_assert_int_eq(highest, std::max({scores[0], scores[1], scores[2]}));
-  ck_assert_int_eq(highest, scores[1]);
+START_TEST(a_band_gains_by_its_core_and_its_sides) {
+  // Six columns; the band takes 10 of their rows, of which 4 lie above it. Core: columns 2 and 3; sides: 1 and 4.
+  const auto above = sums_of({{4, 4}, {1, 4}, {0, 4}, {4, 4}, {2, 4}, {0, 4}});
+  const auto below = sums_of({{4, 14}, {4, 14}, {10, 14}, {11, 13}, {3, 14}, {0, 14}});
+  const BodyBand band{above.data(), below.data(), 1, 2, 100, -7, 30, -2};
+  int scores[] = {0, 0, 0, 1000, 0, 0, 0};
+  add_band(band, 3, 4, scores);
+  const int core = (10 + 7) * 100 + (0 + 2) * -7, sides = (3 + 1) * 30 + (7 + 9) * -2;
+  ck_assert_int_eq(scores[3], 1000 + core + sides);
+  for (const int x : {0, 1, 2, 4, 5, 6}) ck_assert_int_eq(scores[x], 0);
 }
 END_TEST
 
-START_TEST(columns_outside_the_picture_cost_nothing) {
-  // Nothing is counted in the first two columns: they are outside.
-  const auto sums = sums_of({{0, 0}, {0, 0}, {10, 10}, {10, 10}, {0, 10}});
-  const BoxRow row{sums.data(), 4, 1, 2, 5, 10};
-  int score = 0;
-  score_boxes(row, 0, 1, &score);
-  ck_assert_int_eq(score, 10 * kCoreMoving + 10 * kSideMoving - 2 * 10 * kPrice);
+START_TEST(cells_that_are_not_counted_gain_nothing) {
+  // Outside the picture, or explained by somebody in front.
+  const auto above = sums_of({{0, 0}, {0, 0}, {0, 0}, {0, 0}});
+  const auto below = sums_of({{0, 0}, {0, 0}, {10, 10}, {10, 10}});
+  const BodyBand band{above.data(), below.data(), 1, 2, 100, -7, 30, -2};
+  int scores[3] = {};
+  add_band(band, 2, 3, scores);
+  ck_assert_int_eq(scores[2], 10 * 100 + 10 * 30);
 }
 END_TEST
 
-START_TEST(random_boxes_score_as_in_the_reference_loop_and_nothing_else_is_touched) {
+START_TEST(random_bands_score_as_in_the_reference_loop_and_nothing_else_is_touched) {
   std::mt19937 random(3);
   const auto upto = [&](int n) { return static_cast<int>(random() % static_cast<unsigned>(n + 1)); };
   for (int round = 0; round < 300; ++round) {
-    const int columns = 1 + upto(90), width = 1 + upto(columns - 1), rows = 1 + upto(120);
+    const int columns = 1 + upto(90), reach = upto(columns / 2), core = upto(reach);
     // The last sum is the last readable thing.
-    GuardedBytes memory((static_cast<std::size_t>(columns) + 1) * 4);
-    auto* sums = reinterpret_cast<std::uint32_t*>(memory.data());
-    sums[0] = 0;
+    const std::size_t bytes = (static_cast<std::size_t>(columns) + 1) * 4;
+    GuardedBytes memory(bytes), more(bytes);
+    auto* above = reinterpret_cast<std::uint32_t*>(memory.data());
+    auto* below = reinterpret_cast<std::uint32_t*>(more.data());
+    above[0] = below[0] = 0;
     for (int c = 0; c < columns; ++c) {
-      const auto counted = static_cast<unsigned>(upto(rows));
-      sums[c + 1] = sums[c] + random() % (counted + 1) * kMoving + counted * kCounted;
+      const auto counted = static_cast<unsigned>(upto(60)), rows = static_cast<unsigned>(upto(60));
+      above[c + 1] = above[c] + random() % (counted + 1) * kMoving + counted * kCounted;
+      below[c + 1] = below[c] + (above[c + 1] - above[c]) + random() % (rows + 1) * kMoving + rows * kCounted;
     }
-    const int left = upto(columns / 2), right = left + upto(columns - left);
-    const BoxRow row{sums, width, width / 4, left, right, rows};
-    const int first = upto(columns - width), end = first + 1 + upto(columns - width - first);
-    std::vector<int> expected(static_cast<std::size_t>(columns) + 1, 77), scores = expected;
-    const int highest = score_boxes_reference(row, first, end, expected.data());
-    std::fill(scores.begin(), scores.end(), 77);
-    ck_assert_int_eq(score_boxes(row, first, end, scores.data()), highest);
+    const BodyBand band{above, below, core, reach, upto(200), -upto(200), upto(200) - 100, -upto(50)};
+    const int first = reach + upto(columns - 2 * reach), end = first + upto(columns - reach + 1 - first);
+    std::vector<int> expected(static_cast<std::size_t>(columns) + 2, 77), scores = expected;
+    add_band_reference(band, first, end, expected.data());
+    add_band(band, first, end, scores.data());
     ck_assert(scores == expected);
-  }
-}
-END_TEST
-
-START_TEST(cells_add_up_and_are_taken_away_again_unless_explained) {
-  std::mt19937 random(5);
-  for (const int columns : {1, 2, 7, 8, 15, 16, 17, 33, 64, 131}) {
-    GuardedBytes memory(static_cast<std::size_t>(columns));
-    std::uint8_t* cells = memory.data();
-    const std::uint8_t kinds[] = {0, kCellCounted, kCellCounted | kCellMoving,
-                                  kCellCounted | kCellMoving | kCellExplained, kCellCounted | kCellExplained};
-    for (int c = 0; c < columns; ++c) cells[c] = kinds[random() % 5];
-    std::vector<std::uint32_t> sums(static_cast<std::size_t>(columns) + 1, 5 * kCounted + 3 * kMoving);
-    const auto before = sums;
-    add_cells(cells, columns, sums.data());
-    for (int c = 0; c < columns; ++c) {
-      const std::uint32_t one = cells[c] == kCellCounted                   ? kCounted
-                                : cells[c] == (kCellCounted | kCellMoving) ? kCounted + kMoving
-                                                                           : 0;
-      ck_assert_uint_eq(sums[c], before[c] + one);
-    }
-    ck_assert_uint_eq(sums[columns], before[columns]);
-    subtract_cells(cells, columns, sums.data());
-    ck_assert(sums == before);
   }
 }
 END_TEST
 
 int main() {
   return run_suite_on_every_target(
-      "people_kernels",
-      {a_score_is_the_gain_of_core_and_sides_less_the_price, columns_outside_the_picture_cost_nothing,
-       random_boxes_score_as_in_the_reference_loop_and_nothing_else_is_touched,
-       cells_add_up_and_are_taken_away_again_unless_explained});
+      "people_kernels", {a_band_gains_by_its_core_and_its_sides, cells_that_are_not_counted_gain_nothing,
+                         random_bands_score_as_in_the_reference_loop_and_nothing_else_is_touched});
 }

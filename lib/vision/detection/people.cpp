@@ -1,34 +1,69 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The likelihood: a pixel is foreground with one probability in the middle half of a person's columns, with a lower one
-// in the outer ones and with hardly any elsewhere (people_kernels.h). A person at a place gains, for each pixel not yet
-// explained by another, the logarithm of the ratio to "elsewhere"; a gain below the price of a person is none. (The idea of explaining foreground by boxes of known size: F. Fleuret et al., "Multi-camera people tracking with a
-// probabilistic occupancy map", PAMI 30(2), 2008; here one camera, greedy, with all sums from one table.)
+// The likelihood: a pixel is foreground with a probability for its place in a body, and with a low one elsewhere. A
+// person at a place gains, for each pixel not yet explained by another, the logarithm of the ratio of the two; a gain
+// below the price of a person is none. (The idea of explaining foreground by shapes of known size: F. Fleuret et al.,
+// "Multi-camera people tracking with a probabilistic occupancy map", PAMI 30(2), 2008; here one camera, greedy, with
+// all sums from one table.)
 #include "vision/detection/people.h"
 
 #include <algorithm>
 #include <array>
+#include <climits>
 #include <cmath>
 
-#include "vision/detection/people_kernels.h"
 #include "vision/image/preallocate.h"
 
 namespace cerberus::vision {
 namespace {
 
-constexpr int kUnit = 64;          // of the logarithms in people_kernels.h
-constexpr int kMostCells = 16384;  // in a grid; both packed sums stay below 65536
+constexpr int kUnit = 64;         // of the logarithms
+constexpr int kMostCells = 8192;  // in a grid with its sums; both packed sums stay below 65536
+
+int whole(double value) {
+  return static_cast<int>(std::lround(value));
+}
 
 }  // namespace
 
+PeopleFinder::PeopleFinder() {
+  const Parameters& q = parameters_;
+  const Part parts[] = {q.free_space, q.body[0], q.body[1], q.body[2]};
+  static_assert(std::size(parts) == kParts);
+  const auto gain = [&](double p, double price) {
+    return whole(kUnit * (std::log(p / q.elsewhere) - price));
+  };
+  const auto loss = [&](double p, double price) {
+    return whole(kUnit * (std::log((1 - p) / (1 - q.elsewhere)) - price));
+  };
+  for (std::size_t i = 0; i < kParts; ++i) {
+    const Part& p = parts[i];
+    const double price = i == 0 ? 0 : q.price;
+    bands_[i].core_moving = gain(p.core_moving, price);
+    bands_[i].core_still = loss(p.core_moving, price);
+    bands_[i].side_moving = gain(p.side_moving, price);
+    bands_[i].side_still = loss(p.side_moving, price);
+    for (int h = 0; h <= kTallest; ++h) {
+      const auto cells = [&](double heights) { return static_cast<std::int16_t>(whole(heights * h)); };
+      bodies_[static_cast<std::size_t>(h)][i] = {cells(p.top), cells(p.bottom), cells(p.core),
+                                                 cells(p.reach)};
+    }
+  }
+  const auto scale = [&](double factor, double spread) {
+    const double deviation = std::log(factor) / spread;
+    return Scale{factor, kUnit * q.height_weight * deviation * deviation / 2};
+  };
+  scales_ = {scale(1, q.spread), scale(1 - q.other_height, q.spread), scale(1 + q.other_height, q.spread)};
+}
+
 void PeopleFinder::preallocate(Size picture) {
   picture_ = picture;
-  // Cells of one pixel are used for people below 2 parameters_.cells pixels: around the picture there are then at most
+  // Cells of one pixel are used for people of up to parameters_.cells pixels: around the picture there are then at most
   // so many columns and rows, and fewer cells at every larger step.
   const int tallest = 2 * parameters_.cells;
   const auto columns = static_cast<std::size_t>(picture.width + 2 * (parameters_.aspect * tallest + 2));
-  const auto rows = static_cast<std::size_t>(picture.height + parameters_.tallest * tallest + 2);
+  const auto rows =
+      static_cast<std::size_t>(picture.height + (parameters_.above + parameters_.below) * tallest + 2);
   vision::preallocate(shapes_, rows + 1);
-  for (auto* sums : {&moving_, &band_, &sums_}) vision::preallocate(*sums, columns + 1);
   vision::preallocate(scores_, columns + 1);
   vision::preallocate(chosen_, kMostPeople);
   vision::preallocate(other_, kMostPeople);
@@ -36,17 +71,14 @@ void PeopleFinder::preallocate(Size picture) {
 }
 
 std::size_t PeopleFinder::bytes() const {
-  return bytes_of(shapes_) + bytes_of(moving_) + bytes_of(band_) + bytes_of(sums_) + bytes_of(scores_) +
-         bytes_of(chosen_) + bytes_of(other_) + bytes_of(people_);
+  return bytes_of(shapes_) + bytes_of(scores_) + bytes_of(chosen_) + bytes_of(other_) + bytes_of(people_);
 }
 
 // Cells around the window, wide enough for every position that is scored. Outside the picture no cell is counted; inside
 // the picture but outside the window no cell is foreground.
-bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std::uint8_t> room) {
-  const double tallest = prior_->height(window.bottom);
-  if (tallest <= 0) return false;
+void PeopleFinder::lay_grid(BitView pixels, const Bounds& window, double tallest) {
   // A crowd all across the picture gets larger cells.
-  for (step_ = std::max(1, static_cast<int>(tallest / parameters_.cells));; ++step_) {
+  for (step_ = std::max(1, static_cast<int>(std::ceil(tallest / parameters_.cells)));; ++step_) {
     const int around = static_cast<int>(parameters_.aspect * tallest) + 2 * step_;
     const int above = static_cast<int>(parameters_.above * tallest);
     const int below =
@@ -55,7 +87,7 @@ bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std:
     y0_ = window.top - above;
     columns_ = (window.width() + 2 * around + step_ - 1) / step_;
     rows_ = (window.height() + above + below + step_ - 1) / step_;
-    if (static_cast<std::size_t>(columns_) * rows_ <= room.size()) break;
+    if ((static_cast<std::size_t>(columns_) + 1) * (rows_ + 1) <= kMostCells) break;
   }
   const auto cell = [&](int pixel, int origin) { return (pixel - origin + step_ - 1) / step_; };
   inside_ = {std::clamp(cell(0, x0_), 0, columns_), std::clamp(cell(0, y0_), 0, rows_),
@@ -65,19 +97,22 @@ bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std:
   window_ = {std::max((window.left - x0_) / step_, inside_.left),
              std::max((window.top - y0_) / step_, inside_.top), std::min(cell(window.right, x0_), columns_),
              std::min(cell(window.bottom, y0_), rows_)};
-  cells_ = room.first(static_cast<std::size_t>(columns_) * rows_);
+  cells_ = cells_.first(static_cast<std::size_t>(columns_) * rows_);
   std::ranges::fill(cells_, std::uint8_t{0});
   for (int r = inside_.top; r < inside_.bottom; ++r)
     std::fill_n(cells(r) + inside_.left, inside_.width(), kCellCounted);
   // A cell is foreground when at least half of its pixels are (of one pixel: when it is).
   const int half = std::max(1, step_ * step_ / 2);
-  std::vector<std::uint32_t>& moving = band_;  // not in use yet
+  const std::uint64_t inverse =
+      (std::uint64_t{1} << 32) / static_cast<unsigned>(step_) + 1;      // of step_, rounded up
+  const auto moving = sums_.first(static_cast<std::size_t>(columns_));  // not in use yet
   for (int r = window_.top; r < window_.bottom; ++r) {
-    moving.assign(static_cast<std::size_t>(columns_), 0);
+    std::ranges::fill(moving, 0u);
     const int top = std::max(window.top, y0_ + r * step_),
               bottom = std::min(window.bottom, y0_ + (r + 1) * step_);
     for (int y = top; y < bottom; ++y)
-      for_bits(pixels.row(y), window.left, window.right, [&](int x) { ++moving[(x - x0_) / step_]; });
+      for_bits(pixels.row(y), window.left, window.right,
+               [&](int x) { ++moving[static_cast<std::uint64_t>(x - x0_) * inverse >> 32]; });
     for (int c = window_.left; c < window_.right; ++c)
       if (static_cast<int>(moving[c]) >= half) cells(r)[c] |= kCellMoving;
   }
@@ -85,95 +120,154 @@ bool PeopleFinder::lay_grid(BitView pixels, const Bounds& window, std::span<std:
   for (int r = 0; r <= rows_; ++r) {
     const double height = prior_->height(y0_ + r * step_) / step_;
     if (height > 0)
-      shapes_[r] = {std::max(2, static_cast<int>(std::lround(height))),
-                    std::max(1, static_cast<int>(std::lround(parameters_.aspect * height)))};
+      shapes_[r] = {std::max(2, whole(height)), std::max(1, whole(parameters_.aspect * height))};
   }
-  for (auto* sums : {&moving_, &band_, &sums_}) sums->resize(static_cast<std::size_t>(columns_) + 1);
   scores_.resize(static_cast<std::size_t>(columns_) + 1);
-  return true;
 }
 
 void PeopleFinder::clear_explained() {
   for (std::uint8_t& cell : cells_) cell &= static_cast<std::uint8_t>(~kCellExplained);
 }
 
-// The cells of the box are explained: they count for no other person.
+// The cells of the body are explained: they count for no other person. Those beside the head are not: a person behind may
+// be seen there.
 void PeopleFinder::mark_explained(const Candidate& c) {
-  for (int r = c.top; r < c.bottom; ++r)
-    for (int x = c.left; x < c.right; ++x) cells(r)[x] |= kCellExplained;
+  const Body& body = bodies_[static_cast<std::size_t>(c.bottom - c.top)];
+  for (std::size_t i = 1; i < kParts; ++i) {
+    const Rows& part = body[i];
+    const int reach = i == 1 ? part.core : part.reach;
+    const int left = std::max(0, c.axis - reach), right = std::min(columns_, c.axis + reach);
+    for (int r = std::max(0, c.top + part.top); r < std::min(rows_, c.top + part.bottom); ++r)
+      for (int x = left; x < right; ++x) cells(r)[x] |= kCellExplained;
+  }
 }
 
-// After every change of what is explained.
-void PeopleFinder::add_up_window() {
-  std::fill(band_.begin(), band_.end(), 0u);
-  for (int r = window_.top; r < window_.bottom; ++r) add_cells(cells(r), columns_, band_.data());
-  moving_[0] = 0;
-  for (int c = 0; c < columns_; ++c) moving_[c + 1] = moving_[c] + (band_[c] & 0xffff);
-  band_top_ = window_.top;
-  band_bottom_ = window_.bottom;
+// After every change of what is explained in the rows from this one on.
+void PeopleFinder::add_up(int from) {
+  const std::size_t stride = static_cast<std::size_t>(columns_) + 1;
+  if (from == 0) std::fill_n(sums_.begin(), stride, 0u);
+  for (int r = from; r < rows_; ++r) {
+    const std::uint32_t* above = sums(r);
+    std::uint32_t* below = &sums_[(static_cast<std::size_t>(r) + 1) * stride];
+    const std::uint8_t* row = cells(r);
+    std::uint32_t sum = below[0] = 0;
+    for (int c = 0; c < columns_; ++c) {
+      const std::uint32_t cell = row[c];
+      const std::uint32_t carried =
+          (cell & kCellMoving) * kMoving + (cell & kCellCounted) / kCellCounted * kCounted;
+      sum += cell & kCellExplained ? 0 : carried;
+      below[c + 1] = above[c + 1] + sum;
+    }
+  }
 }
 
-// Moves the band to these rows and sums its columns [left, right) up.
-void PeopleFinder::slide(int top, int bottom, int left, int right) {
-  while (band_bottom_ < bottom) add_cells(cells(band_bottom_++), columns_, band_.data());
-  while (band_top_ > top) add_cells(cells(--band_top_), columns_, band_.data());
-  while (band_bottom_ > bottom) subtract_cells(cells(--band_bottom_), columns_, band_.data());
-  while (band_top_ < top) subtract_cells(cells(band_top_++), columns_, band_.data());
-  std::uint32_t sum = sums_[left] = 0;
-  for (int c = left; c < right; ++c) sums_[c + 1] = sum += band_[c];
+const std::uint32_t* PeopleFinder::sums(int row) const {
+  return &sums_[static_cast<std::size_t>(row) * (static_cast<std::size_t>(columns_) + 1)];
 }
 
-// The best position for one more person whose left edge lies in [from, to). Score 0: none. With an anchor, a column,
-// the foreground that stays unexplained between it and the box counts against the position.
+// Foreground cells of the window, not explained, in the columns before this one.
+int PeopleFinder::moving_before(int column) const {
+  return static_cast<int>((sums(window_.bottom)[column] - sums(window_.top)[column]) & 0xffff);
+}
+
+// Fills scores_[first..end): gain of a body, less its price, by the column of its axis. Returns the highest.
+int PeopleFinder::score(int foot, int height, int first, int end) {
+  std::fill(scores_.begin() + first, scores_.begin() + end, 0);
+  const Body& body = bodies_[static_cast<std::size_t>(height)];
+  const int top = foot - height;
+  for (std::size_t i = 0; i < kParts; ++i) {
+    BodyBand& band = bands_[i];
+    const int from = std::clamp(top + body[i].top, 0, rows_), to = std::clamp(top + body[i].bottom, 0, rows_);
+    if (from == to) continue;
+    band.above = sums(from);
+    band.below = sums(to);
+    band.core = body[i].core;
+    band.reach = body[i].reach;
+    add_band(band, first, end, scores_.data());
+  }
+  return *std::max_element(scores_.begin() + first, scores_.begin() + end);
+}
+
+// Replaces `best` where a person of this scale whose left edge lies in [from, to) and whose feet are at this row gains
+// more. With an anchor, a column, the foreground that stays unexplained between it and the box counts against it.
+void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int anchor, Candidate& best) {
+  const Parameters& q = parameters_;
+  const auto [usual, usual_width] = shapes_[static_cast<std::size_t>(foot)];
+  const int h = std::min(kTallest, whole(scale.factor * usual));
+  const int w = std::max(2, whole(scale.factor * usual_width));
+  if (usual == 0 || foot < h || foot - window_.top < q.least_feet * h) return;
+  const int reach = bodies_[static_cast<std::size_t>(h)][kParts - 1].reach;
+  const int first = std::max({from + w / 2, reach, inside_.left});
+  const int end = std::min({to + w / 2, columns_ - reach + 1, inside_.right + 1});
+  if (first >= end) return;
+  const int cost = static_cast<int>(scale.cost * h * h);
+  const int least = std::max(best.score, static_cast<int>(kUnit * q.least_gain * h * h));
+  // All that moves in these rows may be too little.
+  const int dearest = bands_[2].core_moving;
+  const int moving = static_cast<int>((sums(foot)[columns_] - sums(foot - h)[columns_]) & 0xffff);
+  if (moving * dearest - cost <= least) return;
+  int highest = score(foot, h, first, end) - cost;
+  if (highest <= least) return;
+  const auto lost = [&](int x) {
+    const int left = x - w / 2;
+    return anchor >= 0 && left > anchor ? (moving_before(left) - moving_before(anchor)) * dearest : 0;
+  };
+  if (anchor >= 0) {
+    for (int x = first; x < end; ++x) scores_[static_cast<std::size_t>(x)] -= lost(x);
+    highest = *std::max_element(scores_.begin() + first, scores_.begin() + end) - cost;
+    if (highest <= least) return;
+  }
+  const auto at = std::find(scores_.begin() + first, scores_.begin() + end, highest + cost);
+  const int x = static_cast<int>(at - scores_.begin());
+  best = {x - w / 2, foot - h, x - w / 2 + w, foot, x, highest};
+}
+
+// The best position for one more person whose left edge lies in [from, to). Score 0: none. The expected height is tried
+// everywhere, and the others where that fits best.
 PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   Candidate best;
-  int best_value = 0;
-  for (int foot = rows_; foot > window_.top; --foot) {
-    const auto [h, w] = shapes_[foot];
-    if (h == 0 || foot - h < 0) continue;
-    if (foot - window_.top < parameters_.least_feet * h) break;
-    const int q = w / parameters_.side_part, part = (w + parameters_.least_part - 1) / parameters_.least_part;
-    const int first = std::max({from, 0, inside_.left - w + part});
-    const int end = std::min({to, columns_ - w + 1, inside_.right - part + 1});
-    if (first >= end) continue;
-    const int high = std::min(foot, inside_.bottom) - std::max(foot - h, inside_.top);
-    slide(foot - h, foot, first, end - 1 + w);
-    const BoxRow row{sums_.data(), w, q, inside_.left, inside_.right, high};
-    int* scores = scores_.data();
-    int highest = score_boxes(row, first, end, scores);
-    if (highest <= best_value) continue;
-    const auto lost = [&](int l) {
-      return anchor >= 0 && l > anchor ? static_cast<int>(moving_[l] - moving_[anchor]) * kSideMoving : 0;
-    };
-    if (anchor >= 0) {
-      for (int l = first; l < end; ++l) scores[l] -= lost(l);
-      highest = *std::max_element(scores + first, scores + end);
-      if (highest <= best_value) continue;
-    }
-    best_value = highest;
-    const int l = static_cast<int>(std::find(scores + first, scores + end, highest) - scores);
-    const int score = highest + lost(l), seen = row.columns(l) * high;
-    best = {l, foot - h, l + w, foot, score, score / std::max(seen, 1) + kPrice};
-  }
+  for (int foot = rows_; foot > window_.top; --foot) try_row(foot, scales_[0], from, to, anchor, best);
+  if (best.score == 0) return best;
+  const Candidate usual = best;
+  constexpr int kAround = 2;  // cells
+  for (int foot = std::max(1, usual.bottom - kAround); foot <= std::min(rows_, usual.bottom + kAround);
+       ++foot)
+    for (std::size_t i = 1; i < scales_.size(); ++i)
+      try_row(foot, scales_[i], std::max(from, usual.left - kAround), std::min(to, usual.left + kAround + 1),
+              anchor, best);
   return best;
+}
+
+// Gain of a chosen person without its price, nats a pixel of the body that lies in the picture.
+double PeopleFinder::gain_a_pixel(const Candidate& c) const {
+  const Body& body = bodies_[static_cast<std::size_t>(c.bottom - c.top)];
+  int seen = 0;
+  for (std::size_t i = 1; i < kParts; ++i) {
+    const int top = std::max(inside_.top, c.top + body[i].top),
+              bottom = std::min(inside_.bottom, c.top + body[i].bottom);
+    const int left = std::max(inside_.left, c.axis - body[i].reach),
+              right = std::min(inside_.right, c.axis + body[i].reach);
+    seen += std::max(0, bottom - top) * std::max(0, right - left);
+  }
+  return static_cast<double>(c.score) / kUnit / std::max(seen, 1) + parameters_.price;
 }
 
 // Chooses people one after another, the best first or always the leftmost one, and returns the total gain.
 int PeopleFinder::explain(bool from_the_left) {
   chosen_.clear();
   clear_explained();
-  add_up_window();
-  const int width = std::max(1, shapes_[std::min(window_.bottom, rows_)].width);
+  add_up(0);
+  const auto [height, body] = shapes_[static_cast<std::size_t>(std::min(window_.bottom, rows_))];
+  const int width = std::max(1, body);
   int total = 0, edge = window_.left;
-  const auto [height, body] = shapes_[std::min(window_.bottom, rows_)];
   while (chosen_.size() < kMostPeople) {
     // The rest may be too little for the price of the least part of a person.
-    const auto moving = static_cast<int>(moving_[columns_]);
-    if (moving * kCoreMoving < kPrice * height * body / parameters_.least_part) break;
+    const double price = kUnit * parameters_.price * height * body / parameters_.least_part;
+    if (moving_before(columns_) * bands_[2].core_moving < price) break;
     Candidate c;
     if (from_the_left) {
       // A person's edge is near the leftmost column with unexplained foreground.
-      while (edge < window_.right && moving_[edge + 1] == moving_[edge]) ++edge;
+      while (edge < window_.right && moving_before(edge + 1) == moving_before(edge)) ++edge;
       if (edge >= window_.right) break;
       const int reach = width / parameters_.edge_part;
       c = best(edge - reach, edge + reach + 1, edge);
@@ -188,7 +282,7 @@ int PeopleFinder::explain(bool from_the_left) {
     total += c.score;
     chosen_.push_back(c);
     mark_explained(c);
-    add_up_window();
+    add_up(std::max(0, c.top));
   }
   return total;
 }
@@ -201,7 +295,7 @@ void PeopleFinder::settle() {
     chosen_.erase(chosen_.begin());
     clear_explained();
     for (const Candidate& c : chosen_) mark_explained(c);
-    add_up_window();
+    add_up(0);
     const int w = old.right - old.left;
     const Candidate c = best(old.left - w / 2, old.left + w / 2 + 1, -1);
     if (c.score > 0) chosen_.push_back(c);
@@ -261,7 +355,7 @@ void PeopleFinder::choose(bool was_wide_block) {
     people_.push_back(
         {{static_cast<double>(x0_ + c.left * step_), static_cast<double>(y0_ + c.top * step_),
           static_cast<double>((c.right - c.left) * step_), static_cast<double>((c.bottom - c.top) * step_)},
-         static_cast<double>(c.gain) / kUnit});
+         gain_a_pixel(c)});
 }
 
 std::span<const Person> PeopleFinder::find(BitView pixels, const Bounds& window, const HeightPrior& prior,
@@ -269,9 +363,16 @@ std::span<const Person> PeopleFinder::find(BitView pixels, const Bounds& window,
   people_.clear();
   wide_block_ = false;
   prior_ = &prior;
-  std::array<std::uint8_t, kMostCells> room;
-  if (lay_grid(pixels, window, room)) choose(was_wide_block);
+  const double tallest = prior.height(window.bottom);
+  if (tallest <= 0) return people_;
+  std::array<std::uint8_t, kMostCells> cells;
+  std::array<std::uint32_t, kMostCells> sums;
+  cells_ = cells;
+  sums_ = sums;
+  lay_grid(pixels, window, tallest);
+  choose(was_wide_block);
   cells_ = {};
+  sums_ = {};
   return people_;
 }
 

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/detection/people_kernels.h"
 
-#include <algorithm>
-#include <climits>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "vision/detection/people_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -13,35 +10,19 @@
 HWY_BEFORE_NAMESPACE();
 namespace cerberus::vision::HWY_NAMESPACE {
 
-// Plain loops, compiled once per target: compilers vectorise them as well as intrinsics would.
-int score_boxes(const BoxRow& row, int first, int end, int* HWY_RESTRICT scores) {
-  const std::uint32_t* s = row.sums;
-  const int w = row.width, q = row.side, left = row.left, right = row.right, high = row.rows;
-  for (int l = first; l < end; ++l) {
-    const std::uint32_t all = s[l + w] - s[l];
-    const std::uint32_t core = s[l + w - q] - s[l + q];
-    const std::uint32_t side = all - core;
-    const int core_moving = core & 0xffff, core_still = static_cast<int>(core >> 16) - core_moving;
-    const int side_moving = side & 0xffff, side_still = static_cast<int>(side >> 16) - side_moving;
-    const int seen = ((l + w < right ? l + w : right) - (l > left ? l : left)) * high;
-    scores[l] = core_moving * kCoreMoving + core_still * kCoreStill + side_moving * kSideMoving +
-                side_still * kSideStill - seen * kPrice;
+// A plain loop, compiled once per target: compilers vectorise it as well as intrinsics would.
+void add_band(const BodyBand& band, int first, int end, int* HWY_RESTRICT scores) {
+  const std::uint32_t *a = band.above, *b = band.below;
+  const int core = band.core, reach = band.reach;
+  // Gain of n cells of which m are foreground: m moving + (n - m) still = m (moving - still) + n still.
+  const int core_moving = band.core_moving - band.core_still, core_still = band.core_still;
+  const int side_moving = band.side_moving - band.side_still, side_still = band.side_still;
+  for (int x = first; x < end; ++x) {
+    const std::uint32_t inner = (b[x + core] - b[x - core]) - (a[x + core] - a[x - core]);
+    const std::uint32_t outer = (b[x + reach] - b[x - reach]) - (a[x + reach] - a[x - reach]) - inner;
+    scores[x] += static_cast<int>(inner & 0xffff) * core_moving + static_cast<int>(inner >> 16) * core_still +
+                 static_cast<int>(outer & 0xffff) * side_moving + static_cast<int>(outer >> 16) * side_still;
   }
-  int highest = INT_MIN;
-  for (int l = first; l < end; ++l) highest = scores[l] > highest ? scores[l] : highest;
-  return highest;
-}
-
-inline std::uint32_t carried(std::uint8_t cell) {
-  return cell & kCellExplained
-             ? 0u
-             : (cell & kCellMoving) * kMoving + (cell & kCellCounted) / kCellCounted * kCounted;
-}
-void add_cells(const std::uint8_t* HWY_RESTRICT cells, int columns, std::uint32_t* HWY_RESTRICT sums) {
-  for (int c = 0; c < columns; ++c) sums[c] += carried(cells[c]);
-}
-void subtract_cells(const std::uint8_t* HWY_RESTRICT cells, int columns, std::uint32_t* HWY_RESTRICT sums) {
-  for (int c = 0; c < columns; ++c) sums[c] -= carried(cells[c]);
 }
 
 }  // namespace cerberus::vision::HWY_NAMESPACE
@@ -50,37 +31,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace cerberus::vision {
 
-HWY_EXPORT(score_boxes);
-HWY_EXPORT(add_cells);
-HWY_EXPORT(subtract_cells);
+HWY_EXPORT(add_band);
 
-void add_cells(const std::uint8_t* cells, int columns, std::uint32_t* sums) {
-  HWY_DYNAMIC_DISPATCH(add_cells)(cells, columns, sums);
-}
-void subtract_cells(const std::uint8_t* cells, int columns, std::uint32_t* sums) {
-  HWY_DYNAMIC_DISPATCH(subtract_cells)(cells, columns, sums);
+void add_band(const BodyBand& band, int first, int end, int* scores) {
+  HWY_DYNAMIC_DISPATCH(add_band)(band, first, end, scores);
 }
 
-// One box after the other, one part after the other.
-int score_boxes_reference(const BoxRow& row, int first, int end, int* scores) {
-  int highest = INT_MIN;
-  for (int l = first; l < end; ++l) {
-    const auto part = [&](int from, int to, int moving, int still) {
-      const std::uint32_t sum = row.sums[to] - row.sums[from];
-      const int n = static_cast<int>(sum & 0xffff);
-      return n * moving + (static_cast<int>(sum >> 16) - n) * still;
-    };
-    const int right = l + row.width;
-    scores[l] = part(l, l + row.side, kSideMoving, kSideStill) +
-                part(l + row.side, right - row.side, kCoreMoving, kCoreStill) +
-                part(right - row.side, right, kSideMoving, kSideStill) - row.columns(l) * row.rows * kPrice;
-    highest = std::max(highest, scores[l]);
-  }
-  return highest;
-}
-
-int score_boxes(const BoxRow& row, int first, int end, int* scores) {
-  return HWY_DYNAMIC_DISPATCH(score_boxes)(row, first, end, scores);
+// One column after the other.
+void add_band_reference(const BodyBand& band, int first, int end, int* scores) {
+  for (int x = first; x < end; ++x)
+    for (int c = x - band.reach; c < x + band.reach; ++c) {
+      const std::uint32_t cells = (band.below[c + 1] - band.below[c]) - (band.above[c + 1] - band.above[c]);
+      const int moving = static_cast<int>(cells & 0xffff), still = static_cast<int>(cells >> 16) - moving;
+      const bool core = c >= x - band.core && c < x + band.core;
+      scores[x] += moving * (core ? band.core_moving : band.side_moving) +
+                   still * (core ? band.core_still : band.side_still);
+    }
 }
 
 }  // namespace cerberus::vision

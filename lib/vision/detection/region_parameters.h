@@ -33,9 +33,12 @@ struct RegionParameters {
   double down = 0.4;    // gap from top to bottom
   double joined = 1.6;  // height of both together, at most
 
-  // Edges of a person's box.
-  double reach_x = 0.3, reach_y = 0.15;  // of width and height: how far foreground moves an edge, at most
-  double explained = 0.4;                // of a component's box that persons cover: it is theirs
+  // What persons explain.
+  // Share of a blob's foreground that one person may leave unexplained, where the blob is no higher than a person.
+  // Beyond it he does not stand upright (a lunging player), and the blob's box is his.
+  double loose = 0.15;
+  double slack = 0.06;     // heights around a person's box that it explains as well
+  double explained = 0.4;  // of a component's box that persons cover: it is theirs
 
   double same_block = 0.5;  // intersection over union of two blocks, a frame apart, that are the same
 

@@ -10,6 +10,7 @@
 
 #include "vision/detection/height_prior.h"
 #include "vision/detection/people.h"
+#include "vision/detection/person_box.h"
 #include "vision/detection/region_parameters.h"
 #include "vision/detection/two_frame_confirmation.h"
 #include "vision/image/labelling.h"
@@ -76,7 +77,8 @@ struct RegionFinder::State {
   void explain(int group);
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
-  Box fit(const Box& expected, const Bounds& window, std::size_t self, std::span<const Person> all) const;
+  double unexplained(const Bounds& window, std::span<const Person> people) const;
+  void add_people(int group, const Bounds& window, std::span<const Person> people);
   long moving_in(const Box& box) const;
 };
 
@@ -205,39 +207,6 @@ void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
                      static_cast<int>(i) + 1, kind});
 }
 
-// Pulls the edges of an expected box half way to the outermost moving pixels around it that no other person explains
-// better.
-Box RegionFinder::State::fit(const Box& expected, const Bounds& window, std::size_t self,
-                             std::span<const Person> all) const {
-  const double reach_x = kParameters.reach_x * expected.width,
-               reach_y = kParameters.reach_y * expected.height;
-  const int left = std::max(window.left, static_cast<int>(expected.x - reach_x));
-  const int right = std::min(window.right, static_cast<int>(std::ceil(expected.right() + reach_x)));
-  const int top = std::max(window.top, static_cast<int>(expected.y - reach_y));
-  const int bottom = std::min(window.bottom, static_cast<int>(std::ceil(expected.bottom() + reach_y)));
-  Bounds seen{right, bottom, left, top};
-  for (int y = top; y < bottom; ++y) {
-    const std::uint64_t* bits = moving.view().row(y);
-    for_bits(bits, left, right, [&](int x) {
-      const bool inside = x >= expected.x && x < expected.right() && y >= expected.y && y < expected.bottom();
-      bool others = false;
-      for (std::size_t k = 0; k < all.size() && !inside && !others; ++k)
-        others = k != self && x >= all[k].box.x && x < all[k].box.right() && y >= all[k].box.y &&
-                 y < all[k].box.bottom();
-      if (others) return;
-      seen.left = std::min(seen.left, x);
-      seen.right = std::max(seen.right, x + 1);
-      seen.top = std::min(seen.top, y);
-      seen.bottom = std::max(seen.bottom, y + 1);
-    });
-  }
-  if (seen.width() <= 0 || seen.height() <= 0) return expected;
-  const auto blend = [](double a, double b) { return (a + b) / 2; };
-  const double x0 = blend(seen.left, expected.x), x1 = blend(seen.right, expected.right());
-  const double y0 = blend(seen.top, expected.y), y1 = blend(seen.bottom, expected.bottom());
-  return {x0, y0, x1 - x0, y1 - y0};
-}
-
 // Pixels of the cleaned mask whose centres lie in the box.
 long RegionFinder::State::moving_in(const Box& box) const {
   const auto side = [](double at, int most) {
@@ -252,47 +221,83 @@ long RegionFinder::State::moving_in(const Box& box) const {
   return pixels;
 }
 
+// Share of the moving pixels in the window that lie in no person's box, nor just outside.
+double RegionFinder::State::unexplained(const Bounds& window, std::span<const Person> found) const {
+  long all = 0, explained = 0;
+  for (int y = window.top; y < window.bottom; ++y)
+    for_bits(moving.view().row(y), window.left, window.right, [&](int x) {
+      ++all;
+      explained += std::ranges::any_of(found, [&](const Person& person) {
+        const Box& b = person.box;
+        const double slack = kParameters.slack * b.height;
+        return x >= b.x - slack && x < b.right() + slack && y >= b.y - slack && y < b.bottom() + slack;
+      });
+    });
+  return all > 0 ? static_cast<double>(all - explained) / static_cast<double>(all) : 0;
+}
+
+// Persons, and the components of the group that they do not explain.
+void RegionFinder::State::add_people(int g, const Bounds& window, std::span<const Person> found) {
+  const auto parts = labeller.components();
+  const auto first = std::ranges::find(group, g) - group.begin();
+  for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
+    regions.push_back({fit_box(moving.view(), window, k, found), 0,
+                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1,
+                       RegionKind::person_like});
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (group[i] != g) continue;
+    const Box box = box_of(bodies[i]);
+    double covered = 0;
+    for (const Person& person : found) covered += overlap_area(person.box, box);
+    if (covered < kParameters.explained * box.area())
+      add_plain(i, people.found_wide_block() ? RegionKind::thing : kind_of(parts[i]));
+  }
+}
+
+// One group of components: persons, or what it is otherwise.
 void RegionFinder::State::explain(int g) {
   const RegionParameters& p = kParameters;
   const auto parts = labeller.components();
-  Bounds window{size.width, size.height, 0, 0};
-  Bounds body = window;
+  Bounds window{size.width, size.height, 0, 0}, body = window;
   int members = 0;
-  std::size_t first = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (group[i] != g) continue;
-    if (members++ == 0) first = i, body = bodies[i];
-    window = {std::min(window.left, parts[i].left), std::min(window.top, parts[i].top),
-              std::max(window.right, parts[i].right), std::max(window.bottom, parts[i].bottom)};
+    ++members;
+    const auto unite = [](Bounds& all, int left, int top, int right, int bottom) {
+      all = {std::min(all.left, left), std::min(all.top, top), std::max(all.right, right),
+             std::max(all.bottom, bottom)};
+    };
+    unite(window, parts[i].left, parts[i].top, parts[i].right, parts[i].bottom);
+    unite(body, bodies[i].left, bodies[i].top, bodies[i].right, bodies[i].bottom);
   }
-  const double expected = prior.height(window.bottom);
-  const double aspect = static_cast<double>(body.height()) / body.width();
-  const bool usual = expected > 0 && window.height() > p.usual_least * expected &&
-                     window.height() < p.usual_most * expected && aspect > p.usual_aspect;
-  if (expected <= 0 || window.height() > p.tallest * expected || (members == 1 && usual)) {
+  const auto add_all = [&](auto kind) {
     for (std::size_t i = 0; i < parts.size(); ++i)
-      if (group[i] == g) add_plain(i, usual ? RegionKind::person_like : RegionKind::thing);
-    return;
-  }
+      if (group[i] == g) add_plain(i, kind(parts[i]));
+  };
+  const double expected = prior.height(window.bottom);
+  if (expected <= 0 || window.height() > p.tallest * expected)
+    return add_all([](const Component&) { return RegionKind::thing; });
   const Box whole = box_of(window);
   const bool was_block = std::any_of(blocks_before.begin(), blocks_before.end(), [&](const Box& b) {
     return intersection_over_union(b, whole) > p.same_block;
   });
   const auto found = people.find(moving.view(), window, prior, was_block);
   if (people.found_wide_block() && blocks.size() < kMostBlocks) blocks.push_back(whole);
-  for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
-    regions.push_back({fit(found[k].box, window, k, found), 0,
-                       std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1,
-                       RegionKind::person_like});
-  // Components that no person explains remain regions of their own.
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    if (group[i] != g) continue;
-    const Box box = box_of({parts[i].left, parts[i].top, parts[i].right, parts[i].bottom});
-    double covered = 0;
-    for (const Person& person : found) covered += overlap_area(person.box, box);
-    if (covered < p.explained * box.area())
-      add_plain(i, people.found_wide_block() ? RegionKind::thing : kind_of(parts[i]));
+  const bool slender = body.height() > p.usual_aspect * body.width();
+  if (found.empty() && slender && window.height() > p.usual_least * expected &&
+      window.height() < p.usual_most * expected) {
+    // Much of a person may look like the floor: a group as high and as slender as one person is one.
+    if (members == 1) return add_all([](const Component&) { return RegionKind::person_like; });
+    const double middle = (body.left + body.right) / 2.0, width = window.height() / p.usual_aspect / 2;
+    const Person person{{middle - width / 2, whole.y, width, whole.height}, 0};
+    return add_people(g, window, {&person, 1});
   }
+  const bool alone = found.size() == 1;
+  // A person who lunges or bends: upright bodies do not explain the blob, which is no higher than one.
+  if (alone && members == 1 && window.height() < p.usual_most * expected &&
+      unexplained(window, found) > p.loose)
+    return add_all([](const Component&) { return RegionKind::person_like; });
+  add_people(g, window, found);
 }
 
 RegionFinder::RegionFinder() : state_(std::make_unique<State>()) {}

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/detection/person_box.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+namespace cerberus::vision {
+namespace {
+
+constexpr int kMostColumns = 2048;  // around an axis: a body of 3200 pixels has as many
+constexpr int kMostLegRows = 64;    // samples of the legs' width
+
+struct Interval {
+  int from = 0, to = 0;
+};
+Interval around(double axis, double reach, const Bounds& window) {
+  const int from = std::clamp(static_cast<int>(axis - reach), window.left, window.right);
+  return {from, std::clamp(static_cast<int>(axis + reach) + 1, from, window.right)};
+}
+
+int count(BitView moving, int row, Interval columns) {
+  int n = 0;
+  for_words(columns.from, columns.to,
+            [&](int word, std::uint64_t ones) { n += std::popcount(moving.row(row)[word] & ones); });
+  return n;
+}
+
+// Returns whether a pixel is in the box of another person and nearer to the axis of that one.
+bool is_others(int x, int y, std::size_t self, std::span<const Person> all) {
+  const auto off = [x](const Box& b) { return std::abs(x - b.x - b.width / 2); };
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    const Box& b = all[k].box;
+    if (k != self && x >= b.x && x < b.right() && y >= b.y && y < b.bottom() && off(b) < off(all[self].box))
+      return true;
+  }
+  return false;
+}
+
+Interval sides(BitView moving, const Bounds& window, std::size_t self, std::span<const Person> all,
+               const PersonBoxParameters& q) {
+  const Box& body = all[self].box;
+  const double h = body.height, axis = body.x + body.width / 2;
+  Interval columns = around(axis, q.reach * h, window);
+  columns.to = std::min(columns.to, columns.from + kMostColumns);
+  if (columns.from >= columns.to) return {};
+  std::array<std::uint16_t, kMostColumns> filled;
+  std::fill_n(filled.begin(), columns.to - columns.from, std::uint16_t{0});
+  const int top = std::max(window.top, static_cast<int>(body.y + q.below_head * h));
+  const int bottom = std::min(window.bottom, static_cast<int>(body.y + q.above_feet * h));
+  for (int y = top; y < bottom; ++y)
+    for_bits(moving.row(y), columns.from, columns.to, [&](int x) {
+      if (all.size() == 1 || !is_others(x, y, self, all))
+        ++filled[static_cast<std::size_t>(x - columns.from)];
+    });
+  const auto is_full = [&](int x) {
+    return filled[static_cast<std::size_t>(x - columns.from)] >= q.column * h;
+  };
+  Interval full;
+  full.from = full.to = std::clamp(static_cast<int>(axis), columns.from, columns.to - 1);
+  while (full.from > columns.from && is_full(full.from - 1)) --full.from;
+  while (full.to + 1 < columns.to && is_full(full.to + 1)) ++full.to;
+  return {full.from, full.to + 1};
+}
+
+// The first row of the head; the expected one where there is no foreground.
+double head(BitView moving, const Bounds& window, const Box& body, const PersonBoxParameters& q) {
+  const double h = body.height;
+  const Interval columns = around(body.x + body.width / 2, q.head_reach * h, window);
+  const int end = std::min(window.bottom, static_cast<int>(body.y + q.head_fall * h));
+  for (int y = std::max(window.top, static_cast<int>(body.y - q.head_rise * h)); y < end; ++y)
+    if (count(moving, y, columns) >= std::max(1.0, q.head_row * h)) return y;
+  return body.y;
+}
+
+// The row behind the feet, where no shadow is.
+int ground(BitView moving, const Bounds& window, const Box& body, const PersonBoxParameters& q) {
+  const double h = body.height;
+  const Interval columns = around(body.x + body.width / 2, q.leg_reach * h, window);
+  int y = std::min(window.bottom, static_cast<int>(std::ceil(body.bottom() + q.foot_fall * h))) - 1;
+  while (y > std::max<double>(window.top, body.y + q.legs_to * h) &&
+         count(moving, y, columns) < std::max(1.0, q.foot_row * h))
+    --y;
+  return y + 1;
+}
+
+// The row behind the feet of a body that takes the rows [top, bottom) with its shadow.
+double foot(BitView moving, Interval columns, int top, int bottom, const PersonBoxParameters& q) {
+  const int height = bottom - top;
+  std::array<int, kMostLegRows> legs;
+  std::size_t n = 0;
+  const int step = 1 + height / (3 * kMostLegRows);
+  for (int y = top + static_cast<int>(q.legs_from * height); y < top + static_cast<int>(q.legs_to * height);
+       y += step)
+    if (n < legs.size()) legs[n++] = count(moving, y, columns);
+  if (n == 0) return bottom;
+  std::nth_element(legs.begin(), legs.begin() + n / 2, legs.begin() + n);
+  const double wide = q.shadow_wide * legs[n / 2];
+  int shadow = bottom;  // its first row
+  for (int y = bottom - 1; y >= top + static_cast<int>(q.shadow_from * height); --y) {
+    if (count(moving, y, columns) > wide)
+      shadow = y;
+    else if (shadow < bottom || bottom - y > q.shadow_tip * height)
+      break;
+  }
+  return shadow < bottom ? (shadow + bottom + 1) / 2 : bottom;
+}
+
+}  // namespace
+
+Box fit_box(BitView moving, const Bounds& window, std::size_t self, std::span<const Person> all,
+            const PersonBoxParameters& q) {
+  const Box& body = all[self].box;
+  const double h = body.height, axis = body.x + body.width / 2;
+  const Interval full = sides(moving, window, self, all, q);
+  if (full.from >= full.to) return body;
+  const double top = head(moving, window, body, q);
+  const double bottom = foot(moving, around(axis, q.shadow_reach * h, window), static_cast<int>(top),
+                             ground(moving, window, body, q), q);
+  const auto between = [&](double expected, double seen) {
+    return expected + q.measured * (seen - expected);
+  };
+  const double x0 = between(axis - q.aspect * h / 2, full.from),
+               x1 = between(axis + q.aspect * h / 2, full.to);
+  const double y0 = between(body.y, top), y1 = between(body.bottom(), bottom);
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
+}  // namespace cerberus::vision

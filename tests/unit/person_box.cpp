@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Boxes around drawn people, whose pixels are known.
+#include "vision/detection/person_box.h"
+
+#include <vector>
+
+#include "support/bodies.h"
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+namespace tests = cerberus::tests;
+
+namespace {
+
+constexpr Size kSize{320, 240};
+constexpr Bounds kAll{0, 0, 320, 240};
+
+// A person of 100 pixels at (160, 200), whose expected box is 143..177 by the measured proportion.
+const Box kExpected{143, 100, 34, 100};
+
+struct Picture {
+  Image<std::uint8_t> mask{kSize};
+  BitMask bits;
+
+  Picture() { bits.resize(bit_mask_size(kSize)); }
+  void fill(double left, double top, double right, double bottom) {
+    tests::fill(mask.view(), left, top, right, bottom);
+  }
+  Box fit(const std::vector<Person>& people, std::size_t self = 0) {
+    pack(mask.view(), bits.view());
+    return fit_box(bits.view(), kAll, self, people, {.aspect = 0.34, .measured = 1});
+  }
+};
+
+void assert_box(const Box& box, double left, double top, double right, double bottom) {
+  ck_assert_double_eq(box.x, left);
+  ck_assert_double_eq(box.y, top);
+  ck_assert_double_eq(box.right(), right);
+  ck_assert_double_eq(box.bottom(), bottom);
+}
+
+}  // namespace
+
+START_TEST(the_edges_are_those_of_the_pixels) {
+  Picture picture;
+  picture.fill(150, 104, 170, 197);
+  assert_box(picture.fit({{kExpected, 1}}), 150, 104, 170, 197);
+}
+END_TEST
+
+START_TEST(the_pixels_weigh_more_than_half_against_what_is_expected) {
+  Picture picture;
+  picture.fill(150, 104, 170, 197);
+  pack(picture.mask.view(), picture.bits.view());
+  const std::vector<Person> people{{kExpected, 1}};
+  const Box box = fit_box(picture.bits.view(), kAll, 0, people, {.aspect = 0.34, .measured = 0.6});
+  ck_assert_double_eq_tol(box.x, 0.4 * 143 + 0.6 * 150, 1e-9);
+  ck_assert_double_eq_tol(box.y, 0.4 * 100 + 0.6 * 104, 1e-9);
+  ck_assert_double_eq_tol(box.right(), 0.4 * 177 + 0.6 * 170, 1e-9);
+  ck_assert_double_eq_tol(box.bottom(), 0.4 * 200 + 0.6 * 197, 1e-9);
+}
+END_TEST
+
+START_TEST(an_outstretched_hand_and_a_shadow_beside_the_feet_do_not_widen_the_box) {
+  Picture picture;
+  picture.fill(150, 100, 170, 200);
+  picture.fill(170, 130, 190, 140);  // a hand, 10 rows
+  picture.fill(110, 190, 150, 200);  // a shadow
+  const Box box = picture.fit({{kExpected, 1}});
+  ck_assert_double_eq(box.x, 150);
+  ck_assert_double_eq(box.right(), 170);
+}
+END_TEST
+
+START_TEST(a_stride_widens_the_box) {
+  Picture picture;
+  picture.fill(150, 100, 170, 160);
+  picture.fill(135, 160, 150, 200);  // 25 rows of the leg count, at least 18 are asked
+  const Box box = picture.fit({{kExpected, 1}});
+  ck_assert_double_eq(box.x, 135);
+  ck_assert_double_eq(box.right(), 170);
+}
+END_TEST
+
+// A shadow of 16 rows around the feet, which are in its middle.
+START_TEST(the_feet_are_in_the_middle_of_the_shadow_around_them) {
+  Picture picture;
+  picture.fill(150, 100, 170, 200);
+  picture.fill(135, 192, 185, 208);
+  ck_assert_double_eq(picture.fit({{kExpected, 1}}).bottom(), 200);
+}
+END_TEST
+
+START_TEST(feet_without_a_shadow_are_where_the_pixels_end) {
+  Picture picture;
+  picture.fill(150, 100, 170, 160);
+  picture.fill(150, 160, 156, 203);
+  picture.fill(164, 160, 170, 203);
+  ck_assert_double_eq(picture.fit({{kExpected, 1}}).bottom(), 203);
+}
+END_TEST
+
+START_TEST(a_head_that_is_not_where_it_is_expected_is_found_near_by) {
+  for (const double top : {90, 96, 100, 112}) {
+    Picture picture;
+    picture.fill(155, top, 165, 130);
+    picture.fill(150, 120, 170, 200);
+    ck_assert_double_eq(picture.fit({{kExpected, 1}}).y, top);
+  }
+}
+END_TEST
+
+// Two persons 20 pixels apart: the pixels between them belong to the nearer axis.
+START_TEST(pixels_belong_to_the_nearer_of_two_persons) {
+  Picture picture;
+  picture.fill(150, 100, 190, 200);
+  const std::vector<Person> people{{kExpected, 1}, {{163, 100, 34, 100}, 1}};
+  const Box left = picture.fit(people, 0), right = picture.fit(people, 1);
+  ck_assert_double_eq(left.x, 150);
+  ck_assert_double_eq_tol(left.right(), 170, 1.5);
+  ck_assert_double_eq_tol(right.x, 170, 1.5);
+  ck_assert_double_eq(right.right(), 190);
+}
+END_TEST
+
+START_TEST(a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box) {
+  Picture picture;
+  const Box none = picture.fit({{kExpected, 1}});
+  ck_assert_double_gt(none.width, 0);
+  for (const Box& b :
+       {Box{-60, 100, 34, 100}, Box{340, 100, 34, 100}, Box{143, 230, 34, 100}, Box{143, -90, 34, 100}}) {
+    const Box box = picture.fit({{b, 1}});
+    ck_assert(box.width > 0 && box.height > 0);
+  }
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "person_box",
+      {the_edges_are_those_of_the_pixels, the_pixels_weigh_more_than_half_against_what_is_expected,
+       an_outstretched_hand_and_a_shadow_beside_the_feet_do_not_widen_the_box, a_stride_widens_the_box,
+       the_feet_are_in_the_middle_of_the_shadow_around_them, feet_without_a_shadow_are_where_the_pixels_end,
+       a_head_that_is_not_where_it_is_expected_is_found_near_by, pixels_belong_to_the_nearer_of_two_persons,
+       a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box});
+}
