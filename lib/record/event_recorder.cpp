@@ -208,6 +208,7 @@ void EventRecorder::begin_file(Number keyframe) {
   start_.trigger = cycle_.begin();
   start_.reason = reason_;
   start_.formats.assign(1, unit.format);
+  start_.ring = bytes();
   last_keyframe_ = unit.decode;
   for (AudioTrack& track : audio_) {
     start_.formats.push_back(track.format);

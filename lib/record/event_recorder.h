@@ -30,6 +30,7 @@ struct FileStart {
   Time trigger{};            // the event's first trigger
   std::string reason;        // what it was
   std::vector<int> formats;  // one a track, video first; -1: not in this file
+  std::size_t ring = 0;      // bytes in the ring, of which it takes a part at once
 };
 
 struct FileEnd {

@@ -7,7 +7,8 @@ namespace cerberus::plugin {
 
 namespace {
 
-// Bytes that may wait for the disk. Derived: a minute of 8 Mbit/s. Guarded by the test of a disk that does not answer.
+// Bytes that may wait for the disk, beside those that a file takes out of the ring at its beginning. Derived: a minute of
+// 8 Mbit/s. Guarded by the test of a disk that does not answer.
 constexpr std::uint64_t kMostPending = 64 << 20;
 
 bool is_one_of(GstCaps* caps, std::initializer_list<const char*> names) {
@@ -27,7 +28,7 @@ int Files::format_of(GstCaps* caps) {
 
 void Files::forget() {
   formats_.clear();
-  origins_.clear();
+  open_.clear();
   abandoned_.clear();
   stamps_.reset();
 }
@@ -57,16 +58,16 @@ void Files::open(const record::FileStart& start) {
   spec->when = GST_CLOCK_TIME_IS_VALID(stamp.utc) ? stamp.utc : now;
   spec->name =
       record::expand_name(settings_.name, {time_of(spec->when), spec->camera, start.event, start.part});
-  origins_[start.file] = start.origin;
+  open_[start.file] = {start.origin, kMostPending + start.ring};
   journal_.open(start);
   writer_.open(std::move(spec));
 }
 
 void Files::write(std::uint32_t file, int track, const record::Unit& unit) {
   if (track == 0) journal_.written(file, unit.presentation);
-  const auto origin = origins_.find(file);
-  if (origin == origins_.end() || abandoned_.contains(file)) return;
-  if (!patient_ && writer_.pending() > kMostPending) {
+  const auto open = open_.find(file);
+  if (open == open_.end() || abandoned_.contains(file)) return;
+  if (!patient_ && writer_.pending() > open->second.waiting) {
     abandoned_.insert(file);
     writer_.abandon(file, "the disk is too slow");
     return;
@@ -78,7 +79,7 @@ void Files::write(std::uint32_t file, int track, const record::Unit& unit) {
       GstBufferCopyFlags(GST_BUFFER_COPY_FLAGS | GST_BUFFER_COPY_TIMESTAMPS | GST_BUFFER_COPY_MEMORY), 0,
       static_cast<gsize>(-1));
   const auto in_file = [&](record::Time time) {
-    return clock_time(std::max(time - origin->second, record::Time::zero()));
+    return clock_time(std::max(time - open->second.origin, record::Time::zero()));
   };
   GST_BUFFER_PTS(buffer) = in_file(unit.presentation);
   GST_BUFFER_DTS(buffer) = GST_BUFFER_DTS_IS_VALID(source) ? in_file(unit.decode) : GST_CLOCK_TIME_NONE;
@@ -86,13 +87,14 @@ void Files::write(std::uint32_t file, int track, const record::Unit& unit) {
 }
 
 void Files::close(const record::FileEnd& end) {
-  origins_.erase(end.file);
+  open_.erase(end.file);
   abandoned_.erase(end.file);
   journal_.close(end);
 }
 
 // The line begins with the time in the file, which is known only now.
 void Files::write_line(std::uint32_t file, record::Time time, std::string_view line) {
+  if (abandoned_.contains(file)) return;
   std::string text = "{\"file-time\":" + std::to_string(time.count()) + ',';
   text += line.substr(1);
   writer_.write_line(file, std::move(text));

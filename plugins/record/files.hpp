@@ -49,7 +49,11 @@ class Files final : public record::FileWriter, public record::JournalOutput {
   record::FrameJournal journal_{*this};
   bool patient_ = false;
   std::vector<std::shared_ptr<GstCaps>> formats_;
-  std::map<std::uint32_t, record::Time> origins_;  // of the open files
+  struct OpenFile {
+    record::Time origin{};      // time 0 of the file
+    std::uint64_t waiting = 0;  // bytes that may wait for the disk
+  };
+  std::map<std::uint32_t, OpenFile> open_;
   std::set<std::uint32_t> abandoned_;
 };
 

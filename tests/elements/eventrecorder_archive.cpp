@@ -324,7 +324,21 @@ GST_START_TEST(a_disk_that_does_not_answer_costs_the_event_and_never_stops_the_s
 }
 GST_END_TEST
 
-// Nobody can make a file there; root only notices when it tries.
+GST_START_TEST(a_pre_roll_larger_than_what_may_wait_for_the_disk_is_recorded) {
+  Rig rig;
+  g_object_set(rig.element, "pre-roll", 4 * GST_SECOND, nullptr);
+  rig.frame_size = 640 << 10;
+  rig.start();
+  rig.play_to(119);
+  rig.start_event();  // 110 frames of 640 KiB at once: 69 MiB
+  rig.frame_size = 64;
+  rig.play_to(125);
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(10, 125));
+}
+GST_END_TEST
+
+// No process can make a file there; root only notices when it tries.
 GST_START_TEST(a_folder_that_takes_no_files_is_named_and_stops_no_stream) {
   Rig rig;
   g_object_set(rig.element, "location", "/proc/self", nullptr);
@@ -366,6 +380,7 @@ static Suite* eventrecorder_archive_suite() {
   tcase_add_test(tests, zones_that_cannot_be_read_are_an_error_at_the_start_and_a_warning_later);
   tcase_add_test(tests, retention_deletes_the_oldest_recordings_but_those_that_are_kept);
   tcase_add_test(tests, a_disk_that_does_not_answer_costs_the_event_and_never_stops_the_stream);
+  tcase_add_test(tests, a_pre_roll_larger_than_what_may_wait_for_the_disk_is_recorded);
   tcase_add_test(tests, a_folder_that_takes_no_files_is_named_and_stops_no_stream);
   suite_add_tcase(suite, tests);
   return suite;
