@@ -35,6 +35,7 @@ GST_START_TEST(records_until_killed) {
   const char* folder = getenv(kInto);
   FILE* reports = fdopen(kReports, "w");
   Rig rig;
+  std::filesystem::remove_all(rig.folder.path());  // nothing else would
   g_object_set(rig.element, "location", folder, "file-name", "{camera}_{event}", "camera-name",
                std::to_string(getpid()).c_str(), nullptr);
   rig.analysis =
