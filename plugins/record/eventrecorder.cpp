@@ -41,8 +41,8 @@
  * Beside a file, under its name:
  * - `.jsonl` (`json-lines`): the lines of `motionjson` for its frames, with the key `file-time` in front: nanoseconds
  *   since the file's first frame. Frames without any metadata have no line.
- * - `.jpg` (`picture`): the frame of the pad `analysis` in which an object is largest, sharpest and most central; without
- *   an object the first one.
+ * - `.jpg` (`picture`): the frame of the pad `analysis`, or of a JPEG stream without that pad, in which an object is
+ *   largest, sharpest and most central; without an object the first one.
  *
  * `index` is an SQLite database (WAL) with the table `recordings`, a row for each file: `file`, `lines`, `picture`
  * (names below `location`), `camera`, `event`, `part`, `begin`, `end` (nanoseconds since 1970, UTC), `reason`, `tracks`,

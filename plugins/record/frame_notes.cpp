@@ -49,6 +49,11 @@ bool is_analysed(GstBuffer* buffer) {
          cerberus_buffer_peek_camera_motion(buffer) || cerberus_buffer_peek_pose(buffer);
 }
 
+record::Picture sample_of(GstBuffer* buffer, GstCaps* caps) {
+  return {gst_sample_new(buffer, caps, nullptr, nullptr),
+          [](void* sample) { gst_sample_unref(static_cast<GstSample*>(sample)); }};
+}
+
 // A copy of the pixels alone, so that no buffer of the stream's pool is held.
 record::Picture copy_of(GstVideoFrame& frame, GstCaps* caps) {
   GstVideoInfo plain;
@@ -61,8 +66,7 @@ record::Picture copy_of(GstVideoFrame& frame, GstCaps* caps) {
   const bool copied = gst_video_frame_copy(&to, &frame);
   gst_video_frame_unmap(&to);
   if (!copied) return nullptr;
-  return {gst_sample_new(buffer, caps, nullptr, nullptr),
-          [](void* sample) { gst_sample_unref(static_cast<GstSample*>(sample)); }};
+  return sample_of(buffer, caps);
 }
 
 }  // namespace
@@ -79,6 +83,7 @@ void FrameNotes::set_caps(GstCaps* caps) {
       gst_caps_features_is_equal(features, GST_CAPS_FEATURES_MEMORY_SYSTEM_MEMORY) &&
       gst_video_info_from_caps(&info, caps))
     raw_ = info;
+  jpeg_ = gst_structure_has_name(structure, "image/jpeg");
   caps_ = {gst_caps_ref(caps), gst_caps_unref};
 }
 
@@ -86,16 +91,14 @@ void FrameNotes::reset() {
   frames_ = 0;
 }
 
-// Returns the score of the object that can be seen best. `frame` may be nullptr: its pixels are not there.
-double FrameNotes::read_objects(GstBuffer* buffer, record::Note& note, GstVideoFrame* frame) const {
-  const vision::GrayView luma = frame ? luma_of(*frame) : vision::GrayView{};
+// Returns the score of the object that can be seen best; all are equally sharp where `luma` is empty.
+double FrameNotes::read_objects(GstBuffer* buffer, record::Note& note, vision::GrayView luma) const {
   g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
   double best = 0;
   for (guint k = 0; k < regions->len; ++k) {
     const auto* region = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, k));
     note.kinds.push_back(cerberus_region_kind_get_nick(region->kind));
     if (region->tracked) note.tracks.push_back(region->id);
-    if (!frame) continue;
     const vision::Box box{region->x, region->y, region->width, region->height};
     best = std::max(best, record::view_score(box, size_, luma.empty() ? 0 : record::sharpness(luma, box)));
   }
@@ -105,16 +108,20 @@ double FrameNotes::read_objects(GstBuffer* buffer, record::Note& note, GstVideoF
 std::optional<record::Note> FrameNotes::note(GstBuffer* buffer, const CerberusStamp& stamp, record::Time time,
                                              const record::FrameJournal& journal, Wanted wanted) {
   const guint64 number = frames_++;
-  const bool picture = raw_ && wanted.picture && gst_buffer_get_size(buffer) > 0;
-  if (!picture && !is_analysed(buffer)) return std::nullopt;
+  const bool pictured = has_pictures() && wanted.picture && gst_buffer_get_size(buffer) > 0;
+  const bool analysed = raw_ || is_analysed(buffer);
+  if (!pictured && !analysed) return std::nullopt;
   record::Note note;
   note.time = time;
-  if (wanted.line) note.line = write_frame_line(line_, buffer, stamp, {number, size_.width, size_.height});
+  if (analysed && wanted.line)
+    note.line = write_frame_line(line_, buffer, stamp, {number, size_.width, size_.height});
   std::optional<MappedFrame> mapped;
-  if (picture) mapped.emplace(*raw_, buffer);
+  if (pictured && raw_) mapped.emplace(*raw_, buffer);
   GstVideoFrame* frame = mapped && *mapped ? mapped->get() : nullptr;
-  note.score = read_objects(buffer, note, frame);
-  if (frame && journal.wants_picture(time, note.score)) note.picture = copy_of(*frame, caps_.get());
+  note.score = read_objects(buffer, note, frame ? luma_of(*frame) : vision::GrayView{});
+  if (pictured && (frame || jpeg_) && journal.wants_picture(time, note.score))
+    note.picture = frame ? copy_of(*frame, caps_.get()) : sample_of(buffer, caps_.get());
+  if (!analysed && !note.picture) return std::nullopt;
   if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer);
       fusion && fusion->action != CERBERUS_FUSION_ZERO && fusion->action != CERBERUS_FUSION_HOLD &&
       fusion->rule_name)
@@ -123,10 +130,12 @@ std::optional<record::Note> FrameNotes::note(GstBuffer* buffer, const CerberusSt
 }
 
 GstSample* encode_jpeg(const record::Picture& picture, std::string& fault) {
+  auto* sample = static_cast<GstSample*>(picture.get());
+  if (gst_structure_has_name(gst_caps_get_structure(gst_sample_get_caps(sample), 0), "image/jpeg"))
+    return gst_sample_ref(sample);
   g_autoptr(GstCaps) caps = gst_caps_new_empty_simple("image/jpeg");
   g_autoptr(GError) error = nullptr;
-  GstSample* jpeg =
-      gst_video_convert_sample(static_cast<GstSample*>(picture.get()), caps, kLongestEncoding, &error);
+  GstSample* jpeg = gst_video_convert_sample(sample, caps, kLongestEncoding, &error);
   if (!jpeg) fault = error ? error->message : "the encoder failed";
   return jpeg;
 }

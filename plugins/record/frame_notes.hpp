@@ -30,16 +30,18 @@ class FrameNotes {
                                    const record::FrameJournal& journal, Wanted wanted);
 
  private:
-  double read_objects(GstBuffer* buffer, record::Note& note, GstVideoFrame* frame) const;
+  double read_objects(GstBuffer* buffer, record::Note& note, vision::GrayView luma) const;
+  bool has_pictures() const { return raw_ || jpeg_; }
 
   vision::Size size_;
   std::optional<GstVideoInfo> raw_;  // frames that can be mapped
+  bool jpeg_ = false;                // frames that are pictures as they are
   std::shared_ptr<GstCaps> caps_;
   guint64 frames_ = 0;
   text::JsonLine line_;
 };
 
-// Encodes a picture of a note as JPEG. Blocks, some ten milliseconds. nullptr, and what is wrong in `fault`: it failed.
+// Encodes a picture of a note as JPEG, where it is none. Blocks, some ten milliseconds. nullptr, and what is wrong in `fault`: it failed.
 GstSample* encode_jpeg(const record::Picture& picture, std::string& fault);
 
 }  // namespace cerberus::plugin

@@ -58,7 +58,7 @@ const Property<Settings> kProperties[] = {
     property("json-lines", &Settings::json_lines,
              "Write what was found in each frame of a file as JSON lines beside it"),
     property("picture", &Settings::picture,
-             "Write a JPEG of the best moment beside each file (needs the pad `analysis`)"),
+             "Write a JPEG of the best moment beside each file (of the pad `analysis`, or of a JPEG stream)"),
     property("index", &Settings::index,
              "SQLite database with a row for each file, relative to `location`; empty = no index and no "
              "retention")

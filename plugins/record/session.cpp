@@ -76,10 +76,11 @@ bool Session::has_analysis() const {
   return false;
 }
 
-// The settings that may change while the element runs. Under the lock.
-void Session::apply_settings() {
+// The settings that may change while the element runs. Under the lock. Returns what is wrong with them, to be posted
+// without it.
+std::string Session::apply_settings() {
   const auto changed = settings_.changes();
-  if (!changed) return;
+  if (!changed) return {};
   recorder_.configure(event_settings(*changed));
   triggers_.track = changed->trigger_track;
   triggers_.fusion = changed->trigger_fusion;
@@ -88,10 +89,10 @@ void Session::apply_settings() {
   wanted_ = {changed->json_lines, changed->picture};
   files_.configure(file_settings(*changed));
   writer_.set_limits(archive_settings(*changed).limits);
-  if (changed->trigger_zones == zones_) return;
+  if (changed->trigger_zones == zones_) return {};
   zones_ = changed->trigger_zones;
-  if (const std::string fault = triggers_.zones.parse(zones_); !fault.empty())
-    warn_("trigger-" + fault + "; the zones of before stay");
+  const std::string fault = triggers_.zones.parse(zones_);
+  return fault.empty() ? fault : "trigger-" + fault + "; the zones of before stay";
 }
 
 // Under the lock.
@@ -193,7 +194,6 @@ void Session::advance_journal() {
 bool Session::add_video(Input& input, GstBuffer* buffer) {
   record::Unit unit;
   if (!read_unit(input, buffer, unit)) return false;
-  if (!live_) live_ = is_live(input.pad);
   files_.set_patient(!live_.value_or(true));
   if (input.decode && unit.decode < *input.decode - kBroken) {
     GST_WARNING_OBJECT(input.pad, "times fall back: the stream begins anew");
@@ -234,19 +234,20 @@ bool Session::add_analysis(Input& input, GstBuffer* buffer) {
 }
 
 bool Session::add(Input& input, GstBuffer* buffer) {
-  const std::lock_guard guard(lock_);
-  if (input.track > 0) return add_audio(input, buffer);
-  apply_settings();
-  return input.track == 0 ? add_video(input, buffer) : add_analysis(input, buffer);
+  if (input.track == 0 && !live_) live_ = is_live(input.pad);
+  std::string fault;
+  const bool added = [&] {
+    const std::lock_guard guard(lock_);
+    if (input.track > 0) return add_audio(input, buffer);
+    fault = apply_settings();
+    return input.track == 0 ? add_video(input, buffer) : add_analysis(input, buffer);
+  }();
+  if (!fault.empty()) warn_(fault);
+  return added;
 }
 
 void Session::wait_for_disk(GstPad* pad) {
-  bool live = true;
-  {
-    const std::lock_guard guard(lock_);
-    live = live_.value_or(true);
-  }
-  if (!live) writer_.wait_below(kPatience, [pad] { return !GST_PAD_IS_FLUSHING(pad); });
+  if (!live_.value_or(true)) writer_.wait_below(kPatience, [pad] { return !GST_PAD_IS_FLUSHING(pad); });
 }
 
 // What the analysis has yet to report may need frames of before: the end is that of all pads.

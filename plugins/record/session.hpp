@@ -65,7 +65,7 @@ class Session {
   void file_failed(std::uint32_t file, bool empty);
 
  private:
-  void apply_settings();
+  std::string apply_settings();
   void apply(const Trigger& trigger, record::Time time);
   void add_note(Input& input, GstBuffer* buffer, const CerberusStamp& stamp, record::Time time);
   void advance_journal();
@@ -76,7 +76,9 @@ class Session {
   void restart();
 
   Adjustable<RecorderSettings>& settings_;
-  std::mutex lock_;  // of all that follows, but the writer
+  Writer::Warn warn_;
+  std::optional<bool> live_;  // of the video's streaming thread
+  std::mutex lock_;           // of all that follows, but the writer
   Writer writer_;
   Files files_{writer_};
   record::EventRecorder recorder_{files_};
@@ -85,8 +87,6 @@ class Session {
   TriggerSettings triggers_;
   FrameNotes::Wanted wanted_;
   std::string camera_name_, zones_;
-  Writer::Warn warn_;
-  std::optional<bool> live_;
 };
 
 }  // namespace cerberus::plugin

@@ -194,6 +194,21 @@ GST_START_TEST(an_event_without_an_object_shows_its_beginning) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_jpeg_stream_needs_no_analysis_for_its_picture) {
+  Rig rig(1, "image/jpeg, width=320, height=240, framerate=25/1");
+  rig.start();
+  rig.play_to(50);
+  rig.start_event();
+  rig.play_to(60);
+  rig.finish();
+  std::ifstream file(rig.folder.path() + "/1.jpg", std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+  fail_unless_equals_int(bytes.size(), 64);
+  fail_unless_equals_int(bytes[63], 51);  // the frame after the trigger, as it came
+  fail_unless_equals_int(rig.folder.files({".jsonl"}).size(), 0);
+}
+GST_END_TEST
+
 GST_START_TEST(the_message_of_the_end_names_what_is_beside_the_file) {
   Rig rig;
   rig.analysis = std::make_unique<Stream>(rig.element, "analysis", kRaw);
@@ -375,6 +390,7 @@ static Suite* eventrecorder_archive_suite() {
   tcase_add_test(tests, lines_and_picture_are_not_written_where_they_are_not_wanted);
   tcase_add_loop_test(tests, the_picture_is_the_frame_with_the_largest_object, 0, 2);
   tcase_add_test(tests, an_event_without_an_object_shows_its_beginning);
+  tcase_add_test(tests, a_jpeg_stream_needs_no_analysis_for_its_picture);
   tcase_add_test(tests, the_message_of_the_end_names_what_is_beside_the_file);
   tcase_add_test(tests, only_tracks_in_the_zone_trigger);
   tcase_add_test(tests, zones_that_cannot_be_read_are_an_error_at_the_start_and_a_warning_later);
