@@ -16,24 +16,24 @@ constexpr Size kFrame{200, 100};
 START_TEST(without_polygons_everything_is_inside) {
   TriggerZones zones;
   ck_assert(zones.contains({0, 0, 10, 10}, kFrame));
-  ck_assert_str_eq(zones.parse("").c_str(), "");
+  ck_assert((zones.parse("")).empty());
   ck_assert(zones.contains({190, 90, 10, 10}, kFrame));
 }
 END_TEST
 
 START_TEST(the_middle_of_the_lower_edge_decides) {
   TriggerZones zones;
-  ck_assert_str_eq(zones.parse("include 0,0.5 0.5,0.5 0.5,1 0,1").c_str(), "");  // the lower left quarter
-  ck_assert(zones.contains({40, 20, 20, 40}, kFrame));                           // feet at 50, 60
-  ck_assert(!zones.contains({40, 0, 20, 40}, kFrame));                           // at 50, 40
-  ck_assert(!zones.contains({95, 20, 20, 40}, kFrame));                          // at 105, 60
-  ck_assert(zones.contains({85, 20, 20, 40}, kFrame));                           // at 95, 60
+  ck_assert((zones.parse("include 0,0.5 0.5,0.5 0.5,1 0,1")).empty());  // the lower left quarter
+  ck_assert(zones.contains({40, 20, 20, 40}, kFrame));                  // feet at 50, 60
+  ck_assert(!zones.contains({40, 0, 20, 40}, kFrame));                  // at 50, 40
+  ck_assert(!zones.contains({95, 20, 20, 40}, kFrame));                 // at 105, 60
+  ck_assert(zones.contains({85, 20, 20, 40}, kFrame));                  // at 95, 60
 }
 END_TEST
 
 START_TEST(a_box_that_reaches_beyond_the_frame_stands_at_its_edge) {
   TriggerZones zones;
-  ck_assert_str_eq(zones.parse("exclude 0,0.9 1,0.9 1,1 0,1").c_str(), "");
+  ck_assert((zones.parse("exclude 0,0.9 1,0.9 1,1 0,1")).empty());
   ck_assert(!zones.contains({0, 50, 20, 500}, kFrame));
   ck_assert(zones.contains({-500, 50, 20, 20}, kFrame));
 }
@@ -41,15 +41,15 @@ END_TEST
 
 START_TEST(a_wrong_text_is_named_and_changes_nothing) {
   TriggerZones zones;
-  ck_assert_str_eq(zones.parse("include 0,0 1,0 1,0.1 0,0.1").c_str(), "");
-  ck_assert_str_ne(zones.parse("incloud 0,0 1,0 1,1").c_str(), "");
+  ck_assert((zones.parse("include 0,0 1,0 1,0.1 0,0.1")).empty());
+  ck_assert(!(zones.parse("incloud 0,0 1,0 1,1")).empty());
   ck_assert(!zones.contains({0, 40, 10, 10}, kFrame));
 }
 END_TEST
 
 START_TEST(a_frame_of_unknown_size_is_inside) {
   TriggerZones zones;
-  ck_assert_str_eq(zones.parse("include 0,0 1,0 1,0.1 0,0.1").c_str(), "");
+  ck_assert((zones.parse("include 0,0 1,0 1,0.1 0,0.1")).empty());
   ck_assert(zones.contains({0, 40, 10, 10}, {}));
 }
 END_TEST
