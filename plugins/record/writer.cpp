@@ -62,11 +62,7 @@ void Writer::stop() {
 void Writer::enqueue(Command command, std::uint64_t bytes) {
   {
     const std::lock_guard guard(lock_);
-    // What became of a file does not wait behind what others have yet to write.
-    if (std::holds_alternative<Ended>(command))
-      commands_.push_front(std::move(command));
-    else
-      commands_.push_back(std::move(command));
+    commands_.push_back(std::move(command));
     queued_ += bytes;
   }
   changed_.notify_all();
