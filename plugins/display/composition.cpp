@@ -2,21 +2,18 @@
 #include "composition.hpp"
 
 #include "cerberus/private/video.hpp"
-#include "overlay/blend.h"
 
 namespace cerberus::plugin {
 
-namespace {
-
-// The components of a mapped frame with their part in a colour: Y'CbCr after the caps' matrix and range, RGB as it is.
-int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MAX_COMPONENTS]) {
+FrameComponents::FrameComponents(GstVideoFrame* frame) {
   const GstVideoFormatInfo* format = frame->info.finfo;
   gint offset[GST_VIDEO_MAX_COMPONENTS], scale[GST_VIDEO_MAX_COMPONENTS];
   gst_video_color_range_offsets(frame->info.colorimetry.range, format, offset, scale);
   double kr = 0.299, kb = 0.114;
   if (!gst_video_color_matrix_get_Kr_Kb(frame->info.colorimetry.matrix, &kr, &kb)) kr = 0.299, kb = 0.114;
   const double luma[3] = {kr, 1 - kr - kb, kb};
-  const int n = static_cast<int>(GST_VIDEO_FORMAT_INFO_N_COMPONENTS(format));
+  count_ = GST_VIDEO_FORMAT_INFO_N_COMPONENTS(format);
+  const int n = static_cast<int>(count_);
   for (int i = 0; i < n; ++i) {
     double weights[3] = {0, 0, 0};
     const bool alpha = i == GST_VIDEO_COMP_A;
@@ -28,7 +25,7 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
       for (int j = 0; j < 3; ++j)
         weights[j] = i == GST_VIDEO_COMP_Y ? luma[j] : ((j == own) - luma[j]) / (2 * (1 - luma[own]));
     }
-    auto& c = all[i];
+    auto& c = all_[i];
     c.data = cerberus::component_data(frame, i);
     c.pixel =
         static_cast<std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(frame, GST_VIDEO_FORMAT_INFO_PLANE(format, i)));
@@ -43,8 +40,9 @@ int components(GstVideoFrame* frame, overlay::BlendComponent (&all)[GST_VIDEO_MA
     c.word_shift = GST_VIDEO_FORMAT_INFO_SHIFT(format, i);
     c.swapped = c.bits > 8 && cerberus::is_swapped(format);
   }
-  return n;
 }
+
+namespace {
 
 GstVideoOverlayRectangle* rectangle_of(const overlay::Patch& patch) {
   // The buffer holds the picture: no copy.
@@ -90,10 +88,9 @@ CompositionPtr Composer::compose(std::span<const overlay::Patch> patches,
 }
 
 void blend(std::span<const overlay::Patch> patches, GstVideoFrame* frame) {
-  overlay::BlendComponent all[GST_VIDEO_MAX_COMPONENTS];
-  const auto n = static_cast<std::size_t>(components(frame, all));
+  const FrameComponents components(frame);
   for (const overlay::Patch& patch : patches)
-    overlay::blend(patch.pixels->view(), patch.area.x, patch.area.y, {all, n});
+    overlay::blend(patch.pixels->view(), patch.area.x, patch.area.y, components.all());
 }
 
 }  // namespace cerberus::plugin

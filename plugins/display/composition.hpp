@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "overlay/blend.h"
 #include "overlay/picture.h"
 
 namespace cerberus::plugin {
@@ -37,6 +38,18 @@ class Composer {
     RectanglePtr rectangle;
   };
   std::vector<Composed> last_, next_;
+};
+
+// The components of a mapped frame of CERBERUS_VIDEO_FORMATS with their part in a colour: Y'CbCr after the caps' matrix and
+// range, RGB as it is.
+class FrameComponents {
+ public:
+  explicit FrameComponents(GstVideoFrame* frame);
+  std::span<const overlay::BlendComponent> all() const { return {all_, count_}; }
+
+ private:
+  overlay::BlendComponent all_[GST_VIDEO_MAX_COMPONENTS];
+  std::size_t count_ = 0;
 };
 
 // Draws the patches into a frame of CERBERUS_VIDEO_FORMATS, mapped for reading and writing.

@@ -5,10 +5,11 @@
 GST_ELEMENT_REGISTER_DECLARE(motionjson)
 GST_ELEMENT_REGISTER_DECLARE(motionoverlay)
 GST_ELEMENT_REGISTER_DECLARE(motionview)
+GST_ELEMENT_REGISTER_DECLARE(privacymask)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   return GST_ELEMENT_REGISTER(motionjson, plugin) && GST_ELEMENT_REGISTER(motionoverlay, plugin) &&
-         GST_ELEMENT_REGISTER(motionview, plugin);
+         GST_ELEMENT_REGISTER(motionview, plugin) && GST_ELEMENT_REGISTER(privacymask, plugin);
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberusdisplay,

@@ -79,12 +79,10 @@ class ValueMeta {
     GstMeta* meta = gst_buffer_get_meta(buffer, kInfo()->api);
     if (!value) return !meta || gst_buffer_remove_meta(buffer, meta);
     if (meta && kInPixels && reinterpret_cast<Meta*>(meta)->crop != crop_of(buffer)) {
-      const Value copy = *value;  // which may stand in the meta that goes
-      gst_buffer_remove_meta(buffer, meta);
-      return set(buffer, &copy);  // a copy of the buffer takes the metas in turn: the crop's comes first now
+      const Value copy = *value;  // a copy of the buffer takes its metas in turn: the crop's is to come first
+      return gst_buffer_remove_meta(buffer, meta) && set(buffer, &copy);
     }
-    if (!meta) meta = gst_buffer_add_meta(buffer, kInfo(), nullptr);
-    if (!meta) return FALSE;
+    if (!meta && !(meta = gst_buffer_add_meta(buffer, kInfo(), nullptr))) return FALSE;
     value_of(meta) = *value;
     reinterpret_cast<Meta*>(meta)->crop = crop_of(buffer);
     return TRUE;

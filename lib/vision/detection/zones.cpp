@@ -2,52 +2,17 @@
 #include "vision/detection/zones.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
+
+#include "vision/detection/polygons.h"
 
 namespace cerberus::vision {
 namespace {
 
-constexpr std::string_view kBlank = " \t\r";
-constexpr std::string_view kExample = "for example: include 0.1,0.1 0.9,0.1 0.9,0.9";
-
-std::string_view trimmed(std::string_view text) {
-  const auto from = text.find_first_not_of(kBlank);
-  if (from == std::string_view::npos) return {};
-  return text.substr(from, text.find_last_not_of(kBlank) - from + 1);
-}
-
-// Takes the first of the words (or polygons) off the text.
-std::string_view take(std::string_view& text, std::string_view separators) {
-  const auto end = std::min(text.find_first_of(separators), text.size());
-  const std::string_view word = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return word;
-}
-
-std::string quoted(std::string_view word) {
-  std::string text(1, '"');
-  text += word.substr(0, 60);
-  return text += '"';
-}
-
-// A whole word that is a fraction 0..1.
-bool parse_fraction(std::string_view word, double& value) {
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return error == std::errc{} && end == word.data() + word.size() && value >= 0 && value <= 1;
-}
-
-std::string parse_corner(std::string_view word, Point& corner) {
-  const auto comma = word.find(',');
-  if (comma != std::string_view::npos && parse_fraction(word.substr(0, comma), corner.x) &&
-      parse_fraction(word.substr(comma + 1), corner.y))
-    return {};
-  std::string text = "zones: " + quoted(word) +
-                     " is not a corner: write x,y as fractions of the picture from 0 to 1 " +
-                     "with decimal points and without blanks, " + std::string(kExample);
-  return text;
-}
+constexpr std::string_view kWords[] = {"include", "exclude"};
+constexpr PolygonSyntax kSyntax{
+    .property = "zones", .example = "include 0.1,0.1 0.9,0.1 0.9,0.9", .words = kWords, .world = false};
 
 // Columns, in pixels, where the polygon's edges cross the height y of a row of pixel centres; sorted. An edge
 // owns its upper end and not its lower one, so that a corner is counted once.
@@ -65,28 +30,11 @@ void crossings(const std::vector<Point>& corners, Size size, double y, std::vect
 }  // namespace
 
 std::string Zones::parse(std::string_view text) {
-  std::vector<Polygon> polygons;
-  while (!text.empty()) {
-    std::string_view part = trimmed(take(text, ";\n"));
-    if (part.empty()) continue;
-    const std::string_view whole = part;
-    const std::string_view word = take(part, kBlank);
-    Polygon polygon;
-    if (word != "include" && word != "exclude")
-      return "zones: " + quoted(word) +
-             " is neither include nor exclude: begin each polygon with one of them, " + std::string(kExample);
-    polygon.include = word == "include";
-    while (!(part = trimmed(part)).empty()) {
-      Point corner;
-      if (std::string error = parse_corner(take(part, kBlank), corner); !error.empty()) return error;
-      polygon.corners.push_back(corner);
-    }
-    if (polygon.corners.size() < 3)
-      return "zones: " + quoted(whole) + " has " + std::to_string(polygon.corners.size()) +
-             " corners: a polygon needs at least three, " + std::string(kExample);
-    polygons.push_back(std::move(polygon));
-  }
-  polygons_ = std::move(polygons);
+  std::vector<TypedPolygon> typed;
+  if (std::string error = parse_polygons(text, kSyntax, typed); !error.empty()) return error;
+  polygons_.clear();
+  for (TypedPolygon& polygon : typed)
+    polygons_.push_back({polygon.word == kWords[0], std::move(polygon.corners)});
   drawn_ = nowhere_ = false;
   return {};
 }
