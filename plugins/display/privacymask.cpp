@@ -24,7 +24,7 @@
  * |[
  * gst-launch-1.0 videotestsrc num-buffers=60 ! privacymask masks="0,0 0.3,0 0.3,0.2 0,0.2" mode=pixelate ! \
  *     videoconvert ! fakesink
- * gst-launch-1.0 videotestsrc num-buffers=60 ! virtualptz wide-fov=60 horizontal-fov=30 ! \
+ * gst-launch-1.0 videotestsrc num-buffers=60 ! virtualptz lockstep=off wide-fov=60 horizontal-fov=30 ! \
  *     privacymask masks="world -4,3 4,3 4,-3 -4,-3" horizontal-fov=30 ! fakesink
  * ]|
  *
