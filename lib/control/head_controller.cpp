@@ -318,8 +318,9 @@ HeadController::Answer HeadController::frame(const Frame& frame, DeferredNotific
   if (!runner) return Answer::failed;
   if (clock_driven_) {
     newest_ = frame.running;
-    if (!frame.seen || halted_) return Answer::done;
     const Time now = head_time(frame.now);
+    end_expired_order(now, out);
+    if (!frame.seen || halted_) return Answer::done;
     watchdog_.feed(now);
     if (!simulated_) correct(frame, now, out);
     if (homing_ && !manual_.active()) return Answer::done;
@@ -385,6 +386,12 @@ void HeadController::on_decision(const FusionDecision& decision, Time at, Deferr
   order({now, command.pan, command.tilt});
 }
 
+void HeadController::end_expired_order(Time now, DeferredNotifications& out) {
+  if (halted_ || !manual_.lapse(now)) return;
+  order(manual_at(now));
+  report_manual(now, out);
+}
+
 HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
   std::unique_lock guard(lock_);
   const auto runner = runner_;
@@ -395,10 +402,7 @@ HeadController::Time HeadController::tick(Time at, DeferredNotifications& out) {
     order({now, {}, {}, true});
     on_timeout(now, out);
   }
-  if (!halted_ && manual_.lapse(now)) {
-    order(manual_at(now));
-    report_manual(now, out);
-  }
+  end_expired_order(now, out);
   guard.unlock();
   std::vector<Pose> poses;
   const Answer answer = runner->ask({}, now, now + setup_.latency + kAhead, poses, kTickPatience);

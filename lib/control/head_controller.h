@@ -108,6 +108,8 @@ class HeadController {
   void report_fault(const std::string& failure, Time head, DeferredNotifications& out);
   void report_refusal(Time head, DeferredNotifications& out);
   void check(const std::string& failure, Time head, DeferredNotifications& out);
+  // A manual order that was not repeated in time becomes a stop.
+  void end_expired_order(Time now, DeferredNotifications& out);
   drivers::HeadCommand decide(const Frame& frame, Time now, DeferredNotifications& out);
   void on_timeout(Time head, DeferredNotifications& out);
   void apply_manual(std::optional<Time> now, DeferredNotifications& out);

@@ -165,6 +165,10 @@ struct Session {
     link.turn(trial.speed, 0);
     for (const double end = now_seconds() + trial.lead; now_seconds() < end && watch();)
       if (std::string wrong = serve(); !wrong.empty()) return wrong;
+    if (std::abs(position) >= at_most) {
+      link.stop();
+      return "the head reached the end of the trial's reach before its helper could be killed";
+    }
     link.kill();
     const double killed = moved = now_seconds();
     while (now_seconds() - killed < trial.patience && now_seconds() - moved < kStill && watch() &&

@@ -273,7 +273,7 @@ START_TEST(a_damaged_line_later_changes_nothing) {
   Board board;
   ExternalSensor sensor;
   open(sensor, at(board.device()));
-  board.send("levels 0 1 1\nlevels 0 1\nlev\xff\nlevels 0 1 0\n");
+  board.send("levels 0 1 1\nlevels 0 1\nlev\xff\ncerberus-pir 3 3\nlevels 0 1 0\n");
   must_read(sensor, 1s, "0:0 1:1 2:1 0:0 1:1 2:0");
 }
 END_TEST

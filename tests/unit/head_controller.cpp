@@ -749,10 +749,14 @@ START_TEST(a_turn_by_hand_becomes_a_stop_after_500_ms_unless_it_is_repeated) {
   rig.controller.tick(1900ms, rig.out);
   ck_assert(holds(rig.command().pan));
   rig.assert_status(HeadState::manual, "its order was not repeated");
+  // Whatever comes first after the deadline, a frame or a tick, stops the head.
+  rig.controller.turn(radians(20), 0, 1950ms, rig.out);
+  rig.process(Rig::with(2500ms, Action::turn_right));
+  ck_assert(holds(rig.command().pan) && rig.command().stop);
   // Neither does it go on after a pause.
-  rig.controller.turn(radians(20), 0, 2s, rig.out);
-  rig.controller.halt("paused", 2100ms, 10s, rig.out);
-  rig.controller.resume(3s, rig.out);
+  rig.controller.turn(radians(20), 0, 2600ms, rig.out);
+  rig.controller.halt("paused", 2700ms, 10s, rig.out);
+  rig.controller.resume(4s, rig.out);
   ck_assert(holds(rig.command().pan));
 }
 END_TEST

@@ -203,7 +203,7 @@ class StopNoter final : public Head {
 }  // namespace
 
 START_TEST(a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does) {
-  for (const bool moves : {false, true}) {
+  for (const auto& [moves, by_stop] : {std::pair{false, false}, {true, false}, {false, true}}) {
     Pipe gate, record;
     auto notes = std::make_shared<std::string>();
     HeadRunner runner(std::make_unique<StopNoter>(notes), {});
@@ -213,7 +213,10 @@ START_TEST(a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does) {
     record.line();
     runner.command(go(1s, 0.125));
     record.line();  // blocked in it now
-    runner.command({2s, {}, {}, true});
+    if (by_stop)
+      runner.stop(2s, 1ms);
+    else
+      runner.command({2s, {}, {}, true});
     runner.command(moves ? go(3s, 0.25) : HeadCommand{3s, {}, {}});
     gate.close_writer();
     record.line();  // the third; the second one was superseded

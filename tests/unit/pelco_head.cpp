@@ -5,6 +5,7 @@
 #include <pty.h>
 #include <unistd.h>
 
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -156,6 +157,35 @@ START_TEST(an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head) {
 }
 END_TEST
 
+// Where it stands then is not known: it must not go on by what it reported before.
+START_TEST(a_head_that_returns_and_reports_no_more_is_a_fault) {
+  constexpr std::array<std::uint8_t, 7> kPanAnswer{0xff, 1, 0, 0x59, 0x0b, 0xb8, 0x1d};
+  constexpr std::array<std::uint8_t, 7> kTiltAnswer{0xff, 1, 0, 0x5b, 0, 0, 0x5c};
+  const std::string link = "/tmp/cerberus-pelco-" + std::to_string(getpid());
+  auto line = std::make_unique<Line>();
+  ck_assert_int_eq(::symlink(line->device().substr(7).c_str(), link.c_str()), 0);
+  PelcoOptions options = options_for(*line, true);
+  options.device = "serial:" + link;
+  PelcoHead head(options);
+  head.open({}, 0s);
+  line->answer(kTiltAnswer);
+  line->answer(kPanAnswer);
+  head.tick(100ms);
+  ck_assert(head.take_pose(100ms));
+  line.reset();
+  ::unlink(link.c_str());
+  line = std::make_unique<Line>();
+  ck_assert_int_eq(::symlink(line->device().substr(7).c_str(), link.c_str()), 0);
+  Time t = 200ms;  // connecting takes a thread of its own
+  for (; line->silent() && t < 30s; t += 100ms) head.tick(t);
+  ::unlink(link.c_str());
+  ck_assert(!line->silent());
+  assert_text(head.fault(), "");
+  for (const Time end = t + 1500ms; t < end; t += 100ms) head.tick(t);
+  ck_assert_msg(head.fault().find("does not answer") != std::string::npos, "%s", head.fault().c_str());
+}
+END_TEST
+
 START_TEST(what_cannot_be_is_named) {
   Line line;
   PelcoOptions options = options_for(line);
@@ -169,8 +199,8 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "pelco_head",
-      {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
-       positions_are_asked_for_and_a_head_at_its_limit_stops,
-       an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head, what_cannot_be_is_named});
+      "pelco_head", {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
+                     positions_are_asked_for_and_a_head_at_its_limit_stops,
+                     an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head,
+                     a_head_that_returns_and_reports_no_more_is_a_fault, what_cannot_be_is_named});
 }

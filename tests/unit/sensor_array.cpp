@@ -273,19 +273,62 @@ START_TEST(every_sample_is_a_reading_where_that_is_asked_for) {
 }
 END_TEST
 
+// A recording of volts whose second sensor is lost after a second.
+class LosesOne final : public Sensor {
+ public:
+  SensorError open(const SensorSetup&) override { return {}; }
+  bool opens_at_once(const SensorSetup&) const override { return true; }
+  void close() noexcept override {}
+  void stop() noexcept override {}
+  SensorError read(Time now, std::vector<SensorEdge>& edges) override {
+    for (; next() <= now; ++given_)
+      for (int i = 0; i < 3; ++i) {
+        SensorEdge edge{next(), i, i == 1, i == 1 ? 3.0f : 0.0f};
+        if (given_ == 1 && i == 1) edge = {next(), i, false, std::nanf(""), false};
+        edges.push_back(edge);
+      }
+    return {};
+  }
+  std::string place(int) const override { return "nowhere"; }
+  bool measures() const override { return true; }
+  bool recorded() const override { return true; }
+  Time next() const override {
+    return given_ == 0 ? 500ms : given_ == 1 ? Time(1s) : cerberus::sensing::kNever;
+  }
+  Time end() const override { return 3s; }
+
+ private:
+  int given_ = 0;
+};
+
+// Volts that are not known any more are not those of before, at heartbeats neither.
+START_TEST(unknown_volts_are_not_the_last_ones) {
+  SensorArray array;
+  ck_assert(!array.open(std::make_unique<LosesOne>(), {}, {}, 700ms));
+  float before = 0, last = 0;
+  for (SensorReading reading;;) {
+    const auto step = array.next(array.due(), reading);
+    if (step == SensorArray::Step::ended) break;
+    if (step != SensorArray::Step::reading) continue;
+    (reading.time < 1s ? before : last) = reading.volts[1];
+  }
+  ck_assert(before == 3 && std::isnan(last));
+}
+END_TEST
+
 }  // namespace
 
 int main() {
   return cerberus::tests::run_suite(
-      "sensor_array",
-      {a_reading_at_the_start_at_every_change_and_every_heartbeat,
-       nothing_is_known_before_a_recordings_first_line,
-       an_invalid_reading_of_a_recording_lasts_until_the_next_one,
-       a_recording_goes_on_wherever_it_is_asked_to,
-       a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_later,
-       a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread,
-       a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again,
-       a_driver_that_fails_ends_it_with_its_own_words,
-       edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated,
-       a_turning_base_makes_detections_doubtful, every_sample_is_a_reading_where_that_is_asked_for});
+      "sensor_array", {a_reading_at_the_start_at_every_change_and_every_heartbeat,
+                       nothing_is_known_before_a_recordings_first_line,
+                       an_invalid_reading_of_a_recording_lasts_until_the_next_one,
+                       a_recording_goes_on_wherever_it_is_asked_to,
+                       a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_later,
+                       a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread,
+                       a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again,
+                       a_driver_that_fails_ends_it_with_its_own_words,
+                       edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated,
+                       a_turning_base_makes_detections_doubtful, unknown_volts_are_not_the_last_ones,
+                       every_sample_is_a_reading_where_that_is_asked_for});
 }

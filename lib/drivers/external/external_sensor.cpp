@@ -166,6 +166,7 @@ void ExternalSensor::on_levels(const SensorLevels& found, Time now, std::vector<
 SensorError ExternalSensor::on_line(const SensorLine& line, Time now, std::vector<SensorEdge>& edges) {
   int count = sensors_;
   if (const auto* hello = std::get_if<SensorHello>(&line)) {
+    if (hello->version != kSensorProtocol && accepted_) return {};  // a damaged line
     if (hello->version != kSensorProtocol)
       return {SensorFault::settings,
               described("they speak version " + std::to_string(hello->version) +

@@ -72,7 +72,8 @@ struct HeadRunner::Core {
 // A later hold does not revoke a stop that still waits.
 void HeadRunner::Core::set_command(const HeadCommand& command) {
   constexpr motion::AxisCommand kHold;
-  const bool keeps_stop = todo.command && todo.command->stop && command.pan == kHold && command.tilt == kHold;
+  const bool holds = command.pan == kHold && command.tilt == kHold;
+  const bool keeps_stop = holds && (todo.stop || (todo.command && todo.command->stop));
   todo.stop.reset();
   todo.command = command;
   todo.command->stop = command.stop || keeps_stop;

@@ -59,7 +59,7 @@ struct HelperHead::Core {
   std::string name;  // of the helper, for messages
   HelperProcess process;
   LineBuffer lines;
-  bool open = false, ended = false;
+  bool open = false, ended = false, fails = false;
   Time epoch{};  // running time 0 on the steady clock
   Time next_alive{}, next_start{};
   int wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -101,7 +101,9 @@ void HelperHead::Core::lose(const std::string& why) {
 void HelperHead::Core::send(const std::string& line) {
   if (!process.running() || process.send(line)) return;
   const bool full = errno == EAGAIN || errno == EWOULDBLOCK;
-  read_lines();  // the last lines may contain the reason
+  if (std::exchange(fails, true)) return;  // what answers its last lines
+  read_lines();                            // which may contain the reason
+  fails = false;
   lose(!client.fault().empty() ? client.fault() : full ? "it does not read its input" : "it ended");
 }
 

@@ -39,6 +39,8 @@ std::string PelcoHead::open(const HeadSetup& setup, Time now) {
 void PelcoHead::on_connected(Time now) {
   pan_at_.reset();
   tilt_at_.reset();
+  measured_ = {kUnknown, kUnknown};  // it may have moved meanwhile
+  connected_at_ = now;
   new_pose_ = false;
   home_at_.reset();
   stop(now);  // it stands until the next move
@@ -120,6 +122,7 @@ void PelcoHead::read(Time now) {
     const bool is_pan = position->axis == pelco::Axis::pan;
     (is_pan ? measured_.pan : measured_.tilt) = radians(position->degrees);
     (is_pan ? pan_at_ : tilt_at_) = now;
+    (is_pan ? pan_reports_ : tilt_reports_) = true;
     new_pose_ = pan_at_ && tilt_at_ && now - std::min(*pan_at_, *tilt_at_) <= kPairAge;
   }
 }
@@ -128,9 +131,11 @@ Time PelcoHead::tick(Time now) {
   if (Time next; !is_there(now, next)) return next;
   read(now);
   if (!stream_.is_open()) return now;
-  // A head that is limited by its own positions must report them, those of either axis.
-  const auto silent = [now](std::optional<Time> reported) { return reported && now - *reported > kSilence; };
-  set_silent(silent(pan_at_) || silent(tilt_at_), now);
+  // A head that is limited by its own positions must report them, those of either axis, also when it has returned.
+  const auto silent = [&](std::optional<Time> reported) {
+    return now - reported.value_or(connected_at_) > kSilence;
+  };
+  set_silent((pan_reports_ && silent(pan_at_)) || (tilt_reports_ && silent(tilt_at_)), now);
   if (!home_at_) drive(pan_, tilt_, now);  // stops at a limit
   const Time again = stops_owed_ > 0 ? Time(kStopAgain) : Time(kRepeat);
   if ((stops_owed_ > 0 || pan_ != 0 || tilt_ != 0) && now - sent_ >= again) {

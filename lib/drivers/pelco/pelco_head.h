@@ -69,8 +69,10 @@ class PelcoHead final : public StreamDevice {
   Time sent_{}, asked_{};
   std::optional<Time> home_at_;  // when the head has reached its preset
   pelco::Axis next_query_ = pelco::Axis::pan;
-  motion::PanTilt measured_;              // radians, as reported last; NaN: never
-  std::optional<Time> pan_at_, tilt_at_;  // when, on this connection
+  motion::PanTilt measured_;                         // radians, as reported last; NaN: never
+  std::optional<Time> pan_at_, tilt_at_;             // when, on this connection
+  bool pan_reports_ = false, tilt_reports_ = false;  // on any connection
+  Time connected_at_{};
   bool new_pose_ = false;
 };
 

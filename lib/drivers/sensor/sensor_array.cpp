@@ -132,8 +132,8 @@ void SensorArray::let_pass(Time until) {
       model.edge(edge.time, edge.level);
     else
       model = begin_again(model, options_, edge.restarts);
-    if (std::isnan(edge.volts)) continue;
-    volts_[static_cast<std::size_t>(edge.sensor)] = edge.volts;
+    if (edge.known && std::isnan(edge.volts)) continue;
+    volts_[static_cast<std::size_t>(edge.sensor)] = edge.known ? edge.volts : std::nan("");
     sampled_ = true;
   }
   if (next_edge_ == edges_.size()) {

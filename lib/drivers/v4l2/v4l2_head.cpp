@@ -107,6 +107,9 @@ std::string V4l2Head::connect(Time now) {
     axis->command = {};
     axis->moves = false;
   }
+  if (stop_owed_)  // whatever else is wrong with the camera
+    for (const Axis* axis : {&pan_, &tilt_})
+      if (axis->speeds) controls_->set(axis->speed, 0);
   zooms_ = controls_->query(camera_control::kZoomAbsolute);
   if (zooms_ && zooms_->most <= zooms_->least) zooms_.reset();
   if (options_.zoom >= 0 && !zooms_)

@@ -63,7 +63,7 @@ void ViscaHead::on_connected(Time now) {
   }
   stop(now);  // it stands until the next move
   zoom_unanswered_ = 0;
-  if (options_.zoom >= 0) send_zoom(now);
+  zoom_due_ = options_.zoom >= 0;
 }
 
 std::string ViscaHead::open(const HeadSetup& setup, Time now) {
@@ -167,6 +167,7 @@ void ViscaHead::send_drive(Time now) {
 
 void ViscaHead::send_zoom(Time now) {
   zoom_sent_ = now;
+  zoom_due_ = false;
   send_order(Order::zoom, visca::zoom(options_.address, options_.zoom), now);
 }
 
@@ -273,6 +274,8 @@ Time ViscaHead::tick(Time now) {
     send(visca::position_inquiry(options_.address));
     if (reports_ && !unanswered_) unanswered_ = now;
   }
+  // An answer without a number must not be taken as the stop's.
+  if (zoom_due_ && !stopping_) send_zoom(now);
   ask_zoom(now);
   return now + (stopping_ || pan_ != sent_pan_ || tilt_ != sent_tilt_ ? Time(std::chrono::milliseconds(10))
                                                                       : Time(kInquiryPeriod) / 2);

@@ -100,6 +100,7 @@ class ViscaHead final : public StreamDevice {
   std::optional<double> zoom_;  // read, and not taken yet
   Time zoom_asked_{}, zoom_sent_{};
   int zoom_unanswered_ = 0;  // inquiries
+  bool zoom_due_ = false;    // it is set when the stop at the start was answered
 };
 
 }  // namespace cerberus::drivers
