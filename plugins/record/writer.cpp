@@ -243,7 +243,7 @@ void Writer::execute(Keep& command) {
 record::Surroundings Writer::surroundings() const {
   const auto microseconds = [](gint64 time) { return record::Time(std::chrono::microseconds(time)); };
   return {microseconds(g_get_real_time()), microseconds(g_get_monotonic_time()),
-          record::Folder(folder_).free_bytes().value_or(G_MAXUINT64)};
+          record::Folder(folder_).free_bytes()};
 }
 
 void Writer::retain() {

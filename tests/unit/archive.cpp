@@ -208,6 +208,39 @@ START_TEST(rows_stay_where_no_file_is_there_because_a_disk_is_not_mounted) {
 }
 END_TEST
 
+START_TEST(rows_stay_where_no_file_is_there_even_if_one_was_open_and_others_are_old) {
+  Rig rig;
+  rig.record("old", 900);
+  rig.record("new", 999);
+  rig.begin("open", 999);
+  rig.file.close();
+  for (const char* name : {"/old.mp4", "/new.mp4", "/open.mp4"})
+    fs::rename(rig.folder.path + name, rig.folder.path + name + ".away");
+  rig.open({days(7), 1, std::uint64_t{1} << 60});
+  ck_assert_uint_eq(rig.complaints.size(), 1);
+  ck_assert_uint_eq(rig.rows().size(), 3);
+}
+END_TEST
+
+START_TEST(retention_leaves_the_row_of_a_file_that_is_not_there) {
+  Rig rig;
+  rig.record("away", 900);
+  rig.record("old", 901);
+  rig.record("new", 999);
+  fs::remove(rig.folder.path + "/away.mp4");  // its disk was unmounted while the recorder runs
+  ck_assert(rig.archive.retain(kNow) == Names{"old.mp4"});
+  ck_assert_uint_eq(rig.rows().size(), 2);
+}
+END_TEST
+
+START_TEST(nothing_is_deleted_where_the_folder_cannot_be_reached) {
+  Rig rig;
+  rig.record("old", 900);
+  ck_assert(rig.archive.retain({kNow.utc, kNow.steady, std::nullopt}).empty());
+  ck_assert(rig.has("old.mp4"));
+}
+END_TEST
+
 START_TEST(files_of_others_are_never_touched_whatever_the_index_says) {
   Rig rig;
   const TemporaryFolder outside;
@@ -298,6 +331,9 @@ int main() {
                             what_another_recorder_is_writing_is_left_alone,
                             a_row_whose_file_is_gone_is_removed_with_what_is_beside_it,
                             rows_stay_where_no_file_is_there_because_a_disk_is_not_mounted,
+                            rows_stay_where_no_file_is_there_even_if_one_was_open_and_others_are_old,
+                            retention_leaves_the_row_of_a_file_that_is_not_there,
+                            nothing_is_deleted_where_the_folder_cannot_be_reached,
                             files_of_others_are_never_touched_whatever_the_index_says,
                             a_damaged_index_is_put_aside_and_recording_goes_on,
                             a_deletion_that_fails_is_reported_once_and_the_row_stays,

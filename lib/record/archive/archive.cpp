@@ -99,8 +99,10 @@ bool Archive::restore(Recording& row) {
 void Archive::reconcile() {
   std::vector<Recording> rows;
   complain(index_.read(rows));
-  const auto missing = [this](const Recording& row) { return !row.open && !folder_.size(row.file); };
-  if (!rows.empty() && std::ranges::all_of(rows, missing)) {
+  // Open rows alone are those of a process that was killed before it made the file.
+  const auto closed = [](const Recording& row) { return !row.open; };
+  const auto missing = [this](const Recording& row) { return !folder_.size(row.file); };
+  if (std::ranges::any_of(rows, closed) && std::ranges::all_of(rows, missing)) {
     complain("none of the files of the index is in " + in_quotes(settings_.folder) +
              ": is its disk mounted? The rows stay until one of them is");
     return;
@@ -192,9 +194,10 @@ void Archive::discard(const Recording& recording) {
 std::vector<std::string> Archive::retain(const Surroundings& now) {
   std::vector<std::string> deleted;
   std::vector<Recording> rows;
-  if (!index_.is_open()) return deleted;
+  if (!index_.is_open() || !now.free_bytes) return deleted;
   complain(index_.read(rows));
-  std::erase_if(rows, [](const Recording& row) { return !is_recording(row); });
+  // A file that is not there may be on a disk that is not mounted: its row waits for the next reconciliation.
+  std::erase_if(rows, [this](const Recording& row) { return !is_recording(row) || !folder_.size(row.file); });
   std::vector<Candidate> candidates;
   for (Recording& row : rows) {
     if (row.open) measure(row);

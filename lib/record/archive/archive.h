@@ -42,7 +42,7 @@ class Archive {
   // Deletes the files and the row.
   void discard(const Recording& recording);
 
-  // Applies retention. Returns the files that were deleted.
+  // Applies retention, unless the folder cannot be reached. Returns the files that were deleted.
   std::vector<std::string> retain(const Surroundings& now);
   // Sets or clears `keep` of a file, by its name or its path. Returns what is wrong.
   std::string keep(const std::string& file, bool keep);

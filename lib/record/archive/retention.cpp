@@ -2,6 +2,7 @@
 #include "record/archive/retention.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace cerberus::record {
 
@@ -22,7 +23,7 @@ bool Retention::clock_is_trusted(std::span<const Candidate> recordings, const Su
 std::vector<std::int64_t> Retention::expired(std::span<const Candidate> recordings, const Limits& limits,
                                              const Surroundings& now) {
   const bool by_age = clock_is_trusted(recordings, now) && limits.age > Time::zero();
-  std::uint64_t total = 0, free = now.free_bytes;
+  std::uint64_t total = 0, free = now.free_bytes.value_or(std::numeric_limits<std::uint64_t>::max());
   for (const Candidate& each : recordings) total += each.bytes;
   std::vector<std::int64_t> ids;
   for (const Candidate& each : recordings) {
@@ -33,7 +34,7 @@ std::vector<std::int64_t> Retention::expired(std::span<const Candidate> recordin
     if (!old && !too_much && !no_room) continue;
     ids.push_back(each.id);
     total -= each.bytes;
-    free += each.bytes;
+    free += std::min(each.bytes, std::numeric_limits<std::uint64_t>::max() - free);
   }
   return ids;
 }

@@ -19,9 +19,10 @@ struct Limits {
 
 // What is so at one moment.
 struct Surroundings {
-  Time utc{};                    // by the system's clock, which may jump
-  Time steady{};                 // by a clock that never jumps
-  std::uint64_t free_bytes = 0;  // on the disk, for this process
+  Time utc{};     // by the system's clock, which may jump
+  Time steady{};  // by a clock that never jumps
+  // On the disk, for this process; nullopt: the folder cannot be reached, and nothing is deleted.
+  std::optional<std::uint64_t> free_bytes = 0;
 };
 
 struct Candidate {
