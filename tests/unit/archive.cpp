@@ -2,6 +2,7 @@
 #include "record/archive/archive.h"
 
 #include <check.h>
+#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -36,6 +37,7 @@ struct Rig {
     write(row.file, bytes);
     archive.finish(row, file);
     file.close();
+    written_on(row.file, day);
     return row;
   }
   // The same, not closed.
@@ -47,6 +49,11 @@ struct Rig {
     ck_assert_int_eq(archive.add_lines(row, lines), 0);
     ck_assert_int_eq(lines.write("{\"a\":100}\n", 10), 0);
     return row;
+  }
+  // When it was written, by the system's clock.
+  void written_on(const std::string& name, int day) const {
+    const timespec then{day * 86'400L, 0}, times[] = {then, then};
+    ck_assert_int_eq(utimensat(AT_FDCWD, (folder.path + '/' + name).c_str(), times, 0), 0);
   }
   void write(const std::string& name, std::size_t bytes) const {
     std::ofstream(folder.path + '/' + name) << std::string(bytes, 'x');
@@ -143,6 +150,20 @@ START_TEST(retention_deletes_file_lines_picture_and_row_together_and_empty_folde
   ck_assert((rig.archive.keep("old/b.mp4", false)).empty());
   ck_assert_uint_eq(rig.archive.retain(kNow).size(), 1);
   ck_assert(!rig.has("old") && rig.has("new"));
+}
+END_TEST
+
+START_TEST(the_age_of_a_recording_is_not_that_of_a_camera_whose_clock_is_wrong) {
+  Rig rig;
+  rig.record("fresh", 1);
+  rig.record("old", 2);
+  rig.written_on("fresh.mp4", 999);
+  rig.written_on("old.mp4", 990);
+  rig.record("last", 999);
+  ck_assert(rig.archive.retain(kNow).empty());  // "old" is younger than "fresh", which is of day 999
+  rig.written_on("fresh.mp4", 991);
+  const Names expected = {"fresh.mp4", "old.mp4"};
+  ck_assert(rig.archive.retain(kNow) == expected);
 }
 END_TEST
 
@@ -326,6 +347,7 @@ int main() {
                             a_name_that_is_taken_in_the_folder_or_the_index_gets_a_number,
                             names_that_lead_out_of_the_folder_are_refused, a_folder_that_is_gone_is_not_made,
                             retention_deletes_file_lines_picture_and_row_together_and_empty_folders,
+                            the_age_of_a_recording_is_not_that_of_a_camera_whose_clock_is_wrong,
                             a_recording_that_is_being_written_is_not_deleted,
                             what_a_killed_process_left_is_closed_with_what_is_there,
                             what_another_recorder_is_writing_is_left_alone,

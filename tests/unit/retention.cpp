@@ -102,6 +102,20 @@ START_TEST(a_clock_that_falls_back_deletes_nothing_and_size_still_counts_by_orde
 }
 END_TEST
 
+START_TEST(a_recording_is_no_older_than_those_before_it) {
+  const std::vector<Candidate> all = {of_day(1, 92), of_day(2, 98), of_day(3, 1), of_day(4, 99)};
+  ck_assert(Retention().expired(all, {days(7), 0, 0}, day(100)) == Ids{1});
+  const Ids later = {1, 2, 3};
+  ck_assert(Retention({.absence = days(30)}).expired(all, {days(7), 0, 0}, day(106)) == later);
+}
+END_TEST
+
+START_TEST(a_recording_of_the_future_keeps_no_other_one) {
+  const std::vector<Candidate> all = {of_day(1, 5000), of_day(2, 92), of_day(3, 99)};
+  ck_assert(Retention().expired(all, {days(7), 0, 0}, day(100)) == Ids{2});
+}
+END_TEST
+
 START_TEST(after_a_start_with_old_recordings_only_age_counts_after_an_hour) {
   Retention retention;
   const std::vector<Candidate> all = {of_day(1, 50)};
@@ -121,6 +135,7 @@ int main() {
         a_clock_that_jumps_ahead_deletes_nothing_by_age_for_an_hour,
         a_clock_that_stays_ahead_counts_after_an_hour,
         a_clock_that_falls_back_deletes_nothing_and_size_still_counts_by_order,
+        a_recording_is_no_older_than_those_before_it, a_recording_of_the_future_keeps_no_other_one,
         after_a_start_with_old_recordings_only_age_counts_after_an_hour})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);

@@ -201,7 +201,9 @@ std::vector<std::string> Archive::retain(const Surroundings& now) {
   std::vector<Candidate> candidates;
   for (Recording& row : rows) {
     if (row.open) measure(row);
-    candidates.push_back({row.id, row.end, row.bytes, row.keep, row.open});
+    // The camera's clock may be wrong: the system's was there when the file was written.
+    const Time end = std::max(row.end, Time(folder_.changed(row.file)));
+    candidates.push_back({row.id, end, row.bytes, row.keep, row.open});
   }
   for (const std::int64_t id : retention_.expired(candidates, settings_.limits, now)) {
     const auto row = std::ranges::find(rows, id, &Recording::id);

@@ -26,9 +26,11 @@ std::vector<std::int64_t> Retention::expired(std::span<const Candidate> recordin
   std::uint64_t total = 0, free = now.free_bytes.value_or(std::numeric_limits<std::uint64_t>::max());
   for (const Candidate& each : recordings) total += each.bytes;
   std::vector<std::int64_t> ids;
+  Time end = Time::min() / 2;
   for (const Candidate& each : recordings) {
+    if (each.end <= now.utc) end = std::max(end, each.end);
     if (each.keep || each.open) continue;
-    const bool old = by_age && now.utc - each.end > limits.age;
+    const bool old = by_age && each.end <= now.utc && now.utc - end > limits.age;
     const bool too_much = limits.total_bytes && total > limits.total_bytes;
     const bool no_room = limits.free_bytes && free < limits.free_bytes;
     if (!old && !too_much && !no_room) continue;

@@ -27,7 +27,7 @@ struct Surroundings {
 
 struct Candidate {
   std::int64_t id = 0;
-  Time end{};  // UTC
+  Time end{};  // UTC; the latest of what is known
   std::uint64_t bytes = 0;
   bool keep = false;  // is never deleted
   bool open = false;  // is being written
@@ -51,7 +51,8 @@ class Retention {
   explicit Retention(const Parameters& parameters) : parameters_(parameters) {}
 
   // Returns the ids of `recordings`, which are ordered from oldest to newest, that are to be deleted, oldest first. Size
-  // and room are reached by deleting the oldest ones; order decides there, not the clock.
+  // and room are reached by deleting the oldest ones; order decides there, not the clock. None is older than those before
+  // it, whatever its end says; an end in the future counts for nothing.
   std::vector<std::int64_t> expired(std::span<const Candidate> recordings, const Limits& limits,
                                     const Surroundings& now);
 
