@@ -15,8 +15,10 @@
  *
  * A block of 8x8 pixels is covered as soon as one of its pixels may lie within a polygon. Polygons of the world are widened
  * by `margin`, by what the head turns within 20 ms, by 1.5 degrees where the pose is reckoned from commands and not
- * measured, and by 100 degrees for each second beyond the time for which the pose holds. Where there is no pose, or
- * no field of view, the whole picture is covered, and a warning says why. A frame that cannot be written is dropped.
+ * measured, and by 360 degrees for each second beyond the time for which the pose holds. Where there is no pose, or
+ * no field of view, or pixels are not square, the whole picture is covered, and a warning says why. A frame that cannot be
+ * written is dropped. What else shows the scene is taken off the frame: drawings that are attached and not blended (such as
+ * the inset of `virtualptz` and boxes of `motionoverlay`, which therefore stands behind), and the detector's own pictures.
  *
  * Pads: one sink, one src, raw video in system memory, in every format that the stages read; works in place.
  *
@@ -32,6 +34,7 @@
  */
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
+#include <gst/video/video-overlay-composition.h>
 #include <gst/video/video.h>
 
 #include <algorithm>
@@ -46,6 +49,7 @@
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
+#include "shared/record.hpp"
 
 namespace {
 
@@ -66,8 +70,8 @@ constexpr double kTiming = 0.02;
 // Degrees by which a pose that is not measured may be wrong. Derived: to so much the picture corrects a velocity head
 // without feedback (unit test head_contract).
 constexpr double kReckoned = 1.5;
-// Degrees a second that a head may turn where nothing is known of it. Chosen: more than the heads that we drive.
-constexpr double kFastest = 100;
+// Degrees a second that a head may turn where nothing is known of it. Chosen: faster than heads that carry cameras.
+constexpr double kFastest = 360;
 // Squares over the picture's height. Chosen: a face at 2 metres in 720p is one or two of them.
 constexpr int kSquares = 18;
 constexpr double kMostMargin = 90;
@@ -150,40 +154,55 @@ gboolean cerberus_privacy_mask_set_caps(GstBaseTransform* transform, GstCaps* in
   });
 }
 
+// Seconds from one time to another; 0 where one of them is not known.
+double signed_seconds(GstClockTime from, GstClockTime to) {
+  if (!GST_CLOCK_TIME_IS_VALID(from) || !GST_CLOCK_TIME_IS_VALID(to)) return 0;
+  return double(GST_CLOCK_DIFF(from, to)) / GST_SECOND;
+}
+
 // Seconds by which the frame's time lies outside the span for which the pose holds.
 double overtime(const CerberusPose& pose, GstClockTime time) {
-  if (!GST_CLOCK_TIME_IS_VALID(time)) return 0;
-  if (GST_CLOCK_TIME_IS_VALID(pose.valid_until) && time > pose.valid_until)
-    return double(time - pose.valid_until) / GST_SECOND;
-  if (GST_CLOCK_TIME_IS_VALID(pose.valid_from) && time < pose.valid_from)
-    return double(pose.valid_from - time) / GST_SECOND;
-  return 0;
+  return std::max({0.0, signed_seconds(pose.valid_until, time), signed_seconds(time, pose.valid_from)});
 }
 
 overlay::PrivacyZones::View view_of(GstBuffer* buffer, GstClockTime time, const Settings& settings) {
   overlay::PrivacyZones::View view;
   view.field_of_view = radians(settings.field_of_view);
   const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
-  if (!pose) return view;
+  if (!pose || (pose->moving && !GST_CLOCK_TIME_IS_VALID(time))) return view;
   if (pose->field_of_view > 0) view.field_of_view = radians(pose->field_of_view);
   const auto look = cerberus::plugin::look_of(*pose, time);
   if (!look) return view;
   view.posed = true;
   view.pan = look->pan, view.tilt = look->tilt;
+  const double since = std::max(0.0, signed_seconds(pose->valid_from, time));
+  const double speed = std::hypot(std::abs(pose->pan_speed) + std::abs(pose->pan_acceleration) * since,
+                                  std::abs(pose->tilt_speed) + std::abs(pose->tilt_acceleration) * since);
   view.margin =
-      radians(settings.margin + kTiming * std::hypot(pose->pan_speed, pose->tilt_speed) +
-              (pose->source == CERBERUS_POSE_MEASURED ? 0 : kReckoned) + kFastest * overtime(*pose, time));
+      radians(settings.margin + kTiming * speed + (pose->source == CERBERUS_POSE_MEASURED ? 0 : kReckoned) +
+              kFastest * overtime(*pose, time));
   return view;
 }
 
 std::string why_blind(const State& state, const overlay::PrivacyZones::View& view) {
-  if (!state.zones.need_pose() || (view.posed && view.field_of_view > 0)) return {};
+  if (!state.zones.need_pose()) return {};
+  if (GST_VIDEO_INFO_PAR_N(&state.info) != GST_VIDEO_INFO_PAR_D(&state.info))
+    return "The whole picture is covered: masks of the world need square pixels. Put videoscale and "
+           "pixel-aspect-ratio=1/1 in front.";
+  if (view.posed && view.field_of_view > 0) return {};
   if (!(view.field_of_view > 0))
     return "The whole picture is covered: masks of the world need the lens's field of view. Set "
            "horizontal-fov.";
   return "The whole picture is covered: masks of the world need the head's pose on each frame. Put "
          "privacymask "
          "behind cameramotion, motiondetect or virtualptz, with a pantiltsink in the pipeline.";
+}
+
+// What rides on the buffer and shows the scene without a mask.
+void remove_other_pictures(GstBuffer* buffer) {
+  while (GstMeta* meta = gst_buffer_get_meta(buffer, GST_VIDEO_OVERLAY_COMPOSITION_META_API_TYPE))
+    if (!gst_buffer_remove_meta(buffer, meta)) break;
+  cerberus::plugin::set_record(buffer, {});
 }
 
 GstFlowReturn cerberus_privacy_mask_transform_ip(GstBaseTransform* transform, GstBuffer* buffer) {
@@ -193,10 +212,11 @@ GstFlowReturn cerberus_privacy_mask_transform_ip(GstBaseTransform* transform, Gs
     const Settings settings = priv.settings.snapshot();
     if (!read_masks(transform, state, settings.masks)) return GST_FLOW_ERROR;
     if (state.zones.empty()) return GST_FLOW_OK;
-    const auto view =
-        view_of(buffer, cerberus::plugin::running_time_of(transform->segment, buffer), settings);
-    if (const std::string why = why_blind(state, view); state.blind.is_new(why))
-      CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, (why), (nullptr));
+    remove_other_pictures(buffer);
+    auto view = view_of(buffer, cerberus::plugin::running_time_of(transform->segment, buffer), settings);
+    const std::string why = why_blind(state, view);
+    if (!why.empty()) view.posed = false;
+    if (state.blind.is_new(why)) CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, (why), (nullptr));
     state.zones.cover({GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)}, view,
                       state.mask);
     if (!state.mask.any()) return GST_FLOW_OK;

@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <string>
 
+#include "records.h"
+
 #include "outputs.h"
 
 using namespace outputs;
@@ -117,7 +119,7 @@ GST_START_TEST(a_pose_of_the_past_hides_more_and_one_that_is_missing_all) {
   Bus bus(h.get());
   const GstVideoInfo info = info_of(kCaps);
   int before = 0;
-  for (const int late : {0, 50, 100, 2000}) {  // milliseconds
+  for (const int late : {0, 10, 20, 500}) {  // milliseconds
     GstBuffer* in = frame(info, 100);
     CerberusPose pose;
     cerberus_pose_init(&pose);
@@ -164,6 +166,42 @@ GST_START_TEST(a_part_of_the_picture_is_covered_or_shown_in_squares) {
 }
 GST_END_TEST
 
+// The inset shows the whole scene, the record the picture as it was.
+GST_START_TEST(nothing_else_on_the_frame_shows_the_scene) {
+  Harness h = harness(("virtualptz lockstep=off inset=true wide-fov=60 horizontal-fov=32.2 width=320 "
+                       "height=240 ! motiondetect "
+                       "keep-planes=always ! privacymask horizontal-fov=32.2 " +
+                       masks())
+                          .c_str());
+  gst_harness_set_src_caps_str(h.get(), caps_string("GRAY8", kWide, kHigh).c_str());
+  GstBuffer* wide = panorama();
+  for (int n = 0; n < 4; ++n) {
+    GstBuffer* out = through(h.get(), wide, swing(0, n * 40 * GST_MSECOND), n * 40 * GST_MSECOND);
+    fail_unless(gst_buffer_get_video_overlay_composition_meta(out) == nullptr);
+    fail_if(cerberus::plugin::record_of(out));
+    fail_unless_equals_int(count(out, kHalf, 255), 0);
+    gst_buffer_unref(out);
+  }
+  gst_buffer_unref(wide);
+}
+GST_END_TEST
+
+GST_START_TEST(pixels_that_are_not_square_hide_all) {
+  Harness h = harness("privacymask horizontal-fov=30 masks=\"world -3,3 3,3 3,-3 -3,-3\"");
+  Bus bus(h.get());
+  const std::string caps = std::string(kCaps) + ",pixel-aspect-ratio=12/11";
+  gst_harness_set_src_caps_str(h.get(), caps.c_str());
+  GstBuffer* in = frame(info_of(caps));
+  const CerberusPose pose = swing(0, 0);
+  cerberus_buffer_set_pose(in, &pose);
+  gst_harness_push(h.get(), in);
+  GstBuffer* out = gst_harness_pull(h.get());
+  fail_unless_equals_int(count(out, 0, kWall - 20), kWindow * kWindowHigh);
+  gst_buffer_unref(out);
+  fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING), 1);
+}
+GST_END_TEST
+
 GST_START_TEST(masks_that_cannot_be_read_let_nothing_pass) {
   Harness h(gst_harness_new("privacymask"));
   Bus bus(h.get());
@@ -194,6 +232,8 @@ static Suite* privacymask_suite() {
   tcase_add_test(tests, no_pixel_of_the_place_is_seen_in_a_thousand_frames_and_little_else_is_hidden);
   tcase_add_test(tests, a_pose_of_the_past_hides_more_and_one_that_is_missing_all);
   tcase_add_test(tests, a_part_of_the_picture_is_covered_or_shown_in_squares);
+  tcase_add_test(tests, nothing_else_on_the_frame_shows_the_scene);
+  tcase_add_test(tests, pixels_that_are_not_square_hide_all);
   tcase_add_test(tests, masks_that_cannot_be_read_let_nothing_pass);
   tcase_add_test(tests, a_frame_that_cannot_be_covered_is_left_out);
   return suite;

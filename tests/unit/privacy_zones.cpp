@@ -116,6 +116,13 @@ START_TEST(a_place_behind_180_degrees_is_one_place) {
   east.cover(kSize, looking(-179, 0), mask);  // 1 degree past it: it is to the left of the middle
   ck_assert(mask.at(mask.columns / 2 - 3, mask.rows / 2));
   ck_assert(!mask.at(mask.columns / 2 + 3, mask.rows / 2));
+  // Edges go the shorter way: 8 degrees around 180, and not the other 352.
+  const PrivacyZones across = zones("world 176,-4 -176,-4 -176,4 176,4");
+  across.cover(kSize, looking(180, 0), mask);
+  ck_assert(mask.at(mask.columns / 2 - 3, mask.rows / 2) && mask.at(mask.columns / 2 + 3, mask.rows / 2));
+  ck_assert(!mask.at(0, mask.rows / 2) && !mask.at(mask.columns - 1, mask.rows / 2));
+  across.cover(kSize, looking(0, 0), mask);
+  ck_assert_int_eq(covered(mask), 0);
 }
 END_TEST
 

@@ -57,8 +57,12 @@ std::string PrivacyZones::parse(std::string_view text) {
     WorldPolygon& own = world_.emplace_back();
     own.bearing = sensing::radians(polygon.corners.front().x);
     own.corners = std::move(polygon.corners);
-    for (Point& corner : own.corners)
-      corner = {sensing::radians(corner.x) - own.bearing, sensing::radians(corner.y)};
+    double before = own.bearing, at = 0;
+    for (Point& corner : own.corners) {
+      const double bearing = sensing::radians(corner.x);
+      at += sensing::wrap(bearing - std::exchange(before, bearing));  // an edge goes the shorter way
+      corner = {at, sensing::radians(corner.y)};
+    }
     const auto x = std::ranges::minmax(own.corners, {}, &Point::x),
                y = std::ranges::minmax(own.corners, {}, &Point::y);
     own.least = {x.min.x, y.min.y};
