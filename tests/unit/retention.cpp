@@ -60,10 +60,10 @@ END_TEST
 
 START_TEST(what_is_kept_and_what_is_open_is_never_deleted) {
   Retention retention;
-  std::vector<Candidate> all = {of_day(1, 50), of_day(2, 51), of_day(3, 99)};
+  std::vector<Candidate> all = {of_day(1, 50), of_day(2, 51), of_day(3, 98), of_day(4, 99)};
   all[0].keep = true;
   all[1].open = true;
-  ck_assert(retention.expired(all, {days(7), 1, 0}, day(100)) == Ids{3});
+  ck_assert(retention.expired(all, {days(7), 150, 0}, day(100)) == Ids{3});
 }
 END_TEST
 
@@ -102,6 +102,30 @@ START_TEST(a_clock_that_falls_back_deletes_nothing_and_size_still_counts_by_orde
 }
 END_TEST
 
+START_TEST(room_that_deletion_cannot_make_deletes_nothing) {
+  Retention retention;
+  const std::vector<Candidate> all = {of_day(1, 97), of_day(2, 98), of_day(3, 99)};
+  ck_assert(retention.expired(all, {days(7), 0, 1000}, day(100, hours(5), 799)).empty());  // 799 + 200
+  ck_assert(retention.take_fault().find("retention-free") != std::string::npos);
+  ck_assert(retention.expired(all, {days(7), 0, 1000}, day(100, hours(5), 798)).empty());
+  ck_assert(retention.take_fault().empty());  // the same one
+  const Ids expected = {1, 2};
+  ck_assert(retention.expired(all, {days(7), 0, 1000}, day(100, hours(5), 800)) == expected);
+  ck_assert(retention.take_fault().empty());
+}
+END_TEST
+
+START_TEST(kept_recordings_beyond_the_size_delete_no_other_ones) {
+  Retention retention;
+  std::vector<Candidate> all = {of_day(1, 97), of_day(2, 98), of_day(3, 99)};
+  all[0].keep = true;
+  ck_assert(retention.expired(all, {days(7), 99, 0}, day(100)).empty());
+  ck_assert(retention.take_fault().find("retention-size") != std::string::npos);
+  ck_assert(retention.expired(all, {days(7), 100, 0}, day(100)) == Ids{2});  // the newest stays
+  ck_assert(retention.take_fault().empty());
+}
+END_TEST
+
 START_TEST(a_recording_is_no_older_than_those_before_it) {
   const std::vector<Candidate> all = {of_day(1, 92), of_day(2, 98), of_day(3, 1), of_day(4, 99)};
   ck_assert(Retention().expired(all, {days(7), 0, 0}, day(100)) == Ids{1});
@@ -135,6 +159,7 @@ int main() {
         a_clock_that_jumps_ahead_deletes_nothing_by_age_for_an_hour,
         a_clock_that_stays_ahead_counts_after_an_hour,
         a_clock_that_falls_back_deletes_nothing_and_size_still_counts_by_order,
+        room_that_deletion_cannot_make_deletes_nothing, kept_recordings_beyond_the_size_delete_no_other_ones,
         a_recording_is_no_older_than_those_before_it, a_recording_of_the_future_keeps_no_other_one,
         after_a_start_with_old_recordings_only_age_counts_after_an_hour})
     tcase_add_test(cases, test);

@@ -211,6 +211,7 @@ std::vector<std::string> Archive::retain(const Surroundings& now) {
     complain(index_.remove(id));
     deleted.push_back(row->file);
   }
+  complain(retention_.take_fault());
   return deleted;
 }
 

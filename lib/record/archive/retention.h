@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "record/unit.h"
@@ -53,8 +54,12 @@ class Retention {
   // Returns the ids of `recordings`, which are ordered from oldest to newest, that are to be deleted, oldest first. Size
   // and room are reached by deleting the oldest ones; order decides there, not the clock. None is older than those before
   // it, whatever its end says; an end in the future counts for nothing.
+  // Of those that are closed the newest is deleted by age only. A limit that deletion cannot reach, because of kept
+  // recordings or of other files on the disk, deletes nothing.
   std::vector<std::int64_t> expired(std::span<const Candidate> recordings, const Limits& limits,
                                     const Surroundings& now);
+  // Which limits the last call could not reach, in words for a user; empty: none, or the same ones as before.
+  std::string take_fault();
 
  private:
   bool clock_is_trusted(std::span<const Candidate> recordings, const Surroundings& now);
@@ -62,6 +67,7 @@ class Retention {
   Parameters parameters_;
   std::optional<Surroundings> before_;
   std::optional<Time> trusted_from_;  // steady
+  std::string fault_, taken_;
 };
 
 }  // namespace cerberus::record
