@@ -243,14 +243,16 @@ gboolean cerberus_event_recorder_query(GstPad* pad, GstObject* parent, GstQuery*
   return gst_pad_query_default(pad, parent, query);
 }
 
+// Returns nullptr where there is a pad of that name.
 GstPad* add_pad(CerberusEventRecorder* self, GstPadTemplate* of, const char* name, int track) {
   GstPad* pad = gst_pad_new_from_template(of, name);
   gst_pad_set_element_private(pad, &self->priv->session.add_input(pad, track));
   gst_pad_set_chain_function(pad, cerberus_event_recorder_chain);
   gst_pad_set_event_function(pad, cerberus_event_recorder_event);
   gst_pad_set_query_function(pad, cerberus_event_recorder_query);
-  gst_element_add_pad(GST_ELEMENT(self), pad);
-  return pad;
+  if (gst_element_add_pad(GST_ELEMENT(self), pad)) return pad;
+  self->priv->session.remove_input(pad);  // by its address: the pad is gone
+  return nullptr;
 }
 
 GstPad* cerberus_event_recorder_request_new_pad(GstElement* element, GstPadTemplate* of, const gchar* name,
@@ -262,8 +264,12 @@ GstPad* cerberus_event_recorder_request_new_pad(GstElement* element, GstPadTempl
       return present ? nullptr : add_pad(self, of, "analysis", plugin::kAnalysisTrack);
     }
     const int track = self->priv->session.next_audio_track();
-    g_autofree gchar* own = name && *name ? g_strdup(name) : g_strdup_printf("audio_%d", track - 1);
-    return add_pad(self, of, own, track);
+    if (name && *name) return add_pad(self, of, name, track);
+    for (int number = track - 1;; ++number) {  // an application may have taken one by its name
+      const std::string own = "audio_" + std::to_string(number);
+      g_autoptr(GstPad) taken = gst_element_get_static_pad(element, own.c_str());
+      if (!taken) return add_pad(self, of, own.c_str(), track);
+    }
   });
 }
 

@@ -240,6 +240,17 @@ GST_START_TEST(sound_that_falls_silent_does_not_hold_the_video_up) {
 }
 GST_END_TEST
 
+GST_START_TEST(an_audio_pad_whose_number_is_taken_gets_the_next_one) {
+  GstElement* element = gst_element_factory_make("eventrecorder", nullptr);
+  for (const char* wanted : {"audio_1", "audio_%u", "audio_%u", "audio_%u"}) {
+    g_autoptr(GstPad) pad = gst_element_request_pad_simple(element, wanted);
+    fail_unless(pad && g_str_has_prefix(GST_PAD_NAME(pad), "audio_"));
+  }
+  fail_unless_equals_int(element->numsinkpads, 5);
+  gst_object_unref(element);
+}
+GST_END_TEST
+
 GST_START_TEST(a_change_of_caps_in_mid_event_begins_another_file) {
   Rig rig;
   rig.start();
@@ -358,6 +369,7 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, h264_is_recorded_into_matroska_on_request);
   tcase_add_test(tests, sound_is_recorded_with_the_video_of_its_time);
   tcase_add_test(tests, sound_that_falls_silent_does_not_hold_the_video_up);
+  tcase_add_test(tests, an_audio_pad_whose_number_is_taken_gets_the_next_one);
   tcase_add_test(tests, a_change_of_caps_in_mid_event_begins_another_file);
   tcase_add_test(tests, a_started_event_goes_on_in_another_file_behind_a_flush);
   tcase_add_test(tests, a_started_event_goes_on_where_times_fall_back_until_it_is_stopped);
