@@ -33,8 +33,8 @@ void PlayingGate::has_data(GstElement* element) {
 }
 
 void PlayingGate::continue_state(GstElement* element) {
+  GST_STATE_LOCK(element);  // first, as a change of state has it where PLAYING begins
   const std::lock_guard guard(prerolled_);
-  GST_STATE_LOCK(element);
   const bool waiting =
       GST_STATE_RETURN(element) == GST_STATE_CHANGE_ASYNC && GST_STATE_NEXT(element) == GST_STATE_PAUSED;
   if (waiting) gst_element_continue_state(element, GST_STATE_CHANGE_SUCCESS);
