@@ -313,6 +313,23 @@ START_TEST(a_damaged_index_is_put_aside_and_recording_goes_on) {
 }
 END_TEST
 
+START_TEST(every_damaged_index_is_put_aside_under_a_name_of_its_own_with_its_journal) {
+  Rig rig;
+  for (const char* aside : {"index.sqlite.damaged", "index.sqlite.damaged~1"}) {
+    rig.archive.close();
+    rig.write("index.sqlite", 5000);
+    rig.write("index.sqlite-wal", 77);
+    rig.open();
+    ck_assert_uint_eq(rig.complaints.size(), 1);
+    ck_assert(rig.complaints[0].find(std::string(aside) + '"') != std::string::npos);
+    ck_assert_uint_eq(fs::file_size(rig.folder.path + '/' + aside), 5000);
+    ck_assert_uint_eq(fs::file_size(rig.folder.path + '/' + aside + "-wal"), 77);
+  }
+  rig.record("b", 999);
+  ck_assert_uint_eq(rig.rows().size(), 1);
+}
+END_TEST
+
 START_TEST(a_deletion_that_fails_is_reported_once_and_the_row_stays) {
   if (geteuid() == 0) return;  // root may delete everything
   Rig rig;
@@ -360,6 +377,7 @@ int main() {
                             nothing_is_deleted_where_the_folder_cannot_be_reached,
                             files_of_others_are_never_touched_whatever_the_index_says,
                             a_damaged_index_is_put_aside_and_recording_goes_on,
+                            every_damaged_index_is_put_aside_under_a_name_of_its_own_with_its_journal,
                             a_deletion_that_fails_is_reported_once_and_the_row_stays,
                             without_an_index_files_are_made_all_the_same_and_nothing_is_deleted})
     tcase_add_test(cases, test);

@@ -58,10 +58,14 @@ void Archive::open(const Settings& settings, const Surroundings& now) {
   bool damaged = false;
   std::string fault = index_.open(index_path(), damaged);
   if (damaged) {
-    const std::string aside = index_path() + ".damaged";
+    std::error_code unknown;
+    std::string aside = index_path() + ".damaged";
+    for (int k = 1; k < kMostNamesakes && std::filesystem::exists(aside, unknown); ++k)
+      aside = index_path() + ".damaged~" + std::to_string(k);
     complain(fault + "; it is now " + in_quotes(aside) + ", and another one is begun");
     if (std::rename(index_path().c_str(), aside.c_str()) != 0) return;
-    for (const char* journal : {"-wal", "-shm"}) std::remove((index_path() + journal).c_str());
+    std::rename((index_path() + "-wal").c_str(), (aside + "-wal").c_str());
+    std::remove((index_path() + "-shm").c_str());
     fault = index_.open(index_path(), damaged);
   }
   complain(fault);

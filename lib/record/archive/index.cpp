@@ -130,14 +130,21 @@ std::string Index::open(const std::string& path, bool& damaged) {
       run("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF;");
   if (text.empty()) {
     Statement check(database, "PRAGMA quick_check(1)");
-    if (check.step() != SQLITE_ROW || check.text(0) != "ok") {
+    if (check.step() != SQLITE_ROW) {
+      text = fault();  // it may be locked or the memory short, which is no damage
+    } else if (check.text(0) != "ok") {
       text = "the index of recordings " + in_quotes(path) + " is damaged";
       damaged = true;
     }
   }
-  if (text.empty()) text = migrate();
-  const int code = sqlite3_errcode(database);
+  int code = sqlite3_errcode(database) & 0xff;
+  if (text.empty()) {
+    text = migrate();
+    code = sqlite3_errcode(database) & 0xff;
+  }
   damaged |= !text.empty() && (code == SQLITE_NOTADB || code == SQLITE_CORRUPT);
+  // Its journal is put aside with it.
+  if (damaged) sqlite3_db_config(database, SQLITE_DBCONFIG_NO_CKPT_ON_CLOSE, 1, nullptr);
   if (!text.empty()) close();
   return text;
 }
