@@ -9,6 +9,9 @@
 
 namespace cerberus::record {
 
+// What makes an event last: each one releases its own hold.
+enum class Holder : unsigned { application = 1, motion = 2 };
+
 class EventCycle {
  public:
   struct Settings {
@@ -26,19 +29,20 @@ class EventCycle {
     last_ = std::max(last_, time);
     return begins;
   }
-  // As trigger(), and the event lasts until release().
-  bool hold(Time time) {
-    held_ = true;
+  // As trigger(), and the event lasts until release() of the same holder.
+  bool hold(Time time, Holder holder = Holder::application) {
+    held_ |= static_cast<unsigned>(holder);
     return trigger(time);
   }
-  // The event ends `post_roll` after `time`, or after a later trigger.
-  void release(Time time) {
-    if (held_ && active_) last_ = std::max(last_, time);
-    held_ = false;
+  // The event ends `post_roll` after `time`, or after a later trigger, unless another one holds it.
+  void release(Time time, Holder holder = Holder::application) {
+    const auto hold = static_cast<unsigned>(holder);
+    if ((held_ & hold) && active_) last_ = std::max(last_, time);
+    held_ &= ~hold;
   }
 
   bool active() const { return active_; }
-  bool held() const { return held_; }
+  bool held() const { return held_ != 0; }
   Time begin() const { return begin_; }  // its first trigger
   // What is decoded later than this does not belong to the event, as far as is known now.
   Time end() const { return held_ ? Time::max() : last_ + settings_.post_roll; }
@@ -52,11 +56,15 @@ class EventCycle {
   }
 
   // The event is closed; the next trigger begins another one.
-  void close() { active_ = held_ = false; }
+  void close() {
+    active_ = false;
+    held_ = 0;
+  }
 
  private:
   Settings settings_;
-  bool active_ = false, held_ = false;
+  bool active_ = false;
+  unsigned held_ = 0;  // a bit for each Holder
   Time begin_{}, last_{};
 };
 

@@ -73,10 +73,14 @@ void EventRecorder::triggered(bool begins, std::string_view reason) {
 }
 
 void EventRecorder::trigger(Time time, std::string_view reason) {
-  if (ahead_.empty() || time < ahead_.back().first || time > ahead_.back().last + settings_.cycle.post_roll)
+  Number at = ahead_.end();
+  while (at != ahead_.begin() && ahead_[at - 1].first > time) --at;
+  if (at != ahead_.begin() && time <= ahead_[at - 1].last + settings_.cycle.post_roll) {
+    ahead_[at - 1].last = std::max(ahead_[at - 1].last, time);
+  } else {
     ahead_.push({time, time, std::string(reason)});
-  else
-    ahead_.back().last = std::max(ahead_.back().last, time);
+    for (Number k = ahead_.end() - 1; k != at; --k) std::swap(ahead_[k], ahead_[k - 1]);
+  }
   advance(false);
 }
 
@@ -95,13 +99,13 @@ void EventRecorder::apply_triggers(Time until) {
   }
 }
 
-void EventRecorder::start(Time time, std::string_view reason) {
-  triggered(cycle_.hold(time), reason);
+void EventRecorder::start(Time time, std::string_view reason, Holder holder) {
+  triggered(cycle_.hold(time, holder), reason);
   advance(false);
 }
 
-void EventRecorder::stop(Time time) {
-  cycle_.release(time);
+void EventRecorder::stop(Time time, Holder holder) {
+  cycle_.release(time, holder);
   advance(false);
 }
 

@@ -90,8 +90,9 @@ class EventRecorder {
   void end_analysis();
   // Something happened at `time`, which counts once the video is there: an event begins, or the present one goes on.
   void trigger(Time time, std::string_view reason);
-  void start(Time time, std::string_view reason);  // at once, and the event lasts until stop()
-  void stop(Time time);
+  // At once, and the event lasts until stop() of the same holder.
+  void start(Time time, std::string_view reason, Holder holder = Holder::application);
+  void stop(Time time, Holder holder = Holder::application);
   // A file could not be written; it is not closed any more. The event goes on in another file after a pause, which
   // begins with the same units if nothing of this one was written (`empty`).
   void file_failed(std::uint32_t file, bool empty);
@@ -149,7 +150,7 @@ class EventRecorder {
   Settings settings_;
   EventCycle cycle_;
   std::string reason_;
-  NumberedQueue<Triggers> ahead_;  // of the video
+  NumberedQueue<Triggers> ahead_;  // of the video; in the order of time
   GopRing video_;
   std::vector<AudioTrack> audio_;
 

@@ -20,6 +20,7 @@ class NumberedQueue {
   bool empty() const { return begin_ == end_; }
   // `number` is in [begin(), end()).
   const Entry& operator[](Number number) const { return slots_[number % slots_.size()]; }
+  Entry& operator[](Number number) { return slots_[number % slots_.size()]; }
   const Entry& front() const { return (*this)[begin_]; }
   const Entry& back() const { return (*this)[end_ - 1]; }
   Entry& front() { return slots_[begin_ % slots_.size()]; }

@@ -99,9 +99,9 @@ std::string Session::apply_settings() {
 void Session::apply(const Trigger& trigger, record::Time time) {
   using Kind = Trigger::Kind;
   if (trigger.kind == Kind::hold)
-    recorder_.start(time, trigger.reason);
+    recorder_.start(time, trigger.reason, record::Holder::motion);
   else if (trigger.kind == Kind::release)
-    recorder_.stop(time);
+    recorder_.stop(time, record::Holder::motion);
   else if (trigger.kind == Kind::moment || recorder_.active())
     recorder_.trigger(time, trigger.reason);
 }

@@ -64,7 +64,9 @@ std::optional<Trigger> trigger_of(GstMessage* message, const TriggerSettings& se
   if (g_autoptr(CerberusTrack) track = cerberus_message_parse_track(message)) {
     if (!settings.track || track->state == CERBERUS_TRACK_LEFT || !stands_in_zone(track->region, settings))
       return std::nullopt;
-    return Trigger{Trigger::Kind::moment, "track " + std::to_string(track->region.id)};
+    const bool stands = track->region.state == CERBERUS_REGION_STOPPED;
+    return Trigger{stands ? Trigger::Kind::carry_on : Trigger::Kind::moment,
+                   "track " + std::to_string(track->region.id)};
   }
   if (g_autoptr(CerberusFusion) fusion = cerberus_message_parse_fusion(message))
     return trigger_of(*fusion, settings);

@@ -21,7 +21,7 @@ struct Trigger {
   enum class Kind {
     moment,    // an event begins or goes on
     carry_on,  // an event goes on, but none begins: an object that stands
-    hold,      // an event begins and lasts until `release`
+    hold,      // of motion: an event begins and lasts until `release`
     release,
   };
   Kind kind = Kind::moment;

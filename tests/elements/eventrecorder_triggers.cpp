@@ -106,6 +106,29 @@ GST_START_TEST(messages_of_motion_begin_and_end_an_event) {
 }
 GST_END_TEST
 
+GST_START_TEST(a_message_of_an_object_that_stands_begins_no_event) {
+  Rig rig;
+  rig.start();
+  const auto tell = [&](CerberusRegionState state, guint32 number) {
+    CerberusTrack track;
+    cerberus_track_init(&track);
+    track.state = CERBERUS_TRACK_APPEARED;
+    track.region.state = state;
+    const CerberusStamp stamp = stamp_at(number * kFrame);
+    g_autoptr(GstMessage) message = cerberus_message_new_track(nullptr, &stamp, &track);
+    g_signal_emit_by_name(rig.element, "handle-message", message);
+  };
+  rig.play_to(40);
+  tell(CERBERUS_REGION_STOPPED, 40);
+  rig.play_to(100);
+  tell(CERBERUS_REGION_SEEN, 100);
+  rig.play_to(300);
+  rig.finish();
+  fail_unless_equals_int(rig.folder.files().size(), 1);
+  fail_unless(recorded(rig) == range(70, 110));
+}
+GST_END_TEST
+
 GST_START_TEST(a_folder_that_is_missing_or_none_is_an_error_that_names_it) {
   for (const std::string location : {"/nonexistent-cerberus/recordings", "/dev/null"}) {
     Rig rig;
@@ -179,6 +202,7 @@ static Suite* eventrecorder_triggers_suite() {
   tcase_add_test(tests, an_object_that_stands_keeps_an_event_going_but_begins_none);
   tcase_add_test(tests, metadata_on_the_encoded_video_counts_without_an_analysis_pad);
   tcase_add_test(tests, messages_of_motion_begin_and_end_an_event);
+  tcase_add_test(tests, a_message_of_an_object_that_stands_begins_no_event);
   tcase_add_test(tests, a_folder_that_is_missing_or_none_is_an_error_that_names_it);
   tcase_add_test(tests, a_pattern_that_leaves_the_folder_is_refused);
   tcase_add_test(tests, a_folder_that_vanishes_and_comes_back_costs_no_frame);

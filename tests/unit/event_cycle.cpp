@@ -58,6 +58,18 @@ START_TEST(a_held_event_has_no_end_until_it_is_released) {
 }
 END_TEST
 
+START_TEST(an_event_that_two_hold_lasts_until_both_release_it) {
+  EventCycle event = cycle(5, 2);
+  event.hold(seconds(10), Holder::application);
+  event.hold(seconds(12), Holder::motion);
+  event.release(seconds(20), Holder::motion);
+  ck_assert(event.held() && event.end() == Time::max());
+  event.release(seconds(22), Holder::motion);  // holds it no more
+  event.release(seconds(30), Holder::application);
+  ck_assert(!event.held() && event.end() == seconds(35));
+}
+END_TEST
+
 START_TEST(releasing_what_is_not_held_changes_nothing) {
   EventCycle event = cycle(5, 2);
   event.release(seconds(3));
@@ -84,6 +96,6 @@ int main() {
       "event cycle",
       {an_event_lasts_until_post_roll_after_its_last_trigger,
        a_trigger_that_arrives_late_does_not_shorten_an_event, an_event_is_over_when_no_trigger_can_join_it,
-       a_held_event_has_no_end_until_it_is_released, releasing_what_is_not_held_changes_nothing,
-       after_closing_the_next_trigger_begins_another_event});
+       a_held_event_has_no_end_until_it_is_released, an_event_that_two_hold_lasts_until_both_release_it,
+       releasing_what_is_not_held_changes_nothing, after_closing_the_next_trigger_begins_another_event});
 }

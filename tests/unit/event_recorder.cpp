@@ -258,6 +258,20 @@ START_TEST(events_that_the_analysis_finds_far_ahead_stay_apart) {
 }
 END_TEST
 
+START_TEST(a_trigger_of_the_far_future_holds_no_earlier_one_up) {
+  Rig rig(1, 2, 3, 0);
+  rig.play_to(20);
+  rig.recorder.trigger(seconds(100'000), "wrong");
+  rig.recorder.trigger(seconds(30), "track");  // the analysis is ahead
+  rig.recorder.trigger(seconds(20), "start");
+  rig.play_to(100);
+  ck_assert(rig.span(1) == Span(18, 23));
+  ck_assert(rig.span(2) == Span(28, 33));
+  ck_assert_str_eq(rig.file(2).start.reason.c_str(), "track");
+  ck_assert_uint_eq(rig.files.all.size(), 2);
+}
+END_TEST
+
 START_TEST(another_format_begins_another_file_at_its_keyframe) {
   Rig rig(1, 2, 3, 0);
   rig.play_to(10);
@@ -574,6 +588,7 @@ int main() {
                             a_lost_analysis_neither_keeps_a_file_open_nor_the_ring_growing,
                             an_analysis_that_is_ahead_begins_an_event_when_the_video_is_there,
                             events_that_the_analysis_finds_far_ahead_stay_apart,
+                            a_trigger_of_the_far_future_holds_no_earlier_one_up,
                             another_format_begins_another_file_at_its_keyframe,
                             the_ring_has_a_limit_in_bytes_even_without_a_second_keyframe,
                             an_open_file_goes_on_where_the_ring_has_no_room,
