@@ -86,6 +86,12 @@ void Files::write(std::uint32_t file, int track, const record::Unit& unit) {
   writer_.write(file, track, buffer);
 }
 
+void Files::drop(std::uint32_t file) {
+  open_.erase(file);
+  abandoned_.erase(file);
+  journal_.drop(file);
+}
+
 void Files::close(const record::FileEnd& end) {
   open_.erase(end.file);
   abandoned_.erase(end.file);

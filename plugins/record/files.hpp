@@ -35,7 +35,7 @@ class Files final : public record::FileWriter, public record::JournalOutput {
   void write(std::uint32_t file, int track, const record::Unit& unit) override;
   void close(const record::FileEnd& end) override;
   // A file could not be written.
-  void drop(std::uint32_t file) { journal_.drop(file); }
+  void drop(std::uint32_t file);
 
   void write_line(std::uint32_t file, record::Time time, std::string_view line) override;
   void complete(const record::FileEnd& end, record::Findings findings) override;

@@ -41,8 +41,7 @@ void Writer::start(const record::Archive::Settings& archive, Report report, Warn
   warn_ = std::move(warn);
   stopping_ = false;
   folder_ = archive.folder;
-  archive_.open(archive, surroundings());
-  pass_complaints();
+  report_deleted(archive_.open(archive, surroundings()));
   thread_ = std::thread([this] {
     run();
     archive_.close();
@@ -149,6 +148,8 @@ void Writer::run() {
   }
   files_.clear();
   waiting_.clear();
+  const std::lock_guard guard(lock_);
+  level_ = 0;  // what a disk did not take by the deadline is given up
 }
 
 void Writer::execute(Open& command) {
@@ -247,7 +248,11 @@ record::Surroundings Writer::surroundings() const {
 }
 
 void Writer::retain() {
-  for (const std::string& name : archive_.retain(surroundings()))
+  report_deleted(archive_.retain(surroundings()));
+}
+
+void Writer::report_deleted(const std::vector<std::string>& names) {
+  for (const std::string& name : names)
     report_({FileReport::State::deleted, nullptr, folder_ + '/' + name, {}, {}, {}, 0, {}});
   pass_complaints();
 }

@@ -32,7 +32,7 @@ struct FileReport {
 
 class Writer {
  public:
-  // Both are called in the writer's thread. `warn`: text for a user, about what does not stop the recording.
+  // Both are called in the writer's thread, and by start(). `warn`: text for a user, about what does not stop the recording.
   using Report = std::function<void(const FileReport&)>;
   using Warn = std::function<void(const std::string& text)>;
 
@@ -124,6 +124,7 @@ class Writer {
   void execute(Keep& command);
   void save_picture(File& file, const record::Picture& picture);
   void retain();
+  void report_deleted(const std::vector<std::string>& names);
   void pass_complaints();
   record::Surroundings surroundings() const;
   void fail(std::uint32_t file, const FileFault& fault);

@@ -153,6 +153,14 @@ START_TEST(retention_deletes_file_lines_picture_and_row_together_and_empty_folde
 }
 END_TEST
 
+START_TEST(the_start_says_what_it_deletes) {
+  Rig rig;
+  rig.record("old", 900);
+  rig.record("new", 999);
+  ck_assert(rig.archive.open({rig.folder.path, "index.sqlite", {}}, kNow) == Names{"old.mp4"});
+}
+END_TEST
+
 START_TEST(the_age_of_a_recording_is_not_that_of_a_camera_whose_clock_is_wrong) {
   Rig rig;
   rig.record("fresh", 1);
@@ -364,8 +372,10 @@ int main() {
   TCase* cases = tcase_create("archive");
   for (const TTest* test : {a_recording_has_its_files_and_a_row_that_is_open_until_it_is_finished,
                             a_name_that_is_taken_in_the_folder_or_the_index_gets_a_number,
-                            names_that_lead_out_of_the_folder_are_refused, a_folder_that_is_gone_is_not_made,
+                            names_that_lead_out_of_the_folder_are_refused,
+                            a_folder_that_is_gone_is_not_made,
                             retention_deletes_file_lines_picture_and_row_together_and_empty_folders,
+                            the_start_says_what_it_deletes,
                             the_age_of_a_recording_is_not_that_of_a_camera_whose_clock_is_wrong,
                             a_recording_that_is_being_written_is_not_deleted,
                             what_a_killed_process_left_is_closed_with_what_is_there,

@@ -48,13 +48,13 @@ std::string Archive::index_path() const {
   return (std::filesystem::path(settings_.folder) / settings_.index).string();
 }
 
-void Archive::open(const Settings& settings, const Surroundings& now) {
+std::vector<std::string> Archive::open(const Settings& settings, const Surroundings& now) {
   settings_ = settings;
   folder_ = Folder(settings.folder);
   last_complaint_.clear();
   retention_ = Retention();
   index_.close();
-  if (settings.index.empty()) return;
+  if (settings.index.empty()) return {};
   bool damaged = false;
   std::string fault = index_.open(index_path(), damaged);
   if (damaged) {
@@ -63,15 +63,15 @@ void Archive::open(const Settings& settings, const Surroundings& now) {
     for (int k = 1; k < kMostNamesakes && std::filesystem::exists(aside, unknown); ++k)
       aside = index_path() + ".damaged~" + std::to_string(k);
     complain(fault + "; it is now " + in_quotes(aside) + ", and another one is begun");
-    if (std::rename(index_path().c_str(), aside.c_str()) != 0) return;
+    if (std::rename(index_path().c_str(), aside.c_str()) != 0) return {};
     std::rename((index_path() + "-wal").c_str(), (aside + "-wal").c_str());
     std::remove((index_path() + "-shm").c_str());
     fault = index_.open(index_path(), damaged);
   }
   complain(fault);
-  if (!index_.is_open()) return;
+  if (!index_.is_open()) return {};
   reconcile();
-  retain(now);
+  return retain(now);
 }
 
 void Archive::close() {

@@ -26,8 +26,8 @@ class Archive {
 
   // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it; one
   // that a process left open is closed with what is there (an MP4 file is repaired); one of a file without content is removed with it. A damaged
-  // index is renamed to NAME.damaged and begun anew.
-  void open(const Settings& settings, const Surroundings& now);
+  // index is renamed to NAME.damaged and begun anew. Then retention is applied: returns the files that were deleted.
+  std::vector<std::string> open(const Settings& settings, const Surroundings& now);
   void set_limits(const Limits& limits) { settings_.limits = limits; }
   void close();
 
