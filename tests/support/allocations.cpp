@@ -37,12 +37,19 @@ std::ptrdiff_t held_bytes() {
 }
 }  // namespace cerberus::tests
 
-// The array and nothrow forms of the standard library call these.
+// The array forms of the standard library call these. A sanitizer has nothrow forms of its own, which these take back.
 void* operator new(std::size_t bytes) {
   return take(bytes, 0);
 }
 void* operator new(std::size_t bytes, std::align_val_t a) {
   return take(bytes, static_cast<std::size_t>(a));
+}
+void* operator new(std::size_t bytes, const std::nothrow_t&) noexcept {
+  try {
+    return take(bytes, 0);
+  } catch (const std::bad_alloc&) {
+    return nullptr;
+  }
 }
 void operator delete(void* p) noexcept {
   give_back(p);

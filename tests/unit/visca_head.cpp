@@ -285,9 +285,9 @@ START_TEST(the_position_of_the_zoom_is_reported) {
   ViscaCamera camera(ViscaCamera::Line::serial, {.zooms = true});
   camera.set_zoom(0x2000);
   Served served(options_for(camera));
-  ck_assert_str_eq(served.line("zoom").c_str(), "zoom 0.5");
+  assert_text(served.line("zoom"), "zoom 0.5");
   camera.set_zoom(0x4000);
-  ck_assert_str_eq(served.line("zoom").c_str(), "zoom 1");
+  assert_text(served.line("zoom"), "zoom 1");
 }
 END_TEST
 

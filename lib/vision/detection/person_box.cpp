@@ -87,20 +87,24 @@ int ground(BitView moving, const Bounds& window, const Box& body, const PersonBo
 }
 
 // The row behind the feet of a body that takes the rows [top, bottom) with its shadow.
-double foot(BitView moving, Interval columns, int top, int bottom, const PersonBoxParameters& q) {
+double foot(BitView moving, const Bounds& window, Interval columns, int top, int bottom,
+            const PersonBoxParameters& q) {
   const int height = bottom - top;
+  const auto filled = [&](int y) {
+    return y >= window.top && y < window.bottom ? count(moving, y, columns) : 0;
+  };
   std::array<int, kMostLegRows> legs;
   std::size_t n = 0;
   const int step = 1 + height / (3 * kMostLegRows);
   for (int y = top + static_cast<int>(q.legs_from * height); y < top + static_cast<int>(q.legs_to * height);
        y += step)
-    if (n < legs.size()) legs[n++] = count(moving, y, columns);
+    if (n < legs.size()) legs[n++] = filled(y);
   if (n == 0) return bottom;
   std::nth_element(legs.begin(), legs.begin() + n / 2, legs.begin() + n);
   const double wide = q.shadow_wide * legs[n / 2];
   int shadow = bottom;  // its first row
   for (int y = bottom - 1; y >= top + static_cast<int>(q.shadow_from * height); --y) {
-    if (count(moving, y, columns) > wide)
+    if (filled(y) > wide)
       shadow = y;
     else if (shadow < bottom || bottom - y > q.shadow_tip * height)
       break;
@@ -117,7 +121,7 @@ Box fit_box(BitView moving, const Bounds& window, std::size_t self, std::span<co
   const Interval full = sides(moving, window, self, all, q);
   if (full.from >= full.to) return body;
   const double top = head(moving, window, body, q);
-  const double bottom = foot(moving, around(axis, q.shadow_reach * h, window), static_cast<int>(top),
+  const double bottom = foot(moving, window, around(axis, q.shadow_reach * h, window), static_cast<int>(top),
                              ground(moving, window, body, q), q);
   const auto between = [&](double expected, double seen) {
     return expected + q.measured * (seen - expected);
