@@ -95,7 +95,8 @@ std::string expand_name(std::string_view pattern, const NameFacts& facts) {
     // %D and a user's locale may hold slashes; %n and %t are control characters.
     std::ranges::replace(component, '/', '-');
     std::ranges::replace_if(
-        component, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == 127; }, '_');
+        component, [](char letter) { return static_cast<unsigned char>(letter) < ' ' || letter == 127; },
+        '_');
     if (component == "." || component == ".." || component.empty()) component.assign(1, '_');
     if (!result.empty()) result += '/';
     result += component.substr(0, kLongestComponent);
