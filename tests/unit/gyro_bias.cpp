@@ -141,6 +141,7 @@ START_TEST(time_that_begins_anew_mixes_no_spans) {
   robot.run(900ms);
   ck_assert(!robot.rate);
   robot.run(1s);
+  ck_assert(robot.rate);
   ck_assert_double_eq_tol(*robot.rate, 0, 1e-9);
 }
 END_TEST

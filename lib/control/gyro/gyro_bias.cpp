@@ -19,6 +19,12 @@ void GyroBias::reset() {
 
 std::optional<double> GyroBias::add(Time time, double measured) {
   if (!std::isfinite(measured)) return std::nullopt;
+  if (count_ > 0 &&
+      time < newest_sample().time) {  // time began anew: nothing before it is evidence of what follows
+    count_ = next_ = 0;
+    since_.reset();
+    reported_.reset();
+  }
   samples_[next_] = {time, measured};
   next_ = (next_ + 1) % kKept;
   count_ = std::min(count_ + 1, kKept);
@@ -64,7 +70,7 @@ void GyroBias::learn(Time from, Time until) {
     const Sample& sample = samples_[i];
     if (sample.time < from || sample.time > until) continue;
     // Relative to the newest sample: a large bias must not drown the spread.
-    const double rate = sample.rate - samples_[(next_ + kKept - 1) % kKept].rate;
+    const double rate = sample.rate - newest_sample().rate;
     sum += rate;
     squares += rate * rate;
     ++n;
@@ -72,7 +78,7 @@ void GyroBias::learn(Time from, Time until) {
   constexpr unsigned kLeast = 10;  // below it a spread says little
   if (n < kLeast) return;
   const double mean = sum / n, variance = squares / n - mean * mean;
-  const double found = mean + samples_[(next_ + kKept - 1) % kKept].rate;
+  const double found = mean + newest_sample().rate;
   if (variance > parameters_.rest * parameters_.rest || std::abs(found) > parameters_.most) return;
   bias_ = bias_ ? *bias_ + parameters_.blend * (found - *bias_) : found;
 }
