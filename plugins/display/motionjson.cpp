@@ -71,11 +71,9 @@
 #include <gst/base/gstbasetransform.h>
 
 #include "cerberus/private/element.hpp"
-#include "shared/clock_times.hpp"
-#include "shared/complaint.hpp"
 #include "shared/frame_line.hpp"
+#include "shared/frame_text.hpp"
 #include "shared/properties.hpp"
-#include "shared/stamps.hpp"
 
 namespace {
 
@@ -96,86 +94,25 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
     cerberus::plugin::property("camera-name", &Settings::camera_name, cerberus::plugin::kCameraNameBlurb),
 };
 
-struct State {  // streaming thread only
-  int width = 0, height = 0;
-  guint64 frame = 0;
-  cerberus::plugin::Stamps stamps;
-  cerberus::plugin::Complaint complaint;  // about the caps
-  cerberus::text::JsonLine line;
-};
-
 struct Private {
   cerberus::plugin::Adjustable<Settings> settings;
-  State state;
+  cerberus::plugin::TextStream stream;
+  cerberus::text::JsonLine line;
+
+  std::string camera_name() const { return settings.snapshot().camera_name; }
+  std::string_view write(GstBuffer* buffer, const CerberusStamp& stamp) {
+    return cerberus::plugin::write_frame_line(line, buffer, stamp,
+                                              {stream.frame, stream.width, stream.height});
+  }
 };
 
 CERBERUS_DEFINE_TYPE(CerberusMotionJson, cerberus_motion_json, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
 
-gboolean cerberus_motion_json_start(GstBaseTransform* transform) {
-  State& state = cerberus_motion_json_self(transform)->priv->state;
-  state.frame = 0;
-  state.width = state.height = 0;
-  state.complaint.forget();
-  state.stamps.reset();
-  return TRUE;
-}
-
-GstCaps* cerberus_motion_json_transform_caps(GstBaseTransform*, GstPadDirection direction, GstCaps*,
-                                             GstCaps* filter) {
-  GstCaps* caps =
-      gst_static_pad_template_get_caps(direction == GST_PAD_SINK ? &src_template : &sink_template);
-  if (!filter) return caps;
-  GstCaps* common = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
-  gst_caps_unref(caps);
-  return common;
-}
-
-gboolean cerberus_motion_json_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
-  // By hand: GstVideoInfo does not know the formats of every memory.
-  State& state = cerberus_motion_json_self(transform)->priv->state;
-  const GstStructure* structure = gst_caps_get_structure(in, 0);
-  const bool known = gst_structure_get_int(structure, "width", &state.width) &&
-                     gst_structure_get_int(structure, "height", &state.height);
-  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
-    const std::string wrong = known ? "" : "The video has no size.";
-    if (state.complaint.is_new(wrong))
-      CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
-    return known;
-  });
-}
-
-// The frame ends here and is only looked at: any stride will do.
-gboolean cerberus_motion_json_propose_allocation(GstBaseTransform*, GstQuery*, GstQuery* query) {
-  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
-  return TRUE;
-}
-
-GstFlowReturn cerberus_motion_json_generate_output(GstBaseTransform* transform, GstBuffer** out) {
-  *out = nullptr;
-  GstBuffer* in = std::exchange(transform->queued_buf, nullptr);
-  if (!in) return GST_FLOW_OK;  // asked again after each line
-  const GstFlowReturn flow = cerberus::guarded(transform, GST_FLOW_ERROR, [&] {
-    Private& priv = *cerberus_motion_json_self(transform)->priv;
-    State& state = priv.state;
-    const CerberusStamp stamp = state.stamps.frame(GST_BASE_TRANSFORM_SINK_PAD(transform), in,
-                                                   cerberus::plugin::running_time_of(transform->segment, in),
-                                                   priv.settings.snapshot().camera_name);
-    const std::string_view line =
-        cerberus::plugin::write_frame_line(state.line, in, stamp, {state.frame, state.width, state.height});
-    *out = gst_buffer_new_memdup(line.data(), line.size());
-    gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
-    GST_BUFFER_OFFSET(*out) = state.frame;
-    GST_BUFFER_OFFSET_END(*out) = ++state.frame;
-    return GST_FLOW_OK;
-  });
-  gst_buffer_unref(in);
-  return flow;
-}
+using Text = cerberus::plugin::FrameText<cerberus_motion_json_self>;
 
 void cerberus_motion_json_init(CerberusMotionJson* self) {
-  gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
-  gst_base_transform_set_qos_enabled(GST_BASE_TRANSFORM(self), FALSE);  // one line a buffer, however late
+  Text::init(GST_BASE_TRANSFORM(self));
 }
 
 void cerberus_motion_json_class_init(CerberusMotionJsonClass* klass) {
@@ -188,12 +125,7 @@ void cerberus_motion_json_class_init(CerberusMotionJsonClass* klass) {
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
 
-  GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
-  transform->start = cerberus_motion_json_start;
-  transform->transform_caps = cerberus_motion_json_transform_caps;
-  transform->set_caps = cerberus_motion_json_set_caps;
-  transform->propose_allocation = cerberus_motion_json_propose_allocation;
-  transform->generate_output = cerberus_motion_json_generate_output;
+  Text::install(GST_BASE_TRANSFORM_CLASS(klass));
 }
 
 }  // namespace

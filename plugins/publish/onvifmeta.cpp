@@ -40,17 +40,14 @@
 #include <gst/base/gstbasetransform.h>
 
 #include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "cerberus/private/element.hpp"
 #include "onvif_caps.hpp"
 #include "publish/onvif_metadata.h"
 #include "shared/camera_mount.hpp"
-#include "shared/clock_times.hpp"
-#include "shared/complaint.hpp"
+#include "shared/frame_text.hpp"
 #include "shared/properties.hpp"
-#include "shared/stamps.hpp"
 
 namespace {
 
@@ -74,23 +71,6 @@ const cerberus::plugin::Property<Settings> kProperties[] = {
         "field of view and speeds are published; 0 = unknown"),
 };
 
-struct State {  // streaming thread only
-  cerberus::publish::MetadataFrame frame;
-  std::vector<cerberus::publish::MetadataObject> objects;
-  std::vector<std::optional<bool>> sensors;
-  cerberus::publish::OnvifMetadata document;
-  cerberus::plugin::Stamps stamps;
-  cerberus::plugin::Complaint complaint;  // about the caps
-};
-
-struct Private {
-  cerberus::plugin::Adjustable<Settings> settings;
-  State state;
-};
-
-CERBERUS_DEFINE_TYPE(CerberusOnvifMeta, cerberus_onvif_meta, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
-                     Private)
-
 cerberus::publish::MetadataObject object_of(const CerberusRegion& region) {
   cerberus::publish::MetadataObject object;
   if (region.tracked) object.id = region.id;
@@ -104,100 +84,64 @@ cerberus::publish::MetadataObject object_of(const CerberusRegion& region) {
   return object;
 }
 
-void read_results(State& state, GstBuffer* buffer, GstClockTime time) {
-  state.objects.clear();
-  state.frame.analysed = cerberus_buffer_regions_known(buffer) != FALSE;
-  if (state.frame.analysed) {
+struct Private {
+  cerberus::plugin::Adjustable<Settings> settings;
+  cerberus::plugin::TextStream stream;  // this and what follows: streaming thread only
+  cerberus::publish::MetadataFrame frame;
+  std::vector<cerberus::publish::MetadataObject> objects;
+  std::vector<std::optional<bool>> sensors;
+  cerberus::publish::OnvifMetadata document;
+
+  static std::string camera_name() { return {}; }
+  std::string_view write(GstBuffer* buffer, const CerberusStamp& stamp);
+  void read_results(GstBuffer* buffer, GstClockTime time);
+};
+
+void Private::read_results(GstBuffer* buffer, GstClockTime time) {
+  objects.clear();
+  frame.analysed = cerberus_buffer_regions_known(buffer) != FALSE;
+  if (frame.analysed) {
     g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
     for (guint i = 0; i < regions->len; ++i)
-      state.objects.push_back(object_of(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i))));
+      objects.push_back(object_of(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i))));
   }
-  state.frame.objects = state.objects;
+  frame.objects = objects;
 
-  state.frame.head.reset();
+  frame.head.reset();
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(buffer)) {
-    state.frame.head.emplace().moves = pose->moving != FALSE;
-    if (pose->field_of_view > 0) state.frame.field_of_view = pose->field_of_view;
+    frame.head.emplace().moves = pose->moving != FALSE;
+    if (pose->field_of_view > 0) frame.field_of_view = pose->field_of_view;
     if (const auto look = cerberus::plugin::look_of(*pose, time)) {
-      state.frame.head->pan = cerberus::sensing::degrees(look->pan);
-      state.frame.head->tilt = cerberus::sensing::degrees(look->tilt);
+      frame.head->pan = cerberus::sensing::degrees(look->pan);
+      frame.head->tilt = cerberus::sensing::degrees(look->tilt);
     }
   }
 
-  state.sensors.clear();
+  sensors.clear();
   if (const CerberusFusion* fusion = cerberus_buffer_peek_fusion(buffer))
     for (guint i = 0; i < std::min<guint>(fusion->n_sensors, CERBERUS_PIR_MAX_SENSORS); ++i) {
-      auto& detects = state.sensors.emplace_back();
+      auto& detects = sensors.emplace_back();
       if (const guint8 reading = fusion->sensors[i]; reading <= 1) detects = reading == 1;  // 2: invalid
     }
-  state.frame.sensors = state.sensors;
+  frame.sensors = sensors;
 }
 
-gboolean cerberus_onvif_meta_start(GstBaseTransform* transform) {
-  State& state = cerberus_onvif_meta_self(transform)->priv->state;
-  state.complaint.forget();
-  state.stamps.reset();
-  return TRUE;
+std::string_view Private::write(GstBuffer* buffer, const CerberusStamp& stamp) {
+  const GstClockTime utc = GST_CLOCK_TIME_IS_VALID(stamp.utc) ? stamp.utc : stamp.running_time;
+  frame.utc = cerberus::plugin::time_of(GST_CLOCK_TIME_IS_VALID(utc) ? utc : 0);
+  frame.width = stream.width, frame.height = stream.height;
+  frame.field_of_view = settings.snapshot().field_of_view;
+  read_results(buffer, stamp.running_time);
+  return document.write(frame);
 }
 
-GstCaps* cerberus_onvif_meta_transform_caps(GstBaseTransform*, GstPadDirection direction, GstCaps*,
-                                            GstCaps* filter) {
-  GstCaps* caps =
-      gst_static_pad_template_get_caps(direction == GST_PAD_SINK ? &src_template : &sink_template);
-  if (!filter) return caps;
-  GstCaps* common = gst_caps_intersect_full(filter, caps, GST_CAPS_INTERSECT_FIRST);
-  gst_caps_unref(caps);
-  return common;
-}
+CERBERUS_DEFINE_TYPE(CerberusOnvifMeta, cerberus_onvif_meta, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
+                     Private)
 
-gboolean cerberus_onvif_meta_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
-  // By hand: GstVideoInfo does not know the formats of every memory.
-  State& state = cerberus_onvif_meta_self(transform)->priv->state;
-  const GstStructure* structure = gst_caps_get_structure(in, 0);
-  int width = 0, height = 0;
-  const bool known = gst_structure_get_int(structure, "width", &width) &&
-                     gst_structure_get_int(structure, "height", &height);
-  state.frame.width = std::max(width, 1);
-  state.frame.height = std::max(height, 1);
-  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
-    const std::string wrong = known ? "" : "The video has no size.";
-    if (state.complaint.is_new(wrong))
-      CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
-    return known;
-  });
-}
-
-// The frame ends here and is only looked at: any stride will do.
-gboolean cerberus_onvif_meta_propose_allocation(GstBaseTransform*, GstQuery*, GstQuery* query) {
-  gst_query_add_allocation_meta(query, GST_VIDEO_META_API_TYPE, nullptr);
-  return TRUE;
-}
-
-GstFlowReturn cerberus_onvif_meta_generate_output(GstBaseTransform* transform, GstBuffer** out) {
-  *out = nullptr;
-  GstBuffer* in = std::exchange(transform->queued_buf, nullptr);
-  if (!in) return GST_FLOW_OK;  // asked again after each document
-  const GstFlowReturn flow = cerberus::guarded(transform, GST_FLOW_ERROR, [&] {
-    Private& priv = *cerberus_onvif_meta_self(transform)->priv;
-    State& state = priv.state;
-    const GstClockTime time = cerberus::plugin::running_time_of(transform->segment, in);
-    const CerberusStamp stamp = state.stamps.frame(GST_BASE_TRANSFORM_SINK_PAD(transform), in, time, {});
-    const GstClockTime utc = GST_CLOCK_TIME_IS_VALID(stamp.utc) ? stamp.utc : time;
-    state.frame.utc = cerberus::plugin::time_of(GST_CLOCK_TIME_IS_VALID(utc) ? utc : 0);
-    state.frame.field_of_view = priv.settings.snapshot().field_of_view;
-    read_results(state, in, time);
-    const std::string_view text = state.document.write(state.frame);
-    *out = gst_buffer_new_memdup(text.data(), text.size());
-    gst_buffer_copy_into(*out, in, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
-    return GST_FLOW_OK;
-  });
-  gst_buffer_unref(in);
-  return flow;
-}
+using Text = cerberus::plugin::FrameText<cerberus_onvif_meta_self>;
 
 void cerberus_onvif_meta_init(CerberusOnvifMeta* self) {
-  gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
-  gst_base_transform_set_qos_enabled(GST_BASE_TRANSFORM(self), FALSE);  // one document a buffer, however late
+  Text::init(GST_BASE_TRANSFORM(self));
 }
 
 void cerberus_onvif_meta_class_init(CerberusOnvifMetaClass* klass) {
@@ -210,12 +154,7 @@ void cerberus_onvif_meta_class_init(CerberusOnvifMetaClass* klass) {
   gst_element_class_add_static_pad_template(element, &sink_template);
   gst_element_class_add_static_pad_template(element, &src_template);
 
-  GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
-  transform->start = cerberus_onvif_meta_start;
-  transform->transform_caps = cerberus_onvif_meta_transform_caps;
-  transform->set_caps = cerberus_onvif_meta_set_caps;
-  transform->propose_allocation = cerberus_onvif_meta_propose_allocation;
-  transform->generate_output = cerberus_onvif_meta_generate_output;
+  Text::install(GST_BASE_TRANSFORM_CLASS(klass));
 }
 
 }  // namespace

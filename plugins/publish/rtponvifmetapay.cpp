@@ -71,6 +71,7 @@ GstFlowReturn cerberus_rtp_onvif_meta_pay_handle_buffer(GstRTPBasePayload* paylo
       gst_rtp_buffer_unmap(&rtp);
       if (at + length == size) GST_BUFFER_FLAG_SET(packet, GST_BUFFER_FLAG_MARKER);
       gst_buffer_copy_into(packet, document, GST_BUFFER_COPY_TIMESTAMPS, 0, -1);
+      GST_BUFFER_OFFSET(packet) = GST_BUFFER_OFFSET_NONE;  // the base class takes it for clock ticks
       packet =
           gst_buffer_append(packet, gst_buffer_copy_region(document, GST_BUFFER_COPY_MEMORY, at, length));
       gst_buffer_list_add(packets, packet);
