@@ -49,13 +49,13 @@ class Board:
 
     def stop(self):
         self.send(CANCEL)
-        self.waiting = 0
-        for tries in range(20):  # a second
+        for tries in range(20):  # a second; a jog that is not acknowledged yet may still begin
             self.send(b'?')
-            if self.receive(STEP) and self.state not in ('Jog', 'Run', 'Hold:1'):
+            if self.receive(STEP) and self.state not in ('Jog', 'Run', 'Hold:1') and not self.waiting:
                 break
-            if tries > 4 and self.state != 'Hold:1':
-                self.send(HOLD)
+            if self.state != 'Hold:1':
+                self.send(HOLD if tries > 4 else CANCEL)
+        self.waiting = 0
         if self.state == 'Hold:0':  # it stands and keeps its position; without a reset it would carry out no jog again
             self.send(RESET)
 

@@ -16,8 +16,6 @@ namespace {
 // A change of state takes at most these together, whatever the driver does (100 ms is promised).
 constexpr auto kOpenPatience = std::chrono::milliseconds(60);
 constexpr auto kClosePatience = std::chrono::milliseconds(30);
-// A sink that starts again waits so long for the head that it has closed: a camera acknowledges the stop first.
-constexpr auto kLeasePatience = std::chrono::milliseconds(1000);
 constexpr auto kHaltPatience = std::chrono::milliseconds(30);
 
 CerberusPose pose_of(const char* head, const motion::Pose& pose) {
@@ -94,7 +92,7 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
     CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
     return nullptr;
   }
-  auto lease = drivers::lease_head(s.head, kLeasePatience);
+  auto lease = drivers::HeadLease::take(s.head);
   if (!lease) {
     CERBERUS_ELEMENT_ERROR(
         element, RESOURCE, BUSY,

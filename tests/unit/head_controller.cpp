@@ -102,7 +102,7 @@ struct Rig {
   explicit Rig(const Options& options = {}) {
     record->refusal = options.refusal;
     auto runner = std::make_unique<HeadRunner>(std::make_unique<RecordedHead>(record, options.blocks),
-                                               std::shared_ptr<void>());
+                                               nullptr);
     runner->open(options.setup, 10s);
     controller.open(std::move(runner), options.setup);
     controller.set_clock_driven(options.clock_driven);

@@ -11,7 +11,6 @@
 #include <string>
 #include <thread>
 
-#include "drivers/head/head_lease.h"
 #include "support/pipe.h"
 #include "support/suite.h"
 #include "support/text.h"
@@ -27,7 +26,7 @@ using Kind = AxisCommand::Kind;
 
 namespace {
 
-std::unique_ptr<HeadRunner> runner_with(const std::string& script, std::shared_ptr<void> lease = {}) {
+std::unique_ptr<HeadRunner> runner_with(const std::string& script, std::shared_ptr<HeadLease> lease = {}) {
   auto runner = std::make_unique<HeadRunner>(make_head("scripted"), std::move(lease));
   HeadSetup setup;
   setup.script = script;
@@ -333,9 +332,9 @@ END_TEST
 
 START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
   Pipe gate, record;
-  std::weak_ptr<void> watch;
+  std::weak_ptr<HeadLease> watch;
   {
-    auto lease = std::make_shared<int>();
+    auto lease = HeadLease::take("blocked");
     watch = lease;
     auto runner =
         runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
@@ -355,9 +354,9 @@ START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
 END_TEST
 
 START_TEST(a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not) {
-  Pipe gate, record;
-  auto lease = lease_head("gate");
-  ck_assert(lease && !lease_head("gate", 1h));  // in use
+  Pipe gate, record, next_record;
+  auto lease = HeadLease::take("gate");
+  ck_assert(lease && lease->wait({}) && !HeadLease::take("gate"));  // in use
   auto runner =
       runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
   record.line();
@@ -365,12 +364,21 @@ START_TEST(a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not) {
   record.line();
   runner->set_close_patience(1ms);
   runner.reset();
-  ck_assert(!lease_head("gate", 1ms));  // its driver has not returned
-  auto next = std::async(std::launch::async, [] { return lease_head("gate", 1h); });
-  ck_assert(lease_head("another") != nullptr);
+  auto next_lease = HeadLease::take("gate");
+  ck_assert(next_lease && !next_lease->wait(1ms));  // its driver has not returned
+  ck_assert(!HeadLease::take("gate"));              // one waits for it already
+  ck_assert(HeadLease::take("another") != nullptr);
+  HeadRunner unblocking(make_head("simulated"), next_lease);
+  ck_assert(unblocking.open({}, 10s) == Answer::failed);
+  ck_assert(unblocking.refusal().find("it is still being stopped") == 0);
+
+  HeadRunner next(make_head("scripted"), std::move(next_lease));
+  HeadSetup setup;
+  setup.script = "record " + next_record.writer();
+  ck_assert(next.open(setup, 1ms) == Answer::late);
   gate.close_writer();
-  ck_assert(next.get() != nullptr);
-  ck_assert(lease_head("gate") != nullptr);  // returned again
+  assert_text(next_record.line(), "open 0");
+  ck_assert_int_eq(record.line().find("close"), 0);  // the first driver was closed before
 }
 END_TEST
 

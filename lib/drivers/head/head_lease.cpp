@@ -2,6 +2,7 @@
 #include "drivers/head/head_lease.h"
 
 #include <condition_variable>
+#include <deque>
 #include <map>
 #include <mutex>
 
@@ -9,54 +10,48 @@ namespace cerberus::drivers {
 
 namespace {
 
-struct Holder {
-  const void* lease = nullptr;
-  bool returns = false;
-};
-
-// The names in use, the only state that the elements of a process share. Never destroyed: a driver that blocks may
-// return its lease while the process ends.
+// The leases of each name in the order in which they were taken; only the first may drive. This is the only state that
+// the elements of a process share. Never destroyed: a driver that blocks may return its lease while the process ends.
 struct Taken {
   std::mutex lock;
   std::condition_variable returned;
-  std::map<std::string, Holder> names;
+  std::map<std::string, std::deque<const HeadLease*>> names;
 };
 Taken& taken() {
   static Taken& instance = *new Taken;
   return instance;
 }
 
-struct Lease {
-  std::string name;
-  explicit Lease(const std::string& n) : name(n) {}
-  ~Lease() {
-    {
-      const std::lock_guard guard(taken().lock);
-      taken().names.erase(name);
-    }
-    taken().returned.notify_all();
-  }
-};
-
 }  // namespace
 
-std::shared_ptr<void> lease_head(const std::string& name, std::chrono::milliseconds patience) {
-  Taken& all = taken();
-  std::unique_lock guard(all.lock);
-  const auto until = std::chrono::steady_clock::now() + patience;
-  const auto settled = [&] {
-    const auto holder = all.names.find(name);
-    return holder == all.names.end() || !holder->second.returns;
-  };
-  if (!all.returned.wait_until(guard, until, settled) || all.names.contains(name)) return nullptr;
-  const auto lease = std::make_shared<Lease>(name);
-  all.names[name] = {lease.get()};
+std::shared_ptr<HeadLease> HeadLease::take(const std::string& name) {
+  const std::lock_guard guard(taken().lock);
+  auto& leases = taken().names[name];
+  if (!leases.empty() && !leases.back()->returns_) return nullptr;
+  const std::shared_ptr<HeadLease> lease(new HeadLease(name));
+  leases.push_back(lease.get());
   return lease;
 }
 
-void announce_return(const std::shared_ptr<void>& lease) {
+HeadLease::~HeadLease() {
+  {
+    const std::lock_guard guard(taken().lock);
+    const auto leases = taken().names.find(name_);
+    std::erase(leases->second, this);
+    if (leases->second.empty()) taken().names.erase(leases);
+  }
+  taken().returned.notify_all();
+}
+
+void HeadLease::announce_return() {
   const std::lock_guard guard(taken().lock);
-  for (auto& [name, holder] : taken().names) holder.returns = holder.returns || holder.lease == lease.get();
+  returns_ = true;
+}
+
+bool HeadLease::wait(std::chrono::steady_clock::duration patience) const {
+  std::unique_lock guard(taken().lock);
+  return taken().returned.wait_for(guard, patience,
+                                   [&] { return taken().names.find(name_)->second.front() == this; });
 }
 
 }  // namespace cerberus::drivers

@@ -8,10 +8,27 @@
 
 namespace cerberus::drivers {
 
-// Takes the name until the last copy of the lease is destroyed; returns nullptr if it is already taken. A lease that is
-// being returned is waited for, no longer than `patience`. Thread-safe.
-std::shared_ptr<void> lease_head(const std::string& name, std::chrono::milliseconds patience = {});
-// Announces that this lease will be destroyed as soon as its head has stopped. Thread-safe.
-void announce_return(const std::shared_ptr<void>& lease);
+// The right to drive the head of a name. All functions are thread-safe.
+class HeadLease {
+ public:
+  // Returns nullptr if the head is in use. A head whose last lease is being returned is leased at once, but may only be
+  // driven when wait() has returned true.
+  static std::shared_ptr<HeadLease> take(const std::string& name);
+  // Returns the lease.
+  ~HeadLease();
+  HeadLease(const HeadLease&) = delete;
+  HeadLease& operator=(const HeadLease&) = delete;
+
+  // Announces that this lease will be destroyed as soon as its head has stopped.
+  void announce_return();
+  // Waits until all earlier leases of the name are returned, no longer than `patience`. Returns whether they are.
+  bool wait(std::chrono::steady_clock::duration patience) const;
+
+ private:
+  explicit HeadLease(const std::string& name) : name_(name) {}
+
+  std::string name_;
+  bool returns_ = false;
+};
 
 }  // namespace cerberus::drivers

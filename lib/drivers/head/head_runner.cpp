@@ -6,13 +6,13 @@
 #include <mutex>
 #include <utility>
 
-#include "drivers/head/head_lease.h"
-
 namespace cerberus::drivers {
 
 namespace {
 
 constexpr std::size_t kMostPieces = 64;
+// A camera acknowledges a stop within a second, and a helper that is killed has stopped its head within half a second.
+constexpr auto kLeasePatience = std::chrono::seconds(10);
 
 struct Limiting {
   Time now{};
@@ -32,7 +32,7 @@ struct HeadRunner::Core {
   bool blocks = true;               // the head has a worker
   std::vector<motion::Pose> found;  // used like the head
   std::optional<Limiting> owed;     // used like the head: limits that it has refused so far
-  std::shared_ptr<void> lease;
+  std::shared_ptr<HeadLease> lease;
   Bell moved, refused;
 
   mutable std::mutex lock;
@@ -65,6 +65,7 @@ struct HeadRunner::Core {
   void run();
   void serve(std::unique_lock<std::mutex>& guard);
   unsigned long hand_over(std::unique_lock<std::mutex>& guard);
+  std::string open(const HeadSetup& setup);
   std::string carry_out(const Batch& batch);
   void set_command(const HeadCommand& command);
 };
@@ -79,8 +80,14 @@ void HeadRunner::Core::set_command(const HeadCommand& command) {
   todo.command->stop = command.stop || keeps_stop;
 }
 
+std::string HeadRunner::Core::open(const HeadSetup& setup) {
+  if (lease && !lease->wait(blocks ? kLeasePatience : Patience{}))
+    return "it is still being stopped for the sink that drove it before: start this one again when it rests";
+  return head->open(setup);
+}
+
 std::string HeadRunner::Core::carry_out(const Batch& batch) {
-  if (batch.open) unopened = head->open(*batch.open);
+  if (batch.open) unopened = open(*batch.open);
   if (!unopened.empty()) return unopened;
   if (batch.stop) head->stop(*batch.stop);
   std::string failed;
@@ -166,8 +173,8 @@ unsigned long HeadRunner::Core::hand_over(std::unique_lock<std::mutex>& guard) {
   return ticket;
 }
 
-HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<void> lease, std::function<void()> moved,
-                       std::function<void()> refused)
+HeadRunner::HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<HeadLease> lease,
+                       std::function<void()> moved, std::function<void()> refused)
     : core_(std::make_shared<Core>(std::move(moved), std::move(refused))), simulated_(head->simulated()) {
   core_->head = std::move(head);
   core_->lease = std::move(lease);
@@ -181,7 +188,7 @@ HeadRunner::~HeadRunner() {
   core_->moved.silence();
   core_->refused.silence();
   std::unique_lock guard(core_->lock);
-  announce_return(core_->lease);
+  if (core_->lease) core_->lease->announce_return();
   core_->todo = {};
   core_->todo.quit = true;
   core_->hand_over(guard);
