@@ -93,6 +93,7 @@ ARROWS = VISION | {
     'sim': ('vision', 'sensing', 'motion'),
     'record': ('vision',),
     'publish': (),
+    'robot': ('record',),
 }
 BELOW_ALL = ('text', 'threads')
 FOR_ALL = {'sensing/angles.h'}  # degrees and radians

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/camera_settings.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+namespace cerberus::robot {
+
+namespace {
+
+using text::TomlValue;
+using K = Option::Kind;
+
+constexpr double kDay = 86400;  // seconds
+
+constexpr Option kDetection[] = {
+    {"preset", K::choice, 0, 0, "default paper traffic"},
+    {"analysis-width", K::whole, 0, 3840},
+    {"mounting-height", K::number, 0, 100},
+    {"tilt", K::number, -90, 90},
+    {"zones", K::text},
+    {"burnt-in", K::truth},
+    {"people", K::truth},
+    {"minimum-area", K::number, 0, 1e6},
+    {"confirm-time", K::seconds, 0, 60},
+    {"hold-stopped", K::seconds, 0, kDay},
+};
+
+constexpr Option kFusion[] = {
+    {"rules", K::choice, 0, 0, "complete paper"},
+    {"rules-file", K::text},
+    {"return-delay", K::seconds, 0, kDay},
+    {"target", K::choice, 0, 0, "nearest largest newest"},
+};
+
+constexpr Option kSensors[] = {
+    {"driver", K::choice, 0, 0, "gpio iio evdev external replay scripted"},
+    {"preset", K::choice, 0, 0, "none hc-sr501 am312 sk-11"},
+    {"bearings", K::text},
+    {"field-of-view", K::number, 0.1, 360},
+    {"chip", K::text},
+    {"lines", K::text},
+    {"bias", K::choice, 0, 0, "as-is none pull-up pull-down"},
+    {"active-low", K::truth},
+    {"leds-red", K::text},
+    {"leds-blue", K::text},
+    {"warm-up", K::seconds, 0, 3600},
+    {"hold", K::seconds, 0, 3600},
+    {"device", K::text},
+    {"device-options", K::text},
+    {"codes", K::text},
+    {"command", K::text},
+    {"iio-device", K::text},
+    {"channels", K::text},
+    {"threshold", K::number, -1000, 1000},
+    {"hysteresis", K::number, 0, 1000},
+    {"location", K::text},
+    {"script", K::text},
+};
+
+constexpr Option kHead[] = {
+    {"driver", K::choice, 0, 0, "simulated external visca pelco-d onvif stepper-gpio servo-pwm v4l2"},
+    {"device", K::text},
+    {"device-options", K::text},
+    {"command", K::text},
+    {"calibration", K::text},
+    {"pan-min", K::number, -3600, 0},
+    {"pan-max", K::number, 0, 3600},
+    {"tilt-min", K::number, -3600, 0},
+    {"tilt-max", K::number, 0, 3600},
+    {"max-speed", K::number, 0.001, 3600},
+    {"max-acceleration", K::number, 0.001, 1e6},
+    {"turn-speed", K::number, 0, 3600},
+    {"gain", K::number, 0, 100},
+    {"latency", K::seconds, 0, 5},
+    {"zoom-table", K::text},
+    {"lock-zoom", K::number, -1, 2},
+    {"base-gyro", K::text},
+    {"watchdog-timeout", K::seconds, 0.05, 60},
+};
+
+constexpr Option kRecorder[] = {
+    {"pre-roll", K::seconds, 0, 600},
+    {"post-roll", K::seconds, 0, 600},
+    {"join", K::seconds, 0, 600},
+    {"longest-file", K::seconds, 0, kDay},
+    {"retention-size", K::whole, 0, 1 << 30},
+    {"retention-free", K::whole, 0, 1 << 30},
+    {"file-name", K::text},
+    {"trigger-track", K::truth},
+    {"trigger-fusion", K::truth},
+    {"trigger-pir", K::truth},
+    {"trigger-zones", K::text},
+};
+
+constexpr std::array<std::string_view, 5> kKinds{"test", "world", "file", "v4l2", "rtsp"};
+constexpr std::array<std::string_view, 3> kCodecs{"h264", "h265", "jpeg"};
+constexpr std::array<std::string_view, 4> kEncoders{"x264enc", "openh264enc", "v4l2h264enc", "jpegenc"};
+
+std::string* value_of(Properties& properties, std::string_view name) {
+  for (Property& property : properties)
+    if (property.name == name) return &property.value;
+  return nullptr;
+}
+
+class CameraReader {
+ public:
+  CameraReader(const TomlValue& table, std::string_view folder, Mistakes& mistakes,
+               std::vector<NamedFile>& files)
+      : reader_(table, "[[camera]]", mistakes), folder_(folder), mistakes_(mistakes), files_(files) {
+    camera_.line = table.line;
+  }
+
+  CameraSettings read() {
+    if (!reader_.has("name")) reader_.complain("name", "a [[camera]] needs a \"name\"");
+    if (reader_.text("name", camera_.name)) check_name();
+    read_source();
+    reader_.number("horizontal-fov", camera_.horizontal_fov, 1, 179);
+    check_window();
+    if (const TomlValue* table = reader_.table("detection"))
+      read_part(*table, "[camera.detection]", kDetection, camera_.detection);
+    if (const TomlValue* table = reader_.table("fusion"))
+      read_part(*table, "[camera.fusion]", kFusion, camera_.fusion);
+    if (const TomlValue* table = reader_.table("sensors"))
+      read_part(*table, "[camera.sensors]", kSensors, camera_.sensors.emplace());
+    if (const TomlValue* table = reader_.table("head")) {
+      read_part(*table, "[camera.head]", kHead, camera_.head.emplace());
+      check_head(*table);
+    }
+    if (const TomlValue* table = reader_.table("recorder")) read_recorder(*table);
+    if (camera_.source.kind == SourceKind::world && !camera_.head)
+      reader_.complain("kind", "kind = \"world\" is a simulated head's world: it needs a [camera.head]");
+    reader_.finish();
+    return std::move(camera_);
+  }
+
+ private:
+  // The name is part of file names, MQTT topics and addresses.
+  void check_name() {
+    const auto plain = [](char c) {
+      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' ||
+             c == '_';
+    };
+    if (camera_.name.empty() || camera_.name.size() > 64 || !std::ranges::all_of(camera_.name, plain))
+      reader_.complain("name", "\"name\" of [[camera]] is 1 to 64 letters (a to z), digits, - and _");
+  }
+
+  // The window of a world shows a part of it.
+  void check_window() {
+    if (camera_.source.kind != SourceKind::world) return;
+    if (!reader_.has("horizontal-fov"))
+      camera_.horizontal_fov = camera_.source.wide_fov / 2;
+    else if (camera_.horizontal_fov >= camera_.source.wide_fov)
+      reader_.complain(
+          "horizontal-fov",
+          "\"horizontal-fov\", what the window shows, is less than \"wide-fov\", what the video shows");
+  }
+
+  // Keys of one kind of source are mistakes with another.
+  void only_with(std::initializer_list<const char*> keys, std::initializer_list<SourceKind> kinds) {
+    for (const char* key : keys) {
+      if (reader_.has(key) && std::ranges::find(kinds, camera_.source.kind) == kinds.end())
+        reader_.complain(key, std::string("\"") + key + "\" is not for kind = \"" +
+                                  std::string(kKinds[static_cast<std::size_t>(camera_.source.kind)]) + "\"");
+    }
+  }
+  void needs(const char* key) {
+    if (!reader_.has(key))
+      reader_.complain("kind", "kind = \"" +
+                                   std::string(kKinds[static_cast<std::size_t>(camera_.source.kind)]) +
+                                   "\" needs \"" + key + "\"");
+  }
+
+  void read_source() {
+    SourceSettings& source = camera_.source;
+    std::size_t kind = 0, codec = 0;
+    const bool known = reader_.choice("kind", kind, kKinds);
+    if (!reader_.has("kind"))
+      reader_.complain("kind", "a [[camera]] needs a \"kind\": test, world, file, v4l2 or rtsp");
+    source.kind = static_cast<SourceKind>(kind);
+    reader_.text("device", source.device);
+    reader_.text("uri", source.uri);
+    reader_.text("record-uri", source.record_uri);
+    reader_.text("user", source.user);
+    file("password-file", source.password_file, true);
+    if (reader_.choice("codec", codec, kCodecs)) source.codec = static_cast<Codec>(codec);
+    file("file", source.file, false);
+    reader_.truth("loop", source.loop);
+    reader_.truth("motion-jpeg", source.motion_jpeg);
+    reader_.whole("width", source.width, 32, 8192);
+    reader_.whole("height", source.height, 32, 8192);
+    reader_.whole("framerate", source.framerate, 1, 240);
+    reader_.number("wide-fov", source.wide_fov, 1, 170);
+    reader_.number("start-pan", source.start_pan, -90, 90);
+    reader_.number("start-tilt", source.start_tilt, -90, 90);
+    if (!known) return;
+    using enum SourceKind;
+    only_with({"device", "motion-jpeg"}, {v4l2});
+    only_with({"uri", "record-uri", "user", "password-file", "codec"}, {rtsp});
+    only_with({"file", "loop"}, {SourceKind::file, world});
+    only_with({"wide-fov", "start-pan", "start-tilt"}, {world});
+    only_with({"width", "height"}, {test, world, v4l2});
+    only_with({"framerate"}, {test, v4l2});
+    if (source.kind == v4l2) needs("device");
+    if (source.kind == rtsp) needs("uri");
+    if (source.kind == SourceKind::file || source.kind == world) needs("file");
+    if (reader_.has("width") != reader_.has("height"))
+      reader_.complain(reader_.has("width") ? "width" : "height", "\"width\" and \"height\" belong together");
+    for (const char* key : {"uri", "record-uri"}) check_uri(key);
+    if (reader_.has("password-file") != reader_.has("user"))
+      reader_.complain("user", "\"user\" and \"password-file\" belong together");
+  }
+
+  void check_uri(const char* key) {
+    if (!reader_.has(key)) return;
+    const std::string& uri = key[0] == 'u' ? camera_.source.uri : camera_.source.record_uri;
+    if (!uri.starts_with("rtsp://") && !uri.starts_with("rtsps://")) {
+      reader_.complain(key, std::string("\"") + key + "\" begins with rtsp:// or rtsps://");
+      return;
+    }
+    const std::size_t host = uri.find("://") + 3;
+    const std::string authority = uri.substr(host, uri.find('/', host) - host);
+    if (authority.find('@') != authority.npos)
+      reader_.complain(
+          key, std::string("\"") + key + "\" holds a user or a password: use \"user\" and \"password-file\"");
+  }
+
+  void file(const char* key, std::string& value, bool secret) {
+    if (!reader_.text(key, value)) return;
+    value = below(folder_, value);
+    files_.push_back({reader_.line(key), key, value, secret});
+  }
+
+  void read_part(const TomlValue& table, const char* where, std::span<const Option> options,
+                 Properties& into) {
+    TableReader reader(table, where, mistakes_);
+    reader.properties(options, into);
+    for (const char* key : {"rules-file", "calibration", "location"}) {
+      std::string* path = value_of(into, key);
+      if (path == nullptr) continue;
+      *path = below(folder_, *path);
+      files_.push_back({reader.line(key), key, *path, false});
+    }
+    // Passwords of heads come from files (user=..., password-file=...).
+    if (const std::string* words = value_of(into, "device-options");
+        words != nullptr && words->find("password=") != words->npos)
+      reader.complain("device-options",
+                      "\"device-options\" holds a password: write password-file=... with the path of a file");
+    reader.finish();
+  }
+
+  void check_head(const TomlValue& table) {
+    TableReader reader(table, "[camera.head]", mistakes_);
+    const std::string* driver = value_of(*camera_.head, "driver");
+    const std::string kind = driver != nullptr ? *driver : "simulated";
+    if (camera_.source.kind == SourceKind::world && kind != "simulated")
+      reader.complain("driver",
+                      "kind = \"world\" has a simulated head: its window cannot be turned by another");
+    if (kind == "external" && !reader.has("command"))
+      reader.complain("driver", "driver = \"external\" needs \"command\"");
+    if (kind != "external" && kind != "simulated" && !reader.has("device"))
+      reader.complain("driver", "driver = \"" + kind + "\" needs \"device\"");
+  }
+
+  void read_recorder(const TomlValue& table) {
+    TableReader reader(table, "[camera.recorder]", mistakes_);
+    RecorderSettings& recorder = camera_.recorder.emplace();
+    if (!reader.has("folder")) reader.complain("folder", "a [camera.recorder] needs a \"folder\"");
+    if (reader.text("folder", recorder.folder)) recorder.folder = below(folder_, recorder.folder);
+    std::size_t encoder = 0;
+    if (reader.choice("encoder", encoder, kEncoders)) recorder.encoder = kEncoders[encoder];
+    if (reader.has("encoder") && camera_.source.kind == SourceKind::rtsp)
+      reader.complain("encoder", "the stream of kind = \"rtsp\" is recorded as it comes, without an encoder");
+    double days = 7;
+    if (reader.number("retention-days", days, 0, 36500))
+      recorder.properties.push_back(
+          {"retention-age", std::to_string(static_cast<std::int64_t>(days * kDay * 1e9))});
+    reader.properties(kRecorder, recorder.properties);
+    reader.finish();
+  }
+
+  TableReader reader_;
+  std::string_view folder_;
+  Mistakes& mistakes_;
+  std::vector<NamedFile>& files_;
+  CameraSettings camera_;
+};
+
+}  // namespace
+
+std::string below(std::string_view folder, std::string_view path) {
+  if (folder.empty() || path.empty() || path.front() == '/') return std::string(path);
+  std::string whole(folder);
+  if (!whole.ends_with('/')) whole += '/';
+  return whole.append(path);
+}
+
+CameraSettings read_camera(const TomlValue& table, std::string_view folder, Mistakes& mistakes,
+                           std::vector<NamedFile>& files) {
+  return CameraReader(table, folder, mistakes, files).read();
+}
+
+}  // namespace cerberus::robot

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What one configuration file says about a robot: cameras with their sensors, heads and recorders, the mode, the page.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "robot/mode.h"
+
+namespace cerberus::robot {
+
+// A property of a GStreamer element, its value in the form of gst-launch-1.0.
+struct Property {
+  std::string name, value;
+};
+using Properties = std::vector<Property>;
+
+enum class SourceKind : std::uint8_t {
+  test,   // a drawn picture with a ball that moves
+  world,  // a video as the world of a simulated head: a window that turns over it
+  file,   // a video file in real time
+  v4l2,   // a camera of the kernel
+  rtsp,   // a network camera
+};
+
+enum class Codec : std::uint8_t { h264, h265, jpeg };
+
+struct SourceSettings {
+  SourceKind kind = SourceKind::test;
+  std::string device;                    // v4l2
+  std::string uri;                       // rtsp: the stream that is analysed
+  std::string record_uri;                // rtsp: the stream that is recorded; empty: the same
+  std::string user, password_file;       // rtsp
+  Codec codec = Codec::h264;             // rtsp
+  std::string file;                      // file, world
+  bool loop = true;                      // file, world: begins anew at its end
+  bool motion_jpeg = false;              // v4l2: the camera gives JPEG
+  int width = 0, height = 0;             // pixels; 0: as the source gives them (world: of the window)
+  int framerate = 0;                     // frames a second; 0: as the source gives them
+  double wide_fov = 60;                  // world: degrees over the width of the video
+  double start_pan = 0, start_tilt = 0;  // world: where the head looks at first, degrees
+};
+
+struct RecorderSettings {
+  std::string folder;
+  std::string encoder = "x264enc";  // of pictures that do not come encoded
+  Properties properties;            // of eventrecorder
+};
+
+struct CameraSettings {
+  std::string name;
+  std::uint32_t line = 0;
+  SourceSettings source;
+  double horizontal_fov = 60;         // degrees over the width of the picture
+  Properties detection;               // of motiondetect
+  Properties fusion;                  // of pirfusion
+  std::optional<Properties> sensors;  // of pirsrc
+  std::optional<Properties> head;     // of pantiltsink
+  std::optional<RecorderSettings> recorder;
+};
+
+struct PageSettings {
+  bool enabled = true;
+  std::string listen = "127.0.0.1";
+  int port = 8080;
+  std::vector<std::string> origins;  // that may open the page's WebSocket beside the page's own
+  int picture_width = 960;           // pixels at most
+  int quality = 75;                  // of the JPEG pictures, percent
+};
+
+struct ModeSettings {
+  Mode start = Mode::armed;  // at the very first start
+  Schedule schedule;
+};
+
+struct Settings {
+  std::string name = "cerberus";
+  std::string state_folder;  // empty: the program chooses
+  ModeSettings mode;
+  PageSettings page;
+  std::vector<CameraSettings> cameras;
+};
+
+}  // namespace cerberus::robot

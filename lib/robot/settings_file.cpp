@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/settings_file.h"
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <set>
+#include <utility>
+
+#include "robot/camera_settings.h"
+#include "robot/table_reader.h"
+#include "text/file.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+using text::TomlValue;
+
+// Largest configuration file, largest secret, in bytes. A larger file was named by mistake.
+constexpr std::size_t kMostBytes = 1 << 20, kMostSecret = 4096;
+
+constexpr std::array<std::string_view, 3> kModes{"armed", "disarmed", "privacy"};
+constexpr std::array<std::string_view, 7> kDays{"mon", "tue", "wed", "thu", "fri", "sat", "sun"};
+
+Mode mode_at(std::size_t index) {
+  return *mode_of(kModes[index]);
+}
+
+// "22:30" as minutes of the day; -1: it is none.
+int minute_of(std::string_view text) {
+  const auto digit = [&](std::size_t at) {
+    return text[at] >= '0' && text[at] <= '9' ? text[at] - '0' : 100000;
+  };
+  if (text.size() != 5 || text[2] != ':') return -1;
+  const int hour = 10 * digit(0) + digit(1), minute = 10 * digit(3) + digit(4);
+  return hour < 24 && minute < 60 ? 60 * hour + minute : -1;
+}
+
+ScheduleEntry read_entry(const TomlValue& table, Mistakes& mistakes) {
+  TableReader reader(table, "an entry of \"schedule\"", mistakes);
+  ScheduleEntry entry;
+  std::string at;
+  if (!reader.has("at")) reader.complain("at", "an entry of \"schedule\" needs \"at\": at = \"22:30\"");
+  if (reader.text("at", at)) {
+    entry.minute = minute_of(at);
+    if (entry.minute < 0)
+      reader.complain("at", "\"at\" is a time of the day in hours and minutes: \"22:30\"");
+  }
+  std::size_t mode = 0;
+  if (!reader.has("mode")) reader.complain("mode", "an entry of \"schedule\" needs \"mode\"");
+  if (reader.choice("mode", mode, kModes)) entry.mode = mode_at(mode);
+  std::vector<std::string> days;
+  if (reader.texts("days", days)) {
+    entry.days = 0;
+    for (const std::string& day : days) {
+      const auto found = std::ranges::find(kDays, day);
+      if (found == kDays.end())
+        reader.complain("days", "\"" + day + "\" is no day: mon, tue, wed, thu, fri, sat, sun");
+      else
+        entry.days = static_cast<std::uint8_t>(entry.days | 1U << (found - kDays.begin()));
+    }
+    if (days.empty()) reader.complain("days", "\"days\" names no day; without it every day counts");
+  }
+  reader.finish();
+  return entry;
+}
+
+ModeSettings read_mode(const TomlValue& table, Mistakes& mistakes) {
+  TableReader reader(table, "[mode]", mistakes);
+  ModeSettings settings;
+  std::size_t start = 0;
+  if (reader.choice("start", start, kModes)) settings.start = mode_at(start);
+  for (const TomlValue* entry : reader.tables("schedule", "[ { at = \"22:30\", mode = \"armed\" } ]"))
+    settings.schedule.push_back(read_entry(*entry, mistakes));
+  reader.finish();
+  return settings;
+}
+
+PageSettings read_page(const TomlValue& table, Mistakes& mistakes) {
+  TableReader reader(table, "[page]", mistakes);
+  PageSettings settings;
+  reader.truth("enabled", settings.enabled);
+  reader.text("listen", settings.listen);
+  reader.whole("port", settings.port, 1, 65535);
+  reader.texts("origins", settings.origins);
+  for (const std::string& origin : settings.origins) {
+    const std::size_t scheme = origin.find("://");
+    if (scheme == origin.npos || origin.find('/', scheme + 3) != origin.npos || origin.size() == scheme + 3)
+      reader.complain("origins",
+                      "\"" + origin + "\" is no origin: \"https://robot.example:8443\", without a path");
+  }
+  reader.whole("picture-width", settings.picture_width, 160, 3840);
+  reader.whole("quality", settings.quality, 10, 100);
+  reader.finish();
+  return settings;
+}
+
+std::string joined(Mistakes mistakes, std::string_view source) {
+  std::ranges::stable_sort(mistakes, {}, &text::TomlMistake::line);
+  std::string all;
+  for (const text::TomlMistake& mistake : mistakes) {
+    if (!all.empty()) all += '\n';
+    all += source;
+    if (mistake.line > 0) all += ':' + std::to_string(mistake.line);
+    all += ": " + mistake.text;
+  }
+  return all;
+}
+
+struct Parsed {
+  Settings settings;
+  Mistakes mistakes;
+  std::vector<NamedFile> files;
+};
+
+Parsed parse(std::string_view toml, std::string_view folder) {
+  Parsed parsed;
+  const text::TomlFile file = text::parse_toml(toml);
+  if (!file.root) {
+    parsed.mistakes.push_back(file.mistake);
+    return parsed;
+  }
+  Mistakes& mistakes = parsed.mistakes;
+  Settings& settings = parsed.settings;
+  TableReader reader(*file.root, "the file", mistakes);
+  reader.text("name", settings.name);
+  if (reader.text("state-folder", settings.state_folder))
+    settings.state_folder = below(folder, settings.state_folder);
+  if (const TomlValue* table = reader.table("mode")) settings.mode = read_mode(*table, mistakes);
+  if (const TomlValue* table = reader.table("page")) settings.page = read_page(*table, mistakes);
+  for (const TomlValue* table : reader.tables("camera", "[[camera]]"))
+    settings.cameras.push_back(read_camera(*table, folder, mistakes, parsed.files));
+  if (!reader.has("camera")) mistakes.push_back({0, "there is no camera: it needs a [[camera]]"});
+  std::set<std::string> names;
+  for (const CameraSettings& camera : settings.cameras)
+    if (!camera.name.empty() && !names.insert(camera.name).second)
+      mistakes.push_back({camera.line, "there are two cameras called \"" + camera.name + "\""});
+  reader.finish();
+  return parsed;
+}
+
+// What is wrong with a file that the configuration names; empty: nothing.
+std::string fault_of(const NamedFile& file) {
+  struct stat about{};
+  if (::stat(file.path.c_str(), &about) != 0)
+    return "\"" + file.key + "\" names " + file.path + ": " + std::strerror(errno);
+  if (!S_ISREG(about.st_mode))
+    return "\"" + file.key + "\" names " + file.path + ", which is no regular file";
+  if (file.secret && (about.st_mode & 07) != 0)
+    return file.path + " holds a secret that every user of this machine can read: chmod 600 " + file.path;
+  return {};
+}
+
+}  // namespace
+
+SettingsFile parse_settings(std::string_view toml, std::string_view source, std::string_view folder) {
+  Parsed parsed = parse(toml, folder);
+  if (!parsed.mistakes.empty()) return {std::nullopt, joined(std::move(parsed.mistakes), source)};
+  return {std::move(parsed.settings), ""};
+}
+
+SettingsFile load_settings(const std::string& path) {
+  using Fault = text::File::Fault;
+  const text::File file = text::read_file(path, kMostBytes);
+  switch (file.fault) {
+    case Fault::failed:
+      return {std::nullopt, path + ": " + std::strerror(file.error)};
+    case Fault::irregular:
+      return {std::nullopt, path + ": a configuration file is a regular file"};
+    case Fault::too_large:
+      return {std::nullopt, path + ": too long for a configuration file"};
+    case Fault::none:
+      break;
+  }
+  const std::size_t slash = path.rfind('/');
+  Parsed parsed = parse(file.text, slash == path.npos ? "." : slash == 0 ? "/" : path.substr(0, slash));
+  for (const NamedFile& named : parsed.files)
+    if (std::string fault = fault_of(named); !fault.empty())
+      parsed.mistakes.push_back({named.line, std::move(fault)});
+  if (!parsed.mistakes.empty()) return {std::nullopt, joined(std::move(parsed.mistakes), path)};
+  return {std::move(parsed.settings), ""};
+}
+
+std::optional<std::string> read_secret(const std::string& path, std::string& error) {
+  const text::File file = text::read_file(path, kMostSecret);
+  if (file.fault == text::File::Fault::failed)
+    error = path + ": " + std::strerror(file.error);
+  else if (file.fault != text::File::Fault::none)
+    error = path + " is no file with one line that holds a secret";
+  std::string secret = file.text.substr(0, file.text.find_first_of("\r\n"));
+  if (error.empty() && secret.empty()) error = path + " is empty: its first line is the secret";
+  if (!error.empty()) return std::nullopt;
+  return secret;
+}
+
+}  // namespace cerberus::robot

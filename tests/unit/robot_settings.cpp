@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/settings_file.h"
+
+#include <sys/stat.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "robot/mode.h"
+#include "support/says.h"
+#include "support/suite.h"  // after the streams: check defines fail()
+#include "support/temporary_folder.h"
+
+using namespace cerberus::robot;
+
+namespace {
+
+const std::string kSmallest = "[[camera]]\nname = \"front\"\nkind = \"test\"\n";
+
+std::string read(const std::string& name) {
+  const char* source = std::getenv("CERBERUS_SOURCE");
+  std::ifstream file(std::string(source ? source : ".") + '/' + name);
+  ck_assert_msg(file.good(), "%s is not there (CERBERUS_SOURCE names the checkout)", name.c_str());
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::string errors(const std::string& text) {
+  return parse_settings(text, "r.toml", "").errors;
+}
+
+Settings settings(const std::string& text) {
+  SettingsFile file = parse_settings(text, "r.toml", "/etc/robot");
+  ck_assert_msg(file.settings.has_value(), "%s", file.errors.c_str());
+  return *std::move(file.settings);
+}
+
+std::string value(const Properties& properties, const std::string& name) {
+  for (const Property& property : properties)
+    if (property.name == name) return property.value;
+  return "(none)";
+}
+
+void write(const std::string& path, const std::string& text, int mode = 0600) {
+  std::ofstream(path) << text;
+  ::chmod(path.c_str(), static_cast<mode_t>(mode));
+}
+
+}  // namespace
+
+START_TEST(the_smallest_file_has_one_camera_and_a_page_on_loopback) {
+  const Settings all = settings(kSmallest);
+  ck_assert_uint_eq(all.cameras.size(), 1);
+  ck_assert_str_eq(all.cameras[0].name.c_str(), "front");
+  ck_assert(!all.cameras[0].head && !all.cameras[0].sensors && !all.cameras[0].recorder);
+  ck_assert(all.page.enabled && all.page.listen == "127.0.0.1" && all.page.port == 8080);
+  ck_assert(all.mode.start == Mode::armed);
+}
+END_TEST
+
+START_TEST(a_whole_file_becomes_typed_settings) {
+  const Settings all = settings(R"(name = "garden"
+[mode]
+start = "disarmed"
+schedule = [ { at = "22:30", days = ["sat", "sun"], mode = "armed" } ]
+[[camera]]
+name = "gate"
+kind = "rtsp"
+uri = "rtsp://192.168.1.64:554/sub"
+record-uri = "rtsp://192.168.1.64:554/main"
+user = "viewer"
+password-file = "gate.password"
+codec = "h265"
+horizontal-fov = 90
+[camera.detection]
+confirm-time = 0.3
+[camera.sensors]
+driver = "gpio"
+lines = "17,27,22"
+[camera.head]
+driver = "visca"
+device = "serial:/dev/ttyUSB0"
+pan-min = -100
+[camera.recorder]
+folder = "recordings"
+pre-roll = 2.5
+retention-days = 2
+)");
+  const CameraSettings& gate = all.cameras.at(0);
+  ck_assert(gate.source.kind == SourceKind::rtsp && gate.source.codec == Codec::h265);
+  ck_assert_str_eq(gate.source.password_file.c_str(), "/etc/robot/gate.password");
+  ck_assert_double_eq(gate.horizontal_fov, 90);
+  ck_assert(value(gate.detection, "confirm-time") == "300000000");
+  ck_assert(value(*gate.sensors, "lines") == "17,27,22");
+  ck_assert(value(*gate.head, "pan-min") == "-100");
+  ck_assert_str_eq(gate.recorder->folder.c_str(), "/etc/robot/recordings");
+  ck_assert(value(gate.recorder->properties, "pre-roll") == "2500000000");
+  ck_assert(value(gate.recorder->properties, "retention-age") == "172800000000000");
+  ck_assert(all.mode.start == Mode::disarmed);
+  ck_assert_int_eq(all.mode.schedule.at(0).minute, 22 * 60 + 30);
+  ck_assert_int_eq(all.mode.schedule.at(0).days, 0b1100000);
+}
+END_TEST
+
+START_TEST(every_mistake_is_reported_with_its_line) {
+  const struct {
+    const char *text, *error;
+  } cases[] = {
+      {"", "r.toml: there is no camera"},
+      {"nam = \"x\"\n", "r.toml:1: unknown key \"nam\" in the file: is \"name\" meant?"},
+      {"name = 7\n", "r.toml:1: \"name\" of the file is a text in quotes"},
+      {"name = \"a\\nb\"\n", "r.toml:1: \"name\" of the file is one line"},
+      {"page = 3\n", "r.toml:1: \"page\" of the file is a table of its own"},
+      {"camera = 3\n", "r.toml:1: \"camera\" of the file is a list of tables: [[camera]]"},
+      {"[page]\nport = 70000\n", "r.toml:2: \"port\" of [page] is a whole number from 1 to 65535"},
+      {"[page]\nenabled = 1\n", "r.toml:2: \"enabled\" of [page] is true or false"},
+      {"[page]\norigins = [\"robot\"]\n", "r.toml:2: \"robot\" is no origin"},
+      {"[page]\norigins = \"robot\"\n", "r.toml:2: \"origins\" of [page] is a list of texts"},
+      {"[mode]\nstart = \"on\"\n",
+       "r.toml:2: \"start\" of [mode] is one of \"armed\", \"disarmed\", \"privacy\""},
+      {"[mode]\nschedule = [ { at = \"24:00\", mode = \"armed\" } ]\n",
+       "r.toml:2: \"at\" is a time of the day"},
+      {"[mode]\nschedule = [ { at = \"2x:00\", mode = \"armed\" } ]\n",
+       "r.toml:2: \"at\" is a time of the day"},
+      {"[mode]\nschedule = [ { mode = \"armed\" } ]\n", "r.toml:2: an entry of \"schedule\" needs \"at\""},
+      {"[mode]\nschedule = [ { at = \"10:00\" } ]\n", "r.toml:2: an entry of \"schedule\" needs \"mode\""},
+      {"[mode]\nschedule = [ { at = \"10:00\", mode = \"armed\", days = [\"may\"] } ]\n",
+       "r.toml:2: \"may\" is no day"},
+      {"[[camera]]\nkind = \"test\"\n", "r.toml:1: a [[camera]] needs a \"name\""},
+      {"[[camera]]\nname = \"a b\"\nkind = \"test\"\n",
+       "r.toml:2: \"name\" of [[camera]] is 1 to 64 letters"},
+      {"[[camera]]\nname = \"a\"\n", "r.toml:1: a [[camera]] needs a \"kind\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"usb\"\n",
+       "r.toml:3: \"kind\" of [[camera]] is one of \"test\", \"world\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"v4l2\"\n", "r.toml:3: kind = \"v4l2\" needs \"device\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\ndevice = \"/dev/video0\"\n",
+       "r.toml:4: \"device\" is not for kind = \"test\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\nwidth = 640\n",
+       "r.toml:4: \"width\" and \"height\" belong together"},
+      {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"http://b\"\n",
+       "r.toml:4: \"uri\" begins with rtsp://"},
+      {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://u:secret@b/c\"\n",
+       "r.toml:4: \"uri\" holds a user or a password: use \"user\" and \"password-file\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b\"\nuser = \"u\"\n",
+       "r.toml:5: \"user\" and \"password-file\" belong together"},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\nhorizontal-fov = nan\n",
+       "r.toml:4: \"horizontal-fov\" of [[camera]] is a number from 1 to 179"},
+      {"[[camera]]\nname = \"a\"\nkind = \"world\"\nfile = \"w.avi\"\n",
+       "r.toml:3: kind = \"world\" is a simulated head's world"},
+      {"[[camera]]\nname = \"a\"\nkind = \"world\"\nfile = \"w.avi\"\nhorizontal-fov = 70\n[camera.head]\n",
+       "r.toml:5: \"horizontal-fov\", what the window shows, is less than"},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\npan-max = -5\n",
+       "r.toml:5: \"pan-max\" of [camera.head] is a number from 0 to 3600"},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\ndriver = \"visca\"\n",
+       "r.toml:5: driver = \"visca\" needs \"device\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\ndriver = \"external\"\n",
+       "r.toml:5: driver = \"external\" needs \"command\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\ndevice-options = \"user=u "
+       "password=secret\"\n",
+       "r.toml:5: \"device-options\" holds a password"},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.recorder]\n",
+       "r.toml:4: a [camera.recorder] needs a \"folder\""},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.recorder]\nfolder = \".\"\npre-role = 3\n",
+       "r.toml:6: unknown key \"pre-role\" in [camera.recorder]: is \"pre-roll\" meant?"},
+      {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[[camera]]\nname = \"a\"\nkind = \"test\"\n",
+       "r.toml:4: there are two cameras called \"a\""},
+      {"[page]\nport = \n", "r.toml:2: "},
+  };
+  for (const auto& one : cases) {
+    const std::string found = errors(one.text);
+    ck_assert_msg(found.find(one.error) != found.npos, "\"%s\" is not in \"%s\"", one.error, found.c_str());
+    ck_assert_msg(found.find("secret") == found.npos, "a secret is in \"%s\"", found.c_str());
+  }
+}
+END_TEST
+
+START_TEST(all_mistakes_come_at_once_in_the_order_of_their_lines) {
+  const std::string found = errors("[page]\nprot = 1\n[[camera]]\nname = \"a\"\nkind = \"tset\"\n");
+  ck_assert_str_eq(
+      found.c_str(),
+      "r.toml:2: unknown key \"prot\" in [page]: is \"port\" meant?\n"
+      "r.toml:5: \"kind\" of [[camera]] is one of \"test\", \"world\", \"file\", \"v4l2\", \"rtsp\"");
+}
+END_TEST
+
+START_TEST(files_that_are_named_must_be_there_and_secrets_be_secret) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/r.toml";
+  const std::string camera =
+      "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b\"\nuser = \"u\"\npassword-file = \"p\"\n";
+  write(path, camera);
+  ck_assert(says(load_settings(path).errors,
+                 path + ":6: \"password-file\" names " + folder.path + "/p: No such file"));
+  write(folder.path + "/p", "hush\n", 0644);
+  ck_assert(says(load_settings(path).errors, ":6: " + folder.path + "/p holds a secret that every user"));
+  ck_assert(load_settings(path).errors.find("hush") == std::string::npos);
+  write(folder.path + "/p", "hush\n", 0640);
+  ck_assert(load_settings(path).errors == "");
+  ck_assert(says(load_settings(folder.path + "/none.toml").errors, "No such file"));
+  ck_assert(says(load_settings(folder.path).errors, "a configuration file is a regular file"));
+}
+END_TEST
+
+START_TEST(a_secret_is_the_first_line_of_its_file) {
+  const TemporaryFolder folder;
+  std::string error;
+  write(folder.path + "/p", "hush hush\r\nmore\n");
+  ck_assert(read_secret(folder.path + "/p", error).value_or("") == "hush hush");
+  write(folder.path + "/empty", "\n");
+  ck_assert(!read_secret(folder.path + "/empty", error) && says(error, "is empty"));
+}
+END_TEST
+
+START_TEST(the_examples_of_the_manual_and_the_demo_are_sound) {
+  const std::string page = read("docs/manual/robot.md");
+  const std::string open = "```toml\n", close = "```";
+  int examples = 0;
+  for (std::size_t at = page.find(open); at != page.npos; at = page.find(open, at)) {
+    at += open.size();
+    settings(page.substr(at, page.find(close, at) - at));
+    ++examples;
+  }
+  ck_assert_int_ge(examples, 2);
+  const Settings demo = settings(read("pipelines/robot/demo.toml"));
+  ck_assert(demo.cameras.at(0).source.kind == SourceKind::world);
+}
+END_TEST
+
+// Monday 22:00 armed, every day 7:00 disarmed.
+static const Schedule kNights{{0x01, 22 * 60, Mode::armed}, {0x7f, 7 * 60, Mode::disarmed}};
+
+START_TEST(the_entry_of_a_schedule_that_took_effect_last_counts) {
+  const struct {
+    LocalTime now;
+    Mode mode;
+    int ago;
+  } cases[] = {
+      {{0, 22 * 60}, Mode::armed, 0},            // Monday 22:00
+      {{1, 6 * 60 + 59}, Mode::armed, 539},      // Tuesday 6:59, 8 h 59 min later
+      {{1, 7 * 60}, Mode::disarmed, 0},          // Tuesday 7:00
+      {{0, 21 * 60 + 59}, Mode::disarmed, 899},  // Monday 21:59, 14 h 59 min after 7:00
+      {{0, 0}, Mode::disarmed, 1020},            // Monday 0:00: since Sunday 7:00, across the week's end
+  };
+  for (const auto& one : cases) {
+    const std::optional<Due> found = due(kNights, one.now);
+    ck_assert(found && found->mode == one.mode);
+    ck_assert_int_eq(found->minutes_ago, one.ago);
+  }
+  ck_assert(!due({}, {0, 0}));
+}
+END_TEST
+
+START_TEST(a_mode_set_by_hand_holds_until_the_next_entry) {
+  constexpr std::int64_t kNoon = 1'000'000'020 - 1'000'000'020 % 60;  // counts as Monday 12:00 here
+  ModeKeeper keeper(Mode::privacy, kNights);
+  ck_assert(keeper.tick({0, 12 * 60}, kNoon) && keeper.mode() == Mode::disarmed);
+  keeper.set(Mode::privacy, kNoon + 30);
+  ck_assert(!keeper.tick({0, 12 * 60 + 1}, kNoon + 60) && keeper.mode() == Mode::privacy);
+  ck_assert(!keeper.tick({0, 21 * 60 + 59}, kNoon + 35940) && keeper.mode() == Mode::privacy);
+  ck_assert(keeper.tick({0, 22 * 60}, kNoon + 36000) && keeper.mode() == Mode::armed);
+}
+END_TEST
+
+START_TEST(the_mode_survives_a_restart_and_a_broken_state_is_privacy) {
+  ModeKeeper keeper(Mode::armed, {});
+  keeper.set(Mode::disarmed, 1763863200);
+  ck_assert(keeper.state() == "disarmed 1763863200\n");
+  ModeKeeper other(Mode::armed, {});
+  ck_assert(other.restore(keeper.state()) && other.mode() == Mode::disarmed);
+  for (const char* broken :
+       {"", "armed", "armed x\n", "armed 12", "alarmed 12\n", "armed -1\n", "armed 12 \n"}) {
+    ModeKeeper wrong(Mode::armed, {});
+    ck_assert_msg(!wrong.restore(broken) && wrong.mode() == Mode::privacy, "\"%s\" was taken", broken);
+  }
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "robot settings",
+      {the_smallest_file_has_one_camera_and_a_page_on_loopback, a_whole_file_becomes_typed_settings,
+       every_mistake_is_reported_with_its_line, all_mistakes_come_at_once_in_the_order_of_their_lines,
+       files_that_are_named_must_be_there_and_secrets_be_secret, a_secret_is_the_first_line_of_its_file,
+       the_examples_of_the_manual_and_the_demo_are_sound,
+       the_entry_of_a_schedule_that_took_effect_last_counts, a_mode_set_by_hand_holds_until_the_next_entry,
+       the_mode_survives_a_restart_and_a_broken_state_is_privacy});
+}
