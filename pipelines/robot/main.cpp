@@ -1,20 +1,58 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // cerberusd: a whole robot from one configuration file, documented in docs/manual/robot.md.
+#include <gst/gst.h>
+
 #include <cstdio>
+#include <filesystem>
 #include <string>
 
+#include "robot.h"
 #include "robot/settings_file.h"
 
+namespace {
+
+// A program that was not installed finds the elements of its own build.
+void find_elements() {
+  g_autoptr(GstElementFactory) there = gst_element_factory_find("motiondetect");
+  if (there) return;
+  std::error_code error;
+  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+  const std::filesystem::path plugins = program.parent_path().parent_path() / "plugins";
+  if (!error && std::filesystem::is_directory(plugins, error))
+    gst_registry_scan_path(gst_registry_get(), plugins.c_str());
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  if (argc != 3 || std::string(argv[1]) != "--check") {
-    std::fprintf(stderr, "usage: cerberusd --check FILE\n");
+  gboolean check = FALSE;
+  const GOptionEntry options[] = {{"check", 0, 0, G_OPTION_ARG_NONE, &check,
+                                   "Explain every mistake of FILE with its line, and run nothing", nullptr},
+                                  {nullptr, 0, 0, G_OPTION_ARG_NONE, nullptr, nullptr, nullptr}};
+  g_autoptr(GOptionContext) context = g_option_context_new("FILE");
+  g_option_context_set_summary(context, "Runs the robot that FILE describes (docs/manual/robot.md).");
+  g_option_context_add_main_entries(context, options, nullptr);
+  g_option_context_add_group(context, gst_init_get_option_group());
+  g_autoptr(GError) error = nullptr;
+  if (!g_option_context_parse(context, &argc, &argv, &error) || argc != 2) {
+    std::fprintf(stderr, "cerberusd: %s\n", error ? error->message : "which FILE? (cerberusd --help)");
     return 2;
   }
-  const cerberus::robot::SettingsFile file = cerberus::robot::load_settings(argv[2]);
+  cerberus::robot::SettingsFile file = cerberus::robot::load_settings(argv[1]);
   if (!file.settings) {
     std::fprintf(stderr, "%s\n", file.errors.c_str());
     return 1;
   }
-  std::printf("%s: no mistake\n", argv[2]);
-  return 0;
+  if (check) {
+    std::printf("%s: no mistake\n", argv[1]);
+    return 0;
+  }
+  find_elements();
+  cerberus::robot::Robot robot;
+  std::string wrong;
+  if (!robot.open(*std::move(file.settings), wrong)) {
+    std::fprintf(stderr, "cerberusd: %s\n", wrong.c_str());
+    return 1;
+  }
+  return robot.run();
 }

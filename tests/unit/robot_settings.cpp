@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "robot/backoff.h"
 #include "robot/mode.h"
+#include "robot/pipeline_text.h"
 #include "support/says.h"
 #include "support/suite.h"  // after the streams: check defines fail()
 #include "support/temporary_folder.h"
@@ -277,6 +279,72 @@ START_TEST(the_mode_survives_a_restart_and_a_broken_state_is_privacy) {
 }
 END_TEST
 
+std::string assigned(const PipelineText& text, const std::string& element, const std::string& property) {
+  std::string found = "(none)";
+  for (const Assignment& one : text.assignments)
+    if (one.element == element && one.property == property) found = one.value;
+  return found;
+}
+
+START_TEST(texts_of_the_user_are_assigned_and_never_parsed) {
+  const std::string name = "a! fakesink \\\" b.avi";
+  const Settings all = settings("[[camera]]\nname = \"c\"\nkind = \"file\"\nfile = '/" + name +
+                                "'\n[camera.detection]\nzones = 'x ! y'\n");
+  const PipelineText text = pipeline_text(all.cameras[0], all.page, {});
+  ck_assert(text.line.find("fakesink \\") == std::string::npos &&
+            text.line.find("x ! y") == std::string::npos);
+  ck_assert(assigned(text, "source", "location") == "/" + name);
+  ck_assert(assigned(text, "detect", "zones") == "x ! y");
+}
+END_TEST
+
+START_TEST(a_part_that_failed_or_is_not_configured_is_left_out) {
+  const Settings all =
+      settings(kSmallest + "[camera.head]\npan-min = -40\n[camera.recorder]\nfolder = \"rec\"\n");
+  const std::string whole = pipeline_text(all.cameras[0], all.page, {}).line;
+  ck_assert(says(whole, "pantiltsink") && says(whole, "eventrecorder") && says(whole, "jpegenc"));
+  PageSettings hidden = all.page;
+  hidden.enabled = false;
+  const PipelineText less = pipeline_text(all.cameras[0], hidden, {false, false});
+  for (const char* part : {"pantiltsink", "eventrecorder", "jpegenc"})
+    ck_assert_msg(less.line.find(part) == std::string::npos, "%s is in %s", part, less.line.c_str());
+  ck_assert(assigned(less, "fusion", "pan-min") == "-40");  // fusion knows the limits all the same
+  ck_assert(assigned(less, "head", "pan-min") == "(none)");
+}
+END_TEST
+
+START_TEST(what_a_network_camera_records_is_never_encoded_again) {
+  const std::string camera =
+      "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b/sub\"\n[camera.recorder]\nfolder = "
+      "\"rec\"\n";
+  const Settings one = settings(camera);
+  const std::string line = pipeline_text(one.cameras[0], one.page, {}).line;
+  ck_assert(line.find("x264enc") == std::string::npos && says(line, "tee name=encoded"));
+  const Settings two = settings(
+      "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b/sub\"\nrecord-uri = "
+      "\"rtsp://b/main\"\n[camera.recorder]\nfolder = \"rec\"\n");
+  const PipelineText text = pipeline_text(two.cameras[0], two.page, {});
+  ck_assert(assigned(text, "recorded", "location") == "rtsp://b/main");
+  ck_assert(assigned(text, "source", "location") == "rtsp://b/sub");
+  ck_assert(text.line.find("tee name=encoded") == std::string::npos);
+}
+END_TEST
+
+START_TEST(a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1) {
+  using std::chrono::seconds;
+  Backoff backoff;
+  Backoff::Time now{};
+  for (const int expected : {1, 2, 4, 8, 16, 32, 60, 60}) {
+    const Backoff::Duration wait = backoff.failed(now);
+    ck_assert_int_eq(std::chrono::duration_cast<seconds>(wait).count(), expected);
+    ck_assert(!backoff.is_due(now + wait - seconds(1)) && backoff.is_due(now + wait));
+    now += wait;
+  }
+  ck_assert_int_eq(std::chrono::duration_cast<seconds>(backoff.failed(now + seconds(59))).count(), 60);
+  ck_assert_int_eq(std::chrono::duration_cast<seconds>(backoff.failed(now + seconds(200))).count(), 1);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "robot settings",
@@ -285,5 +353,8 @@ int main() {
        files_that_are_named_must_be_there_and_secrets_be_secret, a_secret_is_the_first_line_of_its_file,
        the_examples_of_the_manual_and_the_demo_are_sound,
        the_entry_of_a_schedule_that_took_effect_last_counts, a_mode_set_by_hand_holds_until_the_next_entry,
-       the_mode_survives_a_restart_and_a_broken_state_is_privacy});
+       the_mode_survives_a_restart_and_a_broken_state_is_privacy,
+       texts_of_the_user_are_assigned_and_never_parsed, a_part_that_failed_or_is_not_configured_is_left_out,
+       what_a_network_camera_records_is_never_encoded_again,
+       a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
 }

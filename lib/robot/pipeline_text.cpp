@@ -1,0 +1,227 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/pipeline_text.h"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "text/numbers.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+constexpr const char* kUnlimited = "queue max-size-buffers=0 max-size-bytes=0 max-size-time=0";
+// Bridges 5 s of a slow disk; a head or a page never waits for it.
+constexpr const char* kPatient = "max-size-buffers=0 max-size-bytes=0 max-size-time=5000000000";
+// The newest frame counts.
+constexpr const char* kNewest = "leaky=downstream max-size-buffers=2 max-size-bytes=0 max-size-time=0";
+
+struct Coding {
+  const char *depayloader, *parser, *decoder;
+};
+
+Coding coding(Codec codec) {
+  switch (codec) {
+    case Codec::h264:
+      return {"rtph264depay", "h264parse", "avdec_h264"};
+    case Codec::h265:
+      return {"rtph265depay", "h265parse", "avdec_h265"};
+    case Codec::jpeg:
+      break;
+  }
+  return {"rtpjpegdepay", "jpegparse", "jpegdec"};
+}
+
+class Writer {
+ public:
+  Writer(const CameraSettings& camera, const PageSettings& page, Parts parts)
+      : camera_(camera), source_(camera.source), page_(page) {
+    head_ = camera.head && parts.head;
+    recorder_ = camera.recorder && parts.recorder;
+  }
+
+  PipelineText write() {
+    const bool has_file = source_.kind == SourceKind::file || source_.kind == SourceKind::world;
+    if (recorder_) recorder();
+    source();
+    add(" ! videoconvert");
+    if (has_file) add(" ! identity sync=true");
+    if (source_.kind == SourceKind::world) window();
+    add(" ! motiondetect name=detect ! pirfusion name=fusion ! tee name=found");
+    detection();
+    if (camera_.sensors) {
+      add("  pirsrc name=sensors ! queue ! fusion.pir_0");
+      set("sensors", "camera-name", camera_.name);
+      if (!has_file) set("sensors", "is-live", "true");
+      set_all("sensors", *camera_.sensors);
+    }
+    if (head_) head();
+    if (recorder_) record_frames();
+    if (page_.enabled) pictures();
+    // A pipeline needs a branch that takes every frame.
+    add("  found. ! fakesink sync=false async=false");
+    return std::move(text_);
+  }
+
+ private:
+  void add(std::string_view words) { text_.line += words; }
+  void set(std::string element, std::string property, std::string value) {
+    text_.assignments.push_back({std::move(element), std::move(property), std::move(value)});
+  }
+  void set_all(const char* element, const Properties& properties) {
+    for (const Property& property : properties) set(element, property.name, property.value);
+  }
+
+  std::string size_and_rate() const {
+    std::string caps;
+    if (source_.width > 0)
+      caps += ",width=" + std::to_string(source_.width) + ",height=" + std::to_string(source_.height);
+    if (source_.framerate > 0) caps += ",framerate=" + std::to_string(source_.framerate) + "/1";
+    return caps;
+  }
+
+  void source() {
+    switch (source_.kind) {
+      case SourceKind::test:
+        add("  videotestsrc name=source is-live=true pattern=ball ! video/x-raw");
+        add(size_and_rate());
+        break;
+      case SourceKind::world:
+      case SourceKind::file:
+        add("  filesrc name=source ! decodebin");
+        set("source", "location", source_.file);
+        break;
+      case SourceKind::v4l2:
+        add("  v4l2src name=source ! ");
+        add(source_.motion_jpeg ? "image/jpeg" : "video/x-raw");
+        add(size_and_rate());
+        if (source_.motion_jpeg) add(" ! jpegdec");
+        set("source", "device", source_.device);
+        break;
+      case SourceKind::rtsp:
+        network_camera();
+        break;
+    }
+  }
+
+  void network_camera() {
+    const Coding with = coding(source_.codec);
+    const std::string parsed = std::string(" ! ") + with.depayloader + " ! " + with.parser;
+    const bool two = !source_.record_uri.empty();
+    if (recorder_ && two) {
+      add("  rtspsrc name=recorded latency=200");
+      add(parsed);
+      add(std::string(" ! ") + kUnlimited + " name=record-queue ! recorder.video");
+      set("recorded", "location", source_.record_uri);
+    }
+    add("  rtspsrc name=source latency=200");
+    set("source", "location", source_.uri);
+    add(parsed);
+    if (recorder_ && !two) {
+      add(std::string(" ! tee name=encoded  encoded. ! ") + kUnlimited +
+          " name=record-queue ! recorder.video");
+      add("  encoded. ! queue");
+    }
+    add(std::string(" ! ") + with.decoder);
+  }
+
+  // The window that a simulated head turns over the video.
+  void window() {
+    add(" ! virtualptz name=window inset=true");
+    set("window", "head", camera_.name);
+    set("window", "wide-fov", number(source_.wide_fov));
+    set("window", "horizontal-fov", number(camera_.horizontal_fov));
+    set("window", "width", std::to_string(source_.width));
+    set("window", "height", std::to_string(source_.height));
+    for (const char* element : {"window", "head"}) {
+      if (!head_) continue;
+      set(element, "start-pan", number(source_.start_pan));
+      set(element, "start-tilt", number(source_.start_tilt));
+    }
+  }
+
+  void detection() {
+    set("detect", "camera-name", camera_.name);
+    set("detect", "head", camera_.name);
+    // Sizes in metres need the camera's height; without it they would be wrong.
+    for (const Property& property : camera_.detection)
+      if (property.name == "mounting-height") set("detect", "horizontal-fov", number(camera_.horizontal_fov));
+    set_all("detect", camera_.detection);
+    set("fusion", "head", camera_.name);
+    set("fusion", "horizontal-fov", number(camera_.horizontal_fov));
+    if (camera_.head) {
+      for (const Property& property : *camera_.head)
+        if (property.name == "pan-min" || property.name == "pan-max")
+          set("fusion", property.name, property.value);
+    }
+    set_all("fusion", camera_.fusion);
+  }
+
+  void head() {
+    // The window of a world waits for the pose that answers each frame: none is dropped.
+    const bool in_step = source_.kind == SourceKind::world;
+    add(in_step ? "  found. ! queue" : "  found. ! queue leaky=downstream max-size-buffers=1");
+    add(" ! pantiltsink name=head");
+    set("head", "head", camera_.name);
+    set("head", "horizontal-fov", number(camera_.horizontal_fov));
+    set_all("head", *camera_.head);
+  }
+
+  void recorder() {
+    add("eventrecorder name=recorder");
+    set("recorder", "location", camera_.recorder->folder);
+    set("recorder", "camera-name", camera_.name);
+    set_all("recorder", camera_.recorder->properties);
+  }
+
+  void record_frames() {
+    add(std::string("  found. ! ") + kUnlimited + " name=analysis-queue ! recorder.analysis");
+    if (source_.kind == SourceKind::rtsp) return;
+    const std::string& encoder = camera_.recorder->encoder;
+    add(std::string("  found. ! queue name=record-queue leaky=downstream ") + kPatient + " ! videoconvert");
+    if (encoder == "x264enc")
+      add(" ! video/x-raw,format=I420 ! x264enc tune=zerolatency key-int-max=50 ! h264parse");
+    else if (encoder == "openh264enc")
+      add(" ! video/x-raw,format=I420 ! openh264enc gop-size=50 ! h264parse");
+    else if (encoder == "v4l2h264enc")
+      add(" ! v4l2h264enc ! video/x-h264,level=(string)4 ! h264parse");
+    else
+      add(" ! jpegenc");
+    add(" ! recorder.video");
+  }
+
+  void pictures() {
+    add(std::string("  found. ! queue name=picture-queue ") + kNewest +
+        " ! motionoverlay crosshair=true ! videoconvert ! videoscale ! video/x-raw,width=[1," +
+        std::to_string(page_.picture_width) +
+        "],pixel-aspect-ratio=1/1 ! jpegenc quality=" + std::to_string(page_.quality) +
+        " ! appsink name=picture sync=false async=false max-buffers=2 drop=true");
+    add(std::string("  found. ! queue ") + kNewest +
+        " ! motionjson ! appsink name=facts sync=false async=false max-buffers=2 drop=true");
+  }
+
+  static std::string number(double value) { return text::exact(value).string(); }
+
+  const CameraSettings& camera_;
+  const SourceSettings& source_;
+  const PageSettings& page_;
+  bool head_ = false, recorder_ = false;
+  PipelineText text_;
+};
+
+}  // namespace
+
+PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts) {
+  return Writer(camera, page, parts).write();
+}
+
+Properties triggers(const RecorderSettings& recorder) {
+  Properties all{{"trigger-track", "true"}, {"trigger-fusion", "false"}, {"trigger-pir", "false"}};
+  for (Property& trigger : all)
+    for (const Property& property : recorder.properties)
+      if (property.name == trigger.name) trigger.value = property.value;
+  return all;
+}
+
+}  // namespace cerberus::robot

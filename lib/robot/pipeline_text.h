@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The GStreamer pipeline of one camera as text. Texts of the user stand in assignments, never in the line, so that no
+// character of theirs is parsed.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "robot/settings.h"
+
+namespace cerberus::robot {
+
+struct Assignment {
+  std::string element, property, value;
+};
+
+struct PipelineText {
+  std::string line;                     // as gst-launch-1.0 reads it
+  std::vector<Assignment> assignments;  // in order, before the pipeline starts
+};
+
+// Which parts of a camera the pipeline has; one that failed is left out until it is tried again.
+struct Parts {
+  bool head = true, recorder = true;
+};
+
+// Names in the line: `source` (and `recorded`, the second stream), `detect`, `fusion`, `sensors`, `head`, `recorder`;
+// the queues `picture-queue`, `record-queue`, `analysis-queue` at which frames may be dropped; the appsinks `picture`
+// (JPEG) and `facts` (JSON lines).
+PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts);
+
+// What may begin an event while armed: the property and its value. While disarmed all of them are false.
+Properties triggers(const RecorderSettings& recorder);
+
+}  // namespace cerberus::robot

@@ -1,0 +1,477 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "camera.h"
+
+#include <gst/app/gstappsink.h>
+#include <unistd.h>
+
+#include <utility>
+
+#include "robot/settings_file.h"
+
+namespace cerberus::robot {
+
+// What the streaming threads left for the main loop; lives as long as a callback may run.
+struct Camera::Newest {
+  ~Newest() { g_clear_pointer(&picture, g_bytes_unref); }
+
+  std::mutex lock;
+  Camera* camera = nullptr;  // nullptr: it is gone; main loop's thread
+  GBytes* picture = nullptr;
+  guint64 number = 0;
+  std::string facts;
+  bool announced = false;  // a call of on_picture is on its way
+};
+
+namespace {
+
+constexpr const char* kStates[] = {"off", "running", "parking", "ending", "closing", "waiting", "ended"};
+
+void say(const std::string& camera, const std::string& text) {
+  g_printerr("cerberusd: %s: %s\n", camera.c_str(), text.c_str());
+}
+
+std::string seconds(Camera::Clock::duration duration) {
+  return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(duration).count()) + " s";
+}
+
+// Sets a property by its text, as gst_parse_launch() would, but texts literally.
+bool set_property(GstElement* element, const Assignment& assignment, std::string& error) {
+  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), assignment.property.c_str());
+  if (spec == nullptr) {
+    error = "this build's " + assignment.element + " has no property " + assignment.property;
+    return false;
+  }
+  if (G_PARAM_SPEC_VALUE_TYPE(spec) == G_TYPE_STRING)
+    g_object_set(element, assignment.property.c_str(), assignment.value.c_str(), nullptr);
+  else
+    gst_util_set_object_arg(G_OBJECT(element), assignment.property.c_str(), assignment.value.c_str());
+  return true;
+}
+
+}  // namespace
+
+const char* name(Camera::State state) {
+  return kStates[static_cast<int>(state)];
+}
+
+Camera::Camera(const CameraSettings& settings, const PageSettings& page, Listener listener)
+    : settings_(settings), page_(page), listener_(std::move(listener)), newest_(std::make_shared<Newest>()) {
+  newest_->camera = this;
+}
+
+Camera::~Camera() {
+  newest_->camera = nullptr;
+  if (bus_watch_ != 0) g_source_remove(bus_watch_);
+  if (pipeline_ == nullptr) return;
+  gst_element_set_state(pipeline_, GST_STATE_NULL);
+  g_clear_pointer(&head_, gst_object_unref);
+  g_clear_pointer(&recorder_, gst_object_unref);
+  gst_object_unref(pipeline_);
+}
+
+GstElement* Camera::element(const char* name) const {
+  return gst_bin_get_by_name(GST_BIN(pipeline_), name);
+}
+
+bool Camera::apply(const PipelineText& text, std::string& error) {
+  for (const Assignment& assignment : text.assignments) {
+    g_autoptr(GstElement) found = element(assignment.element.c_str());
+    if (found == nullptr || !set_property(found, assignment, error)) return false;
+  }
+  return true;
+}
+
+bool Camera::apply_secrets(std::string& error) {
+  if (settings_.source.user.empty()) return true;
+  const std::optional<std::string> password = read_secret(settings_.source.password_file, error);
+  if (!password) return false;
+  for (const char* name : {"source", "recorded"}) {
+    g_autoptr(GstElement) source = element(name);
+    if (source)
+      g_object_set(source, "user-id", settings_.source.user.c_str(), "user-pw", password->c_str(), nullptr);
+  }
+  return true;
+}
+
+// Drops the buffers that would enter a queue while `pass` is false.
+void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
+  g_autoptr(GstElement) found = element(queue);
+  if (found == nullptr) return;
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(found, "sink");
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo*, gpointer flag) {
+        return *static_cast<std::atomic<bool>*>(flag) ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
+      },
+      &pass, nullptr);
+}
+
+void Camera::connect() {
+  drop_frames("picture-queue", watched_);
+  drop_frames("record-queue", record_);
+  drop_frames("analysis-queue", record_);
+  g_autoptr(GstElement) detect = element("detect");
+  g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
+  gst_pad_add_probe(
+      pad, GST_PAD_PROBE_TYPE_BUFFER,
+      [](GstPad*, GstPadProbeInfo*, gpointer camera) {
+        ++static_cast<Camera*>(camera)->frames_;
+        return GST_PAD_PROBE_OK;
+      },
+      this, nullptr);
+
+  using Holder = std::shared_ptr<Newest>;
+  const auto free_holder = [](gpointer holder) { delete static_cast<Holder*>(holder); };
+  GstAppSinkCallbacks on_facts{};
+  on_facts.new_sample = [](GstAppSink* sink, gpointer data) {
+    g_autoptr(GstSample) sample = gst_app_sink_pull_sample(sink);
+    GstBuffer* buffer = sample ? gst_sample_get_buffer(sample) : nullptr;
+    GstMapInfo map;
+    if (buffer == nullptr || !gst_buffer_map(buffer, &map, GST_MAP_READ)) return GST_FLOW_OK;
+    Newest& newest = **static_cast<Holder*>(data);
+    const std::size_t size = map.size > 0 && map.data[map.size - 1] == '\n' ? map.size - 1 : map.size;
+    {
+      const std::lock_guard lock(newest.lock);
+      newest.facts.assign(reinterpret_cast<const char*>(map.data), size);
+    }
+    gst_buffer_unmap(buffer, &map);
+    return GST_FLOW_OK;
+  };
+  GstAppSinkCallbacks on_picture{};
+  on_picture.new_sample = [](GstAppSink* sink, gpointer data) {
+    g_autoptr(GstSample) sample = gst_app_sink_pull_sample(sink);
+    GstBuffer* buffer = sample ? gst_sample_get_buffer(sample) : nullptr;
+    gpointer bytes = nullptr;
+    gsize size = 0;
+    if (buffer == nullptr) return GST_FLOW_OK;
+    gst_buffer_extract_dup(buffer, 0, static_cast<gsize>(-1), &bytes, &size);
+    const Holder& holder = *static_cast<Holder*>(data);
+    bool announce = false;
+    {
+      const std::lock_guard lock(holder->lock);
+      g_clear_pointer(&holder->picture, g_bytes_unref);
+      holder->picture = g_bytes_new_take(bytes, size);
+      ++holder->number;
+      announce = !std::exchange(holder->announced, true);
+    }
+    if (!announce) return GST_FLOW_OK;
+    g_main_context_invoke_full(
+        nullptr, G_PRIORITY_DEFAULT,
+        [](gpointer data) {
+          Newest& newest = **static_cast<Holder*>(data);
+          {
+            const std::lock_guard lock(newest.lock);
+            newest.announced = false;
+          }
+          Camera* camera = newest.camera;
+          if (camera != nullptr && camera->show_ && camera->listener_.on_picture)
+            camera->listener_.on_picture(*camera);
+          return static_cast<gboolean>(G_SOURCE_REMOVE);
+        },
+        new Holder(holder), [](gpointer data) { delete static_cast<Holder*>(data); });
+    return GST_FLOW_OK;
+  };
+  g_autoptr(GstElement) facts = element("facts");
+  if (facts) gst_app_sink_set_callbacks(GST_APP_SINK(facts), &on_facts, new Holder(newest_), free_holder);
+  g_autoptr(GstElement) picture = element("picture");
+  if (picture)
+    gst_app_sink_set_callbacks(GST_APP_SINK(picture), &on_picture, new Holder(newest_), free_holder);
+}
+
+void Camera::set_triggers() {
+  if (recorder_ == nullptr) return;
+  for (const Property& trigger : triggers(*settings_.recorder))
+    gst_util_set_object_arg(G_OBJECT(recorder_), trigger.name.c_str(),
+                            mode_ == Mode::armed ? trigger.value.c_str() : "false");
+}
+
+void Camera::start() {
+  again_ = false;
+  since_ = last_frame_ = Clock::now();
+  const PipelineText text = pipeline_text(settings_, page_, parts_);
+  GST_DEBUG("%s: %s", settings_.name.c_str(), text.line.c_str());
+  g_autoptr(GError) error = nullptr;
+  pipeline_ = gst_parse_launch_full(text.line.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error);
+  std::string wrong = error ? error->message : "";
+  if (pipeline_ == nullptr) {
+    state_ = State::waiting;
+    fail("camera", "a part of GStreamer is missing: " + wrong);
+    return;
+  }
+  head_ = element("head");
+  recorder_ = element("recorder");
+  state_ = State::running;
+  g_autoptr(GstBus) bus = gst_element_get_bus(pipeline_);
+  bus_watch_ = gst_bus_add_watch(
+      bus,
+      [](GstBus*, GstMessage* message, gpointer camera) {
+        static_cast<Camera*>(camera)->on_message(message);
+        return static_cast<gboolean>(G_SOURCE_CONTINUE);
+      },
+      this);
+  if (!wrong.empty() || !apply(text, wrong) || !apply_secrets(wrong)) {
+    fail("camera", wrong);
+    return;
+  }
+  connect();
+  set_triggers();
+  show_ = record_ = true;
+  // What refuses to start posts an error on the bus.
+  gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+}
+
+// The part of the camera that an element belongs to.
+std::string Camera::part_of(GstObject* source) const {
+  for (GstObject* object = source; object != nullptr; object = GST_OBJECT_PARENT(object)) {
+    if (object == GST_OBJECT(head_)) return "head";
+    if (object == GST_OBJECT(recorder_)) return "recorder";
+  }
+  return "camera";
+}
+
+void Camera::fail(const std::string& part, const std::string& text) {
+  if (state_ != State::running && state_ != State::waiting) return;
+  const Clock::time_point now = Clock::now();
+  Clock::duration wait{};
+  // A world cannot be without its head.
+  if (part == "head" && settings_.source.kind != SourceKind::world) {
+    wait = head_backoff_.failed(now);
+    parts_.head = false;
+    again_ = true;
+  } else if (part == "recorder") {
+    wait = recorder_backoff_.failed(now);
+    parts_.recorder = false;
+    again_ = true;
+  } else {
+    wait = camera_backoff_.failed(now);
+  }
+  fault_ = part + ": " + text;
+  say(settings_.name, fault_ + "; it is tried again in " + seconds(wait));
+  close();
+}
+
+void Camera::on_message(GstMessage* message) {
+  switch (GST_MESSAGE_TYPE(message)) {
+    case GST_MESSAGE_ERROR: {
+      g_autoptr(GError) error = nullptr;
+      gst_message_parse_error(message, &error, nullptr);
+      fail(part_of(GST_MESSAGE_SRC(message)), error->message);
+      break;
+    }
+    case GST_MESSAGE_WARNING: {
+      g_autoptr(GError) error = nullptr;
+      gst_message_parse_warning(message, &error, nullptr);
+      say(settings_.name, part_of(GST_MESSAGE_SRC(message)) + ": " + error->message);
+      break;
+    }
+    case GST_MESSAGE_EOS:
+      if (state_ == State::running) {
+        const bool is_file =
+            settings_.source.kind == SourceKind::file || settings_.source.kind == SourceKind::world;
+        if (!is_file) {
+          fail("camera", "the stream ended");
+          break;
+        }
+        again_ = settings_.source.loop;
+        wanted_ = wanted_ && again_;
+        close();
+      } else if (state_ == State::ending) {
+        close();
+      }
+      break;
+    case GST_MESSAGE_ELEMENT:
+      if (listener_.on_message && gst_message_get_structure(message) != nullptr)
+        listener_.on_message(*this, *gst_message_get_structure(message));
+      break;
+    case GST_MESSAGE_LATENCY:
+      gst_bin_recalculate_latency(GST_BIN(pipeline_));
+      break;
+    default:
+      break;
+  }
+}
+
+void Camera::set_mode(Mode mode) {
+  if (final_) return;
+  const Mode before = std::exchange(mode_, mode);
+  if (mode == Mode::privacy) {
+    wanted_ = again_ = false;
+    show_ = record_ = false;
+    {
+      const std::lock_guard lock(newest_->lock);
+      g_clear_pointer(&newest_->picture, g_bytes_unref);
+      newest_->facts.clear();
+    }
+    if (state_ == State::running && order("home")) {
+      state_ = State::parking;
+      since_ = Clock::now();
+    } else if (state_ == State::running) {
+      end();
+    } else if (state_ == State::waiting || state_ == State::ended) {
+      state_ = State::off;
+    }
+    return;
+  }
+  wanted_ = true;
+  if (state_ == State::off || (before == Mode::privacy && state_ == State::ended)) {
+    start();
+  } else if (state_ == State::parking) {  // privacy ended while the head was on its way
+    order("auto");
+    show_ = record_ = true;
+    state_ = State::running;
+    set_triggers();
+  } else {
+    again_ = again_ || state_ == State::ending || state_ == State::closing;
+    set_triggers();
+  }
+}
+
+void Camera::shut_down() {
+  final_ = true;
+  wanted_ = again_ = false;
+  if (state_ == State::running || state_ == State::parking)
+    end();
+  else if (state_ == State::waiting || state_ == State::ended)
+    state_ = State::off;
+}
+
+bool Camera::is_stopped() const {
+  return state_ == State::off || state_ == State::ended;
+}
+
+void Camera::end() {
+  if (head_ != nullptr) order("stop");
+  state_ = State::ending;
+  since_ = Clock::now();
+  show_ = false;
+  // Sources may be blocked in another thread's hands; the event is handed over there.
+  gst_element_call_async(
+      pipeline_,
+      [](GstElement* pipeline, gpointer) { gst_element_send_event(pipeline, gst_event_new_eos()); }, nullptr,
+      nullptr);
+}
+
+void Camera::close() {
+  if (pipeline_ == nullptr) return;
+  state_ = State::closing;
+  since_ = Clock::now();
+  show_ = record_ = false;
+  if (bus_watch_ != 0) g_source_remove(std::exchange(bus_watch_, 0));
+  using Holder = std::shared_ptr<Newest>;
+  gst_element_call_async(
+      pipeline_,
+      [](GstElement* pipeline, gpointer data) {
+        gst_element_set_state(pipeline, GST_STATE_NULL);
+        g_main_context_invoke_full(
+            nullptr, G_PRIORITY_DEFAULT,
+            [](gpointer data) {
+              if (Camera* camera = (*static_cast<Holder*>(data))->camera) camera->closed();
+              return static_cast<gboolean>(G_SOURCE_REMOVE);
+            },
+            new Holder(*static_cast<Holder*>(data)),
+            [](gpointer data) { delete static_cast<Holder*>(data); });
+      },
+      new Holder(newest_), [](gpointer data) { delete static_cast<Holder*>(data); });
+}
+
+void Camera::closed() {
+  g_clear_pointer(&head_, gst_object_unref);
+  g_clear_pointer(&recorder_, gst_object_unref);
+  g_clear_pointer(&pipeline_, gst_object_unref);
+  rate_ = 0;
+  if (again_ && wanted_) {
+    start();
+  } else if (wanted_) {
+    state_ = State::waiting;
+  } else {
+    state_ = final_ || mode_ == Mode::privacy ? State::off : State::ended;
+  }
+}
+
+void Camera::tick() {
+  const Clock::time_point now = Clock::now();
+  const guint64 frames = frames_;
+  if (frames != counted_) last_frame_ = now;
+  const double interval = std::chrono::duration<double>(now - last_tick_).count();
+  if (interval > 0) rate_ = static_cast<double>(frames - counted_) / interval;
+  counted_ = frames;
+  last_tick_ = now;
+
+  switch (state_) {
+    case State::running: {
+      if (now - last_frame_ > parameters_.stall) {
+        fail("camera", "no frame for " + seconds(parameters_.stall));
+        break;
+      }
+      const bool head = !parts_.head && head_backoff_.is_due(now);
+      // A disk that is not there yet need not interrupt the camera.
+      const bool recorder = !parts_.recorder && recorder_backoff_.is_due(now) &&
+                            ::access(settings_.recorder->folder.c_str(), W_OK) == 0;
+      if (head || recorder) {
+        parts_.head = parts_.head || head;
+        parts_.recorder = parts_.recorder || recorder;
+        again_ = true;
+        close();
+      } else if (parts_.head && parts_.recorder && now - since_ > std::chrono::seconds(2) && rate_ > 0) {
+        fault_.clear();
+      }
+      break;
+    }
+    case State::parking:
+      if (now - since_ > parameters_.parking) end();
+      break;
+    case State::ending:
+      if (now - since_ > parameters_.ending) close();
+      break;
+    case State::waiting:
+      if (wanted_ && camera_backoff_.is_due(now)) start();
+      break;
+    default:
+      break;
+  }
+}
+
+bool Camera::is_sound() const {
+  const Clock::time_point now = Clock::now();
+  if (state_ == State::running) return now - last_frame_ <= parameters_.stall + std::chrono::seconds(2);
+  if (state_ == State::closing) return now - since_ <= parameters_.closing;
+  return true;
+}
+
+GBytes* Camera::picture(guint64& number) const {
+  const std::lock_guard lock(newest_->lock);
+  number = newest_->number;
+  return newest_->picture && show_ ? g_bytes_ref(newest_->picture) : nullptr;
+}
+
+std::string Camera::facts() const {
+  const std::lock_guard lock(newest_->lock);
+  return show_ ? newest_->facts : std::string();
+}
+
+bool Camera::turn(double pan_speed, double tilt_speed) {
+  gboolean done = FALSE;
+  if (head_ != nullptr && state_ == State::running)
+    g_signal_emit_by_name(head_, "turn", pan_speed, tilt_speed, &done);
+  return done;
+}
+
+bool Camera::order(const char* signal) {
+  gboolean done = FALSE;
+  if (head_ != nullptr) g_signal_emit_by_name(head_, signal, &done);
+  return done;
+}
+
+bool Camera::follow(guint track) {
+  gboolean done = FALSE;
+  if (head_ != nullptr && state_ == State::running) g_signal_emit_by_name(head_, "follow", track, &done);
+  return done;
+}
+
+bool Camera::keep(const char* file, bool keep) {
+  if (recorder_ == nullptr) return false;
+  g_signal_emit_by_name(recorder_, "keep-recording", file, static_cast<gboolean>(keep));
+  return true;
+}
+
+}  // namespace cerberus::robot

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// One camera of the robot: its pipeline, started again after failures, and its head. Everything but frames happens in the
+// main loop's thread.
+#pragma once
+
+#include <gst/gst.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "robot/backoff.h"
+#include "robot/pipeline_text.h"
+#include "robot/settings.h"
+
+namespace cerberus::robot {
+
+class Camera {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  enum class State {
+    off,      // not wanted
+    running,  // the pipeline plays
+    parking,  // the head returns to zero before it stops, nothing is shown or recorded
+    ending,   // the end of the stream is on its way to files
+    closing,  // the pipeline stops, in a thread of its own
+    waiting,  // it failed and is tried again later
+    ended,    // a file is over
+  };
+
+  struct Parameters {
+    // A network camera needs seconds until its first frame; later a healthy source is never silent for so long.
+    Clock::duration stall = std::chrono::seconds(15);
+    Clock::duration parking = std::chrono::seconds(5);   // longest way back to zero at 40 degrees a second
+    Clock::duration ending = std::chrono::seconds(3);    // for the last fragments of files
+    Clock::duration closing = std::chrono::seconds(30);  // longer: the watchdog of the service may restart it
+  };
+
+  // Called in the main loop's thread when there is a new picture or line.
+  struct Listener {
+    std::function<void(Camera&)> on_picture;
+    std::function<void(Camera&, const GstStructure&)> on_message;  // element messages of the pipeline
+  };
+
+  Camera(const CameraSettings& settings, const PageSettings& page, Listener listener);
+  ~Camera();
+  Camera(const Camera&) = delete;
+  Camera& operator=(const Camera&) = delete;
+
+  const CameraSettings& settings() const { return settings_; }
+  State state() const { return state_; }
+  const std::string& fault() const { return fault_; }  // why a part is waiting; empty: nothing is
+  double frames_a_second() const { return rate_; }
+  guint64 frames() const { return frames_; }
+
+  // Runs in this mode; privacy stops the pipeline once the head is parked.
+  void set_mode(Mode mode);
+  // Stops for good. is_stopped() tells when that is done.
+  void shut_down();
+  bool is_stopped() const;
+  // Once a second.
+  void tick();
+  // Whether frames come, or none are expected: what feeds the watchdog.
+  bool is_sound() const;
+
+  // Pictures are only drawn while somebody looks.
+  void set_watched(bool watched) { watched_ = watched; }
+  // The newest picture, JPEG, with its number; nullptr: there is none. The caller unrefs.
+  GBytes* picture(guint64& number) const;
+  // The line of motionjson of the newest frame, without newline.
+  std::string facts() const;
+
+  // Orders for the head: an action signal of pantiltsink. False: there is no head, or it refuses.
+  bool has_head() const { return head_ != nullptr; }
+  bool turn(double pan_speed, double tilt_speed);  // degrees a second, for 500 ms unless it is repeated
+  bool order(const char* signal);                  // stop, home, auto
+  bool follow(guint track);
+  bool keep(const char* file, bool keep);
+
+ private:
+  struct Newest;
+
+  void start();
+  void end();     // sends the end of the stream
+  void close();   // stops the pipeline, in another thread
+  void closed();  // ... done
+  void fail(const std::string& part, const std::string& text);
+  bool apply(const PipelineText& text, std::string& error);
+  bool apply_secrets(std::string& error);
+  void connect();
+  void set_triggers();
+  void drop_frames(const char* queue, std::atomic<bool>& pass);
+  GstElement* element(const char* name) const;
+  std::string part_of(GstObject* source) const;
+  void on_message(GstMessage* message);
+
+  CameraSettings settings_;
+  PageSettings page_;
+  Listener listener_;
+  Parameters parameters_;
+  Mode mode_ = Mode::privacy;
+  State state_ = State::off;
+  bool wanted_ = false, again_ = false, final_ = false;
+  Clock::time_point since_{}, last_frame_{}, last_tick_{};
+  Parts parts_;
+  Backoff camera_backoff_, head_backoff_, recorder_backoff_;
+  std::string fault_;
+  GstElement* pipeline_ = nullptr;
+  GstElement *head_ = nullptr, *recorder_ = nullptr;
+  guint bus_watch_ = 0;
+  std::atomic<guint64> frames_ = 0;
+  guint64 counted_ = 0;
+  double rate_ = 0;
+  std::atomic<bool> watched_ = false, show_ = false, record_ = false;
+  std::shared_ptr<Newest> newest_;
+};
+
+const char* name(Camera::State state);
+
+}  // namespace cerberus::robot

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot.h"
+
+#include <glib-unix.h>
+#include <glib/gstdio.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "text/file.h"
+#if HAVE_SYSTEMD
+#include <systemd/sd-daemon.h>
+#endif
+
+namespace cerberus::robot {
+
+namespace {
+
+// Seconds within which every camera stops: its files are finished in 3, its pipeline needs a little longer.
+constexpr int kPatience = 10;
+
+std::string default_state_folder() {
+  if (const char* given = g_getenv("STATE_DIRECTORY")) return given;  // of the service
+  g_autofree gchar* own = g_build_filename(g_get_user_data_dir(), "cerberus", nullptr);
+  return own;
+}
+
+LocalTime local_time(std::int64_t utc) {
+  const auto seconds = static_cast<time_t>(utc);
+  tm parts{};
+  localtime_r(&seconds, &parts);
+  return {(parts.tm_wday + 6) % 7, parts.tm_hour * 60 + parts.tm_min};
+}
+
+std::int64_t now() {
+  return g_get_real_time() / G_USEC_PER_SEC;
+}
+
+void notify([[maybe_unused]] const std::string& text) {
+#if HAVE_SYSTEMD
+  sd_notify(0, text.c_str());
+#endif
+}
+
+}  // namespace
+
+bool Robot::open(Settings settings, std::string& error) {
+  settings_ = std::move(settings);
+  if (settings_.state_folder.empty()) settings_.state_folder = default_state_folder();
+  if (g_mkdir_with_parents(settings_.state_folder.c_str(), 0700) != 0) {
+    error = settings_.state_folder + ", where the mode is kept, cannot be made: " + g_strerror(errno);
+    return false;
+  }
+  mode_ = std::make_unique<ModeKeeper>(settings_.mode.start, settings_.mode.schedule);
+  const std::string path = settings_.state_folder + "/mode";
+  const text::File file = text::read_file(path, 4096);
+  const bool is_first = file.fault == text::File::Fault::failed && file.error == ENOENT;
+  if (!is_first && (file.fault != text::File::Fault::none || !mode_->restore(file.text))) {
+    mode_->restore("");
+    g_printerr("cerberusd: %s cannot be read: privacy mode, until another is set\n", path.c_str());
+  }
+  mode_->tick(local_time(now()), now());
+  for (const CameraSettings& camera : settings_.cameras) {
+    if (camera.recorder && g_mkdir_with_parents(camera.recorder->folder.c_str(), 0750) != 0)
+      g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", camera.name.c_str(),
+                 camera.recorder->folder.c_str(), g_strerror(errno));
+    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page, Camera::Listener{}));
+  }
+  return true;
+}
+
+void Robot::save_mode() {
+  const std::string path = settings_.state_folder + "/mode", text = mode_->state();
+  g_autoptr(GError) error = nullptr;
+  const auto how =
+      static_cast<GFileSetContentsFlags>(G_FILE_SET_CONTENTS_CONSISTENT | G_FILE_SET_CONTENTS_DURABLE);
+  if (!g_file_set_contents_full(path.c_str(), text.data(), static_cast<gssize>(text.size()), how, 0600,
+                                &error))
+    g_printerr("cerberusd: the mode will not survive a restart: %s\n", error->message);
+}
+
+void Robot::set_mode(Mode mode) {
+  mode_->set(mode, now());
+  save_mode();
+  apply_mode();
+}
+
+void Robot::apply_mode() {
+  g_printerr("cerberusd: mode %s\n", std::string(name(mode())).c_str());
+  for (const auto& camera : cameras_) camera->set_mode(mode());
+}
+
+void Robot::report(const std::string& text) const {
+  notify("STATUS=" + text);
+}
+
+void Robot::tick() {
+  if (shutting_down_ > 0) {
+    const bool stopped =
+        std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_stopped(); });
+    if (stopped || --shutting_down_ == 0) {
+      if (!stopped) g_printerr("cerberusd: a camera does not stop\n");
+      g_main_loop_quit(loop_);
+    }
+  } else if (mode_->tick(local_time(now()), now())) {
+    save_mode();
+    apply_mode();
+  }
+  bool sound = true;
+  std::string status(name(mode()));
+  for (const auto& camera : cameras_) {
+    camera->tick();
+    sound = sound && camera->is_sound();
+    status += ", " + camera->settings().name + ' ' + robot::name(camera->state());
+    if (!camera->fault().empty()) status += " (" + camera->fault() + ')';
+  }
+  if (sound) notify("WATCHDOG=1");
+  if (status != status_) {
+    status_ = status;
+    report(status);
+  }
+}
+
+void Robot::begin_shut_down() {
+  if (shutting_down_ > 0) {  // the second time: at once
+    g_main_loop_quit(loop_);
+    return;
+  }
+  shutting_down_ = kPatience;
+  notify("STOPPING=1");
+  for (const auto& camera : cameras_) camera->shut_down();
+}
+
+int Robot::run() {
+  loop_ = g_main_loop_new(nullptr, FALSE);
+  const auto on_signal = [](gpointer robot) {
+    static_cast<Robot*>(robot)->begin_shut_down();
+    return static_cast<gboolean>(G_SOURCE_CONTINUE);
+  };
+  g_unix_signal_add(SIGTERM, on_signal, this);
+  g_unix_signal_add(SIGINT, on_signal, this);
+  g_timeout_add_seconds(
+      1,
+      [](gpointer robot) {
+        static_cast<Robot*>(robot)->tick();
+        return static_cast<gboolean>(G_SOURCE_CONTINUE);
+      },
+      this);
+  apply_mode();
+  notify("READY=1");
+  g_main_loop_run(loop_);
+  g_main_loop_unref(loop_);
+  const bool stopped = std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_stopped(); });
+  cameras_.clear();
+  return stopped ? 0 : 1;
+}
+
+}  // namespace cerberus::robot

@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""cerberusd as a service manager sees it: ready, fed by frames, a camera that fails beside one that works, stopped by
+SIGTERM with complete recordings; and in privacy mode, which survives a restart, without any."""
+import os
+import pathlib
+import signal
+import socket
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+
+PATIENCE = 100  # seconds for what takes one on an idle machine
+CERBERUSD = sys.argv[1]
+
+CONFIGURATION = '''
+state-folder = "state"
+[page]
+enabled = false
+[[camera]]
+name = "good"
+kind = "test"
+width = 160
+height = 120
+framerate = 10
+[camera.head]
+[camera.recorder]
+folder = "recordings"
+encoder = "jpegenc"
+[[camera]]
+name = "broken"
+kind = "file"
+file = "no-video.avi"
+'''
+
+
+class Service:
+    def __init__(self, folder):
+        self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
+        path = str(folder / 'notify')
+        if os.path.exists(path):
+            os.unlink(path)
+        self.socket.bind(path)
+        self.socket.settimeout(PATIENCE)
+        self.log = open(folder / 'log', 'w+', encoding='utf-8')
+        self.process = subprocess.Popen([CERBERUSD, folder / 'robot.toml'], stderr=self.log,
+                                        env=os.environ | {'NOTIFY_SOCKET': path})
+
+    def wait_for(self, *words):
+        """Waits for a report that has all the words."""
+        end = time.monotonic() + PATIENCE
+        while time.monotonic() < end:
+            report = self.socket.recv(4096).decode()
+            if all(word in report for word in words):
+                return report
+        raise AssertionError(f'no report with {words}')
+
+    def stop(self):
+        self.process.send_signal(signal.SIGTERM)
+        code = self.process.wait(PATIENCE)
+        self.log.seek(0)
+        return code, self.log.read()
+
+
+def rows(folder):
+    index = folder / 'recordings' / 'recordings.sqlite'
+    if not index.exists():
+        return []
+    with sqlite3.connect(f'file:{index}?mode=ro', uri=True) as database:
+        return list(database.execute('select file, open, size from recordings'))
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / 'robot.toml').write_text(CONFIGURATION)
+        (folder / 'no-video.avi').write_text('this is no video\n')
+
+        service = Service(folder)
+        try:
+            service.wait_for('READY=1')
+            service.wait_for('STATUS=armed', 'good running', 'broken waiting')
+            service.wait_for('WATCHDOG=1')
+            end = time.monotonic() + PATIENCE
+            while not rows(folder) and time.monotonic() < end:
+                time.sleep(.05)
+            assert rows(folder), 'nothing was recorded'
+            code, log = service.stop()
+        finally:
+            service.process.kill()
+        assert code == 0, f'exit code {code}: {log}'
+        assert 'broken: camera: ' in log and 'it is tried again in 1 s' in log, log
+        recorded = rows(folder)
+        for file, is_open, size in recorded:
+            assert not is_open and (folder / 'recordings' / file).stat().st_size > 0 and size > 0, recorded
+
+        (folder / 'state' / 'mode').write_text('privacy 1763863200\n')
+        service = Service(folder)
+        try:
+            service.wait_for('READY=1')
+            service.wait_for('STATUS=privacy, good off, broken off')
+            service.wait_for('WATCHDOG=1')
+            code, log = service.stop()
+        finally:
+            service.process.kill()
+        assert code == 0 and 'mode privacy' in log, log
+        assert rows(folder) == recorded, 'privacy mode recorded'
+
+
+main()
