@@ -3,6 +3,8 @@
 //
 // Beside the time limit (promises.h), no round may take seconds, whatever the load: the element waits 10 s for a
 // driver, which is what a lock held at the wrong moment costs.
+#include <poll.h>
+
 #include <array>
 #include <chrono>
 #include <future>
@@ -271,22 +273,25 @@ GST_START_TEST(a_frame_that_waits_for_the_driver_lets_go_of_a_flush_and_of_a_sto
 }
 GST_END_TEST
 
-GST_START_TEST(a_head_whose_driver_blocks_is_not_free_until_it_is_through) {
-  Pipe gate;
-  const std::string head = "head=door driver=scripted script=";
+GST_START_TEST(a_head_whose_driver_blocks_is_opened_again_when_it_is_through) {
+  Pipe gate, record;
+  const std::string head = "pantiltsink head=door driver=scripted script=";
   {
-    Rig rig(head + "\"close wait " + gate.reader() + "\"", Source::stored);
+    Rig rig("head=door driver=scripted script=\"close wait " + gate.reader() + "\"", Source::stored);
   }
-  GstElement* next = gst_parse_launch(("pantiltsink " + head + "\"\"").c_str(), nullptr);
-  gst_object_ref_sink(next);
-  fail_unless_equals_int(gst_element_set_state(next, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  GstElement* next = gst_parse_launch((head + "\"record " + record.writer() + "\"").c_str(), nullptr);
+  GstElement* third = gst_parse_launch((head + "\"\"").c_str(), nullptr);
+  for (GstElement* sink : {next, third}) gst_object_ref_sink(sink);
+  fail_unless(gst_element_set_state(next, GST_STATE_PAUSED) != GST_STATE_CHANGE_FAILURE);
+  fail_unless_equals_int(gst_element_set_state(third, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+  pollfd opened{record.ends[0], POLLIN, 0};
+  fail_unless_equals_int(::poll(&opened, 1, 20), 0);
   gate.close_writer();
-  while (gst_element_set_state(next, GST_STATE_PAUSED) == GST_STATE_CHANGE_FAILURE) {
-    gst_element_set_state(next, GST_STATE_NULL);
-    std::this_thread::yield();
+  fail_unless(record.line().starts_with("open"));
+  for (GstElement* sink : {next, third}) {
+    gst_element_set_state(sink, GST_STATE_NULL);
+    gst_object_unref(sink);
   }
-  gst_element_set_state(next, GST_STATE_NULL);
-  gst_object_unref(next);
 }
 GST_END_TEST
 
@@ -301,7 +306,7 @@ static Suite* pantiltsink_blocked_suite() {
   tcase_add_test(tests, a_head_that_does_not_reach_playing_stands);
   tcase_add_test(tests, a_blocked_driver_delays_no_change_of_state);
   tcase_add_test(tests, a_frame_that_waits_for_the_driver_lets_go_of_a_flush_and_of_a_stop);
-  tcase_add_test(tests, a_head_whose_driver_blocks_is_not_free_until_it_is_through);
+  tcase_add_test(tests, a_head_whose_driver_blocks_is_opened_again_when_it_is_through);
   return suite;
 }
 
