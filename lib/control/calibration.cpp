@@ -123,16 +123,4 @@ double AxisCalibration::backlash() const {
   return count > 0 ? std::max(0.0, sum / count) : 0;
 }
 
-std::optional<TimeoutTrial> plan_timeout_trial(const motion::SpeedMap& speeds, double position, double reach,
-                                               const TimeoutTrialParameters& parameters) {
-  const double room = reach + std::abs(position);  // towards the farther end
-  const double longest = parameters.lead + parameters.patience + parameters.restart;
-  for (const double degrees : parameters.speeds) {
-    const double speed = sensing::radians(degrees);
-    if (std::max(speed, std::abs(speeds.actual(speed))) * longest > room) continue;
-    return TimeoutTrial{position > 0 ? -speed : speed, parameters.lead, parameters.patience};
-  }
-  return std::nullopt;
-}
-
 }  // namespace cerberus::control

@@ -71,24 +71,4 @@ class AxisCalibration {
   std::string problem_;
 };
 
-// How to look whether a head stops by itself when its helper is killed: it turns at `speed` for `lead`, then without a
-// helper for at most `patience`, and at last until a new helper has stopped it.
-struct TimeoutTrial {
-  double speed = 0;               // radians a second as commanded, of either sign
-  double lead = 0, patience = 0;  // seconds
-};
-
-struct TimeoutTrialParameters {
-  // Degrees a second, the best first. derived: slow, since nothing can stop the head meanwhile; the picture measures 2.
-  std::vector<double> speeds{4, 2};
-  double lead = 1;      // seconds; derived: a dead time of 500 ms, and as long to be seen turning
-  double patience = 3;  // seconds; derived: longer than the Timeout that a driver asks its device for
-  double restart = 1;   // seconds until a new helper has stopped the head; derived: login and dead time
-};
-
-// Plans the trial of an axis at `position` (radians, from the middle of its reach) so that it stays within `reach` to
-// either side even if the device never stops by itself. nullopt: there is no room for it.
-std::optional<TimeoutTrial> plan_timeout_trial(const motion::SpeedMap& speeds, double position, double reach,
-                                               const TimeoutTrialParameters& parameters = {});
-
 }  // namespace cerberus::control

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "control/calibration.h"
+#include "control/timeout_trial.h"
 #include "drivers/head/head_calibration.h"
 #include "heads/head_link.h"
 #include "heads/tool.h"
@@ -148,40 +149,39 @@ struct Session {
   }
 
   // Kills the helper while the head turns slowly, and looks whether it stops. Then a new helper stops it: at once if the
-  // picture shows the head beyond its reach.
-  std::string kill_helper(const control::TimeoutTrial& trial, double position, double at_most,
-                          std::optional<double>& stopped) {
-    constexpr double kStill = 0.3;                     // seconds
-    const double least = std::abs(trial.speed) / 100;  // radians a frame: less is noise of the measurement
-    double moved = 0;
-    const auto watch = [&] {
-      for (const Turned& frame : camera.take()) {
-        if (std::abs(frame.turn.yaw) > least) moved = now_seconds();
-        if (std::isfinite(frame.turn.yaw)) position += frame.turn.yaw;
-      }
-      return std::abs(position) < at_most;
+  // picture shows the head at the end of its reach, or a key is pressed. Returns what is wrong.
+  std::string try_timeout(const control::TimeoutTrial& trial, double position, double reach,
+                          control::TimeoutWatch::End& end, std::optional<double>& stopped) {
+    using End = control::TimeoutWatch::End;
+    control::TimeoutWatch watch(trial, position, reach);
+    const auto ends = [&] {
+      for (const Turned& frame : camera.take()) watch.add(now_seconds(), frame.turn.yaw);
+      if (keys.pressed()) watch.press_key();
+      return end = watch.end(now_seconds());
     };
     camera.take();
     link.turn(trial.speed, 0);
-    for (const double end = now_seconds() + trial.lead; now_seconds() < end && watch();)
-      if (std::string wrong = serve(); !wrong.empty()) return wrong;
-    if (std::abs(position) >= at_most) {
+    for (const double kill = now_seconds() + trial.lead; now_seconds() < kill && ends() == End::none;) {
+      std::string wrong = link.serve(5);
+      if (wrong.empty()) wrong = camera.problem();
+      if (!wrong.empty()) return wrong;
+    }
+    if (end != End::none) {
       link.stop();
-      return "the head reached the end of the trial's reach before its helper could be killed";
+      return end == End::key ? "" : "the head reached its limits before its helper could be killed";
     }
     link.kill();
-    const double killed = moved = now_seconds();
-    while (now_seconds() - killed < trial.patience && now_seconds() - moved < kStill && watch() &&
-           !keys.pressed())
-      g_usleep(10000);
-    if (now_seconds() - moved >= kStill) stopped = moved - killed;
+    watch.kill(now_seconds());
+    while (ends() == End::none) g_usleep(10000);
+    if (end == End::stopped) stopped = watch.stopped_after();
     std::string wrong = link.start(options.driver, options.setup);
     link.stop();
     return wrong;
   }
 };
 
-void report(const drivers::HeadCalibration& found, bool tried_timeout) {
+void report(const drivers::HeadCalibration& found, control::TimeoutWatch::End trial) {
+  using End = control::TimeoutWatch::End;
   std::printf("dead time %.0f ms, backlash %.2f and %.2f degrees\n", motion::seconds(found.dead_time) * 1e3,
               degrees(found.pan_backlash), degrees(found.tilt_backlash));
   for (const auto* map : {&found.pan, &found.tilt})
@@ -190,8 +190,12 @@ void report(const drivers::HeadCalibration& found, bool tried_timeout) {
                   degrees(point.commanded), degrees(point.actual));
   if (found.stops_alone)
     std::printf("without its helper the head stopped after %.1f s\n", *found.stops_alone);
-  else if (!tried_timeout)
+  else if (trial == End::none)
     std::printf("whether it stops without its helper was not tried: the limits leave no room for it\n");
+  else if (trial == End::key)
+    std::printf("whether it stops without its helper is not known: a key ended the trial\n");
+  else if (trial == End::unseen)
+    std::printf("whether it stops without its helper is not known: the picture did not show it turning\n");
   else
     std::printf("without its helper the head goes on turning: it needs limits of its own\n");
 }
@@ -232,8 +236,9 @@ int calibrate_head(const ToolOptions& options) {
   std::string wrong = session.measure(pan, true);
   if (wrong.empty() && reach(limits.tilt) > 0) wrong = session.measure(tilt, false);
   const auto trial = control::plan_timeout_trial(pan.speeds(), pan.position(), reach(limits.pan));
+  auto trial_end = control::TimeoutWatch::End::none;
   if (wrong.empty() && trial)
-    wrong = session.kill_helper(*trial, pan.position(), reach(limits.pan), found.stops_alone);
+    wrong = session.try_timeout(*trial, pan.position(), reach(limits.pan), trial_end, found.stops_alone);
   link.stop();
   link.finish();
   if (!wrong.empty()) return fail(wrong);
@@ -245,7 +250,7 @@ int calibrate_head(const ToolOptions& options) {
   found.dead_time = Time(static_cast<Time::rep>(pan.dead_time() * 1e9));
   found.pan_backlash = pan.backlash();
   found.tilt_backlash = tilt.backlash();
-  report(found, trial.has_value());
+  report(found, trial_end);
   std::ofstream file(options.output, std::ios::binary);
   if (!(file << drivers::calibration_text(found)).flush()) return fail(options.output + " cannot be written");
   std::printf("written: %s (pantiltsink calibration=%s)\n", options.output.c_str(), options.output.c_str());

@@ -23,7 +23,7 @@ std::string HeadLink::start(const std::string& driver, const HeadSetup& setup) {
   lines_ = {};
   if (std::string wrong = process_.start(helper_arguments(driver, setup)); !wrong.empty()) return wrong;
   send(hello_line(setup, setup.helper_timeout));
-  for (const double end = now_seconds() + 5; now_seconds() < end && !ready_;)
+  for (const double end = now_seconds() + kStartPatience; now_seconds() < end && !ready_;)
     if (std::string wrong = serve(20); !wrong.empty()) return wrong;
   return ready_ ? "" : "the head's helper does not answer";
 }

@@ -15,7 +15,9 @@ double now_seconds();
 
 class HeadLink {
  public:
-  // Starts the helper and waits for its `ready`. Returns what is wrong.
+  static constexpr double kStartPatience =
+      5;  // seconds; as pantiltsink waits for a helper, its login included
+  // Starts the helper and waits for its `ready` for kStartPatience at most. Returns what is wrong.
   std::string start(const std::string& driver, const drivers::HeadSetup& setup);
   // Speeds in radians a second; sent when they change.
   void turn(double pan, double tilt);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // A head of known table, dead time and play is measured by frames at 25 a second; and the file of what was measured.
 #include "control/calibration.h"
+#include "control/timeout_trial.h"
 
 #include <unistd.h>
 #include <chrono>
@@ -107,23 +108,73 @@ START_TEST(what_cannot_be_measured_ends_with_the_reason) {
 }
 END_TEST
 
-// The helper is killed: nothing stops a device that has no Timeout. 1 s with a helper, 3 s without, 1 s for the next one.
+// The helper is killed: nothing stops a device that has no Timeout. 1 s with a helper, 3 s without, 5 s in which the next
+// one may start, and a dead time of .5 s: 38 degrees at 4 degrees a second, 19 at 2.
 START_TEST(the_trial_of_the_device_s_own_timeout_stays_within_the_limits) {
-  const auto wide = plan_timeout_trial({}, 0, radians(30));
+  const auto wide = plan_timeout_trial({}, 0, radians(40));
   ck_assert(wide);
-  ck_assert_double_eq_tol(degrees(wide->speed), 4, 1e-9);                                    // 20 degrees
-  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, 0, radians(15))->speed), 2, 1e-9);  // 10 degrees
-  ck_assert(!plan_timeout_trial({}, 0, radians(9)));
-  // Towards the farther end, which leaves 15 + 6 degrees.
-  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, radians(6), radians(15))->speed), -4, 1e-9);
-  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, radians(-6), radians(15))->speed), 4, 1e-9);
-  // A device whose step for 4 degrees a second makes 7 of it would go 35 degrees.
+  ck_assert_double_eq_tol(degrees(wide->speed), 4, 1e-9);
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, 0, radians(37))->speed), 2, 1e-9);
+  ck_assert(!plan_timeout_trial({}, 0, radians(18)));
+  // Towards the farther end, which leaves 33 + 6 degrees.
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, radians(6), radians(33))->speed), -4, 1e-9);
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial({}, radians(-6), radians(33))->speed), 4, 1e-9);
+  // A device whose step for 4 degrees a second makes 7 of it would go 66.5 degrees, and 28.5 at that for 2.
   const SpeedMap fast({{radians(2), radians(3)}, {radians(4), radians(7)}});
-  ck_assert_double_eq_tol(degrees(plan_timeout_trial(fast, 0, radians(30))->speed), 2, 1e-9);
-  for (double reach = 1; reach < 60; reach += 0.7)
+  ck_assert_double_eq_tol(degrees(plan_timeout_trial(fast, 0, radians(60))->speed), 2, 1e-9);
+  for (double reach = 1; reach < 80; reach += 0.7)
     for (double at = -reach; at <= reach; at += 0.3)
       if (const auto trial = plan_timeout_trial(fast, radians(at), radians(reach)))
-        ck_assert_double_le(std::abs(at + 5 * degrees(fast.actual(trial->speed))), reach + 1e-9);
+        ck_assert_double_le(std::abs(at + 9.5 * degrees(fast.actual(trial->speed))), reach + 1e-9);
+}
+END_TEST
+
+namespace {
+
+// A head at 4 degrees a second in 25 frames a second, whose helper is killed after 1 s, and which stops `stops` seconds
+// later. Returns how the trial ends, and when.
+struct Trial {
+  TimeoutWatch::End end;
+  double at, stopped_after;
+};
+Trial tried(double stops, double reach = 40, bool seen = true, double key = 1e9) {
+  TimeoutWatch watch({radians(4), 1}, 0, radians(reach));
+  for (int frame = 1;; ++frame) {
+    const double now = 0.04 * frame;
+    if (frame == 25) watch.kill(now);
+    watch.add(now, !seen ? kUnknown : now <= 1 + stops ? radians(0.16) : radians(0.001));
+    if (now >= key) watch.press_key();
+    const auto end = watch.end(now);
+    if (end != TimeoutWatch::End::none)
+      return {end, now, end == TimeoutWatch::End::stopped ? watch.stopped_after() : -1};
+    ck_assert_double_lt(now, 20);
+  }
+}
+
+}  // namespace
+
+START_TEST(a_head_without_its_helper_stops_goes_on_or_was_not_seen) {
+  using End = TimeoutWatch::End;
+  const Trial timeout = tried(1.4);
+  ck_assert(timeout.end == End::stopped);
+  ck_assert_double_eq_tol(timeout.stopped_after, 1.4, 0.041);
+  ck_assert(tried(0).end == End::stopped && tried(0).stopped_after < 0.041);
+  const Trial endless = tried(100);
+  ck_assert(endless.end == End::turns);
+  ck_assert_double_eq_tol(endless.at, 4, 0.041);
+  const Trial narrow = tried(100, 6);  // it is at its end after 1.5 s
+  ck_assert(narrow.end == End::turns);
+  ck_assert_double_eq_tol(narrow.at, 1.5, 0.081);
+  ck_assert(tried(100, 40, false).end == End::unseen);
+}
+END_TEST
+
+START_TEST(a_key_ends_the_trial_and_nothing_is_said_of_the_head) {
+  for (const double key : {0.5, 2.0}) {
+    const Trial ended = tried(1.9, 40, true, key);
+    ck_assert(ended.end == TimeoutWatch::End::key);
+    ck_assert_double_eq_tol(ended.at, key, 0.041);
+  }
 }
 END_TEST
 
@@ -207,7 +258,9 @@ int main() {
       "calibration",
       {table_dead_time_and_backlash_are_recovered, a_head_without_play_has_none,
        noise_of_the_picture_is_averaged, what_cannot_be_measured_ends_with_the_reason,
-       the_trial_of_the_device_s_own_timeout_stays_within_the_limits, a_speed_map_goes_both_ways,
+       the_trial_of_the_device_s_own_timeout_stays_within_the_limits,
+       a_head_without_its_helper_stops_goes_on_or_was_not_seen,
+       a_key_ends_the_trial_and_nothing_is_said_of_the_head, a_speed_map_goes_both_ways,
        a_calibration_is_written_and_read, wrong_calibrations_are_refused_with_the_line,
        a_calibration_of_another_device_is_refused_by_name, a_device_is_named_without_its_password});
 }
