@@ -115,6 +115,24 @@ START_TEST(ninety_degrees_are_1019_half_steps_in_order_and_then_the_coils_are_of
 }
 END_TEST
 
+START_TEST(coils_that_are_never_released_stay_on_after_a_stop_and_go_off_with_the_head) {
+  StepperOptions never = options(kCoils);
+  never.release_delay.reset();
+  Bench bench(never);
+  bench.open();
+  bench.go(90);
+  bench.run(500ms);
+  bench.head.stop(bench.lines.now);
+  ck_assert(bench.head.stopping());
+  bench.run(2s);
+  ck_assert(!bench.head.stopping());
+  ck_assert(bench.lit());
+  bench.head.release(bench.lines.now);  // an emergency stop
+  bench.follow();
+  ck_assert(!bench.lit());
+}
+END_TEST
+
 START_TEST(the_coils_follow_the_table_of_half_steps) {
   Bench bench(kCoils);
   bench.open();
@@ -456,6 +474,7 @@ int main() {
   return cerberus::tests::run_suite(
       "stepper_head",
       {ninety_degrees_are_1019_half_steps_in_order_and_then_the_coils_are_off,
+       coils_that_are_never_released_stay_on_after_a_stop_and_go_off_with_the_head,
        the_coils_follow_the_table_of_half_steps, an_inverted_motor_turns_the_other_way,
        step_and_direction_are_pulsed_with_their_times_and_enabled_only_to_move,
        a_schedule_that_is_late_is_refused_and_said,

@@ -261,7 +261,7 @@ Time StepperAxis::tick(Time now) {
   const Time due = rest_since_ + std::max(kParameters.settle, stopping_ ? Time::zero() : *release_delay_);
   if (now < due) return std::min(due, now + kParameters.idle);
   stopping_ = false;
-  if (motor_.releases()) error_ = motor_.release();
+  if (release_delay_ && motor_.releases()) error_ = motor_.release();
   return now + kParameters.idle;
 }
 

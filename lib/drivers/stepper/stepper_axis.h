@@ -28,7 +28,7 @@ class StepperAxis {
   void limit(const motion::AxisLimits& limits, Time now);
   // While the axis homes, the newest command waits. An axis that needs homing begins it with a command that moves.
   void command(const motion::AxisCommand& command, Time now);
-  // Brakes within kStopTime, lets the rotor settle and switches the motor off.
+  // Brakes within kStopTime, lets the rotor settle and switches the motor off, unless its release_delay is never.
   void stop(Time now);
   // Switches the motor off at once. A moving motor loses its position: an axis that can home does so before it moves
   // again.
