@@ -42,6 +42,8 @@ int run_visca(const Options& o) {
   options.header = !o.no_header;
   options.feedback = !o.no_feedback;
   options.zoom = o.zoom;
+  if (o.zoom != ViscaOptions{}.zoom && !(o.zoom >= 0))
+    return fail("--zoom is a position of the zoom, 0 to 1.92");
   if (o.speeds)
     if (const std::string wrong = visca::parse_speed_table(o.speeds, options.speeds); !wrong.empty())
       return fail(wrong);
@@ -61,6 +63,28 @@ int run_pelco(const Options& o) {
   options.home_time = o.home_time;
   PelcoHead head(options);
   return heads::serve(head, o.emergency_stop ? o.emergency_stop : "");
+}
+
+// Returns why the options do not fit the driver: an option of the other one would be ignored otherwise.
+std::string misplaced_option(const Options& o, const std::string& driver) {
+  const PelcoOptions pelco;
+  const struct {
+    const char* name;
+    bool given;
+    const char* driver;
+  } own[] = {{"no-header", o.no_header != FALSE, "visca"},
+             {"no-feedback", o.no_feedback != FALSE, "visca"},
+             {"zoom", o.zoom != ViscaOptions{}.zoom, "visca"},
+             {"speeds", o.speeds != nullptr, "visca"},
+             {"feedback", o.feedback != FALSE, "pelco-d"},
+             {"pan-speed", o.pan_speed != pelco.pan_speed, "pelco-d"},
+             {"tilt-speed", o.tilt_speed != pelco.tilt_speed, "pelco-d"},
+             {"home-preset", o.home_preset != 0, "pelco-d"},
+             {"home-time", o.home_time != pelco.home_time, "pelco-d"}};
+  for (const auto& option : own)
+    if (option.given && driver != option.driver)
+      return std::string("\"") + option.name + "\" is no option of " + driver + ", but of " + option.driver;
+  return {};
 }
 
 }  // namespace
@@ -117,5 +141,6 @@ int main(int argc, char** argv) {
     return fail("there is no head driver \"" + driver +
                 "\": take visca, pelco-d, onvif, stepper-gpio, servo-pwm or v4l2");
   if (!o.device) return fail("the driver " + driver + " needs --device");
+  if (const std::string wrong = misplaced_option(o, driver); !wrong.empty()) return fail(wrong);
   return driver == "visca" ? run_visca(o) : run_pelco(o);
 }

@@ -235,11 +235,12 @@ struct ViscaPlant final : HeadPlant {
   explicit ViscaPlant(std::chrono::milliseconds dead_time = {})
       : ViscaPlant(ViscaFaults{.reports = false, .dead_time = dead_time}) {}
   // Without position inquiries: the driver would wait for the first answer in real time.
-  explicit ViscaPlant(const ViscaFaults& faults) : camera(ViscaCamera::Line::udp, faults, &time) {
+  explicit ViscaPlant(const ViscaFaults& faults, bool feedback = false)
+      : camera(ViscaCamera::Line::udp, faults, &time) {
     drivers::ViscaOptions options;
     options.device = camera.device();
     options.header = faults.header;
-    options.feedback = false;
+    options.feedback = feedback;
     head.emplace(options);
   }
   drivers::HeadDevice& device() override { return *head; }

@@ -88,7 +88,7 @@ class ViscaCamera {
     for (; !late_.empty() && late_.front().due <= now_of(time_); late_.pop_front())
       deliver(late_.front().message);
   }
-  void set_zoom(int position) { zoom_ = position; }
+  void set_zoom(int position) { zoom_ = position, zooms_ = true; }
   int zoom() const { return zoom_; }
   double pan() { return state(pan_.position); }  // degrees
   double tilt() { return state(tilt_.position); }
@@ -236,12 +236,12 @@ class ViscaCamera {
     }
     if (m.size() == 5 && m[1] == 0x09 && m[2] == 0x04 && m[3] == 0x47) {  // CAM_ZoomPosInq
       const int z = zoom_;
-      if (!faults_.zooms) return answer({0x90, 0x60, 0x02, 0xff});
+      if (!zooms_) return answer({0x90, 0x60, 0x02, 0xff});
       const auto nibble = [z](int shift) { return static_cast<std::uint8_t>(z >> shift & 15); };
       return answer({0x90, 0x50, nibble(12), nibble(8), nibble(4), nibble(0), 0xff});
     }
     if (m.size() == 9 && m[1] == 0x01 && m[2] == 0x04 && m[3] == 0x47) {  // CAM_Zoom Direct
-      if (!faults_.zooms) return answer({0x90, 0x60, 0x02, 0xff});
+      if (!zooms_) return answer({0x90, 0x60, 0x02, 0xff});
       zoom_ = m[4] << 12 | m[5] << 8 | m[6] << 4 | m[7];
       if (!faults_.acknowledges) return;
       answer({0x90, 0x41, 0xff});
@@ -286,6 +286,7 @@ class ViscaCamera {
 
   Line line_;
   ViscaFaults faults_;
+  std::atomic<bool> zooms_ = faults_.zooms;
   std::atomic<int> zoom_ = 0;  // 0000 to 4000 hex
   const SteppedTime* time_;
   std::vector<std::uint8_t> bytes_;  // of a message that is not complete yet

@@ -31,6 +31,8 @@ struct Camera {
   int open_error = 0, set_error = 0;
   std::optional<std::int32_t> refuses;  // this value, once
   std::set<std::uint32_t> unread;       // controls that cannot be read
+  std::uint32_t stuck = 0;              // a control that takes values and keeps its own
+  std::map<std::uint32_t, int> reads;
 };
 
 class FakeControls final : public CameraControls {
@@ -45,6 +47,7 @@ class FakeControls final : public CameraControls {
   int get(std::uint32_t control, std::int32_t& value) noexcept override {
     if (camera_.unread.contains(control) || !camera_.ranges.contains(control)) return EINVAL;
     value = camera_.values[control];
+    ++camera_.reads[control];
     return 0;
   }
   int set(std::uint32_t control, std::int32_t value) noexcept override {
@@ -53,7 +56,7 @@ class FakeControls final : public CameraControls {
     const ControlRange range = camera_.ranges.at(control);
     // As the kernel: what is beyond is clamped.
     value = std::clamp(value, range.least, range.most);
-    camera_.values[control] = value;
+    if (control != camera_.stuck) camera_.values[control] = value;
     camera_.sets.emplace_back(control, value);
     return 0;
   }
@@ -312,7 +315,7 @@ START_TEST(the_zoom_is_a_share_of_its_range) {
   ck_assert_double_eq(bench.head->take_zoom().value_or(-1), .25);
   bench.camera.unread = {id::kZoomAbsolute};
   bench.head->take_zoom();
-  bench.run(100ms);
+  bench.run(1s);
   ck_assert(!bench.head->take_zoom());
   assert_text(bench.head->fault(), "");  // it turns all the same
 }
@@ -326,11 +329,35 @@ START_TEST(a_locked_zoom_is_set_and_kept) {
   assert_text(bench.open(), "");
   bench.run(100ms);
   ck_assert_int_eq(bench.camera.values[id::kZoomAbsolute], 300);
-  bench.camera.values[id::kZoomAbsolute] = 420;  // somebody turned the ring
-  bench.run(100ms);
+  bench.camera.values[id::kZoomAbsolute] = 420;  // by hand
+  bench.run(600ms);
   ck_assert_int_eq(bench.camera.values[id::kZoomAbsolute], 300);
+  ck_assert_double_eq(bench.head->take_zoom().value_or(-1), .5);
+  // What is reported is what the camera has, also where that is not what it was asked for.
+  bench.camera.values[id::kZoomAbsolute] = 420;
+  bench.camera.set_error = EBUSY;
+  bench.run(600ms);
+  ck_assert_double_eq(bench.head->take_zoom().value_or(-1), .8);
+  bench.camera.set_error = 0;
+  bench.camera.stuck = id::kZoomAbsolute;
+  bench.run(600ms);
+  ck_assert_double_eq(bench.head->take_zoom().value_or(-1), .8);
+  bench.options.zoom = 1.5;
+  ck_assert(says(bench.open(), "is kept at 0 to 1 of its range (lock-zoom), not at 1.5"));
+  bench.options.zoom = .5;
   bench.camera.ranges.erase(id::kZoomAbsolute);
   ck_assert(says(bench.open(), "/dev/video9 has no zoom to lock"));
+}
+END_TEST
+
+START_TEST(the_zoom_is_read_twice_a_second) {
+  Bench bench;
+  bench.camera = with_angles();
+  bench.camera.ranges[id::kZoomAbsolute] = {100, 500, 10};
+  assert_text(bench.open(), "");
+  bench.run(10s);
+  ck_assert_int_ge(bench.camera.reads[id::kZoomAbsolute], 19);
+  ck_assert_int_le(bench.camera.reads[id::kZoomAbsolute], 21);
 }
 END_TEST
 
@@ -385,6 +412,6 @@ int main() {
        an_axis_that_ceases_to_report_makes_no_pose,
        a_camera_that_never_reports_one_of_its_axes_has_no_feedback,
        a_speed_whose_minimum_is_wrong_is_not_used, relative_moves_add_up, the_zoom_is_a_share_of_its_range,
-       a_locked_zoom_is_set_and_kept, what_cannot_be_is_named,
+       a_locked_zoom_is_set_and_kept, the_zoom_is_read_twice_a_second, what_cannot_be_is_named,
        a_camera_that_goes_away_is_said_and_used_again});
 }

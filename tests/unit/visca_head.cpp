@@ -291,6 +291,27 @@ START_TEST(the_position_of_the_zoom_is_reported) {
 }
 END_TEST
 
+// Its first inquiries came while the camera started, or were lost.
+START_TEST(a_zoom_that_is_not_reported_at_first_is_asked_for_again) {
+  ViscaPlant plant({.reports = false}, true);
+  SteppedHelper served(plant);
+  assert_text(served.line("zoom"), "");  // for 10 s
+  plant.camera.set_zoom(0x2000);
+  std::string zoom = served.line("zoom");
+  if (zoom.empty()) zoom = served.line("zoom");
+  assert_text(zoom, "zoom 0.5");
+}
+END_TEST
+
+START_TEST(a_zoom_beyond_the_lens_is_refused) {
+  const ViscaCamera camera(ViscaCamera::Line::udp);
+  ViscaOptions options = options_for(camera);
+  options.zoom = 2;
+  assert_text(ViscaHead(options).open({}, 0s),
+              "the zoom of a VISCA camera is kept at 0 to 1.92 (lock-zoom), not at 2");
+}
+END_TEST
+
 START_TEST(a_locked_zoom_is_set_at_the_begin) {
   for (const bool acknowledges : {true, false}) {
     ViscaCamera camera(ViscaCamera::Line::udp, {.acknowledges = acknowledges, .zooms = true});
@@ -350,6 +371,7 @@ int main() {
         a_camera_without_positions_reports_the_speeds_of_its_steps,
         a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
         the_position_of_the_zoom_is_reported, a_locked_zoom_is_set_at_the_begin,
+        a_zoom_that_is_not_reported_at_first_is_asked_for_again, a_zoom_beyond_the_lens_is_refused,
         a_camera_without_a_zoom_turns_and_stops_all_the_same, what_cannot_be_opened_is_named})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);

@@ -159,6 +159,8 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const bool external = driver_ == "external";
   if (external && setup.command.empty()) return "the driver external needs a helper to run (command=)";
   if (!external && setup.device.empty()) return "the driver " + driver_ + " needs a device (device=)";
+  if (setup.lock_zoom && driver_ != "visca" && driver_ != "v4l2" && driver_ != "onvif")
+    return "the driver " + driver_ + " keeps no zoom: lock-zoom is for visca, v4l2 and onvif";
   for (const std::string& setting : {setup.device, setup.options})
     if (std::string wrong = refuse_password(setting); !wrong.empty()) return wrong;
   if (setup.helper_timeout < std::chrono::milliseconds(1) || setup.helper_timeout > std::chrono::seconds(10))

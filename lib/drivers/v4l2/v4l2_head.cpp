@@ -112,6 +112,9 @@ std::string V4l2Head::connect(Time now) {
       if (axis->speeds) controls_->set(axis->speed, 0);
   zooms_ = controls_->query(camera_control::kZoomAbsolute);
   if (zooms_ && zooms_->most <= zooms_->least) zooms_.reset();
+  if (options_.zoom > 1)
+    return "the zoom of " + options_.device + " is kept at 0 to 1 of its range (lock-zoom), not at " +
+           text::significant(options_.zoom, 4).string();
   if (options_.zoom >= 0 && !zooms_)
     return "the camera " + options_.device + " has no zoom to lock (lock-zoom)";
   if (std::string wrong = choose_mode(); !wrong.empty()) return wrong;
@@ -124,6 +127,7 @@ std::string V4l2Head::connect(Time now) {
   }
   // A position that lacks an axis is none: the pipeline would take the missing one as measured.
   reads_ = (pan_.reads || !drives(pan_)) && (tilt_.reads || !drives(tilt_)) && (pan_.reads || tilt_.reads);
+  next_zoom_ = now;
   connected_ = true;
   return {};
 }
@@ -272,15 +276,18 @@ void V4l2Head::send_angle(Axis& axis, double angle) {
   check(error);
 }
 
-// Reads the zoom, and sets it where it is to be kept. A camera that refuses either turns all the same.
-void V4l2Head::check_zoom() {
-  if (!zooms_ || lost_) return;
+// Reads the zoom, and sets it where it is to be kept. What is reported is what was read: a camera may refuse a zoom, or
+// take seconds to reach it, and turns all the same.
+void V4l2Head::check_zoom(Time now) {
+  if (!zooms_ || lost_ || now < next_zoom_) return;
+  next_zoom_ = now + kZoomPeriod;
   const double range = static_cast<double>(zooms_->most) - zooms_->least;
   std::int32_t value = 0;
   if (controls_->get(camera_control::kZoomAbsolute, value) != 0) return;
   if (options_.zoom >= 0) {
-    const std::int32_t wanted = on_grid(zooms_->least + std::min(options_.zoom, 1.0) * range, *zooms_);
-    if (value != wanted && controls_->set(camera_control::kZoomAbsolute, wanted) == 0) value = wanted;
+    const std::int32_t wanted = on_grid(zooms_->least + options_.zoom * range, *zooms_);
+    const bool set = value != wanted && controls_->set(camera_control::kZoomAbsolute, wanted) == 0;
+    if (set && controls_->get(camera_control::kZoomAbsolute, value) != 0) return;
   }
   zoom_ = std::clamp((value - static_cast<double>(zooms_->least)) / range, 0.0, 1.0);
 }
@@ -305,7 +312,7 @@ Time V4l2Head::tick(Time now) {
     else if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
       set_speed(*axis, *axis->sent * axis->fastest / axis->speeds->most);
   }
-  check_zoom();
+  check_zoom(now);
   new_pose_ = reads_ && !lost_;
   if (!lost_) return next_;
   disconnect(now);

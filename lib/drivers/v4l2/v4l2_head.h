@@ -53,6 +53,8 @@ class V4l2Head final : public HeadDevice {
   V4l2Options::Mode mode() const { return mode_; }  // the one in use, once it is open
 
   static constexpr std::chrono::milliseconds kPeriod{50};  // between two positions that are sent or read
+  static constexpr std::chrono::milliseconds kZoomPeriod{
+      500};  // between two looks at the zoom; a control takes 2 to 30 ms over USB
   static constexpr std::chrono::milliseconds kReopen{1000};
   static constexpr std::chrono::milliseconds kStopAgain{200};  // while a camera that is gone may turn
 
@@ -90,7 +92,7 @@ class V4l2Head final : public HeadDevice {
   void set_speed(Axis& axis, double speed);
   bool read_position(Axis& axis) noexcept;
   void lose(int error);
-  void check_zoom();
+  void check_zoom(Time now);
   void check(int error) {
     if (error != 0) lose(error);
   }
@@ -109,7 +111,7 @@ class V4l2Head final : public HeadDevice {
   bool new_pose_ = false;
   std::optional<ControlRange> zooms_;
   std::optional<double> zoom_;  // read, and not taken yet
-  Time next_{}, next_open_{};
+  Time next_{}, next_open_{}, next_zoom_{};
   std::string fault_;
 };
 

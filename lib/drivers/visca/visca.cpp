@@ -10,8 +10,8 @@ namespace cerberus::drivers::visca {
 namespace {
 
 constexpr std::uint8_t kEnd = 0xff;
-constexpr double kOpticalZoom = 0x4000;              // end of the optical zoom
-constexpr double kMostZoom = 0x7ac0 / kOpticalZoom;  // end of the digital one: 1.918
+constexpr double kOpticalZoom = 0x4000;  // end of the optical zoom
+static_assert(kMostZoom == 0x7ac0 / kOpticalZoom);
 constexpr int kMostPanStep = 0x18, kMostTiltStep = 0x17;
 
 std::uint8_t head(int address) {

@@ -39,6 +39,7 @@ Message absolute(int address, double pan, double tilt, int pan_step, int tilt_st
 Message home(int address);
 Message position_inquiry(int address);
 // CAM_Zoom Direct and CAM_ZoomPosInq. position: 0 to 1 of the optical zoom (0000 to 4000 hex), digital zoom up to 1.918 (7ac0).
+inline constexpr double kMostZoom = 0x7ac0 / double{0x4000};
 Message zoom(int address, double position);
 Message zoom_inquiry(int address);
 Message interface_clear();  // broadcast

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sensing/angles.h"
+#include "text/numbers.h"
 
 namespace cerberus::drivers {
 namespace {
@@ -68,6 +69,9 @@ void ViscaHead::on_connected(Time now) {
 
 std::string ViscaHead::open(const HeadSetup& setup, Time now) {
   if (options_.address < 1 || options_.address > 7) return "a VISCA address is 1 to 7";
+  if (options_.zoom > visca::kMostZoom)
+    return "the zoom of a VISCA camera is kept at 0 to " + text::significant(visca::kMostZoom, 3).string() +
+           " (lock-zoom), not at " + text::significant(options_.zoom, 4).string();
   if (std::string wrong = connect(setup, now); !wrong.empty()) return wrong;
   if (!options_.feedback) return {};
   send(visca::position_inquiry(options_.address));
@@ -180,9 +184,8 @@ void ViscaHead::on_zoom(double position, Time now) {
 
 // While no order waits for its answer: a camera without a zoom refuses, and the refusal must not count for an order.
 void ViscaHead::ask_zoom(Time now) {
-  if (!options_.feedback || waiting() || zoom_unanswered_ >= kZoomInquiries ||
-      now - zoom_asked_ < kZoomPeriod)
-    return;
+  const Time period = zoom_unanswered_ < kZoomInquiries ? kZoomPeriod : kZoomSeldom;
+  if (!options_.feedback || waiting() || now - zoom_asked_ < period) return;
   zoom_asked_ = now;
   ++zoom_unanswered_;
   send(visca::zoom_inquiry(options_.address));

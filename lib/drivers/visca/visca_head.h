@@ -54,7 +54,8 @@ class ViscaHead final : public StreamDevice {
   static constexpr int kStopsWithoutAnswer = 5;  // to a camera that never acknowledged anything
   static constexpr std::chrono::milliseconds kInquiryPeriod{100};
   static constexpr std::chrono::milliseconds kZoomPeriod{500};
-  static constexpr int kZoomInquiries = 3;  // without an answer, after which the camera is asked no more
+  static constexpr int kZoomInquiries = 3;  // without an answer, after which the camera is asked seldom
+  static constexpr std::chrono::milliseconds kZoomSeldom{10000};
   static constexpr std::chrono::milliseconds kForgotten{1000};  // an answer that has not come by then is lost
   static constexpr double kRate =
       20;  // commands a second: a frame of 16 bytes at 9600 baud takes 17 ms both ways
