@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace cerberus::sensing {
 
@@ -80,8 +81,8 @@ void PirModel::start(Time now, bool level) {
   started_ = true;
   line_ = detecting_ = false;
   last_fall_ = hold_until_ = blocked_until_ = kLongAgo;
-  warm_until_ = later(now, options_.warm_up);
-  warming_ = options_.warm_up > Time::zero();
+  warm_until_ = std::exchange(warms_until_, std::nullopt).value_or(later(now, options_.warm_up));
+  warming_ = warm_until_ > now;
   presence_ = Presence::invalid;
   fault_ = PirFault::none;
   turning_ = doubtful_ = false;
@@ -89,6 +90,12 @@ void PirModel::start(Time now, bool level) {
   line_ = level != options_.active_low;
   if (line_) rise(now);
   settle(now);
+}
+
+void PirModel::forget_level() {
+  const std::optional<Time> until = started_ ? std::optional(warm_until_) : warms_until_;
+  *this = PirModel(options_);
+  warms_until_ = until;
 }
 
 void PirModel::edge(Time time, bool level) {

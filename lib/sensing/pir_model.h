@@ -14,6 +14,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -63,6 +64,9 @@ class PirModel {
 
   // Begins (again) at `now` with the line's present level: warm-up starts, history and faults are cleared.
   void start(Time now, bool level);
+  // Forgets the line's level, history and faults, until the next edge() begins anew. The module kept its supply: a
+  // warm-up that start() began goes on, and one that never began begins with that edge.
+  void forget_level();
   // Sets the raw line to `level` from `time` on (a repeated level is no edge). Changes due until `time` are made first.
   void edge(Time time, bool level);
   // Advances the time. Returns deadline().
@@ -98,6 +102,7 @@ class PirModel {
 
   PirOptions options_;
   Time now_{}, changed_{};
+  std::optional<Time> warms_until_;  // of a line whose level was forgotten
   bool started_ = false, warming_ = false;
   bool line_ = false;       // active, after polarity
   bool detecting_ = false;  // presence if nothing makes it invalid

@@ -15,6 +15,7 @@
 #include "support/pipe.h"
 #include "support/says.h"
 #include "support/suite.h"
+#include "support/text.h"
 
 namespace {
 
@@ -23,6 +24,7 @@ using namespace std::chrono_literals;
 using cerberus::sensing::PirFault;
 using cerberus::sensing::PirOptions;
 using cerberus::sensing::Presence;
+using cerberus::tests::assert_text;
 using cerberus::tests::Pipe;
 
 struct Told {
@@ -212,6 +214,60 @@ START_TEST(a_driver_that_fails_ends_it_with_its_own_words) {
 }
 END_TEST
 
+namespace {
+
+// A live sensor of one line: "TIME:LEVEL ..." in seconds, "-" where nothing is known.
+class Live final : public Sensor {
+ public:
+  explicit Live(std::vector<SensorEdge> edges) : edges_(std::move(edges)) {}
+  SensorError open(const SensorSetup&) override { return {}; }
+  bool opens_at_once(const SensorSetup&) const override { return true; }
+  void close() noexcept override {}
+  void stop() noexcept override {}
+  SensorError read(Time now, std::vector<SensorEdge>& edges) override {
+    for (; given_ < edges_.size() && edges_[given_].time <= now; ++given_) edges.push_back(edges_[given_]);
+    return {};
+  }
+  std::string place(int) const override { return "nowhere"; }
+
+ private:
+  std::vector<SensorEdge> edges_;
+  std::size_t given_ = 0;
+};
+
+// The reading of one sensor at these times; warm-up 60 s.
+std::string presence_at(std::vector<SensorEdge> edges, const std::vector<Time>& times) {
+  SensorArray array;
+  SensorSetup setup;
+  setup.sensors = 1;
+  ck_assert(!array.open(std::make_unique<Live>(std::move(edges)), setup, {.warm_up = 60s}, 1h));
+  std::string found;
+  SensorReading last;
+  for (Time now = 0s; const Time time : times) {
+    for (; now <= time; now += 500ms)
+      for (SensorReading reading; array.next(now, reading) == SensorArray::Step::reading;) last = reading;
+    found += static_cast<char>('0' + static_cast<int>(last.presence[0]));
+  }
+  return found;
+}
+
+}  // namespace
+
+START_TEST(a_level_that_is_unknown_for_a_while_ends_no_warm_up) {
+  const auto unknown = [](Time time, bool restarts = false) {
+    return SensorEdge{.time = time, .known = false, .restarts = restarts};
+  };
+  const auto high = [](Time time) { return SensorEdge{.time = time, .level = true}; };
+  // The warm-up goes on through the gap, from 0 to 60 s.
+  assert_text(presence_at({high(0s), unknown(10s), high(12s)}, {5s, 11s, 13s, 59s, 61s}), "22221");
+  // The first level comes late: the module may have got its supply just then.
+  assert_text(presence_at({unknown(0s), unknown(1s), high(10s)}, {5s, 11s, 69s, 71s}), "2221");
+  // Of a sensor that is warm, or that restarts.
+  assert_text(presence_at({high(0s), unknown(70s), high(72s)}, {65s, 71s, 73s}), "121");
+  assert_text(presence_at({high(0s), unknown(70s, true), high(72s)}, {65s, 73s, 131s, 133s}), "1221");
+}
+END_TEST
+
 START_TEST(edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated) {
   SensorArray array;
   SensorSetup setup;
@@ -320,15 +376,16 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "sensor_array", {a_reading_at_the_start_at_every_change_and_every_heartbeat,
-                       nothing_is_known_before_a_recordings_first_line,
-                       an_invalid_reading_of_a_recording_lasts_until_the_next_one,
-                       a_recording_goes_on_wherever_it_is_asked_to,
-                       a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_later,
-                       a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread,
-                       a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again,
-                       a_driver_that_fails_ends_it_with_its_own_words,
-                       edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated,
-                       a_turning_base_makes_detections_doubtful, unknown_volts_are_not_the_last_ones,
-                       every_sample_is_a_reading_where_that_is_asked_for});
+      "sensor_array",
+      {a_reading_at_the_start_at_every_change_and_every_heartbeat,
+       nothing_is_known_before_a_recordings_first_line,
+       an_invalid_reading_of_a_recording_lasts_until_the_next_one,
+       a_recording_goes_on_wherever_it_is_asked_to,
+       a_driver_that_blocks_blocks_no_caller_and_its_readings_are_received_later,
+       a_sensor_that_may_block_is_not_opened_on_the_caller_s_thread,
+       a_stuck_sensor_is_reported_once_and_once_more_when_it_works_again,
+       a_driver_that_fails_ends_it_with_its_own_words, a_level_that_is_unknown_for_a_while_ends_no_warm_up,
+       edges_before_the_first_reading_are_not_reported_and_missed_heartbeats_are_not_repeated,
+       a_turning_base_makes_detections_doubtful, unknown_volts_are_not_the_last_ones,
+       every_sample_is_a_reading_where_that_is_asked_for});
 }

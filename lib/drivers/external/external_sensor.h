@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Sensors of a program or a microcontroller, which sends a line at each change (sensor_lines.h): the standard output of
 // a command, a serial port, or a FIFO. Lines are stamped when they are read. A sender that ends, vanishes or is silent
-// is an outage: the command is started and the device opened again once a second.
+// is an outage. A command that has ended is started again, and a device that has vanished is opened again, once a second.
 #pragma once
 
 #include <vector>

@@ -98,17 +98,16 @@ void SensorArray::close() noexcept {
   begun_ = false;
 }
 
-namespace {
-
-// Returns a model in its initial state. Unless the sensor itself restarts it is not warmed up: the caller that makes it
-// valid again has waited for that.
-sensing::PirModel begin_again(const sensing::PirModel& model, const sensing::PirOptions& all, bool restarts) {
-  sensing::PirOptions options = model.options();
-  options.warm_up = restarts ? all.warm_up : Time();
-  return sensing::PirModel(options);
+// From now on nothing is known of the line. A sensor that restarts warms up again.
+void SensorArray::begin_again(sensing::PirModel& model, bool restarts) const {
+  sensing::PirOptions options = options_;
+  // The warm-up of a recorded sensor is over where its recorded readings are valid.
+  if (recorded_) options.warm_up = Time();
+  if (restarts || recorded_)
+    model = sensing::PirModel(options);
+  else
+    model.forget_level();
 }
-
-}  // namespace
 
 Time SensorArray::deadline() const {
   Time due = kNever;
@@ -131,7 +130,7 @@ void SensorArray::let_pass(Time until) {
     if (edge.known)
       model.edge(edge.time, edge.level);
     else
-      model = begin_again(model, options_, edge.restarts);
+      begin_again(model, edge.restarts);
     if (edge.known && std::isnan(edge.volts)) continue;
     volts_[static_cast<std::size_t>(edge.sensor)] = edge.known ? edge.volts : std::nan("");
     sampled_ = true;

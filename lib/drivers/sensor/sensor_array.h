@@ -76,6 +76,7 @@ class SensorArray {
   void begin(std::unique_ptr<Sensor> sensor);
   Time deadline() const;
   void let_pass(Time until);
+  void begin_again(sensing::PirModel& model, bool restarts) const;
   bool look(Time time, SensorReading& reading);
   Step fail(SensorError error, Time now, SensorReading& reading);
 
