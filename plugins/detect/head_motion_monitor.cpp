@@ -7,7 +7,7 @@
 
 #include "cerberus/private/messages.hpp"
 #include "shared/camera_mount.hpp"
-#include "shared/clock_times.hpp"
+#include "shared/poses.hpp"
 
 namespace cerberus::plugin {
 
@@ -90,10 +90,9 @@ control::HeadComparison::Head HeadMotionMonitor::head_of(GstElement* element, Fr
   const std::lock_guard guard(lock_);
   const CerberusPose* heard = poses_.at(time);
   if (!heard) return {};
-  CerberusPose pose = *heard;
-  cerberus_pose_evaluate(heard, frame.running_time, &pose.pan, &pose.tilt);
-  pose.valid_from = frame.running_time;
-  if (pose.valid_until < pose.valid_from) pose.valid_until = pose.valid_from;
+  // The same piece from the time of the frame on; of one that has expired, its end.
+  CerberusPose pose = to_c(from_c(*heard).at(time));
+  pose.head = heard->head;
   cerberus_buffer_set_pose(frame.buffer, &pose);
   poses_.forget_before(time);
   return {look_of(pose, frame.running_time).value_or(kStrange), pose.head, true};
@@ -105,7 +104,7 @@ std::optional<vision::Transform> HeadMotionMonitor::look(GstElement* element, Fr
   pose_.reset();
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer)) {
     pose_ = *pose;
-    cerberus_pose_evaluate(pose, frame.running_time, &pose_->pan, &pose_->tilt);
+    holds_ = cerberus_pose_evaluate(pose, frame.running_time, &pose_->pan, &pose_->tilt);
     pose_->pan_speed = pose_->tilt_speed = pose_->pan_acceleration = pose_->tilt_acceleration = 0;
   }
   return motion;
@@ -145,7 +144,8 @@ void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision:
 void HeadMotionMonitor::repeat(Frame& frame) {
   if (pose_ && !cerberus_buffer_peek_pose(frame.buffer)) {
     CerberusPose pose = *pose_;
-    if (GST_CLOCK_TIME_IS_VALID(frame.running_time)) pose.valid_from = pose.valid_until = frame.running_time;
+    if (holds_ && GST_CLOCK_TIME_IS_VALID(frame.running_time))
+      pose.valid_from = pose.valid_until = frame.running_time;
     cerberus_buffer_set_pose(frame.buffer, &pose);
   }
   attach_base(frame, comparison_.base_rate(known_time(frame.running_time).value_or(Time::zero())));

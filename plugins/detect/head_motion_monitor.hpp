@@ -45,6 +45,7 @@ class HeadMotionMonitor {
 
   control::HeadComparison comparison_;
   std::optional<CerberusPose> pose_;  // of the last picture, at rest
+  bool holds_ = false;                // pose_ had not expired at that picture
 
   PoseThread pose_thread_;
   std::mutex lock_;  // of the members below

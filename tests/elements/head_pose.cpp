@@ -43,6 +43,48 @@ GST_START_TEST(a_frame_gets_the_pose_of_its_own_time) {
 }
 GST_END_TEST
 
+// The pose on a frame is the same piece from the frame's time on: evaluating it later gives the angle of the event.
+GST_START_TEST(the_pose_on_a_frame_goes_on_as_the_head_does) {
+  scene::Line line("cameramotion");
+  CerberusPose braking = pose(10, 0, 10 * scene::kStep);
+  braking.pan_speed = 50;
+  braking.pan_acceleration = -100;
+  braking.moving = TRUE;
+  send(line, braking);
+  gst_buffer_unref(line.through(scene::grey_buffer(kWorld, 0)));
+  GstBuffer* out = line.through(scene::grey_buffer(kWorld, 5));  // 0.2 s
+  const CerberusPose* p = cerberus_buffer_peek_pose(out);
+  fail_unless(p && p->moving && p->valid_from == 5 * scene::kStep && p->valid_until == 10 * scene::kStep);
+  fail_unless(std::abs(p->pan - 18) < 1e-9 && std::abs(p->pan_speed - 30) < 1e-9, "%g, %g", p->pan,
+              p->pan_speed);
+  double later = 0, expected = 0;
+  fail_unless(cerberus_pose_evaluate(p, 8 * scene::kStep, &later, nullptr));
+  cerberus_pose_evaluate(&braking, 8 * scene::kStep, &expected, nullptr);
+  fail_unless(std::abs(later - expected) < 1e-9, "%g, not %g", later, expected);
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
+// No event has come since: where the head looks now is not certain, and repeating the frame does not make it so.
+GST_START_TEST(an_expired_pose_stays_expired) {
+  scene::Line line("cameramotion");
+  CerberusPose short_lived = pose(10, 0, 2 * scene::kStep);
+  short_lived.pan_speed = 50;
+  send(line, short_lived);
+  for (const int number : {4, 5}) {
+    GstBuffer* in = scene::grey_buffer(kWorld, number);
+    if (number == 5) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_GAP);
+    GstBuffer* out = line.through(in);
+    const CerberusPose* p = cerberus_buffer_peek_pose(out);
+    double pan = 0;
+    fail_unless(p && p->valid_until == 2 * scene::kStep, "frame %d", number);
+    fail_unless(!cerberus_pose_evaluate(p, number * scene::kStep, &pan, nullptr));
+    fail_unless(std::abs(pan - 14) < 1e-9, "%g", pan);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(a_pose_on_the_frame_takes_precedence_over_the_event) {
   scene::Line line("cameramotion");
   send(line, pose(10, 0));
@@ -107,6 +149,8 @@ static Suite* head_pose_suite() {
   TCase* tc = tcase_create("cameramotion");
   suite_add_tcase(s, tc);
   tcase_add_test(tc, a_frame_gets_the_pose_of_its_own_time);
+  tcase_add_test(tc, the_pose_on_a_frame_goes_on_as_the_head_does);
+  tcase_add_test(tc, an_expired_pose_stays_expired);
   tcase_add_test(tc, a_pose_on_the_frame_takes_precedence_over_the_event);
   tcase_add_test(tc, another_head_is_not_listened_to_and_every_event_goes_on);
   tcase_add_test(tc, poses_of_the_run_before_are_forgotten);
