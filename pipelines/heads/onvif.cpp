@@ -25,7 +25,8 @@ constexpr double kMostSpeed = 3600;  // degrees a second, as of pantiltsink
 constexpr char kOptions[] =
     "device, user, password-file, password-env, password-credential, password-text, profile, fingerprint, "
     "range, "
-    "pan-speed, tilt-speed, answer-time, home-preset, home-time, no-feedback, no-absolute, emergency-stop";
+    "pan-speed, tilt-speed, zoom, answer-time, home-preset, home-time, no-feedback, no-absolute, "
+    "emergency-stop";
 
 struct Settings {
   OnvifOptions head;
@@ -86,6 +87,13 @@ std::string read_number(const OptionWord& word, OnvifOptions& options) {
     options.home_time = std::chrono::milliseconds(static_cast<int>(seconds * 1000));
     return wrong;
   }
+  if (word.key == "zoom") {
+    const auto position = number_of(word.value);
+    if (!position || *position < 0 || *position > 1)
+      return "zoom=" + word.value + ": 0 to 1, the position of the lens to keep (lock-zoom)";
+    options.login.zoom = *position;
+    return {};
+  }
   const auto milliseconds = number_of(word.value);
   if (!milliseconds || *milliseconds < 100 || *milliseconds > 10000)
     return "answer-time is 100 to 10000 milliseconds";
@@ -103,7 +111,7 @@ std::string read_word(const OptionWord& word, Settings& s) {
     return parse_device(value, s.head.login.device);
   }
   if (key == "range" || key == "pan-speed" || key == "tilt-speed" || key == "answer-time" ||
-      key == "home-time")
+      key == "home-time" || key == "zoom")
     return read_number(word, s.head);
   std::string* const text = key == "user"                  ? &s.http.user
                             : key == "password-file"       ? &s.password.file

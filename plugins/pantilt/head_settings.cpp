@@ -63,9 +63,10 @@ const Property<HeadSettings> kProperties[] = {
              "What a head with a zoom sees: positions (0 = widest, 1 = longest) and degrees over the frame's "
              "width, '0 60; 0.5 20; 1 3.2'; it then takes the place of horizontal-fov; empty = not known")
         .read_at_start(),
-    property("lock-zoom", &HeadSettings::lock_zoom, -1, motion::kMostZoom,
-             "Position at which the zoom of a visca or v4l2 camera is kept, 0 = widest, 1 = longest; -1 = "
-             "it is left alone")
+    property(
+        "lock-zoom", &HeadSettings::lock_zoom, -1, motion::kMostZoom,
+        "Position at which the zoom of a visca, onvif or v4l2 camera is kept, 0 = widest, 1 = longest; -1 = "
+        "it is left alone")
         .read_at_start(),
     property("pan-min", &HeadSettings::pan_min, -kMostDegrees, kMostDegrees,
              "How far the head turns to the left, degrees, at most 0"),

@@ -14,6 +14,7 @@ int main() {
         get_configuration_options("ptz<0>"), get_status("p"), get_presets("p"),
         continuous_move("p", {1e-5, -1, ""}, 1500ms), continuous_move("p", {0, 0, at.space}, std::nullopt),
         absolute_move("p", at, PanTilt{.5, .5, ""}), absolute_move("p", at, std::nullopt), stop("p"),
+        absolute_zoom("p", .25, "http://www.onvif.org/ver10/tptz/ZoomSpaces/PositionGenericSpace"),
         goto_preset("p", "1"), goto_home_position("p")})
     std::cout << request.body << '\n';
 }

@@ -21,6 +21,7 @@ constexpr char kPtz[] = "http://www.onvif.org/ver20/ptz/wsdl";
 constexpr char kWsse[] = "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-secext-1.0.xsd";
 constexpr char kWsu[] = "http://docs.oasis-open.org/wss/2004/01/oasis-200401-wss-wssecurity-utility-1.0.xsd";
 #define SPACES "http://www.onvif.org/ver10/tptz/PanTiltSpaces/"
+#define ZOOM_SPACE "http://www.onvif.org/ver10/tptz/ZoomSpaces/PositionGenericSpace"
 
 // The child of that namespace and name.
 const xmlNode* child(const xmlNode* node, const char* space, const char* name) {
@@ -158,6 +159,14 @@ double OnvifCamera::pan() {
   const std::lock_guard guard(lock_);
   advance(now_of(time_));
   return pan_;
+}
+double OnvifCamera::zoom() {
+  const std::lock_guard guard(lock_);
+  return zoom_;
+}
+void OnvifCamera::set_zoom(double position) {
+  const std::lock_guard guard(lock_);
+  zoom_ = position;
 }
 double OnvifCamera::tilt() {
   const std::lock_guard guard(lock_);
@@ -344,6 +353,10 @@ HttpReply OnvifCamera::options() {
     spaces +=
         space2d("AbsolutePanTiltPositionSpace", SPACES "SphericalPositionSpaceDegrees", kPanEnd, kTiltEnd);
   spaces += space2d("ContinuousPanTiltVelocitySpace", SPACES "VelocityGenericSpace", 1, 1);
+  if (faults_.zooms)
+    spaces +=
+        "<tt:AbsoluteZoomPositionSpace><tt:URI>" ZOOM_SPACE
+        "</tt:URI><tt:XRange><tt:Min>0</tt:Min><tt:Max>1</tt:Max></tt:XRange></tt:AbsoluteZoomPositionSpace>";
   if (faults_.claims_degree_velocity)
     spaces += space2d("ContinuousPanTiltVelocitySpace", SPACES "VelocitySpaceDegrees", kPanSpeed, kTiltSpeed);
   return envelope("<tptz:GetConfigurationOptionsResponse><tptz:PTZConfigurationOptions><tt:Spaces>" + spaces +
@@ -360,11 +373,14 @@ HttpReply OnvifCamera::status() {
   const bool moving =
       faults_.move_status == MoveStatus::always_moving || (faults_.move_status == MoveStatus::alive && turns);
   std::string content;
+  const std::string zoom =
+      faults_.zooms ? "<tt:Zoom x=\"" + print(zoom_) + "\" space=\"" ZOOM_SPACE "\"/>" : "";
+  if (!faults_.positions && faults_.zooms) content = "<tt:Position>" + zoom + "</tt:Position>";
   if (faults_.positions) {
     const double x = faults_.degrees ? pan_ : pan_ / kPanEnd, y = faults_.degrees ? tilt_ : tilt_ / kTiltEnd;
     content = "<tt:Position><tt:PanTilt x=\"" + print(x) + "\" y=\"" + print(y) + "\" space=\"" SPACES +
-              (faults_.degrees ? "SphericalPositionSpaceDegrees" : "PositionGenericSpace") +
-              "\"/></tt:Position>";
+              (faults_.degrees ? "SphericalPositionSpaceDegrees" : "PositionGenericSpace") + "\"/>" + zoom +
+              "</tt:Position>";
   }
   if (faults_.move_status != MoveStatus::absent)
     content += std::string("<tt:MoveStatus><tt:PanTilt>") + (moving ? "MOVING" : "IDLE") +
@@ -403,6 +419,12 @@ HttpReply OnvifCamera::continuous_move(const xmlNode* request) {
 HttpReply OnvifCamera::absolute_move(const xmlNode* request) {
   const xmlNode* vector = child(child(request, kPtz, "Position"), kTt, "PanTilt");
   const bool degrees = attribute(vector, "space") == SPACES "SphericalPositionSpaceDegrees";
+  if (const xmlNode* zoom = child(child(request, kPtz, "Position"), kTt, "Zoom")) {
+    if (!faults_.zooms || faults_.refuses_zoom || attribute(zoom, "space") != ZOOM_SPACE)
+      return fault("InvalidArgVal", "SpaceNotSupported", "no zoom");
+    zoom_ = number(attribute(zoom, "x"));
+    if (!vector) return envelope("<tptz:AbsoluteMoveResponse/>");
+  }
   if (!vector) return fault("InvalidArgVal", "", "no position");
   if (faults_.refuses_absolute || (degrees && !faults_.degrees))
     return fault("InvalidArgVal", "SpaceNotSupported", "not that one");

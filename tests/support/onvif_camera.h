@@ -35,6 +35,8 @@ struct OnvifFaults {
   bool no_get_services = false;  // only GetCapabilities
   bool media2_only = false;
   bool no_ptz_profile = false;
+  bool zooms = false;                       // has a zoom with absolute positions
+  bool refuses_zoom = false;                // it claims them and refuses them
   bool repeats_password = false;            // in the reason of a fault
   std::chrono::milliseconds delay{0};       // of every answer
   std::chrono::milliseconds move_delay{0};  // moves are obeyed and answered so late
@@ -64,7 +66,9 @@ class OnvifCamera {
   void lose_stops(int requests);
 
   double pan(), tilt();  // degrees
-  double speed();        // of pan, degrees a second
+  double zoom();         // 0 to 1
+  void set_zoom(double position);
+  double speed();  // of pan, degrees a second
   Clock::time_point stopped();
   int count(const std::string& operation);  // requests that were obeyed or acknowledged
   std::vector<std::string> requests();      // documents, in order
@@ -91,7 +95,7 @@ class OnvifCamera {
   OnvifFaults faults_;
   const SteppedTime* time_;
   std::mutex lock_;
-  double pan_ = 0, tilt_ = 0, pan_speed_ = 0, tilt_speed_ = 0;
+  double pan_ = 0, tilt_ = 0, pan_speed_ = 0, tilt_speed_ = 0, zoom_ = 0;
   bool to_angle_ = false;
   double to_pan_ = 0, to_tilt_ = 0;
   Clock::time_point last_ = now_of(time_), stopped_{}, until_ = Clock::time_point::max();

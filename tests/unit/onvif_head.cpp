@@ -222,6 +222,41 @@ START_TEST(a_preset_that_is_not_listed_is_named_with_those_that_are) {
 }
 END_TEST
 
+START_TEST(a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands) {
+  OnvifFaults faults;
+  faults.zooms = true;
+  Rig rig(faults, [](OnvifOptions& options) { options.login.zoom = .25; });
+  ck_assert_double_eq(rig.camera.zoom(), .25);
+  assert_text(rig.served.line("zoom"), "zoom 0.25");
+  ck_assert_double_eq(rig.camera.pan(), 0);
+  // By hand, while the head turns: an AbsoluteMove might end its move.
+  ck_assert(rig.served.until([&] { return rig.camera.speed() > 9; }, "move at 10 hold"));
+  rig.camera.set_zoom(.5);
+  assert_text(rig.served.line("zoom"), "zoom 0.5");
+  for (int k = 0; k < 600; ++k) {
+    rig.served.say("move at 10 hold");
+    rig.served.run(10ms);
+  }
+  ck_assert_double_eq(rig.camera.zoom(), .5);
+  rig.served.say("stop");
+  ck_assert(rig.served.until([&] { return rig.camera.zoom() == .25; }));
+}
+END_TEST
+
+START_TEST(a_zoom_that_cannot_be_kept_is_an_error) {
+  for (const bool claims : {false, true}) {
+    OnvifCamera camera({.zooms = claims, .refuses_zoom = true});
+    OnvifOptions options = onvif_options(camera);
+    options.login.zoom = 0;
+    OnvifRig rig(options);
+    const std::string fault = rig.served.line("fault");
+    const char* words = claims ? "does not keep its zoom where lock-zoom has it (SpaceNotSupported: no zoom)"
+                               : "has no absolute zoom in the profile \"moving\": its zoom cannot be kept";
+    ck_assert_msg(fault.find(words) != std::string::npos, "%s", fault.c_str());
+  }
+}
+END_TEST
+
 // Seven requests of .18 s take longer than the login may.
 START_TEST(a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known) {
   OnvifCamera camera({.delay = 180ms});
@@ -270,6 +305,8 @@ int main() {
                                   a_camera_without_positions_finds_its_reference_by_a_preset,
                                   a_preset_that_is_not_there_is_a_fault,
                                   a_preset_that_is_not_listed_is_named_with_those_that_are,
+                                  a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands,
+                                  a_zoom_that_cannot_be_kept_is_an_error,
                                   a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known,
                                   a_velocity_falls_before_a_limit_and_towards_an_angle});
 }

@@ -141,9 +141,15 @@ std::optional<PtzOptions> read_configuration_options(XmlElement body) {
   const XmlElement options = body.child("GetConfigurationOptionsResponse").child("PTZConfigurationOptions");
   if (!options) return std::nullopt;
   const XmlElement spaces = options.child("Spaces"), timeout = options.child("PTZTimeout");
+  std::optional<Space> zoom;
+  if (const auto found = read_spaces(spaces, "AbsoluteZoomPositionSpace"); !found.empty()) {
+    zoom = found.front();
+    if (!spaces.child("AbsoluteZoomPositionSpace").child("XRange")) zoom->x = {0, 1};
+  }
   return PtzOptions{.positions = read_spaces(spaces, "AbsolutePanTiltPositionSpace"),
                     .velocities = read_spaces(spaces, "ContinuousPanTiltVelocitySpace"),
                     .speeds = read_spaces(spaces, "PanTiltSpeedSpace"),
+                    .zoom = std::move(zoom),
                     .least_timeout = read_duration(timeout.child("Min").text()),
                     .most_timeout = read_duration(timeout.child("Max").text())};
 }

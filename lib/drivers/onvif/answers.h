@@ -58,6 +58,7 @@ struct Space {
 // What a PTZ configuration offers.
 struct PtzOptions {
   std::vector<Space> positions, velocities, speeds;
+  std::optional<Space> zoom;  // of absolute positions; its y means nothing
   std::optional<std::chrono::milliseconds> least_timeout, most_timeout;  // of ContinuousMove
 };
 std::optional<PtzOptions> read_configuration_options(XmlElement body);

@@ -13,6 +13,11 @@ constexpr int kMostUnreadable =
 
 }  // namespace
 
+Request zoom_request(const Camera& camera, double position) {
+  const Space& space = *camera.options.zoom;
+  return absolute_zoom(camera.profile, space.x.from + position * (space.x.to - space.x.from), space.uri);
+}
+
 void Login::begin(Time now, Time timeout) {
   soap_.cancel(id_);
   camera_ = {};
@@ -60,6 +65,8 @@ void Login::send(Step step, Time now) {
         return get_presets(camera_.profile);
       case Step::status:
         return get_status(camera_.profile);
+      case Step::zoom:
+        return zoom_request(camera_, options_.zoom);
       case Step::absolute:
         break;
     }
@@ -106,6 +113,19 @@ void Login::after_profiles(const SoapAnswer& answer, Time now) {
   if (step_ == Step::profiles && !services_.media2.empty()) return send(Step::profiles_media2, now);
   if (seen_profiles_.empty()) return fail("has no profile with a PTZ configuration: it cannot pan and tilt");
   fail("has no profile \"" + options_.profile + "\" that can pan and tilt; it has " + seen_profiles_);
+}
+
+void Login::after_options(const SoapAnswer& answer, Time now) {
+  camera_.options = read_configuration_options(answer.body).value_or(PtzOptions{});
+  if (options_.zoom < 0 || camera_.options.zoom) return send(Step::stop, now);
+  fail("has no absolute zoom in the profile \"" + camera_.profile +
+       "\": its zoom cannot be kept (lock-zoom). Name another profile (profile=), or set the zoom at the "
+       "camera");
+}
+
+// At the end, because the camera has been stopped by then and what else is asked for must not wait for the lens.
+void Login::set_zoom(Time now) {
+  if (options_.zoom >= 0) send(Step::zoom, now);
 }
 
 // A preset by token or name.
@@ -164,8 +184,7 @@ void Login::handle(const SoapAnswer& answer, Time now) {
     case Step::profiles_media2:
       return after_profiles(answer, now);
     case Step::options:
-      camera_.options = read_configuration_options(answer.body).value_or(PtzOptions{});
-      return send(Step::stop, now);
+      return after_options(answer, now);
     case Step::stop:
       return send(options_.preset.empty() ? Step::status : Step::presets, now);
     case Step::presets:
@@ -179,9 +198,14 @@ void Login::handle(const SoapAnswer& answer, Time now) {
       if (options_.try_absolute && camera_.status && camera_.status->position &&
           !camera_.options.positions.empty())
         return send(Step::absolute, now);
-      return;
+      return set_zoom(now);
     case Step::absolute:
       camera_.absolute = answer.good();
+      return set_zoom(now);
+    case Step::zoom:
+      if (!answer.good())
+        fail("does not keep its zoom where lock-zoom has it (" +
+             (answer.fault ? answer.fault->text() : answer.wrong) + ")");
       return;
   }
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What happens between an address and the first move: the camera's clock, its services, the profile that can pan and tilt,
-// what its PTZ configuration offers, a Stop, the position, and whether AbsoluteMove works (it is sent to where it is).
+// what its PTZ configuration offers, a Stop, the position, whether AbsoluteMove works (it is sent to where it is), and the
+// zoom where it is to be kept.
 #pragma once
 
 #include <string>
@@ -15,6 +16,7 @@ struct LoginOptions {
   bool password_text = false;  // passwords in clear also without TLS
   bool try_absolute = true;
   std::string preset;  // token or name of a preset to look up; empty: none
+  double zoom = -1;    // position of the zoom to keep, 0 to 1; negative: whatever it is
 };
 
 // What the camera is, after a login.
@@ -26,6 +28,9 @@ struct Camera {
   std::string preset;               // token of the preset that was looked up
   bool absolute = false;            // it takes an AbsoluteMove to its own position
 };
+
+// Sets the zoom of a camera whose options have one. position: 0 to 1.
+Request zoom_request(const Camera& camera, double position);
 
 class Login {
  public:
@@ -55,7 +60,8 @@ class Login {
     stop,
     presets,
     status,
-    absolute
+    absolute,
+    zoom
   };
 
   void send(Step step, Time now);
@@ -65,6 +71,8 @@ class Login {
   void after_services(const SoapAnswer& answer, Time now);
   void after_profiles(const SoapAnswer& answer, Time now);
   void after_presets(const SoapAnswer& answer, Time now);
+  void after_options(const SoapAnswer& answer, Time now);
+  void set_zoom(Time now);
   Address service(const std::string& claimed) const;
 
   SoapClient& soap_;

@@ -84,6 +84,12 @@ Request absolute_move(std::string_view profile, const PanTilt& position,
                  element("ProfileToken", profile) + pan_tilt("Position", position) +
                      (speed ? pan_tilt("Speed", *speed) : ""));
 }
+Request absolute_zoom(std::string_view profile, double position, std::string_view space) {
+  return request(
+      kPtz, "AbsoluteMove",
+      element("ProfileToken", profile) + join({"<Position><tt:Zoom x=\"", text::rounded(position, 5),
+                                               "\" space=\"", xml_escaped(space), "\"/></Position>"}));
+}
 Request stop(std::string_view profile) {
   return request(kPtz, "Stop",
                  element("ProfileToken", profile) + "<PanTilt>true</PanTilt><Zoom>false</Zoom>");

@@ -46,6 +46,8 @@ Request continuous_move(std::string_view profile, const PanTilt& velocity,
                         std::optional<std::chrono::milliseconds> timeout);
 // speed: as the camera likes where nothing.
 Request absolute_move(std::string_view profile, const PanTilt& position, const std::optional<PanTilt>& speed);
+// The zoom alone: pan and tilt go on.
+Request absolute_zoom(std::string_view profile, double position, std::string_view space);
 // Pan and tilt; zoom goes on.
 Request stop(std::string_view profile);
 Request goto_preset(std::string_view profile, std::string_view preset);

@@ -34,6 +34,7 @@ OnvifHead::OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions optio
     : options_(std::move(options)),
       soap_(std::move(http)),
       login_(soap_, options_.login),
+      zoom_lock_(options_.login.zoom),
       homing_(options_.home_time) {}
 
 std::string OnvifHead::open(const HeadSetup& setup, Time now) {
@@ -75,6 +76,7 @@ void OnvifHead::on_login(Time now) {
   absolute_ = positions_ && camera_.absolute && position_space_;
   stops_by_zero_ = timeout_refused_ = false;
   online_ = true;
+  zoom_lock_.on_sent(now);  // by the login
   retry_ = kParameters.reconnect;
   for (const SentStop& sent : stops_) soap_.cancel(sent.id);
   stops_.clear();
@@ -292,7 +294,7 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   if (answer.not_authorized()) return log_in_again(now);
   const auto status = onvif::read_status(answer.body);
   if (!status) return;
-  if (status->zoom) zoom_ = status->zoom;
+  if (status->zoom) on_zoom(*status->zoom, now);
   if (positions_ && status->position) {
     const auto at =
         onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
@@ -315,6 +317,15 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   if (!verifying_) return;
   ++stops_while_moving_;
   begin_stop(now);
+}
+
+// A camera may take any AbsoluteMove as the end of the move before: the zoom waits until the head stands.
+void OnvifHead::on_zoom(double position, Time now) {
+  zoom_ = position;
+  if (moved_ || stopping_ || homing_.busy() || !camera_.options.zoom || !zoom_lock_.on_zoom(position, now))
+    return;
+  send(zoom_request(camera_, options_.login.zoom), now);
+  zoom_lock_.on_sent(now);
 }
 
 void OnvifHead::log_in_again(Time now) {

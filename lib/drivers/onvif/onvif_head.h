@@ -23,6 +23,7 @@
 #include "drivers/onvif/homing.h"
 #include "drivers/onvif/login.h"
 #include "drivers/onvif/spaces.h"
+#include "drivers/onvif/zoom_lock.h"
 
 namespace cerberus::drivers {
 
@@ -90,6 +91,7 @@ class OnvifHead final : public HeadDevice {
   void on_stop(const SentStop& sent, const onvif::SoapAnswer& answer, Time now);
   void on_move(const onvif::SoapAnswer& answer, Time now);
   void on_status(const onvif::SoapAnswer& answer, Time now);
+  void on_zoom(double position, Time now);
   void count_failures(const onvif::SoapAnswer& answer, Time now);
   void refuse(const onvif::Fault& fault, Time now);
   void lose(const std::string& why, Time now);
@@ -136,6 +138,7 @@ class OnvifHead final : public HeadDevice {
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
   int stops_while_moving_ = 0;
   onvif::Angles reported_;  // by take_speeds()
+  onvif::ZoomLock zoom_lock_;
   onvif::Homing homing_;
   std::optional<PoseLine> pose_;
   std::optional<onvif::Angles> position_;  // last measured
