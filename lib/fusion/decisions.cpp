@@ -63,7 +63,8 @@ Decisions::Outcome Decisions::decide(const Frame& frame, Time at) {
                                  .tracks = tracks_,
                                  .sensors = std::span(snapshot.sensors).first(snapshot.count),
                                  .pan = sensing::radians(snapshot.pan_degrees),
-                                 .base_yaw_rate = sensing::radians(snapshot.base_degrees)}),
+                                 .base_yaw_rate = sensing::radians(snapshot.base_degrees),
+                                 .lens = snapshot.lens}),
                   snapshot, sensor_time_};
   // The name outlives the rule table.
   auto name = names_.find(outcome.decision.rule_name);

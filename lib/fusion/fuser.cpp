@@ -70,6 +70,7 @@ struct Fuser::State {
     // complete: the places to search, in their order when the sensors last changed.
     Places places;
     SensorBits asked = 0;   // the sensors that gave these places
+    double lens = 0;        // in force
     bool outdated = false;  // lens or limits have changed since
     int place = 0;
     bool inside = false, seen_left = false, seen_right = false;
@@ -160,11 +161,13 @@ Decision Fuser::State::complete(const Input& input, Decision next) {
     next.target = m.follower.target();
     return say(next.target != 0 ? Action::track : Action::hold, 1, "camera");
   }
+  const double lens = input.lens > 0 && input.lens < std::numbers::pi ? input.lens : options.lens;
+  if (std::exchange(m.lens, lens) != lens && m.places.count > 0) m.outdated = true;
   if ((m.fired != 0 && m.fired != m.asked) || m.outdated) {
     const bool same_place = m.places.count > 0;
     const Place old = same_place ? m.places[m.place] : Place{};
     if (m.fired != 0) m.asked = m.fired;
-    m.places = places(geometry, m.asked, input.pan, m.order, options.lens, options.limits);
+    m.places = places(geometry, m.asked, input.pan, m.order, m.lens, options.limits);
     m.outdated = false;
     const Interval& wanted = m.places[0].wanted;
     if (!same_place || wanted.from != old.wanted.from || wanted.to != old.wanted.to)

@@ -54,6 +54,7 @@ struct Input {
   std::span<const std::uint8_t> sensors;  // 0, 1, 2 = invalid (as in the PIR caps); others count as invalid
   double pan = kUnknown;                  // radians
   double base_yaw_rate = kUnknown;        // radians a second
+  double lens = 0;  // horizontal field of view, radians, of a zoom; 0: as the options say
 };
 
 struct Decision {

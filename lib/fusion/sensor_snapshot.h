@@ -15,6 +15,7 @@ struct SensorSnapshot {
   std::array<double, sensing::kMaxSensors> bearings{}, fields_of_view{};  // radians
   std::size_t count = 0;
   double pan_degrees = kUnknown;
+  double lens = 0;  // horizontal field of view, radians, as the head's zoom says; 0: it does not
   double base_degrees = kUnknown;    // a second
   bool pan_on_frame = false;         // the frame carried the pose
   bool base_received = false;        // the rate came as an event, which the PIR sources have received too

@@ -144,7 +144,7 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
   if (!record.foreground->result.ready) return;
   const double sx = static_cast<double>(frame.size.width) / size.width;
   const double sy = static_cast<double>(frame.size.height) / size.height;
-  const Lens lens(options_.field_of_view, frame.size);
+  const Lens lens = frame.lens(options_.field_of_view);
   const double tilt = frame.look ? frame.look->tilt : options_.tilt;
   for (Region region : found) {
     region.box = {region.box.x * sx, region.box.y * sy, region.box.width * sx, region.box.height * sy};
@@ -155,7 +155,7 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
 
 void Detector::track(Analysis& record, const DetectorFrame& frame, std::span<const Region> regions) {
   if (frame.fresh) tracker_.reset();
-  const Lens lens(options_.field_of_view, frame.size);
+  const Lens lens = frame.lens(options_.field_of_view);
   std::optional<CameraOrientation> orientation;
   if (frame.look && lens.known()) orientation = {lens, frame.look->pan, frame.look->tilt};
   const Sight sight{record.luma ? GrayView((*record.luma)->view()) : GrayView{}, record.mask()};

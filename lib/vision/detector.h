@@ -28,7 +28,8 @@ struct DetectorOptions {
   SizeLimits size;
   TrackOptions tracks;
   SpeedLimits speed;
-  double field_of_view = 0;    // horizontal, radians; 0: unknown, and no limit in metres is judged
+  double field_of_view =
+      0;  // horizontal, radians, of frames without their own; 0: unknown, and no limit in metres is judged
   double mounting_height = 0;  // of the lens above the floor, metres
   double tilt = 0;             // radians, for frames without a look
 };
@@ -54,8 +55,11 @@ struct DetectorFrame {
     double pan = 0, tilt = 0;  // radians
   };
   std::optional<Look> look;       // of the camera when the frame was taken, if a head's pose gives it
+  double field_of_view = 0;       // horizontal, radians, as the head's zoom says; 0: as the options say
   std::span<const Box> burnt_in;  // analysis pixels, as learnt by a later stage elsewhere: no scene
   bool everything = false;        // D(k-1) and the labels are made too: an element reads them
+  // otherwise: horizontal field of view of a frame of which no zoom is known, radians; 0: unknown.
+  Lens lens(double otherwise) const { return {field_of_view > 0 ? field_of_view : otherwise, size}; }
 };
 
 // Each stage function writes its own field and needs those before it, except the camera: `frame.motion` holds its

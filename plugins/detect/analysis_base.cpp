@@ -154,7 +154,7 @@ Begun begin_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buf
   const vision::FrameHistory::Step step = priv.history.next(time, nominal);
   frame.fresh = step.fresh || camera.link == Link::cut || camera.link == Link::lost;
   frame.number = ++priv.number;
-  if (const auto look = look_of(buffer, frame.running_time)) frame.look = {look->pan, look->tilt};
+  frame.read_pose();
   if (!frame.fresh) {
     frame.seconds = step.seconds;
     frame.repeatable = step.repeatable;

@@ -211,8 +211,8 @@ void Detection::watch(const Frame& frame, double step) {
 
 void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
   State& state = *state_;
-  const vision::Lens lens(state.options.field_of_view, frame.size);
-  const auto prior = carrier_.look(GST_ELEMENT(base), frame, state.settings.head, lens);
+  const auto prior =
+      carrier_.look(GST_ELEMENT(base), frame, state.settings.head, state.options.field_of_view);
   Frame seen = frame;  // the head goes on through a cut of the picture
   state.detector.measure_camera(record, frame, prior);
 
@@ -233,7 +233,7 @@ void Detection::measure_camera(vision::Analysis& record, Frame& frame) {
   cerberus_buffer_set_camera_motion(frame.buffer, &motion);
   GST_LOG_OBJECT(base, "scene age %u, still %d, confidence %.2f, shift %.2f %.2f", motion.scene_age,
                  motion.still, motion.confidence, motion.matrix[2], motion.matrix[5]);
-  carrier_.compare(GST_ELEMENT(base), seen, lens, result.transform,
+  carrier_.compare(GST_ELEMENT(base), seen, state.options.field_of_view, result.transform,
                    result.scene_age > 1 ? result.confidence : 0);
 }
 

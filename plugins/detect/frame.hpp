@@ -4,6 +4,7 @@
 
 #include <gst/video/video.h>
 
+#include "shared/camera_mount.hpp"
 #include "vision/detector.h"
 
 namespace cerberus::plugin {
@@ -18,6 +19,14 @@ struct Frame : vision::DetectorFrame {
   bool repeatable = false;                      // its picture may be the last one again
   bool live = false;                            // the source is: frames come by the clock
   guint wanted = 0;                             // of the record, by elements downstream: see record.hpp
+
+  // Takes the look and the field of view from the pose on the buffer, if there is one.
+  void read_pose() {
+    const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
+    if (!pose) return;
+    if (const auto direction = look_of(*pose, running_time)) look = {direction->pan, direction->tilt};
+    field_of_view = field_of_view_of(*pose);
+  }
 };
 
 }  // namespace cerberus::plugin

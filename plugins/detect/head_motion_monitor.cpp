@@ -99,8 +99,10 @@ control::HeadComparison::Head HeadMotionMonitor::head_of(GstElement* element, Fr
 }
 
 std::optional<vision::Transform> HeadMotionMonitor::look(GstElement* element, Frame& frame,
-                                                         const std::string& head, const vision::Lens& lens) {
-  const auto motion = comparison_.expect(head_of(element, frame, head), lens);
+                                                         const std::string& head, double field_of_view) {
+  const control::HeadComparison::Head now = head_of(element, frame, head);
+  frame.read_pose();
+  const auto motion = comparison_.expect(now, frame.lens(field_of_view));
   pose_.reset();
   if (const CerberusPose* pose = cerberus_buffer_peek_pose(frame.buffer)) {
     pose_ = *pose;
@@ -128,8 +130,9 @@ void HeadMotionMonitor::attach_base(Frame& frame, double measured) {
   if (std::isfinite(base.yaw_rate)) cerberus_buffer_set_base(frame.buffer, &base);
 }
 
-void HeadMotionMonitor::compare(GstElement* element, Frame& frame, const vision::Lens& lens,
+void HeadMotionMonitor::compare(GstElement* element, Frame& frame, double field_of_view,
                                 const vision::Transform& motion, double confidence) {
+  const vision::Lens lens = frame.lens(field_of_view);
   const Time time = known_time(frame.running_time).value_or(Time::zero());
   attach_base(
       frame, comparison_.base_rate({frame.size, motion, confidence, time, frame.seconds, frame.fresh}, lens));

@@ -28,12 +28,13 @@ class HeadMotionMonitor {
 
   // Call look() and then compare() for each frame, in the streaming thread.
   // Takes the head's pose from the frame or, without one, from the events, and attaches it to the frame. Returns the
-  // motion of the picture since the previous frame that follows from the poses, frame pixels.
+  // motion of the picture since the previous frame that follows from the poses, frame pixels. field_of_view: radians, of
+  // a frame whose pose does not say it.
   std::optional<vision::Transform> look(GstElement* element, Frame& frame, const std::string& head,
-                                        const vision::Lens& lens);
+                                        double field_of_view);
   // `motion`: measured since the previous frame, frame pixels, with its confidence. Attaches the base's yaw rate to the
   // frame if it is known, and posts a warning of `element` if the head does not execute its commands.
-  void compare(GstElement* element, Frame& frame, const vision::Lens& lens, const vision::Transform& motion,
+  void compare(GstElement* element, Frame& frame, double field_of_view, const vision::Transform& motion,
                double confidence);
   // Attaches pose and base to a frame that repeats the last picture. The pose is the one of that picture, at rest: the
   // pixels of the frame were taken with it, wherever the head has turned since.

@@ -2,6 +2,7 @@
 #include "inputs.hpp"
 
 #include "pir_pad.hpp"
+#include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
 
 namespace cerberus::plugin {
@@ -12,12 +13,21 @@ bool is_named(const CerberusPose& pose, const std::string& head) {
   return head.empty() || head == pose.head;
 }
 
+namespace {
+
+void read_pose(const CerberusPose& pose, Time time, SensorSnapshot& snapshot) {
+  cerberus_pose_evaluate(&pose, clock_time(time), &snapshot.pan_degrees, nullptr);
+  snapshot.lens = field_of_view_of(pose);
+}
+
+}  // namespace
+
 void Inputs::listen(Time sensor_time, Time frame_time, const std::string& head, SensorSnapshot& snapshot) {
   const std::lock_guard guard(lock_);
   read(sensor_time, snapshot);
   const auto* pose = poses_.entry_at(sensor_time);
   if (pose && is_named(pose->value, head) && (pose->time > frame_time || !snapshot.pan_on_frame))
-    cerberus_pose_evaluate(&pose->value, clock_time(sensor_time), &snapshot.pan_degrees, nullptr);
+    read_pose(pose->value, sensor_time, snapshot);
   if (const auto rate = base_.at(sensor_time)) snapshot.base_degrees = *rate;
 }
 
@@ -38,7 +48,7 @@ SensorSnapshot Inputs::at(Time time, Time sensor_time, const std::string& head, 
     pose = poses_.at(taken_) ? poses_.at(taken_) : poses_.first();  // before the first one: where it begins
     if (pose && !is_named(*pose, head)) pose = nullptr;
   }
-  if (pose) cerberus_pose_evaluate(pose, clock_time(taken_), &snapshot.pan_degrees, nullptr);
+  if (pose) read_pose(*pose, taken_, snapshot);
   if (const auto rate = base_.at(time)) {
     snapshot.base_degrees = *rate;
     snapshot.base_received = true;

@@ -49,7 +49,9 @@ const Property<Settings> kTable[] = {
     property(
         "horizontal-fov", &Settings::horizontal_fov, 0, 179,
         "Angle in degrees that the lens sees over the frame's whole width: searches stop half of it before "
-        "a sector's edge; 0 = not known, searches go to the edge"),
+        "a sector's edge; 0 = not known, searches go to the edge. Where the head's pose says what its zoom "
+        "sees, "
+        "that counts instead"),
     property("pan-min", &Settings::pan_minimum, -3600, 3600, "Leftmost pan angle of the head in degrees"),
     property("pan-max", &Settings::pan_maximum, -3600, 3600, "Rightmost pan angle of the head in degrees"),
     property(

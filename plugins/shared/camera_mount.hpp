@@ -18,7 +18,9 @@ inline constexpr double kMaximumFieldOfView = 179, kMaximumMountingHeight = 100,
 inline constexpr char kFieldOfViewBlurb[] =
     "Angle in degrees that the lens sees over the frame's whole width: with it, limits in metres are judged "
     "and bearing "
-    "and distance of objects are known; 0 = unknown";
+    "and distance of objects are known; 0 = unknown. Where a head's pose on the frame says what its zoom "
+    "sees, "
+    "that counts instead";
 inline constexpr char kMountingHeightBlurb[] =
     "Height in metres of the lens above the floor on which people walk; the camera is level unless "
     "tilt or a head's pose on the frame gives another angle";
@@ -37,7 +39,12 @@ inline std::optional<motion::PanTilt> look_of(const CerberusPose& pose, GstClock
   if (!std::isfinite(pan) || !(std::abs(tilt) <= kMaximumTilt)) return std::nullopt;
   return motion::PanTilt{radians(pan), radians(tilt)};
 }
-// The same from the pose on a frame; nullopt without one.
+// Returns what the camera sees over the frame's width, radians, as the head's zoom says; 0: the pose does not say it.
+inline double field_of_view_of(const CerberusPose& pose) {
+  const bool sane = pose.field_of_view > 0 && pose.field_of_view <= kMaximumFieldOfView;
+  return sane ? radians(pose.field_of_view) : 0;
+}
+// The same as look_of() from the pose on a frame; nullopt without one.
 inline std::optional<motion::PanTilt> look_of(GstBuffer* frame, GstClockTime running_time) {
   const CerberusPose* pose = cerberus_buffer_peek_pose(frame);
   return pose ? look_of(*pose, running_time) : std::nullopt;

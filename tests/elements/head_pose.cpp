@@ -143,6 +143,81 @@ GST_START_TEST(a_heads_turn_counts_where_the_picture_says_nothing) {
 }
 GST_END_TEST
 
+namespace {
+
+// A wall at distance 1, and a person who walks along it, seen by a pinhole camera of this field of view.
+struct ZoomedWorld {
+  static double focal(double fov) { return scene::kWidth / 2 / std::tan(fov / 2 * M_PI / 180); }
+  static double person(int frame) { return -0.75 + 0.012 * frame; }  // the middle, along the wall
+  static double bearing(int frame) { return std::atan(person(frame)) * 180 / M_PI; }
+  // 60 degrees, and from frame 30 to 60 down to 40.
+  static double fov(int frame) {
+    const double part = std::clamp((frame - 30) / 30.0, 0.0, 1.0);
+    return 2 * std::atan(scene::kWidth / 2 / (focal(60) * std::pow(focal(40) / focal(60), part))) * 180 /
+           M_PI;
+  }
+  static GstBuffer* seen(int frame) {
+    std::vector<std::uint8_t> grey;
+    grey.reserve(scene::kWidth * scene::kHeight);
+    const double f = focal(fov(frame)), wide = focal(60), left = person(frame) - 0.05;
+    for (int y = 0; y < scene::kHeight; ++y)
+      for (int x = 0; x < scene::kWidth; ++x) {
+        const double u = (x - scene::kWidth / 2 + 0.5) / f, v = (y - scene::kHeight / 2 + 0.5) / f;
+        const bool figure = u >= left && u < left + 0.1 && v >= -0.12 && v < 0.14;
+        grey.push_back(static_cast<std::uint8_t>(
+            figure ? 150 + 0.35 * scene::texture((u - left) * wide, v * wide + 200, 5, 77)
+                   : 30 + 0.35 * scene::texture(u * wide + 400, v * wide + 400, 9, 1)));
+      }
+    return scene::buffer("GRAY8", scene::kWidth, scene::kHeight, grey, frame * scene::kStep);
+  }
+};
+
+struct Bearings {
+  int found = 0;
+  double worst = 0;  // degrees off
+  std::string text;  // of all frames
+};
+// told: the head's poses say what its zoom sees.
+Bearings bearings_of(const std::string& elements, bool told) {
+  scene::Line line(elements);
+  Bearings result;
+  for (int frame = 0; frame < 85; ++frame) {
+    CerberusPose head = pose(12, frame * scene::kStep);
+    head.tilt = -3;
+    head.field_of_view = told ? ZoomedWorld::fov(frame) : 0;
+    send(line, head);
+    GstBuffer* out = line.through(ZoomedWorld::seen(frame));
+    const scene::Regions regions(out);
+    result.text += std::to_string(frame) + ": " + regions.text() + "\n";
+    double off = NAN;  // of the nearest one
+    for (guint i = 0; i < regions.size(); ++i)
+      off = std::fmin(off, std::abs(regions[i].bearing - ZoomedWorld::bearing(frame)));
+    if (frame >= 25 && off < 5) {
+      ++result.found;
+      result.worst = std::max(result.worst, off);
+    }
+    gst_buffer_unref(out);
+  }
+  return result;
+}
+
+}  // namespace
+
+// The head's zoom counts in place of horizontal-fov, and motiondetect gives what the chain gives.
+GST_START_TEST(bearings_are_right_while_the_head_zooms) {
+  const Bearings one = bearings_of("motiondetect horizontal-fov=60", true);
+  fail_unless(one.found >= 50, "in %d of 60 frames", one.found);
+  fail_unless(one.worst < 1, "%g degrees off", one.worst);
+  const Bearings chain = bearings_of(
+      "cameramotion horizontal-fov=60 ! threeframediff ! fuzzythreshold ! "
+      "motionregions horizontal-fov=60 ! motiontrack horizontal-fov=60",
+      true);
+  fail_unless(chain.text == one.text && chain.worst == one.worst);
+  const Bearings untold = bearings_of("motiondetect horizontal-fov=60", false);
+  fail_unless(untold.worst > 2, "%g", untold.worst);  // what the test is about
+}
+GST_END_TEST
+
 static Suite* head_pose_suite() {
   watch_library_log();
   Suite* s = suite_create("head_pose");
@@ -154,6 +229,7 @@ static Suite* head_pose_suite() {
   tcase_add_test(tc, a_pose_on_the_frame_takes_precedence_over_the_event);
   tcase_add_test(tc, another_head_is_not_listened_to_and_every_event_goes_on);
   tcase_add_test(tc, poses_of_the_run_before_are_forgotten);
+  tcase_add_test(tc, bearings_are_right_while_the_head_zooms);
   tcase_add_test(tc, a_heads_turn_counts_where_the_picture_says_nothing);
   return s;
 }

@@ -92,6 +92,13 @@ START_TEST(a_search_goes_on_within_other_limits_and_with_another_lens) {
   stream.frame();
   assert_says(decision, Action::search, 0, "return");
   assert_sector(decision, -120, -70);
+  // What the head's zoom reports counts in place of the options, while it reports it.
+  stream.lens = 40;
+  stream.frame();
+  assert_sector(decision, -120, -80);
+  stream.lens = 0;
+  stream.frame();
+  assert_sector(decision, -120, -70);
   stream.fuser.reset();  // and nothing is left of it
   stream.fuser.set_options(options);
   stream.frame();

@@ -29,6 +29,7 @@ struct Stream {
   Time now{};
   double pan = 0;  // degrees
   double yaw_rate = kUnknown;
+  double lens = 0;  // degrees, as a zoom reports it
   std::vector<Track> tracks;
   std::vector<std::uint8_t> sensors{0, 0, 0};
 
@@ -40,7 +41,8 @@ struct Stream {
                          .tracks = tracks,
                          .sensors = sensors,
                          .pan = radians(pan),
-                         .base_yaw_rate = radians(yaw_rate)});
+                         .base_yaw_rate = radians(yaw_rate),
+                         .lens = radians(lens)});
   }
   const Decision& frames(Time duration) {
     const Time end = now + duration;
