@@ -102,7 +102,7 @@ gboolean Job::on_interrupt(gpointer data) {
   return G_SOURCE_CONTINUE;
 }
 
-// What went wrong, for somebody who does not know GStreamer.
+// What went wrong, for users who do not know GStreamer.
 std::string Job::explain(GstMessage* message) const {
   g_autoptr(GError) error = nullptr;
   g_autofree gchar* debug = nullptr;

@@ -27,7 +27,7 @@ class Job {
   guint64 frames() const { return frames_; }
   double seconds() const;
   std::size_t objects() const;
-  // Seconds of video that came, where the file says that it lasts notably longer and nobody asked to stop; else 0.
+  // Seconds of video that came, where the file says that it lasts notably longer and no one asked to stop; else 0.
   double ends_early_at() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The window on the screen, where there is one: a pipeline of its own, so that whatever happens to it (no display after
-// all, closed by its user) ends there and disturbs nobody.
+// all, closed by its user) ends there and changes nothing else.
 #pragma once
 
 #include <gst/gst.h>

@@ -10,7 +10,7 @@
  * each other or the frame, and zones that leave no part of the picture, are warned of.
  *
  * A limit in metres judges only what has a distance: `horizontal-fov` and `mounting-height` are known, and the feet are
- * in the picture and below the horizon. The rest passes, for who cannot be measured may be somebody; limits in pixels
+ * in the picture and below the horizon. The rest passes, for what cannot be measured may be a person; limits in pixels
  * and zones are for what flies and shines up there.
  *
  * The record of the stages is taken off the frame once it is read, so that frames waiting in queues hold none, unless an

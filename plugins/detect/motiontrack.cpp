@@ -4,10 +4,10 @@
  *
  * Gives the regions of interest a stable identity, a velocity with the camera's motion taken out, an age and a state:
  * seen, coasted (carried on without evidence) or stopped (stands where it was last seen). The regions on the frame are
- * replaced by the tracked ones; the frame goes through untouched. Who leaves the picture because the camera turns keeps
- * the identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames where
- * `horizontal-fov` is known, else from the camera's own motion. People who meet are told apart by how bright coat and
- * legs are, where the planes of the stages reach this element (nothing converts or scales the picture between
+ * replaced by the tracked ones; the frame goes through untouched. A person who leaves the picture because the camera
+ * turns keeps the identity for `away-time`: place and motion are kept by angle, from the head's pose on the frames
+ * where `horizontal-fov` is known, else from the camera's own motion. People who meet are distinguished by how bright
+ * coat and legs are, where the planes of the stages reach this element (nothing converts or scales the picture between
  * `motionregions` and it). Without `motionregions` upstream the regions are found here with the defaults. With
  * `horizontal-fov` each object also gets a bearing (degrees, positive to the right of the camera's axis, wherever the
  * head looks) and, where its feet are seen, a distance (metres); the camera's `tilt` counts for it, or that of a head's

@@ -231,7 +231,7 @@ gboolean set_caps(GstBaseSrc* base, GstCaps* caps) {
   if (!cerberus_pir_info_from_caps(&info, caps, nullptr)) return FALSE;
   const std::lock_guard guard(priv.lock);
   priv.info.format = info.format;
-  priv.sensors.tell_samples(info.format == CERBERUS_PIR_LEVEL);
+  priv.sensors.report_samples(info.format == CERBERUS_PIR_LEVEL);
   return TRUE;
 }
 

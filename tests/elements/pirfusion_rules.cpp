@@ -291,7 +291,7 @@ GST_START_TEST(a_property_that_is_set_ends_no_search) {
                       g_str_equal(after.rule_name, before.rule_name),
                   "%s was set, and it is %s (%s)", spec->name, cerberus_fusion_action_get_nick(after.action),
                   after.rule_name);
-      fail_unless(rig.posted().empty(), "%s was set, and told", spec->name);
+      fail_unless(rig.posted().empty(), "%s was set, and reported", spec->name);
     }
     fail_unless(time > 400 * kMs);
   }

@@ -70,10 +70,10 @@ struct Turn {
   // The picture of one frame, with a person in it from a given frame on.
   Turn(Size size, unsigned seed) : scene(31, 12), coat(32, 12), picture(size), chain(size), random(seed) {}
   // shade: taken from the grey levels of the scene's columns before `lit`.
-  void feed(int frame, const Square* somebody, int shade = 0, int lit = 1000) {
+  void feed(int frame, const Square* person, int shade = 0, int lit = 1000) {
     const int left = turned(frame);
     look(scene, Transform::translation(-left, 0), picture.view());
-    if (somebody) draw(picture.view(), {somebody->x - left, somebody->y, somebody->side}, coat);
+    if (person) draw(picture.view(), {person->x - left, person->y, person->side}, coat);
     for (int y = 0; y < picture.size().height; ++y)
       for (int x = 0; x < picture.size().width; ++x)
         if (x + left < lit) picture.view().at(x, y) = to_byte(picture.view().at(x, y) - shade);

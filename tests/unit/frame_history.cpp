@@ -42,7 +42,7 @@ END_TEST
 // What goes wrong with timestamps while the frames themselves come as they should: frame k's, in frames.
 struct Stamps {
   int (*of)(int k);
-  bool told;
+  bool backwards;
 };
 const Stamps kStamps[] = {
     {[](int k) { return k - (k % 10 == 9 ? 2 : 0); }, true},
@@ -61,16 +61,16 @@ START_TEST(small_steps_back_are_a_matter_of_the_timestamps_only) {
   for (const Stamps& stamps : kStamps) {
     FrameHistory history;
     double sum = 0;
-    bool told = false;
+    bool backwards = false;
     for (int k = 0; k < kFrames; ++k) {
       const Time time = (10 + stamps.of(k)) * kStep;
       const FrameHistory::Step step = history.next(time, &stamps == &kStamps[1] ? 0 : kNominal);
       ck_assert_msg(step.fresh == (k == 0), "frame %d", k);
       ck_assert_msg(k == 0 || step.seconds > 0, "frame %d", k);
       sum += step.seconds;
-      told = told || step.backwards;
+      backwards = backwards || step.backwards;
     }
-    ck_assert_int_eq(told, stamps.told);
+    ck_assert_int_eq(backwards, stamps.backwards);
     ck_assert_msg(std::abs(sum - 0.04 * (kFrames - 1)) < 0.1 * sum, "%f s", sum);
   }
 }

@@ -336,7 +336,7 @@ START_TEST(whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocati
         ck_abort_msg("seed %u: two runs differ", seed);
       const bool followed = std::ranges::any_of(
           tracks, [&](const Track& track) { return track.id == a.target && track.id != 0; });
-      if ((a.action == Action::track) != (a.target != 0)) ck_abort_msg("seed %u: tracks nobody", seed);
+      if ((a.action == Action::track) != (a.target != 0)) ck_abort_msg("seed %u: tracks no target", seed);
       if (a.target != 0 && !followed) ck_abort_msg("seed %u: a target that is not there", seed);
       if ((a.fired & (a.doubtful | a.invalid)) != 0) ck_abort_msg("seed %u: counts what is not sure", seed);
       if (a.action == Action::search &&
@@ -348,7 +348,7 @@ START_TEST(whatever_comes_in_the_answer_is_sound_repeatable_and_free_of_allocati
       if (options.rules == RuleSet::complete && a.action == Action::turn_right && !(pan < options.limits.to))
         ck_abort_msg("seed %u: turns right at the right stop", seed);
       if (!a.changed && (a.action != last.action || a.target != last.target || a.fired != last.fired))
-        ck_abort_msg("seed %u: a change is not told", seed);
+        ck_abort_msg("seed %u: a change is not reported", seed);
       last = a;
     }
   }

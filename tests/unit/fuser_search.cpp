@@ -115,7 +115,7 @@ START_TEST(the_same_rules_again_are_no_news) {
   stream.fuser.set_table(paper_rules());
   ck_assert(!stream.frame().changed);
   RuleTable table = paper_rules();
-  table.rules.back().name = "nobody";  // another rule than the one that applies
+  table.rules.back().name = "unused";  // another rule than the one that applies
   stream.fuser.set_table(table);
   ck_assert(!stream.frame().changed);
   for (Rule& rule : table.rules) rule.name = "mine";

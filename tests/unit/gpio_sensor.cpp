@@ -112,8 +112,8 @@ std::string read(GpioSensor& sensor, Time now) {
 }
 
 void must_read(GpioSensor& sensor, Time now, const std::string& expected) {
-  const std::string told = read(sensor, now);
-  ck_assert_msg(told == expected, "\"%s\", not \"%s\"", told.c_str(), expected.c_str());
+  const std::string reported = read(sensor, now);
+  ck_assert_msg(reported == expected, "\"%s\", not \"%s\"", reported.c_str(), expected.c_str());
 }
 
 void must_refuse(const SensorSetup& how, SensorFault fault, const std::string& words) {

@@ -251,17 +251,16 @@ START_TEST(content_that_comes_back_in_another_light_is_dropped) {
     ck_assert_int_eq(p.age.at(3, 30), std::abs(change) > 20 ? 0 : Mosaic::kOldest);
   }
   // A person filling half of it is no reason, nor are pixels outside the frame.
-  for (const bool somebody : {true, false}) {
+  for (const bool person : {true, false}) {
     Model model(even_wall, 10);
     model.go_and_return(kStep, 0, 1);
     const auto p = model.pixels();
     Image<std::uint8_t> frame(kSize), background(kSize);
-    std::vector<RowSpan> shown(static_cast<std::size_t>(kSize.height),
-                               {somebody ? 0 : kStep - 2, kSize.width});
+    std::vector<RowSpan> shown(static_cast<std::size_t>(kSize.height), {person ? 0 : kStep - 2, kSize.width});
     for (int y = 0; y < kSize.height; ++y)
       for (int x = 0; x < kSize.width; ++x) {
         background.view().at(x, y) = 90;
-        frame.view().at(x, y) = somebody ? (y < kSize.height / 2 ? 10 : 90) : (x < kStep - 2 ? 10 : 90);
+        frame.view().at(x, y) = person ? (y < kSize.height / 2 ? 10 : 90) : (x < kStep - 2 ? 10 : 90);
       }
     model.mosaic.verify(p, frame.view(), background.view(), shown);
     ck_assert_int_eq(p.age.at(3, 30), Mosaic::kOldest);

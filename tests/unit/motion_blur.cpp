@@ -117,8 +117,8 @@ START_TEST(pixels_that_blur_explains_are_suppressed_and_no_others) {
   Blur b;
   const auto sharp = street(4);
   auto soft = blurred(sharp, 12, 5);
-  const Square somebody{150, 100, 24};
-  put(soft, somebody, 250);
+  const Square person{150, 100, 24};
+  put(soft, person, 250);
   BitMask bits(bit_mask_size(kSize)), inner(bit_mask_size(kSize));
   const auto differ = [&](int least, MutableBitView out) {
     for (int y = 0; y < kSize.height; ++y)
@@ -132,8 +132,8 @@ START_TEST(pixels_that_blur_explains_are_suppressed_and_no_others) {
   tolerance.fill(6);
   b.blur.suppress(soft.view(), sharp.view(), tolerance, bits.view(), inner.view());
   // All of the person is left in both masks, and nothing else.
-  ck_assert_int_eq(count(bits.view()), somebody.side * somebody.side);
-  ck_assert_int_eq(count(inner.view()), somebody.side * somebody.side);
+  ck_assert_int_eq(count(bits.view()), person.side * person.side);
+  ck_assert_int_eq(count(inner.view()), person.side * person.side);
   for (int y = 100; y < 124; ++y)
     for (int x = 150; x < 174; ++x) ck_assert(bits.view().row(y)[x / 64] >> (x % 64) & 1);
 }
@@ -175,8 +175,8 @@ START_TEST(blurred_frames_have_no_foreground_but_moving_objects) {
     int frames = 0;
     for (int k = 0; k < 40; ++k) {
       auto frame = k >= first && k % 3 == 1 ? blurred(scene, 11, 6) : blurred(scene, 0, 0);
-      const Square somebody{20.0 + 4 * k, 100, 24};
-      put(frame, somebody, 250);
+      const Square person{20.0 + 4 * k, 100, 24};
+      put(frame, person, 250);
       const auto noisy = with_noise(frame, static_cast<std::uint32_t>(k));
       chain.feed(noisy.view(), Transform::translation(0.01, 0), false);
       if (k < 4) continue;
@@ -184,12 +184,12 @@ START_TEST(blurred_frames_have_no_foreground_but_moving_objects) {
       for (int y = 0; y < kSize.height; ++y)
         for (int x = 0; x < kSize.width; ++x) {
           if (!chain.mask.view().at(x, y)) continue;
-          const bool near = x > somebody.x - 20 && x < somebody.x + 44 && y > 80 && y < 144;
+          const bool near = x > person.x - 20 && x < person.x + 44 && y > 80 && y < 144;
           wrong += !near, seen += near;
         }
     }
-    ck_assert_msg(wrong < 20L * frames, "from frame %d on: %ld pixels of %d frames are nobody's", first,
-                  wrong, frames);
+    ck_assert_msg(wrong < 20L * frames, "from frame %d on: %ld pixels of %d frames belong to no person",
+                  first, wrong, frames);
     ck_assert_int_gt(seen, frames * 24 * 24 * 2 / 3);
   }
 }

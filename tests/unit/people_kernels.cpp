@@ -38,7 +38,7 @@ START_TEST(a_band_gains_by_its_core_and_its_sides) {
 END_TEST
 
 START_TEST(cells_that_are_not_counted_gain_nothing) {
-  // Outside the picture, or explained by somebody in front.
+  // Outside the picture, or explained by a person in front.
   const auto above = sums_of({{0, 0}, {0, 0}, {0, 0}, {0, 0}});
   const auto below = sums_of({{0, 0}, {0, 0}, {10, 10}, {10, 10}});
   const BodyBand band{above.data(), below.data(), 1, 2, 100, -7, 30, -2};

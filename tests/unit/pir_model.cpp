@@ -381,7 +381,7 @@ START_TEST(sleeping_until_the_deadline_misses_nothing) {
     int last = presence(sleeper);
     const auto follow = [&](Time at) {  // `sleeper` at a moment when something may change
       if (presence(sleeper) == last) return;
-      if (sleeper.changed() != at) ck_abort_msg("round %d: changed at another time than told", round);
+      if (sleeper.changed() != at) ck_abort_msg("round %d: changed at another time than reported", round);
       if (at < options.warm_up && presence(sleeper) != 2) ck_abort_msg("round %d: valid in warm-up", round);
       if (last == 0 && presence(sleeper) == 1 && at - ended < options.block)
         ck_abort_msg("round %d: blocked", round);

@@ -27,15 +27,15 @@ using cerberus::sensing::Presence;
 using cerberus::tests::assert_text;
 using cerberus::tests::Pipe;
 
-struct Told {
+struct Reported {
   Time time;
   std::string readings;
   bool changed;
 };
 
 // All until the end, by nothing but due(). Readings as digits, "!" behind one whose fault changed.
-std::vector<Told> rest(SensorArray& array) {
-  std::vector<Told> told;
+std::vector<Reported> rest(SensorArray& array) {
+  std::vector<Reported> reported;
   for (int step = 0; step < 10000; ++step) {
     SensorReading reading;
     switch (array.next(array.due(), reading)) {
@@ -45,22 +45,22 @@ std::vector<Told> rest(SensorArray& array) {
           text += static_cast<char>('0' + static_cast<int>(reading.presence[static_cast<std::size_t>(i)]));
           if (reading.faulty >> i & 1) text += '!';
         }
-        told.push_back({reading.time, text, reading.changed});
+        reported.push_back({reading.time, text, reading.changed});
         break;
       }
       case SensorArray::Step::wait:
         break;
       case SensorArray::Step::ended:
       case SensorArray::Step::failed:
-        return told;
+        return reported;
     }
   }
   ck_abort_msg("it does not end");
 }
 
 // Plays a script to its end.
-std::vector<Told> play(SensorArray& array, const std::string& script, const PirOptions& options,
-                       Time heartbeat = 10s, int sensors = 3) {
+std::vector<Reported> play(SensorArray& array, const std::string& script, const PirOptions& options,
+                           Time heartbeat = 10s, int sensors = 3) {
   SensorSetup setup;
   setup.sensors = sensors;
   setup.script = script;
@@ -69,10 +69,11 @@ std::vector<Told> play(SensorArray& array, const std::string& script, const PirO
   return rest(array);
 }
 
-void must_be(const std::vector<Told>& told, const std::vector<Told>& expected) {
-  for (std::size_t i = 0; i < std::max(told.size(), expected.size()); ++i) {
-    const Told none{-1s, "nothing", false};
-    const Told &is = i < told.size() ? told[i] : none, &should = i < expected.size() ? expected[i] : none;
+void must_be(const std::vector<Reported>& reported, const std::vector<Reported>& expected) {
+  for (std::size_t i = 0; i < std::max(reported.size(), expected.size()); ++i) {
+    const Reported none{-1s, "nothing", false};
+    const Reported &is = i < reported.size() ? reported[i] : none,
+                   &should = i < expected.size() ? expected[i] : none;
     if (is.time != should.time || is.readings != should.readings || is.changed != should.changed)
       ck_abort_msg("%zu: %s at %g s, not %s at %g s", i, is.readings.c_str(),
                    static_cast<double>(is.time.count()) / 1e9, should.readings.c_str(),
@@ -119,7 +120,7 @@ END_TEST
 START_TEST(a_recording_goes_on_wherever_it_is_asked_to) {
   SensorArray array;
   const std::string script = "0,0,0; 1,1,0; 1.5,1,2; 2.5,0,1; 4,0,0";
-  const std::vector<Told> whole = play(array, script, {.hold = 2s}, 100s, 2);
+  const std::vector<Reported> whole = play(array, script, {.hold = 2s}, 100s, 2);
   must_be(whole,
           {{0s, "00", true}, {1s, "10", true}, {1500ms, "12", true}, {2500ms, "11", true}, {3s, "01", true}});
   array.seek(2s);
@@ -308,7 +309,7 @@ START_TEST(every_sample_is_a_reading_where_that_is_asked_for) {
   for (const bool all : {false, true}) {
     ck_assert(!array.open(make_sensor("scripted"), setup, {}, 1500ms));
     ck_assert(array.measures());
-    if (all) array.tell_samples(true);
+    if (all) array.report_samples(true);
     std::vector<Time> times;
     std::vector<float> second;
     for (SensorReading reading;;) {

@@ -156,7 +156,7 @@ START_TEST(a_refusal_is_reported_while_the_runner_exists) {
   {
     Pipe closed;
     runner.begin(scripted(), script("open wait " + closed.reader() + "; open fail no such thing"),
-                 [] { ck_abort_msg("nobody is there"); });
+                 [] { ck_abort_msg("no receiver is left"); });
     runner.close();
     ck_assert_int_eq(runner.fd(), -1);
   }

@@ -151,18 +151,18 @@ START_TEST(pieces_meet_and_make_the_whole_way) {
   with.backlash = 0.05;
   with.latency = 60ms;
   Opened head(with);
-  Time told{};
+  Time checked{};
   for (int k = 0; k < 100; ++k) {
     const Time now = k * 100ms;
     head.send(now, {Kind::position, k % 7 * 0.4 - 1, 1});
-    while (told < now) {
-      const Pose piece = head.at(told);
+    while (checked < now) {
+      const Pose piece = head.at(checked);
       const Time end = std::min(piece.until, now);
       for (int part = 0; part <= 4; ++part) {
-        const Time t = told + (end - told) * part / 4;
+        const Time t = checked + (end - checked) * part / 4;
         ck_assert_double_eq_tol(piece.at(t).pan.position, head.pan(t), 1e-7);
       }
-      told = end;
+      checked = end;
     }
   }
 }

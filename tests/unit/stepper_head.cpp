@@ -292,7 +292,7 @@ START_TEST(an_end_stop_on_the_way_stops_the_axis) {
   bench.lines.inputs = {false};
   bench.open();
   bench.run(20s);
-  bench.zero -= 30;  // somebody turned it: it looks 30 degrees further left than it is taken to
+  bench.zero -= 30;  // it was turned by hand: it looks 30 degrees further left than it is taken to
   bench.go(-95);
   bench.run(10s);
   ck_assert(bench.angle() + bench.zero > -100.2);

@@ -130,7 +130,7 @@ START_TEST(every_motion_matches_the_reference_and_stays_inside_its_memory) {
           close.unless(error <= 5, x, y);  // 2/128 of 255
           sum += error, ++compared;
         }
-      filled.assert_none("what nobody saw");
+      filled.assert_none("what no camera saw");
       close.assert_none("far from the reference");
       ck_assert_double_le(sum, 0.12 * compared + 1);
     }
@@ -202,7 +202,7 @@ START_TEST(nearest_takes_existing_values_only_and_the_right_ones) {
             std::abs(column.view().at(x, y) - p.x) <= 0.51 && std::abs(row.view().at(x, y) - p.y) <= 0.51, x,
             y);
       }
-    filled.assert_none("what nobody saw");
+    filled.assert_none("what no camera saw");
     place.assert_none("whence it came");
   }
 }
@@ -221,7 +221,7 @@ START_TEST(a_motion_that_is_none_fills) {
     Wrong filled;
     for (int y = 0; y < size.height; ++y)
       for (int x = 0; x < size.width; ++x) filled.unless(target.view().at(x, y) == kFill, x, y);
-    filled.assert_none("what nobody saw");
+    filled.assert_none("what no camera saw");
   }
   for (const double far : {1e4, -1e9, 1e15}) {  // sane, but out of sight
     Warp warp;

@@ -8,7 +8,7 @@ namespace cerberus::drivers {
 void HeadServer::obey(const std::string& text, Time now) {
   const auto line = parse_pipeline_line(text);
   if (!line) return;
-  heard_ = now;
+  last_line_ = now;
   if (const auto* hello = std::get_if<HelloLine>(&*line)) {
     if (greeted_) return;
     timeout_ = hello->setup.helper_timeout;
@@ -44,14 +44,14 @@ void HeadServer::obey(const std::string& text, Time now) {
 Time HeadServer::serve(Time now) {
   if (!greeted_ || ended_) return motion::kNever;
   Time next = device_.tick(now);
-  if (at_work() && now - heard_ >= timeout_) {
+  if (at_work() && now - last_line_ >= timeout_) {
     device_.stop(now);
     obeyed_ = false;
     silent_ = true;
     next = now;  // what tick() returned is of the plan before
   }
   report(now);
-  return std::min(next, at_work() ? heard_ + timeout_ : motion::kNever);
+  return std::min(next, at_work() ? last_line_ + timeout_ : motion::kNever);
 }
 
 Time HeadServer::finish(Time now) {

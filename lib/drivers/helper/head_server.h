@@ -42,7 +42,7 @@ class HeadServer {
 
   HeadDevice& device_;
   Send send_;
-  Time timeout_{}, heard_{};
+  Time timeout_{}, last_line_{};
   bool greeted_ = false, ended_ = false, failed_ = false;
   bool obeyed_ = false;  // a line that may move the head was carried out and no stop came after it
   bool silent_ = false;  // the head was stopped by the timeout

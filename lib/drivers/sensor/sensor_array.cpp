@@ -94,7 +94,7 @@ void SensorArray::close() noexcept {
   error_ = {};
   outage_.clear();
   beat_ = {};
-  tell_samples_ = sampled_ = false;
+  report_samples_ = sampled_ = false;
   begun_ = false;
 }
 
@@ -184,7 +184,7 @@ SensorArray::Step SensorArray::next(Time now, SensorReading& reading) {
     if (open && recorded() && begun_ && time > end_) return now >= end_ ? Step::ended : Step::wait;
     if (time > now) return Step::wait;
     let_pass(time);
-    const bool sampled = std::exchange(sampled_, false) && tell_samples_;
+    const bool sampled = std::exchange(sampled_, false) && report_samples_;
     if (!look(time, reading) && time < beat_ && !sampled) continue;
     if (time >= beat_)
       beat_ += ((now - beat_) / heartbeat_ + 1) * heartbeat_;  // those that were missed are not made up for

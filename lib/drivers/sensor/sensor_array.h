@@ -54,7 +54,7 @@ class SensorArray {
   // everything before it is known as if it had been played.
   void seek(Time start);
   // Of drivers that measure: a reading for each sample, whatever changes; false at the begin.
-  void tell_samples(bool all) { tell_samples_ = all; }
+  void report_samples(bool all) { report_samples_ = all; }
   bool measures() const { return sensor_ && sensor_->measures(); }  // false before they are open
   // When next() has something at the latest. A recording may be played by this alone: next(due()).
   Time due() const;
@@ -91,7 +91,7 @@ class SensorArray {
   std::vector<sensing::PirFault> faults_;
   SensorReading last_;
   std::array<float, sensing::kMaxSensors> volts_{};
-  bool tell_samples_ = false, sampled_ = false;  // sampled_: since the last reading
+  bool report_samples_ = false, sampled_ = false;  // sampled_: since the last reading
   SensorError error_;
   std::string outage_;  // as outage_change() returned it
   Time heartbeat_{}, beat_{}, end_{};

@@ -56,8 +56,8 @@ struct SensorRunner::Core {
   std::string outage;
   bool measures = false, recorded = false;
 
-  Core(std::unique_ptr<Sensor> taken, std::function<void()> told)
-      : sensor(std::move(taken)), refused(std::move(told)) {
+  Core(std::unique_ptr<Sensor> taken, std::function<void()> when_refused)
+      : sensor(std::move(taken)), refused(std::move(when_refused)) {
     edges.reserve(kMost);
     if (news >= 0 && hints >= 0) return;
     error = {SensorFault::gone, "No file descriptors are left to watch the sensors with.",

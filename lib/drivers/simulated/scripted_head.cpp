@@ -87,7 +87,7 @@ std::string ScriptedHead::parse_part(std::string_view part) {
   }
   const auto which = static_cast<Call>(call - kNames.begin());
   if (what == "fail") {
-    parts_.push_back({which, from, -1, part.empty() ? "it was told to fail" : std::string(part)});
+    parts_.push_back({which, from, -1, part.empty() ? "the script lets it fail" : std::string(part)});
     return {};
   }
   const auto fd = number(part);
