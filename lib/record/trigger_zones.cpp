@@ -5,25 +5,19 @@
 
 namespace cerberus::record {
 
-namespace {
-// Cells of the plane a side. Derived: a thousandth of the picture is less than a track's own uncertainty.
-constexpr int kCells = 1024;
-}  // namespace
-
 std::string TriggerZones::parse(std::string_view text) {
-  std::string fault = zones_.parse(text);
-  if (!fault.empty() || zones_.everywhere()) return fault;
-  plane_.resize({kCells, kCells});
-  zones_.draw(plane_.view());
-  return fault;
+  return zones_.parse(text);
 }
 
-bool TriggerZones::contains(const vision::Box& box, vision::Size frame) const {
+bool TriggerZones::contains(const vision::Box& box, vision::Size frame,
+                            const std::optional<vision::CameraOrientation>& camera) const {
   if (zones_.everywhere() || frame.width <= 0 || frame.height <= 0) return true;
-  const auto cell = [](double place, int extent) {
-    return static_cast<int>(std::clamp(place / extent * kCells, 0.0, static_cast<double>(kCells - 1)));
-  };
-  return plane_.view().at(cell(box.x + box.width / 2, frame.width), cell(box.bottom(), frame.height)) != 0;
+  // Inside the frame, so that feet beyond its edge stand at the edge.
+  const auto place = [](double at, int extent) { return std::clamp(at, 0.5, extent - 0.5); };
+  const vision::Point feet{place(box.x + box.width / 2, frame.width), place(box.bottom(), frame.height)};
+  std::optional<vision::Direction> direction;
+  if (camera && camera->lens.known()) direction = camera->direction(feet);
+  return zones_.contain({feet.x / frame.width, feet.y / frame.height}, direction);
 }
 
 }  // namespace cerberus::record

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Where an object begins an event: the polygons of vision::Zones, asked for single points.
+// Where an object begins an event: whether single points lie in the polygons of vision::Zones.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "vision/detection/zones.h"
 #include "vision/geometry/box.h"
-#include "vision/image/image.h"
+#include "vision/geometry/camera_orientation.h"
 
 namespace cerberus::record {
 
@@ -18,12 +18,16 @@ class TriggerZones {
   std::string parse(std::string_view text);
 
   // Whether an object triggers whose box, in pixels of a frame of size `frame`, stands in a zone: the middle of its
-  // lower edge counts, where a person's feet are. An unknown size of the frame (0) counts as inside.
-  bool contains(const vision::Box& box, vision::Size frame) const;
+  // lower edge counts, where a person's feet are. An unknown size of the frame (0) counts as inside, and so does every
+  // polygon of the world, those of the word exclude excepted, where the camera's orientation is not known.
+  bool contains(const vision::Box& box, vision::Size frame,
+                const std::optional<vision::CameraOrientation>& camera = {}) const;
+
+  // Some polygon is of the world.
+  bool need_orientation() const { return zones_.need_orientation(); }
 
  private:
   vision::Zones zones_;
-  vision::Image<std::uint8_t> plane_;  // 255 where it triggers, for fractions of the picture
 };
 
 }  // namespace cerberus::record

@@ -132,7 +132,12 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
     out.mask = gray(size);
     std::memcpy(out.mask->view().data, foreground->view().data, foreground->bytes());
   }
-  zones_.apply(out.mask->view());
+  const Lens lens = frame.lens(options_.field_of_view);
+  std::optional<Zones::View> view;
+  if (zones_.need_orientation() && frame.look && lens.known())
+    view = {{lens, frame.look->pan, frame.look->tilt}, frame.size};
+  zones_placed_ = view.has_value();
+  zones_.apply(out.mask->view(), view);
   if (frame.everything) {
     out.labels = labels_.take();
     out.labels->resize(size);
@@ -144,7 +149,6 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
   if (!record.foreground->result.ready) return;
   const double sx = static_cast<double>(frame.size.width) / size.width;
   const double sy = static_cast<double>(frame.size.height) / size.height;
-  const Lens lens = frame.lens(options_.field_of_view);
   const double tilt = frame.look ? frame.look->tilt : options_.tilt;
   for (Region region : found) {
     region.box = {region.box.x * sx, region.box.y * sy, region.box.width * sx, region.box.height * sy};

@@ -92,6 +92,8 @@ class Detector {
   void find_differences(Analysis& record, const DetectorFrame& frame);
   void find_foreground(Analysis& record, const DetectorFrame& frame);
   void find_regions(Analysis& record, const DetectorFrame& frame);
+  // Whether a polygon of the world had no place in the last picture: no look or no field of view.
+  bool zones_unplaced() const { return zones_.need_orientation() && !zones_placed_; }
   // regions: of the record, or found elsewhere; boxes in frame pixels. Tracks outside the limits of speed are left out.
   void track(Analysis& record, const DetectorFrame& frame, std::span<const Region> regions);
 
@@ -127,6 +129,7 @@ class Detector {
   BurntIn burnt_in_;
   RegionFinder regions_;
   Zones zones_;
+  bool zones_placed_ = false;
   Tracker tracker_;
   Size foreground_size_, regions_size_;
   Sequence differences_sequence_, foreground_sequence_, regions_sequence_;

@@ -118,7 +118,8 @@ inline constexpr std::array kOwnOfRegions{
              "chosen from the picture's size"),
     property("zones", &DetectSettings::zones,
              "Where motion counts: polygons as `include X,Y X,Y X,Y ...; exclude X,Y ...` in fractions of "
-             "the picture from its top left corner; empty = everywhere"),
+             "the picture from its top left corner, or as `include world PAN,TILT ...` in degrees; empty = "
+             "everywhere"),
     property("minimum-width", &DetectSettings::minimum_width, 0, kMaximumPixels,
              "Least width in frame pixels of a region as found; 0 = no limit"),
     property("maximum-width", &DetectSettings::maximum_width, 0, kMaximumPixels,

@@ -30,6 +30,12 @@ constexpr guint kNothingFurther = 1u << 31;
 // in pixels of an analysed picture of `width` x `height`.
 constexpr char kBurntIn[] = "cerberus-burnt-in";
 
+// Frames in a row without an orientation before a warning: a head reports its first pose within a second.
+constexpr int kUnplaced = 50;
+constexpr char kNoPlaces[] =
+    "Polygons of the world in the property zones hide nothing: they need horizontal-fov and the head's pose, "
+    "as pantiltsink and virtualptz report it, on each frame.";
+
 bool same_box(const vision::Box& a, const vision::Box& b) {
   return std::memcmp(&a, &b, sizeof a) == 0;
 }
@@ -319,6 +325,8 @@ std::string Detection::why_no_regions(vision::Size frame, vision::Size mask) {
 
 void Detection::judge_regions(vision::Size frame, vision::Size mask) {
   State& state = *state_;
+  state.unplaced = state.detector.zones_unplaced() ? std::min(state.unplaced + 1, kUnplaced + 1) : 0;
+  if (state.unplaced == kUnplaced) state.no_places.tell(GST_ELEMENT(base), kNoPlaces);
   const bool nowhere = state.detector.zones().nowhere();
   if (!state.judge && frame == state.frame && mask == state.mask && nowhere == state.nowhere) return;
   state.judge = false;

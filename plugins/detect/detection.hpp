@@ -60,7 +60,8 @@ class Detection : public Analyser {
     GstClockTime shown = GST_CLOCK_TIME_NONE;               // running time of the last frame, repeated or not
     Stamps stamps;
     std::string zones;  // as last read
-    NothingFound no_regions, no_tracks;
+    NothingFound no_regions, no_tracks, no_places;
+    int unplaced = 0;          // frames in a row in which zones of the world have no place
     vision::Size frame, mask;  // for which no_regions was judged last
     bool nowhere = false, judge = true;
   };

@@ -9,6 +9,11 @@
  * region is published until three frames of a scene were seen. Limits of size that contradict
  * each other or the frame, and zones that leave no part of the picture, are warned of.
  *
+ * `zones` in degrees (`exclude world -12,4 -5,4 -5,-6 -12,-6`: pan to the right, tilt up) stay where they are in the world
+ * while the camera turns. They need `horizontal-fov` (or a head that reports its zoom) and the pose of the head at each
+ * frame's own time. Without them nothing is hidden: a polygon that excludes excludes nothing, one that includes includes
+ * everything, and a warning says so.
+ *
  * A limit in metres judges only what has a distance: `horizontal-fov` and `mounting-height` are known, and the feet are
  * in the picture and below the horizon. The rest passes, for what cannot be measured may be a person; limits in pixels
  * and zones are for what flies and shines up there.

@@ -23,7 +23,8 @@
  * another file from a keyframe on. From first to last file each frame is in exactly one.
  *
  * What triggers: an object with a track that moves (`trigger-track`, within `trigger-zones`; one that stands keeps an
- * event going, but begins none), a fusion action other than `zero` and `hold` (`trigger-fusion`), a PIR sensor (`trigger-pir`), and what the
+ * event going, but begins none; zones in degrees of the world need `horizontal-fov` and the head's pose on the analysed
+ * frames, and without them hide nothing), a fusion action other than `zero` and `hold` (`trigger-fusion`), a PIR sensor (`trigger-pir`), and what the
  * application emits, any time and in any thread:
  * - action signal `start-event` (reason): an event begins, and lasts until
  * - action signal `stop-event`;

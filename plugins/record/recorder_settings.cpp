@@ -8,6 +8,7 @@
 #include <cstring>
 
 #include "record/file_names.h"
+#include "shared/camera_mount.hpp"
 
 namespace cerberus::plugin {
 
@@ -55,6 +56,10 @@ const Property<Settings> kProperties[] = {
         "trigger-zones", &Settings::trigger_zones,
         "Where a track triggers: polygons as in `zones` of motiondetect; the middle of the lower edge of "
         "the track's box counts; empty = everywhere"),
+    property(
+        "horizontal-fov", &Settings::field_of_view, 0, kMaximumFieldOfView,
+        "Angle in degrees that the lens sees over the analysed frame's whole width, for trigger-zones in "
+        "degrees of the world; 0 = unknown"),
     property("json-lines", &Settings::json_lines,
              "Write what was found in each frame of a file as JSON lines beside it"),
     property("picture", &Settings::picture,

@@ -23,6 +23,7 @@ struct RecorderSettings {
   int most_memory = 256;
   bool trigger_track = true, trigger_fusion = false, trigger_pir = false;
   std::string trigger_zones;
+  double field_of_view = 0;
   bool json_lines = true, picture = true;
   std::string index = "recordings.sqlite";
   guint64 retention_age = clock_time(record::Limits{}.age);

@@ -86,6 +86,7 @@ std::string Session::apply_settings() {
   triggers_.fusion = changed->trigger_fusion;
   triggers_.pir = changed->trigger_pir;
   camera_name_ = changed->camera_name;
+  field_of_view_ = changed->field_of_view;
   wanted_ = {changed->json_lines, changed->picture};
   files_.configure(file_settings(*changed));
   writer_.set_limits(archive_settings(*changed).limits);
@@ -114,6 +115,8 @@ void Session::begin(Writer::Report report, Writer::Warn warn) {
   const std::lock_guard guard(lock_);
   settings_.refresh();
   apply_settings();
+  triggers_.camera.reset();
+  unplaced_reported_ = false;
   for (const auto& input : inputs_) {
     input->notes.reset();
     input->stamps.reset();
@@ -191,6 +194,24 @@ void Session::advance_journal() {
   files_.journal().advance(recorder_.reached(), recorder_.oldest());
 }
 
+// The trigger on a frame, whose tracks stand where the camera looks at that time. Under the lock.
+std::optional<Trigger> Session::trigger_at(GstBuffer* buffer, record::Time time) {
+  if (triggers_.zones.need_orientation())
+    triggers_.camera =
+        camera_of(buffer, clock_time(std::max(time, record::Time::zero())), triggers_.frame, field_of_view_);
+  return trigger_of(buffer, triggers_);
+}
+
+// Once, when an object was seen and zones of the world have no place. Under the lock.
+std::string Session::unplaced_fault() {
+  if (unplaced_reported_ || triggers_.camera || !triggers_.zones.need_orientation() || !recorder_.active())
+    return {};
+  unplaced_reported_ = true;
+  return "Polygons of the world in trigger-zones hide nothing: they need horizontal-fov and the head's pose "
+         "on "
+         "each frame.";
+}
+
 bool Session::add_video(Input& input, GstBuffer* buffer) {
   record::Unit unit;
   if (!read_unit(input, buffer, unit)) return false;
@@ -208,7 +229,7 @@ bool Session::add_video(Input& input, GstBuffer* buffer) {
   recorder_.push_video(std::move(unit));
   if (!has_analysis()) {
     add_note(input, buffer, stamp, time);
-    if (const auto trigger = trigger_of(buffer, triggers_)) apply(*trigger, time);
+    if (const auto trigger = trigger_at(buffer, time)) apply(*trigger, time);
   }
   advance_journal();
   return true;
@@ -227,7 +248,7 @@ bool Session::add_analysis(Input& input, GstBuffer* buffer) {
   if (!GST_CLOCK_TIME_IS_VALID(time)) return false;
   const CerberusStamp stamp = input.stamps.frame(input.pad, buffer, time, camera_name_);
   add_note(input, buffer, stamp, time_of(time));
-  if (const auto trigger = trigger_of(buffer, triggers_)) apply(*trigger, time_of(time));
+  if (const auto trigger = trigger_at(buffer, time_of(time))) apply(*trigger, time_of(time));
   recorder_.analysed(time_of(time));
   advance_journal();
   return true;
@@ -240,7 +261,9 @@ bool Session::add(Input& input, GstBuffer* buffer) {
     const std::lock_guard guard(lock_);
     if (input.track > 0) return add_audio(input, buffer);
     fault = apply_settings();
-    return input.track == 0 ? add_video(input, buffer) : add_analysis(input, buffer);
+    const bool done = input.track == 0 ? add_video(input, buffer) : add_analysis(input, buffer);
+    if (fault.empty()) fault = unplaced_fault();
+    return done;
   }();
   if (!fault.empty()) warn_(fault);
   return added;

@@ -73,6 +73,8 @@ class Session {
   bool add_audio(Input& input, GstBuffer* buffer);
   bool add_analysis(Input& input, GstBuffer* buffer);
   bool has_analysis() const;
+  std::optional<Trigger> trigger_at(GstBuffer* buffer, record::Time time);
+  std::string unplaced_fault();
   void restart();
 
   Adjustable<RecorderSettings>& settings_;
@@ -87,6 +89,8 @@ class Session {
   TriggerSettings triggers_;
   FrameNotes::Wanted wanted_;
   std::string camera_name_, zones_;
+  double field_of_view_ = 0;
+  bool unplaced_reported_ = false;
 };
 
 }  // namespace cerberus::plugin

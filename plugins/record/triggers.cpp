@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "shared/camera_mount.hpp"
+
 namespace cerberus::plugin {
 
 namespace {
@@ -27,7 +29,8 @@ std::optional<Trigger> trigger_of(const CerberusFusion& fusion, const TriggerSet
 }
 
 bool stands_in_zone(const CerberusRegion& region, const TriggerSettings& settings) {
-  return settings.zones.contains({region.x, region.y, region.width, region.height}, settings.frame);
+  return settings.zones.contains({region.x, region.y, region.width, region.height}, settings.frame,
+                                 settings.camera);
 }
 
 std::optional<Trigger> track_trigger(GstBuffer* buffer, const TriggerSettings& settings) {
@@ -45,6 +48,17 @@ std::optional<Trigger> track_trigger(GstBuffer* buffer, const TriggerSettings& s
 }
 
 }  // namespace
+
+std::optional<vision::CameraOrientation> camera_of(GstBuffer* buffer, GstClockTime running_time,
+                                                   vision::Size frame, double field_of_view) {
+  const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
+  const auto look = pose ? look_of(*pose, running_time) : std::nullopt;
+  if (!look) return std::nullopt;
+  const double reported = field_of_view_of(*pose);
+  const vision::Lens lens(reported > 0 ? reported : radians(field_of_view), frame);
+  if (!lens.known()) return std::nullopt;
+  return vision::CameraOrientation{lens, look->pan, look->tilt};
+}
 
 std::optional<Trigger> trigger_of(GstBuffer* buffer, const TriggerSettings& settings) {
   std::optional<Trigger> found;

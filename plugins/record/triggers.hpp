@@ -15,6 +15,7 @@ struct TriggerSettings {
   bool track = true, fusion = false, pir = false;
   record::TriggerZones zones;  // of tracks
   vision::Size frame;          // of the frames whose pixels the tracks are in; zero: not known
+  std::optional<vision::CameraOrientation> camera;  // at the last of them; none: not known
 };
 
 struct Trigger {
@@ -28,6 +29,10 @@ struct Trigger {
   std::string reason;
 };
 
+// Returns the orientation of the camera by the pose on a frame. field_of_view: degrees, where the head reports no zoom; 0:
+// not known.
+std::optional<vision::CameraOrientation> camera_of(GstBuffer* buffer, GstClockTime running_time,
+                                                   vision::Size frame, double field_of_view);
 // Of what the elements upstream attached to a frame.
 std::optional<Trigger> trigger_of(GstBuffer* buffer, const TriggerSettings& settings);
 // Of a message of the library: motion that starts and ends; tracks, decisions and sensors as set. `time` becomes the

@@ -145,6 +145,53 @@ GST_START_TEST(zones_change_while_playing_and_a_typo_keeps_the_old_ones) {
 }
 GST_END_TEST
 
+// The camera turns by a pixel a frame, and its poses say so: a lens of 60 degrees, focal length 160 / tan 30. The zone is
+// as high as the picture; boxes whose middle is 2 degrees within it lie in it with at least half of their width.
+GST_START_TEST(a_zone_of_the_world_hides_a_place_while_the_camera_turns) {
+  const char* const lines[] = {"motiondetect name=r confirm-time=0 horizontal-fov=60 ! identity",
+                               "cameramotion horizontal-fov=60 ! motionregions name=r horizontal-fov=60"};
+  World world;
+  world.pan = 1;
+  const double f = 160 / std::tan(M_PI / 6), degrees = 180 / M_PI;
+  for (const char* text : lines)
+    for (const bool excluded : {false, true}) {
+      Line line(text);
+      g_autoptr(GstElement) regions_of = gst_bin_get_by_name(GST_BIN(line.harness->element), "r");
+      if (excluded) g_object_set(regions_of, "zones", "exclude world -20,80 0,80 0,-80 -20,-80", nullptr);
+      int inside = 0, outside = 0;
+      for (int k = 0; k < 80; ++k) {
+        GstBuffer* in = scene::grey_buffer(world, k);
+        CerberusPose pose;
+        cerberus_pose_init(&pose);
+        pose.pan = world.pan * k / f * degrees;
+        cerberus_buffer_set_pose(in, &pose);
+        GstBuffer* out = line.through(in);
+        const Regions regions(out);
+        for (guint i = 0; i < regions.size(); ++i) {
+          const double middle = regions[i].x + regions[i].width / 2 - 160;
+          const double bearing = pose.pan + std::atan(middle / f) * degrees;
+          (bearing > -18 && bearing < -2 ? inside : outside) += 1;
+        }
+        gst_buffer_unref(out);
+      }
+      fail_unless(outside > 10, "%s: %d outside", text, outside);
+      fail_unless(excluded ? inside == 0 : inside > 10, "%s: %d inside", text, inside);
+      fail_unless(line.messages(GST_MESSAGE_WARNING).empty());
+    }
+}
+END_TEST
+
+GST_START_TEST(a_zone_of_the_world_without_a_pose_hides_nothing_and_is_warned_of_once) {
+  Line line(
+      "motiondetect confirm-time=0 horizontal-fov=60 zones=\"exclude world -90,80 90,80 90,-80 -90,-80\" ! "
+      "identity");
+  guint found = 0;
+  line.run(World{}, 0, 80, [&](int, GstBuffer* out) { found += Regions(out).size(); });
+  fail_unless(found > 10);
+  fail_unless_equals_int(line.messages(GST_MESSAGE_WARNING).size(), 1);
+}
+END_TEST
+
 GST_START_TEST(limits_of_size_drop_what_is_outside) {
   const auto found = [](const std::string& properties) {
     guint count = 0;
@@ -354,6 +401,8 @@ Suite* detect_suite() {
   tcase_add_test(tests, the_analysis_width_changes_while_playing);
   tcase_add_test(tests, behind_a_crop_the_regions_are_found_again);
   tcase_add_test(tests, zones_change_while_playing_and_a_typo_keeps_the_old_ones);
+  tcase_add_test(tests, a_zone_of_the_world_hides_a_place_while_the_camera_turns);
+  tcase_add_test(tests, a_zone_of_the_world_without_a_pose_hides_nothing_and_is_warned_of_once);
   tcase_add_test(tests, limits_of_size_drop_what_is_outside);
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
   tcase_add_loop_test(tests, the_tilt_of_the_camera_counts_for_the_distance, 0, 3);

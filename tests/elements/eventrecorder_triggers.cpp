@@ -51,6 +51,28 @@ GST_START_TEST(a_track_on_the_analysis_pad_is_recorded_however_late_it_comes) {
 }
 GST_END_TEST
 
+// The object's feet are at (10, 20) of 320 x 240: 28.4 degrees to the left of the axis of a lens of 60 degrees.
+GST_START_TEST(zones_of_the_world_follow_the_head) {
+  Rig rig;
+  rig.analysis = std::make_unique<Stream>(rig.element, "analysis", kRaw);
+  g_object_set(rig.element, "horizontal-fov", 60.0, "trigger-zones",
+               "include world -70,80 -50,80 -50,-80 -70,-80", nullptr);
+  rig.start();
+  for (guint32 k = 0; k < 300; ++k) {
+    rig.play_to(k);
+    GstBuffer* buffer = analysed(k, (k >= 80 && k <= 100) || (k >= 150 && k <= 160));
+    CerberusPose pose;
+    cerberus_pose_init(&pose);
+    pose.pan = k < 120 ? 0 : -30;
+    cerberus_buffer_set_pose(buffer, &pose);
+    rig.analysis->push(buffer);
+  }
+  rig.finish();
+  fail_unless_equals_int(rig.folder.files().size(), 1);
+  fail_unless(recorded(rig) == range(120, 170));
+}
+GST_END_TEST
+
 GST_START_TEST(an_object_that_stands_keeps_an_event_going_but_begins_none) {
   Rig rig;
   rig.analysis = std::make_unique<Stream>(rig.element, "analysis", kRaw);
@@ -199,6 +221,7 @@ static Suite* eventrecorder_triggers_suite() {
   Suite* suite = suite_create("eventrecorder triggers");
   TCase* tests = tcase_create("triggers and faults");
   tcase_add_loop_test(tests, a_track_on_the_analysis_pad_is_recorded_however_late_it_comes, 0, 2);
+  tcase_add_test(tests, zones_of_the_world_follow_the_head);
   tcase_add_test(tests, an_object_that_stands_keeps_an_event_going_but_begins_none);
   tcase_add_test(tests, metadata_on_the_encoded_video_counts_without_an_analysis_pad);
   tcase_add_test(tests, messages_of_motion_begin_and_end_an_event);

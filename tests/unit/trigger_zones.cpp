@@ -54,12 +54,32 @@ START_TEST(a_frame_of_unknown_size_is_inside) {
 }
 END_TEST
 
+// A lens of 90 degrees over 200 pixels: focal length 100. Feet at column 150 are 26.6 degrees to the right.
+START_TEST(zones_of_the_world_follow_the_camera) {
+  constexpr double kDegree = 3.14159265358979323846 / 180;
+  const auto camera = [&](double pan) {
+    return vision::CameraOrientation{vision::Lens(90 * kDegree, kFrame), pan * kDegree, 0};
+  };
+  TriggerZones zones;
+  ck_assert((zones.parse("include world 20,80 40,80 40,-80 20,-80")).empty());
+  const vision::Box right{140, 20, 20, 40};
+  ck_assert(zones.contains(right, kFrame, camera(0)));
+  ck_assert(!zones.contains(right, kFrame, camera(20)));
+  ck_assert(zones.contains(right, kFrame, {}));
+  ck_assert((zones.parse("exclude world 20,80 40,80 40,-80 20,-80")).empty());
+  ck_assert(!zones.contains(right, kFrame, camera(0)));
+  ck_assert(zones.contains(right, kFrame, camera(20)));
+  ck_assert(zones.contains(right, kFrame, {}));
+}
+END_TEST
+
 int main() {
   Suite* suite = suite_create("trigger zones");
   TCase* cases = tcase_create("trigger zones");
-  for (const TTest* test : {without_polygons_everything_is_inside, the_middle_of_the_lower_edge_decides,
-                            a_box_that_reaches_beyond_the_frame_stands_at_its_edge,
-                            a_wrong_text_is_named_and_changes_nothing, a_frame_of_unknown_size_is_inside})
+  for (const TTest* test :
+       {without_polygons_everything_is_inside, the_middle_of_the_lower_edge_decides,
+        a_box_that_reaches_beyond_the_frame_stands_at_its_edge, a_wrong_text_is_named_and_changes_nothing,
+        a_frame_of_unknown_size_is_inside, zones_of_the_world_follow_the_camera})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);
   SRunner* runner = srunner_create(suite);

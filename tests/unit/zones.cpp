@@ -3,6 +3,7 @@
 
 #include <check.h>
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,11 +20,11 @@ void accepted(Zones& zones, const char* text) {
   ck_assert_msg(error.empty(), "%s", error.c_str());
 }
 
-std::vector<std::string> drawn(const char* text, Size size) {
+std::vector<std::string> drawn(const char* text, Size size, const std::optional<Zones::View>& view = {}) {
   Zones zones;
   accepted(zones, text);
   Image<std::uint8_t> plane(size);
-  zones.draw(plane.view());
+  zones.draw(plane.view(), view);
   std::vector<std::string> rows;
   for (int y = 0; y < size.height; ++y) {
     rows.emplace_back();
@@ -97,6 +98,8 @@ START_TEST(wrong_words_are_named_with_what_to_write_instead) {
   refused("include 0,0 1,0 , ", "\",\"", "x,y");
   refused("include 0,0 1,1; exclude", "include 0,0 1,1", "2 corners");
   refused("exclude", "\"exclude\"", "at least three");
+  refused("exclude world 0,0 190,0 1,1", "\"190,0\"", "pan,tilt in degrees");
+  refused("exclude world 0,0 1,95 1,1", "\"1,95\"", "pan,tilt in degrees");
 }
 END_TEST
 
@@ -159,6 +162,102 @@ START_TEST(decimal_points_are_read_in_a_german_locale) {
 }
 END_TEST
 
+// A lens of 90 degrees over 8 x 8 pixels: focal length 4, so that column centres lie at 3.5, 2.5, 1.5, .5 pixels from the
+// axis on both sides: 41.2, 32.0, 20.6, 7.1 degrees; rows on the axis's column likewise (up and down), and a little less
+// beside it. By hand: elevation = atan(up / hypot(4, right)).
+constexpr double kDegree = 3.14159265358979323846 / 180;
+
+Zones::View looking(double pan, double tilt = 0) {
+  return {{Lens(90 * kDegree, {8, 8}), pan * kDegree, tilt * kDegree}, {8, 8}};
+}
+
+constexpr char kAhead[] = "exclude world -25,80 25,80 25,-80 -25,-80";
+
+START_TEST(a_zone_of_the_world_moves_through_the_picture_as_the_camera_turns) {
+  const auto rows = [](const char* row) { return std::vector<std::string>(8, row); };
+  same_picture(drawn(kAhead, {8, 8}, looking(0)), rows("##....##"));
+  // 30 degrees to the right: bearings -11.2, -2, 9.4, 22.9, 37.1 ...: what was ahead is now on the left.
+  same_picture(drawn(kAhead, {8, 8}, looking(30)), rows("....####"));
+  same_picture(drawn(kAhead, {8, 8}, looking(-30)), rows("####...."));
+  same_picture(drawn(kAhead, {8, 8}, looking(180)), rows("########"));
+  same_picture(drawn("include world -25,80 25,80 25,-80 -25,-80", {8, 8}, looking(30)), rows("####...."));
+  // Analysed at half the frame's size: column centres 3 and 1 pixels from the axis, 36.9 and 14.0 degrees.
+  same_picture(drawn(kAhead, {4, 4}, looking(0)), std::vector<std::string>(4, "#..#"));
+}
+END_TEST
+
+START_TEST(a_zone_of_the_world_may_lie_across_the_bearing_of_180_degrees) {
+  const char* behind = "exclude world 155,80 -155,80 -155,-80 155,-80";
+  same_picture(drawn(behind, {8, 8}, looking(180)), std::vector<std::string>(8, "##....##"));
+  same_picture(drawn(behind, {8, 8}, looking(0)), std::vector<std::string>(8, "########"));
+}
+END_TEST
+
+START_TEST(the_tilt_moves_zones_of_the_world_up_and_down) {
+  // Everything above the horizon, in two polygons; rows 0 to 3 are above the axis.
+  const char* sky =
+      "exclude world -90,0 0,0 90,0 90,90 0,90 -90,90; exclude world 90,0 180,0 -90,0 -90,90 180,90 90,90";
+  const auto rows = drawn(sky, {8, 8}, looking(0));
+  for (int y = 0; y < 8; ++y)
+    ck_assert_str_eq(rows[static_cast<std::size_t>(y)].c_str(), y < 4 ? "........" : "########");
+  // 10 degrees down: the horizon is 4 tan 10 = .7 pixels above the middle, so above the centre of row 3 (.5).
+  const auto tilted = drawn(sky, {8, 8}, looking(77, -10));
+  for (int y = 0; y < 8; ++y)
+    ck_assert_str_eq(tilted[static_cast<std::size_t>(y)].c_str(), y < 3 ? "........" : "########");
+}
+END_TEST
+
+// Nothing is hidden silently.
+START_TEST(zones_of_the_world_hide_nothing_where_the_orientation_is_unknown) {
+  const std::vector<std::string> all(8, "########"), right(8, "....####");
+  Zones::View blind = looking(0);
+  blind.camera.lens = {};
+  for (const std::optional<Zones::View>& view : {std::optional<Zones::View>(), std::optional(blind)}) {
+    same_picture(drawn(kAhead, {8, 8}, view), all);
+    same_picture(drawn("include world 0,0 1,0 1,1", {8, 8}, view), all);
+    same_picture(drawn("include world 0,0 1,0 1,1; include 0,0 0.5,0 0.5,1 0,1", {8, 8}, view), all);
+    same_picture(drawn("include world 0,0 1,0 1,1; exclude 0,0 0.5,0 0.5,1 0,1", {8, 8}, view), right);
+  }
+}
+END_TEST
+
+START_TEST(the_mask_is_cut_where_the_camera_looks_at_each_frame) {
+  Zones zones;
+  accepted(zones, kAhead);
+  const auto cut = [&](const std::optional<Zones::View>& view) {
+    Image<std::uint8_t> mask({8, 8});
+    mask.fill_bytes(255);
+    zones.apply(mask.view(), view);
+    std::string row;
+    for (int x = 0; x < 8; ++x) row += mask.view().at(x, 5) ? '#' : '.';
+    return row;
+  };
+  ck_assert(zones.need_orientation());
+  ck_assert_str_eq(cut(looking(0)).c_str(), "##....##");
+  ck_assert_str_eq(cut(looking(30)).c_str(), "....####");
+  ck_assert_str_eq(cut({}).c_str(), "########");
+  ck_assert_str_eq(cut(looking(0)).c_str(), "##....##");
+  accepted(zones, "include world 170,1 175,1 175,5");
+  ck_assert_str_eq(cut(looking(0)).c_str(), "........");
+  ck_assert(!zones.nowhere());  // elsewhere something is left
+}
+END_TEST
+
+START_TEST(points_are_in_the_polygons_in_which_their_pixels_are) {
+  Zones zones;
+  accepted(
+      zones,
+      "include world -25,80 25,80 25,-80 -25,-80; include 0,0 0.1,0 0.1,1 0,1; exclude 0,0.5 1,0.5 1,1 0,1");
+  const Direction ahead{0.1, 0}, aside{0.6, 0};
+  ck_assert(zones.contain({0.5, 0.2}, ahead));
+  ck_assert(!zones.contain({0.5, 0.2}, aside));
+  ck_assert(zones.contain({0.05, 0.2}, aside));
+  ck_assert(!zones.contain({0.5, 0.7}, ahead));
+  ck_assert(zones.contain({0.5, 0.2}, {}));
+  ck_assert(!zones.contain({0.5, 0.7}, {}));
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "zones",
@@ -170,5 +269,10 @@ int main() {
        a_wrong_text_leaves_the_old_polygons_in_place,
        the_mask_loses_what_does_not_count_at_every_size_and_after_every_change,
        polygons_that_leave_nothing_are_known_once_a_mask_was_seen,
-       decimal_points_are_read_in_a_german_locale});
+       a_zone_of_the_world_moves_through_the_picture_as_the_camera_turns,
+       a_zone_of_the_world_may_lie_across_the_bearing_of_180_degrees,
+       the_tilt_moves_zones_of_the_world_up_and_down,
+       zones_of_the_world_hide_nothing_where_the_orientation_is_unknown,
+       the_mask_is_cut_where_the_camera_looks_at_each_frame,
+       points_are_in_the_polygons_in_which_their_pixels_are, decimal_points_are_read_in_a_german_locale});
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "overlay/privacy/block_mask.h"
+#include "vision/detection/world_polygon.h"
 #include "vision/geometry/lens.h"
 
 namespace cerberus::overlay {
@@ -36,16 +37,10 @@ class PrivacyZones {
   void cover(vision::Size size, const View& view, BlockMask& mask) const;
 
  private:
-  // Corners in radians, right and up, of bearings from the first one's on.
-  struct WorldPolygon {
-    std::vector<vision::Point> corners;
-    double bearing = 0;  // of the first corner
-    vision::Point least, most;
-  };
   void cover_world(const View& view, BlockMask& mask) const;
 
   std::vector<std::vector<vision::Point>> picture_;  // fractions
-  std::vector<WorldPolygon> world_;
+  std::vector<vision::WorldPolygon> world_;
 };
 
 }  // namespace cerberus::overlay
