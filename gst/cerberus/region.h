@@ -44,7 +44,7 @@ typedef enum {
  * CerberusRegion:
  * @id: identity of the track (from 1, stable over frames) if @tracked, else a number within the frame
  * @tracked: @id, @vx, @vy, @age and @state come from a tracker
- * @person: verified to be a person; reserved: no element sets it yet
+ * @person: verified to be a person, by `personverify`
  * @kind: what it is by its size
  * @x: left edge, frame pixels
  * @y: top edge, frame pixels

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// A detector on a thread of its own, one picture at a time.
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "vision/verification/person_detector.h"
+
+namespace cerberus::vision {
+
+class LookWorker {
+ public:
+  LookWorker() = default;
+  ~LookWorker() { stop(); }
+  LookWorker(const LookWorker&) = delete;
+  LookWorker& operator=(const LookWorker&) = delete;
+
+  // Throws std::system_error where no thread can be made.
+  void start(std::unique_ptr<PersonDetector> detector);
+  // Returns when a look in progress has ended; its result is dropped.
+  void stop();
+  bool is_running() const { return thread_.joinable(); }
+
+  // The memory of the next picture: filled by the caller while no look is in progress.
+  Image<std::uint8_t>& picture() { return picture_; }
+  // Begins a look at picture(). Call it only when none is in progress.
+  void begin(double scale);
+  // Whether the result of the last look is there.
+  bool is_done() const;
+  // Waits for the look in progress, and returns its hits, in pixels of picture(); they live until the next begin(). Throws what the
+  // detector has thrown.
+  std::vector<PersonDetection>& wait();
+
+ private:
+  enum class Stage { idle, asked, done, ended };
+  void run();
+
+  std::unique_ptr<PersonDetector> detector_;
+  Image<std::uint8_t> picture_;
+  std::vector<PersonDetection> hits_;
+  double scale_ = 1;
+  std::exception_ptr failure_;
+  mutable std::mutex lock_;  // of stage_
+  std::condition_variable changed_;
+  Stage stage_ = Stage::idle;
+  std::thread thread_;
+};
+
+}  // namespace cerberus::vision

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Tuned numbers of the verification of tracks (person_verifier.cpp, look_schedule.cpp).
+//
+// Guard of all: docs/quality.md, the rows "with personverify".
+#pragma once
+
+namespace cerberus::vision {
+
+struct VerificationParameters {
+  // Following a person from picture to picture. Shares of the person's box and height.
+  double core_width = 0.6,
+         core_height = 0.8;  // part of the box that is compared: the background is at its edges
+  double reach = 0.06;       // farther than this from the prediction is not searched
+  double inertia = 0.7;      // of the velocity that stays from one picture to the next
+
+  // Detections and persons. Intersections over unions.
+  double same = 0.3;      // a detection is of the person
+  double bound = 0.5;     // a track is of the person,
+  double unbound = 0.35;  // and stays so down to this,
+  double unbound_sure =
+      0.1;  // or this where the track is seen and like a person: the person was lost in the picture
+  double part =
+      0.45;  // share of a smaller detection in a person, or in a person-like track: it is a part of it,
+  double part_height = 0.75;  // if it is lower than this share of its height
+  double on_track = 0.3;      // share of a detection that lies on tracks: else it is background
+
+  double place_gain = 0.6, size_gain = 0.4;  // of a detection, against the box that was followed
+  double track_gain = 0.3;                   // of a track, each frame
+
+  // Evidence for a person, in detections.
+  double most_evidence = 3;
+  double longest = 3;          // s without a detection, where no track is bound,
+  double longest_still = 0.6;  // and of one that never moved by `moved` widths: it may be background
+  double moved = 0.4;
+
+  // A track that persons explain: shares of areas.
+  double inside = 0.6;   // of a person that lies in the track
+  double covered = 0.4;  // of the track that persons cover: it is replaced; less, and it is a group
+  int refuted = 2;       // looks without a detection: what the track shows is a thing
+
+  // Where to look. A look's region is scaled so that the most doubtful box is `look_height` pixels high.
+  double look_height = 180;
+  double side_margin =
+      0.35;  // of the box's height, left and right: the detector's window is wider than a person
+  double top_margin = 0.14;  // of the box's height, above and below
+  double most_area = 110e3;  // pixels of a scaled look. Derived: 50 ms for the Daimler detector
+  double least_height = 24;  // frame pixels: lower boxes are not looked at
+  double most_scale = 4;     // by which a look is enlarged
+  double flattest = 0.55,
+         steepest = 1.8;  // heights of a further box in the same look, in heights of the first
+};
+
+}  // namespace cerberus::vision

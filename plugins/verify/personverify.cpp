@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/**
+ * SECTION:element-personverify
+ * @title: personverify
+ * @short_description: confirms, splits and classifies tracks with a people detector
+ * @see_also: motiondetect, pirfusion, pantiltsink
+ *
+ * A curtain, a clock and a car move, too. This element shows parts of the picture to a detector for people, on a thread of its own and `rate` times a
+ * second of running time, those first of which the least is known. Then:
+ *
+ * - a track that is a person is published with the type `person` and the detector's confidence;
+ * - a track that holds several people is replaced by one region for each of them; their identities begin at 1000001;
+ * - a track of which persons cover only a part has the kind `group`;
+ * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then follow
+ *   persons only.
+ *
+ * Between two looks of the detector a person is followed in the picture.
+ *
+ * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set): upright people who are
+ * at least 24 pixels high. It costs 25 to 50 ms a look on one core. It does not see people who sit or lie, or only
+ * their upper half.
+ *
+ * Live, a result counts from the first frame after it is there, and no frame waits. In a pipeline that is not live it counts from
+ * the first frame that is at least 100 ms of running time later than the frame that was looked at, and that frame waits for it: two runs give
+ * the same bytes.
+ *
+ * Pads: one sink, one src, raw video in system memory, in every format that the stages read; works in place, on the regions of
+ * `motiondetect`, or, where there are none, on #GstVideoRegionOfInterestMeta of other elements. Those stay on the
+ * buffer (with `require=person` they are removed), and the persons among them are attached as regions of their own.
+ *
+ * ## Example launch lines
+ * |[
+ * gst-launch-1.0 videotestsrc num-buffers=60 ! motiondetect ! personverify ! motionjson ! fdsink
+ * gst-launch-1.0 filesrc location=vtest.avi ! decodebin ! motiondetect ! personverify require=person ! motionoverlay ! \
+ *     videoconvert ! autovideosink
+ * ]|
+ *
+ * Since: 0.1
+ */
+// Method: Enzweiler and Gavrila, "Monocular pedestrian detection: survey and experiments", PAMI 2009, for the detector; what is made of its hits
+// is in lib/vision/verification. Quality: docs/quality.md.
+#include <cerberus/cerberus.h>
+#include <gst/base/gstbasetransform.h>
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "cerberus/private/element.hpp"
+#include "cerberus/private/video.hpp"
+#include "daimler_detector.hpp"
+#include "shared/clock_times.hpp"
+#include "shared/complaint.hpp"
+#include "shared/properties.hpp"
+#include "vision/verification/look_worker.h"
+#include "vision/verification/person_verifier.h"
+
+namespace {
+
+using cerberus::plugin::property;
+namespace vision = cerberus::vision;
+
+GST_DEBUG_CATEGORY_STATIC(personverify_debug);
+#define GST_CAT_DEFAULT personverify_debug
+
+GstStaticPadTemplate sink_template =
+    GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+GstStaticPadTemplate src_template =
+    GST_STATIC_PAD_TEMPLATE("src", GST_PAD_SRC, GST_PAD_ALWAYS, GST_STATIC_CAPS(CERBERUS_VIDEO_CAPS));
+
+// Columns of the reduced picture in which persons are followed. Chosen: as motiondetect's.
+constexpr int kFollowedWidth = 320;
+// Running time after which a result counts where the pipeline is not live. Derived: twice the cost of a look.
+constexpr GstClockTime kDelay = 100 * GST_MSECOND;
+// Looks a second: more than one in kDelay cannot be taken in.
+constexpr double kMostRate = 10;
+// Seconds between frames of a stream without times.
+constexpr double kUsualStep = 0.04;
+// A longer gap, in seconds, begins anew.
+constexpr double kLongestGap = 2;
+// Of the Daimler detector: above the threshold it counts as certain. Measured on TUD-Campus and PETS09-S2L1.
+constexpr double kCertainAbove = 2;
+
+enum { REQUIRE_NONE, REQUIRE_PERSON };
+
+GType require_type() {
+  static const GEnumValue kValues[] = {{REQUIRE_NONE, "Publish every region", "none"},
+                                       {REQUIRE_PERSON, "Publish persons only", "person"},
+                                       {0, nullptr, nullptr}};
+  static const GType type = g_enum_register_static("CerberusPersonVerifyRequire", kValues);
+  return type;
+}
+
+struct Settings {
+  double rate = 4, threshold = 1.7, phase = 0;
+  int require = REQUIRE_NONE;
+};
+
+const cerberus::plugin::Property<Settings> kProperties[] = {
+    property("rate", &Settings::rate, 0.1, kMostRate,
+             "Looks of the detector a second of running time, all tracks together"),
+    property("require", &Settings::require, require_type, "What is published"),
+    property("threshold", &Settings::threshold, -10, 10,
+             "Score of a hit, at least: lower finds more people and more things that are none"),
+    property("phase", &Settings::phase, 0, 1,
+             "Share of the time between two looks by which the first one is put off: several cameras on one "
+             "processor look "
+             "in turn")
+        .read_at_start(),
+};
+
+struct Pending {
+  vision::PersonVerifier::Look look;
+  GstClockTime time = 0;
+};
+
+struct State {  // streaming thread only
+  GstVideoInfo info;
+  vision::Size reduced;
+  vision::LumaScaler scaler, crop_scaler;
+  vision::Image<std::uint8_t> picture;
+  vision::PersonVerifier verifier;
+  vision::LookWorker worker;
+  std::optional<Pending> pending;
+  std::optional<bool> live;
+  GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
+  std::vector<vision::Candidate> candidates;
+  std::vector<CerberusRegion> before, after;  // regions of the frame, and what is published
+  guint next_foreign = 0;                     // identities of theirs given so far
+  bool foreign = false;                       // they are other elements' regions of interest
+  double threshold = 0;                       // of the detector in the worker
+  cerberus::plugin::Complaint caps, frame;
+};
+
+struct Private {
+  cerberus::plugin::Adjustable<Settings> settings;
+  State state;
+};
+
+CERBERUS_DEFINE_TYPE(CerberusPersonVerify, cerberus_person_verify, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
+                     Private)
+
+void forget(State& state) {
+  if (state.pending) state.worker.wait();
+  state.pending.reset();
+  state.verifier.reset();
+  state.last = state.next_look = GST_CLOCK_TIME_NONE;
+}
+
+gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
+  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
+    Private& priv = *cerberus_person_verify_self(transform)->priv;
+    State& state = priv.state;
+    state.caps.forget(), state.frame.forget();
+    state.live.reset();
+    state.threshold = priv.settings.snapshot().threshold;
+    state.worker.start(cerberus::plugin::make_daimler_detector(state.threshold));
+    forget(state);
+    return TRUE;
+  });
+}
+
+gboolean cerberus_person_verify_stop(GstBaseTransform* transform) {
+  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
+    State& state = cerberus_person_verify_self(transform)->priv->state;
+    state.worker.stop();
+    state.pending.reset();
+    return TRUE;
+  });
+}
+
+gboolean cerberus_person_verify_set_caps(GstBaseTransform* transform, GstCaps* in, GstCaps*) {
+  State& state = cerberus_person_verify_self(transform)->priv->state;
+  return cerberus::guarded(transform, FALSE, [&]() -> gboolean {
+    const bool known = gst_video_info_from_caps(&state.info, in);
+    const std::string wrong = known ? "" : cerberus::kCapsIncomplete;
+    if (state.caps.is_new(wrong))
+      CERBERUS_ELEMENT_ERROR(transform, CORE, NEGOTIATION, (wrong), ("caps %" GST_PTR_FORMAT, in));
+    if (!known) return FALSE;
+    forget(state);
+    state.reduced = vision::analysis_size(
+        {GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)}, kFollowedWidth);
+    state.picture.resize(state.reduced);
+    return TRUE;
+  });
+}
+
+gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent* event) {
+  if (GST_EVENT_TYPE(event) == GST_EVENT_FLUSH_STOP)
+    cerberus::guarded(transform, [&] { forget(cerberus_person_verify_self(transform)->priv->state); });
+  return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
+}
+
+// Regions of interest of other elements, with the identity that they have, or the one of the region before that they overlap.
+void read_foreign(State& state, GstBuffer* buffer) {
+  const std::vector<vision::Candidate> before = state.candidates;
+  state.candidates.clear(), state.before.clear();
+  gpointer iterator = nullptr;
+  while (GstMeta* meta = gst_buffer_iterate_meta_filtered(buffer, &iterator,
+                                                          GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE)) {
+    const auto* roi = reinterpret_cast<const GstVideoRegionOfInterestMeta*>(meta);
+    CerberusRegion region;
+    cerberus_region_init(&region);
+    region.x = roi->x, region.y = roi->y, region.width = roi->w, region.height = roi->h;
+    region.tracked = TRUE;
+    const vision::Box box{region.x, region.y, region.width, region.height};
+    double best = 0.3;
+    for (const auto& each : before) {
+      const double shared = vision::intersection_over_union(each.box, box);
+      const bool free = std::ranges::none_of(state.before, [&](const auto& r) { return r.id == each.id; });
+      if (free && shared > best) best = shared, region.id = each.id;
+    }
+    if (region.id == 0) region.id = ++state.next_foreign;
+    state.before.push_back(region);
+  }
+}
+
+void read_regions(State& state, GstBuffer* buffer) {
+  state.foreign = !cerberus_buffer_regions_known(buffer);
+  if (state.foreign) {
+    read_foreign(state, buffer);
+  } else {
+    state.before.clear();
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+    for (guint i = 0; i < regions->len; ++i)
+      state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
+  }
+  state.candidates.clear();
+  for (const CerberusRegion& region : state.before)
+    state.candidates.push_back({.id = region.id,
+                                .box = {region.x, region.y, region.width, region.height},
+                                .state = static_cast<vision::TrackState>(region.state),
+                                .kind = static_cast<vision::RegionKind>(region.kind)});
+}
+
+void attach(State& state, GstBuffer* buffer, bool persons_only) {
+  state.after.clear();
+  for (const vision::VerifiedRegion& found : state.verifier.result()) {
+    if (!found.person && (persons_only || state.foreign)) continue;
+    CerberusRegion region;
+    cerberus_region_init(&region);
+    if (found.candidate >= 0) {
+      region = state.before[static_cast<std::size_t>(found.candidate)];
+    } else {
+      region.vx = found.vx, region.vy = found.vy;
+      region.age = cerberus::plugin::clock_time(found.age);
+    }
+    region.id = found.id, region.tracked = TRUE;
+    region.x = found.box.x, region.y = found.box.y;
+    region.width = found.box.width, region.height = found.box.height;
+    region.person = found.person;
+    if (found.person) region.confidence = found.confidence;
+    region.kind =
+        found.person ? CERBERUS_REGION_KIND_PERSON_LIKE : static_cast<CerberusRegionKind>(found.kind);
+    state.after.push_back(region);
+  }
+  if (state.foreign && persons_only)
+    while (GstMeta* meta = gst_buffer_get_meta(buffer, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
+      if (!gst_buffer_remove_meta(buffer, meta)) break;
+  if (state.foreign && state.after.empty()) return;
+  g_autoptr(GPtrArray) array = g_ptr_array_new();
+  for (CerberusRegion& region : state.after) g_ptr_array_add(array, &region);
+  cerberus_buffer_set_regions(buffer, array);
+}
+
+// A look that is due is taken in: live where its result is there, else it is waited for.
+void take_in(State& state, GstClockTime now, double threshold) {
+  if (!state.pending) return;
+  if (state.live.value_or(true) ? !state.worker.is_done() : now < state.pending->time + kDelay) return;
+  std::vector<vision::PersonDetection>& hits = state.worker.wait();
+  const Pending pending = *std::exchange(state.pending, std::nullopt);
+  for (vision::PersonDetection& hit : hits)
+    hit.box.x += pending.look.region.x, hit.box.y += pending.look.region.y;
+  vision::merge_hits(hits, threshold);
+  for (const vision::PersonDetection& hit : hits)
+    GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(pending.time), hit.box.x,
+            hit.box.y, hit.box.width, hit.box.height, hit.score);
+  state.verifier.apply(pending.look, hits, threshold, threshold + kCertainAbove);
+}
+
+// The next look, where one is due, from the mapped frame.
+void look(State& state, const vision::LumaSource& source, GstClockTime now, const Settings& settings) {
+  const auto period = static_cast<GstClockTime>(GST_SECOND / settings.rate);
+  if (!GST_CLOCK_TIME_IS_VALID(state.next_look))
+    state.next_look = now + static_cast<GstClockTime>(settings.phase * static_cast<double>(period));
+  if (state.pending || now < state.next_look) return;
+  const auto chosen = state.verifier.choose();
+  if (!chosen) return;
+  const auto& region = chosen->region;
+  GST_LOG("%" GST_TIME_FORMAT ": looks at %d,%d %dx%d, scale %.2f", GST_TIME_ARGS(now), region.x, region.y,
+          region.width, region.height, region.scale);
+  vision::Image<std::uint8_t>& picture = state.worker.picture();
+  picture.resize({region.width, region.height});
+  vision::LumaSource part = source;
+  part.data += region.y * part.stride + static_cast<std::ptrdiff_t>(region.x) * part.pixel_stride;
+  part.width = region.width, part.height = region.height;
+  state.crop_scaler.scale(part, picture.view());
+  state.worker.begin(region.scale);
+  state.pending = Pending{*chosen, now};
+  state.next_look = std::max(state.next_look + period, now);
+}
+
+GstFlowReturn cerberus_person_verify_transform_ip(GstBaseTransform* transform, GstBuffer* buffer) {
+  return cerberus::guarded(transform, GST_FLOW_ERROR, [&]() -> GstFlowReturn {
+    Private& priv = *cerberus_person_verify_self(transform)->priv;
+    State& state = priv.state;
+    const Settings settings = priv.settings.snapshot();
+    if (!state.live) state.live = cerberus::plugin::is_live(GST_BASE_TRANSFORM_SINK_PAD(transform));
+    cerberus::VideoFrame frame(state.info, buffer, GST_MAP_READ);
+    const std::string wrong = frame ? "" : "A frame cannot be read: its tracks are not verified.";
+    if (state.frame.is_new(wrong))
+      CERBERUS_ELEMENT_WARNING(transform, STREAM, FAILED, (wrong), ("%" GST_PTR_FORMAT, buffer));
+    if (!frame) return GST_FLOW_OK;
+
+    GstClockTime now = cerberus::plugin::running_time_of(transform->segment, buffer);
+    if (!GST_CLOCK_TIME_IS_VALID(now))
+      now = GST_CLOCK_TIME_IS_VALID(state.last) ? state.last + cerberus::plugin::clock_time(kUsualStep) : 0;
+    double seconds = kUsualStep;
+    if (GST_CLOCK_TIME_IS_VALID(state.last)) {
+      seconds = static_cast<double>(GST_CLOCK_DIFF(state.last, now)) / GST_SECOND;
+      if (seconds <= 0 || seconds > kLongestGap) forget(state), seconds = kUsualStep;
+    }
+    state.last = now;
+
+    const vision::Size size{GST_VIDEO_INFO_WIDTH(&state.info), GST_VIDEO_INFO_HEIGHT(&state.info)};
+    const vision::LumaSource source = cerberus::luma_source(*frame.get());
+    state.scaler.scale(source, state.picture.view());
+    vision::Transform motion;
+    if (const CerberusCameraMotion* camera = cerberus_buffer_peek_camera_motion(buffer))
+      std::copy_n(camera->matrix, motion.m.size(), motion.m.begin());
+    read_regions(state, buffer);
+    state.verifier.update(state.picture.view(), size, motion, seconds, state.candidates);
+    take_in(state, now, settings.threshold);
+    look(state, source, now, settings);
+    frame.unmap();
+    attach(state, buffer, settings.require == REQUIRE_PERSON);
+    return GST_FLOW_OK;
+  });
+}
+
+void cerberus_person_verify_init(CerberusPersonVerify* self) {
+  gst_video_info_init(&self->priv->state.info);
+  gst_base_transform_set_in_place(GST_BASE_TRANSFORM(self), TRUE);
+  gst_base_transform_set_passthrough(GST_BASE_TRANSFORM(self), FALSE);
+}
+
+void cerberus_person_verify_class_init(CerberusPersonVerifyClass* klass) {
+  cerberus::plugin::install_properties<CerberusPersonVerify, kProperties>(G_OBJECT_CLASS(klass));
+  GstElementClass* element = GST_ELEMENT_CLASS(klass);
+  gst_element_class_set_static_metadata(element, "Person verifier", "Filter/Analyzer/Video",
+                                        "Confirms, splits and classifies tracks with a people detector",
+                                        "The Cerberus developers");
+  gst_element_class_add_static_pad_template(element, &sink_template);
+  gst_element_class_add_static_pad_template(element, &src_template);
+
+  GstBaseTransformClass* transform = GST_BASE_TRANSFORM_CLASS(klass);
+  transform->start = cerberus_person_verify_start;
+  transform->stop = cerberus_person_verify_stop;
+  transform->set_caps = cerberus_person_verify_set_caps;
+  transform->sink_event = cerberus_person_verify_sink_event;
+  transform->transform_ip = cerberus_person_verify_transform_ip;
+}
+
+}  // namespace
+
+CERBERUS_REGISTER_ELEMENT(personverify, GST_RANK_NONE, cerberus_person_verify, personverify_debug,
+                          "people confirmed by a detector")

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Drawn people and drawn boxes on frames, and regions on them: which of them are persons.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "outputs.h"
+
+using namespace outputs;
+
+namespace {
+
+constexpr int kWide = 320, kHigh = 240;
+constexpr guint8 kWall = 170, kDark = 60;
+constexpr int kPersonHeight = 100, kPersonWidth = 40;
+
+// A part of a body: an ellipse, or a bar that leans.
+void ellipse(std::vector<guint8>& picture, double cx, double cy, double rx, double ry) {
+  for (int y = 0; y < kHigh; ++y)
+    for (int x = 0; x < kWide; ++x)
+      if (std::hypot((x - cx) / rx, (y - cy) / ry) < 1)
+        picture[static_cast<std::size_t>(y) * kWide + x] = kDark;
+}
+void bar(std::vector<guint8>& picture, double x0, double y0, double x1, double y1, double half) {
+  for (int y = static_cast<int>(y0); y < y1; ++y) {
+    const double cx = x0 + (x1 - x0) * (y - y0) / (y1 - y0);
+    for (int x = 0; x < kWide; ++x)
+      if (std::abs(x - cx) < half) picture[static_cast<std::size_t>(y) * kWide + x] = kDark;
+  }
+}
+
+// A person who stands, 100 pixels from head to foot; x, y: top left corner of a box of 40 x 100.
+void draw_person(std::vector<guint8>& picture, double x, double y) {
+  const double middle = x + kPersonWidth / 2;
+  ellipse(picture, middle, y + 8, 6.5, 8);
+  ellipse(picture, middle, y + 32, 12.5, 19);
+  bar(picture, middle - 5, y + 44, middle - 8, y + 99, 5);
+  bar(picture, middle + 5, y + 44, middle + 8, y + 99, 5);
+}
+void draw_box(std::vector<guint8>& picture, int x, int y, int width, int height) {
+  for (int row = y; row < y + height; ++row)
+    std::fill_n(picture.begin() + static_cast<std::ptrdiff_t>(row) * kWide + x, width, kDark);
+}
+
+std::string caps() {
+  return caps_string("GRAY8", kWide, kHigh);
+}
+
+// Frame `number` of a scene: drawn persons at `people`, a box at 20,100 where `thing`.
+GstBuffer* scene(int number, const std::vector<double>& people, bool thing = false) {
+  std::vector<guint8> picture(static_cast<std::size_t>(kWide) * kHigh, kWall);
+  for (const double x : people) draw_person(picture, x, 90);
+  if (thing) draw_box(picture, 20, 100, 60, 40);
+  GstBuffer* buffer = frame(info_of(caps()), number);
+  gst_buffer_fill(buffer, 0, picture.data(), picture.size());
+  return buffer;
+}
+
+CerberusRegion person_track(guint id, double x) {
+  return region(id, x, 90, kPersonWidth, kPersonHeight);
+}
+
+struct Verifier {
+  Harness h;
+  explicit Verifier(const char* properties, bool live = false)
+      : h(harness((std::string("personverify ") + properties).c_str())) {
+    gst_harness_set_live(h.get(), live);
+    gst_harness_set_src_caps_str(h.get(), caps().c_str());
+  }
+  GstBuffer* through(GstBuffer* in) {
+    fail_unless_equals_int(gst_harness_push(h.get(), in), GST_FLOW_OK);
+    return gst_harness_pull(h.get());
+  }
+};
+
+// The regions after `frames` frames of a scene that moves to the right by a pixel a frame.
+std::vector<CerberusRegion> regions_after(Verifier& verifier, int frames, const std::vector<double>& people,
+                                          bool thing, const std::vector<CerberusRegion>& tracks) {
+  std::vector<CerberusRegion> found;
+  for (int n = 0; n < frames; ++n) {
+    std::vector<double> moved = people;
+    for (double& x : moved) x += n;
+    GstBuffer* in = scene(n, moved, thing);
+    for (CerberusRegion track : tracks) {
+      track.x += n;
+      add(in, track);
+    }
+    GstBuffer* out = verifier.through(in);
+    found.clear();
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    for (guint i = 0; i < regions->len; ++i)
+      found.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
+    gst_buffer_unref(out);
+  }
+  std::ranges::sort(found, {}, &CerberusRegion::x);
+  return found;
+}
+
+// The middle of a region, compared with that of a drawn person.
+void expect_place(const CerberusRegion& r, double x) {
+  fail_unless(std::abs(r.x + r.width / 2 - (x + kPersonWidth / 2)) < 10, "at %.0f, not %.0f", r.x, x);
+  fail_unless(r.height > 75 && r.height < 125, "%.0f high", r.height);
+}
+
+}  // namespace
+
+GST_START_TEST(a_track_that_is_a_person_is_published_as_one_with_its_identity) {
+  Verifier verifier("");
+  const auto found = regions_after(verifier, 10, {140}, false, {person_track(7, 140)});
+  fail_unless_equals_int(found.size(), 1);
+  fail_unless(found[0].person && found[0].tracked);
+  fail_unless_equals_int(found[0].id, 7);
+  fail_unless(found[0].confidence > 0.5 && found[0].confidence <= 1);
+  expect_place(found[0], 149);
+}
+GST_END_TEST
+
+GST_START_TEST(a_track_that_is_no_person_stays_unless_persons_are_required) {
+  for (const bool required : {false, true}) {
+    Verifier verifier(required ? "require=person" : "");
+    CerberusRegion thing = region(3, 20, 100, 60, 40);
+    const auto found = regions_after(verifier, 20, {}, true, {thing});
+    fail_unless_equals_int(found.size(), required ? 0 : 1);
+    for (const auto& each : found) fail_unless(!each.person && each.id == 3);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_track_that_holds_two_people_becomes_two_persons) {
+  Verifier verifier("");
+  CerberusRegion both = region(5, 100, 88, 105, 104);
+  both.kind = CERBERUS_REGION_KIND_GROUP;
+  const auto found = regions_after(verifier, 20, {100, 165}, false, {both});
+  fail_unless_equals_int(found.size(), 2);
+  expect_place(found[0], 119);
+  expect_place(found[1], 184);
+  fail_unless(found[0].person && found[1].person && found[0].id != found[1].id);
+  fail_unless(found[0].id != 5 && found[1].id != 5);
+}
+GST_END_TEST
+
+// Not live: the look at the first frame counts from 100 ms on, however long it takes.
+GST_START_TEST(a_result_counts_100_ms_of_running_time_after_its_frame) {
+  Verifier verifier("");
+  for (int n = 0; n < 6; ++n) {
+    GstBuffer* in = scene(n, {140});
+    add(in, person_track(7, 140));
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    fail_unless_equals_int(regions->len, 1);
+    const auto* each = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0));
+    fail_unless(each->person == (n >= 3), "frame %d", n);  // 120 ms is the first that is not earlier
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(the_first_look_is_put_off_by_the_phase) {
+  Verifier verifier("rate=5 phase=0.6");  // 120 ms: frame 3, and its result at frame 6
+  for (int n = 0; n < 8; ++n) {
+    GstBuffer* in = scene(n, {140});
+    add(in, person_track(7, 140));
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    const auto* each = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0));
+    fail_unless(each->person == (n >= 6), "frame %d", n);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+// Live, the result comes when it does: every frame leaves at once, and one of them has it.
+GST_START_TEST(live_no_frame_waits_and_the_result_comes_later) {
+  Verifier verifier("", true);
+  bool person = false;
+  const gint64 patience = g_get_monotonic_time() + 60 * G_USEC_PER_SEC;
+  for (int n = 0; !person; n = std::min(n + 1, 40)) {
+    fail_unless(g_get_monotonic_time() < patience, "no result within a minute");
+    GstBuffer* in = scene(n, {140});
+    add(in, person_track(7, 140));
+    GstBuffer* out = verifier.through(in);
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    fail_unless(regions->len == 1);
+    person = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0))->person;
+    gst_buffer_unref(out);
+    g_usleep(1000);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(regions_of_interest_of_other_elements_are_verified_too) {
+  for (const bool required : {false, true}) {
+    Verifier verifier(required ? "require=person" : "");
+    GstBuffer* out = nullptr;
+    for (int n = 0; n < 8; ++n) {
+      gst_clear_buffer(&out);
+      GstBuffer* in = scene(n, {200}, true);
+      gst_buffer_add_video_region_of_interest_meta(in, "face", 200, 90, kPersonWidth, kPersonHeight);
+      gst_buffer_add_video_region_of_interest_meta(in, "thing", 20, 100, 60, 40);
+      out = verifier.through(in);
+    }
+    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(out);
+    fail_unless_equals_int(regions->len, 1);
+    const auto* each = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, 0));
+    fail_unless(each->person);
+    expect_place(*each, 200);
+    int others = 0;
+    gpointer state = nullptr;
+    while (GstMeta* meta =
+               gst_buffer_iterate_meta_filtered(out, &state, GST_VIDEO_REGION_OF_INTEREST_META_API_TYPE))
+      others +=
+          reinterpret_cast<GstVideoRegionOfInterestMeta*>(meta)->roi_type != g_quark_from_string("person");
+    fail_unless_equals_int(others, required ? 0 : 2);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(after_a_flush_and_with_other_caps_it_begins_anew) {
+  Verifier verifier("");
+  regions_after(verifier, 8, {140}, false, {person_track(7, 140)});
+  push_flush(verifier.h.get());
+  auto found = regions_after(verifier, 1, {140}, false, {person_track(8, 140)});
+  fail_unless(found.size() == 1 && !found[0].person);
+  gst_harness_set_src_caps_str(verifier.h.get(), caps_string("I420", 64, 48).c_str());
+  GstBuffer* out = verifier.through(frame(info_of(caps_string("I420", 64, 48)), 9));
+  fail_unless(!cerberus_buffer_regions_known(out));
+  gst_buffer_unref(out);
+}
+GST_END_TEST
+
+namespace {
+
+Suite* personverify_suite() {
+  watch_library_log();
+  Suite* suite = suite_create("personverify");
+  TCase* tests = tcase_create("all");
+  tcase_set_timeout(tests, 120);
+  suite_add_tcase(suite, tests);
+  tcase_add_test(tests, a_track_that_is_a_person_is_published_as_one_with_its_identity);
+  tcase_add_test(tests, a_track_that_is_no_person_stays_unless_persons_are_required);
+  tcase_add_test(tests, a_track_that_holds_two_people_becomes_two_persons);
+  tcase_add_test(tests, a_result_counts_100_ms_of_running_time_after_its_frame);
+  tcase_add_test(tests, the_first_look_is_put_off_by_the_phase);
+  tcase_add_test(tests, live_no_frame_waits_and_the_result_comes_later);
+  tcase_add_test(tests, regions_of_interest_of_other_elements_are_verified_too);
+  tcase_add_test(tests, after_a_flush_and_with_other_caps_it_begins_anew);
+  return suite;
+}
+
+}  // namespace
+
+GST_CHECK_MAIN(personverify)

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Persons beside tracks: detections made by hand on pictures of noise, in which patches move.
+#include "vision/verification/person_verifier.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "support/allocations.h"
+#include "support/suite.h"
+#include "vision/verification/look_worker.h"
+#include "vision/verification/patch_matching.h"
+
+using namespace cerberus::vision;
+using cerberus::tests::allocations;
+
+namespace {
+
+constexpr Size kFrame{640, 480}, kSmall{320, 240};
+constexpr double kFloor = 1.7, kCertain = 3.7;
+
+Image<std::uint8_t> noise(Size size, unsigned seed) {
+  std::mt19937 random(seed);
+  Image<std::uint8_t> image(size);
+  for (int y = 0; y < size.height; ++y)
+    for (int x = 0; x < size.width; ++x) image.view().at(x, y) = static_cast<std::uint8_t>(random());
+  return image;
+}
+
+// A scene of noise in which the texture of each box stands where the box is.
+class Scene {
+ public:
+  GrayView with(std::initializer_list<Box> boxes) {
+    for (int y = 0; y < kSmall.height; ++y)
+      std::copy_n(background_.view().row(y), kSmall.width, picture_.view().row(y));
+    int n = 0;
+    for (const Box& box : boxes) {
+      const int left = static_cast<int>(box.x / 2), top = static_cast<int>(box.y / 2);
+      for (int y = 0; y < box.height / 2; ++y)
+        for (int x = 0; x < box.width / 2; ++x)
+          if (left + x >= 0 && left + x < kSmall.width && top + y >= 0 && top + y < kSmall.height)
+            picture_.view().at(left + x, top + y) = texture_.view().at(x + 60 * n, y);
+      ++n;
+    }
+    return picture_.view();
+  }
+
+ private:
+  Image<std::uint8_t> background_ = noise(kSmall, 1), texture_ = noise({320, 240}, 2), picture_{kSmall};
+};
+
+struct Rig {
+  Scene scene;
+  PersonVerifier verifier;
+  void frame(std::initializer_list<Box> boxes, std::vector<Candidate> tracks) {
+    verifier.update(scene.with(boxes), kFrame, {}, 0.04, tracks);
+  }
+  void found(const PersonVerifier::Look& look, std::vector<PersonDetection> detections) {
+    verifier.apply(look, detections, kFloor, kCertain);
+  }
+  std::vector<VerifiedRegion> result() {
+    const auto all = verifier.result();
+    return {all.begin(), all.end()};
+  }
+};
+
+Box person_at(double x) {
+  return {x, 100, 60, 160};
+}
+
+}  // namespace
+
+START_TEST(hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped) {
+  // Weights score - 1: 2 and 1. The third lies in the first; the fourth stands apart.
+  std::vector<PersonDetection> hits{
+      {{6, 3, 30, 60}, 2}, {{0, 0, 30, 60}, 3}, {{5, 30, 12, 25}, 2.5}, {{100, 0, 30, 60}, 1.5}};
+  std::vector<PersonDetection> other{hits[2], hits[3], hits[0], hits[1]};
+  for (auto* each : {&hits, &other}) {
+    merge_hits(*each, 1);
+    ck_assert_uint_eq(each->size(), 2);
+    ck_assert_double_eq_tol((*each)[0].box.x, 2, 1e-9);
+    ck_assert_double_eq_tol((*each)[0].box.y, 1, 1e-9);
+    ck_assert_double_eq((*each)[0].score, 3);
+    ck_assert_double_eq_tol((*each)[1].box.x, 100, 1e-9);
+  }
+}
+END_TEST
+
+START_TEST(a_patch_is_found_where_it_went_and_between_pixels) {
+  Scene scene;
+  Image<std::uint8_t> before(kSmall);
+  const GrayView first = scene.with({{200, 100, 60, 80}});
+  for (int y = 0; y < kSmall.height; ++y) std::copy_n(first.row(y), kSmall.width, before.view().row(y));
+  const GrayView now = scene.with({{208, 96, 60, 80}});
+  const Box patch{104, 54, 20, 30};
+  const Point way = match_patch(before.view(), now, patch, {1, 0}, 4);
+  ck_assert_double_eq_tol(way.x, 4, 0.2);
+  ck_assert_double_eq_tol(way.y, -2, 0.2);
+  // What lies outside the picture has no place: the guess holds.
+  const Point nowhere = match_patch(before.view(), now, {400, 10, 20, 20}, {1.5, 2}, 3);
+  ck_assert_double_eq(nowhere.x, 1.5);
+  ck_assert_double_eq(nowhere.y, 2);
+}
+END_TEST
+
+START_TEST(the_most_doubtful_box_is_looked_at_with_neighbours_that_fit) {
+  const VerificationParameters p;
+  const std::array<LookTarget, 4> targets{
+      {{{300, 100, 40, 90}, 3}, {{350, 105, 40, 90}, 1}, {{20, 300, 40, 90}, 1}, {{500, 100, 9, 12}, 9}}};
+  const auto look = choose_look(targets, {2000, 1500}, p);
+  ck_assert(look.has_value());
+  ck_assert_double_eq_tol(look->scale, p.look_height / 90, 1e-9);
+  ck_assert(look->x < 300 && look->x + look->width > 390 && look->y < 100 && look->y + look->height > 195);
+  ck_assert(look->width * look->height * look->scale * look->scale <= p.most_area * 1.05);
+  ck_assert(look->y + look->height < 300);
+  ck_assert(!choose_look({}, {2000, 1500}, p));
+  // A group as wide as the picture is cut to what a look may cost.
+  const std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1}}};
+  const auto middle = choose_look(wide, {2000, 1500}, p);
+  ck_assert(middle->width * middle->height * middle->scale * middle->scale <= p.most_area * 1.05);
+}
+END_TEST
+
+START_TEST(a_detection_makes_its_track_a_person_with_the_tracks_identity) {
+  Rig rig;
+  rig.frame({person_at(200)}, {{.id = 4, .box = person_at(200)}});
+  const auto look = rig.verifier.choose();
+  ck_assert(look.has_value());
+  ck_assert(!rig.result()[0].person);
+  // The person walks on while the detector works; the detection is carried along.
+  for (int n = 1; n <= 3; ++n)
+    rig.frame({person_at(200 + 6 * n)}, {{.id = 4, .box = person_at(200 + 6 * n)}});
+  rig.found(*look, {{person_at(202), 3}});
+  const auto all = rig.result();
+  ck_assert_uint_eq(all.size(), 1);
+  ck_assert(all[0].person && all[0].id == 4 && all[0].candidate == 0);
+  ck_assert_double_eq_tol(all[0].box.x, 219, 5);
+  ck_assert_double_eq_tol(all[0].confidence, 0.5 + 0.5 * (3 - kFloor) / (kCertain - kFloor), 1e-9);
+}
+END_TEST
+
+START_TEST(two_people_in_one_track_are_followed_with_identities_of_their_own) {
+  Rig rig;
+  const Box both{195, 95, 150, 170};
+  const auto track = [&](double by) {
+    return std::vector<Candidate>{
+        {.id = 9, .box = {both.x + by, both.y, both.width, both.height}, .kind = RegionKind::group}};
+  };
+  rig.frame({person_at(200), person_at(280)}, track(0));
+  const auto look = rig.verifier.choose();
+  rig.found(*look, {{person_at(200), 3}, {person_at(280), 2.5}});
+  auto all = rig.result();
+  ck_assert_uint_eq(all.size(), 2);
+  const auto first = all[0].id, second = all[1].id;
+  ck_assert(first >= PersonVerifier::kFirstOwn && second >= PersonVerifier::kFirstOwn && first != second);
+  for (int n = 1; n <= 10; ++n) rig.frame({person_at(200 + 4 * n), person_at(280 + 4 * n)}, track(4 * n));
+  all = rig.result();
+  ck_assert_uint_eq(all.size(), 2);
+  ck_assert(all[0].id == first && all[1].id == second);
+  ck_assert_double_eq_tol(all[0].box.x, 240, 6);
+  ck_assert_double_eq_tol(all[1].box.x, 320, 6);
+}
+END_TEST
+
+START_TEST(a_track_that_persons_cover_in_part_is_a_group) {
+  Rig rig;
+  const std::vector<Candidate> track{{.id = 9, .box = {100, 95, 400, 170}, .kind = RegionKind::thing}};
+  rig.frame({person_at(200)}, track);
+  rig.found(*rig.verifier.choose(), {{person_at(200), 3}});
+  const auto all = rig.result();
+  ck_assert_uint_eq(all.size(), 2);
+  ck_assert(all[0].person);
+  ck_assert(!all[1].person && all[1].id == 9 && all[1].kind == RegionKind::group);
+}
+END_TEST
+
+START_TEST(what_looks_like_a_person_where_nothing_moves_is_none_and_what_never_moved_ends) {
+  Rig rig;
+  const std::vector<Candidate> track{{.id = 2, .box = person_at(200)}};
+  rig.frame({person_at(200)}, track);
+  rig.found(*rig.verifier.choose(), {{person_at(420), 3}, {{205, 180, 30, 80}, 2}});
+  ck_assert_uint_eq(rig.result().size(), 1);
+  ck_assert(!rig.result()[0].person);  // elsewhere, and legs
+  rig.found(*rig.verifier.choose(), {{person_at(200), 3}});
+  ck_assert(rig.result()[0].person);
+  for (int n = 0; n < 20; ++n) rig.frame({}, {});  // .8 s without its track
+  ck_assert(rig.result().empty());
+}
+END_TEST
+
+START_TEST(a_person_whom_looks_do_not_confirm_is_none_any_more) {
+  Rig rig;
+  const std::vector<Candidate> track{{.id = 2, .box = person_at(200)}};
+  rig.frame({person_at(200)}, track);
+  rig.found(*rig.verifier.choose(), {{person_at(200), 3}});
+  for (int n = 0; n < 8; ++n) {
+    rig.frame({person_at(200)}, track);
+    const auto look = rig.verifier.choose();
+    if (n < 2) ck_assert(rig.result()[0].person || n > 0);
+    if (look) rig.found(*look, {});
+  }
+  ck_assert_uint_eq(rig.result().size(), 1);
+  ck_assert(!rig.result()[0].person);
+}
+END_TEST
+
+START_TEST(following_and_choosing_allocate_nothing) {
+  Rig rig;
+  std::vector<Candidate> track{{.id = 2, .box = person_at(200)}};
+  std::size_t before = 0;
+  for (int n = 0; n < 120; ++n) {
+    if (n == 80) before = allocations();
+    rig.verifier.update(rig.scene.with({person_at(200)}), kFrame, {}, 0.04, track);
+    const auto look = rig.verifier.choose();
+    if (look && n < 60) rig.found(*look, {{person_at(200), 3}});
+    rig.verifier.result();
+  }
+  ck_assert_uint_eq(allocations(), before);
+}
+END_TEST
+
+namespace {
+
+class Scripted : public PersonDetector {
+ public:
+  void detect(GrayView picture, double scale, std::vector<PersonDetection>& hits) override {
+    if (scale > 9) throw std::runtime_error("too large");
+    hits.push_back({{0, 0, double(picture.width), double(picture.height)}, scale});
+  }
+};
+
+}  // namespace
+
+START_TEST(the_worker_returns_what_its_detector_found_or_threw) {
+  LookWorker worker;
+  worker.start(std::make_unique<Scripted>());
+  for (const double scale : {2.0, 3.0}) {
+    worker.picture().resize({30, 60});
+    worker.begin(scale);
+    const auto& hits = worker.wait();
+    ck_assert_uint_eq(hits.size(), 1);
+    ck_assert_double_eq(hits[0].score, scale);
+    ck_assert_double_eq(hits[0].box.height, 60);
+  }
+  worker.begin(10);
+  bool thrown = false;
+  try {
+    worker.wait();
+  } catch (const std::runtime_error&) {
+    thrown = true;
+  }
+  ck_assert(thrown);
+  worker.begin(1);  // in progress at the end
+  worker.stop();
+  ck_assert(!worker.is_running());
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "person_verifier",
+      {hits_of_one_person_become_their_weighted_mean_and_parts_of_it_are_dropped,
+       a_patch_is_found_where_it_went_and_between_pixels,
+       the_most_doubtful_box_is_looked_at_with_neighbours_that_fit,
+       a_detection_makes_its_track_a_person_with_the_tracks_identity,
+       two_people_in_one_track_are_followed_with_identities_of_their_own,
+       a_track_that_persons_cover_in_part_is_a_group,
+       what_looks_like_a_person_where_nothing_moves_is_none_and_what_never_moved_ends,
+       a_person_whom_looks_do_not_confirm_is_none_any_more, following_and_choosing_allocate_nothing,
+       the_worker_returns_what_its_detector_found_or_threw});
+}
