@@ -7,83 +7,25 @@
 #include <fcntl.h>
 #include <linux/i2c-dev.h>
 #include <linux/i2c.h>
-#include <poll.h>
 #include <sys/ioctl.h>
 #include <sys/syscall.h>
 #include <sys/wait.h>
 
-#include <cmath>
 #include <csignal>
 #include <optional>
 #include <thread>
 
 #include "../support/fake_lines.h"
-#include "../support/suite.h"
-#include "../support/text.h"
-#include "drivers/helper/head_lines.h"
 #include "drivers/helper/helper_head.h"
-#include "drivers/helper/helper_process.h"
+#include "helper.h"
 
-using namespace cerberus::drivers;
 using namespace simulated;
-using namespace std::chrono_literals;
-using cerberus::sensing::degrees;
-using cerberus::sensing::radians;
-using cerberus::tests::assert_text;
-using Clock = std::chrono::steady_clock;
 using Kind = cerberus::motion::AxisCommand::Kind;
 
 namespace {
 
-std::string program;  // cerberus-head
 constexpr int kContact = 9;
 constexpr char kCoils[] = "--pan=lines=2,3,4,5";
-
-double milliseconds(Clock::duration time) {
-  return std::chrono::duration<double, std::milli>(time).count();
-}
-
-// The helper, and the lines that it sends.
-class Helper {
- public:
-  Helper(std::vector<std::string> words, const HeadSetup& setup) {
-    words.insert(words.begin(), program);
-    assert_text(process_.start(words), "");
-    send(hello_line(setup, 10s));
-    expect("ready");
-  }
-  void send(const std::string& line) { ck_assert(process_.send(line)); }
-  // Waits for a line that begins with `word`, and returns it.
-  std::string expect(const std::string& word) {
-    for (const auto end = Clock::now() + 60s; Clock::now() < end;) {
-      while (const auto line = lines_.take()) {
-        if (const auto parsed = parse_helper_line(*line))
-          if (const auto* pose = std::get_if<PoseLine>(&*parsed)) pan_ = degrees(pose->pan.position);
-        if (line->starts_with(word)) return *line;
-      }
-      pollfd wait{process_.fd(), POLLIN, 0};
-      ::poll(&wait, 1, 1000);
-      std::string bytes;
-      process_.receive(bytes);
-      lines_.append(bytes);
-      process_.send("alive\n");
-    }
-    ck_abort_msg("the helper never sent '%s'", word.c_str());
-  }
-  // Waits until it says that it looks there.
-  void arrive(double pan) {
-    for (const auto end = Clock::now() + 60s; Clock::now() < end;) {
-      expect("pose");
-      if (std::abs(pan_ - pan) < 0.05) return;
-    }
-    ck_abort_msg("the head is at %g, not at %g", pan_, pan);
-  }
-
- private:
-  HelperProcess process_;
-  LineBuffer lines_;
-  double pan_ = 0;
-};
 
 // One motor on the lines 2 to 5 of the chip.
 Helper stepper(const Chip& chip, const std::vector<std::string>& more) {
