@@ -192,6 +192,73 @@ GST_START_TEST(a_zone_of_the_world_without_a_pose_hides_nothing_and_is_warned_of
 }
 END_TEST
 
+// A camera on a mast over a textured yard: a window of 40 degrees into a picture of 90, 800 pixels wide, with noise.
+// A box of 130 x 70 pixels stands at home, and another one 30 degrees to the right.
+struct Yard {
+  static constexpr int kWidth = 800, kHeight = 300;
+  std::vector<std::uint8_t> plain;
+  bool walker = false;
+
+  Yard() : plain(static_cast<std::size_t>(kWidth) * kHeight) {
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = 0; x < kWidth; ++x) {
+        const bool car = y >= 150 && y < 220 && ((x >= 340 && x < 470) || (x >= 580 && x < 680));
+        plain[static_cast<std::size_t>(y) * kWidth + x] = static_cast<std::uint8_t>(
+            car ? 150 + 0.4 * scene::texture(x, y, 14, 5) : 30 + 0.35 * scene::texture(x, y, 9, 1));
+      }
+  }
+  // Noise of at most 3 levels; where it walks, a figure of 20 x 60 that began at column 300 at frame 0.
+  GstBuffer* buffer(int k) const {
+    GstBuffer* out = gst_buffer_new_allocate(nullptr, plain.size(), nullptr);
+    GstMapInfo map;
+    gst_buffer_map(out, &map, GST_MAP_WRITE);
+    std::uint32_t state = 2654435761u * static_cast<std::uint32_t>(k + 1);
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      state = state * 1664525u + 1013904223u;
+      map.data[i] = static_cast<std::uint8_t>(plain[i] + (state >> 29) % 7 - 3);
+    }
+    for (int y = 120; walker && y < 180; ++y)
+      for (int x = 0; x < 20; ++x)
+        map.data[y * kWidth + 300 + 3 * (k % 60) + x] =
+            static_cast<std::uint8_t>(190 + 0.2 * scene::texture(x, y, 5, 77));
+    gst_buffer_unmap(out, &map);
+    GST_BUFFER_PTS(out) = k * scene::kStep;
+    return out;
+  }
+};
+
+// Home for 2 s, 30 degrees to the right at 15 or 60 degrees a second, a second there, and back for 2 s.
+GST_START_TEST(a_parked_car_is_no_object_when_the_camera_returns_to_it) {
+  Line line(
+      "virtualptz lockstep=off wide-fov=90 horizontal-fov=40 width=320 height=240 ! "
+      "motiondetect horizontal-fov=40",
+      scene::caps("GRAY8", Yard::kWidth, Yard::kHeight));
+  Yard yard;
+  const int turn = __i__ == 0 ? 50 : 12, away = 50 + turn, back = away + 25, home = back + turn;
+  const auto pan_at = [&](int k) {
+    return 30 * (std::clamp((k - 50.0) / turn, 0.0, 1.0) - std::clamp((k - back) * 1.0 / turn, 0.0, 1.0));
+  };
+  int parked = 0, walking = 0;
+  for (int k = 0; k < home + 90; ++k) {
+    CerberusPose pose;
+    cerberus_pose_init(&pose);
+    pose.pan = pan_at(k);
+    pose.pan_speed = (pan_at(k + 1) - pose.pan) * 25;
+    pose.moving = pose.pan_speed != 0;
+    pose.valid_from = k * scene::kStep;
+    pose.source = CERBERUS_POSE_MEASURED;
+    gst_harness_push_upstream_event(line.harness, cerberus_event_new_pose(&pose));
+    yard.walker = k >= home + 50;
+    GstBuffer* out = line.through(yard.buffer(k));
+    const Regions regions(out);
+    (yard.walker ? walking : parked) += static_cast<int>(regions.size());
+    gst_buffer_unref(out);
+  }
+  fail_unless_equals_int(parked, 0);
+  fail_unless(walking > 20, "the figure is in %d frames", walking);
+}
+END_TEST
+
 GST_START_TEST(limits_of_size_drop_what_is_outside) {
   const auto found = [](const std::string& properties) {
     guint count = 0;
@@ -403,6 +470,7 @@ Suite* detect_suite() {
   tcase_add_test(tests, zones_change_while_playing_and_a_typo_keeps_the_old_ones);
   tcase_add_test(tests, a_zone_of_the_world_hides_a_place_while_the_camera_turns);
   tcase_add_test(tests, a_zone_of_the_world_without_a_pose_hides_nothing_and_is_warned_of_once);
+  tcase_add_loop_test(tests, a_parked_car_is_no_object_when_the_camera_returns_to_it, 0, 2);
   tcase_add_test(tests, limits_of_size_drop_what_is_outside);
   tcase_add_test(tests, bearing_and_distance_follow_from_the_lens);
   tcase_add_loop_test(tests, the_tilt_of_the_camera_counts_for_the_distance, 0, 3);
