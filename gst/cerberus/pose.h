@@ -37,7 +37,7 @@ typedef enum { CERBERUS_POSE_COMMANDED, CERBERUS_POSE_MEASURED } CerberusPoseSou
  * @source: commanded or measured
  * @moving: the head moves
  * @settled: the head stands where it was sent
- * @field_of_view: degrees that the camera sees over the frame's width, as the head's zoom says; 0: not known
+ * @field_of_view: degrees that the camera sees over the frame's width, by the head's zoom; 0: nothing is said; negative: unknown zoom
  *
  * Where a pan-tilt head looks: one piece of its plan, of constant acceleration.
  */

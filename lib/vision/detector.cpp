@@ -134,7 +134,7 @@ void Detector::find_regions(Analysis& record, const DetectorFrame& frame) {
   }
   const Lens lens = frame.lens(options_.field_of_view);
   std::optional<Zones::View> view;
-  if (zones_.need_orientation() && frame.look && lens.known())
+  if (zones_.need_orientation() && frame.look && lens.known() && !std::isnan(frame.field_of_view))
     view = {{lens, frame.look->pan, frame.look->tilt}, frame.size};
   zones_placed_ = view.has_value();
   zones_.apply(out.mask->view(), view);

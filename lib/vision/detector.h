@@ -54,8 +54,9 @@ struct DetectorFrame {
   struct Look {
     double pan = 0, tilt = 0;  // radians
   };
-  std::optional<Look> look;       // of the camera when the frame was taken, if a head's pose gives it
-  double field_of_view = 0;       // horizontal, radians, as the head's zoom says; 0: as the options say
+  std::optional<Look> look;  // of the camera when the frame was taken, if a head's pose gives it
+  double field_of_view =
+      0;  // horizontal, radians, as the head's zoom says; 0: as the options say; NaN: unknown zoom
   std::span<const Box> burnt_in;  // analysis pixels, as learnt by a later stage elsewhere: no scene
   bool everything = false;        // D(k-1) and the labels are made too: an element reads them
   // otherwise: horizontal field of view of a frame of which no zoom is known, radians; 0: unknown.

@@ -16,7 +16,7 @@
  * A block of 8x8 pixels is covered as soon as one of its pixels may lie within a polygon. Polygons of the world are widened
  * by `margin`, by what the head turns within 20 ms, by 1.5 degrees where the pose is reckoned from commands and not
  * measured, and by 360 degrees for each second beyond the time for which the pose holds. Where there is no pose, or
- * no field of view, or pixels are not square, the whole picture is covered, and a warning says why. A frame that cannot be
+ * no field of view, or the head has a zoom of which nothing is known (whatever `horizontal-fov` says), or pixels are not square, the whole picture is covered, and a warning says why. A frame that cannot be
  * written is dropped. What else shows the scene is taken off the frame: drawings that are attached and not blended (such as
  * the inset of `virtualptz` and boxes of `motionoverlay`, which therefore stands behind), and the detector's own pictures.
  *
@@ -170,7 +170,8 @@ overlay::PrivacyZones::View view_of(GstBuffer* buffer, GstClockTime time, const 
   view.field_of_view = radians(settings.field_of_view);
   const CerberusPose* pose = cerberus_buffer_peek_pose(buffer);
   if (!pose || (pose->moving && !GST_CLOCK_TIME_IS_VALID(time))) return view;
-  if (pose->field_of_view > 0) view.field_of_view = radians(pose->field_of_view);
+  if (const double reported = cerberus::plugin::field_of_view_of(*pose); reported != 0)
+    view.field_of_view = reported;  // NaN: a zoom of which nothing is known, whatever horizontal-fov says
   const auto look = cerberus::plugin::look_of(*pose, time);
   if (!look) return view;
   view.posed = true;
@@ -192,7 +193,7 @@ std::string why_blind(const State& state, const overlay::PrivacyZones::View& vie
   if (view.posed && view.field_of_view > 0) return {};
   if (!(view.field_of_view > 0))
     return "The whole picture is covered: masks of the world need the lens's field of view. Set "
-           "horizontal-fov.";
+           "horizontal-fov and, for a head with a zoom, zoom-table or lock-zoom of pantiltsink.";
   return "The whole picture is covered: masks of the world need the head's pose on each frame. Put "
          "privacymask "
          "behind cameramotion, motiondetect or virtualptz, with a pantiltsink in the pipeline.";

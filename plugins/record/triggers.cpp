@@ -4,6 +4,7 @@
 #include <cerberus/cerberus.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "shared/camera_mount.hpp"
 
@@ -56,7 +57,7 @@ std::optional<vision::CameraOrientation> camera_of(GstBuffer* buffer, GstClockTi
   if (!look) return std::nullopt;
   const double reported = field_of_view_of(*pose);
   const vision::Lens lens(reported > 0 ? reported : radians(field_of_view), frame);
-  if (!lens.known()) return std::nullopt;
+  if (!lens.known() || std::isnan(reported)) return std::nullopt;
   return vision::CameraOrientation{lens, look->pan, look->tilt};
 }
 

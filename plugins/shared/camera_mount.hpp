@@ -5,6 +5,7 @@
 #include <cerberus/cerberus.h>
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include "control/base_rate.h"
@@ -39,8 +40,10 @@ inline std::optional<motion::PanTilt> look_of(const CerberusPose& pose, GstClock
   if (!std::isfinite(pan) || !(std::abs(tilt) <= kMaximumTilt)) return std::nullopt;
   return motion::PanTilt{radians(pan), radians(tilt)};
 }
-// Returns what the camera sees over the frame's width, radians, as the head's zoom says; 0: the pose does not say it.
+// Returns what the camera sees over the frame's width, radians, as the head's zoom says; 0: the pose does not say it;
+// NaN: the head has a zoom, and what it sees is not known.
 inline double field_of_view_of(const CerberusPose& pose) {
+  if (pose.field_of_view < 0) return std::numeric_limits<double>::quiet_NaN();
   const bool sane = pose.field_of_view > 0 && pose.field_of_view <= kMaximumFieldOfView;
   return sane ? radians(pose.field_of_view) : 0;
 }

@@ -5,6 +5,8 @@
 #include <cerberus/pose.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "clock_times.hpp"
 #include "motion/pose.h"
@@ -22,7 +24,8 @@ inline motion::Pose from_c(const CerberusPose& pose) {
                    sensing::radians(pose.tilt_acceleration)},
           .settled = pose.settled != FALSE,
           .measured = pose.source == CERBERUS_POSE_MEASURED,
-          .field_of_view = sensing::radians(pose.field_of_view)};
+          .field_of_view = pose.field_of_view < 0 ? std::numeric_limits<double>::quiet_NaN()
+                                                  : sensing::radians(pose.field_of_view)};
 }
 
 inline CerberusPose to_c(const motion::Pose& pose) {
@@ -39,7 +42,7 @@ inline CerberusPose to_c(const motion::Pose& pose) {
   out.source = pose.measured ? CERBERUS_POSE_MEASURED : CERBERUS_POSE_COMMANDED;
   out.moving = pose.moving();
   out.settled = pose.settled;
-  out.field_of_view = pose.field_of_view > 0 ? sensing::degrees(pose.field_of_view) : 0;  // NaN is not known
+  out.field_of_view = std::isnan(pose.field_of_view) ? -1 : sensing::degrees(pose.field_of_view);
   return out;
 }
 

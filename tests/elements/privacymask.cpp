@@ -149,6 +149,29 @@ GST_START_TEST(a_pose_of_the_past_hides_more_and_one_that_is_missing_all) {
 }
 GST_END_TEST
 
+// The property is for a lens that does not zoom.
+GST_START_TEST(a_zoom_of_which_nothing_is_known_hides_all) {
+  Harness h = mask("horizontal-fov=30 masks=\"world -3,3 3,3 3,-3 -3,-3\"");
+  Bus bus(h.get());
+  for (const double seen : {0.0, -1.0, 30.0}) {
+    GstBuffer* in = frame(info_of(kCaps), 100);
+    CerberusPose pose;
+    cerberus_pose_init(&pose);
+    pose.source = CERBERUS_POSE_MEASURED;
+    pose.field_of_view = seen;
+    cerberus_buffer_set_pose(in, &pose);
+    gst_harness_push(h.get(), in);
+    GstBuffer* out = gst_harness_pull(h.get());
+    const bool all = count(out, 0, kWall - 20) == kWindow * kWindowHigh;
+    fail_unless(all == (seen < 0), "%g degrees", seen);
+    gst_buffer_unref(out);
+  }
+  std::string text;
+  fail_unless_equals_int(bus.count(GST_MESSAGE_WARNING, &text), 1);
+  fail_unless(text.find("zoom-table") != std::string::npos, "%s", text.c_str());
+}
+GST_END_TEST
+
 // The left half; in squares there is one grey, but not the cover's.
 GST_START_TEST(a_part_of_the_picture_is_covered_or_shown_in_squares) {
   for (const bool squares : {false, true}) {
@@ -231,6 +254,7 @@ static Suite* privacymask_suite() {
   tcase_set_timeout(tests, 60);
   tcase_add_test(tests, no_pixel_of_the_place_is_seen_in_a_thousand_frames_and_little_else_is_hidden);
   tcase_add_test(tests, a_pose_of_the_past_hides_more_and_one_that_is_missing_all);
+  tcase_add_test(tests, a_zoom_of_which_nothing_is_known_hides_all);
   tcase_add_test(tests, a_part_of_the_picture_is_covered_or_shown_in_squares);
   tcase_add_test(tests, nothing_else_on_the_frame_shows_the_scene);
   tcase_add_test(tests, pixels_that_are_not_square_hide_all);
