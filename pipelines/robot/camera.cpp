@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "camera.h"
 
+#include <cerberus/cerberus.h>
 #include <gst/app/gstappsink.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <utility>
 
 #include "robot/settings_file.h"
@@ -25,6 +27,8 @@ struct Camera::Newest {
 namespace {
 
 constexpr const char* kStates[] = {"off", "running", "parking", "ending", "closing", "waiting", "ended"};
+
+constexpr double kParked = 1;  // degrees from zero: several steps of the coarsest motors
 
 void say(const std::string& camera, const std::string& text) {
   g_printerr("cerberusd: %s: %s\n", camera.c_str(), text.c_str());
@@ -54,8 +58,8 @@ const char* name(Camera::State state) {
   return kStates[static_cast<int>(state)];
 }
 
-Camera::Camera(const CameraSettings& settings, const PageSettings& page, Listener listener)
-    : settings_(settings), page_(page), listener_(std::move(listener)), newest_(std::make_shared<Newest>()) {
+Camera::Camera(const CameraSettings& settings, const PageSettings& page)
+    : settings_(settings), page_(page), newest_(std::make_shared<Newest>()) {
   newest_->camera = this;
 }
 
@@ -114,8 +118,12 @@ void Camera::connect() {
   g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo*, gpointer camera) {
-        ++static_cast<Camera*>(camera)->frames_;
+      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+        auto& camera = *static_cast<Camera*>(data);
+        ++camera.frames_;
+        const CerberusPose* pose = cerberus_buffer_peek_pose(GST_PAD_PROBE_INFO_BUFFER(info));
+        camera.parked_ = pose != nullptr && !pose->moving && std::abs(pose->pan) < kParked &&
+                         std::abs(pose->tilt) < kParked;
         return GST_PAD_PROBE_OK;
       },
       this, nullptr);
@@ -164,8 +172,7 @@ void Camera::connect() {
             newest.announced = false;
           }
           Camera* camera = newest.camera;
-          if (camera != nullptr && camera->show_ && camera->listener_.on_picture)
-            camera->listener_.on_picture(*camera);
+          if (camera != nullptr && camera->show_ && camera->on_picture_) camera->on_picture_(*camera);
           return static_cast<gboolean>(G_SOURCE_REMOVE);
         },
         new Holder(holder), [](gpointer data) { delete static_cast<Holder*>(data); });
@@ -250,6 +257,19 @@ void Camera::fail(const std::string& part, const std::string& text) {
   close();
 }
 
+void Camera::on_report(const GstStructure* report) {
+  const gchar* state = gst_structure_get_string(report, "state");
+  if (state == nullptr) return;
+  if (gst_structure_has_name(report, "cerberus-pantilt")) head_state_ = state;
+  if (gst_structure_has_name(report, "cerberus-recording")) {
+    gboolean last = FALSE;
+    gst_structure_get_boolean(report, "last", &last);
+    const std::string_view what = state;
+    if (what == "started") recording_ = true;
+    if ((what == "ended" && last) || what == "failed") recording_ = false;
+  }
+}
+
 void Camera::on_message(GstMessage* message) {
   switch (GST_MESSAGE_TYPE(message)) {
     case GST_MESSAGE_ERROR: {
@@ -280,8 +300,7 @@ void Camera::on_message(GstMessage* message) {
       }
       break;
     case GST_MESSAGE_ELEMENT:
-      if (listener_.on_message && gst_message_get_structure(message) != nullptr)
-        listener_.on_message(*this, *gst_message_get_structure(message));
+      if (const GstStructure* report = gst_message_get_structure(message)) on_report(report);
       break;
     case GST_MESSAGE_LATENCY:
       gst_bin_recalculate_latency(GST_BIN(pipeline_));
@@ -379,6 +398,8 @@ void Camera::closed() {
   g_clear_pointer(&recorder_, gst_object_unref);
   g_clear_pointer(&pipeline_, gst_object_unref);
   rate_ = 0;
+  head_state_.clear();
+  recording_ = false;
   if (again_ && wanted_) {
     start();
   } else if (wanted_) {
@@ -418,7 +439,9 @@ void Camera::tick() {
       break;
     }
     case State::parking:
-      if (now - since_ > parameters_.parking) end();
+      // The order takes a moment until it shows in the poses.
+      if (now - since_ > parameters_.parking || (parked_ && now - since_ >= std::chrono::milliseconds(800)))
+        end();
       break;
     case State::ending:
       if (now - since_ > parameters_.ending) close();
@@ -466,12 +489,6 @@ bool Camera::follow(guint track) {
   gboolean done = FALSE;
   if (head_ != nullptr && state_ == State::running) g_signal_emit_by_name(head_, "follow", track, &done);
   return done;
-}
-
-bool Camera::keep(const char* file, bool keep) {
-  if (recorder_ == nullptr) return false;
-  g_signal_emit_by_name(recorder_, "keep-recording", file, static_cast<gboolean>(keep));
-  return true;
 }
 
 }  // namespace cerberus::robot

@@ -40,13 +40,10 @@ class Camera {
     Clock::duration closing = std::chrono::seconds(30);  // longer: the watchdog of the service may restart it
   };
 
-  // Called in the main loop's thread when there is a new picture or line.
-  struct Listener {
-    std::function<void(Camera&)> on_picture;
-    std::function<void(Camera&, const GstStructure&)> on_message;  // element messages of the pipeline
-  };
+  // Called in the main loop's thread when there is a new picture.
+  using OnPicture = std::function<void(Camera&)>;
 
-  Camera(const CameraSettings& settings, const PageSettings& page, Listener listener);
+  Camera(const CameraSettings& settings, const PageSettings& page);
   ~Camera();
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
@@ -67,6 +64,11 @@ class Camera {
   // Whether frames come, or none are expected: what feeds the watchdog.
   bool is_sound() const;
 
+  // What the head does (`state` of cerberus-pantilt), and whether an event is being recorded.
+  const std::string& head_state() const { return head_state_; }
+  bool is_recording() const { return recording_; }
+
+  void set_on_picture(OnPicture on_picture) { on_picture_ = std::move(on_picture); }
   // Pictures are only drawn while somebody looks.
   void set_watched(bool watched) { watched_ = watched; }
   // The newest picture, JPEG, with its number; nullptr: there is none. The caller unrefs.
@@ -79,7 +81,6 @@ class Camera {
   bool turn(double pan_speed, double tilt_speed);  // degrees a second, for 500 ms unless it is repeated
   bool order(const char* signal);                  // stop, home, auto
   bool follow(guint track);
-  bool keep(const char* file, bool keep);
 
  private:
   struct Newest;
@@ -97,10 +98,11 @@ class Camera {
   GstElement* element(const char* name) const;
   std::string part_of(GstObject* source) const;
   void on_message(GstMessage* message);
+  void on_report(const GstStructure* report);
 
   CameraSettings settings_;
   PageSettings page_;
-  Listener listener_;
+  OnPicture on_picture_;
   Parameters parameters_;
   Mode mode_ = Mode::privacy;
   State state_ = State::off;
@@ -108,14 +110,15 @@ class Camera {
   Clock::time_point since_{}, last_frame_{}, last_tick_{};
   Parts parts_;
   Backoff camera_backoff_, head_backoff_, recorder_backoff_;
-  std::string fault_;
+  std::string fault_, head_state_;
+  bool recording_ = false;
   GstElement* pipeline_ = nullptr;
   GstElement *head_ = nullptr, *recorder_ = nullptr;
   guint bus_watch_ = 0;
   std::atomic<guint64> frames_ = 0;
   guint64 counted_ = 0;
   double rate_ = 0;
-  std::atomic<bool> watched_ = false, show_ = false, record_ = false;
+  std::atomic<bool> parked_ = false, watched_ = false, show_ = false, record_ = false;
   std::shared_ptr<Newest> newest_;
 };
 

@@ -65,9 +65,18 @@ bool Robot::open(Settings settings, std::string& error) {
     if (camera.recorder && g_mkdir_with_parents(camera.recorder->folder.c_str(), 0750) != 0)
       g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", camera.name.c_str(),
                  camera.recorder->folder.c_str(), g_strerror(errno));
-    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page, Camera::Listener{}));
+    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page));
   }
+#if HAVE_PAGE
+  if (!settings_.page.enabled) return true;
+  page_ = std::make_unique<PageServer>(PageServer::House{settings_, cameras_, [this] { return this->mode(); },
+                                                         [this](Mode mode) { set_mode(mode); }});
+  return page_->open(error);
+#else
+  if (settings_.page.enabled)
+    g_printerr("cerberusd: this build has no page (it needs libsoup 3 and libargon2)\n");
   return true;
+#endif
 }
 
 void Robot::save_mode() {
@@ -115,6 +124,9 @@ void Robot::tick() {
     status += ", " + camera->settings().name + ' ' + robot::name(camera->state());
     if (!camera->fault().empty()) status += " (" + camera->fault() + ')';
   }
+#if HAVE_PAGE
+  if (page_) page_->tick();
+#endif
   if (sound) notify("WATCHDOG=1");
   if (status != status_) {
     status_ = status;
@@ -152,6 +164,9 @@ int Robot::run() {
   g_main_loop_run(loop_);
   g_main_loop_unref(loop_);
   const bool stopped = std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_stopped(); });
+#if HAVE_PAGE
+  page_.reset();
+#endif
   cameras_.clear();
   return stopped ? 0 : 1;
 }

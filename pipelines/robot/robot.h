@@ -9,6 +9,9 @@
 #include <vector>
 
 #include "camera.h"
+#if HAVE_PAGE
+#include "page_server.h"
+#endif
 #include "robot/mode.h"
 #include "robot/settings.h"
 
@@ -34,9 +37,11 @@ class Robot {
   Settings settings_;
   std::unique_ptr<ModeKeeper> mode_;
   std::vector<std::unique_ptr<Camera>> cameras_;
+#if HAVE_PAGE
+  std::unique_ptr<PageServer> page_;
+#endif
   GMainLoop* loop_ = nullptr;
   int shutting_down_ = 0;  // seconds left; 0: not
-  guint64 watchdog_frames_ = 0;
   std::string status_;
 };
 

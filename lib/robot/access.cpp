@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/access.h"
+
+#include <algorithm>
+
+namespace cerberus::robot {
+
+namespace {
+
+constexpr std::array<Route, 12> kRoutes{{
+    {"GET", "/", Role::none},
+    {"GET", "/page.css", Role::none},
+    {"GET", "/page.js", Role::none},
+    {"GET", "/session", Role::none},
+    {"POST", "/login", Role::none},
+    {"POST", "/logout", Role::viewer},
+    {"GET", "/socket", Role::viewer},
+    {"GET", "/events", Role::viewer},
+    {"GET", "/events/*", Role::viewer},
+    {"POST", "/keep", Role::operator_},
+    {"POST", "/delete", Role::owner},
+    {"POST", "/password", Role::owner},
+}};
+
+// Compares without a hint by time at which letter two tokens differ.
+bool same(std::string_view a, std::string_view b) {
+  if (a.size() != b.size()) return false;
+  unsigned different = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) different |= static_cast<unsigned char>(a[k] ^ b[k]);
+  return different == 0;
+}
+
+// "robot:8080", "[::1]:8080" without the port.
+std::string_view without_port(std::string_view host) {
+  if (host.starts_with('[')) return host.substr(0, std::min(host.find(']') + 1, host.size()));
+  return host.substr(0, host.find(':'));
+}
+
+bool is_numeric(std::string_view host) {
+  if (host.starts_with('[')) return host.ends_with(']');
+  return !host.empty() && host.find_first_not_of("0123456789.") == host.npos;
+}
+
+bool same_letters(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+}  // namespace
+
+std::string_view name(Role role) {
+  constexpr std::array<std::string_view, 4> kNames{"none", "viewer", "operator", "owner"};
+  return kNames[static_cast<std::size_t>(role)];
+}
+
+std::optional<Role> role_of(std::string_view text) {
+  for (const Role role : {Role::viewer, Role::operator_, Role::owner})
+    if (text == name(role)) return role;
+  return std::nullopt;
+}
+
+Role needed(const PageCommand& command, Mode present) {
+  switch (command.kind) {
+    case PageCommand::Kind::ack:
+    case PageCommand::Kind::seen:
+    case PageCommand::Kind::camera:
+      return Role::viewer;
+    case PageCommand::Kind::stop:
+    case PageCommand::Kind::home:
+    case PageCommand::Kind::automatic:
+    case PageCommand::Kind::turn:
+    case PageCommand::Kind::follow:
+      return Role::operator_;
+    case PageCommand::Kind::mode:
+      break;
+  }
+  return command.mode == Mode::privacy || present == Mode::privacy ? Role::owner : Role::operator_;
+}
+
+std::span<const Route> routes() {
+  return kRoutes;
+}
+
+const Route* find_route(std::string_view method, std::string_view path) {
+  for (const Route& route : kRoutes) {
+    const bool all = route.path.ends_with('*');
+    const std::string_view stem = route.path.substr(0, route.path.size() - (all ? 1 : 0));
+    if (method == route.method && (all ? path.starts_with(stem) : path == stem)) return &route;
+  }
+  return nullptr;
+}
+
+bool is_own_host(std::string_view host, std::string_view machine, std::span<const std::string> origins) {
+  const std::string_view bare = without_port(host);
+  if (is_numeric(bare) || same_letters(bare, "localhost")) return true;
+  if (!machine.empty()) {
+    if (same_letters(bare, machine)) return true;
+    if (bare.size() == machine.size() + 6 && same_letters(bare.substr(0, machine.size()), machine) &&
+        same_letters(bare.substr(machine.size()), ".local"))
+      return true;
+  }
+  return std::ranges::any_of(origins, [&](const std::string& origin) {
+    const std::size_t scheme = origin.find("://");
+    return scheme != origin.npos && same_letters(host, std::string_view(origin).substr(scheme + 3));
+  });
+}
+
+bool is_own_origin(std::string_view origin, std::string_view host, std::span<const std::string> origins) {
+  if (origin.starts_with("http://") && !host.empty() && same_letters(origin.substr(7), host)) return true;
+  return std::ranges::find(origins, origin) != origins.end();
+}
+
+Session& Sessions::begin(std::string token, Role role, std::string address, AccessTime now) {
+  if (sessions_.size() >= parameters_.most)
+    sessions_.erase(std::ranges::min_element(sessions_, {}, &Session::used));
+  return sessions_.emplace_back(Session{std::move(token), role, false, std::move(address), now, now});
+}
+
+Session* Sessions::find(std::string_view token, AccessTime now) {
+  std::erase_if(sessions_, [&](const Session& session) {
+    return now - session.used > parameters_.idle || now - session.begun > parameters_.longest;
+  });
+  for (Session& session : sessions_) {
+    if (!same(session.token, token)) continue;
+    session.used = now;
+    return &session;
+  }
+  return nullptr;
+}
+
+void Sessions::end(std::string_view token) {
+  std::erase_if(sessions_, [&](const Session& session) { return same(session.token, token); });
+}
+
+void Sessions::end_all(Role role, std::string_view except) {
+  std::erase_if(sessions_,
+                [&](const Session& session) { return session.role == role && !same(session.token, except); });
+}
+
+void RateLimit::fail(Entry& entry, int free, AccessTime now) const {
+  entry.last = now;
+  if (++entry.failures < free) return;
+  const int doublings = std::min(entry.failures - free, 20);
+  entry.until = now + std::min(parameters_.first * (1 << doublings), parameters_.longest);
+}
+
+std::chrono::seconds RateLimit::wait(std::string_view address, AccessTime now) const {
+  AccessTime until = all_.until;
+  for (const Entry& entry : entries_)
+    if (entry.address == address) until = std::max(until, entry.until);
+  return until <= now ? std::chrono::seconds(0) : std::chrono::ceil<std::chrono::seconds>(until - now);
+}
+
+void RateLimit::failed(std::string_view address, AccessTime now) {
+  // An hour without a wrong password is forgotten.
+  if (now - all_.last > std::chrono::hours(1)) all_ = {};
+  std::erase_if(entries_, [&](const Entry& entry) { return now - entry.last > std::chrono::hours(1); });
+  fail(all_, parameters_.free_of_all, now);
+  auto found = std::ranges::find(entries_, address, &Entry::address);
+  if (found == entries_.end()) {
+    if (entries_.size() >= parameters_.most)
+      entries_.erase(std::ranges::min_element(entries_, {}, &Entry::last));
+    found = entries_.insert(entries_.end(), Entry{std::string(address), 0, {}, {}});
+  }
+  fail(*found, parameters_.free, now);
+}
+
+void RateLimit::succeeded(std::string_view address) {
+  std::erase_if(entries_, [&](const Entry& entry) { return entry.address == address; });
+}
+
+bool Steering::take(std::string_view token, AccessTime now) {
+  if (token_ != token && now < until_) return false;
+  token_ = token;
+  until_ = now + kHold;
+  return true;
+}
+
+}  // namespace cerberus::robot

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Who may do what on the page: roles, routes, sessions, and the limit on wrong passwords. Time is a parameter.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "robot/page_commands.h"
+
+namespace cerberus::robot {
+
+// Each may do what those before it may.
+enum class Role : std::uint8_t { none, viewer, operator_, owner };
+
+std::string_view name(Role role);
+std::optional<Role> role_of(std::string_view name);  // viewer, operator or owner
+
+// The role that a message of the page's WebSocket needs while this mode is in force: who may not begin privacy may not
+// end it either.
+Role needed(const PageCommand& command, Mode present);
+
+// What the page's server answers; every other address is unknown.
+struct Route {
+  std::string_view method, path;  // a path that ends with * stands for all that begin so
+  Role role;                      // that is needed
+};
+std::span<const Route> routes();
+const Route* find_route(std::string_view method, std::string_view path);
+
+// Whether a request's Host names this machine: a numeric address, localhost, the machine's own name (also with .local), or
+// the host of a configured origin. A page of another name that resolves to this machine is refused (DNS rebinding).
+bool is_own_host(std::string_view host, std::string_view machine, std::span<const std::string> origins);
+// Whether a request that changes something, or a WebSocket, comes from the page itself or from a configured origin. A
+// missing origin is refused: browsers send one.
+bool is_own_origin(std::string_view origin, std::string_view host, std::span<const std::string> origins);
+
+using AccessTime = std::chrono::steady_clock::time_point;
+
+struct Session {
+  std::string token;
+  Role role = Role::none;
+  bool must_set_password = false;  // logged in with the one-time password: may do nothing else
+  std::string address;
+  AccessTime begun{}, used{};
+};
+
+class Sessions {
+ public:
+  struct Parameters {
+    std::chrono::hours idle{12}, longest{24 * 7};  // convention: a working day, a week
+    std::size_t most = 64;                         // the one that was used longest ago ends
+  };
+
+  // `token` is random, at least 128 bits.
+  Session& begin(std::string token, Role role, std::string address, AccessTime now);
+  // The session of a token, which is then used; nullptr: there is none.
+  Session* find(std::string_view token, AccessTime now);
+  void end(std::string_view token);
+  // Ends all sessions of a role, after its password changed.
+  void end_all(Role role, std::string_view except);
+  std::size_t count() const { return sessions_.size(); }
+
+ private:
+  Parameters parameters_;
+  std::vector<Session> sessions_;
+};
+
+// After some wrong passwords an address waits before the next try, twice as long each time; so does everybody after many.
+class RateLimit {
+ public:
+  struct Parameters {
+    int free = 5, free_of_all = 50;
+    std::chrono::seconds first{1}, longest{60};
+    std::size_t most = 256;  // addresses that are remembered
+  };
+
+  // How long this address must wait; zero: it may try.
+  std::chrono::seconds wait(std::string_view address, AccessTime now) const;
+  void failed(std::string_view address, AccessTime now);
+  void succeeded(std::string_view address);
+
+ private:
+  struct Entry {
+    std::string address;
+    int failures = 0;
+    AccessTime last{}, until{};
+  };
+  void fail(Entry& entry, int free, AccessTime now) const;
+
+  Parameters parameters_;
+  std::vector<Entry> entries_;
+  Entry all_;
+};
+
+// One controller at a time: the head belongs to the session that moved it last, until that is silent for `hold`.
+class Steering {
+ public:
+  static constexpr std::chrono::seconds kHold{2};
+
+  // Takes the head, or keeps it; false: another session has it.
+  bool take(std::string_view token, AccessTime now);
+  bool is_held_by(std::string_view token, AccessTime now) const { return token_ == token && now < until_; }
+  void release() { until_ = {}; }
+
+ private:
+  std::string token_;
+  AccessTime until_{};
+};
+
+}  // namespace cerberus::robot

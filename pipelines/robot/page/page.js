@@ -1,0 +1,457 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The page of cerberusd. Messages: docs/manual/robot.md.
+'use strict';
+
+const at = (id) => document.getElementById(id);
+const kRepeat = 150;  // ms between repetitions of a move, which ends 500 ms after the last one
+let socket = null, hello = null, state = null, facts = null, cameraName = '';
+let gone = false;
+
+// ---- log-in
+
+async function post(path, fields) {
+  const response = await fetch(path, {method: 'POST', body: new URLSearchParams(fields)});
+  return {ok: response.ok, text: (await response.text()).trim()};
+}
+
+async function enter() {
+  const session = await (await fetch('/session')).json();
+  for (const name of document.querySelectorAll('.robot-name')) name.textContent = session.robot;
+  document.title = session.robot;
+  const inside = session.role && !session['must-set-password'];
+  at('entrance').hidden = inside;
+  at('room').hidden = !inside;
+  at('login').hidden = Boolean(session.role);
+  at('first-hint').hidden = !session.first;
+  at('new-password').hidden = !session['must-set-password'];
+  if (inside) connect();
+  else (session.role ? at('new') : at('password')).focus();
+}
+
+at('login').addEventListener('submit', async (event) => {
+  event.preventDefault();
+  const done = await post('/login', {user: at('user').value, password: at('password').value});
+  at('password').value = '';
+  at('entrance-word').textContent = done.ok ? '' : done.text;
+  if (done.ok) enter();
+});
+
+at('new-password').addEventListener('submit', async (event) => {
+  event.preventDefault();
+  if (at('new').value !== at('again').value) {
+    at('entrance-word').textContent = 'the two passwords differ';
+    return;
+  }
+  const done = await post('/password', {user: 'owner', password: at('new').value});
+  at('entrance-word').textContent = done.ok ? '' : done.text;
+  if (done.ok) enter();
+});
+
+at('logout').addEventListener('click', async () => {
+  gone = true;
+  await post('/logout', {});
+  location.reload();
+});
+
+// ---- the socket
+
+function send(words) {
+  if (socket && socket.readyState === WebSocket.OPEN) socket.send(words);
+}
+
+function connect() {
+  socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`);
+  socket.binaryType = 'arraybuffer';
+  socket.onmessage = (event) => {
+    if (typeof event.data === 'string') onReport(JSON.parse(event.data));
+    else onPicture(event.data);
+  };
+  socket.onclose = async () => {
+    socket = null;
+    release();
+    if (gone) return;
+    veil('The connection is lost. It is tried again.');
+    setTimeout(async () => {
+      try {
+        const session = await (await fetch('/session')).json();
+        if (session.role) connect();
+        else location.reload();
+      } catch {
+        socket || setTimeout(() => socket || connect(), 2000);
+      }
+    }, 1000);
+  };
+}
+
+let wordTimer = 0;
+function say(word) {
+  at('word').textContent = word;
+  clearTimeout(wordTimer);
+  wordTimer = setTimeout(() => { at('word').textContent = ''; }, 4000);
+}
+
+function veil(text) {
+  at('veil').textContent = text;
+}
+
+function may(role) {
+  const roles = ['viewer', 'operator', 'owner'];
+  return hello && roles.indexOf(hello.role) >= roles.indexOf(role);
+}
+
+function onReport(report) {
+  if (report.refused) say(report.refused);
+  if (report.hello) {
+    hello = report.hello;
+    const wanted = cameraName;
+    at('camera').replaceChildren(...hello.cameras.map((camera) => new Option(camera.name)));
+    at('camera').hidden = hello.cameras.length < 2;
+    cameraName = hello.cameras[0].name;
+    if (hello.cameras.some((camera) => camera.name === wanted)) choose(wanted);
+    else choose(cameraName);
+  }
+  if (report.number) {
+    send(`seen ${report.number}`);
+    const before = state && state.mode;
+    const wasRecording = state && isRecording();
+    state = report;
+    showState();
+    if (before !== state.mode || (wasRecording && !isRecording())) loadEvents();
+  }
+}
+
+function choose(name) {
+  cameraName = name;
+  at('camera').value = name;
+  send(`camera ${name}`);
+  enableButtons();
+  loadEvents();
+}
+at('camera').addEventListener('change', () => choose(at('camera').value));
+
+const mine = () => state && state.cameras.find((camera) => camera.name === cameraName);
+const about = () => hello && hello.cameras.find((camera) => camera.name === cameraName);
+const isRecording = () => state.cameras.some((camera) => camera.recording);
+
+function enableButtons() {
+  const steer = may('operator') && about() && about().head;
+  for (const button of document.querySelectorAll('#steering button, #speed')) button.disabled = !steer;
+  for (const button of document.querySelectorAll('[data-mode]')) {
+    const needsOwner = button.dataset.mode === 'privacy' || (state && state.mode === 'privacy');
+    button.disabled = !may(needsOwner ? 'owner' : 'operator');
+    button.setAttribute('aria-pressed', String(Boolean(state) && state.mode === button.dataset.mode));
+  }
+}
+
+function showState() {
+  enableButtons();
+  at('mode-now').textContent = state.mode;
+  const on = isRecording();
+  at('recording').textContent = on ? '\u25cf REC' : 'not recording';
+  at('recording').className = on ? 'on' : '';
+  const camera = mine();
+  if (!camera) return;
+  if (state.mode === 'privacy') {
+    veil('Privacy: nothing is shown or recorded.');
+    facts = null;
+    drawRadar();
+  } else if (camera.state !== 'running') {
+    veil(`The camera is ${camera.state}. ${camera.fault}`);
+  }
+  const rows = [['Camera', `${camera.state}, ${camera.rate} frames/s`]];
+  if (camera.fault) rows.push(['Fault', camera.fault]);
+  if (about().head) rows.push(['Head', camera.head || '\u2013']);
+  if (facts && facts.pose) rows.push(['Looks at', `${facts.pose.pan.toFixed(1)}\u00b0, ${facts.pose.tilt.toFixed(1)}\u00b0`]);
+  if (facts && facts.fusion) rows.push(['Rule', `${facts.fusion.name} (${facts.fusion.action})`]);
+  if (facts && facts.objects) rows.push(['Objects', String(facts.objects.length)]);
+  if (camera.free !== undefined) rows.push(['Free disk', `${(camera.free / 1024).toFixed(1)} GiB`]);
+  rows.push(['Processor', state.cpu === null ? '\u2013' : `${state.cpu} %`], ['Viewers', String(state.viewers)],
+    ['You are', hello ? hello.role : '']);
+  at('status').replaceChildren(...rows.flatMap(([name, value]) => {
+    const term = document.createElement('dt'), detail = document.createElement('dd');
+    term.textContent = name;
+    detail.textContent = value;
+    return [term, detail];
+  }));
+}
+
+// ---- picture: number (8 bytes), length of the facts (4 bytes), facts, JPEG
+
+const picture = at('picture'), pen = picture.getContext('2d');
+
+async function onPicture(data) {
+  const view = new DataView(data);
+  const number = view.getBigUint64(0), length = view.getUint32(8);
+  try {
+    const image = await createImageBitmap(new Blob([new Uint8Array(data, 12 + length)], {type: 'image/jpeg'}));
+    if (picture.width !== image.width || picture.height !== image.height) {
+      picture.width = image.width;
+      picture.height = image.height;
+    }
+    pen.drawImage(image, 0, 0);
+    image.close();
+    if (!state || state.mode !== 'privacy') veil('');
+    facts = length ? JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, length))) : null;
+    drawRadar();
+  } finally {
+    send(`ack ${number}`);
+  }
+}
+
+// ---- steering: a move is repeated while it lasts
+
+let move = null, repeater = 0;
+
+function turn(pan, tilt) {
+  const limit = (share) => Math.max(-1, Math.min(1, share)).toFixed(3);
+  move = `turn ${limit(pan)} ${limit(tilt)}`;
+  if (!repeater) {
+    send(move);
+    repeater = setInterval(() => move && send(move), kRepeat);
+  }
+}
+
+function release() {
+  if (!repeater) return;
+  clearInterval(repeater);
+  repeater = 0;
+  move = null;
+  send('turn 0 0');
+}
+
+const speed = () => at('speed').value / 100;
+const steers = () => may('operator') && about() && about().head;
+
+for (const button of document.querySelectorAll('#pad button')) {
+  const pan = Number(button.dataset.pan), tilt = Number(button.dataset.tilt);
+  button.addEventListener('pointerdown', (event) => {
+    button.setPointerCapture(event.pointerId);
+    turn(pan * speed(), tilt * speed());
+  });
+  for (const end of ['pointerup', 'pointercancel', 'lostpointercapture']) button.addEventListener(end, release);
+  button.addEventListener('contextmenu', (event) => event.preventDefault());
+  button.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter' && !event.repeat) turn(pan * speed(), tilt * speed());
+  });
+  button.addEventListener('keyup', release);
+}
+
+function stop() {
+  clearInterval(repeater);
+  repeater = 0;
+  move = null;
+  send('stop');
+}
+at('stop').addEventListener('pointerdown', () => { if (!at('stop').disabled) stop(); });
+at('stop').addEventListener('click', stop);
+at('auto').addEventListener('click', () => send('auto'));
+at('home').addEventListener('click', () => send('home'));
+for (const button of document.querySelectorAll('[data-mode]'))
+  button.addEventListener('click', () => send(`mode ${button.dataset.mode}`));
+
+const kArrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
+const pressed = new Set();
+
+function turnByKeys() {
+  let pan = 0, tilt = 0;
+  for (const key of pressed) {
+    pan += kArrows[key][0];
+    tilt += kArrows[key][1];
+  }
+  if (pressed.size) turn(pan * speed(), tilt * speed());
+  else release();
+}
+
+document.addEventListener('keydown', (event) => {
+  if (at('room').hidden || at('player').open || event.ctrlKey || event.altKey || event.metaKey) return;
+  const inField = event.target.closest('input, select, #strip');
+  if (event.key === 'Escape' || (event.key === ' ' && !event.target.closest('button, input, select, a'))) {
+    event.preventDefault();
+    if (steers()) stop();
+  } else if (kArrows[event.key] && !inField && steers()) {
+    event.preventDefault();
+    pressed.add(event.key);
+    turnByKeys();
+  } else if (event.key === 'Home' && !inField && steers()) {
+    send('home');
+  } else if (event.key === 'a' && !inField && steers()) {
+    send('auto');
+  }
+});
+document.addEventListener('keyup', (event) => {
+  if (pressed.delete(event.key)) turnByKeys();
+});
+function letGo() {
+  pressed.clear();
+  drag = null;
+  release();
+}
+window.addEventListener('blur', letGo);
+document.addEventListener('visibilitychange', () => document.hidden && letGo());
+
+// A drag turns as far from its start as it is, a tap follows the person under it.
+let drag = null;
+const kTap = 8;  // pixels
+
+picture.addEventListener('pointerdown', (event) => {
+  if (!steers()) return;
+  picture.setPointerCapture(event.pointerId);
+  drag = {x: event.clientX, y: event.clientY, far: false};
+});
+picture.addEventListener('pointermove', (event) => {
+  if (!drag) return;
+  const dx = event.clientX - drag.x, dy = event.clientY - drag.y;
+  drag.far = drag.far || Math.hypot(dx, dy) > kTap;
+  const half = picture.clientWidth / 3;
+  if (drag.far) turn(dx / half * speed(), -dy / half * speed());
+});
+picture.addEventListener('pointerup', (event) => {
+  if (drag && !drag.far) follow(event);
+  drag = null;
+  release();
+});
+picture.addEventListener('pointercancel', letGo);
+
+function follow(event) {
+  if (!facts || !facts.objects) return;
+  const box = picture.getBoundingClientRect();
+  const x = (event.clientX - box.left) / box.width * facts.width, y = (event.clientY - box.top) / box.height * facts.height;
+  const hit = facts.objects.filter((one) => one.id !== null && x >= one.x && y >= one.y && x < one.x + one.w && y < one.y + one.h)
+    .sort((a, b) => a.w * a.h - b.w * b.h)[0];
+  if (hit) {
+    send(`follow ${hit.id}`);
+    say(`follows number ${hit.id}`);
+  }
+}
+
+// ---- radar: the robot looks up; sensors, the head's view, people
+
+function drawRadar() {
+  const canvas = at('radar'), draw = canvas.getContext('2d'), middle = canvas.width / 2, radius = middle - 24;
+  const style = getComputedStyle(document.body);
+  const colour = (name) => style.getPropertyValue(name).trim();
+  const angle = (degrees) => (degrees - 90) * Math.PI / 180;
+  const sector = (bearing, width, size, fill) => {
+    draw.beginPath();
+    draw.moveTo(middle, middle);
+    draw.arc(middle, middle, size, angle(bearing - width / 2), angle(bearing + width / 2));
+    draw.closePath();
+    draw.fillStyle = fill;
+    draw.fill();
+    draw.stroke();
+  };
+  const place = (bearing, share) => [middle + radius * share * Math.cos(angle(bearing)), middle + radius * share * Math.sin(angle(bearing))];
+  draw.clearRect(0, 0, canvas.width, canvas.height);
+  draw.strokeStyle = colour('--line');
+  draw.lineWidth = 1;
+  const words = [];
+  const is = about() || {};
+  const sensors = is.bearings ? is.bearings.split(',').map(Number) : [];
+  const pir = facts && facts.pir || [];
+  sensors.forEach((bearing, k) => {
+    sector(bearing, is['sensor-fov'], radius, pir[k] === 1 ? 'rgb(216 38 44 / .35)' : 'rgb(108 140 200 / .12)');
+    if (pir[k] === 1) words.push(`sensor ${k + 1} detects`);
+  });
+  draw.beginPath();
+  draw.arc(middle, middle, radius, 0, 2 * Math.PI);
+  draw.stroke();
+  const pan = facts && facts.pose ? facts.pose.pan : 0;
+  sector(pan, is.fov || 60, radius * .92, 'rgb(80 160 90 / .35)');
+  if (facts && facts.pose) words.push(`the head looks to ${pan.toFixed(0)} degrees`);
+  sensors.forEach((bearing, k) => {
+    const [x, y] = place(bearing, 1.08);
+    draw.beginPath();
+    draw.arc(x, y, 8, 0, 2 * Math.PI);
+    draw.fillStyle = pir[k] === 1 ? '#e0262c' : pir[k] === 0 ? '#3b6fd4' : '#888';
+    draw.fill();
+  });
+  draw.font = 'bold 15px system-ui, sans-serif';
+  draw.textAlign = 'center';
+  for (const one of facts && facts.objects || []) {
+    // Without a known lens the place in the picture gives the bearing.
+    const aside = one.bearing !== null ? one.bearing : ((one.x + one.w / 2) / facts.width - .5) * (is.fov || 60);
+    const [x, y] = place(pan + aside, one.distance !== null ? Math.min(1, one.distance / 12) : .6);
+    draw.fillStyle = colour('--text');
+    draw.beginPath();
+    draw.arc(x, y, 5, 0, 2 * Math.PI);
+    draw.fill();
+    if (one.id !== null) draw.fillText(one.id, x, y - 9);
+  }
+  words.push(`${facts && facts.objects ? facts.objects.length : 'no'} objects`);
+  const text = words.join(', ');
+  if (canvas.getAttribute('aria-label') !== text) canvas.setAttribute('aria-label', text);
+}
+
+// ---- events
+
+async function loadEvents() {
+  const response = await fetch(`/events?camera=${encodeURIComponent(cameraName)}`);
+  const list = response.ok ? await response.json() : [];
+  at('strip').replaceChildren(...list.map(eventItem));
+  if (!list.length) {
+    const item = document.createElement('li');
+    item.textContent = response.ok ? 'No event was recorded yet.' : await response.text();
+    at('strip').append(item);
+  }
+}
+
+function button(text, label, on) {
+  const made = document.createElement('button');
+  made.type = 'button';
+  made.textContent = text;
+  made.setAttribute('aria-label', label);
+  made.addEventListener('click', on);
+  return made;
+}
+
+function eventItem(event) {
+  const item = document.createElement('li');
+  const when = new Date(event.begin).toLocaleString(), address = `/events/${event.camera}/${event.id}`;
+  if (event.picture && !event.open) {
+    const image = document.createElement('img');
+    image.loading = 'lazy';
+    image.src = `${address}/picture`;
+    image.alt = `${event.reason}, ${when}`;
+    item.append(image);
+  } else {
+    const blank = document.createElement('span');
+    blank.className = 'blank';
+    item.append(blank);
+  }
+  const length = Math.max(0, (event.end - event.begin) / 1000).toFixed(0);
+  const text = document.createElement('div');
+  text.textContent = `${when}, ${event.open ? 'being recorded' : `${length} s`}, ${event.reason}${event.keep ? ', kept' : ''}`;
+  const buttons = document.createElement('div');
+  buttons.className = 'buttons';
+  if (!event.open) {
+    buttons.append(button('Play', `Play ${when}`, () => play(address)));
+    if (may('operator'))
+      buttons.append(button(event.keep ? 'Free' : 'Keep', `${event.keep ? 'Do not keep' : 'Keep'} ${when}`, () =>
+        change('/keep', event, {keep: event.keep ? '0' : '1'})));
+    if (may('owner'))
+      buttons.append(button('Delete', `Delete ${when}`, () =>
+        confirm(`Delete the recording of ${when}?`) && change('/delete', event, {})));
+  }
+  item.append(text, buttons);
+  return item;
+}
+
+async function change(path, event, more) {
+  const done = await post(path, {camera: event.camera, id: event.id, ...more});
+  if (!done.ok) say(done.text);
+  loadEvents();
+}
+
+function play(address) {
+  at('video').src = `${address}/video`;
+  at('download').href = `${address}/video`;
+  at('player').showModal();
+}
+at('shut').addEventListener('click', () => at('player').close());
+at('player').addEventListener('close', () => {
+  at('video').removeAttribute('src');
+  at('video').load();
+});
+at('reload').addEventListener('click', loadEvents);
+
+enter();

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "page_server.h"
+
+#include <gio/gio.h>
+
+#include <algorithm>
+#include <cerrno>
+
+#include "page_request.h"
+#include "text/file.h"
+#include "text/json_line.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+constexpr const char* kCookie = "cerberus";
+constexpr goffset kLongestBody = 2048;        // bytes of a form
+constexpr std::size_t kMostPasswords = 4096;  // bytes of the file
+
+// Nothing but what this page brings itself is loaded or framed.
+constexpr const char* kHeaders[][2] = {
+    {"Content-Security-Policy",
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; media-src 'self'; "
+     "connect-src "
+     "'self'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'"},
+    {"X-Frame-Options", "DENY"},
+    {"X-Content-Type-Options", "nosniff"},
+    {"Referrer-Policy", "no-referrer"},
+    {"Cross-Origin-Resource-Policy", "same-origin"},
+    {"Cross-Origin-Opener-Policy", "same-origin"},
+    {"Cache-Control", "no-store"},
+};
+
+std::string header(SoupServerMessage* message, const char* name) {
+  const char* value = soup_message_headers_get_one(soup_server_message_get_request_headers(message), name);
+  return value ? value : "";
+}
+
+GInetAddress* peer(SoupServerMessage* message) {
+  GSocketAddress* address = soup_server_message_get_remote_address(message);
+  return G_IS_INET_SOCKET_ADDRESS(address) ? g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address))
+                                           : nullptr;
+}
+
+std::string peer_name(SoupServerMessage* message) {
+  GInetAddress* address = peer(message);
+  g_autofree gchar* text = address ? g_inet_address_to_string(address) : nullptr;
+  return text ? text : "?";
+}
+
+bool is_local(SoupServerMessage* message) {
+  GInetAddress* address = peer(message);
+  return address != nullptr && g_inet_address_get_is_loopback(address);
+}
+
+std::string token_of(SoupServerMessage* message) {
+  const std::string cookies = header(message, "Cookie"), key = std::string(kCookie) + '=';
+  for (std::size_t at = 0; at < cookies.size();) {
+    const std::size_t end = std::min(cookies.find(';', at), cookies.size());
+    if (cookies.compare(at, key.size(), key) == 0)
+      return cookies.substr(at + key.size(), end - at - key.size());
+    at = cookies.find_first_not_of(' ', end + 1);
+  }
+  return {};
+}
+
+void set_cookie(SoupServerMessage* message, const std::string& token, const char* age) {
+  const std::string cookie =
+      std::string(kCookie) + '=' + token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + age;
+  soup_message_headers_append(soup_server_message_get_response_headers(message), "Set-Cookie",
+                              cookie.c_str());
+}
+
+AccessTime now() {
+  return std::chrono::steady_clock::now();
+}
+
+}  // namespace
+
+PageServer::PageServer(House house) : house_(std::move(house)) {}
+
+PageServer::~PageServer() {
+  for (const auto& camera : house_.cameras) camera->set_on_picture({});
+  for (const auto& viewer : viewers_) g_signal_handlers_disconnect_by_data(viewer->connection(), this);
+  viewers_.clear();
+  if (server_ == nullptr) return;
+  soup_server_disconnect(server_);
+  g_object_unref(server_);
+}
+
+bool PageServer::open(std::string& error) {
+  const text::File file = text::read_file(path_of_passwords(), kMostPasswords);
+  const bool is_first = file.fault == text::File::Fault::failed && file.error == ENOENT;
+  if (!is_first && (file.fault != text::File::Fault::none || !passwords_.restore(file.text))) {
+    error = path_of_passwords() + " cannot be read; without this file a new password is asked for";
+    return false;
+  }
+  server_ = soup_server_new("server-header", "", nullptr);
+  const auto early = [](SoupServer*, SoupServerMessage* message, const char* path, GHashTable*,
+                        gpointer page) { static_cast<PageServer*>(page)->authorize(message, path); };
+  soup_server_add_early_handler(server_, nullptr, early, this, nullptr);
+  soup_server_add_handler(
+      server_, nullptr,
+      [](SoupServer*, SoupServerMessage* message, const char* path, GHashTable* query, gpointer data) {
+        auto& page = *static_cast<PageServer*>(data);
+        g_autoptr(GHashTable) form = nullptr;
+        if (std::string_view(soup_server_message_get_method(message)) == "POST") {
+          SoupMessageBody* body = soup_server_message_get_request_body(message);
+          g_autoptr(GBytes) bytes = soup_message_body_flatten(body);
+          gsize size = 0;
+          const auto* letters = static_cast<const char*>(g_bytes_get_data(bytes, &size));
+          form = soup_form_decode(std::string(letters ? letters : "", size).c_str());
+          query = form;
+        }
+        Request request{message, path, query, page.session_of(message), peer_name(message)};
+        page.answer(request);
+      },
+      this, nullptr);
+  soup_server_add_early_handler(server_, "/socket", early, this, nullptr);
+  soup_server_add_websocket_handler(
+      server_, "/socket", nullptr, nullptr,
+      [](SoupServer*, SoupServerMessage* message, const char*, SoupWebsocketConnection* connection,
+         gpointer page) { static_cast<PageServer*>(page)->open_socket(message, connection); },
+      this, nullptr);
+  const PageSettings& page = house_.settings.page;
+  g_autoptr(GSocketAddress) address =
+      g_inet_socket_address_new_from_string(page.listen.c_str(), static_cast<guint>(page.port));
+  if (address == nullptr) {
+    error = "\"listen\" of [page] is a numeric address: 127.0.0.1, or 0.0.0.0 for every network";
+    return false;
+  }
+  g_autoptr(GError) fault = nullptr;
+  if (!soup_server_listen(server_, address, static_cast<SoupServerListenOptions>(0), &fault)) {
+    error =
+        "the page cannot listen at " + page.listen + ':' + std::to_string(page.port) + ": " + fault->message;
+    return false;
+  }
+  g_printerr("cerberusd: the page is at http://%s:%d\n", page.listen.c_str(), page.port);
+  if (!g_inet_address_get_is_loopback(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address))))
+    g_printerr(
+        "cerberusd: the page is open to the network, and without TLS passwords travel in plain text\n");
+  if (!passwords_.has(Role::owner)) {
+    // Only where the program was started; a log keeps it, but it counts until a password is set, on this machine alone.
+    g_print("One-time password of the owner, for a browser on this machine: %s\n",
+            passwords_.make_one_time().c_str());
+  }
+  for (const auto& camera : house_.cameras) {
+    camera->set_on_picture([this](Camera& from) {
+      for (const auto& viewer : viewers_)
+        if (viewer->camera() == &from) viewer->send_picture();
+    });
+  }
+  return true;
+}
+
+Session* PageServer::session_of(SoupServerMessage* message) {
+  return sessions_.find(token_of(message), now());
+}
+
+// Before the body is read: a status that is set here ends the request, of a WebSocket too.
+void PageServer::authorize(SoupServerMessage* message, std::string_view path) {
+  if (soup_server_message_get_status(message) != 0) return;
+  SoupMessageHeaders* answer = soup_server_message_get_response_headers(message);
+  for (const auto& [name, value] : kHeaders) soup_message_headers_replace(answer, name, value);
+  SoupMessageBody* body = soup_server_message_get_request_body(message);
+  const auto refuse = [&](guint status, const char* why) {
+    soup_message_body_set_accumulate(body, FALSE);
+    soup_server_message_set_status(message, status, nullptr);
+    soup_server_message_set_response(message, "text/plain; charset=utf-8", SOUP_MEMORY_STATIC, why,
+                                     strlen(why));
+  };
+  const std::string_view method = soup_server_message_get_method(message);
+  const std::string host = header(message, "Host"), origin = header(message, "Origin");
+  const std::vector<std::string>& origins = house_.settings.page.origins;
+  if (!is_own_host(host, g_get_host_name(), origins)) return refuse(SOUP_STATUS_FORBIDDEN, "unknown host\n");
+  const Route* route = find_route(method, path);
+  if (route == nullptr) return refuse(SOUP_STATUS_NOT_FOUND, "there is no such page\n");
+  const bool changes = method == "POST" || path == "/socket";
+  if (changes && !is_own_origin(origin, host, origins))
+    return refuse(SOUP_STATUS_FORBIDDEN, "this does not come from the page\n");
+  SoupMessageHeaders* asked = soup_server_message_get_request_headers(message);
+  if (soup_message_headers_get_encoding(asked) == SOUP_ENCODING_CHUNKED ||
+      soup_message_headers_get_content_length(asked) > kLongestBody)
+    return refuse(SOUP_STATUS_REQUEST_ENTITY_TOO_LARGE, "too long\n");
+  if (route->role == Role::none) return;
+  const Session* session = session_of(message);
+  if (session == nullptr) return refuse(SOUP_STATUS_UNAUTHORIZED, "log in first\n");
+  const bool allowed_first = path == "/password" || path == "/logout";
+  if (session->role < route->role || (session->must_set_password && !allowed_first))
+    return refuse(SOUP_STATUS_FORBIDDEN, "this role may not do that\n");
+}
+
+void PageServer::answer(Request& request) {
+  if (soup_server_message_get_status(request.message) != 0) return;  // refused before
+  const std::string_view path = request.path;
+  if (path == "/session") return answer_session(request);
+  if (path == "/login") return log_in(request);
+  if (path == "/logout") return log_out(request);
+  if (path == "/password") return set_password(request);
+  if (path == "/events") return answer_events(request);
+  if (path.starts_with("/events/")) return answer_recording(request);
+  if (path == "/keep" || path == "/delete") return change_recording(request);
+  if (path == "/socket") return request.refuse(SOUP_STATUS_BAD_REQUEST, "this is for WebSockets");
+  answer_page(request);
+}
+
+void PageServer::answer_page(Request& request) {
+  const std::string name = request.path == "/" ? "/index.html" : std::string(request.path);
+  const char* type = name.ends_with(".css")  ? "text/css; charset=utf-8"
+                     : name.ends_with(".js") ? "text/javascript; charset=utf-8"
+                                             : "text/html; charset=utf-8";
+  g_autoptr(GBytes) bytes =
+      g_resources_lookup_data(("/cerberus/page" + name).c_str(), G_RESOURCE_LOOKUP_FLAGS_NONE, nullptr);
+  if (bytes == nullptr) return request.refuse(SOUP_STATUS_NOT_FOUND, "there is no such page");
+  gsize size = 0;
+  const auto* text = static_cast<const char*>(g_bytes_get_data(bytes, &size));
+  request.respond(SOUP_STATUS_OK, type, std::string(text, size));
+}
+
+void PageServer::answer_session(Request& request) {
+  text::JsonLine line;
+  line.open('{').key("robot").text(house_.settings.name).key("role");
+  if (request.session != nullptr)
+    line.string(name(request.session->role));
+  else
+    line.null();
+  line.key("first").boolean(!passwords_.has(Role::owner) && is_local(request.message));
+  line.key("must-set-password").boolean(request.session != nullptr && request.session->must_set_password);
+  request.respond(SOUP_STATUS_OK, "application/json", std::string(line.close('}').finish()));
+}
+
+void PageServer::log_in(Request& request) {
+  const std::chrono::seconds wait = limit_.wait(request.address, now());
+  if (wait.count() > 0) {
+    soup_message_headers_replace(soup_server_message_get_response_headers(request.message), "Retry-After",
+                                 std::to_string(wait.count()).c_str());
+    request.refuse(429, "too many wrong passwords: wait " + std::to_string(wait.count()) + " s");
+    return;
+  }
+  const Role role = role_of(request.value("user")).value_or(Role::none);
+  const std::string password = request.value("password");
+  const bool one_time = passwords_.is_one_time(role, password) && is_local(request.message);
+  if (!one_time && !passwords_.verify(role, password)) {
+    limit_.failed(request.address, now());
+    log_access(request.who(), "gave a wrong password");
+    request.refuse(SOUP_STATUS_FORBIDDEN, "wrong password");
+    return;
+  }
+  const std::string token = random_token();
+  if (token.empty()) {
+    request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR, "the system gives no random numbers");
+    return;
+  }
+  limit_.succeeded(request.address);
+  if (request.session != nullptr) sessions_.end(request.session->token);
+  Session& session = sessions_.begin(token, role, request.address, now());
+  session.must_set_password = one_time;
+  request.session = &session;
+  set_cookie(request.message, token, "604800");
+  log_access(request.who(), "logged in");
+  request.done();
+}
+
+void PageServer::log_out(Request& request) {
+  log_access(request.who(), "logged out");
+  sessions_.end(request.session->token);
+  request.session = nullptr;
+  set_cookie(request.message, "", "0");
+  close_strangers();
+  request.done();
+}
+
+void PageServer::set_password(Request& request) {
+  Session& session = *request.session;
+  const Role role = role_of(request.value("user")).value_or(Role::none);
+  if (session.must_set_password && role != Role::owner) {
+    request.refuse(SOUP_STATUS_FORBIDDEN, "the owner's password comes first");
+    return;
+  }
+  const std::string wrong = passwords_.set(role, request.value("password"));
+  if (!wrong.empty()) {
+    request.refuse(SOUP_STATUS_BAD_REQUEST, wrong);
+    return;
+  }
+  const std::string text = passwords_.state();
+  g_autoptr(GError) error = nullptr;
+  const auto how =
+      static_cast<GFileSetContentsFlags>(G_FILE_SET_CONTENTS_CONSISTENT | G_FILE_SET_CONTENTS_DURABLE);
+  if (!g_file_set_contents_full(path_of_passwords().c_str(), text.data(), static_cast<gssize>(text.size()),
+                                how, 0600, &error)) {
+    g_printerr("cerberusd: the passwords cannot be kept: %s\n", error->message);
+    request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR,
+                   "the password counts until the next start: it cannot be kept");
+    return;
+  }
+  session.must_set_password = false;
+  sessions_.end_all(role, std::string(session.token));
+  close_strangers();
+  log_access(request.address, "set the password of the " + std::string(name(role)));
+  request.done();
+}
+
+}  // namespace cerberus::robot

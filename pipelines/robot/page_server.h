@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The page of the robot: a web server that checks every request, and the messages of open pages. Main loop's thread.
+#pragma once
+
+#include <libsoup/soup.h>
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "camera.h"
+#include "robot/access.h"
+#include "robot/events.h"
+#include "robot/passwords.h"
+#include "viewer.h"
+
+namespace cerberus::robot {
+
+class PageServer {
+ public:
+  struct House {
+    const Settings& settings;
+    const std::vector<std::unique_ptr<Camera>>& cameras;
+    std::function<Mode()> mode;
+    std::function<void(Mode)> set_mode;
+  };
+
+  explicit PageServer(House house);
+  ~PageServer();
+  PageServer(const PageServer&) = delete;
+  PageServer& operator=(const PageServer&) = delete;
+
+  // Reads the passwords and listens; prints the one-time password where the owner has none. False, and what is wrong.
+  bool open(std::string& error);
+  // Once a second: reports the state to every open page.
+  void tick();
+
+ private:
+  struct Request;
+
+  void authorize(SoupServerMessage* message, std::string_view path);
+  void answer(Request& request);
+  void answer_page(Request& request);
+  void answer_session(Request& request);
+  void log_in(Request& request);
+  void log_out(Request& request);
+  void set_password(Request& request);
+  void answer_events(Request& request);
+  void answer_recording(Request& request);
+  void change_recording(Request& request);
+  void open_socket(SoupServerMessage* message, SoupWebsocketConnection* connection);
+  void on_text(Viewer& viewer, std::string_view text);
+  void execute(Viewer& viewer, const Session& session, const PageCommand& command);
+  void steer(Viewer& viewer, const PageCommand& command);
+  void leave(SoupWebsocketConnection* connection);
+  void close_strangers();
+  void update_watched();
+  std::string hello(const Session& session) const;
+  std::string state();
+  Camera* camera(std::string_view name) const;
+  Session* session_of(SoupServerMessage* message);
+  std::string path_of_passwords() const { return house_.settings.state_folder + "/passwords"; }
+
+  House house_;
+  Passwords passwords_;
+  Sessions sessions_;
+  RateLimit limit_;
+  Steering steering_;
+  SoupServer* server_ = nullptr;
+  std::vector<std::unique_ptr<Viewer>> viewers_;
+  double cpu_seconds_ = 0;
+  gint64 measured_ = 0;  // microseconds
+};
+
+}  // namespace cerberus::robot

@@ -1,0 +1,242 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The WebSockets of open pages: what they are sent, and what they ask for.
+#include <sys/resource.h>
+
+#include <algorithm>
+
+#include "page_request.h"
+#include "record/archive/folder.h"
+#include "text/json_line.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+constexpr std::size_t kMostViewers = 16;
+constexpr guint kKeepalive = 10;   // seconds between pings; a vanished peer is noticed by TCP then
+constexpr double kTurnSpeed = 40;  // degrees a second, as `turn-speed` of pantiltsink by default
+
+AccessTime now() {
+  return std::chrono::steady_clock::now();
+}
+
+double property(const std::optional<Properties>& properties, std::string_view name, double otherwise) {
+  if (properties)
+    for (const Property& one : *properties)
+      if (one.name == name) return g_ascii_strtod(one.value.c_str(), nullptr);
+  return otherwise;
+}
+
+std::string property(const Properties& properties, std::string_view name, std::string otherwise) {
+  for (const Property& one : properties)
+    if (one.name == name) return one.value;
+  return otherwise;
+}
+
+double turn_speed(const Camera& camera) {
+  const double speed = property(camera.settings().head, "turn-speed", kTurnSpeed);
+  return speed > 0 ? speed : kTurnSpeed;
+}
+
+double cpu_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec) / 1e6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+}  // namespace
+
+void PageServer::open_socket(SoupServerMessage* message, SoupWebsocketConnection* connection) {
+  const Session* session = session_of(message);  // checked by authorize()
+  if (session == nullptr || house_.cameras.empty() || viewers_.size() >= kMostViewers) {
+    soup_websocket_connection_close(connection, SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION,
+                                    "too many pages are open");
+    return;
+  }
+  soup_websocket_connection_set_max_incoming_payload_size(connection, kLongestCommand);
+  soup_websocket_connection_set_keepalive_interval(connection, kKeepalive);
+  const std::string label = std::string(name(session->role)) + '@' + session->address;
+  viewers_.push_back(
+      std::make_unique<Viewer>(connection, session->token, label, house_.cameras.front().get()));
+  g_signal_connect(connection, "message",
+                   G_CALLBACK(+[](SoupWebsocketConnection* from, gint type, GBytes* bytes, gpointer data) {
+                     auto& page = *static_cast<PageServer*>(data);
+                     gsize size = 0;
+                     const auto* text = static_cast<const char*>(g_bytes_get_data(bytes, &size));
+                     for (const auto& viewer : page.viewers_) {
+                       if (viewer->connection() != from) continue;
+                       page.on_text(*viewer, type == SOUP_WEBSOCKET_DATA_TEXT ? std::string_view(text, size)
+                                                                              : std::string_view());
+                       return;
+                     }
+                   }),
+                   this);
+  g_signal_connect(connection, "closed", G_CALLBACK(+[](SoupWebsocketConnection* from, gpointer page) {
+                     static_cast<PageServer*>(page)->leave(from);
+                   }),
+                   this);
+  log_access(label, "watches");
+  viewers_.back()->send(hello(*session));
+  viewers_.back()->send_state(state());
+  update_watched();
+}
+
+void PageServer::leave(SoupWebsocketConnection* connection) {
+  const auto found =
+      std::ranges::find(viewers_, connection, [](const auto& viewer) { return viewer->connection(); });
+  if (found == viewers_.end()) return;
+  const std::unique_ptr<Viewer> viewer = std::move(*found);
+  viewers_.erase(found);
+  g_signal_handlers_disconnect_by_data(connection, this);
+  // A turn ends by itself after 500 ms; here it ends at once.
+  const bool another =
+      std::ranges::any_of(viewers_, [&](const auto& one) { return one->token() == viewer->token(); });
+  if (!another && steering_.is_held_by(viewer->token(), now())) {
+    viewer->camera()->turn(0, 0);
+    steering_.release();
+  }
+  log_access(viewer->label(), "left");
+  update_watched();
+}
+
+void PageServer::update_watched() {
+  for (const auto& camera : house_.cameras)
+    camera->set_watched(
+        std::ranges::any_of(viewers_, [&](const auto& viewer) { return viewer->camera() == camera.get(); }));
+}
+
+// Closes the pages whose session ended.
+void PageServer::close_strangers() {
+  for (std::size_t k = viewers_.size(); k-- > 0;)
+    if (sessions_.find(viewers_[k]->token(), now()) == nullptr)
+      viewers_[k]->close(SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION);
+}
+
+void PageServer::on_text(Viewer& viewer, std::string_view text) {
+  const std::optional<PageCommand> command = parse_command(text);
+  const Session* session = sessions_.find(viewer.token(), now());
+  if (!command || session == nullptr || session->must_set_password) {
+    viewer.close(SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION);
+    return;
+  }
+  if (session->role < needed(*command, house_.mode())) {
+    viewer.send("{\"refused\":\"" + std::string(name(session->role)) + " may not do that\"}");
+    return;
+  }
+  execute(viewer, *session, *command);
+}
+
+void PageServer::execute(Viewer& viewer, const Session& session, const PageCommand& command) {
+  using Kind = PageCommand::Kind;
+  switch (command.kind) {
+    case Kind::ack:
+      viewer.acknowledge_picture(command.number);
+      return;
+    case Kind::seen:
+      viewer.acknowledge_state(command.number);
+      return;
+    case Kind::camera:
+      if (Camera* other = camera(command.name)) {
+        viewer.show(other);
+        update_watched();
+      }
+      return;
+    case Kind::mode:
+      log_access(viewer.label(), "sets mode " + std::string(name(command.mode)));
+      house_.set_mode(command.mode);
+      tick();
+      return;
+    default:
+      break;
+  }
+  // Stop is for everyone who may steer, whoever steers now, and the head is theirs then.
+  if (command.kind == Kind::stop) steering_.release();
+  const bool held = steering_.is_held_by(session.token, now());
+  if (!steering_.take(session.token, now())) {
+    viewer.send("{\"refused\":\"somebody else is steering\"}");
+    return;
+  }
+  if (!held || command.kind == Kind::stop)
+    log_access(viewer.label(),
+               (command.kind == Kind::stop ? "stops " : "steers ") + viewer.camera()->settings().name);
+  steer(viewer, command);
+}
+
+void PageServer::steer(Viewer& viewer, const PageCommand& command) {
+  using Kind = PageCommand::Kind;
+  Camera& camera = *viewer.camera();
+  bool done = false;
+  if (command.kind == Kind::stop) {
+    done = camera.order("stop");
+  } else if (command.kind == Kind::home) {
+    done = camera.order("home");
+  } else if (command.kind == Kind::automatic) {
+    done = camera.order("auto");
+    steering_.release();
+  } else if (command.kind == Kind::follow) {
+    done = camera.follow(static_cast<guint>(command.number));
+  } else if (command.kind == Kind::turn) {
+    done = camera.turn(command.pan * turn_speed(camera), command.tilt * turn_speed(camera));
+  }
+  if (!done) viewer.send("{\"refused\":\"the head does not take this order now\"}");
+}
+
+std::string PageServer::hello(const Session& session) const {
+  text::JsonLine line;
+  line.open('{').key("hello").open('{').key("robot").text(house_.settings.name);
+  line.key("role").string(name(session.role)).key("cameras").open('[');
+  for (const auto& camera : house_.cameras) {
+    const CameraSettings& is = camera->settings();
+    line.open('{').key("name").text(is.name).key("fov").fixed(is.horizontal_fov, 2);
+    line.key("head").boolean(is.head.has_value()).key("recorder").boolean(is.recorder.has_value());
+    line.key("pan-min").fixed(property(is.head, "pan-min", -170), 2);
+    line.key("pan-max").fixed(property(is.head, "pan-max", 170), 2);
+    if (is.sensors) {
+      line.key("bearings").text(property(*is.sensors, "bearings", std::string("0,-120,120")));
+      line.key("sensor-fov").fixed(property(is.sensors, "field-of-view", 120), 1);
+    }
+    line.close('}');
+  }
+  return std::string(line.close(']').close('}').close('}').finish());
+}
+
+std::string PageServer::state() {
+  text::JsonLine line;
+  line.open('{').key("mode").string(name(house_.mode())).key("cpu");
+  const double used = cpu_seconds();
+  const gint64 time = g_get_monotonic_time();
+  if (measured_ != 0 && time > measured_)
+    line.fixed((used - cpu_seconds_) * 1e8 / static_cast<double>(time - measured_), 0);
+  else
+    line.null();
+  line.key("viewers").integer(viewers_.size()).key("cameras").open('[');
+  for (const auto& camera : house_.cameras) {
+    line.open('{')
+        .key("name")
+        .text(camera->settings().name)
+        .key("state")
+        .string(robot::name(camera->state()));
+    line.key("fault").text(camera->fault()).key("rate").fixed(camera->frames_a_second(), 1);
+    line.key("head").text(camera->head_state()).key("recording").boolean(camera->is_recording());
+    if (camera->settings().recorder) {
+      const auto free = record::Folder(camera->settings().recorder->folder).free_bytes();
+      line.key("free").integer(free.value_or(0) >> 20);  // MiB
+    }
+    line.close('}');
+  }
+  const std::string_view text = line.close(']').close('}').finish();
+  return std::string(text.substr(1, text.size() - 3));  // the members alone
+}
+
+void PageServer::tick() {
+  close_strangers();
+  const std::string now_is = state();
+  for (const auto& viewer : viewers_) viewer->send_state(now_is);
+  cpu_seconds_ = cpu_seconds();
+  measured_ = g_get_monotonic_time();
+}
+
+}  // namespace cerberus::robot

@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""The page of cerberusd over loopback: first password, every route and message without a session and with the wrong role,
+strangers' origins, wrong passwords, pictures with acknowledgements, steering by one at a time, recordings."""
+import json
+import pathlib
+import re
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+
+from page_client import PATIENCE, Page, Socket
+
+CERBERUSD = sys.argv[1]
+
+
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
+CONFIGURATION = '''
+name = "the robot"
+state-folder = "state"
+[page]
+port = PORT
+[[camera]]
+name = "front"
+kind = "test"
+width = 160
+height = 120
+framerate = 10
+[camera.head]
+[camera.recorder]
+folder = "recordings"
+encoder = "jpegenc"
+post-roll = 0
+longest-file = 2
+'''
+
+
+def wait_until(what, question):
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        answer = question()
+        if answer:
+            return answer
+        time.sleep(.05)
+    raise AssertionError(f'in vain: {what}')
+
+
+def statuses(page, expected):
+    """Every route: method, path, form."""
+    for (method, path, form), status in expected.items():
+        form = dict(form) if form else ({} if method == 'POST' else None)
+        got = page.ask(method, path, form)
+        assert got[0] == status, f'{method} {path}: {got[0]} where {status} is right: {got[2][:200]}'
+
+
+ROUTES = [('GET', '/events', None), ('GET', '/events/front/1/video', None), ('GET', '/socket', None),
+          ('POST', '/keep', (('camera', 'front'), ('id', '1'))), ('POST', '/delete', (('camera', 'front'), ('id', '1'))),
+          ('POST', '/password', (('user', 'owner'), ('password', 'another one'))), ('POST', '/logout', None)]
+
+
+def first_password(page, one_time):
+    # Nothing but the entrance is open to a stranger.
+    statuses(page, {route: 401 for route in ROUTES})
+    statuses(page, {('GET', '/', None): 200, ('GET', '/page.js', None): 200, ('GET', '/page.css', None): 200,
+                    ('GET', '/state/passwords', None): 404, ('GET', '/../state/passwords', None): 404,
+                    ('PUT', '/login', None): 404, ('GET', '/login', None): 404})
+    assert json.loads(page.ask('GET', '/session')[2]) == {
+        'robot': 'the robot', 'role': None, 'first': True, 'must-set-password': False}
+    headers = page.ask('GET', '/')[1]
+    assert "frame-ancestors 'none'" in headers['Content-Security-Policy'] and headers['X-Frame-Options'] == 'DENY'
+    # The one-time password opens nothing but the form for the first one.
+    assert page.log_in('viewer', one_time) == 403 and page.log_in('owner', one_time) == 200
+    assert 'HttpOnly' in page.ask('POST', '/login', {'user': 'owner', 'password': one_time})[1]['Set-Cookie']
+    statuses(page, {route: 403 for route in ROUTES[:5]})
+    statuses(page, {('POST', '/password', (('user', 'viewer'), ('password', 'long enough'))): 403,
+                    ('POST', '/password', (('user', 'owner'), ('password', 'short'))): 400})
+    assert page.ask('POST', '/password', {'user': 'owner', 'password': 'long enough'})[0] == 200
+    for user in ('operator', 'viewer'):
+        assert page.ask('POST', '/password', {'user': user, 'password': 'password of ' + user})[0] == 200
+    stranger = Page(page.port)
+    assert stranger.log_in('owner', one_time) == 403, 'the one-time password counts twice'
+
+
+def strangers(page):
+    """Of a page elsewhere, with the cookie that a browser would not even send."""
+    for origin in ('http://evil.example', 'null', None):
+        assert page.ask('POST', '/logout', {}, origin)[0] == 403, origin
+        try:
+            Socket(page, origin).close()
+            raise AssertionError(f'a WebSocket from {origin} was opened')
+        except PermissionError as refused:
+            assert refused.args[0] == 403
+    # Another name that leads here.
+    assert Page(page.port, 'evil.example').ask('GET', '/')[0] == 403
+    assert page.ask('POST', '/login', {'user': 'x' * 5000, 'password': ''})[0] == 413
+
+
+def reports(line, wanted):
+    """Reads, and acknowledges, until wanted(message) is true; returns that."""
+    end = time.monotonic() + PATIENCE
+    while time.monotonic() < end:
+        message = line.receive()
+        assert message is not None, 'closed'
+        if isinstance(message, tuple):
+            line.send(f'ack {message[0]}')
+        elif 'number' in message:
+            line.send(f'seen {message["number"]}')
+        if wanted(message):
+            return message
+    raise AssertionError('in vain')
+
+
+def head_is(line, *states):
+    return reports(line, lambda m: isinstance(m, dict) and m.get('cameras') and m['cameras'][0]['head'] in states)
+
+
+def refused(message):
+    return isinstance(message, dict) and 'refused' in message
+
+
+def pictures(owner):
+    line = Socket(owner)
+    hello = line.receive()['hello']
+    assert hello['role'] == 'owner' and hello['cameras'][0]['name'] == 'front'
+    # Two pictures and two reports of state, and then nothing until one is acknowledged.
+    seen, numbers = [], []
+    while len(numbers) < 2 or len(seen) < 2:
+        message = line.receive()
+        if isinstance(message, tuple):
+            numbers.append(message[0])
+            assert message[1]['camera-name'] == 'front' and message[2][:2] == b'\xff\xd8', message[:2]
+        else:
+            seen.append(message['number'])
+    assert numbers == [1, 2] and seen == [1, 2]
+    line.line.settimeout(1.5)
+    try:
+        raise AssertionError(f'more than two at once: {line.receive()}')
+    except TimeoutError:
+        pass
+    line.line.settimeout(PATIENCE)
+    line.send('ack 2')
+    assert line.receive()[0] == 3
+    line.close()
+
+
+def steering(owner, operator, viewer):
+    first, second, third = Socket(owner), Socket(operator), Socket(viewer)
+    for order in ('turn 1 0', 'stop', 'home', 'auto', 'follow 1', 'mode disarmed', 'mode privacy'):
+        third.send(order)
+        assert 'viewer' in reports(third, refused)['refused'], order
+    second.send('mode privacy')
+    assert 'operator' in reports(second, refused)['refused']
+    # A turn is manual and ends by itself; while one steers no other may, but everyone may stop.
+    second.send('turn 0.5 0')
+    head_is(first, 'manual', 'limited')
+    for _ in range(200):  # keeps the head until the other one's order has arrived
+        second.send('turn 0.5 0')
+        first.send('turn -1 0')
+        if refused(reports(first, lambda m: refused(m) or isinstance(m, tuple))):
+            break
+    else:
+        raise AssertionError('two steer at once')
+    first.send('stop')
+    first.send('auto')
+    head_is(first, 'tracking', 'holding', 'zeroing', 'searching', 'turning', 'stopped')
+    first.send('mode disarmed')
+    reports(third, lambda m: isinstance(m, dict) and m.get('mode') == 'disarmed')
+    first.send('mode privacy')
+    reports(third, lambda m: isinstance(m, dict) and m.get('mode') == 'privacy' and m['cameras'][0]['state'] == 'off')
+    assert owner.ask('GET', '/events?camera=front')[0] == 403, 'privacy shows events'
+    second.send('mode armed')
+    assert 'operator' in reports(second, refused)['refused'], 'who may not begin privacy ended it'
+    first.send('mode disarmed')
+    reports(first, lambda m: isinstance(m, tuple))
+    third.send('nonsense')
+    try:
+        while third.receive() is not None:
+            pass
+    except ConnectionError:
+        pass
+    for line in (first, second, third):
+        line.close()
+
+
+def recordings(owner, operator, viewer):
+    rows = wait_until('an event', lambda: [row for row in json.loads(owner.ask('GET', '/events?camera=front')[2])
+                                           if not row['open']])
+    identity = str(rows[-1]['id'])
+    form = {'camera': 'front', 'id': identity}
+    status, headers, whole = viewer.ask('GET', f'/events/front/{identity}/video')
+    assert status == 200 and headers['Content-Type'] == 'video/x-matroska' and whole[:4] == b'\x1a\x45\xdf\xa3'
+    status, _, part = viewer.ask('GET', f'/events/front/{identity}/video', headers={'Range': 'bytes=4-9'})
+    assert status == 206 and part == whole[4:10]
+    assert viewer.ask('GET', f'/events/front/{identity}/picture')[2][:2] == b'\xff\xd8'
+    for path in ('/events/front/999999/video', '/events/back/1/video', f'/events/front/{identity}/..', '/events/front',
+                 f'/events/front/{identity}/%2e%2e%2f'):
+        assert viewer.ask('GET', path)[0] in (400, 404), path
+    assert viewer.ask('POST', '/keep', form | {'keep': '1'})[0] == 403
+    assert operator.ask('POST', '/keep', form | {'keep': '1'})[0] == 200
+    assert [row['keep'] for row in json.loads(viewer.ask('GET', '/events?camera=front')[2])
+            if str(row['id']) == identity] == [True]
+    assert operator.ask('POST', '/delete', form)[0] == 403 and viewer.ask('POST', '/delete', form)[0] == 403
+    assert owner.ask('POST', '/delete', form)[0] == 200
+    assert viewer.ask('GET', f'/events/front/{identity}/video')[0] == 404
+    assert owner.ask('POST', '/delete', form)[0] == 409
+    assert viewer.ask('POST', '/password', {'user': 'owner', 'password': 'taken over'})[0] == 403
+
+
+def wrong_passwords(port):
+    tries = [Page(port).log_in('owner', 'guess') for _ in range(11)]
+    assert tries[:5] == [403] * 5 and 429 in tries[5:], tries
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        folder, port = pathlib.Path(name), free_port()
+        (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(port)))
+        with open(folder / 'log', 'w+', encoding='utf-8') as log:
+            process = subprocess.Popen([CERBERUSD, folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
+            try:
+                one_time = wait_until('the one-time password', lambda: re.search(
+                    r'One-time password .*: ([0-9a-f]{16})\n', (folder / 'log').read_text()))[1]
+                owner = Page(port)
+                first_password(owner, one_time)
+                operator, viewer = Page(port), Page(port)
+                assert operator.log_in('operator', 'password of operator') == 200
+                assert viewer.log_in('viewer', 'password of viewer') == 200
+                strangers(owner)
+                pictures(owner)
+                steering(owner, operator, viewer)
+                recordings(owner, operator, viewer)
+                assert viewer.ask('POST', '/logout', {})[0] == 200 and viewer.ask('GET', '/events')[0] == 401
+                wrong_passwords(port)
+                process.send_signal(signal.SIGTERM)
+                code = process.wait(PATIENCE)
+                text = (folder / 'log').read_text()
+                assert code == 0, text
+                assert (folder / 'state' / 'passwords').stat().st_mode & 0o777 == 0o600
+                for words in ('owner@127.0.0.1 logged in', 'operator@127.0.0.1 steers front', 'owner@127.0.0.1 deleted',
+                              'owner@127.0.0.1 sets mode privacy'):
+                    assert words in text, f'"{words}" is not in the access log: {text}'
+                for secret in ('long enough', 'password of operator', 'password of viewer', 'guess'):
+                    assert secret not in text, f'"{secret}" is in the log'
+            except BaseException:
+                print((folder / 'log').read_text(), file=sys.stderr)
+                raise
+            finally:
+                process.kill()
+
+
+main()

@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "robot/access.h"
+
+#include <string>
+#include <vector>
+
+#if HAVE_ARGON2
+#include "robot/passwords.h"
+#endif
+#include "support/suite.h"  // after the streams: check defines fail()
+
+using namespace cerberus::robot;
+using std::chrono::hours;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Kind = PageCommand::Kind;
+
+namespace {
+
+const AccessTime kStart{std::chrono::hours(1000)};
+
+bool taken(const std::string& line, Kind kind) {
+  const std::optional<PageCommand> command = parse_command(line);
+  return command && command->kind == kind;
+}
+
+}  // namespace
+
+START_TEST(every_message_is_read_letter_by_letter) {
+  ck_assert(taken("stop", Kind::stop) && taken("home", Kind::home) && taken("auto", Kind::automatic));
+  ck_assert(taken("ack 18446744073709551615", Kind::ack) && taken("seen 7", Kind::seen));
+  ck_assert(taken("camera front", Kind::camera) && taken("follow 4294967295", Kind::follow));
+  ck_assert(taken("mode privacy", Kind::mode));
+  const std::optional<PageCommand> turn = parse_command("turn -0.25 1");
+  ck_assert(turn && turn->kind == Kind::turn && turn->pan == -.25 && turn->tilt == 1);
+  for (const char* wrong : {"",           " ",         "stop ",      " stop",      "STOP",
+                            "stop now",   "ack",       "ack -1",     "ack 1x",     "ack 18446744073709551616",
+                            "turn 1",     "turn 1 2",  "turn nan 0", "turn inf 0", "turn 1e400 0",
+                            "turn 0 0 0", "turn  1 0", "turn 0,5 0", "camera ",    "follow 4294967296",
+                            "follow -1",  "mode",      "mode off",   "move 1 0",   "a b c d e f"})
+    ck_assert_msg(!parse_command(wrong), "\"%s\" was taken", wrong);
+  ck_assert(!parse_command("camera " + std::string(kLongestCommand, 'a')));
+}
+END_TEST
+
+START_TEST(a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy) {
+  const struct {
+    const char* line;
+    Role role;
+  } cases[] = {
+      {"ack 1", Role::viewer},         {"seen 1", Role::viewer},
+      {"camera a", Role::viewer},      {"stop", Role::operator_},
+      {"home", Role::operator_},       {"auto", Role::operator_},
+      {"turn 0 0", Role::operator_},   {"follow 1", Role::operator_},
+      {"mode armed", Role::operator_}, {"mode disarmed", Role::operator_},
+      {"mode privacy", Role::owner},
+  };
+  for (const auto& one : cases)
+    ck_assert_msg(needed(*parse_command(one.line), Mode::armed) == one.role, "%s", one.line);
+  ck_assert(needed(*parse_command("mode armed"), Mode::privacy) == Role::owner);
+}
+END_TEST
+
+START_TEST(only_the_entrance_is_open_and_what_changes_needs_more) {
+  for (const Route& route : routes()) {
+    const bool entrance = route.path == "/" || route.path == "/page.css" || route.path == "/page.js" ||
+                          route.path == "/session" || route.path == "/login";
+    ck_assert_msg(entrance == (route.role == Role::none), "%s", std::string(route.path).c_str());
+  }
+  ck_assert(find_route("POST", "/delete")->role == Role::owner);
+  ck_assert(find_route("POST", "/password")->role == Role::owner);
+  ck_assert(find_route("POST", "/keep")->role == Role::operator_);
+  ck_assert(find_route("GET", "/events/a/1/video")->role == Role::viewer);
+  ck_assert(!find_route("GET", "/delete") && !find_route("GET", "/eventsx") && !find_route("PUT", "/login"));
+  ck_assert(!find_route("GET", "") && !find_route("GET", "/page.js/") && !find_route("HEAD", "/events"));
+}
+END_TEST
+
+START_TEST(another_name_for_this_machine_is_refused) {
+  const std::vector<std::string> origins{"https://robot.example:8443"};
+  for (const char* own : {"127.0.0.1:8080", "127.0.0.1", "[::1]:8080", "localhost:8080", "LOCALHOST",
+                          "192.168.1.7:8080", "garden:8080", "Garden.local", "robot.example:8443"})
+    ck_assert_msg(is_own_host(own, "garden", origins), "%s", own);
+  for (const char* other : {"", "evil.example", "127.0.0.1.evil.example:8080", "localhost.evil.example",
+                            "robot.example", "garden.evil", "gardenXlocal", ":8080", "[::1.evil", "1.2.3.4x"})
+    ck_assert_msg(!is_own_host(other, "garden", origins), "%s", other);
+  ck_assert(!is_own_host("", "", {}) && !is_own_host(".local", "", {}));
+}
+END_TEST
+
+START_TEST(an_origin_is_the_pages_own_or_configured) {
+  const std::vector<std::string> origins{"https://robot.example:8443"};
+  ck_assert(is_own_origin("http://127.0.0.1:8080", "127.0.0.1:8080", origins));
+  ck_assert(is_own_origin("https://robot.example:8443", "127.0.0.1:8080", origins));
+  for (const char* other :
+       {"", "null", "http://evil.example", "http://127.0.0.1:8081", "https://127.0.0.1:8080",
+        "http://127.0.0.1:8080.evil", "http://", "https://robot.example"})
+    ck_assert_msg(!is_own_origin(other, "127.0.0.1:8080", origins), "%s", other);
+  ck_assert(!is_own_origin("http://", "", {}));
+}
+END_TEST
+
+START_TEST(a_session_ends_after_12_idle_hours_after_a_week_and_when_it_is_ended) {
+  Sessions sessions;
+  sessions.begin("one", Role::viewer, "a", kStart);
+  ck_assert(sessions.find("one", kStart + hours(12)) && !sessions.find("", kStart) &&
+            !sessions.find("on", kStart));
+  ck_assert(!sessions.find("one", kStart + hours(24) + seconds(1)));
+  sessions.begin("two", Role::owner, "a", kStart);
+  for (int hour = 10; hour <= 160; hour += 10) ck_assert(sessions.find("two", kStart + hours(hour)));
+  ck_assert(!sessions.find("two", kStart + hours(168) + seconds(1)));  // used 8 hours before
+  sessions.begin("three", Role::owner, "a", kStart);
+  sessions.begin("four", Role::owner, "a", kStart);
+  sessions.begin("five", Role::viewer, "a", kStart);
+  sessions.end_all(Role::owner, "four");
+  ck_assert(!sessions.find("three", kStart) && sessions.find("four", kStart) &&
+            sessions.find("five", kStart));
+  sessions.end("four");
+  ck_assert(!sessions.find("four", kStart));
+}
+END_TEST
+
+START_TEST(of_too_many_sessions_the_one_used_longest_ago_ends) {
+  Sessions sessions;
+  for (int k = 0; k < 64; ++k) sessions.begin(std::to_string(k), Role::viewer, "a", kStart + seconds(k));
+  ck_assert(sessions.find("0", kStart + seconds(100)));
+  sessions.begin("new", Role::viewer, "a", kStart + seconds(101));
+  ck_assert_uint_eq(sessions.count(), 64);
+  ck_assert(sessions.find("0", kStart + seconds(101)) && !sessions.find("1", kStart + seconds(101)));
+}
+END_TEST
+
+START_TEST(after_five_wrong_passwords_an_address_waits_twice_as_long_each_time) {
+  RateLimit limit;
+  AccessTime now = kStart;
+  for (int k = 0; k < 4; ++k) limit.failed("a", now);
+  ck_assert_int_eq(limit.wait("a", now).count(), 0);
+  for (const int expected : {1, 2, 4, 8, 16, 32, 60, 60}) {
+    limit.failed("a", now);
+    ck_assert_int_eq(limit.wait("a", now).count(), expected);
+    ck_assert_int_eq(limit.wait("b", now).count(), 0);
+    ck_assert_int_eq(limit.wait("a", now + milliseconds(500)).count(), expected == 1 ? 1 : expected);
+    now += seconds(expected);
+    ck_assert_int_eq(limit.wait("a", now).count(), 0);
+  }
+  limit.succeeded("a");
+  limit.failed("a", now);
+  ck_assert_int_eq(limit.wait("a", now).count(), 0);
+}
+END_TEST
+
+START_TEST(many_addresses_together_are_slowed_down_too) {
+  RateLimit limit;
+  for (int k = 0; k < 50; ++k) limit.failed("address " + std::to_string(k), kStart);
+  ck_assert_int_eq(limit.wait("another", kStart).count(), 1);
+  limit.failed("another", kStart + hours(2));  // forgotten
+  ck_assert_int_eq(limit.wait("another", kStart + hours(2)).count(), 0);
+}
+END_TEST
+
+START_TEST(one_session_steers_until_it_was_silent_for_two_seconds) {
+  Steering steering;
+  ck_assert(steering.take("a", kStart) && !steering.take("b", kStart + milliseconds(1999)));
+  ck_assert(steering.take("a", kStart + seconds(1)) && !steering.take("b", kStart + milliseconds(2999)));
+  ck_assert(steering.is_held_by("a", kStart + milliseconds(2999)));
+  ck_assert(steering.take("b", kStart + seconds(3)) && !steering.take("a", kStart + seconds(4)));
+  steering.release();
+  ck_assert(steering.take("a", kStart + seconds(4)));
+}
+END_TEST
+
+#if HAVE_ARGON2
+START_TEST(a_password_counts_for_its_role_alone_and_survives_a_restart) {
+  Passwords passwords;
+  ck_assert(!passwords.set(Role::owner, "seven77").empty() &&
+            !passwords.set(Role::none, "long enough").empty());
+  ck_assert(!passwords.set(Role::owner, std::string(257, 'a')).empty());
+  ck_assert(passwords.set(Role::owner, "long enough").empty());
+  Passwords other;
+  ck_assert(other.restore(passwords.state()));
+  ck_assert(other.verify(Role::owner, "long enough") && !other.verify(Role::owner, "long enougH"));
+  ck_assert(!other.verify(Role::viewer, "long enough") && !other.verify(Role::none, "long enough"));
+  ck_assert(passwords.state().find("long enough") == std::string::npos);
+  ck_assert(passwords.state().starts_with("owner $argon2id$v=19$m=19456,t=2,p=1$"));
+  for (const char* broken :
+       {"owner", "owner \n", "owner $argon2id$", "guest $argon2id$x\n", "owner plain\n", "\n"})
+    ck_assert_msg(!other.restore(broken), "\"%s\" was taken", broken);
+  ck_assert(other.has(Role::owner));
+}
+END_TEST
+
+START_TEST(the_one_time_password_counts_for_the_owner_until_a_password_is_set) {
+  Passwords passwords;
+  ck_assert(!passwords.is_one_time(Role::owner, ""));
+  const std::string once = passwords.make_one_time();
+  ck_assert_uint_eq(once.size(), 16);
+  ck_assert(once != Passwords().make_one_time());
+  ck_assert(passwords.is_one_time(Role::owner, once) && !passwords.is_one_time(Role::operator_, once));
+  ck_assert(!passwords.is_one_time(Role::owner, once.substr(1)) && !passwords.verify(Role::owner, once));
+  ck_assert(passwords.set(Role::owner, "long enough").empty() && !passwords.is_one_time(Role::owner, once));
+}
+END_TEST
+#endif
+
+int main() {
+  return cerberus::tests::run_suite(
+      "robot access", {
+                          every_message_is_read_letter_by_letter,
+                          a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_privacy,
+                          only_the_entrance_is_open_and_what_changes_needs_more,
+                          another_name_for_this_machine_is_refused,
+                          an_origin_is_the_pages_own_or_configured,
+                          a_session_ends_after_12_idle_hours_after_a_week_and_when_it_is_ended,
+                          of_too_many_sessions_the_one_used_longest_ago_ends,
+                          after_five_wrong_passwords_an_address_waits_twice_as_long_each_time,
+                          many_addresses_together_are_slowed_down_too,
+                          one_session_steers_until_it_was_silent_for_two_seconds,
+#if HAVE_ARGON2
+                          a_password_counts_for_its_role_alone_and_survives_a_restart,
+                          the_one_time_password_counts_for_the_owner_until_a_password_is_set,
+#endif
+                      });
+}
