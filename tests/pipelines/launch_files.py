@@ -2,15 +2,16 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the launch files of pipelines/, with a test source in place of the camera and files in place of screens.
 
-    launch_files.py NAME live|file|444
+    launch_files.py NAME live|file|444|parsed [SERVER]
 
 The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
 objects are found. Where people are told by their size, it has the shape of one. Networks are the loopback, on ports
-that were free a moment ago.
+that were free a moment ago. Files for hardware that is not here are parsed and not run. SERVER is cerberus-rtsp.
 """
 import contextlib
 import os
 import pathlib
+import shlex
 import signal
 import socket
 import statistics
@@ -19,13 +20,13 @@ import sys
 import tempfile
 import time
 
-from support import DISTANCE, LIMIT, TOP, ball, gst_launch, json_lines, must, person, video
+from support import DISTANCE, LIMIT, TOP, ball, gst_launch, json_lines, must, person, run, video
 
 WIDTH, HEIGHT, FRAMES = 320, 240, 75
 
 
-def start(name, **variables):
-    line = [str(TOP / 'pipelines' / 'run'), name, *(f'{key}={value}' for key, value in variables.items())]
+def start(name, *options, **variables):
+    line = [str(TOP / 'pipelines' / 'run'), *options, name, *(f'{key}={value}' for key, value in variables.items())]
     return subprocess.Popen(line, cwd=os.getcwd(), start_new_session=True, text=True,
                             stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
 
@@ -123,9 +124,9 @@ def test_live(kind):
     assert any(map(coloured, pictures)), 'no box was shown'
 
 
-def recorded_file():
+def recorded_file(folder='recordings'):
     """The one file that the recorder wrote into this folder."""
-    found = list(pathlib.Path('recordings').rglob('*.mp4'))
+    found = list(pathlib.Path(folder).rglob('*.mp4'))
     assert len(found) == 1, f'not one recording: {found}'
     return str(found[0])
 
@@ -251,8 +252,25 @@ def wait_for(what, condition, process):
         time.sleep(0.02)
 
 
-def listening(port):
-    lines = pathlib.Path('/proc/net/udp').read_text('ascii').splitlines()[1:]
+def free_port():
+    with contextlib.closing(socket.socket()) as held:
+        held.bind(('127.0.0.1', 0))
+        return held.getsockname()[1]
+
+
+def stop(process):
+    """As by Ctrl-C; it must end well."""
+    os.killpg(process.pid, signal.SIGINT)
+    return finish(process)
+
+
+def endless(kind):
+    """A source that goes on until the test has what it wants."""
+    return source(kind).replace(f'num-buffers={FRAMES} ', '')
+
+
+def listening(port, protocol='udp'):
+    lines = pathlib.Path(f'/proc/net/{protocol}').read_text('ascii').splitlines()[1:]
     return any(line.split()[1].endswith(f':{port:04X}') for line in lines)
 
 
@@ -293,6 +311,100 @@ def test_rtp(kind):
     assert sum(map(coloured, pictures)) > len(pictures) // 3, 'the received picture has no boxes'
 
 
+def test_hls(kind):
+    """The playlist names the files in order, and they hold every picture, annotated."""
+    os.mkdir('web')
+    finish(start('hls', SOURCE=paced(kind), FOLDER='web', SECONDS=1, GOP=10, KEEP=0))
+    playlist = pathlib.Path('web/live.m3u8').read_text('ascii').splitlines()
+    assert playlist[0] == '#EXTM3U' and playlist[-1] == '#EXT-X-ENDLIST', playlist
+    files = [f'web/{line}' for line in playlist if line and not line.startswith('#')]
+    assert len(files) > 1 and files == sorted(str(path) for path in pathlib.Path('web').glob('*.ts')), files
+    pathlib.Path('whole.ts').write_bytes(b''.join(pathlib.Path(path).read_bytes() for path in files))
+    pictures = decode('whole.ts')
+    assert least(kind) <= len(pictures) <= most(kind), f'{len(pictures)} pictures'
+    assert sum(map(coloured, pictures)) > len(pictures) // 3, 'no boxes were drawn'
+
+
+def test_mjpeg(kind):
+    """Two receivers that come while it runs."""
+    port = free_port()
+    sender = start('mjpeg', SOURCE=endless(kind), PORT=port)
+    wait_for('its port', lambda: listening(port, 'tcp'), sender)
+    for _ in range(2):
+        must(gst_launch(f'tcpclientsrc port={port} ! multipartdemux ! image/jpeg,framerate=25/1 ! jpegdec ! '
+                        'videoconvert ! video/x-raw,format=I420 ! identity eos-after=11 ! filesink location=out.raw'))
+        pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
+        assert len(pictures) == 10 and any(map(coloured, pictures)), f'{len(pictures)} pictures, or no box'
+    stop(sender)
+
+
+def plays(address, settings=''):
+    """The first pictures of an RTSP address."""
+    must(gst_launch(f'rtspsrc location={address} latency=0 {settings} ! rtph264depay ! h264parse ! avdec_h264 ! '
+                    'videoconvert ! video/x-raw,format=I420 ! identity eos-after=31 ! filesink location=out.raw'))
+    pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
+    assert len(pictures) == 30, f'{len(pictures)} pictures of {address}'
+    return pictures
+
+
+def test_rtsp(kind, program, example=None):
+    """Both addresses are played; the stream that is sent is recorded, and a second recorder takes it from the server."""
+    for folder in ('recordings', 'far'):
+        os.mkdir(folder)
+    users = pathlib.Path('users')
+    users.write_text('anna:secret\n', 'ascii')
+    users.chmod(0o600)
+    recorder = ('eventrecorder name=recorder location=recordings coded. ! queue ! h264parse ! recorder.video '
+                't. ! queue ! recorder.analysis')
+    server = start('rtsp', '--with', program, '--pass', '--port=0', '--pass', '--users=users', SOURCE=endless(kind),
+                   RECORDER=recorder)
+    addresses = [server.stdout.readline().split()[0] for _ in range(2)]
+    assert [address.rsplit('/', 1)[1] for address in addresses] == ['plain', 'annotated'], addresses
+    login = 'user-id=anna user-pw=secret'
+    for address, boxes in zip(addresses, (False, True)):
+        assert any(map(coloured, plays(address, login))) == boxes, f'boxes in {address}: {not boxes}'
+    # Two streams of a camera: one is recorded as it comes, around what moves in the other.
+    stream = f'rtspsrc location={addresses[0]} {login} latency=0 ! rtph264depay !'
+    far = start('record-streams', MAIN=f'{stream} h264parse', SUB=f'{stream} avdec_h264', FOLDER='far')
+    wait_for('a recording', lambda: any(size(path) > 0 for path in pathlib.Path('far').rglob('*.mp4')), far)
+    stop(far)
+    stop(server)
+    for folder in ('recordings', 'far'):
+        path = recorded_file(folder)
+        check_players_can_play(path, 'qtdemux')
+        assert len(decode(path)) > 5, f'{path} is too short'
+    if example:  # a program in C that mounts the same in its own server
+        server = subprocess.Popen([example, '0', endless(kind)], start_new_session=True, text=True,
+                                  stdout=subprocess.PIPE)
+        try:
+            assert any(map(coloured, plays(server.stdout.readline().strip()))), 'no boxes in the mount of the example'
+        finally:
+            server.kill()
+            server.communicate()
+
+
+def parsed(process, missing):
+    """The line that was printed is right, but for elements of hardware that is not here."""
+    words = shlex.split(finish(process))[2:]  # without gst-launch-1.0 -e
+    found = must(run([sys.executable, TOP / 'tests' / 'pipelines' / 'parse.py', *words])).split()
+    assert set(found) <= missing, f'{found} are missing'
+
+
+def test_hardware(_):
+    parsed(start('hardware-v4l2', '--print'), {'v4l2h264dec', 'v4l2h264enc'})
+    parsed(start('hardware-va', '--print'), {'vah264dec', 'vapostproc', 'vah264enc'})
+    parsed(start('hardware-va', '--print', ENCODER='va-lp'), {'vah264dec', 'vapostproc', 'vah264lpenc'})
+    parsed(start('hardware-nvenc', '--print'), {'nvh264dec', 'cudadownload', 'nvh264enc'})
+    for name in ('x264', 'openh264', 'vp8'):
+        parsed(start('rtsp', '--print', ENCODER=name), set())
+    encoder = TOP / 'pipelines' / 'encoder'
+    assert must(run([encoder, 'x264', 30, 500])).endswith('bitrate=500 key-int-max=30\n')
+    # Without GStreamer's own plugins there is none, and it is said which were looked for.
+    status, said = run([encoder, 'h264'], env={'GST_PLUGIN_SYSTEM_PATH_1_0': '', 'GST_PLUGIN_PATH_1_0': '',
+                                               'GST_REGISTRY_1_0': os.path.abspath('empty.bin')})
+    assert status == 2 and 'v4l2h264enc (package' in said and 'openh264enc (package' in said, said
+
+
 def test_robot(kind):
     """With a recording in place of the sensors. The stream drops what is late: all that is sure is that it begins."""
     pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,0,0,1\n600,0,0,1\n', 'ascii')
@@ -322,10 +434,11 @@ def test_robot(kind):
 
 
 def main():
-    name, kind = sys.argv[1:]
+    name, kind = sys.argv[1:3]
+    programs = [os.path.abspath(program) for program in sys.argv[3:]]
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        globals()['test_' + name.replace('-', '_')](kind)
+        globals()['test_' + name.replace('-', '_')](kind, *programs)
         os.chdir('/')
 
 

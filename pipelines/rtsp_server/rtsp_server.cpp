@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "rtsp_server/rtsp_server.h"
+
+#include <gst/video/video.h>
+
+#include <algorithm>
+#include <cctype>
+
+namespace cerberus::rtsp {
+namespace {
+
+constexpr char kRole[] = "viewer";
+constexpr char kMetadata[] = "metadata";
+constexpr guint kMostSessions = 100;  // of all clients
+constexpr guint kCleaningPeriod = 2;  // seconds after which sessions without a client are looked for
+
+// What packs a stream into RTP. Parameter sets go along with every keyframe, so that a client that joins has them.
+std::string payloader_of(const GstCaps* caps) {
+  static constexpr std::pair<const char*, const char*> kPayloaders[] = {
+      {"video/x-h264", "rtph264pay config-interval=-1 aggregate-mode=zero-latency"},
+      {"video/x-h265", "rtph265pay config-interval=-1 aggregate-mode=zero-latency"},
+      {"video/x-vp8", "rtpvp8pay"},
+      {"video/x-vp9", "rtpvp9pay"},
+      {"image/jpeg", "rtpjpegpay"},
+      {"application/x-onvif-metadata", "rtponvifmetapay"}};
+  const GstStructure* structure = gst_caps_get_structure(caps, 0);
+  for (const auto& [media, payloader] : kPayloaders)
+    if (gst_structure_has_name(structure, media)) return payloader;
+  return {};
+}
+
+// The mount's name is part of an address.
+bool fits_address(const std::string& name) {
+  return std::all_of(name.begin(), name.end(),
+                     [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
+}
+
+std::string source_name(std::size_t stream) {
+  return "cerberus_source_" + std::to_string(stream);
+}
+
+// The sources of one media: fed until the media ends.
+struct Feed {
+  std::vector<std::pair<std::shared_ptr<EncodedStream>, Ref<GstAppSrc>>> sources;
+
+  ~Feed() { stop(); }
+  void stop() {
+    for (const auto& [stream, source] : sources) stream->remove(source.get());
+  }
+};
+
+constexpr char kFeed[] = "cerberus-feed";  // of a GstRTSPMedia: its Feed
+
+// A client that lost packets asks for a keyframe (RTCP), and rtpbin hands that on upstream.
+GstPadProbeReturn on_upstream_event(GstPad*, GstPadProbeInfo* info, gpointer stream) {
+  if (gst_video_event_is_force_key_unit(GST_PAD_PROBE_INFO_EVENT(info)))
+    static_cast<EncodedStream*>(stream)->request_keyframe();
+  return GST_PAD_PROBE_OK;
+}
+
+// What a factory makes its media of.
+struct Mount {
+  GstElement* pipeline;                                 // that encodes
+  std::vector<std::shared_ptr<EncodedStream>> streams;  // pay0, pay1
+};
+
+// The media of a mount is made for the first client that describes it. It counts time as the pipeline does that encodes,
+// so that buffers keep their stamps and the streams of a mount their distance.
+void on_media_configure(GstRTSPMediaFactory*, GstRTSPMedia* media, gpointer data) {
+  const auto& [pipeline, streams] = *static_cast<Mount*>(data);
+  g_autoptr(GstElement) element = gst_rtsp_media_get_element(media);
+  g_autoptr(GstObject) whole = gst_object_get_parent(GST_OBJECT(element));
+  gst_element_set_start_time(GST_ELEMENT(whole),
+                             GST_CLOCK_TIME_NONE);  // it keeps the base time that it is given
+  gst_element_set_base_time(GST_ELEMENT(whole), gst_element_get_base_time(pipeline));
+  auto* feed = new Feed;
+  for (std::size_t k = 0; k < streams.size(); ++k) {
+    GstElement* source = gst_bin_get_by_name(GST_BIN(element), source_name(k).c_str());
+    if (!source) continue;
+    feed->sources.emplace_back(streams[k], GST_APP_SRC(source));
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(source, "src");
+    gst_pad_add_probe(pad, GST_PAD_PROBE_TYPE_EVENT_UPSTREAM, on_upstream_event, streams[k].get(), nullptr);
+    streams[k]->add(GST_APP_SRC(source));
+  }
+  g_object_set_data_full(G_OBJECT(media), kFeed, feed,
+                         [](gpointer gone) { delete static_cast<Feed*>(gone); });
+  g_signal_connect(media, "unprepared",
+                   G_CALLBACK(+[](GstRTSPMedia*, gpointer ended) { static_cast<Feed*>(ended)->stop(); }),
+                   feed);
+}
+
+void on_play(GstRTSPClient*, GstRTSPContext* context, gpointer) {
+  if (!context->media) return;
+  if (const auto* feed = static_cast<Feed*>(g_object_get_data(G_OBJECT(context->media), kFeed)))
+    for (const auto& [stream, source] : feed->sources) stream->play(source.get());
+}
+
+void on_client(GstRTSPServer*, GstRTSPClient* client, gpointer) {
+  g_signal_connect(client, "play-request", G_CALLBACK(on_play), nullptr);
+}
+
+}  // namespace
+
+RtspServer::RtspServer(GstElement* pipeline, ServerSettings settings)
+    : pipeline_(pipeline), settings_(std::move(settings)) {}
+
+RtspServer::~RtspServer() {
+  if (cleaner_) g_source_remove(cleaner_);
+  if (listener_) {
+    g_source_destroy(listener_);
+    g_source_unref(listener_);
+  }
+  if (server_) {
+    const auto remove = [](GstRTSPServer*, GstRTSPClient*, gpointer) { return GST_RTSP_FILTER_REMOVE; };
+    g_list_free_full(gst_rtsp_server_client_filter(server_.get(), remove, nullptr), g_object_unref);
+  }
+  g_clear_object(&certificate_);
+}
+
+std::string RtspServer::prepare() {
+  if (!settings_.certificate.empty()) {
+    const std::string& key = settings_.key.empty() ? settings_.certificate : settings_.key;
+    g_autoptr(GError) error = nullptr;
+    if (!g_tls_backend_supports_tls(g_tls_backend_get_default()))
+      return "TLS needs the package glib-networking, which is not installed";
+    certificate_ = g_tls_certificate_new_from_files(settings_.certificate.c_str(), key.c_str(), &error);
+    if (!certificate_) {
+      const bool same = settings_.key.empty();
+      return "the certificate " + settings_.certificate + (same ? "" : " with the key " + key) +
+             " cannot be used: " + error->message + (same ? " (--key names another file)" : "");
+    }
+  }
+
+  // One clock for all, so that what the server sends has the stamps of the pipeline.
+  g_autoptr(GstClock) clock = gst_system_clock_obtain();
+  gst_pipeline_use_clock(GST_PIPELINE(pipeline_), clock);
+
+  std::string wrong;
+  // Those of the line itself, in its order; an element may have appsinks of its own inside.
+  GstBin* bin = GST_BIN(pipeline_);
+  for (GList* child = g_list_last(bin->children); child; child = child->prev) {
+    if (!GST_IS_APP_SINK(child->data)) continue;
+    auto stream = std::make_shared<EncodedStream>(GST_APP_SINK(child->data));
+    if (stream->name() == kMetadata)
+      metadata_ = stream;
+    else if (fits_address(stream->name()))
+      streams_.push_back(stream);
+    else
+      wrong = "the appsink \"" + stream->name() +
+              "\" cannot be a mount: name it by letters, digits, - and _ (appsink name=annotated)";
+  }
+  if (wrong.empty() && streams_.empty())
+    wrong = "the line has no appsink: what follows an encoder is served by `appsink name=annotated`";
+  return wrong;
+}
+
+std::string RtspServer::missing() const {
+  std::string names;
+  auto streams = streams_;
+  if (metadata_) streams.push_back(metadata_);
+  for (const auto& stream : streams) {
+    g_autoptr(GstCaps) caps = stream->caps();
+    if (!caps) names += (names.empty() ? "" : ", ") + stream->name();
+  }
+  return names;
+}
+
+bool RtspServer::has_begun() const {
+  return missing().empty();
+}
+
+std::string RtspServer::add_mount(const std::shared_ptr<EncodedStream>& stream) {
+  Streams streams = {stream};
+  if (metadata_) streams.push_back(metadata_);
+  std::string line, kinds;
+  for (std::size_t k = 0; k < streams.size(); ++k) {
+    g_autoptr(GstCaps) caps = streams[k]->caps();
+    const std::string payloader = payloader_of(caps);
+    const std::string kind = gst_structure_get_name(gst_caps_get_structure(caps, 0));
+    if (payloader.empty())
+      return "the stream " + streams[k]->name() + " is " + kind +
+             ", which is not sent over RTSP: encode it as H.264, H.265, VP8, VP9 or JPEG";
+    const std::string element = payloader.substr(0, payloader.find(' '));
+    g_autoptr(GstElementFactory) found = gst_element_factory_find(element.c_str());
+    if (!found) return "the element " + element + " is missing, which sends " + kind;
+    // The queues of the sources are limited by EncodedStream.
+    line += "appsrc name=" + source_name(k) + " is-live=true format=time max-bytes=0 ! " + payloader +
+            " name=pay" + std::to_string(k) + " pt=" + std::to_string(96 + k) + " ";
+    kinds += (kinds.empty() ? "" : " + ") + kind;
+  }
+
+  GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
+  gst_rtsp_media_factory_set_launch(factory, ("( " + line + ")").c_str());
+  gst_rtsp_media_factory_set_shared(factory, TRUE);
+  // Only what goes through the connection itself is encrypted by TLS. Multicast is never offered.
+  const int udp = certificate_ ? 0 : GST_RTSP_LOWER_TRANS_UDP;
+  gst_rtsp_media_factory_set_protocols(factory,
+                                       static_cast<GstRTSPLowerTrans>(udp | GST_RTSP_LOWER_TRANS_TCP));
+  g_autoptr(GstClock) clock = gst_system_clock_obtain();
+  gst_rtsp_media_factory_set_clock(factory, clock);
+  gst_rtsp_media_factory_add_role(factory, kRole, GST_RTSP_PERM_MEDIA_FACTORY_ACCESS, G_TYPE_BOOLEAN, TRUE,
+                                  GST_RTSP_PERM_MEDIA_FACTORY_CONSTRUCT, G_TYPE_BOOLEAN, TRUE, nullptr);
+  auto* mount = new Mount{pipeline_, std::move(streams)};
+  g_object_set_data_full(G_OBJECT(factory), "cerberus-mount", mount,
+                         [](gpointer gone) { delete static_cast<Mount*>(gone); });
+  g_signal_connect(factory, "media-configure", G_CALLBACK(on_media_configure), mount);
+  g_autoptr(GstRTSPMountPoints) mounts = gst_rtsp_server_get_mount_points(server_.get());
+  gst_rtsp_mount_points_add_factory(mounts, ("/" + stream->name()).c_str(), factory);
+  mounts_.push_back("/" + stream->name() + "  " + kinds);
+  return {};
+}
+
+// With users each request needs one, by HTTP digest; without, only the connection may be protected.
+void RtspServer::protect() {
+  if (settings_.users.empty() && !certificate_) return;
+  g_autoptr(GstRTSPAuth) auth = gst_rtsp_auth_new();
+  g_autoptr(GstRTSPToken) token =
+      gst_rtsp_token_new(GST_RTSP_TOKEN_MEDIA_FACTORY_ROLE, G_TYPE_STRING, kRole, nullptr);
+  if (certificate_) gst_rtsp_auth_set_tls_certificate(auth, certificate_);
+  if (settings_.users.empty()) gst_rtsp_auth_set_default_token(auth, token);
+  gst_rtsp_auth_set_supported_methods(auth, GST_RTSP_AUTH_DIGEST);
+  gst_rtsp_auth_set_realm(auth, "cerberus");
+  for (const publish::User& user : settings_.users)
+    gst_rtsp_auth_add_digest(auth, user.name.c_str(), user.password.c_str(), token);
+  gst_rtsp_server_set_auth(server_.get(), auth);
+}
+
+std::string RtspServer::listen() {
+  server_.reset(gst_rtsp_server_new());
+  gst_rtsp_server_set_address(server_.get(), settings_.address.c_str());
+  gst_rtsp_server_set_service(server_.get(), std::to_string(settings_.port).c_str());
+  protect();
+  for (const auto& stream : streams_)
+    if (std::string wrong = add_mount(stream); !wrong.empty()) return wrong;
+  g_signal_connect(server_.get(), "client-connected", G_CALLBACK(on_client), nullptr);
+
+  g_autoptr(GError) error = nullptr;
+  listener_ = gst_rtsp_server_create_source(server_.get(), nullptr, &error);
+  if (!listener_) {
+    const std::string where = "port " + std::to_string(settings_.port) + " of " + settings_.address;
+    if (g_error_matches(error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE))
+      return where + " is in use: end the program that has it, or take another one (--port 8555)";
+    return where + " cannot be opened: " + error->message;
+  }
+  g_source_attach(listener_, nullptr);
+
+  g_autoptr(GstRTSPSessionPool) sessions = gst_rtsp_server_get_session_pool(server_.get());
+  gst_rtsp_session_pool_set_max_sessions(sessions, kMostSessions);
+  const auto clean = +[](gpointer server) -> gboolean {
+    g_autoptr(GstRTSPSessionPool) pool = gst_rtsp_server_get_session_pool(GST_RTSP_SERVER(server));
+    gst_rtsp_session_pool_cleanup(pool);
+    return G_SOURCE_CONTINUE;
+  };
+  cleaner_ = g_timeout_add_seconds(kCleaningPeriod, clean, server_.get());
+  return {};
+}
+
+int RtspServer::port() const {
+  return gst_rtsp_server_get_bound_port(server_.get());
+}
+
+std::vector<std::string> RtspServer::mounts() const {
+  std::vector<std::string> addresses;
+  const bool six = settings_.address.find(':') != std::string::npos;
+  const std::string host = six ? "[" + settings_.address + "]" : settings_.address;
+  for (const std::string& mount : mounts_)
+    addresses.push_back((certificate_ ? "rtsps://" : "rtsp://") + host + ":" + std::to_string(port()) +
+                        mount);
+  return addresses;
+}
+
+void RtspServer::end() {
+  for (const auto& stream : streams_) stream->end();
+  if (metadata_) metadata_->end();
+}
+
+}  // namespace cerberus::rtsp

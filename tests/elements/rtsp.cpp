@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The RTSP server of pipelines/rtsp, with clients over loopback. What a client gets is compared with what the encoder
+// and onvifmeta gave out in the same process. Nothing here depends on how long anything takes.
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "rtsp_server/rtsp_server.h"
+#include "support.h"
+#include "support/temporary_file.h"
+
+using namespace cerberus::rtsp;
+using cerberus::tests::temporary_file;
+
+namespace {
+
+// For this test only: made with `openssl ca`, for 127.0.0.1, from 2020 to 2120.
+constexpr char kKey[] =
+    "-----BEGIN PRIVATE KEY-----\n"
+    "MIGHAgEAMBMGByqGSM49AgEGCCqGSM49AwEHBG0wawIBAQQgsAe8lxna/MZaHsmh\n"
+    "pUBvGbEgzRYIZlsZP8m3gaXhFhGhRANCAASN4pYdpDLf/xQGpvF/npAyDRnHsf+T\n"
+    "LcSaCRYNvZcfaElA4nx/MCXX0ZI7Fiy+53+bSMco8jK6lHsaIZ9DAJ0Z\n"
+    "-----END PRIVATE KEY-----\n";
+constexpr char kCertificate[] =
+    "-----BEGIN CERTIFICATE-----\n"
+    "MIIBdjCCAR2gAwIBAgIUBnJVqiKWaXo9FgzIEbWabfgwUrAwCgYIKoZIzj0EAwIw\n"
+    "GDEWMBQGA1UEAwwNY2VyYmVydXMtdGVzdDAgFw0yMDAxMDEwMDAwMDBaGA8yMTIw\n"
+    "MDEwMTAwMDAwMFowGDEWMBQGA1UEAwwNY2VyYmVydXMtdGVzdDBZMBMGByqGSM49\n"
+    "AgEGCCqGSM49AwEHA0IABI3ilh2kMt//FAam8X+ekDINGcex/5MtxJoJFg29lx9o\n"
+    "SUDifH8wJdfRkjsWLL7nf5tIxyjyMrqUexohn0MAnRmjQzBBMA8GA1UdEwEB/wQF\n"
+    "MAMBAf8wDwYDVR0RBAgwBocEfwAAATAdBgNVHQ4EFgQU2ZSV+9522PV9ELtVjmOn\n"
+    "0zjG92YwCgYIKoZIzj0EAwIDRwAwRAIgAqWADgcCWMVTGH+aAJVNYYWogEQOmOsj\n"
+    "PRe7FJbzXygCIBnNgsRocVyJNIu/LPgoCuR/YCdP4dWfC30E0PqYZV8W\n"
+    "-----END CERTIFICATE-----\n";
+
+#define ENCODER                                                                               \
+  "videoconvert ! video/x-raw,format=I420 ! x264enc name=encoder tune=zerolatency threads=1 " \
+  "speed-preset=ultrafast key-int-max=250 ! video/x-h264,stream-format=byte-stream ! appsink "
+constexpr char kPlain[] =
+    "videotestsrc is-live=true ! video/x-raw,width=160,height=120,framerate=25/1 ! " ENCODER "name=plain";
+constexpr char kAnnotated[] =
+    "videotestsrc is-live=true pattern=ball ! video/x-raw,width=160,height=120,framerate=25/1 ! motiondetect "
+    "! "
+    "tee name=t t. ! queue ! motionoverlay ! " ENCODER
+    "name=annotated t. ! queue ! onvifmeta name=documents ! appsink name=metadata";
+
+// Serves the default main context until it holds: the patience is that of a hang.
+void wait_for(const char* what, const std::function<bool()>& condition) {
+  const gint64 end = g_get_monotonic_time() + 150 * G_USEC_PER_SEC;
+  while (!condition()) {
+    fail_unless(g_get_monotonic_time() < end, "waited in vain for %s", what);
+    g_main_context_iteration(nullptr, FALSE);
+    g_usleep(2000);
+  }
+}
+
+std::string bytes_of(GstBuffer* buffer) {
+  std::string bytes(gst_buffer_get_size(buffer), '\0');
+  gst_buffer_extract(buffer, 0, bytes.data(), bytes.size());
+  return bytes;
+}
+
+// The coded picture of an access unit in byte-stream format: its slices, without parameter sets and delimiters, which a
+// payloader adds and removes.
+std::string slices_of(const std::string& unit) {
+  const std::string start_code("\0\0\1", 3);
+  std::string slices;
+  for (auto at = unit.find(start_code); at != unit.npos;) {
+    const auto begin = at + 3, next = unit.find(start_code, begin);
+    std::string nal = unit.substr(begin, next == unit.npos ? next : next - begin);
+    while (!nal.empty() && nal.back() == '\0') nal.pop_back();
+    if (!nal.empty() && (nal[0] & 31) >= 1 && (nal[0] & 31) <= 5) slices += nal;
+    at = next;
+  }
+  return slices;
+}
+
+bool is_keyframe(const std::string& slices) {
+  return (slices[0] & 31) == 5;
+}
+
+// What was given out in this order, from other threads.
+class Log {
+ public:
+  void add(std::string text) {
+    const std::lock_guard lock(mutex_);
+    entries_.push_back(std::move(text));
+  }
+  std::vector<std::string> all() const {
+    const std::lock_guard lock(mutex_);
+    return entries_;
+  }
+  std::size_t size() const { return all().size(); }
+
+ private:
+  mutable std::mutex mutex_;
+  std::vector<std::string> entries_;
+};
+
+// A pipeline with this line, served.
+class Served {
+ public:
+  explicit Served(const char* line, ServerSettings settings = {}) {
+    settings.port = 0;
+    g_autoptr(GError) error = nullptr;
+    pipeline_ = gst_parse_launch(line, &error);
+    fail_unless(pipeline_ && !error, "%s", error ? error->message : "");
+    watch("encoder", [](Log& log, GstBuffer* buffer) { log.add(slices_of(bytes_of(buffer))); }, pictures);
+    watch("documents", [](Log& log, GstBuffer* buffer) { log.add(bytes_of(buffer)); }, documents);
+    server_ = std::make_unique<RtspServer>(pipeline_, settings);
+    fail_unless_equals_string(server_->prepare().c_str(), "");
+    gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+    wait_for("the first pictures", [this] { return server_->has_begun(); });
+    wrong = server_->listen();
+  }
+  ~Served() {
+    server_.reset();
+    gst_element_set_state(pipeline_, GST_STATE_NULL);
+    gst_object_unref(pipeline_);
+    gst_rtsp_thread_pool_cleanup();
+  }
+  int port() const { return server_->port(); }
+  std::string address(const std::string& mount, const char* scheme = "rtsp") const {
+    return std::string(scheme) + "://127.0.0.1:" + std::to_string(port()) + "/" + mount;
+  }
+  int encoders() const {
+    int count = 0;
+    GstIterator* all = gst_bin_iterate_recurse(GST_BIN(pipeline_));
+    GValue item = G_VALUE_INIT;
+    while (gst_iterator_next(all, &item) == GST_ITERATOR_OK) {
+      GstElementFactory* factory = gst_element_get_factory(GST_ELEMENT(g_value_get_object(&item)));
+      if (gst_element_factory_list_is_type(factory, GST_ELEMENT_FACTORY_TYPE_ENCODER)) ++count;
+      g_value_unset(&item);
+    }
+    gst_iterator_free(all);
+    return count;
+  }
+  RtspServer& server() { return *server_; }
+
+  Log pictures;   // slices of each frame that the encoder gave out
+  Log documents;  // that onvifmeta gave out
+  std::string wrong;
+
+ private:
+  using Note = void (*)(Log&, GstBuffer*);
+  void watch(const char* element, Note note, Log& log) {
+    g_autoptr(GstElement) found = gst_bin_get_by_name(GST_BIN(pipeline_), element);
+    if (!found) return;
+    g_autoptr(GstPad) pad = gst_element_get_static_pad(found, "src");
+    auto* to = new std::pair<Log*, Note>(&log, note);
+    gst_pad_add_probe(
+        pad, GST_PAD_PROBE_TYPE_BUFFER,
+        [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+          const auto& [into, each] = *static_cast<std::pair<Log*, Note>*>(data);
+          each(*into, GST_PAD_PROBE_INFO_BUFFER(info));
+          return GST_PAD_PROBE_OK;
+        },
+        to, [](gpointer gone) { delete static_cast<std::pair<Log*, Note>*>(gone); });
+  }
+
+  GstElement* pipeline_ = nullptr;
+  std::unique_ptr<RtspServer> server_;
+};
+
+// A player: what it received.
+class Client {
+ public:
+  explicit Client(const std::string& address, const std::string& settings = "",
+                  GTlsDatabase* trusted = nullptr) {
+    const std::string line =
+        "rtspsrc name=source latency=0 location=" + address + " " + settings +
+        " source. ! application/x-rtp,media=video ! rtph264depay ! "
+        "video/x-h264,stream-format=byte-stream,alignment=au ! fakesink name=video async=false sync=false "
+        "signal-handoffs=true source. ! application/x-rtp,media=application ! "
+        "fakesink name=metadata async=false sync=false signal-handoffs=true";
+    g_autoptr(GError) error = nullptr;
+    pipeline_ = gst_parse_launch(line.c_str(), &error);
+    fail_unless(pipeline_ && !error, "%s", error ? error->message : "");
+    if (trusted) {
+      g_autoptr(GstElement) source = gst_bin_get_by_name(GST_BIN(pipeline_), "source");
+      g_object_set(source, "tls-database", trusted, nullptr);
+    }
+    connect("video", G_CALLBACK(+[](GstElement*, GstBuffer* buffer, GstPad*, Client* client) {
+              if (std::string slices = slices_of(bytes_of(buffer)); !slices.empty())
+                client->pictures.add(std::move(slices));
+            }));
+    connect("metadata", G_CALLBACK(+[](GstElement*, GstBuffer* packet, GstPad*, Client* client) {
+              // RTP (RFC 3550): 12 bytes of header where there are neither sources nor extensions
+              const std::string bytes = bytes_of(packet);
+              client->document_ += bytes.substr(12);
+              if (bytes[1] & '\x80') client->documents.add(std::exchange(client->document_, {}));
+            }));
+    gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  }
+  ~Client() {
+    gst_element_set_state(pipeline_, GST_STATE_NULL);
+    gst_object_unref(pipeline_);
+  }
+  // The code of the error that came, if one came.
+  int error() const {
+    g_autoptr(GstBus) bus = gst_element_get_bus(pipeline_);
+    g_autoptr(GstMessage) message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    if (!message) return 0;
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    return error->domain == GST_RESOURCE_ERROR ? error->code : -1;
+  }
+
+  Log pictures, documents;
+
+ private:
+  void connect(const char* name, GCallback handler) {
+    g_autoptr(GstElement) sink = gst_bin_get_by_name(GST_BIN(pipeline_), name);
+    g_signal_connect(sink, "handoff", handler, this);
+  }
+
+  GstElement* pipeline_ = nullptr;
+  std::string document_;  // so far
+};
+
+void wait_for_pictures(const Client& client, std::size_t count) {
+  wait_for("pictures", [&] { return client.pictures.size() >= count; });
+}
+
+// Where the encoder gave out each of these pictures: fails for one that it did not.
+std::vector<std::size_t> places_in(const std::vector<std::string>& encoded,
+                                   const std::vector<std::string>& received) {
+  std::vector<std::size_t> places;
+  for (const std::string& picture : received) {
+    const auto from = encoded.begin() + static_cast<std::ptrdiff_t>(places.empty() ? 0 : places.back() + 1);
+    const auto found = std::find(from, encoded.end(), picture);
+    fail_unless(found != encoded.end(),
+                "a client has a picture that the encoder did not give out in this order");
+    places.push_back(static_cast<std::size_t>(found - encoded.begin()));
+  }
+  return places;
+}
+
+std::size_t first_keyframe(const std::vector<std::string>& pictures) {
+  return static_cast<std::size_t>(std::find_if(pictures.begin(), pictures.end(), is_keyframe) -
+                                  pictures.begin());
+}
+
+bool is_xml(const std::string& text) {
+  const GMarkupParser parser = {};
+  g_autoptr(GMarkupParseContext) context =
+      g_markup_parse_context_new(&parser, static_cast<GMarkupParseFlags>(0), nullptr, nullptr);
+  return g_markup_parse_context_parse(context, text.data(), static_cast<gssize>(text.size()), nullptr) &&
+         g_markup_parse_context_end_parse(context, nullptr);
+}
+
+ServerSettings with_user() {
+  ServerSettings settings;
+  settings.users = {{"anna", "right horse"}};
+  return settings;
+}
+
+std::string prepared(const char* line, const std::string& certificate = "") {
+  ServerSettings settings;
+  settings.certificate = certificate;
+  g_autoptr(GstElement) pipeline = gst_parse_launch(line, nullptr);
+  RtspServer server(pipeline, settings);
+  return server.prepare();
+}
+
+}  // namespace
+
+GST_START_TEST(two_clients_get_the_pictures_of_one_encoder_and_the_second_begins_at_once) {
+  Served served(kAnnotated);
+  fail_unless_equals_string(served.wrong.c_str(), "");
+  Client first(served.address("annotated"), "protocols=udp");
+  wait_for_pictures(first, 30);  // well within the GOP of 250
+  Client second(served.address("annotated"), "protocols=tcp");
+  wait_for("the second client's keyframe", [&] {
+    const auto pictures = second.pictures.all();
+    return first_keyframe(pictures) + 5 < pictures.size();
+  });
+  wait_for("metadata", [&] { return second.documents.size() >= 5; });
+
+  fail_unless_equals_int(served.encoders(), 1);
+  const auto of_first = first.pictures.all(), of_second = second.pictures.all();
+  const auto encoded = served.pictures.all();
+  const auto places = places_in(encoded, of_first), second_places = places_in(encoded, of_second);
+  fail_unless(is_keyframe(of_first[0]));
+  // Frames from the moment that the second one plays to its first keyframe. Without asking for one there are more than
+  // 200, as the next one of the GOP comes 250 frames after that of the first client.
+  const auto waited = second_places[first_keyframe(of_second)] - second_places[0];
+  fail_unless(waited < 100, "the second client waited for %d frames", static_cast<int>(waited));
+  const std::set<std::size_t> had_first(places.begin(), places.end());
+  fail_unless(
+      std::ranges::any_of(second_places, [&](std::size_t place) { return had_first.contains(place); }),
+      "the two have no picture in common");
+
+  const auto made = served.documents.all();
+  for (const std::string& document : second.documents.all()) {
+    fail_unless(is_xml(document), "no XML: %s", document.c_str());
+    fail_unless(std::ranges::count(made, document) > 0, "onvifmeta did not write %s", document.c_str());
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_mount_that_everybody_left_is_served_again) {
+  Served served(kPlain);
+  for (int k = 0; k < 2; ++k) {
+    Client client(served.address("plain"), "protocols=tcp");
+    wait_for_pictures(client, 5);
+    const auto received = client.pictures.all();
+    fail_unless(is_keyframe(received[0]));
+    places_in(served.pictures.all(), received);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(only_a_user_with_the_right_password_plays) {
+  Served served(kPlain, with_user());
+  const std::string address = served.address("plain");
+  for (const char* login : {"", "user-id=anna user-pw=wrong", "user-id=bo user-pw=\"right horse\""}) {
+    Client client(address, login);
+    int error = 0;
+    wait_for("a refusal", [&] { return (error = client.error()) != 0; });
+    fail_unless_equals_int(error, GST_RESOURCE_ERROR_NOT_AUTHORIZED);
+    fail_unless_equals_int(client.pictures.size(), 0);
+  }
+  Client client(address, "user-id=anna user-pw=\"right horse\"");
+  wait_for_pictures(client, 3);
+}
+GST_END_TEST
+
+GST_START_TEST(tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear) {
+  if (!g_tls_backend_supports_tls(g_tls_backend_get_default())) {
+    g_print("skipped: TLS needs glib-networking\n");
+    return;
+  }
+  ServerSettings settings = with_user();
+  settings.certificate = temporary_file(kCertificate);
+  settings.key = temporary_file(kKey);
+  {
+    Served served(kPlain, settings);
+    fail_unless_equals_string(served.wrong.c_str(), "");
+    g_autoptr(GTlsDatabase) trusted = g_tls_file_database_new(settings.certificate.c_str(), nullptr);
+    const std::string login = "user-id=anna user-pw=\"right horse\" ";
+    Client client(served.address("plain", "rtsps"), login, trusted);
+    wait_for_pictures(client, 3);
+    // Nothing travels beside the encrypted connection, and nothing is served without it.
+    for (const auto& [scheme, protocols] : {std::pair("rtsps", "protocols=udp"), {"rtsp", "protocols=tcp"}}) {
+      Client other(served.address("plain", scheme), login + protocols, trusted);
+      wait_for("a refusal", [&] { return other.error() != 0; });
+      fail_unless_equals_int(other.pictures.size(), 0);
+    }
+  }
+  const std::string keyless = prepared("videotestsrc ! appsink", settings.certificate);
+  const std::string expected = "the certificate " + settings.certificate +
+                               " cannot be used: No PEM-encoded private key found (--key names another file)";
+  fail_unless_equals_string(keyless.c_str(), expected.c_str());
+  std::remove(settings.certificate.c_str());
+  std::remove(settings.key.c_str());
+}
+GST_END_TEST
+
+GST_START_TEST(what_cannot_be_served_is_named) {
+  Served served(kPlain);
+  g_autoptr(GstElement) second = gst_parse_launch(kPlain, nullptr);
+  ServerSettings settings;
+  settings.port = served.port();
+  {
+    RtspServer server(second, settings);
+    fail_unless_equals_string(server.prepare().c_str(), "");
+    gst_element_set_state(second, GST_STATE_PLAYING);
+    wait_for("the first pictures", [&] { return server.has_begun(); });
+    fail_unless(server.listen().find("port " + std::to_string(served.port()) + " of 127.0.0.1 is in use") ==
+                0);
+    gst_element_set_state(second, GST_STATE_NULL);
+  }
+  Served raw("videotestsrc is-live=true ! video/x-raw,width=32,height=32 ! appsink name=raw");
+  fail_unless_equals_string(
+      raw.wrong.c_str(),
+      "the stream raw is video/x-raw, which is not sent over RTSP: encode it as H.264, H.265, "
+      "VP8, VP9 or JPEG");
+  fail_unless(prepared("videotestsrc ! fakesink").find("the line has no appsink") == 0);
+  fail_unless(prepared("videotestsrc ! appsink name=a/b").find("the appsink \"a/b\" cannot be a mount") == 0);
+  const std::string wrong = prepared("videotestsrc ! appsink", "/no/such/file.pem");
+  fail_unless(wrong.find("the certificate /no/such/file.pem cannot be used: ") == 0, "%s", wrong.c_str());
+}
+GST_END_TEST
+
+static Suite* rtsp_suite() {
+  Suite* suite = suite_create("rtsp");
+  TCase* cases = tcase_create("general");
+  tcase_set_timeout(cases, 200);
+  tcase_add_test(cases, two_clients_get_the_pictures_of_one_encoder_and_the_second_begins_at_once);
+  tcase_add_test(cases, a_mount_that_everybody_left_is_served_again);
+  tcase_add_test(cases, only_a_user_with_the_right_password_plays);
+  tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
+  tcase_add_test(cases, what_cannot_be_served_is_named);
+  suite_add_tcase(suite, cases);
+  return suite;
+}
+
+GST_CHECK_MAIN(rtsp)
