@@ -63,7 +63,7 @@ std::string Passwords::state() const {
 std::string Passwords::set(Role role, std::string_view password) {
   if (role == Role::none) return "there is no such role";
   if (password.size() < kShortest || password.size() > kLongest)
-    return "a password has " + std::to_string(kShortest) + " to " + std::to_string(kLongest) + " letters";
+    return "a password has " + std::to_string(kShortest) + " to " + std::to_string(kLongest) + " characters";
   std::string hash = hashed(password, parameters_);
   if (hash.empty()) return "the system has no memory or no random numbers for a password";
   hashes_[static_cast<std::size_t>(role)] = std::move(hash);

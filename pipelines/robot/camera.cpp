@@ -414,7 +414,10 @@ void Camera::tick() {
   const guint64 frames = frames_;
   if (frames != counted_) last_frame_ = now;
   const double interval = std::chrono::duration<double>(now - last_tick_).count();
-  if (interval > 0) rate_ = static_cast<double>(frames - counted_) / interval;
+  if (pipeline_ == nullptr)
+    rate_ = 0;
+  else if (interval > 0)
+    rate_ = static_cast<double>(frames - counted_) / interval;
   counted_ = frames;
   last_tick_ = now;
 

@@ -21,7 +21,7 @@ constexpr std::size_t kMostPasswords = 4096;  // bytes of the file
 // Nothing but what this page brings itself is loaded or framed.
 constexpr const char* kHeaders[][2] = {
     {"Content-Security-Policy",
-     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; media-src 'self'; "
+     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob: data:; media-src 'self'; "
      "connect-src "
      "'self'; form-action 'self'; frame-ancestors 'none'; base-uri 'none'"},
     {"X-Frame-Options", "DENY"},

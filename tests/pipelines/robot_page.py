@@ -14,8 +14,6 @@ import time
 
 from page_client import PATIENCE, Page, Socket
 
-CERBERUSD = sys.argv[1]
-
 
 def free_port():
     with socket.socket() as probe:
@@ -224,7 +222,7 @@ def main():
         folder, port = pathlib.Path(name), free_port()
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(port)))
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
-            process = subprocess.Popen([CERBERUSD, folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
+            process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
             try:
                 one_time = wait_until('the one-time password', lambda: re.search(
                     r'One-time password .*: ([0-9a-f]{16})\n', (folder / 'log').read_text()))[1]
@@ -256,4 +254,5 @@ def main():
                 process.kill()
 
 
-main()
+if __name__ == '__main__':
+    main()

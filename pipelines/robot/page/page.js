@@ -133,7 +133,15 @@ const mine = () => state && state.cameras.find((camera) => camera.name === camer
 const about = () => hello && hello.cameras.find((camera) => camera.name === cameraName);
 const isRecording = () => state.cameras.some((camera) => camera.recording);
 
+at('set-password').addEventListener('submit', async (event) => {
+  event.preventDefault();
+  const done = await post('/password', {user: at('whose').value, password: at('theirs').value});
+  at('theirs').value = '';
+  say(done.ok ? `The password of the ${at('whose').value} is set.` : done.text);
+});
+
 function enableButtons() {
+  at('passwords').hidden = !may('owner');
   const steer = may('operator') && about() && about().head;
   for (const button of document.querySelectorAll('#steering button, #speed')) button.disabled = !steer;
   for (const button of document.querySelectorAll('[data-mode]')) {
@@ -153,6 +161,7 @@ function showState() {
   if (!camera) return;
   if (state.mode === 'privacy') {
     veil('Privacy: nothing is shown or recorded.');
+    pen.clearRect(0, 0, picture.width, picture.height);
     facts = null;
     drawRadar();
   } else if (camera.state !== 'running') {
@@ -187,6 +196,7 @@ async function onPicture(data) {
     if (picture.width !== image.width || picture.height !== image.height) {
       picture.width = image.width;
       picture.height = image.height;
+      picture.style.setProperty('--shape', image.width / image.height);
     }
     pen.drawImage(image, 0, 0);
     image.close();
@@ -242,8 +252,13 @@ function stop() {
   move = null;
   send('stop');
 }
-at('stop').addEventListener('pointerdown', () => { if (!at('stop').disabled) stop(); });
-at('stop').addEventListener('click', stop);
+for (const button of [at('stop'), at('stop-too')]) {
+  // At the touch; a click that follows one is not a second stop, one of the keyboard is the first.
+  button.addEventListener('pointerdown', () => { if (!button.disabled) stop(); });
+  button.addEventListener('click', (event) => { if (event.detail === 0) stop(); });
+}
+new IntersectionObserver((seen) => { at('stop-too').hidden = at('stop').disabled || seen[0].isIntersecting; })
+  .observe(at('stop'));
 at('auto').addEventListener('click', () => send('auto'));
 at('home').addEventListener('click', () => send('home'));
 for (const button of document.querySelectorAll('[data-mode]'))
@@ -370,7 +385,9 @@ function drawRadar() {
   for (const one of facts && facts.objects || []) {
     // Without a known lens the place in the picture gives the bearing.
     const aside = one.bearing !== null ? one.bearing : ((one.x + one.w / 2) / facts.width - .5) * (is.fov || 60);
-    const [x, y] = place(pan + aside, one.distance !== null ? Math.min(1, one.distance / 12) : .6);
+    // ... and the feet's height in the picture stands for the distance.
+    const [x, y] = place(pan + aside, one.distance !== null ? Math.min(1, one.distance / 12)
+      : .95 - .65 * Math.min(1, (one.y + one.h) / facts.height));
     draw.fillStyle = colour('--text');
     draw.beginPath();
     draw.arc(x, y, 5, 0, 2 * Math.PI);
