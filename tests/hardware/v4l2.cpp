@@ -102,8 +102,8 @@ END_TEST
 
 START_TEST(it_stands_when_the_pipeline_is_killed) {
   const Camera camera;
-  Clock::duration least = 1h, most{};
-  for (int round = 0; round < 5; ++round) {
+  std::vector<Clock::duration> times;
+  for (int round = 0; round < kills(); ++round) {
     camera.set(kPan, 0);
     const pid_t pipeline = ::fork();
     if (pipeline == 0) {
@@ -118,18 +118,14 @@ START_TEST(it_stands_when_the_pipeline_is_killed) {
     for (const auto end = Clock::now() + 60s; camera.pan() == 0 && Clock::now() < end;)
       std::this_thread::sleep_for(1ms);
     ck_assert_int_ne(camera.pan(), 0);
-    std::this_thread::sleep_for(std::chrono::milliseconds(37 * round));
+    std::this_thread::sleep_for(std::chrono::milliseconds(37 * round % 400));
     ::kill(pipeline, SIGKILL);
     const auto killed = Clock::now();
     ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
-    const auto took = camera.rest() - killed;
+    times.push_back(std::max(Clock::duration::zero(), camera.rest() - killed));
     ck_assert_int_lt(camera.pan(), 170 * kDegree);
-    least = std::min(least, took);
-    most = std::max(most, took);
   }
-  std::printf("killed pipeline: the camera stands after %.0f to %.0f ms\n", milliseconds(least),
-              milliseconds(most));
-  ck_assert(least < 500ms);  // promised; of many rounds on an emulated machine one must keep it
+  ck_assert(report_kills("camera stands", times));
 }
 END_TEST
 
@@ -172,5 +168,5 @@ int main(int argc, char** argv) {
       {a_move_of_90_degrees_arrives_and_never_turns_back, a_stop_leaves_it_on_its_way,
        it_stands_when_the_pipeline_is_killed, a_locked_zoom_is_set,
        a_camera_that_is_unplugged_is_reported_and_used_again},
-      120);
+      120 + 4 * kills());
 }

@@ -92,6 +92,30 @@ START_TEST(angles_become_pulses) {
 }
 END_TEST
 
+// With the pulse that follows the command, and not with one that repeats the last.
+START_TEST(a_motion_from_rest_begins_at_once_and_goes_on_evenly) {
+  Chip chip;
+  ServoHead head(options(chip, "channel=0"));
+  head.open(setup(), 0s);
+  head.move({Kind::position, 0, 10}, {}, 0s);
+  Time now = run(head, 0s, 510ms);  // between two periods
+  ck_assert_int_eq(chip.read("duty_cycle"), 1500000);
+  head.move({Kind::position, 0, 10}, {}, now);  // nothing to move yet
+  head.move({Kind::velocity, radians(60), 0}, {}, now);
+  head.tick(now);
+  // 600 degrees a second squared for 20 ms: .12 degrees = 1.33 us.
+  ck_assert_int_eq(chip.read("duty_cycle"), 1501333);
+  for (long last = 1501333, step = 0; now < 700ms;) {
+    now = run(head, now, 20ms);
+    const long width = chip.read("duty_cycle");
+    ck_assert_int_ge(width - last, step - 2000);  // it speeds up to 13.3 us a period and never goes back
+    ck_assert_int_ge(width, last);
+    step = width - last;
+    last = width;
+  }
+}
+END_TEST
+
 START_TEST(the_pulse_turns_no_faster_than_allowed) {
   Chip chip;
   ServoHead head(options(chip, "channel=0 slew=30"));
@@ -233,11 +257,12 @@ START_TEST(limits_beyond_the_servo_and_a_missing_chip_are_named) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("servo_head",
-                                    {angles_become_pulses, the_pulse_turns_no_faster_than_allowed,
-                                     pulses_end_whole_and_begin_with_the_width_they_ended_with,
-                                     a_stop_brakes_and_holds_and_the_end_gives_no_pulse,
-                                     a_stop_does_not_bring_a_servo_back_within_limits_that_were_moved,
-                                     a_chip_that_returns_without_its_channel_holds_up_nothing,
-                                     limits_beyond_the_servo_and_a_missing_chip_are_named});
+  return cerberus::tests::run_suite(
+      "servo_head",
+      {angles_become_pulses, a_motion_from_rest_begins_at_once_and_goes_on_evenly,
+       the_pulse_turns_no_faster_than_allowed, pulses_end_whole_and_begin_with_the_width_they_ended_with,
+       a_stop_brakes_and_holds_and_the_end_gives_no_pulse,
+       a_stop_does_not_bring_a_servo_back_within_limits_that_were_moved,
+       a_chip_that_returns_without_its_channel_holds_up_nothing,
+       limits_beyond_the_servo_and_a_missing_chip_are_named});
 }

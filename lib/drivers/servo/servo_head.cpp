@@ -100,6 +100,8 @@ HeadAbilities ServoHead::abilities() const {
 void ServoHead::order(Axis& axis, const AxisCommand& command, Time now) {
   axis.command = command;
   if (!axis.there()) return;
+  const bool rests = axis.enabled && axis.width != Time::zero() && !axis.moves;
+  axis.begins = rests || (axis.begins && axis.moves);
   axis.plan = motion::Plan::make(now, axis.plan.at(now), command, axis.limits);
   axis.moves = axis.plan.end() > now || (!axis.known && command.kind != AxisCommand::Kind::hold);
   axis.rest_since = now;
@@ -168,7 +170,9 @@ void ServoHead::drive(Axis& axis, Time now) {
   if (moves || std::exchange(axis.moves, moves)) {  // at its end, too
     axis.rest_since = now;
     axis.moves = moves;
-    const Time width = axis.options.pulse_at(axis.plan.at(now).position);
+    // Where the plan begins the width would be the one at rest: the first pulse is that of the next period.
+    const Time ahead = std::exchange(axis.begins, false) ? options_.period : Time::zero();
+    const Time width = axis.options.pulse_at(axis.plan.at(now + ahead).position);
     if (width != axis.width) axis.error = axis.channel.set_width(width);
     axis.width = width;
     if (!axis.enabled && axis.error == 0) axis.error = axis.channel.enable(true);

@@ -47,7 +47,8 @@ class ServoHead final : public HeadDevice {
     motion::Plan plan;
     Time width{};  // in force; 0: no pulses
     bool enabled = false, moves = false;
-    bool known = false;  // a pulse was given: the servo is where the plan is
+    bool begins = false;  // a motion from rest, of which no pulse was given yet
+    bool known = false;   // a pulse was given: the servo is where the plan is
     Time rest_since{};
     int quiet_periods = 0;  // since the width became 0
     int error = 0;
