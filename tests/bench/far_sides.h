@@ -145,11 +145,13 @@ class ServoSide final : public ChangingSide {
  protected:
   long value() override {
     char text[32] = {};
-    return ::pread(width_, text, sizeof text - 1, 0) > 0 ? std::atol(text) : 0;
+    const long width = ::pread(width_, text, sizeof text - 1, 0) > 0 ? std::atol(text) : 0;
+    return pulse_ = width > 0 ? width : pulse_;  // the end of the pulses turns nothing
   }
 
  private:
   std::string folder_;
+  long pulse_ = 0;
   int width_ = -1;
 };
 

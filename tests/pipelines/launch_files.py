@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """Runs the launch files of pipelines/, with a test source in place of the camera and files in place of screens.
 
-    launch_files.py NAME live|file|444|parsed [SERVER]
+    launch_files.py NAME live|file|444|parsed|head [SERVER]
 
 The source is a bouncing ball: grey, so that any colour in the result was drawn by motionoverlay, and moving, so that
 objects are found. Where people are told by their size, it has the shape of one. Networks are the loopback, on ports
@@ -405,10 +405,45 @@ def test_hardware(_):
     assert status == 2 and 'v4l2h264enc (package' in said and 'openh264enc (package' in said, said
 
 
+def servo_head():
+    """The variables of a head of two servos, on files in place of the kernel's PWM chip."""
+    for channel in ('pwm0', 'pwm1'):
+        folder = pathlib.Path('pwm', channel)
+        folder.mkdir(parents=True)
+        for name in ('period', 'duty_cycle', 'enable'):
+            (folder / name).write_text('0\n', 'ascii')
+    options = "pan='channel=0 pulse=500,2500 range=-90,90' tilt='channel=1'"
+    return {'HEAD': f'driver=servo-pwm device={os.getcwd()}/pwm device-options="{options}" latency=80000000',
+            'PAN': 85, 'TILT': 30}
+
+
+def real_head(sensors):
+    """The robot turns a head of servos to the sensor that fires, until it is interrupted."""
+    nobody = f'videotestsrc is-live=true pattern=black ! video/x-raw,width={WIDTH},height={HEIGHT},framerate=25/1'
+    process = start('robot', SOURCE=nobody, SENSORS=sensors, FILE='out.mkv', JSON='out.jsonl', PORT=9, **servo_head())
+    width = pathlib.Path('pwm/pwm0/duty_cycle')
+    end = time.monotonic() + LIMIT
+    while time.monotonic() < end and process.poll() is None:
+        if int(width.read_text('ascii').split()[0]) > 1600000:  # 1500 us is straight ahead, 11 us a degree
+            break
+        time.sleep(0.02)
+    else:
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        output = process.communicate()[0]
+        sys.exit(f'the servo was not turned to the right\n{output}')
+    os.killpg(process.pid, signal.SIGINT)
+    finish(process)
+    enabled = pathlib.Path('pwm/pwm0/enable').read_text('ascii').split()[0]
+    assert enabled == '0', 'the servo gets pulses after the end'
+
+
 def test_robot(kind):
     """With a recording in place of the sensors. The stream drops what is late: all that is sure is that it begins."""
     pathlib.Path('pir.csv').write_text('0,0,0,0\n0.4,0,0,1\n600,0,0,1\n', 'ascii')
-    sensors = f'pirsrc driver=replay location=pir.csv is-live={kind == "live"}'
+    sensors = f'pirsrc driver=replay location=pir.csv is-live={kind != "file"}'
+    if kind == 'head':
+        return real_head(sensors)
     with contextlib.closing(socket.socket(socket.AF_INET, socket.SOCK_DGRAM)) as stream:
         stream.bind(('127.0.0.1', 0))
         stream.settimeout(LIMIT)
