@@ -207,10 +207,11 @@ def check_launch_file(path):
 
 
 def check_commands():
-    for command in ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run', 'docs/generate'):
+    explained = ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run')
+    for command in (*explained, 'docs/generate'):
         if not os.access(TOP / command, os.X_OK):
             complain(TOP / command, 'cannot be run')
-    for command in ('pipelines/demo', 'pipelines/encoder', 'pipelines/rtsp', 'pipelines/run', 'pipelines/setup', 'tests/run'):
+    for command in explained:
         done = subprocess.run([TOP / command, '--help'], capture_output=True, text=True, timeout=20)
         if done.returncode != 0 or len(done.stdout) < 100:
             complain(TOP / command, 'does not explain itself when asked with --help')
