@@ -25,7 +25,8 @@ namespace {
 
 constexpr int kUsualKills = 8;
 constexpr char kInto[] = "CERBERUS_RECORD_INTO";  // the folder, for the program that is to be killed
-constexpr int kReports = 9;                       // its file descriptor
+constexpr char kRecorded[] = "CERBERUS_RECORDED", kRecordedIn[] = "CERBERUS_RECORDED_IN";
+constexpr int kReports = 9;  // its file descriptor
 
 }  // namespace
 
@@ -201,12 +202,28 @@ GST_START_TEST(a_killed_recorder_loses_nothing_that_it_acknowledged) {
 }
 GST_END_TEST
 
+// After power cuts, for tests/hardware/power_cut.py: of what was acknowledged each line has first frame, last frame, file.
+GST_START_TEST(what_was_acknowledged_before_a_power_cut_is_whole) {
+  std::vector<Acknowledged> all;
+  std::ifstream reports(getenv(kRecorded));
+  Acknowledged next;
+  while (reports >> next.first >> next.last >> next.file) all.push_back(next);
+  fail_unless(!all.empty());
+  const std::string folder = getenv(kRecordedIn);
+  check_acknowledged(all, folder);
+  check_restart(folder);
+  check_acknowledged(all, folder);
+}
+GST_END_TEST
+
 static Suite* recorder_killed_suite() {
   Suite* suite = suite_create("recorder killed");
   TCase* tests = tcase_create("killed");
   tcase_set_timeout(tests, getenv("CERBERUS_KILLS") ? 1000 : 60);
   if (getenv(kInto))
     tcase_add_test(tests, records_until_killed);
+  else if (getenv(kRecorded))
+    tcase_add_test(tests, what_was_acknowledged_before_a_power_cut_is_whole);
   else
     tcase_add_test(tests, a_killed_recorder_loses_nothing_that_it_acknowledged);
   suite_add_tcase(suite, tests);
