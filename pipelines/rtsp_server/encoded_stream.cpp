@@ -21,7 +21,9 @@ GstBuffer* in_running_time(GstBuffer* buffer, const GstSegment* segment) {
 
 }  // namespace
 
-EncodedStream::EncodedStream(GstAppSink* sink) : sink_(GST_APP_SINK(gst_object_ref(sink))) {
+EncodedStream::EncodedStream(GstAppSink* sink, GstElement* valve)
+    : sink_(GST_APP_SINK(gst_object_ref(sink))),
+      valve_(valve ? GST_ELEMENT(gst_object_ref(valve)) : nullptr) {
   // Frames are sent when they come; a stream without frames keeps no other one from starting.
   g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   GstAppSinkCallbacks callbacks = {};
@@ -48,11 +50,19 @@ void EncodedStream::add(GstAppSrc* receiver) {
   const std::lock_guard lock(mutex_);
   gst_app_src_set_caps(receiver, caps_);
   receivers_.push_back({Ref<GstAppSrc>(GST_APP_SRC(gst_object_ref(receiver))), {}});
+  set_valve();
 }
 
 void EncodedStream::remove(GstAppSrc* receiver) {
   const std::lock_guard lock(mutex_);
   std::erase_if(receivers_, [receiver](const Receiver& each) { return each.source.get() == receiver; });
+  set_valve();
+}
+
+// The stream begins in any case: its caps are part of a mount's description. (The valve asks upstream for a new
+// negotiation, which does not lead here.)
+void EncodedStream::set_valve() {
+  if (valve_) g_object_set(valve_.get(), "drop", caps_ && receivers_.empty(), nullptr);
 }
 
 void EncodedStream::play(GstAppSrc* receiver) {
@@ -110,6 +120,7 @@ void EncodedStream::deliver(GstSample* sample) {
     if (!caps_ || !gst_caps_is_equal(caps_, gst_sample_get_caps(sample))) {
       gst_caps_replace(&caps_, gst_sample_get_caps(sample));
       for (const Receiver& each : receivers_) gst_app_src_set_caps(each.source.get(), caps_);
+      set_valve();
     }
     for (Receiver& each : receivers_) {
       const auto waiting = gst_app_src_get_current_level_buffers(each.source.get());

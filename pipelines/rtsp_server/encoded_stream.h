@@ -25,8 +25,9 @@ using Ref = std::unique_ptr<T, Unref>;
 
 class EncodedStream {
  public:
-  // `sink` is an appsink of the pipeline; its frames come here from now on.
-  explicit EncodedStream(GstAppSink* sink);
+  // `sink` is an appsink of the pipeline; its frames come here from now on. `valve` (or null) is in front of its encoder:
+  // it is closed while there is no receiver, which costs nothing then.
+  EncodedStream(GstAppSink* sink, GstElement* valve);
   ~EncodedStream();
   EncodedStream(const EncodedStream&) = delete;
   EncodedStream& operator=(const EncodedStream&) = delete;
@@ -54,9 +55,11 @@ class EncodedStream {
 
   static GstFlowReturn on_sample(GstAppSink* sink, gpointer stream);
   void deliver(GstSample* sample);
+  void set_valve();
   void ask_for_keyframe();
 
   Ref<GstAppSink> sink_;
+  Ref<GstElement> valve_;
   mutable std::mutex mutex_;  // all below
   GstCaps* caps_ = nullptr;
   std::vector<Receiver> receivers_;

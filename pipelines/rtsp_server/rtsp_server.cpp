@@ -140,7 +140,9 @@ std::string RtspServer::prepare() {
   GstBin* bin = GST_BIN(pipeline_);
   for (GList* child = g_list_last(bin->children); child; child = child->prev) {
     if (!GST_IS_APP_SINK(child->data)) continue;
-    auto stream = std::make_shared<EncodedStream>(GST_APP_SINK(child->data));
+    g_autofree gchar* valve_name = g_strdup_printf("%s-valve", GST_OBJECT_NAME(child->data));
+    g_autoptr(GstElement) valve = gst_bin_get_by_name(bin, valve_name);
+    auto stream = std::make_shared<EncodedStream>(GST_APP_SINK(child->data), valve);
     if (stream->name() == kMetadata)
       metadata_ = stream;
     else if (fits_address(stream->name()))

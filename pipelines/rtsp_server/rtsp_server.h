@@ -21,7 +21,8 @@ struct ServerSettings {
 };
 
 // Each appsink of the pipeline is a mount of its name: `appsink name=annotated` is rtsp://ADDRESS:PORT/annotated. One
-// called `metadata` is no mount but the second stream of all others. Clients of a mount share one pipeline without an
+// called `metadata` is no mount but the second stream of all others. A `valve name=annotated-valve` before the encoder is
+// closed while the mount has no client. Clients of a mount share one pipeline without an
 // encoder, which EncodedStream feeds.
 class RtspServer {
  public:

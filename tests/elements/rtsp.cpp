@@ -42,6 +42,9 @@ constexpr char kCertificate[] =
   "speed-preset=ultrafast key-int-max=250 ! video/x-h264,stream-format=byte-stream ! appsink "
 constexpr char kPlain[] =
     "videotestsrc is-live=true ! video/x-raw,width=160,height=120,framerate=25/1 ! " ENCODER "name=plain";
+constexpr char kIdle[] =
+    "videotestsrc is-live=true ! video/x-raw,width=160,height=120,framerate=25/1 ! "
+    "valve name=plain-valve drop-mode=forward-sticky-events ! " ENCODER "name=plain";
 constexpr char kAnnotated[] =
     "videotestsrc is-live=true pattern=ball ! video/x-raw,width=160,height=120,framerate=25/1 ! motiondetect "
     "! "
@@ -139,7 +142,12 @@ class Served {
     gst_iterator_free(all);
     return count;
   }
-  RtspServer& server() { return *server_; }
+  bool is_idle() const {
+    g_autoptr(GstElement) valve = gst_bin_get_by_name(GST_BIN(pipeline_), "plain-valve");
+    gboolean closed = FALSE;
+    g_object_get(valve, "drop", &closed, nullptr);
+    return closed;
+  }
 
   Log pictures;   // slices of each frame that the encoder gave out
   Log documents;  // that onvifmeta gave out
@@ -303,11 +311,13 @@ GST_START_TEST(two_clients_get_the_pictures_of_one_encoder_and_the_second_begins
 }
 GST_END_TEST
 
-GST_START_TEST(a_mount_that_everybody_left_is_served_again) {
-  Served served(kPlain);
+GST_START_TEST(a_mount_that_every_client_left_encodes_nothing_and_is_served_again) {
+  Served served(kIdle);
   for (int k = 0; k < 2; ++k) {
+    wait_for("an idle encoder", [&] { return served.is_idle(); });
     Client client(served.address("plain"), "protocols=tcp");
     wait_for_pictures(client, 5);
+    fail_unless(!served.is_idle());
     const auto received = client.pictures.all();
     fail_unless(is_keyframe(received[0]));
     places_in(served.pictures.all(), received);
@@ -392,7 +402,7 @@ static Suite* rtsp_suite() {
   TCase* cases = tcase_create("general");
   tcase_set_timeout(cases, 200);
   tcase_add_test(cases, two_clients_get_the_pictures_of_one_encoder_and_the_second_begins_at_once);
-  tcase_add_test(cases, a_mount_that_everybody_left_is_served_again);
+  tcase_add_test(cases, a_mount_that_every_client_left_encodes_nothing_and_is_served_again);
   tcase_add_test(cases, only_a_user_with_the_right_password_plays);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
   tcase_add_test(cases, what_cannot_be_served_is_named);

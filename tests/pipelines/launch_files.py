@@ -357,7 +357,7 @@ def test_rtsp(kind, program, example=None):
     recorder = ('eventrecorder name=recorder location=recordings coded. ! queue ! h264parse ! recorder.video '
                 't. ! queue ! recorder.analysis')
     server = start('rtsp', '--with', program, '--pass', '--port=0', '--pass', '--users=users', SOURCE=endless(kind),
-                   RECORDER=recorder)
+                   RECORDER=recorder, IDLE='identity')
     addresses = [server.stdout.readline().split()[0] for _ in range(2)]
     assert [address.rsplit('/', 1)[1] for address in addresses] == ['plain', 'annotated'], addresses
     login = 'user-id=anna user-pw=secret'
