@@ -2,14 +2,30 @@
 // Drawn people and drawn boxes on frames, and regions on them: which of them are persons.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "outputs.h"
+#include "support/onnx.h"
+#include "support/temporary_file.h"
 
 using namespace outputs;
 
 namespace {
+
+// A file with this text, until the end of its life.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const std::string& text) : path_(cerberus::tests::temporary_file(text)) {}
+  ~TemporaryFile() { std::remove(path_.c_str()); }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+};
 
 constexpr int kWide = 320, kHigh = 240;
 constexpr guint8 kWall = 170, kDark = 60;
@@ -217,6 +233,53 @@ GST_START_TEST(regions_of_interest_of_other_elements_are_verified_too) {
 }
 GST_END_TEST
 
+// A network that sees a person of 16 x 60 in the middle of every picture of 64 x 64.
+GST_START_TEST(a_model_of_the_users_finds_people_in_place_of_the_usual_detector) {
+  const TemporaryFile model(cerberus::tests::onnx::constant_yolo(64, {32, 32, 16, 60, 0.1f, 0.9f})),
+      labels("cat\nperson\r\n");
+  Verifier verifier(("model=" + model.path() + " labels=" + labels.path()).c_str());
+  // A look is as wide as the track and .7 of its height, and 1.28 times as high: 180 x 115 pixels, 2.8 for each of the network's.
+  const auto found = regions_after(verifier, 8, {}, true, {region(3, 100, 80, 117, 90)});
+  const auto person = std::ranges::find_if(found, [](const CerberusRegion& r) { return r.person; });
+  fail_unless(person != found.end());
+  fail_unless(std::abs(person->width / person->height - 16.0 / 60) < 0.03, "%.0fx%.0f", person->width,
+              person->height);
+}
+GST_END_TEST
+
+GST_START_TEST(a_wrong_model_is_an_error_that_names_it) {
+  namespace onnx = cerberus::tests::onnx;
+  const TemporaryFile good(onnx::constant_yolo(64, {32, 32, 16, 60, 0.9f})), text("not a model"),
+      labels("cat\ndog\n"), shapeless(onnx::model(onnx::bytes(11, onnx::value_info("x", {1, 3, 0, 0})))),
+      strange(onnx::constant_yolo(64, {1, 2, 3, 4}));
+  const struct {
+    std::string properties, says;
+  } cases[] = {{"model=/nowhere.onnx", "/nowhere.onnx cannot be read"},
+               {"model=" + text.path(), text.path() + " is no ONNX file"},
+               {"model=" + shapeless.path(), "fixed size"},
+               {"model=" + strange.path(), "not those of a YOLO or SSD"},
+               {"model=" + good.path() + " labels=/nowhere.txt", "/nowhere.txt cannot be read"},
+               {"model=" + good.path() + " labels=" + labels.path(), "no line that says person"}};
+  for (const auto& each : cases) {
+    GstElement* element = gst_parse_launch(("personverify " + each.properties).c_str(), nullptr);
+    GstBus* bus = gst_bus_new();
+    gst_element_set_bus(element, bus);
+    fail_unless_equals_int(gst_element_set_state(element, GST_STATE_PAUSED), GST_STATE_CHANGE_FAILURE);
+    GstMessage* message = gst_bus_pop_filtered(bus, GST_MESSAGE_ERROR);
+    fail_unless(message != nullptr);
+    GError* error = nullptr;
+    gst_message_parse_error(message, &error, nullptr);
+    fail_unless(g_strstr_len(error->message, -1, each.says.c_str()), "%s", error->message);
+    g_clear_error(&error);
+    gst_message_unref(message);
+    gst_element_set_bus(element, nullptr);
+    gst_element_set_state(element, GST_STATE_NULL);
+    gst_object_unref(element);
+    gst_object_unref(bus);
+  }
+}
+GST_END_TEST
+
 GST_START_TEST(after_a_flush_and_with_other_caps_it_begins_anew) {
   Verifier verifier("");
   regions_after(verifier, 8, {140}, false, {person_track(7, 140)});
@@ -245,6 +308,8 @@ Suite* personverify_suite() {
   tcase_add_test(tests, the_first_look_is_put_off_by_the_phase);
   tcase_add_test(tests, live_no_frame_waits_and_the_result_comes_later);
   tcase_add_test(tests, regions_of_interest_of_other_elements_are_verified_too);
+  tcase_add_test(tests, a_model_of_the_users_finds_people_in_place_of_the_usual_detector);
+  tcase_add_test(tests, a_wrong_model_is_an_error_that_names_it);
   tcase_add_test(tests, after_a_flush_and_with_other_caps_it_begins_anew);
   return suite;
 }

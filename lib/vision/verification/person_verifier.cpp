@@ -35,6 +35,7 @@ double share_within(const Box& box, const Box& outer) {
 void PersonVerifier::reset() {
   people_.clear(), records_.clear(), candidates_.clear(), result_.clear();
   number_ = 0;
+  changes_.reset();
 }
 
 PersonVerifier::TrackRecord& PersonVerifier::record(std::uint32_t id) {
@@ -53,6 +54,7 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
     std::copy_n(picture.row(y), picture.width, now.picture.view().row(y));
   now.motion = motion.rescaled(frame, picture.size());
 
+  compare();
   candidates_.assign(candidates.begin(), candidates.end());
   for (TrackRecord& each : records_) each.since_look += seconds, each.since_seen += seconds;
   std::erase_if(records_, [](const TrackRecord& each) { return each.since_seen > 60; });
@@ -67,7 +69,7 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
   bind();
   for (Person& person : people_) {
     person.since_support += seconds;
-    if (share_on_tracks(person.box) >= p_.on_track) person.since_support = 0;
+    if (is_supported(person.box)) person.since_support = 0;
   }
   std::erase_if(people_, [&](const Person& person) {
     const Box picture_box{0, 0, double(frame_.width), double(frame_.height)};
@@ -75,6 +77,27 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
            person.since_support > p_.longest_still ||
            (person.candidate < 0 && person.since_seen > (person.moved ? p_.longest : p_.longest_still));
   });
+}
+
+// With a picture of some frames before, if the camera has stood since.
+void PersonVerifier::compare() {
+  const auto back = static_cast<std::uint64_t>(p_.change_frames);
+  bool stood = number_ > back;
+  for (std::uint64_t n = number_; stood && n > number_ - back; --n)
+    stood = past(n).motion.corner_motion(past(n).picture.size()) < p_.stands;
+  changes_.update(past(number_).picture.view(), stood ? past(number_ - back).picture.view() : GrayView{},
+                  seconds_, p_);
+}
+
+Box PersonVerifier::reduced(const Box& box) const {
+  const Size small = past_[number_ % kKept].picture.size();
+  return scaled(box, static_cast<double>(small.width) / frame_.width,
+                static_cast<double>(small.height) / frame_.height);
+}
+
+// Something moves there.
+bool PersonVerifier::is_supported(const Box& box) const {
+  return share_on_tracks(box) >= p_.on_track || changes_.share(reduced(box)) >= p_.changed;
 }
 
 // One frame on: by the picture, near the prediction.
@@ -184,14 +207,23 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
     const bool bound = std::ranges::any_of(people_, [&](const Person& q) { return q.track == each.id; });
     if (bound) continue;
     const TrackRecord& own = record(each.id);
-    const double waited = std::min(own.since_look, 4.0);
+    const double waited = std::min(own.since_look, p_.most_waited);
     targets_.push_back({each.box, waited / (1 + own.refuted)});
   }
   for (const Person& each : people_)
     targets_.push_back({each.box, each.since_look * (each.candidate < 0 ? 1 : 0.6)});
+  hidden_.clear();
+  for (const Candidate& each : candidates_) hidden_.push_back(reduced(each.box));
+  for (const Person& each : people_) hidden_.push_back(reduced(each.box));
+  const Size small = past(number_).picture.size();
+  for (const LookTarget& place : changes_.places(hidden_, p_))
+    targets_.push_back({scaled(place.box, static_cast<double>(frame_.width) / small.width,
+                               static_cast<double>(frame_.height) / small.height),
+                        p_.place_doubt * place.doubt});
   const auto region = choose_look(targets_, frame_, p_);
   if (!region) return std::nullopt;
   const Box seen{double(region->x), double(region->y), double(region->width), double(region->height)};
+  changes_.looked(reduced(seen));
   for (const Candidate& each : candidates_)
     if (share_within(each.box, seen) > 0.8) record(each.id).since_look = 0;
   for (Person& each : people_)
@@ -211,7 +243,7 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> fo
     Person next;
     next.box = carried(detection.box, look.frame, next.vx, next.vy);
     // Background is no person: something moves there, or the person has moved.
-    const double on_track = share_on_tracks(next.box);
+    const bool supported = is_supported(next.box);
     Person* same = nullptr;
     double best = p_.same;
     for (std::size_t i = 0; i < before; ++i) {
@@ -223,8 +255,8 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> fo
       approach(same->box, next.box, p_.place_gain, p_.size_gain);
       same->evidence = std::min(same->evidence + 1, p_.most_evidence);
       same->confidence += 0.5 * (confidence(detection.score) - same->confidence);
-      if (same->moved || on_track >= p_.on_track) same->since_seen = 0;
-    } else if (on_track >= p_.on_track && !is_part(next.box)) {
+      if (same->moved || supported) same->since_seen = 0;
+    } else if (supported && !is_part(next.box)) {
       next.evidence = 1, next.confidence = confidence(detection.score);
       people_.push_back(next);
     }

@@ -10,6 +10,7 @@
 
 #include "vision/geometry/transform.h"
 #include "vision/tracking/tracker.h"
+#include "vision/verification/changed_places.h"
 #include "vision/verification/look_schedule.h"
 #include "vision/verification/person_detector.h"
 #include "vision/verification/verification_parameters.h"
@@ -95,7 +96,13 @@ class PersonVerifier {
   void refute(const Look& look);
   bool is_explained(const Candidate& candidate, bool& group) const;
 
+  bool is_supported(const Box& box) const;
+  Box reduced(const Box& box) const;
+  void compare();
+
   VerificationParameters p_;
+  ChangedPlaces changes_;
+  std::vector<Box> hidden_;
   std::vector<Person> people_;
   std::vector<TrackRecord> records_;
   std::vector<Candidate> candidates_;

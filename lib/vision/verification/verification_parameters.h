@@ -14,7 +14,7 @@ struct VerificationParameters {
   double inertia = 0.7;      // of the velocity that stays from one picture to the next
 
   // Detections and persons. Intersections over unions.
-  double same = 0.3;      // a detection is of the person
+  double same = 0.4;      // a detection is of the person
   double bound = 0.5;     // a track is of the person,
   double unbound = 0.35;  // and stays so down to this,
   double unbound_sure =
@@ -28,7 +28,7 @@ struct VerificationParameters {
   double track_gain = 0.3;                   // of a track, each frame
 
   // Evidence for a person, in detections.
-  double most_evidence = 3;
+  double most_evidence = 2;
   double longest = 3;          // s without a detection, where no track is bound,
   double longest_still = 0.6;  // and of one that never moved by `moved` widths: it may be background
   double moved = 0.4;
@@ -38,12 +38,23 @@ struct VerificationParameters {
   double covered = 0.4;  // of the track that persons cover: it is replaced; less, and it is a group
   int refuted = 2;       // looks without a detection: what the track shows is a thing
 
+  // Places that have changed (changed_places.cpp), where the camera stands. On the reduced picture.
+  int change_frames = 6;         // to the picture that is compared. Derived: people walk on by a cell
+  double least_change = 8;       // grey levels: mean difference of a cell,
+  double change_over_noise = 3;  // and in means of the picture's middle cell
+  double least_place = 0.12;     // of the picture's height: lower places are not looked at
+  double place_doubt = 0.5;      // of a place, against a track that waits as long
+  double most_waited = 4;        // s: doubt grows no more
+  double stands = 0.5;           // pixels that a corner moves a frame, at most, where the camera stands
+  double changed = 0.3;          // of a detection, where no track is: else it is background
+
   // Where to look. A look's region is scaled so that the most doubtful box is `look_height` pixels high.
   double look_height = 180;
   double side_margin =
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
   double top_margin = 0.14;  // of the box's height, above and below
-  double most_area = 110e3;  // pixels of a scaled look. Derived: 50 ms for the Daimler detector
+  double most_area =
+      300e3;  // pixels of a scaled look. Derived: 45 ms for the Daimler detector, less than 20 % of a core
   double least_height = 24;  // frame pixels: lower boxes are not looked at
   double most_scale = 4;     // by which a look is enlarged
   double flattest = 0.55,
