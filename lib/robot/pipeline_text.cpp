@@ -35,8 +35,8 @@ Coding coding(Codec codec) {
 
 class Writer {
  public:
-  Writer(const CameraSettings& camera, const PageSettings& page, Parts parts)
-      : camera_(camera), source_(camera.source), page_(page) {
+  Writer(const CameraSettings& camera, const PageSettings& page, Parts parts, const Properties* mqtt)
+      : camera_(camera), source_(camera.source), page_(page), mqtt_(mqtt) {
     head_ = camera.head && parts.head;
     recorder_ = camera.recorder && parts.recorder;
   }
@@ -48,7 +48,9 @@ class Writer {
     add(" ! videoconvert");
     if (has_file) add(" ! identity sync=true");
     if (source_.kind == SourceKind::world) window();
-    add(" ! motiondetect name=detect ! pirfusion name=fusion ! tee name=found");
+    add(" ! motiondetect name=detect ! pirfusion name=fusion");
+    if (mqtt_ != nullptr) publish();
+    add(" ! tee name=found");
     detection();
     if (camera_.sensors) {
       add("  pirsrc name=sensors ! queue ! fusion.pir_0");
@@ -158,6 +160,13 @@ class Writer {
     set_all("fusion", camera_.fusion);
   }
 
+  void publish() {
+    add(" ! mqttpublish name=mqtt");
+    set("mqtt", "camera-name", camera_.name);
+    set("mqtt", "head", camera_.name);
+    set_all("mqtt", *mqtt_);
+  }
+
   void head() {
     // The window of a world waits for the pose that answers each frame: none is dropped.
     const bool in_step = source_.kind == SourceKind::world;
@@ -206,14 +215,16 @@ class Writer {
   const CameraSettings& camera_;
   const SourceSettings& source_;
   const PageSettings& page_;
+  const Properties* mqtt_;
   bool head_ = false, recorder_ = false;
   PipelineText text_;
 };
 
 }  // namespace
 
-PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts) {
-  return Writer(camera, page, parts).write();
+PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts,
+                           const Properties* mqtt) {
+  return Writer(camera, page, parts, mqtt).write();
 }
 
 Properties triggers(const RecorderSettings& recorder) {

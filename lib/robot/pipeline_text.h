@@ -27,7 +27,9 @@ struct Parts {
 // Names in the line: `source` (and `recorded`, the second stream), `detect`, `fusion`, `sensors`, `head`, `recorder`;
 // the queues `picture-queue`, `record-queue`, `analysis-queue` at which frames may be dropped; the appsinks `picture`
 // (JPEG) and `facts` (JSON lines).
-PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts);
+// `mqtt`: properties of mqttpublish, called `mqtt`; nullptr: nothing is published.
+PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts,
+                           const Properties* mqtt = nullptr);
 
 // What may begin an event while armed: the property and its value. While disarmed all of them are false.
 Properties triggers(const RecorderSettings& recorder);

@@ -80,6 +80,7 @@ struct Settings {
   std::string state_folder;  // empty: the program chooses
   ModeSettings mode;
   PageSettings page;
+  std::optional<Properties> mqtt;  // of mqttpublish, for all cameras
   std::vector<CameraSettings> cameras;
 };
 

@@ -9,6 +9,7 @@
 #include <set>
 #include <utility>
 
+#include "publish/mqtt_report.h"
 #include "robot/camera_settings.h"
 #include "robot/table_reader.h"
 #include "text/file.h"
@@ -98,6 +99,45 @@ PageSettings read_page(const TomlValue& table, Mistakes& mistakes) {
   return settings;
 }
 
+constexpr Option kMqtt[] = {
+    {"host", Option::Kind::text},
+    {"port", Option::Kind::whole, 1, 65535},
+    {"username", Option::Kind::text},
+    {"topic-prefix", Option::Kind::text},
+    {"discovery-prefix", Option::Kind::text},
+};
+
+Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& mistakes,
+                     std::vector<NamedFile>& files) {
+  TableReader reader(table, "[mqtt]", mistakes);
+  Properties properties;
+  if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
+  reader.properties(kMqtt, properties);
+  for (const char* key : {"password-file", "ca-file"}) {
+    std::string path;
+    if (!reader.text(key, path)) continue;
+    properties.push_back({key, below(folder, path)});
+    files.push_back({reader.line(key), key, properties.back().value, key[0] == 'p'});
+  }
+  if (reader.has("password-file") != reader.has("username"))
+    reader.complain("username", "\"username\" and \"password-file\" belong together");
+  std::vector<std::string> commands;
+  reader.texts("commands", commands);
+  std::string list;
+  for (const std::string& command : commands) {
+    if (!publish::arguments_of(command))
+      reader.complain(
+          "commands",
+          "\"" + command +
+              "\" is no command: move-to, move-by, stop, home, auto, follow, arm, disarm, privacy");
+    if (!list.empty()) list += ' ';
+    list += command;
+  }
+  if (!list.empty()) properties.push_back({"commands", list});
+  reader.finish();
+  return properties;
+}
+
 std::string joined(Mistakes mistakes, std::string_view source) {
   std::ranges::stable_sort(mistakes, {}, &text::TomlMistake::line);
   std::string all;
@@ -131,6 +171,8 @@ Parsed parse(std::string_view toml, std::string_view folder) {
     settings.state_folder = below(folder, settings.state_folder);
   if (const TomlValue* table = reader.table("mode")) settings.mode = read_mode(*table, mistakes);
   if (const TomlValue* table = reader.table("page")) settings.page = read_page(*table, mistakes);
+  if (const TomlValue* table = reader.table("mqtt"))
+    settings.mqtt = read_mqtt(*table, folder, mistakes, parsed.files);
   for (const TomlValue* table : reader.tables("camera", "[[camera]]"))
     settings.cameras.push_back(read_camera(*table, folder, mistakes, parsed.files));
   if (!reader.has("camera")) mistakes.push_back({0, "there is no camera: it needs a [[camera]]"});

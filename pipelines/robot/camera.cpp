@@ -58,9 +58,11 @@ const char* name(Camera::State state) {
   return kStates[static_cast<int>(state)];
 }
 
-Camera::Camera(const CameraSettings& settings, const PageSettings& page)
-    : settings_(settings), page_(page), newest_(std::make_shared<Newest>()) {
+Camera::Camera(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt,
+               OnOrder on_order)
+    : settings_(settings), page_(page), on_order_(std::move(on_order)), newest_(std::make_shared<Newest>()) {
   newest_->camera = this;
+  if (mqtt != nullptr) mqtt_ = *mqtt;
 }
 
 Camera::~Camera() {
@@ -192,10 +194,16 @@ void Camera::set_triggers() {
                             mode_ == Mode::armed ? trigger.value.c_str() : "false");
 }
 
+void Camera::publish_mode() {
+  if (!mqtt_ || pipeline_ == nullptr) return;
+  g_autoptr(GstElement) mqtt = element("mqtt");
+  if (mqtt) g_object_set(mqtt, "mode", std::string(robot::name(mode_)).c_str(), nullptr);
+}
+
 void Camera::start() {
   again_ = false;
   since_ = last_frame_ = Clock::now();
-  const PipelineText text = pipeline_text(settings_, page_, parts_);
+  const PipelineText text = pipeline_text(settings_, page_, parts_, mqtt_ ? &*mqtt_ : nullptr);
   GST_DEBUG("%s: %s", settings_.name.c_str(), text.line.c_str());
   g_autoptr(GError) error = nullptr;
   pipeline_ = gst_parse_launch_full(text.line.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error);
@@ -222,6 +230,7 @@ void Camera::start() {
   }
   connect();
   set_triggers();
+  publish_mode();
   show_ = record_ = true;
   // What refuses to start posts an error on the bus.
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
@@ -258,6 +267,11 @@ void Camera::fail(const std::string& part, const std::string& text) {
 }
 
 void Camera::on_report(const GstStructure* report) {
+  if (gst_structure_has_name(report, "cerberus-command")) {
+    const gchar* order = gst_structure_get_string(report, "name");
+    if (order != nullptr && on_order_) on_order_(order);
+    return;
+  }
   const gchar* state = gst_structure_get_string(report, "state");
   if (state == nullptr) return;
   if (gst_structure_has_name(report, "cerberus-pantilt")) head_state_ = state;
@@ -313,6 +327,7 @@ void Camera::on_message(GstMessage* message) {
 void Camera::set_mode(Mode mode) {
   if (final_) return;
   const Mode before = std::exchange(mode_, mode);
+  publish_mode();
   if (mode == Mode::privacy) {
     wanted_ = again_ = false;
     show_ = record_ = false;

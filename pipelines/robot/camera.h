@@ -43,7 +43,11 @@ class Camera {
   // Called in the main loop's thread when there is a new picture.
   using OnPicture = std::function<void(Camera&)>;
 
-  Camera(const CameraSettings& settings, const PageSettings& page);
+  // An order that arrived by MQTT and is not for the head: arm, disarm, privacy.
+  using OnOrder = std::function<void(const std::string& order)>;
+
+  // `mqtt`: properties of mqttpublish; nullptr: nothing is published.
+  Camera(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt, OnOrder on_order);
   ~Camera();
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
@@ -94,6 +98,7 @@ class Camera {
   bool apply_secrets(std::string& error);
   void connect();
   void set_triggers();
+  void publish_mode();
   void drop_frames(const char* queue, std::atomic<bool>& pass);
   GstElement* element(const char* name) const;
   std::string part_of(GstObject* source) const;
@@ -102,6 +107,8 @@ class Camera {
 
   CameraSettings settings_;
   PageSettings page_;
+  std::optional<Properties> mqtt_;
+  OnOrder on_order_;
   OnPicture on_picture_;
   Parameters parameters_;
   Mode mode_ = Mode::privacy;

@@ -65,7 +65,9 @@ bool Robot::open(Settings settings, std::string& error) {
     if (camera.recorder && g_mkdir_with_parents(camera.recorder->folder.c_str(), 0750) != 0)
       g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", camera.name.c_str(),
                  camera.recorder->folder.c_str(), g_strerror(errno));
-    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page));
+    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page,
+                                                settings_.mqtt ? &*settings_.mqtt : nullptr,
+                                                [this](const std::string& order) { on_order(order); }));
   }
 #if HAVE_PAGE
   if (!settings_.page.enabled) return true;
@@ -93,6 +95,17 @@ void Robot::set_mode(Mode mode) {
   mode_->set(mode, now());
   save_mode();
   apply_mode();
+}
+
+// By MQTT, after mqttpublish found it allowed. Orders for the head are carried out already.
+void Robot::on_order(const std::string& order) {
+  const std::optional<Mode> mode = order == "arm"       ? std::optional(Mode::armed)
+                                   : order == "disarm"  ? std::optional(Mode::disarmed)
+                                   : order == "privacy" ? std::optional(Mode::privacy)
+                                                        : std::nullopt;
+  g_printerr("cerberusd: MQTT: %s\n", order.c_str());
+  // A camera that still publishes while privacy begins must not end it.
+  if (mode && this->mode() != Mode::privacy) set_mode(*mode);
 }
 
 void Robot::apply_mode() {

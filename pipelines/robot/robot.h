@@ -29,6 +29,7 @@ class Robot {
 
  private:
   void apply_mode();
+  void on_order(const std::string& order);
   void save_mode();
   void tick();
   void report(const std::string& text) const;

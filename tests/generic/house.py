@@ -99,7 +99,7 @@ ARROWS = VISION | {
     'sim': ('vision', 'sensing', 'motion'),
     'record': ('vision',),
     'publish': (),
-    'robot': ('record',),
+    'robot': ('record', 'publish'),
 }
 BELOW_ALL = ('text', 'threads')
 FOR_ALL = {'sensing/angles.h'}  # degrees and radians

@@ -169,6 +169,11 @@ START_TEST(every_mistake_is_reported_with_its_line) {
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[[camera]]\nname = \"a\"\nkind = \"test\"\n",
        "r.toml:4: there are two cameras called \"a\""},
       {"[page]\nport = \n", "r.toml:2: "},
+      {"[mqtt]\n", "r.toml:1: [mqtt] needs the \"host\" of the broker"},
+      {"[mqtt]\nhost = \"b\"\ncommands = [\"stop\", \"jump\"]\n", "r.toml:3: \"jump\" is no command"},
+      {"[mqtt]\nhost = \"b\"\npassword = \"secret\"\n", "r.toml:3: unknown key \"password\" in [mqtt]"},
+      {"[mqtt]\nhost = \"b\"\nusername = \"u\"\n",
+       "r.toml:3: \"username\" and \"password-file\" belong together"},
   };
   for (const auto& one : cases) {
     const std::string found = errors(one.text);

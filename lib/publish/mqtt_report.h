@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What one camera publishes by MQTT: topics and JSON payloads out of the facts of its frames, each when it changed.
+// docs/manual/mqtt.md lists them.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace cerberus::publish {
+
+struct MqttMessage {
+  std::string topic, payload;
+  bool retain = false;
+};
+
+struct MqttObject {
+  std::uint32_t id = 0;  // of its track
+  std::string_view type, kind, state;
+  double x = 0, y = 0, width = 0, height = 0;        // pixels
+  double confidence = 0, bearing = 0, distance = 0;  // NaN: not known
+};
+
+// What one frame carries; views are valid during the call.
+struct MqttFrame {
+  std::chrono::nanoseconds time{};              // running time
+  std::optional<std::chrono::nanoseconds> utc;  // since 1970
+  bool analysed = false;                        // a detector looked at it
+  std::span<const MqttObject> objects;          // with a track
+  struct Head {
+    double pan = 0, tilt = 0;  // degrees
+    bool moving = false;
+  };
+  std::optional<Head> head;
+  struct Decision {
+    int rule = 0;
+    std::string_view name, action;
+    std::uint32_t target = 0;  // 0: none
+  };
+  std::optional<Decision> decision;
+  std::span<const std::uint8_t> sensors;  // 0 nothing, 1 detection, 2 invalid
+};
+
+class MqttReport {
+ public:
+  struct Parameters {
+    std::chrono::nanoseconds update = std::chrono::seconds(1);  // between two `updated` of one track
+    std::chrono::nanoseconds left = std::chrono::seconds(2);    // unseen for so long, a track has left
+    std::chrono::nanoseconds head =
+        std::chrono::milliseconds(500);  // between two reports of a head that moves
+  };
+
+  // `prefix`: "cerberus"; `camera`: one level of a topic.
+  MqttReport(std::string prefix, std::string camera)
+      : prefix_(std::move(prefix)), camera_(std::move(camera)) {}
+
+  // The messages that this frame causes.
+  std::vector<MqttMessage> update(const MqttFrame& frame);
+  // The stream ends: all tracks leave.
+  std::vector<MqttMessage> end();
+
+  std::string topic(std::string_view name) const;  // "cerberus/front/status"
+  // Retained messages by which Home Assistant finds the camera, its sensors and its head (MQTT discovery).
+  std::vector<MqttMessage> discovery(std::string_view home_assistant, std::size_t sensors, bool head) const;
+
+ private:
+  struct Visit {
+    std::string object;  // members of the last report, JSON
+    std::chrono::nanoseconds seen{}, reported{};
+  };
+  void tracks(const MqttFrame& frame, std::vector<MqttMessage>& out);
+  void once(std::string_view name, std::string payload, std::vector<MqttMessage>& out);
+
+  Parameters parameters_;
+  std::string prefix_, camera_;
+  std::map<std::uint32_t, Visit> visits_;
+  std::map<std::string, std::string, std::less<>> last_;  // payload of each retained topic
+  std::optional<MqttFrame::Head> head_;
+  std::chrono::nanoseconds head_reported_{};
+};
+
+// An order that arrived at PREFIX/CAMERA/command/NAME.
+struct MqttCommand {
+  std::string name;
+  double first = 0, second = 0;  // move-to, move-by: pan, tilt in degrees; follow: the track
+};
+// How many numbers an order has; nullopt: there is none of this name.
+std::optional<int> arguments_of(std::string_view name);
+// `allowed`: names parted by blanks or commas. nullopt, and why, where it is refused.
+std::optional<MqttCommand> parse_mqtt_command(std::string_view name, std::string_view payload,
+                                              std::string_view allowed, std::string& error);
+
+}  // namespace cerberus::publish

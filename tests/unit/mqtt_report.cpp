@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "publish/mqtt_report.h"
+
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "support/suite.h"  // after the streams: check defines fail()
+
+using namespace cerberus::publish;
+using nlohmann::json;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+MqttObject walker(std::uint32_t id) {
+  return {.id = id,
+          .type = "motion",
+          .kind = "person-like",
+          .state = "seen",
+          .x = 10,
+          .y = 20.25,
+          .width = 30,
+          .height = 60,
+          .confidence = .5,
+          .bearing = kUnknown,
+          .distance = kUnknown};
+}
+
+MqttFrame frame(milliseconds time, std::span<const MqttObject> objects) {
+  MqttFrame made;
+  made.time = time;
+  made.analysed = true;
+  made.objects = objects;
+  return made;
+}
+
+const MqttMessage* find(const std::vector<MqttMessage>& all, const std::string& topic) {
+  for (const MqttMessage& one : all)
+    if (one.topic == topic) return &one;
+  return nullptr;
+}
+
+// "appeared 4" of the messages of topic track, in order.
+std::vector<std::string> tracks(const std::vector<MqttMessage>& all) {
+  std::vector<std::string> found;
+  for (const MqttMessage& one : all) {
+    if (one.topic != "cerberus/front/track") continue;
+    ck_assert(!one.retain);
+    const json read = json::parse(one.payload);
+    found.push_back(
+        read["event"].get<std::string>().append(" ").append(std::to_string(read["id"].get<int>())));
+  }
+  return found;
+}
+
+using Words = std::vector<std::string>;
+
+}  // namespace
+
+START_TEST(a_track_appears_is_updated_each_second_and_leaves_two_seconds_after_its_last_sight) {
+  MqttReport report("cerberus", "front");
+  const std::vector<MqttObject> one{walker(4)}, two{walker(4), walker(5)}, none;
+  ck_assert(tracks(report.update(frame(seconds(1), one))) == Words{"appeared 4"});
+  ck_assert(tracks(report.update(frame(milliseconds(1999), two))) == Words{"appeared 5"});
+  ck_assert(tracks(report.update(frame(seconds(2), two))) == Words{"updated 4"});
+  ck_assert(tracks(report.update(frame(milliseconds(3999), none))).empty());
+  ck_assert((tracks(report.update(frame(seconds(4), none))) == Words{"left 4", "left 5"}));
+  ck_assert(tracks(report.update(frame(seconds(5), one))) == Words{"appeared 4"});
+  ck_assert(tracks(report.end()) == Words{"left 4"} && report.end().empty());
+}
+END_TEST
+
+START_TEST(a_stream_that_begins_anew_has_no_track_of_the_one_before) {
+  MqttReport report("cerberus", "front");
+  const std::vector<MqttObject> one{walker(4)}, none;
+  report.update(frame(seconds(100), one));
+  ck_assert(tracks(report.update(frame(seconds(1), none))) == Words{"left 4"});
+}
+END_TEST
+
+START_TEST(states_are_retained_and_published_when_they_change) {
+  MqttReport report("cerberus", "front");
+  const std::vector<MqttObject> one{walker(4)}, none;
+  std::vector<MqttMessage> out = report.update(frame(seconds(1), none));
+  const MqttMessage* state = find(out, "cerberus/front/state");
+  ck_assert(state && state->retain &&
+            json::parse(state->payload) == json({{"motion", false}, {"objects", 0}}));
+  ck_assert(report.update(frame(seconds(2), none)).empty());
+  out = report.update(frame(seconds(3), one));
+  state = find(out, "cerberus/front/state");
+  ck_assert(state && json::parse(state->payload) == json({{"motion", true}, {"objects", 1}}));
+
+  MqttFrame fused = frame(seconds(4), one);
+  const std::vector<std::uint8_t> readings{0, 1, 2};
+  fused.sensors = readings;
+  fused.decision = {6, "right \"sensor\"", "turn-right", 0};
+  out = report.update(fused);
+  ck_assert(json::parse(find(out, "cerberus/front/pir")->payload) == json({{"sensors", {0, 1, 2}}}));
+  ck_assert(json::parse(find(out, "cerberus/front/rule")->payload) ==
+            json({{"rule", 6}, {"name", "right \"sensor\""}, {"action", "turn-right"}, {"target", nullptr}}));
+  fused.time = seconds(4) + milliseconds(40);
+  ck_assert(report.update(fused).empty());
+}
+END_TEST
+
+START_TEST(a_frame_that_no_detector_saw_says_nothing_about_motion) {
+  MqttReport report("cerberus", "front");
+  MqttFrame blind;
+  blind.time = seconds(1);
+  ck_assert(report.update(blind).empty());
+}
+END_TEST
+
+START_TEST(a_moving_head_is_reported_twice_a_second_and_when_it_rests) {
+  MqttReport report("cerberus", "front");
+  MqttFrame now;
+  int reports = 0;
+  std::string last;
+  for (int k = 0; k <= 50; ++k) {  // 2 s at 25 frames a second
+    now.time = milliseconds(40 * k);
+    now.head = {.5 * k, -2, k < 50};
+    const std::vector<MqttMessage> out = report.update(now);
+    reports += static_cast<int>(out.size());
+    if (!out.empty()) last = out.back().payload;
+  }
+  // At 0, 520, 1040, 1560 ms (the first frame 500 ms after the one before), and at rest at 2000.
+  ck_assert_int_eq(reports, 5);
+  ck_assert(json::parse(last) == json({{"pan", 25}, {"tilt", -2}, {"moving", false}}));
+}
+END_TEST
+
+START_TEST(home_assistant_finds_each_sensor_once_and_where_it_is_published) {
+  const MqttReport report("cerberus", "front");
+  const std::vector<MqttMessage> all = report.discovery("homeassistant", 2, true);
+  ck_assert_uint_eq(all.size(), 8);  // motion, objects, mode, rule, pir 0 and 1, pan, tilt
+  std::vector<std::string> identities;
+  for (const MqttMessage& one : all) {
+    const json read = json::parse(one.payload);
+    ck_assert(one.retain && read["availability_topic"] == "cerberus/front/status");
+    identities.push_back(read["unique_id"]);
+  }
+  std::ranges::sort(identities);
+  ck_assert(std::ranges::adjacent_find(identities) == identities.end());
+  const MqttMessage* pir = find(all, "homeassistant/binary_sensor/cerberus_front/pir_1/config");
+  ck_assert(pir && json::parse(pir->payload)["state_topic"] == "cerberus/front/pir");
+  ck_assert_uint_eq(report.discovery("homeassistant", 0, false).size(), 3);
+}
+END_TEST
+
+START_TEST(an_order_is_taken_only_where_it_is_allowed_and_whole) {
+  std::string error;
+  const auto move = parse_mqtt_command("move-to", "10 -5.5", "stop,move-to", error);
+  ck_assert(move && move->first == 10 && move->second == -5.5);
+  ck_assert(parse_mqtt_command("stop", "PRESS", "stop move-to", error).has_value());
+  ck_assert(parse_mqtt_command("follow", "7", "follow", error)->first == 7);
+  for (const auto& [name, payload, allowed] :
+       std::vector<std::array<const char*, 3>>{{"move-to", "10 -5", ""},
+                                               {"move-to", "10 -5", "move-by"},
+                                               {"move", "1 1", "move-to"},
+                                               {"move-to", "10", "move-to"},
+                                               {"move-to", "10 x", "move-to"},
+                                               {"move-to", "10 5 6", "move-to"},
+                                               {"move-to", "nan 0", "move-to"},
+                                               {"move-by", "1e999 0", "move-by"},
+                                               {"follow", "-1", "follow"},
+                                               {"follow", "1.5", "follow"},
+                                               {"follow", "4294967296", "follow"},
+                                               {"", "", ""},
+                                               {"format", "", "format"},
+                                               {"stop", "", "st op"}})
+    ck_assert_msg(!parse_mqtt_command(name, payload, allowed, error), "%s %s %s", name, payload, allowed);
+  ck_assert(!parse_mqtt_command("stop", std::string(65, 'x'), "stop", error));
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "MQTT report", {a_track_appears_is_updated_each_second_and_leaves_two_seconds_after_its_last_sight,
+                      a_stream_that_begins_anew_has_no_track_of_the_one_before,
+                      states_are_retained_and_published_when_they_change,
+                      a_frame_that_no_detector_saw_says_nothing_about_motion,
+                      a_moving_head_is_reported_twice_a_second_and_when_it_rests,
+                      home_assistant_finds_each_sensor_once_and_where_it_is_published,
+                      an_order_is_taken_only_where_it_is_allowed_and_whole});
+}
