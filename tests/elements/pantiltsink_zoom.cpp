@@ -52,6 +52,23 @@ GST_START_TEST(a_zoom_of_which_nothing_is_known_is_a_warning) {
 }
 GST_END_TEST
 
+namespace {
+
+std::string refusal_of(const std::string& settings) {
+  g_autoptr(GstElement) sink = gst_parse_launch(("pantiltsink " + settings).c_str(), nullptr);
+  g_autoptr(GstBus) bus = gst_bus_new();
+  gst_element_set_bus(sink, bus);
+  gst_element_set_state(sink, GST_STATE_PAUSED);
+  g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_ERROR);
+  g_autoptr(GError) error = nullptr;
+  gst_message_parse_error(message, &error, nullptr);
+  gst_element_set_state(sink, GST_STATE_NULL);
+  gst_element_set_bus(sink, nullptr);
+  return error->message;
+}
+
+}  // namespace
+
 GST_START_TEST(what_cannot_be_is_an_error) {
   const struct {
     std::string settings, words;
@@ -62,17 +79,10 @@ GST_START_TEST(what_cannot_be_is_an_error) {
       {"driver=visca device=udp:127.0.0.1:9 lock-zoom=2", "is kept at 0 to 1.92 (lock-zoom), not at 2"},
       {"driver=pelco-d device=serial:/dev/null device-options=zoom=0.5", "\"zoom\" is no option of pelco-d"}};
   for (const auto& [settings, words] : cases) {
-    g_autoptr(GstElement) sink = gst_parse_launch(("pantiltsink " + settings).c_str(), nullptr);
-    g_autoptr(GstBus) bus = gst_bus_new();
-    gst_element_set_bus(sink, bus);
-    gst_element_set_state(sink, GST_STATE_PAUSED);
-    g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
-        bus, GST_CLOCK_TIME_NONE, GST_MESSAGE_ERROR);  // the test's own time-out ends it
-    g_autoptr(GError) error = nullptr;
-    gst_message_parse_error(message, &error, nullptr);
-    fail_unless(says(error->message, words));
-    gst_element_set_state(sink, GST_STATE_NULL);
-    gst_element_set_bus(sink, nullptr);
+    std::string error = refusal_of(settings);
+    // A helper on a busy machine; the test's own time-out ends it.
+    while (error.find("does not answer with `ready") != error.npos) error = refusal_of(settings);
+    fail_unless(says(error, words));
   }
 }
 GST_END_TEST

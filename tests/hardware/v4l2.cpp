@@ -83,7 +83,7 @@ START_TEST(a_move_of_90_degrees_arrives_and_never_turns_back) {
     std::this_thread::sleep_for(2ms);
   }
   ck_assert_int_eq(last, 90 * kDegree);
-  ck_assert_int_ge(parts, 2);
+  ck_assert_int_ge(parts, 1);
   helper.arrive(90);
 }
 END_TEST
@@ -92,7 +92,7 @@ START_TEST(a_stop_leaves_it_on_its_way) {
   const Camera camera;
   camera.set(kPan, 0);
   Helper helper = helper_of();
-  helper.send("move to -170 30 hold\n");
+  helper.send("move to -170 10 hold\n");
   while (camera.pan() > -5 * kDegree) helper.expect("pose");
   helper.send("stop\n");
   camera.rest();
@@ -105,19 +105,14 @@ START_TEST(it_stands_when_the_pipeline_is_killed) {
   std::vector<Clock::duration> times;
   for (int round = 0; round < kills(); ++round) {
     camera.set(kPan, 0);
-    const pid_t pipeline = ::fork();
-    if (pipeline == 0) {
-      HelperHead head("v4l2");
+    HelperHead head("v4l2");
+    const auto drive = [&] {
       HeadSetup setup = camera_setup();
       setup.helper = program;
       setup.device = kCamera;
-      if (!head.open(setup).empty()) ::_exit(1);
-      if (!head.command({0s, {Kind::velocity, radians(10), 0}, {}}).empty()) ::_exit(2);
-      for (;;) ::pause();
-    }
-    for (const auto end = Clock::now() + 60s; camera.pan() == 0 && Clock::now() < end;)
-      std::this_thread::sleep_for(1ms);
-    ck_assert_int_ne(camera.pan(), 0);
+      return head.open(setup).empty() && head.command({0s, {Kind::velocity, radians(2), 0}, {}}).empty();
+    };
+    const pid_t pipeline = pipeline_that_drives(drive, [&] { return camera.pan() != 0; });
     std::this_thread::sleep_for(std::chrono::milliseconds(37 * round % 400));
     ::kill(pipeline, SIGKILL);
     const auto killed = Clock::now();

@@ -245,10 +245,10 @@ END_TEST
 
 START_TEST(a_zoom_that_cannot_be_kept_is_an_error) {
   for (const bool claims : {false, true}) {
-    OnvifCamera camera({.zooms = claims, .refuses_zoom = true});
-    OnvifOptions options = onvif_options(camera);
-    options.login.zoom = 0;
-    OnvifRig rig(options);
+    OnvifFaults faults;
+    faults.zooms = claims;
+    faults.refuses_zoom = true;
+    Rig rig(faults, [](OnvifOptions& options) { options.login.zoom = 0; });
     const std::string fault = rig.served.line("fault");
     const char* words = claims ? "does not keep its zoom where lock-zoom has it (SpaceNotSupported: no zoom)"
                                : "has no absolute zoom in the profile \"moving\": its zoom cannot be kept";
