@@ -51,6 +51,10 @@ constexpr char kAnnotated[] =
     "tee name=t t. ! queue ! motionoverlay ! " ENCODER
     "name=annotated t. ! queue ! onvifmeta name=documents ! appsink name=metadata";
 
+void assert_text(const std::string& text, const std::string& expected) {
+  fail_unless(text == expected, "\"%s\" is not \"%s\"", text.c_str(), expected.c_str());
+}
+
 // Serves the default main context until it holds: the patience is that of a hang.
 void wait_for(const char* what, const std::function<bool()>& condition) {
   const gint64 end = g_get_monotonic_time() + 150 * G_USEC_PER_SEC;
@@ -115,7 +119,7 @@ class Served {
     watch("encoder", [](Log& log, GstBuffer* buffer) { log.add(slices_of(bytes_of(buffer))); }, pictures);
     watch("documents", [](Log& log, GstBuffer* buffer) { log.add(bytes_of(buffer)); }, documents);
     server_ = std::make_unique<RtspServer>(pipeline_, settings);
-    fail_unless_equals_string(server_->prepare().c_str(), "");
+    assert_text(server_->prepare(), "");
     gst_element_set_state(pipeline_, GST_STATE_PLAYING);
     wait_for("the first pictures", [this] { return server_->has_begun(); });
     wrong = server_->listen();
@@ -279,7 +283,7 @@ std::string prepared(const char* line, const std::string& certificate = "") {
 
 GST_START_TEST(two_clients_get_the_pictures_of_one_encoder_and_the_second_begins_at_once) {
   Served served(kAnnotated);
-  fail_unless_equals_string(served.wrong.c_str(), "");
+  assert_text(served.wrong, "");
   Client first(served.address("annotated"), "protocols=udp");
   wait_for_pictures(first, 30);  // well within the GOP of 250
   Client second(served.address("annotated"), "protocols=tcp");
@@ -350,7 +354,7 @@ GST_START_TEST(tls_plays_with_the_certificate_that_was_given_and_not_in_the_clea
   settings.key = temporary_file(kKey);
   {
     Served served(kPlain, settings);
-    fail_unless_equals_string(served.wrong.c_str(), "");
+    assert_text(served.wrong, "");
     g_autoptr(GTlsDatabase) trusted = g_tls_file_database_new(settings.certificate.c_str(), nullptr);
     const std::string login = "user-id=anna user-pw=\"right horse\" ";
     Client client(served.address("plain", "rtsps"), login, trusted);
@@ -365,7 +369,7 @@ GST_START_TEST(tls_plays_with_the_certificate_that_was_given_and_not_in_the_clea
   const std::string keyless = prepared("videotestsrc ! appsink", settings.certificate);
   const std::string expected = "the certificate " + settings.certificate +
                                " cannot be used: No PEM-encoded private key found (--key names another file)";
-  fail_unless_equals_string(keyless.c_str(), expected.c_str());
+  assert_text(keyless, expected);
   std::remove(settings.certificate.c_str());
   std::remove(settings.key.c_str());
 }
@@ -378,7 +382,7 @@ GST_START_TEST(what_cannot_be_served_is_named) {
   settings.port = served.port();
   {
     RtspServer server(second, settings);
-    fail_unless_equals_string(server.prepare().c_str(), "");
+    assert_text(server.prepare(), "");
     gst_element_set_state(second, GST_STATE_PLAYING);
     wait_for("the first pictures", [&] { return server.has_begun(); });
     fail_unless(server.listen().find("port " + std::to_string(served.port()) + " of 127.0.0.1 is in use") ==

@@ -332,9 +332,9 @@ def test_mjpeg(kind):
     wait_for('its port', lambda: listening(port, 'tcp'), sender)
     for _ in range(2):
         must(gst_launch(f'tcpclientsrc port={port} ! multipartdemux ! image/jpeg,framerate=25/1 ! jpegdec ! '
-                        'videoconvert ! video/x-raw,format=I420 ! identity eos-after=11 ! filesink location=out.raw'))
+                        'videoconvert ! video/x-raw,format=I420 ! identity eos-after=31 ! filesink location=out.raw'))
         pictures = frames('out.raw', WIDTH * HEIGHT * 3 // 2)
-        assert len(pictures) == 10 and any(map(coloured, pictures)), f'{len(pictures)} pictures, or no box'
+        assert len(pictures) == 30 and any(map(coloured, pictures)), f'{len(pictures)} pictures, or no box'
     stop(sender)
 
 
