@@ -17,7 +17,7 @@
  * Between two looks of the detector a person is followed in the picture.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set): upright people who are
- * at least 24 pixels high. It costs 25 to 50 ms a look on one core. It does not see people who sit or lie, or only
+ * at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who sit or lie, or only
  * their upper half.
  *
  * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width, values 0 to 1), with the outputs of YOLO 5, 7, 8 and
