@@ -71,8 +71,9 @@ class Loop {
     for (Time next = server_.finish(now); next != motion::kNever; next = server_.finish(now)) {
       fds_.clear();
       device_.watch(fds_);
-      ::poll(fds_.data(), fds_.size(),
-             static_cast<int>(std::chrono::ceil<std::chrono::milliseconds>(next - now).count()));
+      // A step that is overdue lies in the past, and a negative patience would be an endless one.
+      const auto patience = std::chrono::ceil<std::chrono::milliseconds>(std::max(next - now, Time::zero()));
+      ::poll(fds_.data(), fds_.size(), static_cast<int>(patience.count()));
       now = now_is();
     }
   }
