@@ -188,6 +188,7 @@ START_TEST(what_looks_like_a_person_where_nothing_moves_is_none_and_what_never_m
   rig.found(*rig.verifier.choose(), {{person_at(420), 3}, {{205, 180, 30, 80}, 2}});
   ck_assert_uint_eq(rig.result().size(), 1);
   ck_assert(!rig.result()[0].person);  // elsewhere, and legs
+  rig.frame({person_at(200)}, track);  // the same frame is not looked at twice
   rig.found(*rig.verifier.choose(), {{person_at(200), 3}});
   ck_assert(rig.result()[0].person);
   for (int n = 0; n < 20; ++n) rig.frame({}, {});  // .8 s without its track
