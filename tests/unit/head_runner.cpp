@@ -26,11 +26,17 @@ using Kind = AxisCommand::Kind;
 
 namespace {
 
+// Returns whether nothing was written that has not been read.
+bool is_empty(const Pipe& pipe) {
+  pollfd readable{pipe.ends[0], POLLIN, 0};
+  return ::poll(&readable, 1, 0) == 0;
+}
+
 std::unique_ptr<HeadRunner> runner_with(const std::string& script, std::shared_ptr<HeadLease> lease = {}) {
   auto runner = std::make_unique<HeadRunner>(make_head("scripted"), std::move(lease));
   HeadSetup setup;
   setup.script = script;
-  ck_assert(runner->open(setup, 10s) == Answer::done);
+  ck_assert(runner->open(setup, 60s) == Answer::done);
   return runner;
 }
 
@@ -44,10 +50,10 @@ START_TEST(questions_are_answered_with_all_pieces_of_the_way) {
   HeadRunner runner(make_head("simulated"), {});
   HeadSetup setup;
   setup.limits.pan = {-3, 3, 1, 2};
-  ck_assert(runner.open(setup, 10s) == Answer::done);
+  ck_assert(runner.open(setup, 60s) == Answer::done);
   ck_assert(runner.simulated());
   std::vector<Pose> poses;
-  ck_assert(runner.ask(go(0s, 2), 0s, 10s, poses, 10s) == Answer::done);
+  ck_assert(runner.ask(go(0s, 2), 0s, 10s, poses, 60s) == Answer::done);
   ck_assert_uint_eq(poses.size(), 4);  // up, cruise, down, rest
   ck_assert_int_eq(poses[1].from.count(), Time(500ms).count());
   ck_assert_double_eq_tol(poses[3].pan.position, 2, 1e-9);
@@ -57,14 +63,14 @@ END_TEST
 START_TEST(a_failure_is_reported_once_and_cleared_by_the_next_success) {
   const auto runner = runner_with("command 2 fail no power");
   std::vector<Pose> poses;
-  ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 10s) == Answer::done);
+  ck_assert(runner->ask(go(0s, 1), 0s, 0s, poses, 60s) == Answer::done);
   ck_assert(runner->healthy());
-  ck_assert(runner->ask(go(1s, 1), 1s, 1s, poses, 10s) == Answer::failed);
+  ck_assert(runner->ask(go(1s, 1), 1s, 1s, poses, 60s) == Answer::failed);
   ck_assert(!runner->healthy());
   assert_text(runner->failure(), "no power");
   assert_text(runner->failure(), "");
   // A question alone is answered, and heals nothing.
-  ck_assert(runner->ask({}, 1s, 1s, poses, 10s) == Answer::done);
+  ck_assert(runner->ask({}, 1s, 1s, poses, 60s) == Answer::done);
   ck_assert(!runner->healthy());
 }
 END_TEST
@@ -73,7 +79,7 @@ START_TEST(a_head_that_fails_is_stopped) {
   Pipe record;
   const auto runner = runner_with("record " + record.writer() + "; command fail no power");
   std::vector<Pose> poses;
-  runner->ask(go(5s, 1), 5s, 5s, poses, 10s);
+  runner->ask(go(5s, 1), 5s, 5s, poses, 60s);
   assert_text(record.line(), "open 0");
   assert_text(record.line(), "command 5000000000 position 1 1 hold 0 0");
   assert_text(record.line(), "stop 5000000000");
@@ -90,7 +96,7 @@ START_TEST(a_caller_without_patience_is_not_blocked) {
   ck_assert(!runner->idle());
   ck_assert(Clock::now() - start < 5s);
   gate.close_writer();
-  ck_assert(runner->stop(1s, 10s) == Answer::done);
+  ck_assert(runner->stop(1s, 60s) == Answer::done);
 }
 END_TEST
 
@@ -111,7 +117,7 @@ START_TEST(interrupt_wakes_a_waiting_caller) {
   ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::interrupted);
   runner->interrupt(false);
   gate.close_writer();
-  ck_assert(runner->ask({}, 0s, 0s, poses, 10s) == Answer::done);
+  ck_assert(runner->ask({}, 0s, 0s, poses, 60s) == Answer::done);
 }
 END_TEST
 
@@ -208,7 +214,7 @@ START_TEST(a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does) {
     HeadRunner runner(std::make_unique<StopNoter>(notes), {});
     HeadSetup setup;
     setup.script = "record " + record.writer() + "; command wait " + gate.reader();
-    ck_assert(runner.open(setup, 10s) == Answer::done);
+    ck_assert(runner.open(setup, 60s) == Answer::done);
     record.line();
     runner.command(go(1s, 0.125));
     record.line();  // blocked in it now
@@ -302,7 +308,7 @@ START_TEST(new_limits_come_before_the_command_that_waits) {
   assert_text(record.line(), "limit 2000000000 -0.5 0.5 -0.25 0.25");  // so that the command is not stale
   assert_text(record.line(), "command 2000000000 position 2 1 hold 0 0");
   std::vector<Pose> poses;
-  ck_assert(runner->ask({}, 4s, 4s, poses, 10s) == Answer::done);
+  ck_assert(runner->ask({}, 4s, 4s, poses, 60s) == Answer::done);
   ck_assert_double_eq(poses[0].pan.position, 0.5);
 }
 END_TEST
@@ -316,15 +322,15 @@ START_TEST(a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_take
   ck_assert_msg(limit.starts_with("limit 1000000000 "), "%s", limit.c_str());
   assert_text(record.line(), "stop 1000000000");
   std::vector<Pose> poses;
-  ck_assert(runner->ask(go(2s, 1), 2s, 2s, poses, 10s) == Answer::failed);
+  ck_assert(runner->ask(go(2s, 1), 2s, 2s, poses, 60s) == Answer::failed);
   assert_text(runner->failure(), "no memory");
   ck_assert(!runner->healthy());
   ck_assert(record.line().starts_with("limit 1000000000 "));
   assert_text(record.line(), "stop 1000000000");
   HeadSetup anew;
   anew.script = "record " + record.writer();
-  ck_assert(runner->open(anew, 10s) == Answer::done);
-  ck_assert(runner->ask(go(3s, 1), 3s, 3s, poses, 10s) == Answer::done);
+  ck_assert(runner->open(anew, 60s) == Answer::done);
+  ck_assert(runner->ask(go(3s, 1), 3s, 3s, poses, 60s) == Answer::done);
   assert_text(record.line(), "open 0");
   assert_text(record.line(), "command 3000000000 position 1 1 hold 0 0");
 }
@@ -369,16 +375,43 @@ START_TEST(a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not) {
   ck_assert(!HeadLease::take("gate"));              // one waits for it already
   ck_assert(HeadLease::take("another") != nullptr);
   HeadRunner unblocking(make_head("simulated"), next_lease);
-  ck_assert(unblocking.open({}, 10s) == Answer::failed);
+  ck_assert(unblocking.open({}, 60s) == Answer::failed);
   ck_assert(unblocking.refusal().find("it is still being stopped") == 0);
 
   HeadRunner next(make_head("scripted"), std::move(next_lease));
   HeadSetup setup;
   setup.script = "record " + next_record.writer();
   ck_assert(next.open(setup, 1ms) == Answer::late);
+  ck_assert(is_empty(next_record));
   gate.close_writer();
   assert_text(next_record.line(), "open 0");
   ck_assert_int_eq(record.line().find("close"), 0);  // the first driver was closed before
+}
+END_TEST
+
+START_TEST(a_runner_that_is_destroyed_while_it_waits_opens_nothing) {
+  Pipe gate, record, next_record;
+  auto lease = HeadLease::take("given up");
+  const std::weak_ptr<HeadLease> watch = lease;
+  auto runner =
+      runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
+  record.line();
+  runner->command(go(1s, 0.125));
+  record.line();
+  runner->set_close_patience(1ms);
+  runner.reset();
+  auto next_lease = HeadLease::take("given up");
+  const std::weak_ptr<HeadLease> next_watch = next_lease;
+  {
+    HeadRunner next(make_head("scripted"), std::move(next_lease));
+    next.set_close_patience(1ms);
+    HeadSetup setup;
+    setup.script = "record " + next_record.writer();
+    ck_assert(next.open(setup, 20ms) == Answer::late);
+  }
+  gate.close_writer();
+  while (!watch.expired() || !next_watch.expired()) std::this_thread::yield();
+  ck_assert(is_empty(next_record));
 }
 END_TEST
 
@@ -386,18 +419,18 @@ START_TEST(a_driver_that_does_not_open_returns_the_reason) {
   HeadRunner runner(make_head("scripted"), {});
   HeadSetup setup;
   setup.script = "open fail no such device";
-  ck_assert(runner.open(setup, 10s) == Answer::failed);
+  ck_assert(runner.open(setup, 60s) == Answer::failed);
   assert_text(runner.failure(), "no such device");
   assert_text(runner.refusal(), "no such device");
   assert_text(runner.refusal(), "");  // reported before
   // Nothing else fails of anything else.
   std::vector<Pose> poses;
-  ck_assert(runner.ask(HeadCommand{}, {}, {}, poses, 10s) == Answer::failed);
+  ck_assert(runner.ask(HeadCommand{}, {}, {}, poses, 60s) == Answer::failed);
   assert_text(runner.failure(), "no such device");
   for (const char* nonsense :
        {"opn fail x", "record", "record x", "command", "command 3", "command wait", "stop jump 3"}) {
     setup.script = nonsense;
-    ck_assert(runner.open(setup, 10s) == Answer::failed);
+    ck_assert(runner.open(setup, 60s) == Answer::failed);
     ck_assert(runner.failure().find("script: ") == 0);
   }
 }
@@ -406,7 +439,7 @@ END_TEST
 START_TEST(a_thousand_heads_come_and_go) {
   for (int k = 0; k < 1000; ++k) {
     HeadRunner runner(make_head(k % 2 ? "simulated" : "scripted"), {});
-    ck_assert(runner.open({}, 10s) == Answer::done);
+    ck_assert(runner.open({}, 60s) == Answer::done);
     runner.command(go(0s, 1));
   }
 }
@@ -414,18 +447,24 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "head_runner",
-      {questions_are_answered_with_all_pieces_of_the_way,
-       a_failure_is_reported_once_and_cleared_by_the_next_success, a_head_that_fails_is_stopped,
-       a_caller_without_patience_is_not_blocked, interrupt_wakes_a_waiting_caller,
-       two_interrupts_must_both_be_revoked, a_refusal_is_reported_and_nothing_else,
-       a_head_that_never_blocks_is_nobodys_but_the_callers, two_callers_at_once_are_both_answered,
-       the_second_caller_waits_no_longer_than_its_patience_and_is_interrupted,
-       new_limits_come_before_the_command_that_waits,
-       a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
-       of_commands_given_meanwhile_only_the_newest_counts,
-       a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does, a_stop_beats_the_commands_before_it,
-       a_blocked_driver_keeps_its_lease_and_closes_by_itself,
-       a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not,
-       a_driver_that_does_not_open_returns_the_reason, a_thousand_heads_come_and_go});
+      "head_runner", {questions_are_answered_with_all_pieces_of_the_way,
+                      a_failure_is_reported_once_and_cleared_by_the_next_success,
+                      a_head_that_fails_is_stopped,
+                      a_caller_without_patience_is_not_blocked,
+                      interrupt_wakes_a_waiting_caller,
+                      two_interrupts_must_both_be_revoked,
+                      a_refusal_is_reported_and_nothing_else,
+                      a_head_that_never_blocks_is_nobodys_but_the_callers,
+                      two_callers_at_once_are_both_answered,
+                      the_second_caller_waits_no_longer_than_its_patience_and_is_interrupted,
+                      new_limits_come_before_the_command_that_waits,
+                      a_head_that_refuses_limits_is_stopped_and_obeys_nothing_until_it_takes_them,
+                      of_commands_given_meanwhile_only_the_newest_counts,
+                      a_hold_after_a_stop_that_waits_does_not_revoke_it_and_a_move_does,
+                      a_stop_beats_the_commands_before_it,
+                      a_blocked_driver_keeps_its_lease_and_closes_by_itself,
+                      a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not,
+                      a_runner_that_is_destroyed_while_it_waits_opens_nothing,
+                      a_driver_that_does_not_open_returns_the_reason,
+                      a_thousand_heads_come_and_go});
 }

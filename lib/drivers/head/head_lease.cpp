@@ -44,14 +44,18 @@ HeadLease::~HeadLease() {
 }
 
 void HeadLease::announce_return() {
-  const std::lock_guard guard(taken().lock);
-  returns_ = true;
+  {
+    const std::lock_guard guard(taken().lock);
+    returns_ = true;
+  }
+  taken().returned.notify_all();
 }
 
 bool HeadLease::wait(std::chrono::steady_clock::duration patience) const {
   std::unique_lock guard(taken().lock);
-  return taken().returned.wait_for(guard, patience,
-                                   [&] { return taken().names.find(name_)->second.front() == this; });
+  const auto first = [&] { return taken().names.find(name_)->second.front() == this; };
+  taken().returned.wait_for(guard, patience, [&] { return returns_ || first(); });
+  return !returns_ && first();
 }
 
 }  // namespace cerberus::drivers

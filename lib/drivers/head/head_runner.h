@@ -29,7 +29,8 @@ class HeadRunner {
   };
   // moved: called when the head was opened, stopped or commanded; refused: called when it cannot be opened, even if
   // that is found late. Both are called on the worker's thread if there is one, and must not block nor call the runner.
-  // A head whose earlier lease is being returned is opened as soon as it is; refused after 10 s.
+  // A head whose earlier lease is being returned is opened as soon as it is; refused after 10 s. A runner
+  // that is destroyed meanwhile opens nothing.
   HeadRunner(std::unique_ptr<Head> head, std::shared_ptr<HeadLease> lease, std::function<void()> moved = {},
              std::function<void()> refused = {});
   // Gives the driver close_patience to stop and close.
