@@ -178,6 +178,58 @@ START_TEST(speeds_are_shares_of_the_fastest_and_a_camera_at_its_limit_stops) {
 }
 END_TEST
 
+namespace {
+
+// A camera that has `most` speeds either way and reports no position; its fastest ones are 80 degrees a second.
+Bench bench_with_steps(std::int32_t most) {
+  Bench bench;
+  bench.camera = with_angles();
+  bench.camera.ranges[id::kPanSpeed] = bench.camera.ranges[id::kTiltSpeed] = {-most, most, 1};
+  bench.camera.unread = {id::kPanAbsolute, id::kTiltAbsolute};
+  bench.options.pan_speed = bench.options.tilt_speed = 80;
+  bench.options.mode = Mode::speed;
+  return bench;
+}
+
+}  // namespace
+
+START_TEST(a_speed_is_the_nearest_step_that_is_no_faster_than_the_limit) {
+  Bench bench = bench_with_steps(4);  // 20 degrees a second each
+  bench.setup.limits.pan.speed = radians(50);
+  bench.open();
+  for (const auto& [degrees, step] :
+       {std::pair{50., 2}, {35, 2}, {29, 1}, {9, 0}, {-50, -2}, {-35, -2}, {-9, 0}}) {
+    bench.head->move({Kind::velocity, radians(degrees), 0}, {}, 0s);
+    ck_assert_int_eq(bench.camera.values[id::kPanSpeed], step);
+  }
+}
+END_TEST
+
+START_TEST(a_camera_without_positions_reports_its_speeds_and_stops_at_its_limits_by_them) {
+  Bench bench = bench_with_steps(1);
+  assert_text(bench.open(), "");
+  ck_assert(!bench.head->abilities().feedback);
+  bench.head->take_speeds(bench.now);
+  bench.head->move({Kind::velocity, radians(50), 0}, {Kind::velocity, radians(20), 0}, 0s);
+  const auto speeds = bench.head->take_speeds(bench.now + 10ms);
+  ck_assert(speeds);
+  ck_assert_double_eq_tol(degrees(speeds->speed.pan), 80, 1e-9);  // and not 50
+  ck_assert_double_eq(speeds->speed.tilt, 0);                     // too slow for its only step
+  ck_assert_double_eq_tol(speeds->age, .01, 1e-9);
+  ck_assert(!bench.head->take_speeds(bench.now));
+  bench.run(1500ms);  // at 120 degrees, where its pipeline stops it
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 1);
+  bench.run(100ms);  // beyond 122
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
+  const auto rest = bench.head->take_speeds(bench.now);
+  ck_assert(rest && rest->speed.pan == 0);
+  bench.head->move({Kind::velocity, radians(50), 0}, {}, bench.now);
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
+  bench.head->move({Kind::velocity, radians(-50), 0}, {}, bench.now);
+  ck_assert_int_eq(bench.camera.values[id::kPanSpeed], -1);
+}
+END_TEST
+
 START_TEST(a_stop_that_is_refused_is_set_again) {
   Bench bench;
   bench.camera = with_speeds(-160);
@@ -406,8 +458,10 @@ int main() {
       "v4l2_head",
       {angles_go_in_arc_seconds_on_the_cameras_grid_along_the_plan, a_stop_leaves_little_to_stop,
        limits_between_two_steps_are_not_passed,
-       speeds_are_shares_of_the_fastest_and_a_camera_at_its_limit_stops, a_stop_that_is_refused_is_set_again,
-       a_camera_that_refuses_a_speed_is_stopped_before_it_is_given_up,
+       speeds_are_shares_of_the_fastest_and_a_camera_at_its_limit_stops,
+       a_speed_is_the_nearest_step_that_is_no_faster_than_the_limit,
+       a_camera_without_positions_reports_its_speeds_and_stops_at_its_limits_by_them,
+       a_stop_that_is_refused_is_set_again, a_camera_that_refuses_a_speed_is_stopped_before_it_is_given_up,
        a_camera_that_may_turn_and_is_gone_is_stopped_as_soon_as_it_is_back,
        an_axis_that_ceases_to_report_makes_no_pose,
        a_camera_that_never_reports_one_of_its_axes_has_no_feedback,

@@ -31,6 +31,15 @@ std::int32_t on_grid(double value, const ControlRange& range) {
       std::clamp(range.least + count * step, double(range.least), double(range.most)));
 }
 
+// The step nearest to `speed` that is no faster than `limit` (radians a second, as `fastest`); the slowest one where all
+// are.
+std::int32_t speed_step(double speed, double limit, double fastest, const ControlRange& range) {
+  const double step = std::max(1, range.step);
+  const double steps = range.most / step;  // of one way
+  const double most = std::clamp(std::floor(limit / fastest * steps + kTie), 1.0, std::max(1.0, steps));
+  return static_cast<std::int32_t>(std::round(std::clamp(speed / fastest * steps, -most, most)) * step);
+}
+
 bool turns_both_ways(const std::optional<ControlRange>& range) {
   return range && range->most > 0 && range->least == -range->most;
 }
@@ -164,6 +173,7 @@ std::string V4l2Head::open(const HeadSetup& setup, Time now) {
   tilt_.position = setup.tilt;
   pan_.fastest = radians(options_.pan_speed);
   tilt_.fastest = radians(options_.tilt_speed);
+  reckoned_.begin(now, {setup.pan, setup.tilt});
   if (std::string wrong = connect(now); !wrong.empty()) return wrong;
   for (const Axis* axis : {&pan_, &tilt_})
     if (std::string wrong = check_range(*axis); !wrong.empty()) return wrong;
@@ -191,18 +201,42 @@ void V4l2Head::lose(int error) {
   stop_owed_ = mode_ == Mode::speed;
 }
 
-void V4l2Head::set_speed(Axis& axis, double speed) {
+double V4l2Head::speed_of(const Axis& axis) const {
+  return axis.speeds && axis.sent ? *axis.sent * axis.fastest / axis.speeds->most : 0;
+}
+
+void V4l2Head::set_speed(Axis& axis, double speed, Time now) {
   if (!axis.speeds) return;
-  // A camera that reports its position goes no further than the limits.
-  if (axis.reads &&
-      ((speed > 0 && axis.position >= axis.limits.to) || (speed < 0 && axis.position <= axis.limits.from)))
+  // A camera goes no further than the limits, by its own positions or, without these, by the speeds in force.
+  double position = axis.position, slack = 0;
+  if (!axis.reads) {
+    const motion::Pose here = reckoned_.at(now);
+    position = (&axis == &pan_ ? here.pan : here.tilt).position;
+    slack = kReckonedSlack;
+  }
+  if ((speed > 0 && position >= axis.limits.to + slack) ||
+      (speed < 0 && position <= axis.limits.from - slack))
     speed = 0;
-  const auto value = static_cast<std::int32_t>(
-      std::lround(std::clamp(speed / axis.fastest, -1.0, 1.0) * static_cast<double>(axis.speeds->most)));
+  const std::int32_t value = speed_step(speed, axis.limits.speed, axis.fastest, *axis.speeds);
   if (axis.sent == value) return;
   const int error = controls_->set(axis.speed, value);
   check(error);
   if (error == 0) axis.sent = value;
+}
+
+// The speeds in force have changed, perhaps.
+void V4l2Head::note_speeds(Time now) noexcept {
+  if (mode_ != Mode::speed) return;
+  const motion::PanTilt speed{speed_of(pan_), speed_of(tilt_)}, last = reckoned_.last();
+  if (speed.pan == last.pan && speed.tilt == last.tilt) return;
+  reckoned_.turn(now, speed);
+  speeds_changed_ = now;
+}
+
+std::optional<SpeedsLine> V4l2Head::take_speeds(Time now) {
+  const auto changed = std::exchange(speeds_changed_, std::nullopt);
+  if (!changed || reads_) return std::nullopt;
+  return SpeedsLine{reckoned_.last(), motion::seconds(now - *changed)};
 }
 
 void V4l2Head::plan(Axis& axis, const AxisCommand& command, Time now) {
@@ -216,12 +250,14 @@ void V4l2Head::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
   stop_owed_ = false;
   const auto order = [&](Axis& axis, const AxisCommand& command) {
     if (mode_ == Mode::speed)
-      set_speed(axis, command.kind == Kind::velocity && std::isfinite(command.value) ? command.value : 0);
+      set_speed(axis, command.kind == Kind::velocity && std::isfinite(command.value) ? command.value : 0,
+                now);
     else
       plan(axis, command, now);
   };
   order(pan_, pan);
   order(tilt_, tilt);
+  note_speeds(now);
   next_ = std::min(next_, now);
 }
 
@@ -247,6 +283,7 @@ void V4l2Head::stop(Time now) noexcept {
       if (error == 0) axis->sent = 0;
     }
   }
+  note_speeds(now);
 }
 
 void V4l2Head::send_angle(Axis& axis, double angle) {
@@ -306,12 +343,13 @@ Time V4l2Head::tick(Time now) {
     send_angle(*axis, axis->plan.at(now + Time(kPeriod)).position);
   }
   for (Axis* axis : {&pan_, &tilt_}) {
-    if (lost_ || !axis->reads) continue;
-    if (!read_position(*axis))
+    if (lost_) continue;
+    if (axis->reads && !read_position(*axis))
       lose(ENODEV);
     else if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
-      set_speed(*axis, *axis->sent * axis->fastest / axis->speeds->most);
+      set_speed(*axis, speed_of(*axis), now);
   }
+  note_speeds(now);
   check_zoom(now);
   new_pose_ = reads_ && !lost_;
   if (!lost_) return next_;

@@ -5,6 +5,9 @@
 //   absolute   PAN_ABSOLUTE and TILT_ABSOLUTE, arc-seconds
 //   relative   PAN_RELATIVE and TILT_RELATIVE, arc-seconds
 //
+// Of a camera that reports no position the speeds in force are reported, which are steps of its controls, and it is
+// stopped at its limits by them.
+//
 // Angles are sent in small parts along a planned motion, so that a stop has little left to stop: a camera has no stop
 // for them.
 //
@@ -22,6 +25,8 @@
 
 #include "drivers/helper/head_device.h"
 #include "drivers/v4l2/camera_controls.h"
+#include "motion/reckoning.h"
+#include "sensing/angles.h"
 
 namespace cerberus::drivers {
 
@@ -48,6 +53,7 @@ class V4l2Head final : public HeadDevice {
   void watch(std::vector<pollfd>&) const override {}
   Time tick(Time now) override;
   std::optional<PoseLine> take_pose(Time now) override;
+  std::optional<SpeedsLine> take_speeds(Time now) override;
   std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
   std::string fault() const override { return fault_; }
   V4l2Options::Mode mode() const { return mode_; }  // the one in use, once it is open
@@ -57,6 +63,10 @@ class V4l2Head final : public HeadDevice {
       500};  // between two looks at the zoom; a control takes 2 to 30 ms over USB
   static constexpr std::chrono::milliseconds kReopen{1000};
   static constexpr std::chrono::milliseconds kStopAgain{200};  // while a camera that is gone may turn
+
+  // Radians beyond a limit, by reckoning alone, where a camera without positions is stopped that its pipeline still
+  // drives on. derived: as StreamDevice::Parameters
+  static constexpr double kReckonedSlack = sensing::radians(2);
 
  private:
   using Mode = V4l2Options::Mode;
@@ -89,7 +99,9 @@ class V4l2Head final : public HeadDevice {
   std::string choose_mode();
   bool drives(const Axis& axis) const;
   std::string check_range(const Axis& axis) const;
-  void set_speed(Axis& axis, double speed);
+  void set_speed(Axis& axis, double speed, Time now);
+  double speed_of(const Axis& axis) const;  // in force, radians a second
+  void note_speeds(Time now) noexcept;
   bool read_position(Axis& axis) noexcept;
   void lose(int error);
   void check_zoom(Time now);
@@ -109,6 +121,8 @@ class V4l2Head final : public HeadDevice {
   bool stop_owed_ = false;  // the camera may turn at a speed
   bool lost_ = false;       // it does not obey, or does not report any more
   bool new_pose_ = false;
+  motion::Reckoning reckoned_;          // of the speeds in force
+  std::optional<Time> speeds_changed_;  // when, if that was not taken yet
   std::optional<ControlRange> zooms_;
   std::optional<double> zoom_;  // read, and not taken yet
   Time next_{}, next_open_{}, next_zoom_{};
