@@ -9,6 +9,7 @@
 #include <string>
 
 #include "drivers/helper/emergency_stop.h"
+#include "drivers/helper/head_server.h"
 #include "support/fake_lines.h"
 #include "support/suite.h"
 
@@ -23,7 +24,10 @@ class NotingDevice final : public HeadDevice {
   std::string open(const HeadSetup&, Time) override { return {}; }
   HeadAbilities abilities() const override { return {.velocity = true}; }
   void move(const cerberus::motion::AxisCommand&, const cerberus::motion::AxisCommand&, Time) override {}
-  void limit(const cerberus::motion::Limits&, Time) override { limited.set_value(); }
+  void limit(const cerberus::motion::Limits& to, Time) override {
+    limits = to;
+    limited.set_value();
+  }
   void stop(Time) noexcept override {
     if (!std::exchange(stopped_, true)) stopped.set_value();
   }
@@ -35,6 +39,7 @@ class NotingDevice final : public HeadDevice {
   std::string fault() const override { return {}; }
 
   std::promise<void> limited, stopped;
+  cerberus::motion::Limits limits;
   int releases = 0;
 
  private:
@@ -96,6 +101,25 @@ START_TEST(silence_after_other_limits_stops_a_head_that_returns_within_them) {
 }
 END_TEST
 
+START_TEST(other_limits_leave_the_speeds_of_the_first_line) {
+  NotingDevice device;
+  HeadServer server(device, [](const std::string&) {});
+  server.obey("cerberus-head 1 timeout 0.5 limits -170 170 -45 45 speed 30 20 acceleration 200 100 start 0 0",
+              0s);
+  server.obey("limits -10 10 -5 5", 1ms);
+  const auto check = [](const cerberus::motion::AxisLimits& axis, double to, double speed,
+                        double acceleration) {
+    using cerberus::sensing::degrees;
+    ck_assert_double_eq_tol(degrees(axis.to), to, 1e-9);
+    ck_assert_double_eq_tol(degrees(axis.from), -to, 1e-9);
+    ck_assert_double_eq_tol(degrees(axis.speed), speed, 1e-9);
+    ck_assert_double_eq_tol(degrees(axis.acceleration), acceleration, 1e-9);
+  };
+  check(device.limits.pan, 10, 30, 200);
+  check(device.limits.tilt, 5, 20, 100);
+}
+END_TEST
+
 START_TEST(a_stop_while_the_emergency_contact_is_open_releases) {
   NotingDevice device;
   cerberus::tests::FakeLines contact;
@@ -110,8 +134,9 @@ START_TEST(a_stop_while_the_emergency_contact_is_open_releases) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("helper_loop",
-                                    {the_end_of_the_pipeline_stops_a_head_whose_steps_are_overdue,
-                                     silence_after_other_limits_stops_a_head_that_returns_within_them,
-                                     a_stop_while_the_emergency_contact_is_open_releases});
+  return cerberus::tests::run_suite(
+      "helper_loop",
+      {the_end_of_the_pipeline_stops_a_head_whose_steps_are_overdue,
+       silence_after_other_limits_stops_a_head_that_returns_within_them,
+       other_limits_leave_the_speeds_of_the_first_line, a_stop_while_the_emergency_contact_is_open_releases});
 }

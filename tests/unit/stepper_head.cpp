@@ -6,6 +6,7 @@
 #include <cerrno>
 
 #include "drivers/helper/emergency_stop.h"
+#include "drivers/helper/head_server.h"
 #include "support/fake_lines.h"
 #include "support/suite.h"
 #include "support/text.h"
@@ -130,6 +131,43 @@ START_TEST(coils_that_are_never_released_stay_on_after_a_stop_and_go_off_with_th
   bench.head.release(bench.lines.now);  // an emergency stop
   bench.follow();
   ck_assert(!bench.lit());
+  FakeLines lines;
+  {
+    StepperHead head(never, std::make_unique<FakePort>(lines));
+    head.open({}, 0s);
+    head.move({Kind::velocity, 1, 0}, {}, 0s);
+    ck_assert(lines.levels[0]);
+  }
+  for (std::size_t k = 0; k < 4; ++k) ck_assert(!lines.levels[k]);
+}
+END_TEST
+
+START_TEST(coils_that_are_never_released_go_off_after_a_silence_and_at_the_end_and_not_at_a_stop) {
+  for (const char* last : {"stop", "silence", "end", "stop and end"}) {
+    const std::string how = last;
+    StepperOptions never = options(kCoils);
+    never.release_delay.reset();
+    Bench bench(never);
+    HeadServer server(bench.head, [](const std::string&) {});
+    const auto run = [&](Time length, bool ended, bool alive) {
+      for (const Time end = bench.lines.now + length; bench.lines.now < end;) {
+        if (alive) server.obey("alive", bench.lines.now);
+        const Time next = ended ? server.finish(bench.lines.now) : server.serve(bench.lines.now);
+        if (next == cerberus::motion::kNever && ended) break;
+        bench.lines.now = std::min({end, next, bench.lines.now + 10ms});
+      }
+    };
+    server.obey(
+        "cerberus-head 1 timeout 0.5 limits -170 170 -45 45 speed 90 90 acceleration 600 600 start 0 0", 0s);
+    server.obey("move at 20 hold", bench.lines.now);
+    run(300ms, false, true);
+    ck_assert(bench.lit());
+    if (how.starts_with("stop")) server.obey("stop", bench.lines.now);
+    run(2s, how == "end", how.starts_with("stop"));
+    ck_assert_msg(bench.lit() == how.starts_with("stop"), "%s", last);
+    if (how == "stop and end") run(2s, true, false);
+    ck_assert_msg(bench.lit() == (how == "stop"), "%s", last);
+  }
 }
 END_TEST
 
@@ -472,18 +510,24 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "stepper_head",
-      {ninety_degrees_are_1019_half_steps_in_order_and_then_the_coils_are_off,
-       coils_that_are_never_released_stay_on_after_a_stop_and_go_off_with_the_head,
-       the_coils_follow_the_table_of_half_steps, an_inverted_motor_turns_the_other_way,
-       step_and_direction_are_pulsed_with_their_times_and_enabled_only_to_move,
-       a_schedule_that_is_late_is_refused_and_said,
-       a_stop_brakes_within_a_quarter_of_a_second_and_switches_off, the_end_of_the_driver_switches_off,
-       an_end_stop_gives_the_position, a_switch_that_is_pressed_at_the_start_is_left_first,
-       a_switch_that_is_never_pressed_ends_the_search_and_is_said, an_end_stop_on_the_way_stops_the_axis,
-       a_hard_stop_is_run_against_only_when_asked_for, a_chip_that_goes_away_is_said_and_used_again,
-       both_axes_move_at_once, an_open_contact_switches_off_and_a_closed_one_moves_nothing,
-       a_contact_whose_chip_was_away_is_read_again,
-       an_axis_that_was_stopped_while_it_homed_moves_only_when_it_is_sent_somewhere,
-       options_that_cannot_be_are_named});
+      "stepper_head", {ninety_degrees_are_1019_half_steps_in_order_and_then_the_coils_are_off,
+                       coils_that_are_never_released_stay_on_after_a_stop_and_go_off_with_the_head,
+                       coils_that_are_never_released_go_off_after_a_silence_and_at_the_end_and_not_at_a_stop,
+                       the_coils_follow_the_table_of_half_steps,
+                       an_inverted_motor_turns_the_other_way,
+                       step_and_direction_are_pulsed_with_their_times_and_enabled_only_to_move,
+                       a_schedule_that_is_late_is_refused_and_said,
+                       a_stop_brakes_within_a_quarter_of_a_second_and_switches_off,
+                       the_end_of_the_driver_switches_off,
+                       an_end_stop_gives_the_position,
+                       a_switch_that_is_pressed_at_the_start_is_left_first,
+                       a_switch_that_is_never_pressed_ends_the_search_and_is_said,
+                       an_end_stop_on_the_way_stops_the_axis,
+                       a_hard_stop_is_run_against_only_when_asked_for,
+                       a_chip_that_goes_away_is_said_and_used_again,
+                       both_axes_move_at_once,
+                       an_open_contact_switches_off_and_a_closed_one_moves_nothing,
+                       a_contact_whose_chip_was_away_is_read_again,
+                       an_axis_that_was_stopped_while_it_homed_moves_only_when_it_is_sent_somewhere,
+                       options_that_cannot_be_are_named});
 }

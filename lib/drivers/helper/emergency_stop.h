@@ -24,6 +24,7 @@ class EmergencyStop final : public HeadDevice {
   void limit(const motion::Limits& limits, Time now) override;
   // A device that is released stays so: its stop would brake with its motors.
   void stop(Time now) noexcept override { open_ ? device_.release(now) : device_.stop(now); }
+  void leave(Time now) noexcept override { open_ ? device_.release(now) : device_.leave(now); }
   void release(Time now) noexcept override { device_.release(now); }
   bool busy() const override { return device_.busy(); }
   bool stopping() const override { return device_.stopping(); }

@@ -12,6 +12,7 @@ void HeadServer::obey(const std::string& text, Time now) {
   if (const auto* hello = std::get_if<HelloLine>(&*line)) {
     if (greeted_) return;
     timeout_ = hello->setup.helper_timeout;
+    limits_ = hello->setup.limits;
     greeted_ = true;
     const std::string wrong = device_.open(hello->setup, now);
     if (!wrong.empty()) {
@@ -31,7 +32,13 @@ void HeadServer::obey(const std::string& text, Time now) {
     device_.home(now);
     obeyed_ = true;
   } else if (const auto* limits = std::get_if<LimitsLine>(&*line)) {
-    device_.limit(limits->limits, now);
+    const auto move = [](motion::AxisLimits& axis, const motion::AxisLimits& to) {
+      axis.from = to.from;
+      axis.to = to.to;  // the line has no speeds: those of the first line stay
+    };
+    move(limits_.pan, limits->limits.pan);
+    move(limits_.tilt, limits->limits.tilt);
+    device_.limit(limits_, now);
     obeyed_ = true;  // a head beyond them returns
   } else if (std::get_if<StopLine>(&*line)) {
     device_.stop(now);
@@ -45,7 +52,7 @@ Time HeadServer::serve(Time now) {
   if (!greeted_ || ended_) return motion::kNever;
   Time next = device_.tick(now);
   if (at_work() && now - last_line_ >= timeout_) {
-    device_.stop(now);
+    device_.leave(now);
     obeyed_ = false;
     silent_ = true;
     next = now;  // what tick() returned is of the plan before
@@ -58,7 +65,7 @@ Time HeadServer::finish(Time now) {
   constexpr std::chrono::milliseconds kLook{20};
   if (!finish_by_) {
     finish_by_ = now + kStopPatience;
-    device_.stop(now);
+    device_.leave(now);
   }
   const Time next = device_.tick(now);
   if (!device_.stopping() || now >= *finish_by_) return motion::kNever;

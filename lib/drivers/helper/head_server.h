@@ -42,6 +42,7 @@ class HeadServer {
 
   HeadDevice& device_;
   Send send_;
+  motion::Limits limits_;
   Time timeout_{}, last_line_{};
   bool greeted_ = false, ended_ = false, failed_ = false;
   bool obeyed_ = false;  // a line that may move the head was carried out and no stop came after it

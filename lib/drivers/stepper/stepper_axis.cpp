@@ -73,7 +73,7 @@ void StepperAxis::limit(const AxisLimits& limits, Time now) {
 
 void StepperAxis::command(const AxisCommand& command, Time now) {
   command_ = command;
-  stopping_ = false;
+  stopping_ = leaving_ = false;
   if (homing() || lost_) return;
   if (!referenced_) {
     // A hold moves nothing: an axis that lost its position looks for it only on the way to a commanded one.
@@ -105,6 +105,11 @@ void StepperAxis::stop(Time now) {
   schedule_.command(now, {}, limits);
   stopping_ = energised();
   rest_since_ = now;
+}
+
+void StepperAxis::leave(Time now) {
+  stop(now);
+  leaving_ = stopping_;
 }
 
 void StepperAxis::release() noexcept {
@@ -261,7 +266,8 @@ Time StepperAxis::tick(Time now) {
   const Time due = rest_since_ + std::max(kParameters.settle, stopping_ ? Time::zero() : *release_delay_);
   if (now < due) return std::min(due, now + kParameters.idle);
   stopping_ = false;
-  if (release_delay_ && motor_.releases()) error_ = motor_.release();
+  const bool off = std::exchange(leaving_, false) || release_delay_;
+  if (off && motor_.releases()) error_ = motor_.release();
   return now + kParameters.idle;
 }
 

@@ -30,6 +30,8 @@ class StepperAxis {
   void command(const motion::AxisCommand& command, Time now);
   // Brakes within kStopTime, lets the rotor settle and switches the motor off, unless its release_delay is never.
   void stop(Time now);
+  // The same, and switches the motor off in any case.
+  void leave(Time now);
   // Switches the motor off at once. A moving motor loses its position: an axis that can home does so before it moves
   // again.
   void release() noexcept;
@@ -80,6 +82,7 @@ class StepperAxis {
   bool referenced_ = false;  // no homing is needed
   bool lost_ = false;        // homing failed: the axis does not move until recover()
   bool stopping_ = false;
+  bool leaving_ = false;     // stopping, and to be switched off whatever the release_delay
   double homing_start_ = 0;  // radians
   Time rest_since_{}, fault_end_{};
   std::string fault_;

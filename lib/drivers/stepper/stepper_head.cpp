@@ -84,6 +84,10 @@ void StepperHead::stop(Time now) noexcept {
   for_each(pan_, tilt_, [now](StepperAxis& axis) { axis.stop(now); });
 }
 
+void StepperHead::leave(Time now) noexcept {
+  for_each(pan_, tilt_, [now](StepperAxis& axis) { axis.leave(now); });
+}
+
 void StepperHead::release(Time) noexcept {
   for_each(pan_, tilt_, [](StepperAxis& axis) { axis.release(); });
 }

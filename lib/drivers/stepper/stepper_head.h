@@ -28,6 +28,7 @@ class StepperHead final : public HeadDevice {
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
   void limit(const motion::Limits& limits, Time now) override;
   void stop(Time now) noexcept override;
+  void leave(Time now) noexcept override;
   void release(Time now) noexcept override;
   bool busy() const override;
   bool stopping() const override;
