@@ -21,11 +21,19 @@ std::optional<TimeoutTrial> plan_timeout_trial(const motion::SpeedMap& speeds, d
 }
 
 void TimeoutWatch::add(double now, double turn) {
-  if (!std::isfinite(turn)) return;
+  if (!std::isfinite(turn)) {
+    // A head that is not seen does not rest.
+    if (now - measured_ >= parameters_.still) still_frames_ = 0;
+    return;
+  }
   position_ += turn;
-  if (std::abs(turn) <= parameters_.least * std::abs(trial_.speed)) return;
-  moved_ = now;
-  seen_ = seen_ || !killed_;
+  measured_ = now;
+  turned_ = std::abs(turn) > parameters_.least * std::abs(trial_.speed);
+  if (turned_)
+    still_frames_ = 0;
+  else if (killed_ && still_frames_++ == 0)
+    still_from_ = now;
+  if (!killed_) seen_ = seen_ || turned_;
 }
 
 TimeoutWatch::End TimeoutWatch::end(double now) const {
@@ -33,8 +41,10 @@ TimeoutWatch::End TimeoutWatch::end(double now) const {
   if (std::abs(position_) >= reach_) return End::turns;
   if (!killed_) return End::none;
   if (!seen_) return End::unseen;
-  if (now - moved_ >= parameters_.still) return End::stopped;
-  return now - *killed_ >= parameters_.patience ? End::turns : End::none;
+  if (still_frames_ >= parameters_.frames && measured_ - still_from_ >= parameters_.still)
+    return End::stopped;
+  if (now - *killed_ < parameters_.patience) return End::none;
+  return turned_ && measured_ > *killed_ ? End::turns : End::unseen;
 }
 
 }  // namespace cerberus::control

@@ -21,6 +21,7 @@ struct TimeoutTrialParameters {
                          // heads::HeadLink::kStartPatience, and then comes a dead time of 500 ms
   double still =
       0.3;  // seconds without motion after which the head has stopped; derived: 4 frames at 15 a second
+  unsigned frames = 4;  // measured ones without motion that span `still`; derived: 15 a second
   double least = 0.01;  // of the commanded speed, radians a frame: less is noise of the measurement
 };
 
@@ -41,7 +42,7 @@ class TimeoutWatch {
     none,     // the trial goes on
     stopped,  // by itself
     turns,    // it did not stop in time, or went to the end of its reach: a new helper must stop it
-    unseen,   // the picture never showed it turning: nothing is known
+    unseen,   // the picture did not show it turning, or not what it did without its helper: nothing is known
     key,      // a key was pressed: nothing is known
   };
   TimeoutWatch(const TimeoutTrial& trial, double position, double reach,
@@ -52,18 +53,21 @@ class TimeoutWatch {
   void add(double now, double turn);
   void press_key() { key_ = true; }
   // The helper was killed at `now`.
-  void kill(double now) { killed_ = moved_ = now; }
+  void kill(double now) { killed_ = measured_ = now; }
   // How the trial ends at `now`. Before the helper is killed only `turns`, at the end of the reach, and `key` end it.
   End end(double now) const;
-  double stopped_after() const { return moved_ - *killed_; }  // seconds, of End::stopped
+  double stopped_after() const { return still_from_ - *killed_; }  // seconds, of End::stopped
 
  private:
   TimeoutTrialParameters parameters_;
   TimeoutTrial trial_;
   double reach_, position_;
   std::optional<double> killed_;
-  double moved_ = 0;   // when the picture turned last
-  bool seen_ = false;  // turning, before the helper was killed
+  // Since the helper was killed: the frames without motion that were measured last, without a gap of `still` between.
+  unsigned still_frames_ = 0;
+  double still_from_ = 0, measured_ = 0;  // the first of them; the last measured frame
+  bool turned_ = false;                   // in the last measured frame
+  bool seen_ = false;                     // turning, before the helper was killed
   bool key_ = false;
 };
 

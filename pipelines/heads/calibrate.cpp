@@ -174,9 +174,27 @@ struct Session {
     watch.kill(now_seconds());
     while (ends() == End::none) g_usleep(10000);
     if (end == End::stopped) stopped = watch.stopped_after();
-    std::string wrong = link.start(options.driver, options.setup);
-    link.stop();
+    std::string wrong = start_again();
+    if (wrong.empty()) link.stop();
     return wrong;
+  }
+
+  // Starts a new helper, which stops the head, once a second until it answers. Returns what is wrong.
+  std::string start_again() {
+    constexpr double kPatience = 60;  // seconds; derived: a camera that starts anew takes less
+    keys.clear();
+    for (const double end = now_seconds() + kPatience;;) {
+      const double next = now_seconds() + 1;
+      const std::string wrong = link.start(options.driver, options.setup);
+      if (wrong.empty()) return {};
+      std::fprintf(stderr,
+                   "cerberus-heads: %s. The head may still be turning: cut its power if it does. It is tried "
+                   "again; a key ends that\n",
+                   wrong.c_str());
+      while (now_seconds() < next && !keys.pressed()) g_usleep(10000);
+      if (now_seconds() >= end || keys.pressed())
+        return wrong + ". THE HEAD MAY STILL BE TURNING, and nothing stops it: cut its power";
+    }
   }
 };
 
@@ -195,7 +213,7 @@ void report(const drivers::HeadCalibration& found, control::TimeoutWatch::End tr
   else if (trial == End::key)
     std::printf("whether it stops without its helper is not known: a key ended the trial\n");
   else if (trial == End::unseen)
-    std::printf("whether it stops without its helper is not known: the picture did not show it turning\n");
+    std::printf("whether it stops without its helper is not known: the picture did not show it\n");
   else
     std::printf("without its helper the head goes on turning: it needs limits of its own\n");
 }

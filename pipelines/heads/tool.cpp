@@ -40,6 +40,10 @@ bool Keys::pressed() {
   return terminal_ && has_input();
 }
 
+void Keys::clear() {
+  if (terminal_) ::tcflush(STDIN_FILENO, TCIFLUSH);
+}
+
 bool Keys::ask(const std::string& text) {
   std::printf("%s\nPress Enter to begin; the first key then ends it. ", text.c_str());
   std::fflush(stdout);

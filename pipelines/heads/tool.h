@@ -34,6 +34,8 @@ class Keys {
   // Prints the text and waits for a key. False: the key is not Enter or a blank, or there is no keyboard.
   static bool ask(const std::string& text);
   bool pressed();
+  // Forgets the keys that were pressed.
+  void clear();
 
  private:
   bool terminal_ = false;

@@ -137,12 +137,17 @@ struct Trial {
   TimeoutWatch::End end;
   double at, stopped_after;
 };
-Trial tried(double stops, double reach = 40, bool seen = true, double key = 1e9) {
+struct Gap {
+  double from = 1e9, to = 1e9;  // seconds: frames that are not measured
+};
+Trial tried(double stops, double reach = 40, bool seen = true, double key = 1e9, const Gap& gap = {}) {
   TimeoutWatch watch({radians(4), 1}, 0, radians(reach));
   for (int frame = 1;; ++frame) {
     const double now = 0.04 * frame;
     if (frame == 25) watch.kill(now);
-    watch.add(now, !seen ? kUnknown : now <= 1 + stops ? radians(0.16) : radians(0.001));
+    watch.add(now, !seen || (now > gap.from && now < gap.to) ? kUnknown
+                   : now <= 1 + stops                        ? radians(0.16)
+                                                             : radians(0.001));
     if (now >= key) watch.press_key();
     const auto end = watch.end(now);
     if (end != TimeoutWatch::End::none)
@@ -166,6 +171,25 @@ START_TEST(a_head_without_its_helper_stops_goes_on_or_was_not_seen) {
   ck_assert(narrow.end == End::turns);
   ck_assert_double_eq_tol(narrow.at, 1.5, 0.081);
   ck_assert(tried(100, 40, false).end == End::unseen);
+}
+END_TEST
+
+START_TEST(frames_that_are_not_measured_are_no_rest) {
+  using End = TimeoutWatch::End;
+  constexpr double kNoKey = 1e9;
+  // It turns all the time, and the picture loses it for 2 s after the kill.
+  ck_assert(tried(100, 40, true, kNoKey, {1.01, 3.01}).end == End::turns);
+  // It stops after 1.4 s in a gap that ends 2 s after the kill: it is known to have stopped by then.
+  const Trial late = tried(1.4, 40, true, kNoKey, {1.01, 3.01});
+  ck_assert(late.end == End::stopped);
+  ck_assert_double_eq_tol(late.stopped_after, 2, 0.081);
+  // A single frame without motion before the gap is none either.
+  const Trial once = tried(0, 40, true, kNoKey, {1.05, 3.01});
+  ck_assert(once.end == End::stopped);
+  ck_assert_double_eq_tol(once.stopped_after, 2, 0.081);
+  // Nothing is measured after the kill.
+  ck_assert(tried(100, 40, true, kNoKey, {1.01, 99}).end == End::unseen);
+  ck_assert(tried(0, 40, true, kNoKey, {1.01, 99}).end == End::unseen);
 }
 END_TEST
 
@@ -259,7 +283,7 @@ int main() {
       {table_dead_time_and_backlash_are_recovered, a_head_without_play_has_none,
        noise_of_the_picture_is_averaged, what_cannot_be_measured_ends_with_the_reason,
        the_trial_of_the_device_s_own_timeout_stays_within_the_limits,
-       a_head_without_its_helper_stops_goes_on_or_was_not_seen,
+       a_head_without_its_helper_stops_goes_on_or_was_not_seen, frames_that_are_not_measured_are_no_rest,
        a_key_ends_the_trial_and_nothing_is_said_of_the_head, a_speed_map_goes_both_ways,
        a_calibration_is_written_and_read, wrong_calibrations_are_refused_with_the_line,
        a_calibration_of_another_device_is_refused_by_name, a_device_is_named_without_its_password});
