@@ -62,7 +62,7 @@ class Board:
 
 def run(board, hello):
     low, high, timeout = hello[5:9:2], hello[6:9:2], hello[3]
-    speeds, moving, pending = [0.0, 0.0], False, b''
+    speeds, moving, pending = [0.0, 0.0], [0.0, 0.0], b''
     heard = asked = jogged = time.monotonic()
     while True:
         select.select([0, board.fd], [], [], STEP / 5)
@@ -86,12 +86,12 @@ def run(board, hello):
         # The board still carries out what it has accepted: an axis near its limit gets no further jog.
         wanted = [0.0 if (p + v * WAITING * STEP > b if v > 0 else p + v * WAITING * STEP < a) else v
                   for p, v, a, b in zip(board.position, speeds, low, high)]
-        if any(wanted) and now - jogged >= STEP and board.waiting < WAITING:
+        if any(m and not w for m, w in zip(moving, wanted)):
+            board.stop()  # also the jogs that wait; an axis that goes on begins anew
+            moving = [0.0, 0.0]
+        elif any(wanted) and now - jogged >= STEP and board.waiting < WAITING:
             board.jog(wanted)
-            moving, jogged = True, now
-        elif moving and not any(wanted):
-            board.stop()
-            moving = False
+            moving, jogged = wanted, now
         if now - asked >= 2 * STEP:
             board.send(b'?')
             asked = now

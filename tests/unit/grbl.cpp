@@ -52,6 +52,11 @@ class GrblBoard {
     advance();
     return x_;
   }
+  double tilt() {
+    const std::lock_guard guard(lock_);
+    advance();
+    return y_;
+  }
   bool moves() {
     const std::lock_guard guard(lock_);
     advance();
@@ -204,8 +209,36 @@ START_TEST(a_board_is_not_driven_beyond_its_limits) {
   setup.limits.pan.to = radians(5);
   assert_text(head.open(setup), "");
   ck_assert(drives(head, {Kind::velocity, radians(20), 0}, [&] { return board.pan() > 4; }));
-  ck_assert(soon([&] { return !board.moves(); }));
-  ck_assert_double_le(board.pan(), 5.5);
+  // It stands for a second: more than the jogs that wait.
+  double pan = board.pan();
+  auto since = Clock::now();
+  ck_assert(soon([&] {
+    if (const double at = board.pan(); at != pan) {
+      pan = at;
+      since = Clock::now();
+    }
+    return Clock::now() - since >= 1s;
+  }));
+  ck_assert_double_le(pan, 5.5);
+}
+END_TEST
+
+START_TEST(an_axis_that_stops_while_the_other_goes_on_cancels_the_jogs) {
+  GrblBoard board;
+  HelperHead head("external");
+  assert_text(head.open(setup_for(board)), "");
+  const cerberus::motion::AxisCommand turn{Kind::velocity, radians(20), 0};
+  const auto order = [&](const cerberus::motion::AxisCommand& tilt, auto holds) {
+    return soon([&] {
+      head.command({running_time(), turn, tilt});
+      return holds();
+    });
+  };
+  ck_assert(order(turn, [&] { return board.pan() > 1 && board.tilt() > 1; }));
+  const int before = board.cancels();
+  ck_assert(order({}, [&] { return board.cancels() > before; }));
+  const double there = board.pan();
+  ck_assert(order({}, [&] { return board.pan() > there + 1; }));
 }
 END_TEST
 
@@ -237,6 +270,7 @@ int main() {
   return cerberus::tests::run_suite(
       "grbl",
       {a_board_goes_where_it_is_sent_and_rests, the_end_of_the_pipeline_cancels_the_jogs,
-       a_board_is_not_driven_beyond_its_limits, a_board_that_only_a_feed_hold_stops_moves_again_after_it,
-       a_board_in_alarm_is_refused_with_what_to_do});
+       a_board_is_not_driven_beyond_its_limits, an_axis_that_stops_while_the_other_goes_on_cancels_the_jogs,
+       a_board_that_only_a_feed_hold_stops_moves_again_after_it, a_board_in_alarm_is_refused_with_what_to_do},
+      200);
 }
