@@ -44,19 +44,19 @@ class ServedHead {
     if (ends_[0] >= 0) ::close(ends_[0]);
     ends_[0] = -1;
   }
-  // Sends `line` every 10 ms until the condition holds; false after 10 s.
+  // Sends `line` every 10 ms until the condition holds; false after 60 s.
   template <typename Condition>
   bool until(Condition holds, const std::string& line = "alive") {
-    for (const auto end = Clock::now() + std::chrono::seconds(10); Clock::now() < end;
+    for (const auto end = Clock::now() + std::chrono::seconds(60); Clock::now() < end;
          std::this_thread::sleep_for(std::chrono::milliseconds(10))) {
       if (holds()) return true;
       say(line);
     }
     return false;
   }
-  // Reads until a line begins like this; empty after 10 s.
+  // Reads until a line begins like this; empty after 60 s.
   std::string line(const std::string& begin) {
-    for (const auto end = Clock::now() + std::chrono::seconds(10); Clock::now() < end;) {
+    for (const auto end = Clock::now() + std::chrono::seconds(60); Clock::now() < end;) {
       while (const auto text = lines_.take())
         if (text->starts_with(begin)) return *text;
       char bytes[512];

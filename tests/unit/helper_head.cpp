@@ -19,6 +19,7 @@
 #include "sensing/angles.h"
 #include "support/suite.h"
 #include "support/text.h"
+#include "support/time_bounds.h"
 
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
@@ -50,7 +51,7 @@ class Recorder {
   }
   // The lines but `alive`, once there are `least` and the last of them is `last`.
   std::vector<std::string> until(const std::string& last, std::size_t least = 1) const {
-    for (const auto end = Clock::now() + 10s; Clock::now() < end; std::this_thread::sleep_for(5ms)) {
+    for (const auto end = Clock::now() + 60s; Clock::now() < end; std::this_thread::sleep_for(5ms)) {
       std::vector<std::string> all = lines();
       std::erase(all, "alive");
       if (all.size() >= least && all.back() == last) return all;
@@ -82,7 +83,7 @@ START_TEST(the_shipped_example_goes_where_it_is_sent_and_reports_it) {
   const auto begin = Clock::now();
   assert_text(head.command({0s, {Kind::position, radians(20), radians(90)}, {}}), "");
   Pose pose;
-  while (Clock::now() < begin + 10s) {
+  while (Clock::now() < begin + 60s) {
     assert_text(head.state(Clock::now() - begin, pose), "");
     if (pose.measured && pose.settled && std::abs(degrees(pose.pan.position) - 20) < 0.1) break;
     std::this_thread::sleep_for(20ms);
@@ -142,7 +143,7 @@ START_TEST(a_head_that_found_its_reference_is_there_and_measured_for_a_moment) {
   do {
     std::this_thread::sleep_for(5ms);
     assert_text(head.state(Clock::now() - begin, pose), "");
-  } while (!pose.measured && Clock::now() - begin < 10s);
+  } while (!pose.measured && Clock::now() - begin < 60s);
   ck_assert(pose.measured);
   ck_assert_double_eq_tol(degrees(pose.pan.position), 5, 1e-9);
   ck_assert_double_eq_tol(degrees(pose.tilt.position), -3, 1e-9);
@@ -186,7 +187,7 @@ START_TEST(an_emergency_stop_between_two_looks_is_seen) {
   ck_assert(!head.emergency());
   assert_text(head.command({0s, {Kind::position, 0.1, 1}, {}}), "");
   Time time = 0s;
-  for (const auto end = Clock::now() + 10s;
+  for (const auto end = Clock::now() + 60s;
        Clock::now() < end && head.command({time += 1ms, {}, {}}).empty();)
     std::this_thread::sleep_for(5ms);
   ck_assert(head.emergency());
@@ -202,7 +203,7 @@ START_TEST(a_helper_that_ended_is_reported_and_started_again) {
   assert_text(head.command({0s, {Kind::position, 0.1, 1}, {}}), "");
   std::string wrong;
   Time time = 0s;
-  const auto end = Clock::now() + 10s;
+  const auto end = Clock::now() + 60s;
   while (wrong.empty() && Clock::now() < end) {
     std::this_thread::sleep_for(10ms);
     wrong = head.command({time += 1ms, {}, {}});
@@ -225,13 +226,13 @@ START_TEST(a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeli
     if (!head.command({0s, {Kind::velocity, radians(5), 0}, {}}).empty()) ::_exit(1);
     for (;;) ::pause();
   }
-  for (const auto end = Clock::now() + 10s; Clock::now() < end && helper.lines().size() < 3;)
+  for (const auto end = Clock::now() + 60s; Clock::now() < end && helper.lines().size() < 3;)
     std::this_thread::sleep_for(5ms);
   ::kill(pipeline, SIGKILL);
   const auto killed = Clock::now();
   ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
   helper.until("eof");
-  ck_assert(Clock::now() - killed < 500ms);
+  ck_assert(cerberus::tests::in_time(Clock::now() - killed, 500ms));
 }
 END_TEST
 
@@ -244,5 +245,6 @@ int main() {
        a_head_that_found_its_reference_is_there_and_measured_for_a_moment, a_head_without_a_reference_says_so,
        a_helper_that_cannot_open_its_head_reports_the_reason, an_emergency_stop_between_two_looks_is_seen,
        a_helper_that_ended_is_reported_and_started_again,
-       a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline});
+       a_helper_sees_the_end_within_half_a_second_of_the_death_of_the_pipeline},
+      200);
 }

@@ -15,6 +15,7 @@
 
 #include "support/suite.h"
 #include "support/text.h"
+#include "support/time_bounds.h"
 
 using namespace cerberus::drivers;
 using namespace std::chrono_literals;
@@ -56,10 +57,10 @@ class Served {
     if (ends_[0] >= 0) ::close(ends_[0]);
     ends_[0] = -1;
   }
-  // Keeps the line alive until the condition holds; false after 10 s.
+  // Keeps the line alive until the condition holds; false after 60 s.
   template <typename Condition>
   bool until(Condition holds, const std::string& line = "alive") {
-    for (const auto end = Clock::now() + 10s; Clock::now() < end; std::this_thread::sleep_for(10ms)) {
+    for (const auto end = Clock::now() + 60s; Clock::now() < end; std::this_thread::sleep_for(10ms)) {
       if (holds()) return true;
       say(line);
     }
@@ -67,7 +68,7 @@ class Served {
   }
   // Reads until a line begins like this.
   std::string line(const std::string& begin) {
-    const auto end = Clock::now() + 10s;
+    const auto end = Clock::now() + 60s;
     while (Clock::now() < end) {
       while (const auto text = lines_.take())
         if (text->starts_with(begin)) return *text;
@@ -122,12 +123,12 @@ START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_sec
     Served served(options_for(camera), silent ? "0.2" : "5");
     served.line("ready");
     served.say("move at -45 hold");
-    ck_assert(served.until([&] { return camera.speed() == -45; }));
+    ck_assert(served.until([&] { return camera.speed() == -45; }, "move at -45 hold"));
     const auto last_word = Clock::now();
     if (!silent) served.hang_up();
-    while (camera.speed() != 0 && Clock::now() - last_word < 5s) std::this_thread::sleep_for(2ms);
+    while (camera.speed() != 0 && Clock::now() - last_word < 60s) std::this_thread::sleep_for(2ms);
     ck_assert(camera.speed() == 0);
-    ck_assert(camera.stopped() - last_word < 500ms);
+    ck_assert(cerberus::tests::in_time(camera.stopped() - last_word, 500ms));
   }
 }
 END_TEST
@@ -209,7 +210,7 @@ START_TEST(a_camera_that_goes_away_is_reported_and_used_again_at_rest) {
   const auto pulled = Clock::now();
   camera.hang_up();
   const std::string fault = served.line("fault");
-  ck_assert(Clock::now() - pulled < 1s);
+  ck_assert(cerberus::tests::in_time(Clock::now() - pulled, 1s));
   ck_assert_msg(fault.find("is gone") != std::string::npos, "%s", fault.c_str());
   assert_text(served.line("recovered"), "recovered");
   ck_assert(served.until([&] { return camera.speed() == 0; }));  // it does not run away
@@ -356,7 +357,7 @@ END_TEST
 int main() {
   Suite* suite = suite_create("visca_head");
   TCase* cases = tcase_create("visca_head");
-  tcase_set_timeout(cases, 60);
+  tcase_set_timeout(cases, 200);
   for (const TTest* test : {a_camera_turns_reports_and_stops_on_every_line,
                             silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second})
     tcase_add_loop_test(cases, test, 0, std::size(kLines));
