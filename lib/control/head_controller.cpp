@@ -512,7 +512,9 @@ bool HeadController::turn(double pan, double tilt, std::optional<Time> at, Defer
   const std::lock_guard guard(lock_);
   if (!runner_ || ended_ || !manual_.turn(pan, tilt)) return false;
   const Time now = at && clock_driven_ ? head_time(*at) : std::max(latest_, published_);
-  manual_.expires(now + (manual_timeout_ > Time::zero() ? manual_timeout_ : Time(kTurnTimeout)));
+  // A longer time for moves does not lengthen a turn.
+  const Time longest(kTurnTimeout);
+  manual_.expires(now + (manual_timeout_ > Time::zero() ? std::min(manual_timeout_, longest) : longest));
   apply_manual(at, out);
   return true;
 }

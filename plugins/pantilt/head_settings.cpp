@@ -122,7 +122,7 @@ const Property<HeadSettings> kProperties[] = {
     property("manual-timeout", &HeadSettings::manual_timeout,
              "Nanoseconds after which an order by hand that is not repeated becomes a stop, for orders from "
              "afar; 0 = "
-             "moves never, `turn` after 500 ms"),
+             "moves never; `turn` after 500 ms at most"),
     property("camera-name", &HeadSettings::camera_name, kCameraNameBlurb).read_at_start(),
 };
 

@@ -101,8 +101,8 @@ struct Rig {
 
   explicit Rig(const Options& options = {}) {
     record->refusal = options.refusal;
-    auto runner = std::make_unique<HeadRunner>(std::make_unique<RecordedHead>(record, options.blocks),
-                                               nullptr);
+    auto runner =
+        std::make_unique<HeadRunner>(std::make_unique<RecordedHead>(record, options.blocks), nullptr);
     runner->open(options.setup, 10s);
     controller.open(std::move(runner), options.setup);
     controller.set_clock_driven(options.clock_driven);
@@ -813,6 +813,19 @@ START_TEST(moves_expire_only_with_a_manual_timeout) {
 }
 END_TEST
 
+START_TEST(a_turn_ends_after_500_ms_whatever_the_manual_timeout) {
+  Options options;
+  options.clock_driven = true;
+  Rig rig(options);
+  rig.controller.set_manual_timeout(60s);
+  rig.controller.turn(radians(5), 0, 1s, rig.out);
+  rig.controller.tick(1499ms, rig.out);
+  ck_assert(!holds(rig.command().pan));
+  rig.controller.tick(1500ms, rig.out);
+  ck_assert(holds(rig.command().pan));
+}
+END_TEST
+
 START_TEST(the_emergency_stop_takes_the_head_from_everybody_until_a_new_order) {
   Options options;
   options.clock_driven = true;
@@ -914,6 +927,7 @@ int main() {
                            a_turn_by_hand_becomes_a_stop_after_500_ms_unless_it_is_repeated,
                            a_stop_an_expired_order_and_the_watchdog_command_more_than_a_hold,
                            moves_expire_only_with_a_manual_timeout,
+                           a_turn_ends_after_500_ms_whatever_the_manual_timeout,
                            the_emergency_stop_takes_the_head_from_everybody_until_a_new_order,
                            after_a_fault_a_manual_command_is_reported_again,
                            a_head_that_cannot_be_opened_is_an_error_and_reported_once,
