@@ -2,6 +2,7 @@
 #include "robot/access.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace cerberus::robot {
 
@@ -39,6 +40,10 @@ std::string_view without_port(std::string_view host) {
 bool is_numeric(std::string_view host) {
   if (host.starts_with('[')) return host.ends_with(']');
   return !host.empty() && host.find_first_not_of("0123456789.") == host.npos;
+}
+
+bool is_loopback(std::string_view address) {
+  return address == "::1" || address.starts_with("127.") || address.starts_with("::ffff:127.");
 }
 
 bool same_letters(std::string_view a, std::string_view b) {
@@ -128,8 +133,9 @@ Session* Sessions::find(std::string_view token, AccessTime now) {
   return nullptr;
 }
 
-void Sessions::end(std::string_view token) {
-  std::erase_if(sessions_, [&](const Session& session) { return same(session.token, token); });
+void Sessions::end(std::string token) {
+  std::erase_if(sessions_,
+                [ended = std::move(token)](const Session& session) { return same(session.token, ended); });
 }
 
 void Sessions::end_all(Role role, std::string_view except) {
@@ -145,7 +151,7 @@ void RateLimit::fail(Entry& entry, int free, AccessTime now) const {
 }
 
 std::chrono::seconds RateLimit::wait(std::string_view address, AccessTime now) const {
-  AccessTime until = all_.until;
+  AccessTime until = is_loopback(address) ? AccessTime{} : all_.until;
   for (const Entry& entry : entries_)
     if (entry.address == address) until = std::max(until, entry.until);
   return until <= now ? std::chrono::seconds(0) : std::chrono::ceil<std::chrono::seconds>(until - now);
@@ -166,6 +172,7 @@ void RateLimit::failed(std::string_view address, AccessTime now) {
 }
 
 void RateLimit::succeeded(std::string_view address) {
+  all_ = {};
   std::erase_if(entries_, [&](const Entry& entry) { return entry.address == address; });
 }
 

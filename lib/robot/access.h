@@ -61,7 +61,8 @@ class Sessions {
   Session& begin(std::string token, Role role, std::string address, AccessTime now);
   // The session of a token, which is then used; nullptr: there is none.
   Session* find(std::string_view token, AccessTime now);
-  void end(std::string_view token);
+  // `token` may be that of the session that ends here: it is a copy.
+  void end(std::string token);
   // Ends all sessions of a role, after its password changed.
   void end_all(Role role, std::string_view except);
   std::size_t count() const { return sessions_.size(); }
@@ -80,9 +81,11 @@ class RateLimit {
     std::size_t most = 256;  // addresses that are remembered
   };
 
-  // How long this address must wait; zero: it may try.
+  // How long this address must wait; zero: it may try. Failures of other addresses do not delay one of loopback: the
+  // machine itself stays usable.
   std::chrono::seconds wait(std::string_view address, AccessTime now) const;
   void failed(std::string_view address, AccessTime now);
+  // The address, and all together, begin anew.
   void succeeded(std::string_view address);
 
  private:

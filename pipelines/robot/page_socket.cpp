@@ -12,7 +12,7 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr std::size_t kMostViewers = 16;
+constexpr std::size_t kMostViewers = 16, kMostOfSession = 4;
 constexpr guint kKeepalive = 10;   // seconds between pings; a vanished peer is noticed by TCP then
 constexpr double kTurnSpeed = 40;  // degrees a second, as `turn-speed` of pantiltsink by default
 
@@ -51,7 +51,11 @@ double cpu_seconds() {
 
 void PageServer::open_socket(SoupServerMessage* message, SoupWebsocketConnection* connection) {
   const Session* session = session_of(message);  // checked by authorize()
-  if (session == nullptr || house_.cameras.empty() || viewers_.size() >= kMostViewers) {
+  const auto of_session = [&] {
+    return std::ranges::count_if(viewers_, [&](const auto& one) { return one->token() == session->token; });
+  };
+  if (session == nullptr || house_.cameras.empty() || viewers_.size() >= kMostViewers ||
+      static_cast<std::size_t>(of_session()) >= kMostOfSession) {
     soup_websocket_connection_close(connection, SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION,
                                     "too many pages are open");
     return;
@@ -108,10 +112,10 @@ void PageServer::update_watched() {
         std::ranges::any_of(viewers_, [&](const auto& viewer) { return viewer->camera() == camera.get(); }));
 }
 
-// Closes the pages whose session ended.
+// Closes the pages whose session ended, and those that no longer answer.
 void PageServer::close_strangers() {
   for (std::size_t k = viewers_.size(); k-- > 0;)
-    if (sessions_.find(viewers_[k]->token(), now()) == nullptr)
+    if (sessions_.find(viewers_[k]->token(), now()) == nullptr || viewers_[k]->is_silent(now()))
       viewers_[k]->close(SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION);
 }
 
@@ -133,10 +137,10 @@ void PageServer::execute(Viewer& viewer, const Session& session, const PageComma
   using Kind = PageCommand::Kind;
   switch (command.kind) {
     case Kind::ack:
-      viewer.acknowledge_picture(command.number);
+      if (!viewer.acknowledge_picture(command.number)) viewer.close(SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION);
       return;
     case Kind::seen:
-      viewer.acknowledge_state(command.number);
+      if (!viewer.acknowledge_state(command.number)) viewer.close(SOUP_WEBSOCKET_CLOSE_POLICY_VIOLATION);
       return;
     case Kind::camera:
       if (Camera* other = camera(command.name)) {

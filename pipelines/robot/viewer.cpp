@@ -9,6 +9,7 @@ void Viewer::send(const std::string& text) {
 
 void Viewer::send_state(const std::string& json) {
   if (states_.size() >= kMostUnacknowledged) return;
+  if (states_.empty()) waiting_since_ = Camera::Clock::now();
   states_.push_back(++reported_);
   send("{\"number\":" + std::to_string(reported_) + ',' + json + '}');
 }
@@ -34,9 +35,18 @@ void Viewer::send_picture() {
   pictures_.push_back(sent_);
 }
 
-void Viewer::acknowledge_picture(guint64 number) {
+bool Viewer::acknowledge_picture(guint64 number) {
+  if (number > sent_) return false;
   std::erase_if(pictures_, [=](guint64 one) { return one <= number; });
   send_picture();
+  return true;
+}
+
+bool Viewer::acknowledge_state(guint64 number) {
+  if (number > reported_) return false;
+  if (std::erase_if(states_, [=](guint64 one) { return one <= number; }) > 0)
+    waiting_since_ = Camera::Clock::now();
+  return true;
 }
 
 void Viewer::close(gushort code) {

@@ -15,6 +15,8 @@ class Viewer {
  public:
   // Pictures, and reports of state, that are on their way at most: a page that does not answer is sent nothing more.
   static constexpr std::size_t kMostUnacknowledged = 2;
+  // So long a report may stay unacknowledged: a page that was suspended comes back by a new socket.
+  static constexpr std::chrono::seconds kPatience{30};
 
   Viewer(SoupWebsocketConnection* connection, std::string token, std::string label, Camera* camera)
       : connection_(SOUP_WEBSOCKET_CONNECTION(g_object_ref(connection))),
@@ -39,9 +41,12 @@ class Viewer {
   void send_picture();
   void send_state(const std::string& json);  // an object's members, to which a number is added
   void send(const std::string& text);
-  void acknowledge_picture(guint64 number);
-  void acknowledge_state(guint64 number) {
-    std::erase_if(states_, [=](guint64 one) { return one <= number; });
+  // False: there was no such number yet.
+  bool acknowledge_picture(guint64 number);
+  bool acknowledge_state(guint64 number);
+  // Whether it has not acknowledged a report for longer than kPatience.
+  bool is_silent(Camera::Clock::time_point now) const {
+    return !states_.empty() && now - waiting_since_ > kPatience;
   }
   void close(gushort code);
 
@@ -54,7 +59,8 @@ class Viewer {
   std::string token_, label_;
   Camera* camera_;
   guint64 shown_ = 0, sent_ = 0, reported_ = 0;
-  std::vector<guint64> pictures_, states_;  // not acknowledged
+  std::vector<guint64> pictures_, states_;     // not acknowledged
+  Camera::Clock::time_point waiting_since_{};  // for the acknowledgement of states_.front()
 };
 
 }  // namespace cerberus::robot

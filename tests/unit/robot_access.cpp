@@ -115,7 +115,7 @@ START_TEST(a_session_ends_after_12_idle_hours_after_a_week_and_when_it_is_ended)
   sessions.end_all(Role::owner, "four");
   ck_assert(!sessions.find("three", kStart) && sessions.find("four", kStart) &&
             sessions.find("five", kStart));
-  sessions.end("four");
+  sessions.end(sessions.find("four", kStart)->token);
   ck_assert(!sessions.find("four", kStart));
 }
 END_TEST
@@ -153,6 +153,11 @@ START_TEST(many_addresses_together_are_slowed_down_too) {
   RateLimit limit;
   for (int k = 0; k < 50; ++k) limit.failed("address " + std::to_string(k), kStart);
   ck_assert_int_eq(limit.wait("another", kStart).count(), 1);
+  for (const char* own : {"127.0.0.1", "::1", "::ffff:127.0.0.1"})
+    ck_assert_int_eq(limit.wait(own, kStart).count(), 0);
+  RateLimit after = limit;
+  after.succeeded("address 7");
+  ck_assert_int_eq(after.wait("another", kStart).count(), 0);
   limit.failed("another", kStart + hours(2));  // forgotten
   ck_assert_int_eq(limit.wait("another", kStart + hours(2)).count(), 0);
 }

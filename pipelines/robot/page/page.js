@@ -64,7 +64,7 @@ function connect() {
   socket.binaryType = 'arraybuffer';
   socket.onmessage = (event) => {
     if (typeof event.data === 'string') onReport(JSON.parse(event.data));
-    else onPicture(event.data);
+    else onPicture(event.data, event.target);
   };
   socket.onclose = async () => {
     socket = null;
@@ -188,7 +188,7 @@ function showState() {
 
 const picture = at('picture'), pen = picture.getContext('2d');
 
-async function onPicture(data) {
+async function onPicture(data, from) {
   const view = new DataView(data);
   const number = view.getBigUint64(0), length = view.getUint32(8);
   try {
@@ -204,7 +204,8 @@ async function onPicture(data) {
     facts = length ? JSON.parse(new TextDecoder().decode(new Uint8Array(data, 12, length))) : null;
     drawRadar();
   } finally {
-    send(`ack ${number}`);
+    // Numbers are those of one socket.
+    if (from.readyState === WebSocket.OPEN) from.send(`ack ${number}`);
   }
 }
 
