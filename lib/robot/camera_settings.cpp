@@ -78,6 +78,7 @@ constexpr Option kHead[] = {
     {"lock-zoom", K::number, -1, 2},
     {"base-gyro", K::text},
     {"watchdog-timeout", K::seconds, 0.05, 60},
+    {"manual-timeout", K::seconds, 0, kDay},
 };
 
 constexpr Option kRecorder[] = {

@@ -58,7 +58,7 @@ std::string ModeKeeper::state() const {
   return std::string(name(mode_)) + ' ' + std::to_string(since_) + '\n';
 }
 
-bool ModeKeeper::restore(std::string_view text) {
+bool ModeKeeper::restore(std::string_view text, std::int64_t utc) {
   const std::size_t blank = text.find(' ');
   const std::optional<Mode> mode = mode_of(text.substr(0, blank));
   std::int64_t since = 0;
@@ -70,7 +70,7 @@ bool ModeKeeper::restore(std::string_view text) {
       return true;
     }
   }
-  mode_ = Mode::privacy;
+  set(Mode::privacy, utc);
   return false;
 }
 

@@ -56,8 +56,9 @@ class ModeKeeper {
 
   // "armed 1763863200\n": the mode and when it was set.
   std::string state() const;
-  // Takes up what state() gave, in privacy what is not such a text: the safe side. Returns whether it was one.
-  bool restore(std::string_view text);
+  // Takes up what state() gave. What is not such a text counts as privacy that was set by hand at `utc`: the safe side.
+  // Returns whether it was one.
+  bool restore(std::string_view text, std::int64_t utc);
 
  private:
   Mode mode_;

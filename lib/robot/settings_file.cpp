@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "robot/settings_file.h"
 
+#include <arpa/inet.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -22,6 +23,9 @@ using text::TomlValue;
 
 // Largest configuration file, largest secret, in bytes. A larger file was named by mistake.
 constexpr std::size_t kMostBytes = 1 << 20, kMostSecret = 4096;
+
+// ns, 60 s: the longest way of a slow head takes less, and a person who steers looks more often.
+constexpr std::string_view kManualTimeout = "60000000000";
 
 constexpr std::array<std::string_view, 3> kModes{"armed", "disarmed", "privacy"};
 constexpr std::array<std::string_view, 7> kDays{"mon", "tue", "wed", "thu", "fri", "sat", "sun"};
@@ -80,11 +84,18 @@ ModeSettings read_mode(const TomlValue& table, Mistakes& mistakes) {
   return settings;
 }
 
+bool is_address(const std::string& text) {
+  std::array<unsigned char, sizeof(in6_addr)> bytes{};
+  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
+         inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
+}
+
 PageSettings read_page(const TomlValue& table, Mistakes& mistakes) {
   TableReader reader(table, "[page]", mistakes);
   PageSettings settings;
   reader.truth("enabled", settings.enabled);
-  reader.text("listen", settings.listen);
+  if (reader.text("listen", settings.listen) && !is_address(settings.listen))
+    reader.complain("listen", "\"listen\" is a numeric address: 127.0.0.1, or 0.0.0.0 for every network");
   reader.whole("port", settings.port, 1, 65535);
   reader.texts("origins", settings.origins);
   for (const std::string& origin : settings.origins) {
@@ -113,6 +124,10 @@ Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& 
   Properties properties;
   if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
   reader.properties(kMqtt, properties);
+  for (const Property& property : properties)
+    if (property.name == "topic-prefix" &&
+        (property.value.empty() || property.value.find_first_of("/+#") != property.value.npos))
+      reader.complain("topic-prefix", "\"topic-prefix\" is one level of a topic, without / + #");
   for (const char* key : {"password-file", "ca-file"}) {
     std::string path;
     if (!reader.text(key, path)) continue;
@@ -136,6 +151,18 @@ Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& 
   if (!list.empty()) properties.push_back({"commands", list});
   reader.finish();
   return properties;
+}
+
+// An order to move that arrived by MQTT ends after a time, as a network may fail before the next one.
+void limit_moves(Settings& settings) {
+  const auto find = [](const Properties& properties, std::string_view name) {
+    return std::ranges::find(properties, name, &Property::name);
+  };
+  const auto commands = find(*settings.mqtt, "commands");
+  if (commands == settings.mqtt->end() || commands->value.find("move-") == std::string::npos) return;
+  for (CameraSettings& camera : settings.cameras)
+    if (camera.head && find(*camera.head, "manual-timeout") == camera.head->end())
+      camera.head->push_back({"manual-timeout", std::string(kManualTimeout)});
 }
 
 std::string joined(Mistakes mistakes, std::string_view source) {
@@ -175,6 +202,7 @@ Parsed parse(std::string_view toml, std::string_view folder) {
     settings.mqtt = read_mqtt(*table, folder, mistakes, parsed.files);
   for (const TomlValue* table : reader.tables("camera", "[[camera]]"))
     settings.cameras.push_back(read_camera(*table, folder, mistakes, parsed.files));
+  if (settings.mqtt) limit_moves(settings);
   if (!reader.has("camera")) mistakes.push_back({0, "there is no camera: it needs a [[camera]]"});
   std::set<std::string> names;
   for (const CameraSettings& camera : settings.cameras)

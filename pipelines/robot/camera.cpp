@@ -21,6 +21,7 @@ struct Camera::Newest {
   GBytes* picture = nullptr;
   guint64 number = 0;
   std::string facts;
+  bool show = false;       // else what arrives is dropped
   bool announced = false;  // a call of on_picture is on its way
 };
 
@@ -113,7 +114,7 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
 }
 
 void Camera::connect() {
-  drop_frames("picture-queue", watched_);
+  drop_frames("picture-queue", draw_);
   drop_frames("record-queue", record_);
   drop_frames("analysis-queue", record_);
   g_autoptr(GstElement) detect = element("detect");
@@ -142,7 +143,7 @@ void Camera::connect() {
     const std::size_t size = map.size > 0 && map.data[map.size - 1] == '\n' ? map.size - 1 : map.size;
     {
       const std::lock_guard lock(newest.lock);
-      newest.facts.assign(reinterpret_cast<const char*>(map.data), size);
+      if (newest.show) newest.facts.assign(reinterpret_cast<const char*>(map.data), size);
     }
     gst_buffer_unmap(buffer, &map);
     return GST_FLOW_OK;
@@ -155,12 +156,13 @@ void Camera::connect() {
     gsize size = 0;
     if (buffer == nullptr) return GST_FLOW_OK;
     gst_buffer_extract_dup(buffer, 0, static_cast<gsize>(-1), &bytes, &size);
+    g_autoptr(GBytes) drawn = g_bytes_new_take(bytes, size);
     const Holder& holder = *static_cast<Holder*>(data);
     bool announce = false;
     {
       const std::lock_guard lock(holder->lock);
-      g_clear_pointer(&holder->picture, g_bytes_unref);
-      holder->picture = g_bytes_new_take(bytes, size);
+      if (!holder->show) return GST_FLOW_OK;
+      std::swap(holder->picture, drawn);
       ++holder->number;
       announce = !std::exchange(holder->announced, true);
     }
@@ -174,7 +176,7 @@ void Camera::connect() {
             newest.announced = false;
           }
           Camera* camera = newest.camera;
-          if (camera != nullptr && camera->show_ && camera->on_picture_) camera->on_picture_(*camera);
+          if (camera != nullptr && camera->on_picture_) camera->on_picture_(*camera);
           return static_cast<gboolean>(G_SOURCE_REMOVE);
         },
         new Holder(holder), [](gpointer data) { delete static_cast<Holder*>(data); });
@@ -231,7 +233,8 @@ void Camera::start() {
   connect();
   set_triggers();
   publish_mode();
-  show_ = record_ = true;
+  record_ = true;
+  set_show(true);
   // What refuses to start posts an error on the bus.
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
 }
@@ -324,18 +327,29 @@ void Camera::on_message(GstMessage* message) {
   }
 }
 
+// Forgets picture and facts either way: none outlasts the time in which it may be seen.
+void Camera::set_show(bool show) {
+  draw_ = show && watched_;
+  const std::lock_guard lock(newest_->lock);
+  newest_->show = show;
+  g_clear_pointer(&newest_->picture, g_bytes_unref);
+  newest_->facts.clear();
+}
+
+void Camera::set_watched(bool watched) {
+  watched_ = watched;
+  const std::lock_guard lock(newest_->lock);
+  draw_ = watched && newest_->show;
+}
+
 void Camera::set_mode(Mode mode) {
   if (final_) return;
   const Mode before = std::exchange(mode_, mode);
   publish_mode();
   if (mode == Mode::privacy) {
     wanted_ = again_ = false;
-    show_ = record_ = false;
-    {
-      const std::lock_guard lock(newest_->lock);
-      g_clear_pointer(&newest_->picture, g_bytes_unref);
-      newest_->facts.clear();
-    }
+    record_ = false;
+    set_show(false);
     if (state_ == State::running && order("home")) {
       state_ = State::parking;
       since_ = Clock::now();
@@ -351,7 +365,8 @@ void Camera::set_mode(Mode mode) {
     start();
   } else if (state_ == State::parking) {  // privacy ended while the head was on its way
     order("auto");
-    show_ = record_ = true;
+    record_ = true;
+    set_show(true);
     state_ = State::running;
     set_triggers();
   } else {
@@ -377,7 +392,7 @@ void Camera::end() {
   if (head_ != nullptr) order("stop");
   state_ = State::ending;
   since_ = Clock::now();
-  show_ = false;
+  set_show(false);
   // Sources may be blocked in another thread's hands; the event is handed over there.
   gst_element_call_async(
       pipeline_,
@@ -389,7 +404,8 @@ void Camera::close() {
   if (pipeline_ == nullptr) return;
   state_ = State::closing;
   since_ = Clock::now();
-  show_ = record_ = false;
+  record_ = false;
+  set_show(false);
   if (bus_watch_ != 0) g_source_remove(std::exchange(bus_watch_, 0));
   using Holder = std::shared_ptr<Newest>;
   gst_element_call_async(
@@ -482,12 +498,12 @@ bool Camera::is_sound() const {
 GBytes* Camera::picture(guint64& number) const {
   const std::lock_guard lock(newest_->lock);
   number = newest_->number;
-  return newest_->picture && show_ ? g_bytes_ref(newest_->picture) : nullptr;
+  return newest_->picture ? g_bytes_ref(newest_->picture) : nullptr;
 }
 
 std::string Camera::facts() const {
   const std::lock_guard lock(newest_->lock);
-  return show_ ? newest_->facts : std::string();
+  return newest_->facts;
 }
 
 bool Camera::turn(double pan_speed, double tilt_speed) {

@@ -56,7 +56,6 @@ class Camera {
   State state() const { return state_; }
   const std::string& fault() const { return fault_; }  // why a part is waiting; empty: nothing is
   double frames_a_second() const { return rate_; }
-  guint64 frames() const { return frames_; }
 
   // Runs in this mode; privacy stops the pipeline once the head is parked.
   void set_mode(Mode mode);
@@ -74,14 +73,13 @@ class Camera {
 
   void set_on_picture(OnPicture on_picture) { on_picture_ = std::move(on_picture); }
   // Pictures are only drawn while somebody looks.
-  void set_watched(bool watched) { watched_ = watched; }
+  void set_watched(bool watched);
   // The newest picture, JPEG, with its number; nullptr: there is none. The caller unrefs.
   GBytes* picture(guint64& number) const;
   // The line of motionjson of the newest frame, without newline.
   std::string facts() const;
 
   // Orders for the head: an action signal of pantiltsink. False: there is no head, or it refuses.
-  bool has_head() const { return head_ != nullptr; }
   bool turn(double pan_speed, double tilt_speed);  // degrees a second, for 500 ms unless it is repeated
   bool order(const char* signal);                  // stop, home, auto
   bool follow(guint track);
@@ -97,6 +95,7 @@ class Camera {
   bool apply(const PipelineText& text, std::string& error);
   bool apply_secrets(std::string& error);
   void connect();
+  void set_show(bool show);
   void set_triggers();
   void publish_mode();
   void drop_frames(const char* queue, std::atomic<bool>& pass);
@@ -125,7 +124,8 @@ class Camera {
   std::atomic<guint64> frames_ = 0;
   guint64 counted_ = 0;
   double rate_ = 0;
-  std::atomic<bool> parked_ = false, watched_ = false, show_ = false, record_ = false;
+  bool watched_ = false;
+  std::atomic<bool> parked_ = false, draw_ = false, record_ = false;
   std::shared_ptr<Newest> newest_;
 };
 

@@ -4,9 +4,11 @@
 #include <glib-unix.h>
 #include <glib/gstdio.h>
 #include <time.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdio>
 
 #include "text/file.h"
 #if HAVE_SYSTEMD
@@ -56,9 +58,10 @@ bool Robot::open(Settings settings, std::string& error) {
   const std::string path = settings_.state_folder + "/mode";
   const text::File file = text::read_file(path, 4096);
   const bool is_first = file.fault == text::File::Fault::failed && file.error == ENOENT;
-  if (!is_first && (file.fault != text::File::Fault::none || !mode_->restore(file.text))) {
-    mode_->restore("");
+  if (!is_first && (file.fault != text::File::Fault::none || !mode_->restore(file.text, now()))) {
+    mode_->set(Mode::privacy, now());
     g_printerr("cerberusd: %s cannot be read: privacy mode, until another is set\n", path.c_str());
+    save_mode();
   }
   mode_->tick(local_time(now()), now());
   for (const CameraSettings& camera : settings_.cameras) {
@@ -70,16 +73,27 @@ bool Robot::open(Settings settings, std::string& error) {
                                                 [this](const std::string& order) { on_order(order); }));
   }
 #if HAVE_PAGE
-  if (!settings_.page.enabled) return true;
-  page_ = std::make_unique<PageServer>(PageServer::House{settings_, cameras_, [this] { return this->mode(); },
-                                                         [this](Mode mode) { set_mode(mode); }});
-  return page_->open(error);
+  if (settings_.page.enabled) open_page();
 #else
   if (settings_.page.enabled)
     g_printerr("cerberusd: this build has no page (it needs libsoup 3 and libargon2)\n");
-  return true;
 #endif
+  return true;
 }
+
+#if HAVE_PAGE
+// The robot goes on without the page, which is tried again.
+void Robot::open_page() {
+  page_ = std::make_unique<PageServer>(PageServer::House{settings_, cameras_, [this] { return this->mode(); },
+                                                         [this](Mode mode) { set_mode(mode); }});
+  page_fault_.clear();
+  if (page_->open(page_fault_)) return;
+  page_.reset();
+  const auto wait = page_backoff_.failed(std::chrono::steady_clock::now());
+  g_printerr("cerberusd: %s; it is tried again in %d s\n", page_fault_.c_str(),
+             static_cast<int>(std::chrono::duration_cast<std::chrono::seconds>(wait).count()));
+}
+#endif
 
 void Robot::save_mode() {
   const std::string path = settings_.state_folder + "/mode", text = mode_->state();
@@ -138,7 +152,11 @@ void Robot::tick() {
     if (!camera->fault().empty()) status += " (" + camera->fault() + ')';
   }
 #if HAVE_PAGE
+  if (!page_ && settings_.page.enabled && shutting_down_ == 0 &&
+      page_backoff_.is_due(std::chrono::steady_clock::now()))
+    open_page();
   if (page_) page_->tick();
+  if (!page_fault_.empty()) status += ", page (" + page_fault_ + ')';
 #endif
   if (sound) notify("WATCHDOG=1");
   if (status != status_) {
@@ -180,8 +198,13 @@ int Robot::run() {
 #if HAVE_PAGE
   page_.reset();
 #endif
+  if (!stopped) {
+    // To stop a pipeline here could wait for ever for the element that does not stop.
+    std::fflush(nullptr);
+    _exit(1);
+  }
   cameras_.clear();
-  return stopped ? 0 : 1;
+  return 0;
 }
 
 }  // namespace cerberus::robot

@@ -12,6 +12,7 @@
 #if HAVE_PAGE
 #include "page_server.h"
 #endif
+#include "robot/backoff.h"
 #include "robot/mode.h"
 #include "robot/settings.h"
 
@@ -31,6 +32,9 @@ class Robot {
   void apply_mode();
   void on_order(const std::string& order);
   void save_mode();
+#if HAVE_PAGE
+  void open_page();
+#endif
   void tick();
   void report(const std::string& text) const;
   void begin_shut_down();
@@ -40,6 +44,8 @@ class Robot {
   std::vector<std::unique_ptr<Camera>> cameras_;
 #if HAVE_PAGE
   std::unique_ptr<PageServer> page_;
+  Backoff page_backoff_;
+  std::string page_fault_;
 #endif
   GMainLoop* loop_ = nullptr;
   int shutting_down_ = 0;  // seconds left; 0: not

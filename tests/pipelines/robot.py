@@ -4,12 +4,14 @@
 SIGTERM with complete recordings; and in privacy mode, which survives a restart, without any."""
 import os
 import pathlib
+import queue
 import signal
 import socket
 import sqlite3
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 PATIENCE = 100  # seconds for what takes one on an idle machine
@@ -43,16 +45,25 @@ class Service:
         if os.path.exists(path):
             os.unlink(path)
         self.socket.bind(path)
-        self.socket.settimeout(PATIENCE)
+        # Read at once: a full socket would hold the service up.
+        self.reports = queue.Queue()
+        threading.Thread(target=self.read, daemon=True).start()
         self.log = open(folder / 'log', 'w+', encoding='utf-8')
         self.process = subprocess.Popen([CERBERUSD, folder / 'robot.toml'], stderr=self.log,
                                         env=os.environ | {'NOTIFY_SOCKET': path})
+
+    def read(self):
+        while True:
+            self.reports.put(self.socket.recv(4096).decode())
 
     def wait_for(self, *words):
         """Waits for a report that has all the words."""
         end = time.monotonic() + PATIENCE
         while time.monotonic() < end:
-            report = self.socket.recv(4096).decode()
+            try:
+                report = self.reports.get(timeout=1)
+            except queue.Empty:
+                continue
             if all(word in report for word in words):
                 return report
         raise AssertionError(f'no report with {words}')
@@ -68,8 +79,11 @@ def rows(folder):
     index = folder / 'recordings' / 'recordings.sqlite'
     if not index.exists():
         return []
-    with sqlite3.connect(f'file:{index}?mode=ro', uri=True) as database:
-        return list(database.execute('select file, open, size from recordings'))
+    try:
+        with sqlite3.connect(f'file:{index}?mode=ro', uri=True) as database:
+            return list(database.execute('select file, open, size from recordings'))
+    except sqlite3.OperationalError:  # its table is being made
+        return []
 
 
 def main():
@@ -96,17 +110,19 @@ def main():
         for file, is_open, size in recorded:
             assert not is_open and (folder / 'recordings' / file).stat().st_size > 0 and size > 0, recorded
 
-        (folder / 'state' / 'mode').write_text('privacy 1763863200\n')
-        service = Service(folder)
-        try:
-            service.wait_for('READY=1')
-            service.wait_for('STATUS=privacy, good off, broken off')
-            service.wait_for('WATCHDOG=1')
-            code, log = service.stop()
-        finally:
-            service.process.kill()
-        assert code == 0 and 'mode privacy' in log, log
-        assert rows(folder) == recorded, 'privacy mode recorded'
+        for mode in ('privacy 1763863200\n', 'damaged'):
+            (folder / 'state' / 'mode').write_text(mode)
+            service = Service(folder)
+            try:
+                service.wait_for('READY=1')
+                service.wait_for('STATUS=privacy, good off, broken off')
+                service.wait_for('WATCHDOG=1')
+                code, log = service.stop()
+            finally:
+                service.process.kill()
+            assert code == 0 and 'mode privacy' in log, log
+            assert rows(folder) == recorded, 'privacy mode recorded'
+            assert (folder / 'state' / 'mode').read_text().startswith('privacy '), 'a damaged mode file is not replaced'
 
 
 main()

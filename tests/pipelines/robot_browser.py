@@ -124,11 +124,14 @@ def main():
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(port)))
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
             process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
-            driver = browser()
+            driver = None
             try:
+                driver = browser()
                 end, one_time = time.monotonic() + PATIENCE, None
                 while not one_time and time.monotonic() < end:
                     one_time = re.search(r'One-time password .*: ([0-9a-f]{16})\n', (folder / 'log').read_text())
+                    time.sleep(.05)
+                assert one_time, 'cerberusd printed no one-time password'
                 owner_visits(driver, port, one_time[1], pictures)
                 viewer_visits(driver, port)
                 errors = [entry for entry in driver.get_log('browser') if entry['level'] == 'SEVERE'
@@ -138,7 +141,8 @@ def main():
                 print((folder / 'log').read_text(), file=sys.stderr)
                 raise
             finally:
-                driver.quit()
+                if driver:
+                    driver.quit()
                 process.send_signal(signal.SIGTERM)
                 process.wait(PATIENCE)
 

@@ -169,6 +169,11 @@ START_TEST(every_mistake_is_reported_with_its_line) {
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[[camera]]\nname = \"a\"\nkind = \"test\"\n",
        "r.toml:4: there are two cameras called \"a\""},
       {"[page]\nport = \n", "r.toml:2: "},
+      {"[page]\nlisten = \"localhost\"\n", "r.toml:2: \"listen\" is a numeric address"},
+      {"[page]\nlisten = \"127.0.0.1:80\"\n", "r.toml:2: \"listen\" is a numeric address"},
+      {"[mqtt]\nhost = \"b\"\ntopic-prefix = \"a/b\"\n",
+       "r.toml:3: \"topic-prefix\" is one level of a topic"},
+      {"[mqtt]\nhost = \"b\"\ntopic-prefix = \"\"\n", "r.toml:3: \"topic-prefix\" is one level of a topic"},
       {"[mqtt]\n", "r.toml:1: [mqtt] needs the \"host\" of the broker"},
       {"[mqtt]\nhost = \"b\"\ncommands = [\"stop\", \"jump\"]\n", "r.toml:3: \"jump\" is no command"},
       {"[mqtt]\nhost = \"b\"\npassword = \"secret\"\n", "r.toml:3: unknown key \"password\" in [mqtt]"},
@@ -180,6 +185,21 @@ START_TEST(every_mistake_is_reported_with_its_line) {
     ck_assert_msg(found.find(one.error) != found.npos, "\"%s\" is not in \"%s\"", one.error, found.c_str());
     ck_assert_msg(found.find("secret") == found.npos, "a secret is in \"%s\"", found.c_str());
   }
+}
+END_TEST
+
+START_TEST(a_move_by_mqtt_ends_after_a_minute_or_as_configured) {
+  const auto timeout = [](const std::string& commands, const std::string& head) {
+    const Settings all = settings("[mqtt]\nhost = \"b\"\ncommands = [" + commands + "]\n" + kSmallest +
+                                  "[camera.head]\n" + head);
+    return value(*all.cameras.at(0).head, "manual-timeout");
+  };
+  ck_assert(timeout("\"move-to\"", "") == "60000000000");
+  ck_assert(timeout("\"stop\", \"move-by\"", "") == "60000000000");
+  ck_assert(timeout("\"move-to\"", "manual-timeout = 5\n") == "5000000000");
+  ck_assert(timeout("\"move-to\"", "manual-timeout = 0\n") == "0");
+  ck_assert(timeout("\"stop\", \"home\"", "") == "(none)");
+  ck_assert(value(*settings(kSmallest + "[camera.head]\n").cameras.at(0).head, "manual-timeout") == "(none)");
 }
 END_TEST
 
@@ -275,12 +295,23 @@ START_TEST(the_mode_survives_a_restart_and_a_broken_state_is_privacy) {
   keeper.set(Mode::disarmed, 1763863200);
   ck_assert(keeper.state() == "disarmed 1763863200\n");
   ModeKeeper other(Mode::armed, {});
-  ck_assert(other.restore(keeper.state()) && other.mode() == Mode::disarmed);
+  ck_assert(other.restore(keeper.state(), 1763863300) && other.mode() == Mode::disarmed);
   for (const char* broken :
        {"", "armed", "armed x\n", "armed 12", "alarmed 12\n", "armed -1\n", "armed 12 \n"}) {
     ModeKeeper wrong(Mode::armed, {});
-    ck_assert_msg(!wrong.restore(broken) && wrong.mode() == Mode::privacy, "\"%s\" was taken", broken);
+    ck_assert_msg(!wrong.restore(broken, 1763863200) && wrong.mode() == Mode::privacy, "\"%s\" was taken",
+                  broken);
   }
+}
+END_TEST
+
+START_TEST(a_broken_state_is_privacy_until_the_next_entry_of_the_schedule) {
+  constexpr std::int64_t kNoon = 1'000'000'020 - 1'000'000'020 % 60;  // counts as Monday 12:00 here
+  ModeKeeper keeper(Mode::armed, kNights);
+  ck_assert(!keeper.restore("damaged", kNoon + 5));
+  ck_assert(!keeper.tick({0, 12 * 60}, kNoon + 5) && keeper.mode() == Mode::privacy);
+  ck_assert(keeper.state() == "privacy " + std::to_string(kNoon + 5) + "\n");
+  ck_assert(keeper.tick({0, 22 * 60}, kNoon + 36000) && keeper.mode() == Mode::armed);
 }
 END_TEST
 
@@ -354,11 +385,13 @@ int main() {
   return cerberus::tests::run_suite(
       "robot settings",
       {the_smallest_file_has_one_camera_and_a_page_on_loopback, a_whole_file_becomes_typed_settings,
-       every_mistake_is_reported_with_its_line, all_mistakes_come_at_once_in_the_order_of_their_lines,
+       every_mistake_is_reported_with_its_line, a_move_by_mqtt_ends_after_a_minute_or_as_configured,
+       all_mistakes_come_at_once_in_the_order_of_their_lines,
        files_that_are_named_must_be_there_and_secrets_be_secret, a_secret_is_the_first_line_of_its_file,
        the_examples_of_the_manual_and_the_demo_are_sound,
        the_entry_of_a_schedule_that_took_effect_last_counts, a_mode_set_by_hand_holds_until_the_next_entry,
        the_mode_survives_a_restart_and_a_broken_state_is_privacy,
+       a_broken_state_is_privacy_until_the_next_entry_of_the_schedule,
        texts_of_the_user_are_assigned_and_never_parsed, a_part_that_failed_or_is_not_configured_is_left_out,
        what_a_network_camera_records_is_never_encoded_again,
        a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
