@@ -23,12 +23,18 @@ GstBuffer* in_running_time(GstBuffer* buffer, const GstSegment* segment) {
 
 EncodedStream::EncodedStream(GstAppSink* sink, GstElement* valve)
     : sink_(GST_APP_SINK(gst_object_ref(sink))),
-      valve_(valve ? GST_ELEMENT(gst_object_ref(valve)) : nullptr) {
+      valve_(valve ? GST_ELEMENT(gst_object_ref(valve)) : nullptr) {}
+
+std::shared_ptr<EncodedStream> EncodedStream::make(GstAppSink* sink, GstElement* valve) {
+  std::shared_ptr<EncodedStream> stream(new EncodedStream(sink, valve));
   // Frames are sent when they come; a stream without frames keeps no other one from starting.
   g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   GstAppSinkCallbacks callbacks = {};
   callbacks.new_sample = on_sample;
-  gst_app_sink_set_callbacks(sink, &callbacks, this, nullptr);
+  gst_app_sink_set_callbacks(sink, &callbacks, new std::weak_ptr<EncodedStream>(stream), [](gpointer holder) {
+    delete static_cast<std::weak_ptr<EncodedStream>*>(holder);
+  });
+  return stream;
 }
 
 EncodedStream::~EncodedStream() {
@@ -99,9 +105,11 @@ void EncodedStream::ask_for_keyframe() {
   gst_pad_push_event(pad, gst_video_event_new_upstream_force_key_unit(GST_CLOCK_TIME_NONE, TRUE, number));
 }
 
-GstFlowReturn EncodedStream::on_sample(GstAppSink* sink, gpointer stream) {
+// The pipeline may still run when the server ends: the stream is kept while a frame of it is delivered.
+GstFlowReturn EncodedStream::on_sample(GstAppSink* sink, gpointer holder) {
   g_autoptr(GstSample) sample = gst_app_sink_pull_sample(sink);
-  if (sample) static_cast<EncodedStream*>(stream)->deliver(sample);
+  const std::shared_ptr<EncodedStream> stream = static_cast<std::weak_ptr<EncodedStream>*>(holder)->lock();
+  if (sample && stream) stream->deliver(sample);
   return GST_FLOW_OK;
 }
 

@@ -27,7 +27,7 @@ class EncodedStream {
  public:
   // `sink` is an appsink of the pipeline; its frames come here from now on. `valve` (or null) is in front of its encoder:
   // it is closed while there is no receiver, which costs nothing then.
-  EncodedStream(GstAppSink* sink, GstElement* valve);
+  static std::shared_ptr<EncodedStream> make(GstAppSink* sink, GstElement* valve);
   ~EncodedStream();
   EncodedStream(const EncodedStream&) = delete;
   EncodedStream& operator=(const EncodedStream&) = delete;
@@ -53,7 +53,8 @@ class EncodedStream {
     publish::StreamGate gate;
   };
 
-  static GstFlowReturn on_sample(GstAppSink* sink, gpointer stream);
+  EncodedStream(GstAppSink* sink, GstElement* valve);
+  static GstFlowReturn on_sample(GstAppSink* sink, gpointer holder);
   void deliver(GstSample* sample);
   void set_valve();
   void ask_for_keyframe();

@@ -142,7 +142,7 @@ std::string RtspServer::prepare() {
     if (!GST_IS_APP_SINK(child->data)) continue;
     g_autofree gchar* valve_name = g_strdup_printf("%s-valve", GST_OBJECT_NAME(child->data));
     g_autoptr(GstElement) valve = gst_bin_get_by_name(bin, valve_name);
-    auto stream = std::make_shared<EncodedStream>(GST_APP_SINK(child->data), valve);
+    auto stream = EncodedStream::make(GST_APP_SINK(child->data), valve);
     if (stream->name() == kMetadata)
       metadata_ = stream;
     else if (fits_address(stream->name()))
