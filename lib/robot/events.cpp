@@ -3,7 +3,6 @@
 
 #include <cerrno>
 #include <cstring>
-#include <ranges>
 #include <vector>
 
 #include "record/archive/folder.h"
@@ -21,16 +20,20 @@ std::string Events::read(std::vector<Recording>& rows, record::Index& index) con
   return fault.empty() ? index.read(rows) : fault;
 }
 
-std::string Events::list(const std::string& camera) const {
+bool Events::open_to_read(record::Index& index, std::string& fault) const {
+  const record::Folder folder(folder_);
+  if (!folder.exists(index_)) return false;  // nothing was recorded yet
+  fault = index.open_to_read(folder.path_of(index_));
+  return fault.empty();
+}
+
+std::string Events::list(const std::string& camera, std::string& fault) const {
   std::vector<Recording> rows;
   record::Index index;
-  read(rows, index);
+  if (open_to_read(index, fault)) fault = index.read_newest(camera, kMost, rows);
   text::JsonLine line;
   line.open('[');
-  std::size_t count = 0;
-  for (const Recording& row : rows | std::views::reverse) {
-    if (row.camera != camera) continue;
-    if (++count > kMost) break;
+  for (const Recording& row : rows) {
     line.open('{').key("camera").text(row.camera).key("id").integer(row.id);
     line.key("begin").integer(row.begin.count() / 1000000).key("end").integer(row.end.count() / 1000000);
     line.key("reason").text(row.reason).key("tracks").text(row.tracks).key("kinds").text(row.kinds);
@@ -41,13 +44,12 @@ std::string Events::list(const std::string& camera) const {
   return text;
 }
 
-std::optional<Recording> Events::find(const std::string& camera, std::int64_t id) const {
+std::optional<Recording> Events::find(const std::string& camera, std::int64_t id, std::string& fault) const {
   std::vector<Recording> rows;
   record::Index index;
-  read(rows, index);
-  for (Recording& row : rows)
-    if (row.id == id && row.camera == camera) return std::move(row);
-  return std::nullopt;
+  if (open_to_read(index, fault)) fault = index.read_one(id, rows);
+  if (rows.empty() || rows.front().camera != camera) return std::nullopt;
+  return std::move(rows.front());
 }
 
 std::string Events::remove(const std::string& camera, std::int64_t id) const {

@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the page's server answers about recordings.
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <optional>
 
 #include "page_request.h"
 #include "record/archive/folder.h"
+#include "robot/byte_range.h"
 
 namespace cerberus::robot {
 
@@ -24,6 +30,61 @@ const char* type_of(std::string_view file) {
   return "application/x-json-lines";
 }
 
+// Bytes that one answer to a range holds at most (players ask on), and that are read at once for a whole file: the main
+// loop waits for the disk meanwhile.
+constexpr std::uint64_t kMostOfAnswer = 1 << 20;
+constexpr goffset kChunk = 256 << 10;
+
+// nullptr: the file is shorter, or cannot be read. Nothing is mapped into memory: a file that shrinks would end the
+// process.
+GBytes* read_part(int descriptor, off_t from, gsize size) {
+  auto* bytes = static_cast<char*>(g_malloc(size));
+  for (gsize done = 0; done < size;) {
+    const ssize_t got = pread(descriptor, bytes + done, size - done, from + static_cast<off_t>(done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) {
+      g_free(bytes);
+      return nullptr;
+    }
+    done += static_cast<gsize>(got);
+  }
+  return g_bytes_new_take(bytes, size);
+}
+
+// A whole file on its way, a chunk at a time: the next one is read when the one before it was written.
+struct Download {
+  record::OpenFile file;
+  goffset at = 0, end = 0;
+
+  void send_next(SoupServerMessage* message) {
+    if (at >= end) return;
+    const goffset size = std::min(kChunk, end - at);
+    g_autoptr(GBytes) bytes = read_part(file.descriptor(), at, static_cast<gsize>(size));
+    if (bytes == nullptr) {  // what was promised cannot be sent: the connection ends
+      at = end;
+      if (GSocket* socket = soup_server_message_get_socket(message))
+        g_socket_shutdown(socket, TRUE, TRUE, nullptr);
+      bytes = g_bytes_new_static("", 1);
+    }
+    at += size;
+    soup_message_body_append_bytes(soup_server_message_get_response_body(message), bytes);
+  }
+};
+
+void send_whole(SoupServerMessage* message, record::OpenFile file, goffset size) {
+  auto* download = new Download{std::move(file), 0, size};
+  soup_message_body_set_accumulate(soup_server_message_get_response_body(message), FALSE);
+  soup_message_headers_set_content_length(soup_server_message_get_response_headers(message), size);
+  g_signal_connect_data(
+      message, "wrote-chunk", G_CALLBACK(+[](SoupServerMessage* from, gpointer data) {
+        static_cast<Download*>(data)->send_next(from);
+      }),
+      download, [](gpointer data, GClosure*) { delete static_cast<Download*>(data); },
+      static_cast<GConnectFlags>(0));
+  download->send_next(message);
+  soup_server_message_set_status(message, SOUP_STATUS_OK, nullptr);
+}
+
 }  // namespace
 
 Camera* PageServer::camera(std::string_view name) const {
@@ -39,8 +100,10 @@ void PageServer::answer_events(Request& request) {
   const Camera* from = camera(request.value("camera"));
   if (from == nullptr || !from->settings().recorder)
     return request.respond(SOUP_STATUS_OK, "application/json", "[]\n");
-  const Events events(from->settings().recorder->folder);
-  request.respond(SOUP_STATUS_OK, "application/json", events.list(from->settings().name));
+  std::string fault;
+  const std::string list = Events(from->settings().recorder->folder).list(from->settings().name, fault);
+  if (!fault.empty()) return request.refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, fault);
+  request.respond(SOUP_STATUS_OK, "application/json", list);
 }
 
 // /events/CAMERA/ID/video, picture or lines.
@@ -56,8 +119,10 @@ void PageServer::answer_recording(Request& request) {
   const std::optional<std::int64_t> id = read_id(rest.substr(first + 1, second - first - 1));
   const std::string_view what = rest.substr(second + 1);
   if (from == nullptr || !from->settings().recorder || !id) return missing();
+  std::string fault;
   const std::optional<record::Recording> row =
-      Events(from->settings().recorder->folder).find(from->settings().name, *id);
+      Events(from->settings().recorder->folder).find(from->settings().name, *id, fault);
+  if (!fault.empty()) return request.refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, fault);
   if (!row) return missing();
   if (row->open) return request.refuse(SOUP_STATUS_CONFLICT, "this recording is still being written");
   const std::string file = what == "video"     ? row->file
@@ -65,16 +130,35 @@ void PageServer::answer_recording(Request& request) {
                            : what == "lines"   ? row->lines
                                                : std::string();
   record::OpenFile open;
-  if (file.empty() || record::Folder(from->settings().recorder->folder).open(file, open) != 0)
+  if (file.empty() || record::Folder(from->settings().recorder->folder).open_to_read(file, open) != 0)
     return missing();
-  g_autoptr(GMappedFile) mapped = g_mapped_file_new_from_fd(open.descriptor(), FALSE, nullptr);
-  if (mapped == nullptr) return missing();
-  if (what == "video") log_access(request.who(), "plays " + file);
-  g_autoptr(GBytes) bytes = g_mapped_file_get_bytes(mapped);
+  struct stat about{};
+  if (fstat(open.descriptor(), &about) != 0) return missing();
+  SoupMessageHeaders* asked = soup_server_message_get_request_headers(request.message);
+  const char* header = soup_message_headers_get_one(asked, "Range");
+  const ByteRange range =
+      parse_range(header ? header : "", static_cast<std::uint64_t>(about.st_size), kMostOfAnswer);
+  // The library would cut the first chunk by it.
+  soup_message_headers_remove(asked, "Range");
+  if (what == "video" && range.first == 0) log_access(request.who(), "plays " + file);
   SoupMessageHeaders* headers = soup_server_message_get_response_headers(request.message);
+  soup_message_headers_replace(headers, "Accept-Ranges", "bytes");
+  if (range.kind == ByteRange::Kind::none) {
+    soup_message_headers_replace(headers, "Content-Range",
+                                 ("bytes */" + std::to_string(about.st_size)).c_str());
+    return request.refuse(SOUP_STATUS_REQUESTED_RANGE_NOT_SATISFIABLE, "the recording is shorter");
+  }
   soup_message_headers_set_content_type(headers, type_of(file), nullptr);
+  if (range.kind == ByteRange::Kind::whole)
+    return send_whole(request.message, std::move(open), about.st_size);
+  g_autoptr(GBytes) bytes =
+      read_part(open.descriptor(), static_cast<off_t>(range.first), range.last - range.first + 1);
+  if (bytes == nullptr)
+    return request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR, "the recording cannot be read");
+  soup_message_headers_set_content_range(headers, static_cast<goffset>(range.first),
+                                         static_cast<goffset>(range.last), about.st_size);
   soup_message_body_append_bytes(soup_server_message_get_response_body(request.message), bytes);
-  soup_server_message_set_status(request.message, SOUP_STATUS_OK, nullptr);
+  soup_server_message_set_status(request.message, SOUP_STATUS_PARTIAL_CONTENT, nullptr);
 }
 
 // POST /keep (camera, id, keep=1 or 0) and /delete (camera, id).

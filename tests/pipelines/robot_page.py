@@ -4,6 +4,7 @@
 strangers' origins, wrong passwords, pictures with acknowledgements, steering by one at a time, recordings."""
 import json
 import pathlib
+import random
 import re
 import signal
 import socket
@@ -208,15 +209,27 @@ def many_sockets(viewer):
         line.close()
 
 
-def recordings(owner, operator, viewer):
+def recordings(owner, operator, viewer, folder):
     rows = wait_until('an event', lambda: [row for row in json.loads(owner.ask('GET', '/events?camera=front')[2])
                                            if not row['open']])
     identity = str(rows[-1]['id'])
     form = {'camera': 'front', 'id': identity}
     status, headers, whole = viewer.ask('GET', f'/events/front/{identity}/video')
     assert status == 200 and headers['Content-Type'] == 'video/x-matroska' and whole[:4] == b'\x1a\x45\xdf\xa3'
-    status, _, part = viewer.ask('GET', f'/events/front/{identity}/video', headers={'Range': 'bytes=4-9'})
-    assert status == 206 and part == whole[4:10]
+    # A file of several chunks: it comes whole, or at most 1 MiB of it.
+    path = max((folder / 'recordings').rglob('*.mkv'), key=lambda one: one.read_bytes() == whole)
+    with open(path, 'ab') as file:
+        file.write(random.Random(1).randbytes(3 << 20))
+    whole = path.read_bytes()
+    video, size = f'/events/front/{identity}/video', len(whole)
+    assert viewer.ask('GET', video)[2] == whole
+    for asked, first, last in (('4-9', 4, 9), ('7-', 7, (1 << 20) + 6), (f'{size - 5}-', size - 5, size - 1),
+                               ('-5', size - 5, size - 1)):
+        status, headers, part = viewer.ask('GET', video, headers={'Range': f'bytes={asked}'})
+        assert status == 206 and part == whole[first:last + 1], asked
+        assert headers['Content-Range'] == f'bytes {first}-{last}/{size}', headers
+    assert viewer.ask('GET', video, headers={'Range': f'bytes={size}-'})[0] == 416
+    assert viewer.ask('GET', video, headers={'Range': 'bytes=0-1,3-4'})[2] == whole
     assert viewer.ask('GET', f'/events/front/{identity}/picture')[2][:2] == b'\xff\xd8'
     for path in ('/events/front/999999/video', '/events/back/1/video', f'/events/front/{identity}/..', '/events/front',
                  f'/events/front/{identity}/%2e%2e%2f'):
@@ -255,7 +268,7 @@ def main():
                 pictures(owner)
                 steering(owner, operator, viewer)
                 many_sockets(viewer)
-                recordings(owner, operator, viewer)
+                recordings(owner, operator, viewer, folder)
                 assert viewer.ask('POST', '/logout', {})[0] == 200 and viewer.ask('GET', '/events')[0] == 401
                 wrong_passwords(port)
                 process.send_signal(signal.SIGTERM)

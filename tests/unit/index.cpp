@@ -89,6 +89,41 @@ START_TEST(a_row_is_read_as_it_was_written) {
 }
 END_TEST
 
+START_TEST(a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/a ?#%41.sqlite";
+  Index reader;
+  ck_assert(!reader.open_to_read(path).empty() && !reader.is_open() && !std::filesystem::exists(path));
+  {
+    Index index;
+    open(index, path);
+    bool taken = false;
+    for (const char* file : {"1", "2", "3", "other", "4"}) {
+      Recording made = row(file);
+      if (made.file == "other") made.camera = "gate";
+      ck_assert(index.add(made, taken).empty());
+    }
+    // While another one writes.
+    ck_assert_str_eq(reader.open_to_read(path).c_str(), "");
+    std::vector<Recording> rows;
+    ck_assert(reader.read_newest("yard's", 3, rows).empty());
+    ck_assert_uint_eq(rows.size(), 3);
+    ck_assert(rows[0].file == "4" && rows[1].file == "3" && rows[2].file == "2");
+    ck_assert(reader.read_one(4, rows).empty() && rows.size() == 1 && rows[0].file == "other");
+    ck_assert(reader.read_one(6, rows).empty() && rows.empty());
+    ck_assert(!reader.remove(4).empty());
+    reader.close();
+  }
+  // A read-only disk, on which SQLite can make no file beside the database.
+  std::filesystem::permissions(folder.path, std::filesystem::perms(0555));
+  ck_assert_str_eq(reader.open_to_read(path).c_str(), "");
+  std::vector<Recording> rows;
+  ck_assert(reader.read_newest("gate", 9, rows).empty() && rows.size() == 1);
+  reader.close();
+  std::filesystem::permissions(folder.path, std::filesystem::perms(0755));
+}
+END_TEST
+
 START_TEST(the_database_is_one_that_others_read_by_its_documented_columns) {
   const TemporaryFolder folder;
   const std::string path = folder.path + "/i.sqlite";
@@ -229,10 +264,10 @@ int main() {
   Suite* suite = suite_create("index");
   TCase* cases = tcase_create("index");
   for (const TTest* test :
-       {a_row_is_read_as_it_was_written, the_database_is_one_that_others_read_by_its_documented_columns,
-        a_file_has_one_row, keep_is_what_was_set_last_and_updates_leave_it,
-        a_row_that_was_removed_meanwhile_is_written_anew, two_recorders_write_into_one_index,
-        an_index_of_a_newer_version_is_refused_and_stays_as_it_is,
+       {a_row_is_read_as_it_was_written, a_reader_sees_the_newest_rows_of_a_camera_and_changes_nothing,
+        the_database_is_one_that_others_read_by_its_documented_columns, a_file_has_one_row,
+        keep_is_what_was_set_last_and_updates_leave_it, a_row_that_was_removed_meanwhile_is_written_anew,
+        two_recorders_write_into_one_index, an_index_of_a_newer_version_is_refused_and_stays_as_it_is,
         a_file_that_is_no_database_is_damaged_and_one_that_cannot_be_made_is_not,
         any_bytes_are_refused_or_read_and_never_end_the_program})
     tcase_add_test(cases, test);

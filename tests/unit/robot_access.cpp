@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/byte_range.h"
 #if HAVE_ARGON2
 #include "robot/passwords.h"
 #endif
@@ -163,6 +164,41 @@ START_TEST(many_addresses_together_are_slowed_down_too) {
 }
 END_TEST
 
+START_TEST(a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused) {
+  using Range = ByteRange::Kind;
+  const struct {
+    const char* header;
+    Range kind;
+    std::uint64_t first, last;
+  } cases[] = {
+      {"bytes=0-", Range::part, 0, 3},
+      {"bytes=4-9", Range::part, 4, 7},
+      {"bytes=8-", Range::part, 8, 9},
+      {"bytes=9-9", Range::part, 9, 9},
+      {"bytes=7-99", Range::part, 7, 9},
+      {"bytes=-3", Range::part, 7, 9},
+      {"bytes=-99", Range::part, 0, 3},
+      {"bytes=10-", Range::none, 0, 0},
+      {"bytes=-0", Range::none, 0, 0},
+      {"bytes=18446744073709551615-", Range::none, 0, 0},
+      {"", Range::whole, 0, 0},
+      {"bytes=-", Range::whole, 0, 0},
+      {"bytes=5-4", Range::whole, 0, 0},
+      {"bytes=0-1,3-4", Range::whole, 0, 0},
+      {"bytes=x-4", Range::whole, 0, 0},
+      {"lines=0-4", Range::whole, 0, 0},
+      {"bytes=99999999999999999999-", Range::whole, 0, 0},
+      {"bytes=--1", Range::whole, 0, 0},
+  };
+  for (const auto& one : cases) {
+    const ByteRange found = parse_range(one.header, 10, 4);
+    ck_assert_msg(found.kind == one.kind && found.first == one.first && found.last == one.last, "\"%s\"",
+                  one.header);
+  }
+  ck_assert(parse_range("bytes=0-", 0, 4).kind == Range::none);
+}
+END_TEST
+
 START_TEST(one_session_steers_until_it_was_silent_for_two_seconds) {
   Steering steering;
   ck_assert(steering.take("a", kStart) && !steering.take("b", kStart + milliseconds(1999)));
@@ -219,6 +255,7 @@ int main() {
                           of_too_many_sessions_the_one_used_longest_ago_ends,
                           after_five_wrong_passwords_an_address_waits_twice_as_long_each_time,
                           many_addresses_together_are_slowed_down_too,
+                          a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
                           one_session_steers_until_it_was_silent_for_two_seconds,
 #if HAVE_ARGON2
                           a_password_counts_for_its_role_alone_and_survives_a_restart,

@@ -49,6 +49,18 @@ bool look_at(const std::string& path, const std::string& name, struct stat& abou
          fstatat(fd, last.c_str(), &about, AT_SYMLINK_NOFOLLOW) == 0;
 }
 
+int open_regular(const std::string& path, const std::string& name, int access, OpenFile& file) {
+  OpenFile parent;
+  int fd = -1;
+  std::string last;
+  if (const int error = open_parent(path, name, false, parent, fd, last); error) return error;
+  const int opened = openat(fd, last.c_str(), access | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+  if (opened < 0) return errno;
+  file = OpenFile(opened);
+  struct stat about{};
+  return fstat(opened, &about) == 0 && S_ISREG(about.st_mode) ? 0 : EINVAL;
+}
+
 }  // namespace
 
 int OpenFile::write(const void* bytes, std::size_t size) const {
@@ -110,15 +122,11 @@ int Folder::create(const std::string& name, OpenFile& file) const {
 }
 
 int Folder::open(const std::string& name, OpenFile& file) const {
-  OpenFile parent;
-  int fd = -1;
-  std::string last;
-  if (const int error = open_parent(path_, name, false, parent, fd, last); error) return error;
-  const int opened = openat(fd, last.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  if (opened < 0) return errno;
-  file = OpenFile(opened);
-  struct stat about{};
-  return fstat(opened, &about) == 0 && S_ISREG(about.st_mode) ? 0 : EINVAL;
+  return open_regular(path_, name, O_RDWR, file);
+}
+
+int Folder::open_to_read(const std::string& name, OpenFile& file) const {
+  return open_regular(path_, name, O_RDONLY, file);
 }
 
 bool Folder::exists(const std::string& name) const {

@@ -56,6 +56,8 @@ class Folder {
   int create(const std::string& name, OpenFile& file) const;
   // Opens a regular file for reading and writing, without a lock.
   int open(const std::string& name, OpenFile& file) const;
+  // The same for reading alone, as of a read-only disk.
+  int open_to_read(const std::string& name, OpenFile& file) const;
   // Whether there is anything of that name.
   bool exists(const std::string& name) const;
   // The size of a regular file; nullopt: there is none.

@@ -16,7 +16,8 @@ namespace cerberus::record {
 
 namespace {
 
-constexpr int kPatience = 2000;  // ms that another process's change is waited for
+constexpr int kPatience = 2000;        // ms that another process's change is waited for
+constexpr int kReadersPatience = 200;  // ms; a change does not hold readers up but for moments
 
 // The step from version k to k + 1 of the tables. Steps are never changed, only added.
 constexpr std::array kMigrations = {
@@ -45,6 +46,23 @@ Time plausible(std::int64_t nanoseconds) {
   return Time(std::clamp(nanoseconds, std::int64_t{0}, Time::max().count() / 4));
 }
 
+// `path` as an address, of which SQLite reads ?, # and % otherwise.
+std::string uri_of(const std::string& path) {
+  std::string uri = path.starts_with('/') ? "file://" : "file:";
+  for (const char letter : path) {
+    if (letter == '?')
+      uri += "%3f";
+    else if (letter == '#')
+      uri += "%23";
+    else if (letter == '%')
+      uri += "%25";
+    else
+      uri += letter;
+  }
+  return uri;
+}
+
+constexpr char kSelect[] = "SELECT ", kFrom[] = ", id, keep FROM recordings";
 constexpr char kColumns[] =
     "file, lines, picture, camera, event, part, begin, end, reason, tracks, kinds, rule, size, open";
 
@@ -149,6 +167,36 @@ std::string Index::open(const std::string& path, bool& damaged) {
   return text;
 }
 
+std::string Index::open_to_read(const std::string& path) {
+  std::string text;
+  // A database in WAL mode makes files beside it even to be read; on a read-only disk it is one that never changes.
+  for (const char* how : {"?mode=ro", "?mode=ro&immutable=1"}) {
+    close();
+    sqlite3* database = nullptr;
+    const int result =
+        sqlite3_open_v2((uri_of(path) + how).c_str(), &database,
+                        SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_FULLMUTEX, nullptr);
+    database_.reset(database);
+    if (database == nullptr) return "out of memory";
+    sqlite3_busy_timeout(database, kReadersPatience);
+    if (result == SQLITE_OK) {
+      run("PRAGMA trusted_schema = OFF;");
+      Statement version(database, "PRAGMA user_version");
+      if (version.step() == SQLITE_ROW) {
+        if (version.number(0) == static_cast<std::int64_t>(kMigrations.size())) return {};
+        text = "the index of recordings has version " + std::to_string(version.number(0)) +
+               ", which this program does not know";
+        break;
+      }
+    }
+    text = fault();
+    const int code = sqlite3_errcode(database) & 0xff;
+    if (code != SQLITE_CANTOPEN && code != SQLITE_READONLY) break;
+  }
+  close();
+  return text;
+}
+
 void Index::close() {
   database_.reset();
 }
@@ -206,9 +254,25 @@ std::string Index::set_keep(std::string_view file, bool keep) {
 }
 
 std::string Index::read(std::vector<Recording>& rows) {
-  rows.clear();
+  Statement select(database_.get(), std::string(kSelect) + kColumns + kFrom + " ORDER BY id");
+  return collect(select, rows);
+}
+
+std::string Index::read_newest(std::string_view camera, std::size_t most, std::vector<Recording>& rows) {
   Statement select(database_.get(),
-                   std::string("SELECT ") + kColumns + ", id, keep FROM recordings ORDER BY id");
+                   std::string(kSelect) + kColumns + kFrom + " WHERE camera = ? ORDER BY id DESC LIMIT ?");
+  select.bind(camera).bind(static_cast<std::int64_t>(most));
+  return collect(select, rows);
+}
+
+std::string Index::read_one(std::int64_t id, std::vector<Recording>& rows) {
+  Statement select(database_.get(), std::string(kSelect) + kColumns + kFrom + " WHERE id = ?");
+  select.bind(id);
+  return collect(select, rows);
+}
+
+std::string Index::collect(Statement& select, std::vector<Recording>& rows) const {
+  rows.clear();
   int result = SQLITE_DONE;
   while ((result = select.step()) == SQLITE_ROW) {
     Recording& row = rows.emplace_back();

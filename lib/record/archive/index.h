@@ -42,6 +42,9 @@ class Index {
   // Opens the database or makes it (mode 0640), and brings older versions of its tables up to the present one. Fails for
   // a file that is no database or is damaged (`damaged` becomes true), and for one of a newer version.
   std::string open(const std::string& path, bool& damaged);
+  // Opens a database that is there to read alone, at once: nothing is checked, brought up to date or written, and its
+  // disk may be read-only.
+  std::string open_to_read(const std::string& path);
   void close();
   bool is_open() const { return database_ != nullptr; }
 
@@ -53,10 +56,15 @@ class Index {
   std::string set_keep(std::string_view file, bool keep);
   // Reads the rows by rising id.
   std::string read(std::vector<Recording>& rows);
+  // The newest rows of a camera, the newest first.
+  std::string read_newest(std::string_view camera, std::size_t most, std::vector<Recording>& rows);
+  // The row of an id: one, or none.
+  std::string read_one(std::int64_t id, std::vector<Recording>& rows);
 
  private:
   class Statement;
   std::string run(const char* sql);
+  std::string collect(Statement& select, std::vector<Recording>& rows) const;
   std::string migrate();
   std::string fault() const;
 

@@ -18,6 +18,9 @@ std::string Index::open(const std::string&, bool& damaged) {
   damaged = false;
   return kNone;
 }
+std::string Index::open_to_read(const std::string&) {
+  return kNone;
+}
 void Index::close() {}
 std::string Index::add(Recording&, bool& taken) {
   taken = false;
@@ -33,6 +36,12 @@ std::string Index::set_keep(std::string_view, bool) {
   return kNone;
 }
 std::string Index::read(std::vector<Recording>&) {
+  return kNone;
+}
+std::string Index::read_newest(std::string_view, std::size_t, std::vector<Recording>&) {
+  return kNone;
+}
+std::string Index::read_one(std::int64_t, std::vector<Recording>&) {
   return kNone;
 }
 
