@@ -3,6 +3,7 @@
 #include "heads/drivers.h"
 
 #if HAVE_ONVIF
+#include <cstdio>
 #include <utility>
 
 #include "drivers/onvif/discovery.h"
@@ -159,6 +160,9 @@ std::string read_words(const std::vector<OptionWord>& words, Settings& s) {
 int run_onvif(const std::vector<OptionWord>& words) {
   Settings settings;
   if (const std::string wrong = read_words(words, settings); !wrong.empty()) return fail(wrong);
+  settings.head.warn = [](const std::string& text) {
+    std::fprintf(stderr, "cerberus-head: warning: %s\n", text.c_str());
+  };
   drivers::OnvifHead head(std::make_unique<SoupClient>(std::move(settings.http)), std::move(settings.head));
   return serve(head, settings.emergency_stop);
 }

@@ -164,6 +164,14 @@ double OnvifCamera::zoom() {
   const std::lock_guard guard(lock_);
   return zoom_;
 }
+void OnvifCamera::refuse_zoom() {
+  const std::lock_guard guard(lock_);
+  faults_.refuses_zoom = true;
+}
+void OnvifCamera::refuse_options() {
+  const std::lock_guard guard(lock_);
+  faults_.refuses_options = true;
+}
 void OnvifCamera::set_zoom(double position) {
   const std::lock_guard guard(lock_);
   zoom_ = position;
@@ -354,9 +362,9 @@ HttpReply OnvifCamera::options() {
         space2d("AbsolutePanTiltPositionSpace", SPACES "SphericalPositionSpaceDegrees", kPanEnd, kTiltEnd);
   spaces += space2d("ContinuousPanTiltVelocitySpace", SPACES "VelocityGenericSpace", 1, 1);
   if (faults_.zooms)
-    spaces +=
-        "<tt:AbsoluteZoomPositionSpace><tt:URI>" ZOOM_SPACE
-        "</tt:URI><tt:XRange><tt:Min>0</tt:Min><tt:Max>1</tt:Max></tt:XRange></tt:AbsoluteZoomPositionSpace>";
+    spaces += "<tt:AbsoluteZoomPositionSpace><tt:URI>" ZOOM_SPACE "</tt:URI><tt:XRange><tt:Min>" +
+              print(faults_.widest) + "</tt:Min><tt:Max>" + print(faults_.longest) +
+              "</tt:Max></tt:XRange></tt:AbsoluteZoomPositionSpace>";
   if (faults_.claims_degree_velocity)
     spaces += space2d("ContinuousPanTiltVelocitySpace", SPACES "VelocitySpaceDegrees", kPanSpeed, kTiltSpeed);
   return envelope("<tptz:GetConfigurationOptionsResponse><tptz:PTZConfigurationOptions><tt:Spaces>" + spaces +
@@ -374,7 +382,9 @@ HttpReply OnvifCamera::status() {
       faults_.move_status == MoveStatus::always_moving || (faults_.move_status == MoveStatus::alive && turns);
   std::string content;
   const std::string zoom =
-      faults_.zooms ? "<tt:Zoom x=\"" + print(zoom_) + "\" space=\"" ZOOM_SPACE "\"/>" : "";
+      faults_.zooms ? "<tt:Zoom x=\"" + print(faults_.widest + zoom_ * (faults_.longest - faults_.widest)) +
+                          "\" space=\"" ZOOM_SPACE "\"/>"
+                    : "";
   if (!faults_.positions && faults_.zooms) content = "<tt:Position>" + zoom + "</tt:Position>";
   if (faults_.positions) {
     const double x = faults_.degrees ? pan_ : pan_ / kPanEnd, y = faults_.degrees ? tilt_ : tilt_ / kTiltEnd;
@@ -422,7 +432,7 @@ HttpReply OnvifCamera::absolute_move(const xmlNode* request) {
   if (const xmlNode* zoom = child(child(request, kPtz, "Position"), kTt, "Zoom")) {
     if (!faults_.zooms || faults_.refuses_zoom || attribute(zoom, "space") != ZOOM_SPACE)
       return fault("InvalidArgVal", "SpaceNotSupported", "no zoom");
-    zoom_ = number(attribute(zoom, "x"));
+    zoom_ = (number(attribute(zoom, "x")) - faults_.widest) / (faults_.longest - faults_.widest);
     if (!vector) return envelope("<tptz:AbsoluteMoveResponse/>");
   }
   if (!vector) return fault("InvalidArgVal", "", "no position");
@@ -454,7 +464,8 @@ HttpReply OnvifCamera::stop(const xmlNode* request) {
 }
 
 HttpReply OnvifCamera::ptz(const std::string& name, const xmlNode* request) {
-  if (name == "GetConfigurationOptions") return options();
+  if (name == "GetConfigurationOptions")
+    return faults_.refuses_options ? fault("Action", "NotNow", "no options") : options();
   if (text(child(request, kPtz, "ProfileToken")) != "moving")
     return fault("InvalidArgVal", "NoProfile", "no such profile");
   if (!faults_.redirects.empty())

@@ -36,6 +36,8 @@ struct OnvifFaults {
   bool media2_only = false;
   bool no_ptz_profile = false;
   bool zooms = false;                       // has a zoom with absolute positions
+  double widest = 0, longest = 1;           // of its zoom, in units of its space
+  bool refuses_options = false;             // by a fault of GetConfigurationOptions
   bool refuses_zoom = false;                // it claims them and refuses them
   bool repeats_password = false;            // in the reason of a fault
   std::chrono::milliseconds delay{0};       // of every answer
@@ -68,7 +70,9 @@ class OnvifCamera {
   double pan(), tilt();  // degrees
   double zoom();         // 0 to 1
   void set_zoom(double position);
-  double speed();  // of pan, degrees a second
+  void refuse_zoom();     // from now on
+  void refuse_options();  // likewise
+  double speed();         // of pan, degrees a second
   Clock::time_point stopped();
   int count(const std::string& operation);  // requests that were obeyed or acknowledged
   std::vector<std::string> requests();      // documents, in order

@@ -244,6 +244,45 @@ START_TEST(a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands) {
 }
 END_TEST
 
+START_TEST(a_zoom_of_another_range_is_a_share_of_it) {
+  OnvifFaults faults;
+  faults.zooms = true;
+  faults.widest = 1;
+  faults.longest = 21;
+  Rig rig(faults, [](OnvifOptions& options) { options.login.zoom = .25; });
+  ck_assert_double_eq(rig.camera.zoom(), .25);
+  assert_text(rig.served.line("zoom"), "zoom 0.25");
+}
+END_TEST
+
+// The second login begins after some answers that are no SOAP.
+START_TEST(a_zoom_that_cannot_be_kept_any_more_is_a_warning_and_the_head_turns) {
+  for (const bool options_fail : {false, true}) {
+    OnvifFaults faults;
+    faults.zooms = true;
+    std::string warned;
+    Rig rig(faults, [&](OnvifOptions& options) {
+      options.login.zoom = .25;
+      options.warn = [&](const std::string& text) { warned = text; };
+    });
+    assert_text(rig.served.line("ready").substr(0, 5), "ready");
+    if (options_fail)
+      rig.camera.refuse_options();
+    else
+      rig.camera.refuse_zoom();
+    assert_text(warned, "");
+    rig.camera.set_garbage(5);
+    ck_assert(!rig.served.line("fault").empty());
+    assert_text(rig.served.line("recovered"), "recovered");
+    ck_assert(rig.served.until([&] { return rig.camera.speed() > 9; }, "move at 10 hold"));
+    const char* words = options_fail
+                            ? "does not answer GetConfigurationOptions (NotNow: no options)"
+                            : "does not keep its zoom where lock-zoom has it (SpaceNotSupported: no zoom)";
+    ck_assert_msg(warned.find(words) != std::string::npos, "%s", warned.c_str());
+  }
+}
+END_TEST
+
 START_TEST(a_zoom_that_cannot_be_kept_is_an_error) {
   for (const bool claims : {false, true}) {
     OnvifFaults faults;
@@ -255,6 +294,16 @@ START_TEST(a_zoom_that_cannot_be_kept_is_an_error) {
                                : "has no absolute zoom in the profile \"moving\": its zoom cannot be kept";
     ck_assert_msg(fault.find(words) != std::string::npos, "%s", fault.c_str());
   }
+}
+END_TEST
+
+START_TEST(a_camera_whose_options_fail_is_refused_with_its_own_fault) {
+  OnvifFaults faults;
+  faults.zooms = faults.refuses_options = true;
+  Rig rig(faults, [](OnvifOptions& options) { options.login.zoom = 0; });
+  const std::string fault = rig.served.line("fault");
+  const char* words = "does not answer GetConfigurationOptions (NotNow: no options)";
+  ck_assert_msg(fault.find(words) != std::string::npos, "%s", fault.c_str());
 }
 END_TEST
 
@@ -292,24 +341,28 @@ START_TEST(a_velocity_falls_before_a_limit_and_towards_an_angle) {
 END_TEST
 
 int main() {
-  return run_suite(
-      "onvif_head",
-      {a_camera_turns_and_stops, pan_is_positive_to_the_right_and_tilt_up,
-       a_move_has_a_timeout_and_is_sent_again_before_it_is_over,
-       silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
-       the_camera_stops_by_its_own_timeout_when_the_helper_is_gone,
-       a_stop_is_sent_until_the_camera_acknowledges_it,
-       a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again,
-       a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well,
-       the_newest_move_waits_for_the_answer_to_the_last_one,
-       positions_are_reported_and_a_camera_at_its_limit_is_stopped,
-       a_camera_with_absolute_moves_goes_to_an_angle,
-       a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
-       a_camera_without_positions_finds_its_reference_by_a_preset, a_preset_that_is_not_there_is_a_fault,
-       a_preset_that_is_not_listed_is_named_with_those_that_are,
-       a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands,
-       a_zoom_that_cannot_be_kept_is_an_error,
-       a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known,
-       a_velocity_falls_before_a_limit_and_towards_an_angle},
-      200);
+  return run_suite("onvif_head",
+                   {a_camera_turns_and_stops,
+                    pan_is_positive_to_the_right_and_tilt_up,
+                    a_move_has_a_timeout_and_is_sent_again_before_it_is_over,
+                    silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
+                    the_camera_stops_by_its_own_timeout_when_the_helper_is_gone,
+                    a_stop_is_sent_until_the_camera_acknowledges_it,
+                    a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again,
+                    a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well,
+                    the_newest_move_waits_for_the_answer_to_the_last_one,
+                    positions_are_reported_and_a_camera_at_its_limit_is_stopped,
+                    a_camera_with_absolute_moves_goes_to_an_angle,
+                    a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
+                    a_camera_without_positions_finds_its_reference_by_a_preset,
+                    a_preset_that_is_not_there_is_a_fault,
+                    a_preset_that_is_not_listed_is_named_with_those_that_are,
+                    a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands,
+                    a_zoom_of_another_range_is_a_share_of_it,
+                    a_zoom_that_cannot_be_kept_any_more_is_a_warning_and_the_head_turns,
+                    a_zoom_that_cannot_be_kept_is_an_error,
+                    a_camera_whose_options_fail_is_refused_with_its_own_fault,
+                    a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known,
+                    a_velocity_falls_before_a_limit_and_towards_an_angle},
+                   200);
 }

@@ -192,7 +192,22 @@ START_TEST(a_status_may_lack_everything_or_hold_what_is_no_number) {
       "<tt:PanTilt>MOVING</tt:PanTilt></tt:MoveStatus>");
   ck_assert(whole && whole->position && whole->moving == true);
   ck_assert_double_eq(whole->zoom.value_or(-1), 0.75);
-  ck_assert(!status("<tt:Position><tt:Zoom x=\"1.5\"/></tt:Position>")->zoom);
+  const auto zoom = [&](const char* attributes, const PtzOptions& options = {}) {
+    return zoom_share(*status("<tt:Position><tt:Zoom " + std::string(attributes) + "/></tt:Position>"),
+                      options);
+  };
+  ck_assert_double_eq(zoom("x=\"0.75\"").value_or(-1), 0.75);
+  ck_assert(!zoom("x=\"1.5\""));
+  // In the range of the space that the camera offers.
+  PtzOptions times;
+  times.zoom = Space{"times", {1, 21}, {}};
+  ck_assert_double_eq(zoom("x=\"6\"", times).value_or(-1), 0.25);
+  ck_assert_double_eq(zoom("x=\"21\" space=\"times\"", times).value_or(-1), 1);
+  ck_assert(!zoom("x=\"0.5\"", times) && !zoom("x=\"6\" space=\"else\"", times));
+  ck_assert_double_eq(
+      zoom("x=\"0.5\" space=\"http://www.onvif.org/ver10/tptz/ZoomSpaces/PositionGenericSpace\"", times)
+          .value_or(-1),
+      0.5);
   ck_assert_double_eq(whole->position->x.from, -0.5);
   ck_assert_double_eq(whole->position->y.from, 0.25);
   for (const char* wrong :

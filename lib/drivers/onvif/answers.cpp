@@ -144,7 +144,11 @@ std::optional<PtzOptions> read_configuration_options(XmlElement body) {
   std::optional<Space> zoom;
   if (const auto found = read_spaces(spaces, "AbsoluteZoomPositionSpace"); !found.empty()) {
     zoom = found.front();
-    if (!spaces.child("AbsoluteZoomPositionSpace").child("XRange")) zoom->x = {0, 1};
+    // The range of the generic space; a wider one is taken only where the camera names it.
+    const XmlElement range = spaces.child("AbsoluteZoomPositionSpace").child("XRange");
+    if (const auto from = range.child("Min").number(), to = range.child("Max").number();
+        !from || !to || !(*from < *to))
+      zoom->x = {0, 1};
   }
   return PtzOptions{.positions = read_spaces(spaces, "AbsolutePanTiltPositionSpace"),
                     .velocities = read_spaces(spaces, "ContinuousPanTiltVelocitySpace"),
@@ -161,11 +165,25 @@ std::optional<PtzStatus> read_status(XmlElement body) {
   const XmlElement pan_tilt = element.child("Position").child("PanTilt");
   const auto x = pan_tilt.number("x"), y = pan_tilt.number("y");
   if (x && y) status.position = Space{pan_tilt.attribute("space"), {*x, *x}, {*y, *y}};
-  const auto zoom = element.child("Position").child("Zoom").number("x");
-  if (zoom && *zoom >= 0 && *zoom <= 1) status.zoom = zoom;
+  const XmlElement zoom = element.child("Position").child("Zoom");
+  status.zoom = zoom.number("x");
+  status.zoom_space = zoom.attribute("space");
   const std::string moving = element.child("MoveStatus").child("PanTilt").text();
   if (moving == "MOVING" || moving == "IDLE") status.moving = moving == "MOVING";
   return status;
+}
+
+std::optional<double> zoom_share(const PtzStatus& status, const PtzOptions& options) {
+  constexpr std::string_view kGeneric = "http://www.onvif.org/ver10/tptz/ZoomSpaces/PositionGenericSpace";
+  constexpr double kSlack = 0.01;  // of the range: cameras round
+  if (!status.zoom) return std::nullopt;
+  const bool of_options =
+      options.zoom && (status.zoom_space.empty() || status.zoom_space == options.zoom->uri);
+  if (options.zoom && !of_options && status.zoom_space != kGeneric) return std::nullopt;
+  const Range range = of_options ? options.zoom->x : Range{0, 1};
+  const double share = (*status.zoom - range.from) / (range.to - range.from);
+  if (share < -kSlack || share > 1 + kSlack) return std::nullopt;
+  return std::clamp(share, 0.0, 1.0);
 }
 
 std::vector<Preset> read_presets(XmlElement body) {

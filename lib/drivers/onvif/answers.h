@@ -66,10 +66,14 @@ std::optional<PtzOptions> read_configuration_options(XmlElement body);
 struct PtzStatus {
   std::optional<Space>
       position;                // x.from, y.from hold the position and uri its space, empty: the default one
-  std::optional<double> zoom;  // 0 to 1
+  std::optional<double> zoom;  // in units of its space
+  std::string zoom_space;      // empty: the default one
   std::optional<bool> moving;  // MoveStatus, if it is IDLE or MOVING
 };
 std::optional<PtzStatus> read_status(XmlElement body);
+// The zoom of a status as a share of its range, 0 to 1. Nothing: it is not reported, not within its range, or of a space
+// that is neither the one of the options nor the generic one.
+std::optional<double> zoom_share(const PtzStatus& status, const PtzOptions& options);
 
 struct Preset {
   std::string token, name;

@@ -18,13 +18,15 @@ Request zoom_request(const Camera& camera, double position) {
   return absolute_zoom(camera.profile, space.x.from + position * (space.x.to - space.x.from), space.uri);
 }
 
-void Login::begin(Time now, Time timeout) {
+void Login::begin(Time now, Time timeout, bool again) {
   soap_.cancel(id_);
   camera_ = {};
   services_ = {};
   configuration_.clear();
   seen_profiles_.clear();
   wrong_.clear();
+  warning_.clear();
+  again_ = again;
   unreadable_ = 0;
   refused_ = false;
   timeout_ = timeout;
@@ -35,6 +37,14 @@ void Login::begin(Time now, Time timeout) {
 void Login::fail(std::string why) {
   wrong_ = std::move(why);
   id_ = 0;
+}
+
+bool Login::goes_on_without_zoom(std::string why) {
+  if (again_)
+    warning_ = std::move(why);
+  else
+    fail(std::move(why));
+  return again_;
 }
 
 // An address that cannot be read: most cameras serve everything at one path.
@@ -118,14 +128,20 @@ void Login::after_profiles(const SoapAnswer& answer, Time now) {
 void Login::after_options(const SoapAnswer& answer, Time now) {
   camera_.options = read_configuration_options(answer.body).value_or(PtzOptions{});
   if (options_.zoom < 0 || camera_.options.zoom) return send(Step::stop, now);
-  fail("has no absolute zoom in the profile \"" + camera_.profile +
-       "\": its zoom cannot be kept (lock-zoom). Name another profile (profile=), or set the zoom at the "
-       "camera");
+  const std::string why = answer.good()
+                              ? "has no absolute zoom in the profile \"" + camera_.profile +
+                                    "\": its zoom cannot be kept (lock-zoom). Name another profile "
+                                    "(profile=), or set the zoom at the "
+                                    "camera"
+                              : "does not answer GetConfigurationOptions (" +
+                                    (answer.fault ? answer.fault->text() : answer.wrong) +
+                                    "), which would say how its zoom is set: it cannot be kept (lock-zoom)";
+  if (goes_on_without_zoom(why)) send(Step::stop, now);
 }
 
 // At the end, because the camera has been stopped by then and what else is asked for must not wait for the lens.
 void Login::set_zoom(Time now) {
-  if (options_.zoom >= 0) send(Step::zoom, now);
+  if (options_.zoom >= 0 && camera_.options.zoom) send(Step::zoom, now);
 }
 
 // A preset by token or name.
@@ -150,6 +166,11 @@ bool Login::cut_short() {
 
 void Login::handle(const SoapAnswer& answer, Time now) {
   id_ = 0;
+  if (step_ == Step::zoom && again_ && !answer.good()) {
+    warning_ = "does not keep its zoom where lock-zoom has it (" +
+               (answer.fault ? answer.fault->text() : answer.wrong) + ")";
+    return;
+  }
   if (!answer.arrived && step_ != Step::stop) return fail("cannot be reached: " + answer.wrong);
   if (step_ == Step::clock) {
     // Half of the way there and back lies behind the answer; without the camera's time this machine's is used.

@@ -35,8 +35,9 @@ Request zoom_request(const Camera& camera, double position);
 class Login {
  public:
   Login(SoapClient& soap, LoginOptions options) : soap_(soap), options_(std::move(options)) {}
-  // Begins anew. timeout: of each request.
-  void begin(Time now, Time timeout);
+  // Begins anew. timeout: of each request. again: the camera was driven before, so that a zoom that cannot be kept is a
+  // warning() and does not end the login.
+  void begin(Time now, Time timeout, bool again = false);
   bool busy() const { return id_ != 0; }
   // Gives up what is still to be asked for. False: not even the profile is known.
   bool cut_short();
@@ -45,6 +46,8 @@ class Login {
   void handle(const SoapAnswer& answer, Time now);
   // After the end: why it failed; empty: it is done.
   const std::string& wrong() const { return wrong_; }
+  // Of a login that is done: what is wrong with its zoom; empty: nothing.
+  const std::string& warning() const { return warning_; }
   // It failed because the camera refused the user.
   bool refused() const { return refused_; }
   const Camera& camera() const { return camera_; }
@@ -66,6 +69,8 @@ class Login {
 
   void send(Step step, Time now);
   void fail(std::string why);
+  // False: the login has failed of it.
+  bool goes_on_without_zoom(std::string why);
   // False: no profile of these can pan and tilt.
   bool choose(const std::vector<Profile>& profiles);
   void after_services(const SoapAnswer& answer, Time now);
@@ -83,7 +88,8 @@ class Login {
   Time timeout_{}, sent_{};
   Services services_;
   std::string configuration_, seen_profiles_;
-  std::string wrong_;
+  std::string wrong_, warning_;
+  bool again_ = false;
   bool refused_ = false;
   int unreadable_ = 0;  // answers to the position inquiry that are no SOAP
 };

@@ -77,6 +77,7 @@ void OnvifHead::on_login(Time now) {
   stops_by_zero_ = timeout_refused_ = false;
   online_ = true;
   zoom_lock_.on_sent(now);  // by the login
+  if (options_.warn && !login_.warning().empty()) options_.warn(camera_name() + " " + login_.warning());
   retry_ = kParameters.reconnect;
   for (const SentStop& sent : stops_) soap_.cancel(sent.id);
   stops_.clear();
@@ -294,7 +295,7 @@ void OnvifHead::on_status(const SoapAnswer& answer, Time now) {
   if (answer.not_authorized()) return log_in_again(now);
   const auto status = onvif::read_status(answer.body);
   if (!status) return;
-  if (status->zoom) on_zoom(*status->zoom, now);
+  if (const auto zoom = onvif::zoom_share(*status, camera_.options)) on_zoom(*zoom, now);
   if (positions_ && status->position) {
     const auto at =
         onvif::to_degrees(*status->position, position_space_, camera_.options, options_.mechanics);
@@ -331,7 +332,7 @@ void OnvifHead::on_zoom(double position, Time now) {
 void OnvifHead::log_in_again(Time now) {
   if (login_.busy() || now - login_tried_ < retry_) return;
   login_tried_ = now;
-  login_.begin(now, kParameters.request_time);
+  login_.begin(now, kParameters.request_time, true);
 }
 
 void OnvifHead::lose(const std::string& why, Time now) {

@@ -13,6 +13,7 @@
 // then it stands until the next move.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,6 +39,8 @@ struct OnvifOptions {
   Time login_time = std::chrono::milliseconds(4500);  // derived: the pipeline waits 5 s for a helper
   // A camera that has not answered for so long is gone. Derived: reported within 1 s of its last sign.
   std::chrono::milliseconds answer_time{750};
+  // Called for what is wrong and keeps no head from turning; empty: nothing is.
+  std::function<void(const std::string&)> warn;
 };
 
 struct OnvifParameters {
