@@ -255,8 +255,12 @@ def main():
         folder, port = pathlib.Path(name), free_port()
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(port)))
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
+            taken = socket.create_server(('127.0.0.1', port))
             process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
             try:
+                # The robot runs while its page's port is in use, and opens the page later.
+                wait_until('a port in use', lambda: 'the page cannot listen at' in (folder / 'log').read_text())
+                taken.close()
                 one_time = wait_until('the one-time password', lambda: re.search(
                     r'One-time password .*: ([0-9a-f]{16})\n', (folder / 'log').read_text()))[1]
                 owner = Page(port)
