@@ -170,6 +170,7 @@ def main():
                 camera = subprocess.Popen(line(folder, port, 'password'), stdout=log, stderr=log)
             running.append(camera)
             client.wait('online', lambda: has('status', 'online'))
+            log_has(folder / 'log', 'Setting pipeline to PLAYING')  # an earlier interrupt is an error to gst-launch-1.0
             camera.send_signal(signal.SIGINT)
             client.wait('offline at the end', lambda: has('status', 'offline'))
             assert camera.wait(PATIENCE) == 0
