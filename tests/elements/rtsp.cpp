@@ -185,17 +185,25 @@ class Client {
                   GTlsDatabase* trusted = nullptr) {
     const std::string line =
         "rtspsrc name=source latency=0 location=" + address + " " + settings +
-        " source. ! application/x-rtp,media=video ! rtph264depay ! "
-        "video/x-h264,stream-format=byte-stream,alignment=au ! fakesink name=video async=false sync=false "
-        "signal-handoffs=true source. ! application/x-rtp,media=application ! "
+        " rtph264depay name=depay ! video/x-h264,stream-format=byte-stream,alignment=au ! "
+        "fakesink name=video async=false sync=false signal-handoffs=true "
         "fakesink name=metadata async=false sync=false signal-handoffs=true";
     g_autoptr(GError) error = nullptr;
     pipeline_ = gst_parse_launch(line.c_str(), &error);
     fail_unless(pipeline_ && !error, "%s", error ? error->message : "");
-    if (trusted) {
-      g_autoptr(GstElement) source = gst_bin_get_by_name(GST_BIN(pipeline_), "source");
-      g_object_set(source, "tls-database", trusted, nullptr);
-    }
+    g_autoptr(GstElement) source = gst_bin_get_by_name(GST_BIN(pipeline_), "source");
+    if (trusted) g_object_set(source, "tls-database", trusted, nullptr);
+    // Here and not in the line: links that gst_parse_launch() delays disturb each other when two pads come at once.
+    g_signal_connect(
+        source, "pad-added", G_CALLBACK(+[](GstElement*, GstPad* pad, GstElement* pipeline) {
+          g_autoptr(GstCaps) caps = gst_pad_get_current_caps(pad);
+          const GstStructure* structure = gst_caps_get_structure(caps, 0);
+          const bool video = g_strcmp0(gst_structure_get_string(structure, "media"), "video") == 0;
+          g_autoptr(GstElement) next = gst_bin_get_by_name(GST_BIN(pipeline), video ? "depay" : "metadata");
+          g_autoptr(GstPad) sink = gst_element_get_static_pad(next, "sink");
+          fail_unless_equals_int(gst_pad_link(pad, sink), GST_PAD_LINK_OK);
+        }),
+        pipeline_);
     connect("video", G_CALLBACK(+[](GstElement*, GstBuffer* buffer, GstPad*, Client* client) {
               if (std::string slices = slices_of(bytes_of(buffer)); !slices.empty())
                 client->pictures.add(std::move(slices));

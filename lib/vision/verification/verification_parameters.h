@@ -53,8 +53,7 @@ struct VerificationParameters {
   double side_margin =
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
   double top_margin = 0.14;  // of the box's height, above and below
-  double most_area =
-      300e3;  // pixels of a scaled look. Measured on PETS09-S2L1: 56 ms a look, 22 % of a core
+  double most_area = 300e3;  // pixels of a scaled look. Measured on PETS09-S2L1: 56 ms a look, 22 % of a core
   double least_height = 24;  // frame pixels: lower boxes are not looked at
   double most_scale = 4;     // by which a look is enlarged
   double flattest = 0.55,
