@@ -52,11 +52,16 @@ bool coils_off(const Chip& chip) {
   return true;
 }
 
-// Waits until the coils are on or off. Returns how long it took, in milliseconds.
+// Waits until the coils are on or off. Returns how long it took, in milliseconds. Ten reads must agree: while the motor
+// steps, four lines that are read one after the other may all be off.
 double wait_coils(const Chip& chip, bool off, Clock::duration most) {
   const auto begin = Clock::now();
-  while (coils_off(chip) != off && Clock::now() - begin < most) std::this_thread::sleep_for(1ms);
-  fail_unless(coils_off(chip) == off, "the coils are still %s", off ? "on" : "off");
+  int agreeing = 0;
+  while (agreeing < 10 && Clock::now() - begin < most) {
+    agreeing = coils_off(chip) == off ? agreeing + 1 : 0;
+    std::this_thread::sleep_for(1ms);
+  }
+  fail_unless(agreeing == 10, "the coils are still %s", off ? "on" : "off");
   return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
