@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "publish/mqtt_report.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -84,6 +85,11 @@ bool take_number(std::string_view& text, double& number) {
 }
 
 }  // namespace
+
+bool is_topic_level(std::string_view name) {
+  return !name.empty() && name.find_first_of("/+#") == name.npos &&
+         std::ranges::none_of(name, [](char c) { return c >= 0 && c < ' '; });
+}
 
 std::string MqttReport::topic(std::string_view name) const {
   std::string whole = prefix_;
@@ -202,6 +208,13 @@ std::vector<MqttMessage> MqttReport::discovery(std::string_view home_assistant, 
     add("sensor", "tilt", "pantilt", "{{ value_json.tilt }}", "", "\u00b0");
   }
   return out;
+}
+
+std::vector<MqttMessage> MqttReport::discovery_of(const MqttFrame& frame, std::string_view home_assistant) {
+  const Announced now{frame.sensors.size(), frame.head.has_value()};
+  if (announced_ == now) return {};
+  announced_ = now;
+  return discovery(home_assistant, now.sensors, now.head);
 }
 
 std::optional<int> arguments_of(std::string_view name) {

@@ -46,6 +46,9 @@ struct MqttFrame {
   std::span<const std::uint8_t> sensors;  // 0 nothing, 1 detection, 2 invalid
 };
 
+// Whether a name can be one level of a topic.
+bool is_topic_level(std::string_view name);
+
 class MqttReport {
  public:
   struct Parameters {
@@ -67,8 +70,15 @@ class MqttReport {
   std::string topic(std::string_view name) const;  // "cerberus/front/status"
   // Retained messages by which Home Assistant finds the camera, its sensors and its head (MQTT discovery).
   std::vector<MqttMessage> discovery(std::string_view home_assistant, std::size_t sensors, bool head) const;
+  // The same for the sensors and the head of this frame; nothing where they are those of the call before.
+  std::vector<MqttMessage> discovery_of(const MqttFrame& frame, std::string_view home_assistant);
 
  private:
+  struct Announced {
+    std::size_t sensors = 0;
+    bool head = false;
+    bool operator==(const Announced&) const = default;
+  };
   struct Visit {
     std::string object;  // members of the last report, JSON
     std::chrono::nanoseconds seen{}, reported{};
@@ -80,6 +90,7 @@ class MqttReport {
   std::string prefix_, camera_;
   std::map<std::uint32_t, Visit> visits_;
   std::map<std::string, std::string, std::less<>> last_;  // payload of each retained topic
+  std::optional<Announced> announced_;
   std::optional<MqttFrame::Head> head_;
   std::chrono::nanoseconds head_reported_{};
 };

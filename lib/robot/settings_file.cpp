@@ -125,8 +125,7 @@ Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& 
   if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
   reader.properties(kMqtt, properties);
   for (const Property& property : properties)
-    if (property.name == "topic-prefix" &&
-        (property.value.empty() || property.value.find_first_of("/+#") != property.value.npos))
+    if (property.name == "topic-prefix" && !publish::is_topic_level(property.value))
       reader.complain("topic-prefix", "\"topic-prefix\" is one level of a topic, without / + #");
   for (const char* key : {"password-file", "ca-file"}) {
     std::string path;

@@ -46,6 +46,7 @@
 #include "mqtt_client.hpp"
 #include "publish/mqtt_report.h"
 #include "shared/camera_mount.hpp"
+#include "shared/clock_times.hpp"
 #include "shared/properties.hpp"
 #include "shared/stamps.hpp"
 #include "text/file.h"
@@ -108,8 +109,6 @@ struct Private {
   plugin::Stamps stamps;
   std::vector<publish::MqttObject> objects;
   std::string discovery;
-  std::size_t known_sensors = 0;
-  bool known_head = false, discovered = false;
 };
 
 CERBERUS_DEFINE_TYPE(CerberusMqttPublish, cerberus_mqtt_publish, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
@@ -168,12 +167,6 @@ void obey(CerberusMqttPublish* self, const std::string& name, const std::string&
                                               G_TYPE_BOOLEAN, done, nullptr)));
 }
 
-// A level of a topic.
-bool is_level(const std::string& name) {
-  return !name.empty() && name.find_first_of("/+#") == name.npos &&
-         std::ranges::none_of(name, [](char c) { return c >= 0 && c < ' '; });
-}
-
 bool read_password(CerberusMqttPublish* self, const std::string& path, std::string& password) {
   if (path.empty()) return true;
   constexpr std::size_t kMostBytes = 4096;
@@ -192,7 +185,8 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
     Private& p = *self->priv;
     const Settings settings = p.settings.snapshot();
     const std::string camera = settings.camera_name.empty() ? "camera" : settings.camera_name;
-    if (settings.host.empty() || !is_level(settings.prefix) || !is_level(camera)) {
+    if (settings.host.empty() || !publish::is_topic_level(settings.prefix) ||
+        !publish::is_topic_level(camera)) {
       CERBERUS_ELEMENT_ERROR(
           self, RESOURCE, SETTINGS,
           ("host must be set, topic-prefix and camera-name be levels of a topic, without / + #."), (nullptr));
@@ -210,7 +204,6 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
     p.report.emplace(settings.prefix, camera);
     p.stamps.reset();
     p.discovery = settings.discovery;
-    p.discovered = false;
     server.status = p.report->topic("status");
     // What is not allowed is refused with a warning, where anything is; else nothing is subscribed.
     if (!settings.commands.empty()) server.commands = p.report->topic("command/");
@@ -285,20 +278,13 @@ GstFlowReturn cerberus_mqtt_publish_transform_ip(GstBaseTransform* transform, Gs
   auto* self = cerberus_mqtt_publish_self(transform);
   return guarded(self, GST_FLOW_ERROR, [&] {
     Private& p = *self->priv;
-    const GstClockTime time =
-        gst_segment_to_running_time(&transform->segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer));
+    const GstClockTime time = plugin::running_time_of(transform->segment, buffer);
     const CerberusStamp stamp = p.stamps.frame(GST_BASE_TRANSFORM_SINK_PAD(transform), buffer, time, {});
     publish::MqttFrame frame;
     if (GST_CLOCK_TIME_IS_VALID(time)) frame.time = plugin::time_of(time);
-    if (GST_CLOCK_TIME_IS_VALID(stamp.utc)) frame.utc = plugin::time_of(stamp.utc);
+    frame.utc = plugin::known_time(stamp.utc);
     read_frame(p, buffer, stamp, frame);
-    const bool changed = p.known_sensors != frame.sensors.size() || p.known_head != frame.head.has_value();
-    if (!p.discovery.empty() && (!p.discovered || changed)) {
-      p.discovered = true;
-      p.known_sensors = frame.sensors.size();
-      p.known_head = frame.head.has_value();
-      publish_all(p, p.report->discovery(p.discovery, p.known_sensors, p.known_head));
-    }
+    if (!p.discovery.empty()) publish_all(p, p.report->discovery_of(frame, p.discovery));
     publish_all(p, p.report->update(frame));
     return GST_FLOW_OK;
   });

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "publish/mqtt_report.h"
 
+#include <array>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -152,6 +153,20 @@ START_TEST(home_assistant_finds_each_sensor_once_and_where_it_is_published) {
 }
 END_TEST
 
+START_TEST(discovery_is_repeated_only_when_sensors_or_head_are_others) {
+  MqttReport report("cerberus", "front");
+  const std::array<std::uint8_t, 2> sensors{};
+  MqttFrame frame;
+  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant").size(), 3);
+  ck_assert(report.discovery_of(frame, "homeassistant").empty());
+  frame.sensors = sensors;
+  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant").size(), 6);  // and rule, pir 0 and 1
+  frame.head.emplace();
+  ck_assert_uint_eq(report.discovery_of(frame, "homeassistant").size(), 8);  // and pan, tilt
+  ck_assert(report.discovery_of(frame, "homeassistant").empty());
+}
+END_TEST
+
 START_TEST(an_order_is_taken_only_where_it_is_allowed_and_whole) {
   std::string error;
   const auto move = parse_mqtt_command("move-to", "10 -5.5", "stop,move-to", error);
@@ -186,5 +201,6 @@ int main() {
                       a_frame_that_no_detector_saw_says_nothing_about_motion,
                       a_moving_head_is_reported_twice_a_second_and_when_it_rests,
                       home_assistant_finds_each_sensor_once_and_where_it_is_published,
+                      discovery_is_repeated_only_when_sensors_or_head_are_others,
                       an_order_is_taken_only_where_it_is_allowed_and_whole});
 }
