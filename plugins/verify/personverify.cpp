@@ -5,34 +5,36 @@
  * @short_description: confirms, splits and classifies tracks with a people detector
  * @see_also: motiondetect, pirfusion, pantiltsink
  *
- * A curtain, a clock and a car move, too. This element shows parts of the picture to a detector for people, on a thread of its own and `rate` times a
- * second of running time, those first of which the least is known. Then:
+ * A curtain, a clock and a car move, too. This element shows parts of the picture to a detector for people, on a thread
+ * of its own and `rate` times a second of running time, those first of which the least is known. Then:
  *
  * - a track that is a person is published with the type `person` and the detector's confidence;
  * - a track that holds several people is replaced by one region for each of them; their identities begin at 1000001;
  * - a track of which persons cover only a part has the kind `group`;
- * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then follow
- *   persons only.
+ * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
+ *   follow persons only.
  *
  * Between two looks of the detector a person is followed in the picture.
  *
- * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set): upright people who are
- * at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who sit or lie, or only
- * their upper half.
+ * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
+ * upright people who are at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who
+ * sit or lie, or only their upper half.
  *
- * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width, values 0 to 1), with the outputs of YOLO 5, 7, 8 and
- * 11 (as exported without suppression of overlapping boxes) or SSD. It sees the brightness only, as grey. Which layers can be run depends on
- * OpenCV: that of Debian 12 (4.6) is older than YOLO 8; a model that cannot be run is an error at the start. No model comes with Cerberus, and
- * each has its licence: YOLO 5, 8 and 11 of Ultralytics are AGPL-3.0 (or a commercial one), YOLO 7 is GPL-3.0, SSD of torchvision BSD-3-Clause; the data that
- * they were trained with has terms of its own.
+ * `model` names a network instead: an ONNX file whose input has a fixed size (1 x 3 x height x width, values 0 to 1),
+ * with the outputs of YOLO 5, 7, 8 and 11 (as exported without suppression of overlapping boxes) or SSD. It sees the
+ * brightness only, as grey. Which layers can be run depends on OpenCV: that of Debian 12 (4.6) is older than YOLO 8; a
+ * model that cannot be run is an error at the start. No model comes with Cerberus, and each has its licence: YOLO 5, 8
+ * and 11 of Ultralytics are AGPL-3.0 (or a commercial one), YOLO 7 is GPL-3.0, SSD of torchvision BSD-3-Clause; the
+ * data that they were trained with has terms of its own.
  *
- * Live, a result counts from the first frame after it is there, and no frame waits. In a pipeline that is not live it counts from
- * the first frame that is at least 100 ms of running time later than the frame that was looked at, and that frame waits for it: two runs give
- * the same bytes.
+ * Live, a result counts from the first frame after it is there, and no frame waits. In a pipeline that is not live it
+ * counts from the first frame that is at least 100 ms of running time later than the frame that was looked at, and that
+ * frame waits for it: two runs give the same bytes.
  *
- * Pads: one sink, one src, raw video in system memory, in every format that the stages read; works in place, on the regions of
- * `motiondetect`, or, where there are none, on #GstVideoRegionOfInterestMeta of other elements. Those stay on the
- * buffer (with `require=person` they are removed), and the persons among them are attached as regions of their own.
+ * Pads: one sink, one src, raw video in system memory, in every format that the stages read; works in place, on the
+ * regions of `motiondetect`, or, where there are none, on #GstVideoRegionOfInterestMeta of other elements. Those stay
+ * on the buffer (with `require=person` they are removed), and the persons among them are attached as regions of their
+ * own.
  *
  * ## Example launch lines
  * |[
@@ -43,8 +45,8 @@
  *
  * Since: 0.1
  */
-// Method: Enzweiler and Gavrila, "Monocular pedestrian detection: survey and experiments", PAMI 2009, for the detector; what is made of its hits
-// is in lib/vision/verification. Quality: docs/quality.md.
+// Method: Enzweiler and Gavrila, "Monocular pedestrian detection: survey and experiments", PAMI 2009, for the detector;
+// what is made of its hits is in lib/vision/verification. Quality: docs/quality.md.
 #include <cerberus/cerberus.h>
 #include <gst/base/gstbasetransform.h>
 #include <gst/video/video.h>
@@ -87,8 +89,9 @@ constexpr double kMostRate = 10;
 constexpr double kUsualStep = 0.04;
 // A longer gap, in seconds, begins anew.
 constexpr double kLongestGap = 2;
-// Scores of the detectors: by default the least, and what counts as certain. Of Daimler: swept on TUD-Campus, TUD-Stadtmitte and
-// PETS09-S2L1 (1.7 finds more things that are none, 2.1 loses a tenth of the people). Of a model: probabilities.
+// Scores of the detectors: by default the least, and what counts as certain. Of Daimler: swept on TUD-Campus,
+// TUD-Stadtmitte and PETS09-S2L1 (1.7 finds more things that are none, 2.1 loses a tenth of the people). Of a model:
+// probabilities.
 constexpr double kDaimlerThreshold = 1.9, kDaimlerCertain = 4;
 constexpr double kModelThreshold = 0.4, kModelCertain = 1;
 
@@ -147,9 +150,9 @@ struct State {  // streaming thread only
   std::optional<Pending> pending;
   std::optional<bool> live;
   GstClockTime last = GST_CLOCK_TIME_NONE, next_look = GST_CLOCK_TIME_NONE;
-  std::vector<vision::Candidate> candidates;
+  std::vector<vision::Candidate> candidates, candidates_before;  // of this frame, of the one before
   std::vector<CerberusRegion> before, after;  // regions of the frame, and what is published
-  guint next_foreign = 0;                     // identities of theirs given so far
+  std::uint32_t last_foreign = 0;             // identities of theirs given so far
   bool foreign = false;                       // they are other elements' regions of interest
   double threshold = 0, certain = 0;          // scores of the detector in the worker
   cerberus::plugin::Complaint caps, frame;
@@ -227,9 +230,9 @@ gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent
   return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
 }
 
-// Regions of interest of other elements, with the identity that they have, or the one of the region before that they overlap.
+// Regions of interest of other elements, with identities that they keep from frame to frame.
 void read_foreign(State& state, GstBuffer* buffer) {
-  const std::vector<vision::Candidate> before = state.candidates;
+  std::swap(state.candidates, state.candidates_before);
   state.candidates.clear(), state.before.clear();
   gpointer iterator = nullptr;
   while (GstMeta* meta = gst_buffer_iterate_meta_filtered(buffer, &iterator,
@@ -239,16 +242,11 @@ void read_foreign(State& state, GstBuffer* buffer) {
     cerberus_region_init(&region);
     region.x = roi->x, region.y = roi->y, region.width = roi->w, region.height = roi->h;
     region.tracked = TRUE;
-    const vision::Box box{region.x, region.y, region.width, region.height};
-    double best = 0.3;
-    for (const auto& each : before) {
-      const double shared = vision::intersection_over_union(each.box, box);
-      const bool free = std::ranges::none_of(state.before, [&](const auto& r) { return r.id == each.id; });
-      if (free && shared > best) best = shared, region.id = each.id;
-    }
-    if (region.id == 0) region.id = ++state.next_foreign;
     state.before.push_back(region);
+    state.candidates.push_back({.box = {region.x, region.y, region.width, region.height}});
   }
+  vision::keep_identities(state.candidates_before, state.candidates, state.last_foreign);
+  for (std::size_t i = 0; i < state.before.size(); ++i) state.before[i].id = state.candidates[i].id;
 }
 
 void read_regions(State& state, GstBuffer* buffer) {

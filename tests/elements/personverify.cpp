@@ -257,7 +257,8 @@ GST_START_TEST(a_model_of_the_users_finds_people_in_place_of_the_usual_detector)
   const TemporaryFile model(cerberus::tests::onnx::constant_yolo(64, {32, 32, 16, 60, 0.1f, 0.9f})),
       labels("cat\nperson\r\n");
   Verifier verifier(("model=" + model.path() + " labels=" + labels.path()).c_str());
-  // A look is as wide as the track and .7 of its height, and 1.28 times as high: 180 x 115 pixels, 2.8 for each of the network's.
+  // A look is as wide as the track and .7 of its height, and 1.28 times as high: 180 x 115 pixels, 2.8 for each of the
+  // network's.
   const auto found = regions_after(verifier, 8, {}, true, {region(3, 100, 80, 117, 90)});
   const auto person = std::ranges::find_if(found, [](const CerberusRegion& r) { return r.person; });
   fail_unless(person != found.end());

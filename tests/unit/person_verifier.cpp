@@ -212,6 +212,24 @@ START_TEST(a_person_whom_looks_do_not_confirm_is_none_any_more) {
 }
 END_TEST
 
+START_TEST(a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most) {
+  std::uint32_t last = 7;
+  const std::vector<Candidate> before{{.id = 3, .box = {0, 0, 100, 100}},
+                                      {.id = 5, .box = {300, 0, 100, 100}}};
+  // Moved by 20: overlap 80 of 120 columns. The second would be the same one's, which is taken. The third is new.
+  std::vector<Candidate> now{{.box = {20, 0, 100, 100}},
+                             {.box = {30, 0, 100, 100}},
+                             {.box = {600, 0, 50, 50}},
+                             {.box = {310, 0, 100, 100}}};
+  keep_identities(before, now, last);
+  ck_assert_uint_eq(now[0].id, 3);
+  ck_assert_uint_eq(now[1].id, 8);
+  ck_assert_uint_eq(now[2].id, 9);
+  ck_assert_uint_eq(now[3].id, 5);
+  ck_assert_uint_eq(last, 9);
+}
+END_TEST
+
 START_TEST(following_and_choosing_allocate_nothing) {
   Rig rig;
   std::vector<Candidate> track{{.id = 2, .box = person_at(200)}};
@@ -297,7 +315,8 @@ START_TEST(persons_are_read_from_the_outputs_of_yolo_and_ssd) {
     ck_assert_double_eq_tol(hits[0].box.height, 80, 1e-4);
     ck_assert_double_eq_tol(hits[0].score, 0.72, 1e-4);
   };
-  // Version 5, two classes: an object of .9 that is a person by .8; no object; the other class. More boxes than numbers.
+  // Version 5, two classes: an object of .9 that is a person by .8; no object; the other class. More boxes than
+  // numbers.
   const std::vector<float> five{30,  100, 20, 80, .9f, .8f, .1f, 30,  100, 20, 80,
                                 .1f, .9f, 0,  30, 100, 20,  80,  .9f, .1f, .9f};
   std::vector<float> five_more = five;
@@ -356,8 +375,9 @@ int main() {
        two_people_in_one_track_are_followed_with_identities_of_their_own,
        a_track_that_persons_cover_in_part_is_a_group,
        what_looks_like_a_person_where_nothing_moves_is_none_and_what_never_moved_ends,
-       a_person_whom_looks_do_not_confirm_is_none_any_more, following_and_choosing_allocate_nothing,
-       the_worker_returns_what_its_detector_found_or_threw,
+       a_person_whom_looks_do_not_confirm_is_none_any_more,
+       a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most,
+       following_and_choosing_allocate_nothing, the_worker_returns_what_its_detector_found_or_threw,
        the_input_size_of_an_onnx_model_is_read_from_its_file,
        persons_are_read_from_the_outputs_of_yolo_and_ssd,
        a_person_whom_no_track_shows_is_found_where_the_picture_changes});

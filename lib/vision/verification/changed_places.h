@@ -15,13 +15,13 @@ namespace cerberus::vision {
 class ChangedPlaces {
  public:
   void reset();
-  // Compares `now` with the picture some frames `earlier`, cell by cell; both of one size. earlier is empty where there is none, or the
-  // camera has moved since: nothing counts as changed then. seconds: since the last update.
+  // Compares `now` with the picture some frames `earlier`, cell by cell; both of one size. earlier is empty where
+  // there is none, or the camera has moved since: nothing counts as changed then. seconds: since the last update.
   void update(GrayView now, GrayView earlier, double seconds, const VerificationParameters& p);
   // Share of `box`, pixels, that has changed, 0 to 1.
   double share(const Box& box) const;
-  // Boxes, in pixels, around the changed cells that are near each other, but for those below `hidden` (boxes, pixels); doubt: seconds since a look there.
-  // Valid until the next call.
+  // Boxes, in pixels, around the changed cells that are near each other, but for those below `hidden` (boxes, pixels);
+  // doubt: seconds since a look there. Valid until the next call.
   std::span<const LookTarget> places(std::span<const Box> hidden, const VerificationParameters& p);
   // `region`, pixels, is looked at.
   void looked(const Box& region);

@@ -21,8 +21,9 @@ struct LookRegion {
   double scale = 1;                         // by which the detector enlarges it
 };
 
-// Returns the region around the most doubtful target, and around further targets of similar height as far as the area of a
-// look allows, those with the most doubt for their area first. nullopt: no target has any doubt, or is high enough.
+// Returns the region around the most doubtful target, and around further targets of similar height as far as the area
+// of a look allows, those with the most doubt for their area first. nullopt: no target has any doubt, or is high
+// enough.
 std::optional<LookRegion> choose_look(std::span<const LookTarget> targets, Size frame,
                                       const VerificationParameters& p);
 

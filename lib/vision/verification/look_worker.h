@@ -32,8 +32,8 @@ class LookWorker {
   void begin(double scale);
   // Whether the result of the last look is there.
   bool is_done() const;
-  // Waits for the look in progress, and returns its hits, in pixels of picture(); they live until the next begin(). Throws what the
-  // detector has thrown.
+  // Waits for the look in progress, and returns its hits, in pixels of picture(); they live until the next begin().
+  // Throws what the detector has thrown.
   std::vector<PersonDetection>& wait();
 
  private:

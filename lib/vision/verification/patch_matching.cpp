@@ -17,7 +17,8 @@ struct Area {
   int left, top, right, bottom;
 };
 
-// Mean absolute difference between `a` in `before` and the same area, displaced, in `now`, over what both pictures show.
+// Mean absolute difference between `a` in `before` and the same area, displaced, in `now`, over what both pictures
+// show.
 double mean_difference(GrayView before, GrayView now, const Area& a, int dx, int dy) {
   const int left = std::max(a.left, -dx), right = std::min(a.right, now.width - dx);
   const int top = std::max(a.top, -dy), bottom = std::min(a.bottom, now.height - dy);

@@ -32,6 +32,18 @@ double share_within(const Box& box, const Box& outer) {
 
 }  // namespace
 
+void keep_identities(std::span<const Candidate> before, std::span<Candidate> now, std::uint32_t& last) {
+  for (Candidate& region : now) {
+    double best = 0.3;
+    for (const Candidate& each : before) {
+      const double shared = intersection_over_union(each.box, region.box);
+      const bool free = std::ranges::none_of(now, [&](const Candidate& c) { return c.id == each.id; });
+      if (free && shared > best) best = shared, region.id = each.id;
+    }
+    if (region.id == 0) region.id = ++last;
+  }
+}
+
 void PersonVerifier::reset() {
   people_.clear(), records_.clear(), candidates_.clear(), result_.clear();
   number_ = 0;
@@ -58,10 +70,7 @@ void PersonVerifier::update(GrayView picture, Size frame, const Transform& motio
   candidates_.assign(candidates.begin(), candidates.end());
   for (TrackRecord& each : records_) each.since_look += seconds, each.since_seen += seconds;
   std::erase_if(records_, [](const TrackRecord& each) { return each.since_seen > 60; });
-  for (const Candidate& each : candidates_) {
-    TrackRecord& own = record(each.id);
-    own.since_seen = 0, own.age += seconds;
-  }
+  for (const Candidate& each : candidates_) record(each.id).since_seen = 0;
   for (Person& person : people_) {
     follow(person, number_);
     person.age += seconds, person.since_seen += seconds, person.since_look += seconds;

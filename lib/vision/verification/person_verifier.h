@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Persons that a detector confirmed, beside the tracks of motion: follows them between its looks, binds them to tracks, and replaces a track
-// that holds several.
+// Persons that a detector confirmed, beside the tracks of motion: follows them between its looks, binds them to tracks,
+// and replaces a track that holds several.
 #pragma once
 
 #include <cstdint>
@@ -25,6 +25,10 @@ struct Candidate {
   RegionKind kind = RegionKind::person_like;
 };
 
+// Gives regions without an identity (id 0) the one of the region of the frame before that they overlap most, by an
+// intersection over union above 0.3, each once; else the next one after `last`, which counts on.
+void keep_identities(std::span<const Candidate> before, std::span<Candidate> now, std::uint32_t& last);
+
 // What stands for the candidates after the verification.
 struct VerifiedRegion {
   int candidate =
@@ -36,7 +40,6 @@ struct VerifiedRegion {
   RegionKind kind = RegionKind::person_like;
   double vx = 0, vy = 0;  // of a person, frame pixels a second relative to the scene
   double age = 0;         // of a person, s
-  bool measured = true;   // a person: in this frame, by a track or in the picture
 };
 
 class PersonVerifier {
@@ -50,14 +53,14 @@ class PersonVerifier {
   static constexpr std::uint32_t kFirstOwn = 1'000'001;
 
   void reset();
-  // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k in pixels of
-  // the frame; seconds: since frame k-1, > 0.
+  // The next frame. picture: its luma, reduced (any size, the same in every frame of a stream); motion: frame k-1 to k
+  // in pixels of the frame; seconds: since frame k-1, > 0.
   void update(GrayView picture, Size frame, const Transform& motion, double seconds,
               std::span<const Candidate> candidates);
   // Where the detector is to look in the present frame, the most doubtful first; nullopt: nowhere.
   std::optional<Look> choose();
-  // Takes in what a look showed, up to kKept frames later: boxes in pixels of the frame, merged (merge_hits()), which are carried on
-  // to the present frame. certain: the score that counts as certain; floor: the least there is.
+  // Takes in what a look showed, up to kKept frames later: boxes in pixels of the frame, merged (merge_hits()), which
+  // are carried on to the present frame. certain: the score that counts as certain; floor: the least there is.
   void apply(const Look& look, std::span<const PersonDetection> found, double floor, double certain);
   // What is published for the present frame: persons, and the candidates that they do not replace. Valid until the next
   // call.
@@ -78,7 +81,7 @@ class PersonVerifier {
   };
   struct TrackRecord {
     std::uint32_t id = 0;
-    double since_look = 1e9, since_seen = 0, age = 0;
+    double since_look = 1e9, since_seen = 0;
     int refuted = 0;
   };
   struct Past {
@@ -93,7 +96,6 @@ class PersonVerifier {
   bool is_part(const Box& box) const;
   double share_on_tracks(const Box& box) const;
   void bind();
-  void refute(const Look& look);
   bool is_explained(const Candidate& candidate, bool& group) const;
 
   bool is_supported(const Box& box) const;

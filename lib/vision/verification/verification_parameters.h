@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Tuned numbers of the verification of tracks (person_verifier.cpp, look_schedule.cpp).
 //
-// Guard of all: docs/quality.md, the rows "with personverify".
+// Where a line names no origin: chosen by hand on TUD-Campus, TUD-Stadtmitte and PETS09-S2L1. docs/quality.md has the table
+// of those that were varied. Guard of all: docs/quality.md, the rows "with personverify".
 #pragma once
 
 namespace cerberus::vision {
@@ -36,7 +37,6 @@ struct VerificationParameters {
   // A track that persons explain: shares of areas.
   double inside = 0.6;   // of a person that lies in the track
   double covered = 0.4;  // of the track that persons cover: it is replaced; less, and it is a group
-  int refuted = 2;       // looks without a detection: what the track shows is a thing
 
   // Places that have changed (changed_places.cpp), where the camera stands. On the reduced picture.
   int change_frames = 6;         // to the picture that is compared. Derived: people walk on by a cell
