@@ -33,8 +33,9 @@ struct Route {
 std::span<const Route> routes();
 const Route* find_route(std::string_view method, std::string_view path);
 
-// Whether a request's Host names this machine: a numeric address, localhost, the machine's own name (also with .local), or
-// the host of a configured origin. A page of another name that resolves to this machine is refused (DNS rebinding).
+// Whether a request's Host names this machine: a numeric address, localhost, the machine's own name (also with
+// .local), or the host of a configured origin. A page of another name that resolves to this machine is refused (DNS
+// rebinding).
 bool is_own_host(std::string_view host, std::string_view machine, std::span<const std::string> origins);
 // Whether a request that changes something, or a WebSocket, comes from the page itself or from a configured origin. A
 // missing origin is refused: browsers send one.
@@ -72,7 +73,8 @@ class Sessions {
   std::vector<Session> sessions_;
 };
 
-// After some wrong passwords an address waits before the next try, twice as long each time; so does everybody after many.
+// After some wrong passwords an address waits before the next try, twice as long each time; so does everybody after
+// many.
 class RateLimit {
  public:
   struct Parameters {

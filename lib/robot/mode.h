@@ -51,7 +51,8 @@ class ModeKeeper {
   Mode mode() const { return mode_; }
   // Sets the mode by hand at `utc` (seconds since 1970).
   void set(Mode mode, std::int64_t utc);
-  // Applies the schedule. Returns whether the mode changed. Entries that took effect before the last change do not count.
+  // Applies the schedule. Returns whether the mode changed. Entries that took effect before the last change do not
+  // count.
   bool tick(LocalTime now, std::int64_t utc);
 
   // "armed 1763863200\n": the mode and when it was set.

@@ -81,8 +81,8 @@ class Detector {
   Record begin(const LumaSource& picture);
   Record copy(const Analysis& record, Stage end);
 
-  // Whether `record`, made by begin(), shows the picture of the last one again, so that no stage is to see it; asked once
-  // for each picture. short_enough: as of DuplicateFrames.
+  // Whether `record`, made by begin(), shows the picture of the last one again, so that no stage is to see it; asked
+  // once for each picture. short_enough: as of DuplicateFrames.
   bool repeats(const Analysis& record, const DetectorFrame& frame, bool short_enough) {
     return duplicates_.repeats(*record.luma, !frame.fresh, short_enough);
   }

@@ -148,8 +148,8 @@ struct Session {
     return axis.problem();
   }
 
-  // Kills the helper while the head turns slowly, and looks whether it stops. Then a new helper stops it: at once if the
-  // picture shows the head at the end of its reach, or a key is pressed. Returns what is wrong.
+  // Kills the helper while the head turns slowly, and looks whether it stops. Then a new helper stops it: at once if
+  // the picture shows the head at the end of its reach, or a key is pressed. Returns what is wrong.
   std::string try_timeout(const control::TimeoutTrial& trial, double position, double reach,
                           control::TimeoutWatch::End& end, std::optional<double>& stopped) {
     using End = control::TimeoutWatch::End;

@@ -25,8 +25,8 @@ using Ref = std::unique_ptr<T, Unref>;
 
 class EncodedStream {
  public:
-  // `sink` is an appsink of the pipeline; its frames come here from now on. `valve` (or null) is in front of its encoder:
-  // it is closed while there is no receiver, which costs nothing then.
+  // `sink` is an appsink of the pipeline; its frames come here from now on. `valve` (or null) is in front of its
+  // encoder: it is closed while there is no receiver, which costs nothing then.
   static std::shared_ptr<EncodedStream> make(GstAppSink* sink, GstElement* valve);
   ~EncodedStream();
   EncodedStream(const EncodedStream&) = delete;

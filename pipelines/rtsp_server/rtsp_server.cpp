@@ -64,8 +64,8 @@ struct Mount {
   std::vector<std::shared_ptr<EncodedStream>> streams;  // pay0, pay1
 };
 
-// The media of a mount is made for the first client that describes it. It counts time as the pipeline does that encodes,
-// so that buffers keep their stamps and the streams of a mount their distance.
+// The media of a mount is made for the first client that describes it. It counts time as the pipeline does that
+// encodes, so that buffers keep their stamps and the streams of a mount their distance.
 void on_media_configure(GstRTSPMediaFactory*, GstRTSPMedia* media, gpointer data) {
   const auto& [pipeline, streams] = *static_cast<Mount*>(data);
   g_autoptr(GstElement) element = gst_rtsp_media_get_element(media);

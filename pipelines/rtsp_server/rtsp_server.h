@@ -21,9 +21,9 @@ struct ServerSettings {
 };
 
 // Each appsink of the pipeline is a mount of its name: `appsink name=annotated` is rtsp://ADDRESS:PORT/annotated. One
-// called `metadata` is no mount but the second stream of all others. A `valve name=annotated-valve` before the encoder is
-// closed while the mount has no client. Clients of a mount share one pipeline without an
-// encoder, which EncodedStream feeds.
+// called `metadata` is no mount but the second stream of all others. A `valve name=annotated-valve` before the encoder
+// is closed while the mount has no client. Clients of a mount share one pipeline without an encoder, which
+// EncodedStream feeds.
 class RtspServer {
  public:
   // `pipeline` is the caller's and shall outlive the server.

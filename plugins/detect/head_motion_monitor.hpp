@@ -26,10 +26,9 @@ class HeadMotionMonitor {
   // Processes an upstream event, from any thread. `head`: the head whose poses are used, empty: any.
   void hear(GstEvent* event, const std::string& head);
 
-  // Call look() and then compare() for each frame, in the streaming thread.
-  // Takes the head's pose from the frame or, without one, from the events, and attaches it to the frame. Returns the
-  // motion of the picture since the previous frame that follows from the poses, frame pixels. field_of_view: radians, of
-  // a frame whose pose does not say it.
+  // Call look() and then compare() for each frame, in the streaming thread. Takes the head's pose from the frame or,
+  // without one, from the events, and attaches it to the frame. Returns the motion of the picture since the previous
+  // frame that follows from the poses, frame pixels. field_of_view: radians, of a frame whose pose does not say it.
   std::optional<vision::Transform> look(GstElement* element, Frame& frame, const std::string& head,
                                         double field_of_view);
   // `motion`: measured since the previous frame, frame pixels, with its confidence. Attaches the base's yaw rate to the

@@ -31,8 +31,8 @@
  *
  * Since: 0.1
  */
-// The paper calls this step "post treatment" (II.B) and leaves it open. Ours: see lib/vision/detection/regions.h. Limits in
-// metres use the body width of 48 cm (III) and count only while `horizontal-fov` is known.
+// The paper calls this step "post treatment" (II.B) and leaves it open. Ours: see lib/vision/detection/regions.h.
+// Limits in metres use the body width of 48 cm (III) and count only while `horizontal-fov` is known.
 #include "detection.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(motionregions_debug);

@@ -71,8 +71,8 @@ struct Posting {
   }
 };
 
-// A head that is open, or being opened, and that no other sink of this process drives. nullptr: `element` has posted why
-// not. moved, refused: as of the runner.
+// A head that is open, or being opened, and that no other sink of this process drives. nullptr: `element` has posted
+// why not. moved, refused: as of the runner.
 std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSettings& s,
                                                drivers::HeadSetup& setup, std::function<void()> moved,
                                                std::function<void()> refused) {

@@ -29,8 +29,8 @@ struct Trigger {
   std::string reason;
 };
 
-// Returns the orientation of the camera by the pose on a frame. field_of_view: degrees, where the head reports no zoom; 0:
-// not known.
+// Returns the orientation of the camera by the pose on a frame. field_of_view: degrees, where the head reports no
+// zoom; 0: not known.
 std::optional<vision::CameraOrientation> camera_of(GstBuffer* buffer, GstClockTime running_time,
                                                    vision::Size frame, double field_of_view);
 // Of what the elements upstream attached to a frame.

@@ -23,8 +23,9 @@ struct TextStream {  // streaming thread only
   Complaint complaint;  // about the caps
 };
 
-// The functions of a GstBaseTransform from video of any kind to texts. kSelf(transform)->priv has a TextStream `stream`, a
-// function camera_name(), and write(buffer, stamp), which returns the text of a frame, valid until the next call.
+// The functions of a GstBaseTransform from video of any kind to texts. kSelf(transform)->priv has a TextStream
+// `stream`, a function camera_name(), and write(buffer, stamp), which returns the text of a frame, valid until the
+// next call.
 template <auto kSelf>
 class FrameText {
  public:

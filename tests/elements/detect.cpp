@@ -145,8 +145,8 @@ GST_START_TEST(zones_change_while_playing_and_a_typo_keeps_the_old_ones) {
 }
 GST_END_TEST
 
-// The camera turns by a pixel a frame, and its poses say so: a lens of 60 degrees, focal length 160 / tan 30. The zone is
-// as high as the picture; boxes whose middle is 2 degrees within it lie in it with at least half of their width.
+// The camera turns by a pixel a frame, and its poses say so: a lens of 60 degrees, focal length 160 / tan 30. The zone
+// is as high as the picture; boxes whose middle is 2 degrees within it lie in it with at least half of their width.
 GST_START_TEST(a_zone_of_the_world_hides_a_place_while_the_camera_turns) {
   const char* const lines[] = {"motiondetect name=r confirm-time=0 horizontal-fov=60 ! identity",
                                "cameramotion horizontal-fov=60 ! motionregions name=r horizontal-fov=60"};

@@ -57,9 +57,8 @@ double next_rate(Rig& rig, GstClockTime patience = 50 * GST_MSECOND) {
   return rate;
 }
 
-// The rate after the base has stood, as `tell(rig, from)` says for the second from that running time on, in whose middle
-// the clock stands. Samples are
-// taken at their own pace, so it is sent again until there were enough of them.
+// The rate after the base has stood, as `tell(rig, from)` says for the second from that running time on, in whose
+// middle the clock stands. Samples are taken at their own pace, so it is sent again until there were enough of them.
 template <typename Tell>
 double rate_after_standing(Rig& rig, Tell tell) {
   double rate = NAN;

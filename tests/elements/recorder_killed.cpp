@@ -202,7 +202,8 @@ GST_START_TEST(a_killed_recorder_loses_nothing_that_it_acknowledged) {
 }
 GST_END_TEST
 
-// After power cuts, for tests/hardware/power_cut.py: of what was acknowledged each line has first frame, last frame, file.
+// After power cuts, for tests/hardware/power_cut.py: of what was acknowledged each line has first frame, last frame,
+// file.
 GST_START_TEST(what_was_acknowledged_before_a_power_cut_is_whole) {
   std::vector<Acknowledged> all;
   std::ifstream reports(getenv(kRecorded));

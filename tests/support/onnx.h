@@ -51,8 +51,8 @@ inline std::string model(const std::string& graph) {
   return number(1, 7) + bytes(7, graph) + bytes(8, number(2, 11));
 }
 
-// A network that answers every picture of `side` x `side` pixels with the same column of numbers, (side / 8)^2 times: 1 x numbers x
-// boxes, as YOLO 8 does. It is a convolution of weights 0, whose bias are the numbers.
+// A network that answers every picture of `side` x `side` pixels with the same column of numbers, (side / 8)^2 times:
+// 1 x numbers x boxes, as YOLO 8 does. It is a convolution of weights 0, whose bias are the numbers.
 inline std::string constant_yolo(int side, const std::vector<float>& numbers) {
   const int n = static_cast<int>(numbers.size()), boxes = side / 8 * (side / 8);
   const std::vector<float> weights(static_cast<std::size_t>(n) * 3 * 8 * 8, 0);

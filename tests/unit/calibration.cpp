@@ -108,8 +108,8 @@ START_TEST(what_cannot_be_measured_ends_with_the_reason) {
 }
 END_TEST
 
-// The helper is killed: nothing stops a device that has no Timeout. 1 s with a helper, 3 s without, 5 s in which the next
-// one may start, and a dead time of .5 s: 38 degrees at 4 degrees a second, 19 at 2.
+// The helper is killed: nothing stops a device that has no Timeout. 1 s with a helper, 3 s without, 5 s in which the
+// next one may start, and a dead time of .5 s: 38 degrees at 4 degrees a second, 19 at 2.
 START_TEST(the_trial_of_the_device_s_own_timeout_stays_within_the_limits) {
   const auto wide = plan_timeout_trial({}, 0, radians(40));
   ck_assert(wide);

@@ -318,7 +318,8 @@ START_TEST(a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_know
 }
 END_TEST
 
-// 9 degrees before the limit of 10 a velocity of 45 is free; 2 degrees before it is 2 / .4 = 5; within half a degree, 0.
+// 9 degrees before the limit of 10 a velocity of 45 is free; 2 degrees before it is 2 / .4 = 5; within half a degree,
+// 0.
 START_TEST(a_velocity_falls_before_a_limit_and_towards_an_angle) {
   using cerberus::motion::AxisCommand;
   using Kind = AxisCommand::Kind;

@@ -162,9 +162,9 @@ START_TEST(decimal_points_are_read_in_a_german_locale) {
 }
 END_TEST
 
-// A lens of 90 degrees over 8 x 8 pixels: focal length 4, so that column centres lie at 3.5, 2.5, 1.5, .5 pixels from the
-// axis on both sides: 41.2, 32.0, 20.6, 7.1 degrees; rows on the axis's column likewise (up and down), and a little less
-// beside it. By hand: elevation = atan(up / hypot(4, right)).
+// A lens of 90 degrees over 8 x 8 pixels: focal length 4, so that column centres lie at 3.5, 2.5, 1.5, .5 pixels from
+// the axis on both sides: 41.2, 32.0, 20.6, 7.1 degrees; rows on the axis's column likewise (up and down), and a
+// little less beside it. By hand: elevation = atan(up / hypot(4, right)).
 constexpr double kDegree = 3.14159265358979323846 / 180;
 
 Zones::View looking(double pan, double tilt = 0) {

@@ -43,12 +43,13 @@ class GyroBias {
   explicit GyroBias(const Parameters& parameters) : parameters_(parameters) {}
   void reset();
 
-  // Adds a sample, radians a second. A time before the last one's begins anew. Returns the base's rate; nothing while the
-  // bias is unknown, and while a rate that the robot reported holds (sensing::kBaseLifetime): its own word goes first.
+  // Adds a sample, radians a second. A time before the last one's begins anew. Returns the base's rate; nothing while
+  // the bias is unknown, and while a rate that the robot reported holds (sensing::kBaseLifetime): its own word goes
+  // first.
   std::optional<double> add(Time time, double measured);
   // Adds a frame that was taken at `time`. turn: of the picture since the frame before, as if the base stood; nothing:
-  // not measured. rests: the head does. Without effect while a rate that the robot reported holds. Frames may be late, by
-  // a second at most.
+  // not measured. rests: the head does. Without effect while a rate that the robot reported holds. Frames may be late,
+  // by a second at most.
   void frame(Time time, const std::optional<Turn>& turn, bool rests);
   // The robot reports its rate, radians a second.
   void robot(Time time, double rate);

@@ -23,8 +23,8 @@ class HeadDevice {
   virtual void limit(const motion::Limits& limits, Time now) = 0;
   // Stops both axes. A device that acknowledges is sent Stop again by tick() until it has.
   virtual void stop(Time now) noexcept = 0;
-  // Stops as stop() does when the pipeline is silent or has ended: motors that a commanded stop keeps on are switched off
-  // as soon as they stand.
+  // Stops as stop() does when the pipeline is silent or has ended: motors that a commanded stop keeps on are switched
+  // off as soon as they stand.
   virtual void leave(Time now) noexcept { stop(now); }
   // Switches the motors off at once, where the device can; else stops them. Safe at any time.
   virtual void release(Time now) noexcept { stop(now); }

@@ -71,8 +71,8 @@ struct PtzStatus {
   std::optional<bool> moving;  // MoveStatus, if it is IDLE or MOVING
 };
 std::optional<PtzStatus> read_status(XmlElement body);
-// The zoom of a status as a share of its range, 0 to 1. Nothing: it is not reported, not within its range, or of a space
-// that is neither the one of the options nor the generic one.
+// The zoom of a status as a share of its range, 0 to 1. Nothing: it is not reported, not within its range, or of a
+// space that is neither the one of the options nor the generic one.
 std::optional<double> zoom_share(const PtzStatus& status, const PtzOptions& options);
 
 struct Preset {

@@ -177,8 +177,8 @@ onvif::PanTilt OnvifHead::wanted_velocity(Time now) const {
     pan = position_->pan + sent_velocity_.pan * seconds;
     tilt = position_->tilt + sent_velocity_.tilt * seconds;
   }
-  // A head that goes to angles keeps the limits itself, for which it needs its position; the others are sent speeds that
-  // brake before them.
+  // A head that goes to angles keeps the limits itself, for which it needs its position; the others are sent speeds
+  // that brake before them.
   return onvif::to_velocity({onvif::approach(pan_, limits_.pan, pan, keeps_limits_),
                              onvif::approach(tilt_, limits_.tilt, tilt, keeps_limits_)},
                             spaces_.front(), options_.mechanics);

@@ -66,8 +66,8 @@ class SensorArray {
   int count() const { return static_cast<int>(models_.size()); }
   sensing::PirFault fault(int sensor) const { return models_[static_cast<std::size_t>(sensor)].fault(); }
   std::string place(int sensor) const { return sensor_ ? sensor_->place(sensor) : std::string(); }
-  // The sensors' outage (Sensor::outage()) if it changed since the last call: a sentence without its point, or empty for
-  // an end.
+  // The sensors' outage (Sensor::outage()) if it changed since the last call: a sentence without its point, or empty
+  // for an end.
   std::optional<std::string> outage_change();
   int fd() const;
   bool recorded() const { return recorded_; }

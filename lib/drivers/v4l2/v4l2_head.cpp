@@ -31,8 +31,8 @@ std::int32_t on_grid(double value, const ControlRange& range) {
       std::clamp(range.least + count * step, double(range.least), double(range.most)));
 }
 
-// The step nearest to `speed` that is no faster than `limit` (radians a second, as `fastest`); the slowest one where all
-// are.
+// The step nearest to `speed` that is no faster than `limit` (radians a second, as `fastest`); the slowest one where
+// all are.
 std::int32_t speed_step(double speed, double limit, double fastest, const ControlRange& range) {
   const double step = std::max(1, range.step);
   const double steps = range.most / step;  // of one way

@@ -18,8 +18,8 @@ inline constexpr std::size_t kMostBytes = 16;
 
 using Message = std::vector<std::uint8_t>;
 
-// Speeds in degrees a second of the speed steps 0, 1, 2 ... of one axis, rising. They are no straight line and differ by
-// model.
+// Speeds in degrees a second of the speed steps 0, 1, 2 ... of one axis, rising. They are no straight line and differ
+// by model.
 struct SpeedTable {
   std::vector<double> pan, tilt;
 };
@@ -38,7 +38,8 @@ Message stop(int address);
 Message absolute(int address, double pan, double tilt, int pan_step, int tilt_step);
 Message home(int address);
 Message position_inquiry(int address);
-// CAM_Zoom Direct and CAM_ZoomPosInq. position: 0 to 1 of the optical zoom (0000 to 4000 hex), digital zoom up to 1.918 (7ac0).
+// CAM_Zoom Direct and CAM_ZoomPosInq. position: 0 to 1 of the optical zoom (0000 to 4000 hex), digital zoom up to
+// 1.918 (7ac0).
 inline constexpr double kMostZoom = 0x7ac0 / double{0x4000};
 Message zoom(int address, double position);
 Message zoom_inquiry(int address);

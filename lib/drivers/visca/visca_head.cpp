@@ -142,8 +142,8 @@ std::optional<HomedLine> ViscaHead::take_homed(Time now) {
   return HomedLine{};
 }
 
-// What is in force at the camera is what it has acknowledged: a command without an answer is sent again, also to a camera
-// that never answers.
+// What is in force at the camera is what it has acknowledged: a command without an answer is sent again, also to a
+// camera that never answers.
 void ViscaHead::send_drive(Time now) {
   if (stopping_ || homing_ || !stream_.is_open()) return;
   const PanTilt wanted{speed_of(pan_, options_.speeds.pan), speed_of(tilt_, options_.speeds.tilt)};

@@ -31,9 +31,9 @@ class PrivacyZones {
   bool empty() const { return picture_.empty() && world_.empty(); }
   bool need_pose() const { return !world_.empty(); }
 
-  // Covers every block of a picture of `size` in which some pixel may lie in a polygon, and no block that is farther from
-  // all of them than the margin and its own diagonal. Polygons of the world cover the whole picture where the view is not
-  // known.
+  // Covers every block of a picture of `size` in which some pixel may lie in a polygon, and no block that is farther
+  // from all of them than the margin and its own diagonal. Polygons of the world cover the whole picture where the
+  // view is not known.
   void cover(vision::Size size, const View& view, BlockMask& mask) const;
 
  private:

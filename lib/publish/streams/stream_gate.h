@@ -6,10 +6,10 @@
 
 namespace cerberus::publish {
 
-// A receiver is the pipeline that packs the frames of a mount for all of its clients. It gets one keyframe at once, from
-// which its description is made; then nothing until a client plays, for frames that wait would be old by then; and from
-// the next keyframe on every frame. A receiver that takes no frames away (a paused client) is cut off at the limit and
-// begins again at a keyframe.
+// A receiver is the pipeline that packs the frames of a mount for all of its clients. It gets one keyframe at once,
+// from which its description is made; then nothing until a client plays, for frames that wait would be old by then;
+// and from the next keyframe on every frame. A receiver that takes no frames away (a paused client) is cut off at the
+// limit and begins again at a keyframe.
 class StreamGate {
  public:
   // Frames that may wait in a receiver. Derived: 1 s of 30 frames a second, more than the jitter of a busy machine.
@@ -30,8 +30,8 @@ class StreamGate {
     return true;
   }
 
-  // Returns whether the receiver can go on at a keyframe only, and has room for it. (The keyframe of its description may
-  // still wait.)
+  // Returns whether the receiver can go on at a keyframe only, and has room for it. (The keyframe of its description
+  // may still wait.)
   bool wants_keyframe(std::size_t waiting) const {
     return state_ == State::kNew || (state_ == State::kNeedsKeyframe && waiting <= 1);
   }

@@ -51,8 +51,8 @@ class Folder {
   // Whether `name` can be a file's name below the folder.
   static bool is_name(const std::string& name);
 
-  // Makes a file (mode 0640) that is not there yet, and the folders in its name (mode 0750); never the folder itself, which
-  // may be a disk that is not mounted. EEXIST: there is something of that name.
+  // Makes a file (mode 0640) that is not there yet, and the folders in its name (mode 0750); never the folder itself,
+  // which may be a disk that is not mounted. EEXIST: there is something of that name.
   int create(const std::string& name, OpenFile& file) const;
   // Opens a regular file for reading and writing, without a lock.
   int open(const std::string& name, OpenFile& file) const;

@@ -39,8 +39,8 @@ class Index {
   Index();
   ~Index();
 
-  // Opens the database or makes it (mode 0640), and brings older versions of its tables up to the present one. Fails for
-  // a file that is no database or is damaged (`damaged` becomes true), and for one of a newer version.
+  // Opens the database or makes it (mode 0640), and brings older versions of its tables up to the present one. Fails
+  // for a file that is no database or is damaged (`damaged` becomes true), and for one of a newer version.
   std::string open(const std::string& path, bool& damaged);
   // Opens a database that is there to read alone, at once: nothing is checked, brought up to date or written, and its
   // disk may be read-only.

@@ -16,8 +16,8 @@ constexpr PolygonSyntax kSyntax{.property = "zones",
                                 .words = kWords,
                                 .world = true};
 
-// Pixels a side of the blocks that are tested as a whole. Derived: within it directions are almost linear, and a picture
-// of 320 x 240 has 1,200.
+// Pixels a side of the blocks that are tested as a whole. Derived: within it directions are almost linear, and a
+// picture of 320 x 240 has 1,200.
 constexpr int kBlock = 8;
 // Share by which angles between directions near one another may differ from distances in the plane of pan cos(tilt) and
 // tilt. Derived: over a block of 8 pixels and 10 degrees the cosine changes by less.

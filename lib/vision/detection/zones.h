@@ -48,7 +48,8 @@ class Zones {
   // 255 where motion counts, drawn afresh; a pixel belongs to a polygon when its centre does.
   void draw(MutableGrayView plane, const std::optional<View>& view = {}) const;
 
-  // Returns whether a point counts. at: fractions of the picture; direction: where it lies in the world, if that is known.
+  // Returns whether a point counts. at: fractions of the picture; direction: where it lies in the world, if that is
+  // known.
   bool contain(Point at, const std::optional<Direction>& direction) const;
 
  private:
