@@ -20,15 +20,16 @@ struct Order {
   std::string_view name;
   int arguments;
 };
-constexpr std::array<Order, 9> kOrders{{{"move-to", 2},
-                                        {"move-by", 2},
-                                        {"stop", 0},
-                                        {"home", 0},
-                                        {"auto", 0},
-                                        {"follow", 1},
-                                        {"arm", 0},
-                                        {"disarm", 0},
-                                        {"privacy", 0}}};
+constexpr std::array<Order, 10> kOrders{{{"move-to", 2},
+                                         {"move-by", 2},
+                                         {"stop", 0},
+                                         {"home", 0},
+                                         {"auto", 0},
+                                         {"follow", 1},
+                                         {"arm", 0},
+                                         {"disarm", 0},
+                                         {"privacy", 0},
+                                         {"picture", 0}}};
 
 // Without the newline.
 std::string text_of(JsonLine& line) {
@@ -66,15 +67,6 @@ std::string track_text(std::string_view event, const std::optional<std::chrono::
   return text.append(",").append(object).append("}");
 }
 
-bool is_listed(std::string_view name, std::string_view list) {
-  while (!list.empty()) {
-    const std::size_t end = std::min(list.find_first_of(" ,"), list.size());
-    if (list.substr(0, end) == name) return true;
-    list.remove_prefix(std::min(end + 1, list.size()));
-  }
-  return false;
-}
-
 // Takes one number off the front; blanks part numbers.
 bool take_number(std::string_view& text, double& number) {
   while (text.starts_with(' ')) text.remove_prefix(1);
@@ -85,6 +77,15 @@ bool take_number(std::string_view& text, double& number) {
 }
 
 }  // namespace
+
+bool is_listed(std::string_view name, std::string_view list) {
+  while (!list.empty()) {
+    const std::size_t end = std::min(list.find_first_of(" ,"), list.size());
+    if (list.substr(0, end) == name) return true;
+    list.remove_prefix(std::min(end + 1, list.size()));
+  }
+  return false;
+}
 
 bool is_topic_level(std::string_view name) {
   return !name.empty() && name.find_first_of("/+#") == name.npos &&

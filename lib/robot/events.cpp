@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "robot/events.h"
 
+#include <sys/stat.h>
+
 #include <cerrno>
 #include <cstring>
 #include <vector>
@@ -12,12 +14,46 @@ namespace cerberus::robot {
 
 using record::Recording;
 
-std::string Events::read(std::vector<Recording>& rows, record::Index& index) const {
-  const record::Folder folder(folder_);
-  if (!folder.exists(index_)) return {};  // nothing was recorded yet
+namespace {
+
+void write(text::JsonLine& line, const Recording& row) {
+  line.open('{').key("camera").text(row.camera).key("id").integer(row.id);
+  line.key("begin").integer(row.begin.count() / 1000000).key("end").integer(row.end.count() / 1000000);
+  line.key("reason").text(row.reason).key("tracks").text(row.tracks).key("kinds").text(row.kinds);
+  line.key("bytes").integer(row.bytes).key("open").boolean(row.open).key("keep").boolean(row.keep);
+  line.key("picture").boolean(!row.picture.empty()).close('}');
+}
+
+}  // namespace
+
+// The index stays open between two changes: to open it checks the whole database. A recorder that finds it damaged puts
+// another file in its place.
+std::string Events::open_to_change() {
+  struct stat about{};
+  if (::stat(record::Folder(folder_).path_of(index_).c_str(), &about) != 0) {
+    changes_.close();
+    return "there is no such recording";
+  }
+  const std::pair<std::uint64_t, std::uint64_t> file{about.st_dev, about.st_ino};
+  if (changes_.is_open() && file == file_) return {};
+  changes_.close();
   bool damaged = false;
-  std::string fault = index.open(folder.path_of(index_), damaged);
-  return fault.empty() ? index.read(rows) : fault;
+  std::string fault = changes_.open(record::Folder(folder_).path_of(index_), damaged);
+  file_ = file;
+  return fault;
+}
+
+// The row of a recording, by the index that is open for changes.
+std::string Events::find_to_change(const std::string& camera, std::int64_t id, Recording& row) {
+  if (std::string fault = open_to_change(); !fault.empty()) return fault;
+  std::vector<Recording> rows;
+  if (std::string fault = changes_.read_one(id, rows); !fault.empty()) {
+    changes_.close();  // the next attempt opens it anew
+    return fault;
+  }
+  if (rows.empty() || rows.front().camera != camera) return "there is no such recording";
+  row = std::move(rows.front());
+  return {};
 }
 
 bool Events::open_to_read(record::Index& index, std::string& fault) const {
@@ -33,15 +69,21 @@ std::string Events::list(const std::string& camera, std::string& fault) const {
   if (open_to_read(index, fault)) fault = index.read_newest(camera, kMost, rows);
   text::JsonLine line;
   line.open('[');
-  for (const Recording& row : rows) {
-    line.open('{').key("camera").text(row.camera).key("id").integer(row.id);
-    line.key("begin").integer(row.begin.count() / 1000000).key("end").integer(row.end.count() / 1000000);
-    line.key("reason").text(row.reason).key("tracks").text(row.tracks).key("kinds").text(row.kinds);
-    line.key("bytes").integer(row.bytes).key("open").boolean(row.open).key("keep").boolean(row.keep);
-    line.key("picture").boolean(!row.picture.empty()).close('}');
-  }
+  for (const Recording& row : rows) write(line, row);
   std::string text(line.close(']').finish());
   return text;
+}
+
+std::string Events::newest(const std::string& camera, std::string& fault) const {
+  std::vector<Recording> rows;
+  record::Index index;
+  if (open_to_read(index, fault)) fault = index.read_newest(camera, 1, rows);
+  if (rows.empty()) return {};
+  text::JsonLine line;
+  write(line, rows.front());
+  std::string_view text = line.finish();
+  text.remove_suffix(1);  // the newline
+  return std::string(text);
 }
 
 std::optional<Recording> Events::find(const std::string& camera, std::int64_t id, std::string& fault) const {
@@ -52,30 +94,22 @@ std::optional<Recording> Events::find(const std::string& camera, std::int64_t id
   return std::move(rows.front());
 }
 
-std::string Events::remove(const std::string& camera, std::int64_t id) const {
-  std::vector<Recording> rows;
-  record::Index index;
-  if (std::string fault = read(rows, index); !fault.empty()) return fault;
+std::string Events::remove(const std::string& camera, std::int64_t id) {
+  Recording row;
+  if (std::string fault = find_to_change(camera, id, row); !fault.empty()) return fault;
   const record::Folder folder(folder_);
-  for (const Recording& row : rows) {
-    if (row.id != id || row.camera != camera) continue;
-    if (row.open || folder.in_use(row.file)) return "this recording is still being written";
-    for (const std::string& name : {row.file, row.lines, row.picture}) {
-      const int error = name.empty() ? 0 : folder.remove(name);
-      if (error != 0) return name + " cannot be deleted: " + std::strerror(error);
-    }
-    return index.remove(id);
+  if (row.open || folder.in_use(row.file)) return "this recording is still being written";
+  for (const std::string& name : {row.file, row.lines, row.picture}) {
+    const int error = name.empty() ? 0 : folder.remove(name);
+    if (error != 0) return name + " cannot be deleted: " + std::strerror(error);
   }
-  return "there is no such recording";
+  return changes_.remove(id);
 }
 
-std::string Events::keep(const std::string& camera, std::int64_t id, bool keep) const {
-  std::vector<Recording> rows;
-  record::Index index;
-  if (std::string fault = read(rows, index); !fault.empty()) return fault;
-  for (const Recording& row : rows)
-    if (row.id == id && row.camera == camera) return index.set_keep(row.file, keep);
-  return "there is no such recording";
+std::string Events::keep(const std::string& camera, std::int64_t id, bool keep) {
+  Recording row;
+  if (std::string fault = find_to_change(camera, id, row); !fault.empty()) return fault;
+  return changes_.set_keep(row.file, keep);
 }
 
 }  // namespace cerberus::robot

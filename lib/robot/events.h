@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The recordings of one folder for the page: their list, one of them, its deletion. Opens the index for each call, as the
-// recorder has it open, too; to list and find for reading alone.
+// The recordings of one folder for the page: their list, one of them, its deletion. The index is opened to read for each
+// list; once it was changed it stays open, beside the recorder's own connection.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "record/archive/index.h"
 
@@ -23,17 +24,22 @@ class Events {
   // The newest first, as a JSON list; those of `camera` alone. `fault`: what is wrong; empty: nothing.
   std::string list(const std::string& camera, std::string& fault) const;
   std::optional<record::Recording> find(const std::string& camera, std::int64_t id, std::string& fault) const;
+  // The newest recording of a camera, a JSON object as in the list; empty: there is none.
+  std::string newest(const std::string& camera, std::string& fault) const;
   // Deletes file, lines, picture and row; returns what is wrong. What is being written is refused.
-  std::string remove(const std::string& camera, std::int64_t id) const;
+  std::string remove(const std::string& camera, std::int64_t id);
 
   // Whether retention leaves it; returns what is wrong.
-  std::string keep(const std::string& camera, std::int64_t id, bool keep) const;
+  std::string keep(const std::string& camera, std::int64_t id, bool keep);
 
  private:
-  std::string read(std::vector<record::Recording>& rows, record::Index& index) const;
+  std::string open_to_change();
+  std::string find_to_change(const std::string& camera, std::int64_t id, record::Recording& row);
   bool open_to_read(record::Index& index, std::string& fault) const;
 
   std::string folder_, index_;
+  record::Index changes_;                           // open since the first change
+  std::pair<std::uint64_t, std::uint64_t> file_{};  // device and inode of it
 };
 
 }  // namespace cerberus::robot

@@ -60,14 +60,27 @@ std::string Passwords::state() const {
   return text;
 }
 
-std::string Passwords::set(Role role, std::string_view password) {
+std::string Passwords::fault_of(Role role, std::string_view password) {
   if (role == Role::none) return "there is no such role";
   if (password.size() < kShortest || password.size() > kLongest)
     return "a password has " + std::to_string(kShortest) + " to " + std::to_string(kLongest) + " characters";
-  std::string hash = hashed(password, parameters_);
-  if (hash.empty()) return "the system has no memory or no random numbers for a password";
+  return {};
+}
+
+std::string Passwords::hash_of(std::string_view password) const {
+  return hashed(password, parameters_);
+}
+
+void Passwords::keep(Role role, std::string hash) {
   hashes_[static_cast<std::size_t>(role)] = std::move(hash);
   if (role == Role::owner) one_time_.clear();
+}
+
+std::string Passwords::set(Role role, std::string_view password) {
+  if (std::string fault = fault_of(role, password); !fault.empty()) return fault;
+  std::string hash = hash_of(password);
+  if (hash.empty()) return "the system has no memory or no random numbers for a password";
+  keep(role, std::move(hash));
   return {};
 }
 

@@ -29,7 +29,13 @@ class Passwords {
   std::string state() const;
 
   bool has(Role role) const { return !hash(role).empty(); }
-  // Returns what is wrong with the new password; empty: it is set.
+  // What is wrong with a new password; empty: nothing.
+  static std::string fault_of(Role role, std::string_view password);
+  // Its hash, for keep(); empty: the system has no memory or no random numbers for it. Needs a tenth of a second, and may
+  // be called in another thread, of a copy.
+  std::string hash_of(std::string_view password) const;
+  void keep(Role role, std::string hash);
+  // The three of these. Returns what is wrong with the new password; empty: it is set.
   std::string set(Role role, std::string_view password);
   // Takes as long for a role without password as for one with.
   bool verify(Role role, std::string_view password) const;

@@ -143,7 +143,8 @@ Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& 
       reader.complain(
           "commands",
           "\"" + command +
-              "\" is no command: move-to, move-by, stop, home, auto, follow, arm, disarm, privacy");
+              "\" is no command: move-to, move-by, stop, home, auto, follow, arm, disarm, privacy, "
+              "picture");
     if (!list.empty()) list += ' ';
     list += command;
   }

@@ -93,6 +93,12 @@ Camera* PageServer::camera(std::string_view name) const {
   return nullptr;
 }
 
+// Of a camera with a recorder. Cameras that share a folder share its index.
+Events& PageServer::events_of(const Camera& camera) {
+  const std::string& folder = camera.settings().recorder->folder;
+  return events_.try_emplace(folder, folder).first->second;
+}
+
 // All cameras, or one.
 void PageServer::answer_events(Request& request) {
   if (house_.mode() == Mode::privacy)
@@ -101,7 +107,7 @@ void PageServer::answer_events(Request& request) {
   if (from == nullptr || !from->settings().recorder)
     return request.respond(SOUP_STATUS_OK, "application/json", "[]\n");
   std::string fault;
-  const std::string list = Events(from->settings().recorder->folder).list(from->settings().name, fault);
+  const std::string list = events_of(*from).list(from->settings().name, fault);
   if (!fault.empty()) return request.refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, fault);
   request.respond(SOUP_STATUS_OK, "application/json", list);
 }
@@ -120,8 +126,7 @@ void PageServer::answer_recording(Request& request) {
   const std::string_view what = rest.substr(second + 1);
   if (from == nullptr || !from->settings().recorder || !id) return missing();
   std::string fault;
-  const std::optional<record::Recording> row =
-      Events(from->settings().recorder->folder).find(from->settings().name, *id, fault);
+  const std::optional<record::Recording> row = events_of(*from).find(from->settings().name, *id, fault);
   if (!fault.empty()) return request.refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, fault);
   if (!row) return missing();
   if (row->open) return request.refuse(SOUP_STATUS_CONFLICT, "this recording is still being written");
@@ -167,7 +172,7 @@ void PageServer::change_recording(Request& request) {
   const std::optional<std::int64_t> id = read_id(request.value("id"));
   if (from == nullptr || !from->settings().recorder || !id)
     return request.refuse(SOUP_STATUS_NOT_FOUND, "there is no such recording");
-  const Events events(from->settings().recorder->folder);
+  Events& events = events_of(*from);
   const std::string& name = from->settings().name;
   const bool deletes = request.path == "/delete";
   const std::string fault =

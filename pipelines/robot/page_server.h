@@ -5,6 +5,7 @@
 #include <libsoup/soup.h>
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -59,6 +60,7 @@ class PageServer {
   std::string hello(const Session& session) const;
   std::string state();
   Camera* camera(std::string_view name) const;
+  Events& events_of(const Camera& camera);
   Session* session_of(SoupServerMessage* message);
   std::string path_of_passwords() const { return house_.settings.state_folder + "/passwords"; }
 
@@ -69,6 +71,7 @@ class PageServer {
   Steering steering_;
   SoupServer* server_ = nullptr;
   std::vector<std::unique_ptr<Viewer>> viewers_;
+  std::map<std::string, Events> events_;  // by folder
   double cpu_seconds_ = 0;
   gint64 measured_ = 0;  // microseconds
 };

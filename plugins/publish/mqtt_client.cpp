@@ -3,6 +3,8 @@
 
 #include <mosquitto.h>
 #include <poll.h>
+#include <pthread.h>
+#include <signal.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -24,7 +26,8 @@ namespace {
 constexpr int kKeepalive = 10;              // seconds; the broker sends the will after 15
 constexpr std::size_t kMostWaiting = 1000;  // messages that are not retained
 constexpr std::chrono::seconds kBetweenTries{1}, kPatience{2};
-constexpr std::size_t kLongestPayload = 256;  // bytes of a command
+constexpr std::size_t kLongestPayload = 256;       // bytes of a command
+constexpr std::size_t kLongestMessage = 4u << 20;  // bytes of any other message: a picture
 
 struct Library {
   Library() { mosquitto_lib_init(); }
@@ -85,13 +88,19 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
 
   void run() {
     static const Library library;
+    // OpenSSL writes to sockets without MSG_NOSIGNAL: a broker that is gone must not end the process by SIGPIPE.
+    sigset_t pipe;
+    sigemptyset(&pipe);
+    sigaddset(&pipe, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe, nullptr);
     while (!quits()) {
-      if (client_ == nullptr && !make()) break;
-      const int result = mosquitto_connect(client_, server_.host.c_str(), server_.port, kKeepalive);
-      if (result == MOSQ_ERR_SUCCESS)
-        serve();
-      else
-        fault(result == MOSQ_ERR_ERRNO ? std::strerror(errno) : mosquitto_strerror(result));
+      if (client_ != nullptr || make()) {
+        const int result = mosquitto_connect(client_, server_.host.c_str(), server_.port, kKeepalive);
+        if (result == MOSQ_ERR_SUCCESS)
+          serve();
+        else
+          fault(result == MOSQ_ERR_ERRNO ? std::strerror(errno) : mosquitto_strerror(result));
+      }
       std::unique_lock guard(lock_);
       connected_ = false;
       waiting_.clear();
@@ -109,14 +118,15 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
       fault("the library gives no client");
       return false;
     }
-    mosquitto_will_set(client_, server_.status.c_str(), 7, "offline", 1, true);
+    if (!server_.status.empty()) mosquitto_will_set(client_, server_.status.c_str(), 7, "offline", 1, true);
     int result = MOSQ_ERR_SUCCESS;
     if (!server_.user.empty())
       result = mosquitto_username_pw_set(client_, server_.user.c_str(), server_.password.c_str());
     if (result == MOSQ_ERR_SUCCESS && !server_.ca_file.empty())
       result = mosquitto_tls_set(client_, server_.ca_file.c_str(), nullptr, nullptr, nullptr, nullptr);
     if (result != MOSQ_ERR_SUCCESS) {
-      fault(mosquitto_strerror(result));
+      fault(result == MOSQ_ERR_ERRNO ? std::strerror(errno) : mosquitto_strerror(result));
+      mosquitto_destroy(std::exchange(client_, nullptr));
       return false;
     }
     mosquitto_connect_callback_set(
@@ -132,7 +142,7 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
     int result = MOSQ_ERR_SUCCESS;
     while (result == MOSQ_ERR_SUCCESS) {
       if (quits()) {
-        if (is_connected())
+        if (is_connected() && !server_.status.empty())
           mosquitto_publish(client_, nullptr, server_.status.c_str(), 7, "offline", 1, true);
         flush();
         mosquitto_disconnect(client_);
@@ -169,7 +179,9 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
       return;
     }
     reported_ = false;
-    mosquitto_publish(client_, nullptr, server_.status.c_str(), 6, "online", 1, true);
+    if (!server_.status.empty())
+      mosquitto_publish(client_, nullptr, server_.status.c_str(), 6, "online", 1, true);
+    for (const std::string& topic : server_.topics) mosquitto_subscribe(client_, nullptr, topic.c_str(), 1);
     if (!server_.commands.empty()) mosquitto_subscribe(client_, nullptr, (server_.commands + '+').c_str(), 1);
     const std::lock_guard guard(lock_);
     connected_ = true;
@@ -178,11 +190,16 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
   // Retained orders are old ones: their senders may not want them any more.
   void on_message(const mosquitto_message& message) {
     const std::string topic = message.topic;
-    if (message.retain || !topic.starts_with(server_.commands)) return;
-    const std::size_t size =
-        std::min(kLongestPayload, static_cast<std::size_t>(std::max(message.payloadlen, 0)));
-    const std::string payload(static_cast<const char*>(message.payload), size);
+    const bool command = !server_.commands.empty() && topic.starts_with(server_.commands);
+    if (command && message.retain) return;
+    const std::size_t size = std::min(command ? kLongestPayload : kLongestMessage,
+                                      static_cast<std::size_t>(std::max(message.payloadlen, 0)));
+    std::string payload(static_cast<const char*>(message.payload), size);
     const std::lock_guard callbacks(callback_lock_);
+    if (!command) {
+      if (listener_.on_message) listener_.on_message(topic, std::move(payload));
+      return;
+    }
     if (listener_.on_command) listener_.on_command(topic.substr(server_.commands.size()), payload);
   }
 

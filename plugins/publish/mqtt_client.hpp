@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "publish/mqtt_report.h"
 
@@ -16,10 +17,11 @@ struct MqttServer {
   std::string host;
   int port = 1883;
   std::string user, password;
-  std::string ca_file;   // empty: no TLS
-  std::string client;    // identity; empty: the library's choice
-  std::string status;    // topic of `online`, and as last will `offline`
-  std::string commands;  // "cerberus/front/command/": what is subscribed; empty: nothing
+  std::string ca_file;              // empty: no TLS
+  std::string client;               // identity; empty: the library's choice
+  std::string status;               // topic of `online`, and as last will `offline`; empty: none
+  std::string commands;             // "cerberus/front/command/": what is subscribed; empty: nothing
+  std::vector<std::string> topics;  // further subscriptions, "+" and "#" allowed: on_message receives them
 };
 
 class MqttClient {
@@ -27,6 +29,7 @@ class MqttClient {
   // All in the client's thread.
   struct Listener {
     std::function<void(const std::string& name, const std::string& payload)> on_command;
+    std::function<void(const std::string& topic, std::string payload)> on_message;
     std::function<void(const std::string& fault)> on_fault;  // once for each loss of the connection
   };
 

@@ -16,8 +16,11 @@
  *   where it is known) and the object as `motionjson` has it; not retained;
  * - `command/NAME`: an order, where `commands` lists NAME: `move-to`, `move-by` (payload: pan and tilt in degrees,
  *   `10 -5`), `stop`, `home`, `auto`, `follow` (the number of a track), which `pantiltsink` of the same pipeline and
- *   name (`head`) gets as its action signal, and `arm`, `disarm`, `privacy`, which are for the application alone. Set
- *   `manual-timeout` of `pantiltsink` so that a move ends that is not repeated. Retained orders are ignored.
+ *   name (`head`) gets as its action signal, and `arm`, `disarm`, `privacy`, `picture`, which are for the application
+ *   alone. Set `manual-timeout` of `pantiltsink` so that a move ends that is not repeated. Retained orders are ignored.
+ *
+ * The action signal `publish` (name, bytes, retain) publishes what the application adds: `cerberusd` its topics `event`
+ * and `picture`. It returns whether the element has been started.
  *
  * With `discovery-prefix` (`homeassistant`) Home Assistant finds the camera by itself.
  *
@@ -25,7 +28,9 @@
  * loss once. Retained topics are sent anew at every connection, `track` only while there is one.
  *
  * Posts element messages `cerberus-command` with `name` (string), `done` (boolean: the head took the order) for every
- * order that was allowed.
+ * order that was allowed, and `cerberus-publish` with `topic` and `payload` (strings) for every message whose topic is
+ * in `post-topics`, also without a broker (`host=""`). Of refused orders ten at once and then one a second are
+ * reported.
  *
  * ## Example launch lines
  * |[
@@ -44,6 +49,7 @@
 
 #include "cerberus/private/element.hpp"
 #include "mqtt_client.hpp"
+#include "publish/burst_limit.h"
 #include "publish/mqtt_report.h"
 #include "shared/camera_mount.hpp"
 #include "shared/clock_times.hpp"
@@ -73,11 +79,12 @@ struct Settings {
   std::string commands;
   std::string head = "head";
   std::string mode;
+  std::string post_topics;
 };
 
 using plugin::property;
 const plugin::Property<Settings> kProperties[] = {
-    property("host", &Settings::host, "Name or address of the broker").read_at_start(),
+    property("host", &Settings::host, "Name or address of the broker; empty = none").read_at_start(),
     property("port", &Settings::port, 1, 65535, "Port of the broker: 1883, with TLS 8883").read_at_start(),
     property("username", &Settings::user, "Name for the broker; empty = none").read_at_start(),
     property("password-file", &Settings::password_file,
@@ -94,16 +101,20 @@ const plugin::Property<Settings> kProperties[] = {
         .read_at_start(),
     property("commands", &Settings::commands,
              "Orders that are taken, parted by blanks or commas, of move-to move-by stop home auto follow "
-             "arm disarm "
-             "privacy; empty = none"),
+             "arm disarm privacy picture; empty = none"),
     property("head", &Settings::head, "Name of the head that orders are for"),
     property("mode", &Settings::mode, "What the topic mode says; empty = nothing"),
+    property(
+        "post-topics", &Settings::post_topics,
+        "Topics whose messages are posted on the bus too, parted by blanks or commas, as track mode state; "
+        "empty = none"),
 };
 
 struct Private {
   plugin::Adjustable<Settings> settings;
   plugin::MqttClient client;
-  std::string mode_topic;  // object lock; empty: not started
+  std::string mode_topic;        // object lock; empty: not started
+  publish::BurstLimit refusals;  // client's thread
   // Streaming thread, and start() and stop():
   std::optional<publish::MqttReport> report;
   plugin::Stamps stamps;
@@ -113,6 +124,42 @@ struct Private {
 
 CERBERUS_DEFINE_TYPE(CerberusMqttPublish, cerberus_mqtt_publish, GstBaseTransform, GST_TYPE_BASE_TRANSFORM,
                      Private)
+
+// Publishes a message, and posts it on the bus where its topic is in `post-topics`.
+void publish_one(CerberusMqttPublish* self, publish::MqttMessage message) {
+  const std::string topics = self->priv->settings.snapshot().post_topics;
+  const std::size_t slash = message.topic.rfind('/');
+  const std::string name = message.topic.substr(slash == message.topic.npos ? 0 : slash + 1);
+  if (publish::is_listed(name, topics) &&
+      g_utf8_validate_len(message.payload.data(), message.payload.size(), nullptr))
+    gst_element_post_message(
+        GST_ELEMENT(self),
+        gst_message_new_element(
+            GST_OBJECT(self), gst_structure_new("cerberus-publish", "topic", G_TYPE_STRING, name.c_str(),
+                                                "payload", G_TYPE_STRING, message.payload.c_str(), nullptr)));
+  self->priv->client.publish(std::move(message));
+}
+
+void publish_all(CerberusMqttPublish* self, std::vector<publish::MqttMessage> messages) {
+  for (publish::MqttMessage& message : messages) publish_one(self, std::move(message));
+}
+
+// Action signal `publish`.
+gboolean cerberus_mqtt_publish_publish(CerberusMqttPublish* self, const gchar* name, GBytes* bytes,
+                                       gboolean retain) {
+  return guarded(self, FALSE, [&]() -> gboolean {
+    GST_OBJECT_LOCK(self);
+    const std::string mode_topic = self->priv->mode_topic;
+    GST_OBJECT_UNLOCK(self);
+    if (mode_topic.empty() || name == nullptr || bytes == nullptr || !publish::is_topic_level(name))
+      return FALSE;
+    gsize size = 0;
+    const auto* data = static_cast<const char*>(g_bytes_get_data(bytes, &size));
+    publish_one(self, {mode_topic.substr(0, mode_topic.rfind('/') + 1) + name,
+                       std::string(data ? data : "", size), retain != FALSE});
+    return TRUE;
+  });
+}
 
 // The head of this name in the same pipeline; the caller unrefs.
 GstElement* find_head(GstElement* self, const std::string& name) {
@@ -143,6 +190,7 @@ void obey(CerberusMqttPublish* self, const std::string& name, const std::string&
   std::string error;
   const auto command = publish::parse_mqtt_command(name, payload, settings.commands, error);
   if (!command) {
+    if (!self->priv->refusals.take(std::chrono::microseconds(g_get_monotonic_time()))) return;
     CERBERUS_ELEMENT_WARNING(self, RESOURCE, SETTINGS,
                              ("The MQTT command \"%s\" is refused: %s.", name.c_str(), error.c_str()),
                              (nullptr));
@@ -185,11 +233,16 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
     Private& p = *self->priv;
     const Settings settings = p.settings.snapshot();
     const std::string camera = settings.camera_name.empty() ? "camera" : settings.camera_name;
-    if (settings.host.empty() || !publish::is_topic_level(settings.prefix) ||
-        !publish::is_topic_level(camera)) {
-      CERBERUS_ELEMENT_ERROR(
-          self, RESOURCE, SETTINGS,
-          ("host must be set, topic-prefix and camera-name be levels of a topic, without / + #."), (nullptr));
+    if (!publish::is_topic_level(settings.prefix) || !publish::is_topic_level(camera)) {
+      CERBERUS_ELEMENT_ERROR(self, RESOURCE, SETTINGS,
+                             ("topic-prefix and camera-name must be levels of a topic, without / + #."),
+                             (nullptr));
+      return FALSE;
+    }
+    if (!settings.ca_file.empty() && !g_file_test(settings.ca_file.c_str(), G_FILE_TEST_IS_REGULAR)) {
+      CERBERUS_ELEMENT_ERROR(self, RESOURCE, NOT_FOUND,
+                             ("\"%s\" (ca-file) is no file with certificates.", settings.ca_file.c_str()),
+                             (nullptr));
       return FALSE;
     }
     plugin::MqttServer server{.host = settings.host,
@@ -199,7 +252,8 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
                               .ca_file = settings.ca_file,
                               .client = {},
                               .status = {},
-                              .commands = {}};
+                              .commands = {},
+                              .topics = {}};
     if (!read_password(self, settings.password_file, server.password)) return FALSE;
     p.report.emplace(settings.prefix, camera);
     p.stamps.reset();
@@ -210,31 +264,30 @@ gboolean cerberus_mqtt_publish_start(GstBaseTransform* transform) {
     GST_OBJECT_LOCK(self);
     p.mode_topic = p.report->topic("mode");
     GST_OBJECT_UNLOCK(self);
-    p.client.start(server,
-                   {.on_command = [self](const std::string& name,
-                                         const std::string& payload) { obey(self, name, payload); },
-                    .on_fault =
-                        [self](const std::string& fault) {
-                          CERBERUS_ELEMENT_WARNING(
-                              self, RESOURCE, OPEN_WRITE,
-                              ("The MQTT broker cannot be reached; it is tried again: %s.", fault.c_str()),
-                              (nullptr));
-                        }});
-    if (!settings.mode.empty()) p.client.publish({p.report->topic("mode"), settings.mode, true});
+    if (!settings.host.empty())
+      p.client.start(server,
+                     {.on_command = [self](const std::string& name,
+                                           const std::string& payload) { obey(self, name, payload); },
+                      .on_message = {},
+                      .on_fault =
+                          [self](const std::string& fault) {
+                            CERBERUS_ELEMENT_WARNING(
+                                self, RESOURCE, OPEN_WRITE,
+                                ("The MQTT broker cannot be reached; it is tried again: %s.", fault.c_str()),
+                                (nullptr));
+                          }});
+    if (!settings.mode.empty()) publish_one(self, {p.report->topic("mode"), settings.mode, true});
     return TRUE;
   });
 }
 
-void publish_all(Private& p, std::vector<publish::MqttMessage> messages) {
-  for (publish::MqttMessage& message : messages) p.client.publish(std::move(message));
-}
-
 gboolean cerberus_mqtt_publish_stop(GstBaseTransform* transform) {
-  Private& p = *cerberus_mqtt_publish_self(transform)->priv;
+  auto* self = cerberus_mqtt_publish_self(transform);
+  Private& p = *self->priv;
   GST_OBJECT_LOCK(transform);
   p.mode_topic.clear();
   GST_OBJECT_UNLOCK(transform);
-  if (p.report) publish_all(p, p.report->end());
+  if (p.report) publish_all(self, p.report->end());
   p.client.stop();
   return TRUE;
 }
@@ -284,8 +337,8 @@ GstFlowReturn cerberus_mqtt_publish_transform_ip(GstBaseTransform* transform, Gs
     if (GST_CLOCK_TIME_IS_VALID(time)) frame.time = plugin::time_of(time);
     frame.utc = plugin::known_time(stamp.utc);
     read_frame(p, buffer, stamp, frame);
-    if (!p.discovery.empty()) publish_all(p, p.report->discovery_of(frame, p.discovery));
-    publish_all(p, p.report->update(frame));
+    if (!p.discovery.empty()) publish_all(self, p.report->discovery_of(frame, p.discovery));
+    publish_all(self, p.report->update(frame));
     return GST_FLOW_OK;
   });
 }
@@ -293,7 +346,7 @@ GstFlowReturn cerberus_mqtt_publish_transform_ip(GstBaseTransform* transform, Gs
 gboolean cerberus_mqtt_publish_sink_event(GstBaseTransform* transform, GstEvent* event) {
   auto* self = cerberus_mqtt_publish_self(transform);
   if (GST_EVENT_TYPE(event) == GST_EVENT_EOS && self->priv->report)
-    guarded(self, [&] { publish_all(*self->priv, self->priv->report->end()); });
+    guarded(self, [&] { publish_all(self, self->priv->report->end()); });
   return GST_BASE_TRANSFORM_CLASS(cerberus_mqtt_publish_parent_class())->sink_event(transform, event);
 }
 
@@ -311,12 +364,16 @@ void set_property(GObject* object, guint id, const GValue* value, GParamSpec* sp
   const std::string topic = self->priv->mode_topic;
   GST_OBJECT_UNLOCK(self);
   const gchar* mode = g_value_get_string(value);
-  if (!topic.empty() && mode) self->priv->client.publish({topic, mode, true});
+  if (!topic.empty() && mode) publish_one(self, {topic, mode, true});
 }
 
 void cerberus_mqtt_publish_class_init(CerberusMqttPublishClass* klass) {
   plugin::install_properties<CerberusMqttPublish, kProperties>(G_OBJECT_CLASS(klass));
   G_OBJECT_CLASS(klass)->set_property = set_property;
+  g_signal_new_class_handler("publish", G_TYPE_FROM_CLASS(klass),
+                             static_cast<GSignalFlags>(G_SIGNAL_RUN_LAST | G_SIGNAL_ACTION),
+                             G_CALLBACK(cerberus_mqtt_publish_publish), nullptr, nullptr, nullptr,
+                             G_TYPE_BOOLEAN, 3, G_TYPE_STRING, G_TYPE_BYTES, G_TYPE_BOOLEAN);
   GstElementClass* element = GST_ELEMENT_CLASS(klass);
   gst_element_class_set_static_metadata(element, "MQTT publisher", "Filter/Network/Video",
                                         "Publishes what was found by MQTT, and takes orders for the head",

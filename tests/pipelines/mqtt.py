@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""mqttpublish against a real mosquitto on loopback: a broker that is absent at the start, a wrong password, killed and
-started again; retained state, tracks, last will, orders for the head. Skipped where mosquitto is not installed."""
+"""mqttpublish against a real mosquitto on loopback, with TLS (where the openssl tool is), passwords and an ACL: a broker
+that is absent at the start, a wrong password, a certificate of another CA, killed and started again; retained state, tracks,
+last will, orders for the head, 10,000 orders that are refused. Skipped where mosquitto is not installed."""
 import json
 import pathlib
 import shutil
 import signal
 import socket
+import ssl
 import struct
 import subprocess
 import sys
@@ -16,6 +18,17 @@ import time
 PATIENCE = 100  # seconds
 BROKER = shutil.which('mosquitto') or shutil.which('mosquitto', path='/usr/sbin')
 PASSWORDS = shutil.which('mosquitto_passwd')
+OPENSSL = shutil.which('openssl')
+ACL = '''user camera
+topic write cerberus/front/#
+topic write homeassistant/#
+topic read cerberus/front/command/+
+user reader
+topic read #
+topic write cerberus/front/command/+
+user stranger
+topic read #
+'''
 if not BROKER or not PASSWORDS:
     print('skipped: mosquitto is not installed')
     sys.exit(77)
@@ -24,14 +37,18 @@ if not BROKER or not PASSWORDS:
 class Client:
     """A client after MQTT 3.1.1, QoS 0, as far as needed here."""
 
-    def __init__(self, port, user=b'reader', password=b'of the reader'):
+    def __init__(self, port, ca=None, user='reader', subscribe=True):
         self.line = socket.create_connection(('127.0.0.1', port), PATIENCE)
+        if ca:
+            self.line = ssl.create_default_context(cafile=ca).wrap_socket(self.line, server_hostname='127.0.0.1')
         text = lambda words: struct.pack('>H', len(words)) + words
-        self.packet(0x10, text(b'MQTT') + bytes([4, 0xc2]) + struct.pack('>H', 600) + text(b'test') + text(user) + text(password))
+        self.packet(0x10, text(b'MQTT') + bytes([4, 0xc2]) + struct.pack('>H', 600)
+                    + text(b'test of ' + user.encode()) + text(user.encode()) + text(b'of the ' + user.encode()))
         kind, body = self.read()
         if (kind, body[1]) != (0x20, 0):
             raise PermissionError(body)
-        self.packet(0x82, struct.pack('>H', 1) + text(b'#') + b'\0')
+        if subscribe:
+            self.packet(0x82, struct.pack('>H', 1) + text(b'#') + b'\0')
         self.retained, self.tracks = {}, []
 
     def packet(self, kind, body):
@@ -78,6 +95,26 @@ class Client:
     def publish(self, topic, payload, retain=False):
         self.packet(0x31 if retain else 0x30, struct.pack('>H', len(topic)) + topic.encode() + payload.encode())
 
+    def sync(self):
+        """Returns when the broker has taken everything that was sent."""
+        self.packet(0xc0, b'')
+        while self.read()[0] != 0xd0:
+            pass
+
+
+def make_certificates(folder):
+    """An authority, the broker's certificate, and another authority, which signed nothing here."""
+    run = lambda *words: subprocess.run([OPENSSL, *words], check=True, capture_output=True, cwd=folder)
+    for name in ('ca', 'other'):
+        run('req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-days', '2', '-subj',
+            f'/CN={name}', '-keyout', f'{name}.key', '-out', f'{name}.pem')
+    run('req', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes', '-subj', '/CN=broker', '-keyout',
+        'broker.key', '-out', 'broker.csr')
+    (folder / 'names').write_text('subjectAltName=IP:127.0.0.1\n')
+    run('x509', '-req', '-in', 'broker.csr', '-CA', 'ca.pem', '-CAkey', 'ca.key', '-days', '2', '-extfile', 'names', '-out',
+        'broker.pem')
+    (folder / 'broker.key').chmod(0o644)
+
 
 def free_port():
     with socket.socket() as probe:
@@ -97,10 +134,11 @@ def start_broker(folder, port):
     raise AssertionError('the broker does not start')
 
 
-def line(folder, port, password):
+def line(folder, port, password, ca='ca.pem'):
+    tls = [f'ca-file={folder / ca}'] if OPENSSL else []
     return ['gst-launch-1.0', '-m', 'videotestsrc', 'is-live=true', 'pattern=ball', '!',
             'video/x-raw,format=GRAY8,width=160,height=120,framerate=10/1', '!', 'motiondetect', '!', 'mqttpublish',
-            f'port={port}', 'camera-name=front', 'username=camera', f'password-file={folder / password}',
+            f'port={port}', 'camera-name=front', 'username=camera', f'password-file={folder / password}', *tls,
             'discovery-prefix=homeassistant', 'commands=move-to stop arm', 'mode=armed', '!', 'pantiltsink']
 
 
@@ -118,12 +156,21 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder, port = pathlib.Path(name), free_port()
         folder.chmod(0o755)  # a broker that drops root's rights reads its files still
-        for user, password in (('camera', 'of the camera'), ('reader', 'of the reader')):
+        for user, password in ((user, f'of the {user}') for user in ('camera', 'reader', 'stranger')):
             subprocess.run([PASSWORDS, '-b', *([] if (folder / 'users').exists() else ['-c']), folder / 'users', user, password],
                            check=True, capture_output=True)
         (folder / 'users').chmod(0o644)
+        (folder / 'acl').write_text(ACL)
+        (folder / 'acl').chmod(0o644)
+        tls, ca = '', None
+        if OPENSSL:
+            make_certificates(folder)
+            tls = ''.join(f'{key} {folder / file}\n' for key, file in (
+                ('cafile', 'ca.pem'), ('certfile', 'broker.pem'), ('keyfile', 'broker.key')))
+            ca = folder / 'ca.pem'
         (folder / 'mosquitto.conf').write_text(
-            f'listener {port} 127.0.0.1\nallow_anonymous false\npassword_file {folder / "users"}\npersistence false\n')
+            f'listener {port} 127.0.0.1\n{tls}allow_anonymous false\npassword_file {folder / "users"}\n'
+            f'acl_file {folder / "acl"}\npersistence false\n')
         (folder / 'password').write_text('of the camera\n')
         (folder / 'wrong').write_text('of nobody\n')
 
@@ -140,8 +187,14 @@ def main():
             running.append(stranger)
             log_has(folder / 'log-wrong', 'The MQTT broker cannot be reached')
             stranger.kill()
+            if OPENSSL:
+                with open(folder / 'log-other', 'w', encoding='utf-8') as log:
+                    stranger = subprocess.Popen(line(folder, port, 'password', 'other.pem'), stdout=log, stderr=log)
+                running.append(stranger)
+                log_has(folder / 'log-other', 'The MQTT broker cannot be reached')
+                stranger.kill()
 
-            client = Client(port)
+            client = Client(port, ca)
             has = lambda topic, *words: all(word in client.retained.get('cerberus/front/' + topic, '') for word in words)
             client.wait('state', lambda: has('status', 'online') and has('state', '"motion":true') and has('mode', 'armed'))
             client.wait('a track', lambda: any(one['event'] in ('appeared', 'updated') and one['id'] > 0 for one in client.tracks))
@@ -156,11 +209,29 @@ def main():
             log_has(folder / 'log', 'name=(string)move-to, done=(boolean)true', 'name=(string)arm, done=(boolean)false')
             client.wait('the head', lambda: has('pantilt', '"pan":12,"tilt":3,"moving":false'))
 
+            # The broker's ACL: another user's orders do not arrive, and no camera writes in another one's name.
+            for user, topic in (('stranger', 'cerberus/front/command/arm'), ('camera', 'cerberus/back/status')):
+                other = Client(port, ca, user, subscribe=False)
+                other.publish(topic, 'online', retain=user == 'camera')
+                other.sync()
+                other.line.close()
+            # A flood of refused orders is reported in part, and what is allowed is carried out after it.
+            flood = Client(port, ca, 'reader', subscribe=False)
+            for _ in range(10000):
+                flood.publish('cerberus/front/command/home', '')
+            flood.sync()
+            flood.publish('cerberus/front/command/stop', '')
+            flood.sync()
+            flood.line.close()
+            text = log_has(folder / 'log', 'name=(string)stop, done=(boolean)true')
+            assert text.count('"home" is refused') < 1000 and text.count('name=(string)arm') == 1
+            assert not any(topic.startswith('cerberus/back') for topic in client.retained)
+
             broker.kill()  # -9: and all it knew is lost
             broker.wait()
             broker = start_broker(folder, port)
             running.append(broker)
-            client = Client(port)
+            client = Client(port, ca)
             client.wait('everything retained, again', lambda: has('status', 'online') and has('state', 'motion')
                         and has('mode', 'armed') and has('pantilt', '"pan":12'))
             camera.kill()

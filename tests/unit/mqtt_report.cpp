@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "publish/burst_limit.h"
+#include "publish/webhook_queue.h"
 #include "support/suite.h"  // after the streams: check defines fail()
 
 using namespace cerberus::publish;
@@ -193,6 +195,73 @@ START_TEST(an_order_is_taken_only_where_it_is_allowed_and_whole) {
 }
 END_TEST
 
+START_TEST(of_a_flood_ten_are_reported_at_once_and_then_one_a_second) {
+  BurstLimit limit;
+  int reported = 0;
+  for (int k = 0; k < 10000; ++k) reported += limit.take(seconds(100)) ? 1 : 0;
+  ck_assert_int_eq(reported, 10);
+  ck_assert(!limit.take(seconds(100) + milliseconds(999)));
+  ck_assert(limit.take(milliseconds(101500)) && !limit.take(milliseconds(101900)));
+  for (int k = 0; k < 20; ++k) reported += limit.take(seconds(200)) ? 1 : 0;
+  ck_assert_int_eq(reported, 20);
+}
+END_TEST
+
+START_TEST(events_for_a_webhook_are_sent_in_order_one_at_a_time_and_again_after_failures) {
+  WebhookQueue queue;
+  const WebhookQueue::Time start{std::chrono::hours(1)};
+  ck_assert(queue.next(start) == nullptr);
+  for (const char* id : {"a", "b", "c"}) queue.add({id, "{}"});
+  ck_assert_str_eq(queue.next(start)->id.c_str(), "a");
+  ck_assert(queue.next(start) == nullptr);  // on its way
+  // Failures: after 1, 2, 4, ... 60 s.
+  WebhookQueue::Time now = start;
+  for (const int wait : {1, 2, 4, 8, 16, 32, 60, 60}) {
+    queue.finished(WebhookQueue::Outcome::failed, now);
+    ck_assert(queue.next(now + seconds(wait) - milliseconds(1)) == nullptr);
+    now += seconds(wait);
+    ck_assert_str_eq(queue.next(now)->id.c_str(), "a");
+  }
+  queue.finished(WebhookQueue::Outcome::delivered, now);
+  ck_assert_str_eq(queue.next(now)->id.c_str(), "b");
+  queue.finished(WebhookQueue::Outcome::refused, now);
+  ck_assert_uint_eq(queue.dropped(), 1);
+  ck_assert_str_eq(queue.next(now)->id.c_str(), "c");
+}
+END_TEST
+
+START_TEST(a_webhook_that_does_not_answer_costs_256_events_and_no_more) {
+  WebhookQueue queue;
+  const WebhookQueue::Time now{std::chrono::hours(1)};
+  queue.add({"0", ""});
+  ck_assert_str_eq(queue.next(now)->id.c_str(), "0");  // on its way: it is not dropped
+  for (int k = 1; k < 300; ++k) queue.add({std::to_string(k), ""});
+  ck_assert_uint_eq(queue.waiting(), 256);
+  ck_assert_uint_eq(queue.dropped(), 44);
+  queue.finished(WebhookQueue::Outcome::delivered, now);
+  ck_assert_str_eq(queue.next(now)->id.c_str(), "45");
+  using Outcome = WebhookQueue::Outcome;
+  for (const auto& [status, outcome] :
+       {std::pair(200u, Outcome::delivered), std::pair(204u, Outcome::delivered),
+        std::pair(0u, Outcome::failed), std::pair(500u, Outcome::failed), std::pair(503u, Outcome::failed),
+        std::pair(408u, Outcome::failed), std::pair(429u, Outcome::failed), std::pair(301u, Outcome::refused),
+        std::pair(400u, Outcome::refused), std::pair(410u, Outcome::refused)})
+    ck_assert_msg(WebhookQueue::outcome_of(status) == outcome, "%u", status);
+}
+END_TEST
+
+START_TEST(the_body_of_a_webhook_is_json_with_an_object_or_a_text) {
+  const auto body = [](std::string_view data) {
+    return json::parse(webhook_body("id-1", "the \"robot\"", "front", "track", seconds(1), data));
+  };
+  const json object = body("{\"event\":\"left\"}");
+  ck_assert(object["data"]["event"] == "left" && object["robot"] == "the \"robot\"" &&
+            object["id"] == "id-1");
+  ck_assert(object["utc"] == "1970-01-01T00:00:01.000000Z" && object["topic"] == "track");
+  ck_assert(body("armed")["data"] == "armed" && body("a\"}b")["data"] == "a\"}b");
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "MQTT report", {a_track_appears_is_updated_each_second_and_leaves_two_seconds_after_its_last_sight,
@@ -202,5 +271,9 @@ int main() {
                       a_moving_head_is_reported_twice_a_second_and_when_it_rests,
                       home_assistant_finds_each_sensor_once_and_where_it_is_published,
                       discovery_is_repeated_only_when_sensors_or_head_are_others,
-                      an_order_is_taken_only_where_it_is_allowed_and_whole});
+                      an_order_is_taken_only_where_it_is_allowed_and_whole,
+                      of_a_flood_ten_are_reported_at_once_and_then_one_a_second,
+                      events_for_a_webhook_are_sent_in_order_one_at_a_time_and_again_after_failures,
+                      a_webhook_that_does_not_answer_costs_256_events_and_no_more,
+                      the_body_of_a_webhook_is_json_with_an_object_or_a_text});
 }
