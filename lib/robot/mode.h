@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace cerberus::robot {
@@ -19,8 +21,6 @@ enum class Mode : std::uint8_t {
 std::string_view name(Mode mode);
 std::optional<Mode> mode_of(std::string_view name);
 
-constexpr int kMinutesOfDay = 24 * 60, kMinutesOfWeek = 7 * kMinutesOfDay;
-
 struct ScheduleEntry {
   std::uint8_t days = 0x7f;  // bit 0: Monday ... bit 6: Sunday
   int minute = 0;            // of the day, local time
@@ -28,19 +28,21 @@ struct ScheduleEntry {
 };
 using Schedule = std::vector<ScheduleEntry>;
 
-// A moment of local time.
-struct LocalTime {
-  int weekday = 0;  // 0: Monday
-  int minute = 0;   // of the day
-};
+// Local time minus UTC in seconds, at a moment in seconds since 1970: the machine's time zone.
+using UtcOffset = std::function<std::int64_t(std::int64_t utc)>;
 
-// The entry that took effect last at or before `now`, a week back at most; of two at one minute the later one in the
-// file. nullopt: the schedule is empty.
+// The moment at which clocks first show `wall`, a local time as seconds since 1970-01-01 00:00 local time. At the end of
+// summer time clocks show some times twice: the first one counts. At its begin they skip some: the moment of the change
+// counts.
+std::int64_t moment_of(std::int64_t wall, const UtcOffset& offset);
+
+// The entry that took effect last at or before `utc`, a week back at most; of two at one moment the one of the later local
+// time, then the later one in the file. nullopt: the schedule is empty.
 struct Due {
   Mode mode = Mode::armed;
-  int minutes_ago = 0;
+  std::int64_t utc = 0;  // when it took effect, seconds since 1970
 };
-std::optional<Due> due(const Schedule& schedule, LocalTime now);
+std::optional<Due> due(const Schedule& schedule, std::int64_t utc, const UtcOffset& offset);
 
 // Which mode is in force: what was set by hand holds until the next entry of the schedule takes effect. It survives a
 // restart as the text of state().
@@ -53,7 +55,9 @@ class ModeKeeper {
   void set(Mode mode, std::int64_t utc);
   // Applies the schedule. Returns whether the mode changed. Entries that took effect before the last change do not
   // count.
-  bool tick(LocalTime now, std::int64_t utc);
+  bool tick(std::int64_t utc, const UtcOffset& offset);
+  // Takes another schedule; it counts from the next tick().
+  void set_schedule(Schedule schedule) { schedule_ = std::move(schedule); }
 
   // "armed 1763863200\n": the mode and when it was set.
   std::string state() const;

@@ -28,11 +28,11 @@ std::string default_state_folder() {
   return own;
 }
 
-LocalTime local_time(std::int64_t utc) {
+std::int64_t offset_of_zone(std::int64_t utc) {
   const auto seconds = static_cast<time_t>(utc);
   tm parts{};
   localtime_r(&seconds, &parts);
-  return {(parts.tm_wday + 6) % 7, parts.tm_hour * 60 + parts.tm_min};
+  return parts.tm_gmtoff;
 }
 
 std::int64_t now() {
@@ -63,7 +63,7 @@ bool Robot::open(Settings settings, std::string& error) {
     g_printerr("cerberusd: %s cannot be read: privacy mode, until another is set\n", path.c_str());
     save_mode();
   }
-  mode_->tick(local_time(now()), now());
+  mode_->tick(now(), offset_of_zone);
   for (const CameraSettings& camera : settings_.cameras) {
     if (camera.recorder && g_mkdir_with_parents(camera.recorder->folder.c_str(), 0750) != 0)
       g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", camera.name.c_str(),
@@ -139,7 +139,7 @@ void Robot::tick() {
       if (!stopped) g_printerr("cerberusd: a camera does not stop\n");
       g_main_loop_quit(loop_);
     }
-  } else if (mode_->tick(local_time(now()), now())) {
+  } else if (mode_->tick(now(), offset_of_zone)) {
     save_mode();
     apply_mode();
   }

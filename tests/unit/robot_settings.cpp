@@ -2,6 +2,7 @@
 #include "robot/settings_file.h"
 
 #include <sys/stat.h>
+#include <time.h>
 
 #include <cstdlib>
 #include <fstream>
@@ -258,35 +259,99 @@ END_TEST
 // Monday 22:00 armed, every day 7:00 disarmed.
 static const Schedule kNights{{0x01, 22 * 60, Mode::armed}, {0x7f, 7 * 60, Mode::disarmed}};
 
+constexpr std::int64_t kMonday = 1763942400;  // 2025-11-24 00:00 UTC
+constexpr std::int64_t kMinute = 60, kHour = 3600;
+
+static std::int64_t utc_itself(std::int64_t) {
+  return 0;
+}
+
 START_TEST(the_entry_of_a_schedule_that_took_effect_last_counts) {
   const struct {
-    LocalTime now;
+    std::int64_t now;
     Mode mode;
-    int ago;
+    std::int64_t since;
   } cases[] = {
-      {{0, 22 * 60}, Mode::armed, 0},            // Monday 22:00
-      {{1, 6 * 60 + 59}, Mode::armed, 539},      // Tuesday 6:59, 8 h 59 min later
-      {{1, 7 * 60}, Mode::disarmed, 0},          // Tuesday 7:00
-      {{0, 21 * 60 + 59}, Mode::disarmed, 899},  // Monday 21:59, 14 h 59 min after 7:00
-      {{0, 0}, Mode::disarmed, 1020},            // Monday 0:00: since Sunday 7:00, across the week's end
+      {22 * kHour, Mode::armed, 22 * kHour},               // Monday 22:00
+      {31 * kHour - 1, Mode::armed, 22 * kHour},           // Tuesday 6:59:59
+      {31 * kHour, Mode::disarmed, 31 * kHour},            // Tuesday 7:00
+      {22 * kHour - kMinute, Mode::disarmed, 7 * kHour},   // Monday 21:59
+      {0, Mode::disarmed, -17 * kHour},                    // Monday 0:00: since Sunday 7:00
+      {-1 * 24 * kHour + 1, Mode::disarmed, -41 * kHour},  // Sunday 0:00:01: since Saturday 7:00
   };
   for (const auto& one : cases) {
-    const std::optional<Due> found = due(kNights, one.now);
+    const std::optional<Due> found = due(kNights, kMonday + one.now, utc_itself);
     ck_assert(found && found->mode == one.mode);
-    ck_assert_int_eq(found->minutes_ago, one.ago);
+    ck_assert_int_eq(found->utc - kMonday, one.since);
   }
-  ck_assert(!due({}, {0, 0}));
+  const Schedule mondays{{0x01, 22 * 60, Mode::armed}};  // Monday 21:59: since 22:00 of the Monday before
+  ck_assert_int_eq(due(mondays, kMonday + 22 * kHour - kMinute, utc_itself)->utc - kMonday, -146 * kHour);
+  ck_assert(!due({}, kMonday, utc_itself));
 }
 END_TEST
 
 START_TEST(a_mode_set_by_hand_holds_until_the_next_entry) {
-  constexpr std::int64_t kNoon = 1'000'000'020 - 1'000'000'020 % 60;  // counts as Monday 12:00 here
+  constexpr std::int64_t kNoon = kMonday + 12 * kHour;
   ModeKeeper keeper(Mode::privacy, kNights);
-  ck_assert(keeper.tick({0, 12 * 60}, kNoon) && keeper.mode() == Mode::disarmed);
+  ck_assert(keeper.tick(kNoon, utc_itself) && keeper.mode() == Mode::disarmed);
   keeper.set(Mode::privacy, kNoon + 30);
-  ck_assert(!keeper.tick({0, 12 * 60 + 1}, kNoon + 60) && keeper.mode() == Mode::privacy);
-  ck_assert(!keeper.tick({0, 21 * 60 + 59}, kNoon + 35940) && keeper.mode() == Mode::privacy);
-  ck_assert(keeper.tick({0, 22 * 60}, kNoon + 36000) && keeper.mode() == Mode::armed);
+  ck_assert(!keeper.tick(kNoon + kMinute, utc_itself) && keeper.mode() == Mode::privacy);
+  ck_assert(!keeper.tick(kNoon + 10 * kHour - 1, utc_itself) && keeper.mode() == Mode::privacy);
+  ck_assert(keeper.tick(kNoon + 10 * kHour, utc_itself) && keeper.mode() == Mode::armed);
+}
+END_TEST
+
+// The machine's time zone, here that of Berlin: summer time begins at 2:00 on the last Sunday of March and ends at 3:00
+// on the last Sunday of October.
+static std::int64_t berlin(std::int64_t utc) {
+  ::setenv("TZ", "CET-1CEST,M3.5.0,M10.5.0/3", 1);  // as Europe/Berlin, without the files of tzdata
+  ::tzset();
+  const auto seconds = static_cast<time_t>(utc);
+  tm parts{};
+  ::localtime_r(&seconds, &parts);
+  return parts.tm_gmtoff;
+}
+
+constexpr std::int64_t kMarch = 1774742400;    // Sunday 2026-03-29 00:00 UTC; 01:00 UTC is 3:00 after 1:59:59
+constexpr std::int64_t kOctober = 1792886400;  // Sunday 2026-10-25 00:00 UTC; 01:00 UTC is 2:00 after 2:59:59
+
+START_TEST(a_local_time_that_clocks_skip_is_the_moment_of_the_change) {
+  // Wall times are counted as if they were UTC.
+  ck_assert_int_eq(moment_of(kMarch + 2 * kHour - 1, berlin), kMarch + kHour - 1);     // 1:59:59
+  ck_assert_int_eq(moment_of(kMarch + 2 * kHour, berlin), kMarch + kHour);             // 2:00, skipped
+  ck_assert_int_eq(moment_of(kMarch + 150 * kMinute, berlin), kMarch + kHour);         // 2:30, skipped
+  ck_assert_int_eq(moment_of(kMarch + 3 * kHour, berlin), kMarch + kHour);             // 3:00
+  ck_assert_int_eq(moment_of(kMarch + 210 * kMinute, berlin), kMarch + 90 * kMinute);  // 3:30
+  // Of several entries within the hour that is skipped the last one holds, whatever their order.
+  const Schedule skipped{{0x7f, 170, Mode::disarmed}, {0x7f, 130, Mode::armed}};
+  const std::optional<Due> found = due(skipped, kMarch + kHour, berlin);
+  ck_assert(found && found->mode == Mode::disarmed && found->utc == kMarch + kHour);
+}
+END_TEST
+
+START_TEST(a_local_time_that_clocks_show_twice_counts_the_first_time) {
+  ck_assert_int_eq(moment_of(kOctober + 119 * kMinute, berlin), kOctober - kMinute);       // 1:59
+  ck_assert_int_eq(moment_of(kOctober + 150 * kMinute, berlin), kOctober + 30 * kMinute);  // 2:30
+  ck_assert_int_eq(moment_of(kOctober + 3 * kHour, berlin), kOctober + 2 * kHour);         // 3:00
+}
+END_TEST
+
+START_TEST(an_entry_of_the_schedule_counts_once_in_each_night_of_the_change) {
+  const Schedule at_half_past_two{{0x7f, 150, Mode::armed}};
+  for (const std::int64_t night : {kMarch, kOctober}) {
+    ModeKeeper keeper(Mode::disarmed, at_half_past_two);
+    keeper.set(Mode::disarmed, night - 2 * kHour);
+    int changes = 0;
+    // From 22:00 UTC to 6:00 UTC, a minute at a time; the owner disarms it a minute after each change.
+    for (std::int64_t now = night - 2 * kHour + kMinute; now < night + 6 * kHour; now += kMinute) {
+      if (!keeper.tick(now, berlin)) continue;
+      ck_assert(keeper.mode() == Mode::armed);
+      ck_assert_int_eq(now - night, night == kMarch ? kHour : 30 * kMinute);
+      keeper.set(Mode::disarmed, now + 1);
+      ++changes;
+    }
+    ck_assert_int_eq(changes, 1);
+  }
 }
 END_TEST
 
@@ -306,12 +371,12 @@ START_TEST(the_mode_survives_a_restart_and_a_broken_state_is_privacy) {
 END_TEST
 
 START_TEST(a_broken_state_is_privacy_until_the_next_entry_of_the_schedule) {
-  constexpr std::int64_t kNoon = 1'000'000'020 - 1'000'000'020 % 60;  // counts as Monday 12:00 here
+  constexpr std::int64_t kNoon = kMonday + 12 * kHour;
   ModeKeeper keeper(Mode::armed, kNights);
   ck_assert(!keeper.restore("damaged", kNoon + 5));
-  ck_assert(!keeper.tick({0, 12 * 60}, kNoon + 5) && keeper.mode() == Mode::privacy);
+  ck_assert(!keeper.tick(kNoon + 5, utc_itself) && keeper.mode() == Mode::privacy);
   ck_assert(keeper.state() == "privacy " + std::to_string(kNoon + 5) + "\n");
-  ck_assert(keeper.tick({0, 22 * 60}, kNoon + 36000) && keeper.mode() == Mode::armed);
+  ck_assert(keeper.tick(kNoon + 36000, utc_itself) && keeper.mode() == Mode::armed);
 }
 END_TEST
 
@@ -390,6 +455,9 @@ int main() {
        files_that_are_named_must_be_there_and_secrets_be_secret, a_secret_is_the_first_line_of_its_file,
        the_examples_of_the_manual_and_the_demo_are_sound,
        the_entry_of_a_schedule_that_took_effect_last_counts, a_mode_set_by_hand_holds_until_the_next_entry,
+       a_local_time_that_clocks_skip_is_the_moment_of_the_change,
+       a_local_time_that_clocks_show_twice_counts_the_first_time,
+       an_entry_of_the_schedule_counts_once_in_each_night_of_the_change,
        the_mode_survives_a_restart_and_a_broken_state_is_privacy,
        a_broken_state_is_privacy_until_the_next_entry_of_the_schedule,
        texts_of_the_user_are_assigned_and_never_parsed, a_part_that_failed_or_is_not_configured_is_left_out,
