@@ -13,6 +13,8 @@ using text::TomlValue;
 using K = Option::Kind;
 
 constexpr double kDay = 86400;  // seconds
+// Where systemd puts the credentials of the service (CREDENTIALS_DIRECTORY).
+constexpr std::string_view kCredentials = "/run/credentials/cerberusd.service";
 
 constexpr Option kDetection[] = {
     {"preset", K::choice, 0, 0, "default paper traffic"},
@@ -107,9 +109,12 @@ std::string* value_of(Properties& properties, std::string_view name) {
 
 class CameraReader {
  public:
-  CameraReader(const TomlValue& table, std::string_view folder, Mistakes& mistakes,
-               std::vector<NamedFile>& files)
-      : reader_(table, "[[camera]]", mistakes), folder_(folder), mistakes_(mistakes), files_(files) {
+  CameraReader(const TomlValue& table, Folders folders, Mistakes& mistakes, std::vector<NamedFile>& files)
+      : reader_(table, "[[camera]]", mistakes),
+        folders_(folders),
+        folder_(folders.configuration),
+        mistakes_(mistakes),
+        files_(files) {
     camera_.line = table.line;
   }
 
@@ -184,9 +189,12 @@ class CameraReader {
     reader_.text("uri", source.uri);
     reader_.text("record-uri", source.record_uri);
     reader_.text("user", source.user);
-    file("password-file", source.password_file, true);
+    source.password_file = read_password_path(reader_, "user", folders_, files_);
     if (reader_.choice("codec", codec, kCodecs)) source.codec = static_cast<Codec>(codec);
-    file("file", source.file, false);
+    if (reader_.text("file", source.file)) {
+      source.file = below(folder_, source.file);
+      files_.push_back({reader_.line("file"), "file", source.file, false});
+    }
     reader_.truth("loop", source.loop);
     reader_.truth("motion-jpeg", source.motion_jpeg);
     reader_.whole("width", source.width, 32, 8192);
@@ -198,7 +206,7 @@ class CameraReader {
     if (!known) return;
     using enum SourceKind;
     only_with({"device", "motion-jpeg"}, {v4l2});
-    only_with({"uri", "record-uri", "user", "password-file", "codec"}, {rtsp});
+    only_with({"uri", "record-uri", "user", "password-file", "password-credential", "codec"}, {rtsp});
     only_with({"file", "loop"}, {SourceKind::file, world});
     only_with({"wide-fov", "start-pan", "start-tilt"}, {world});
     only_with({"width", "height"}, {test, world, v4l2});
@@ -209,8 +217,6 @@ class CameraReader {
     if (reader_.has("width") != reader_.has("height"))
       reader_.complain(reader_.has("width") ? "width" : "height", "\"width\" and \"height\" belong together");
     for (const char* key : {"uri", "record-uri"}) check_uri(key);
-    if (reader_.has("password-file") != reader_.has("user"))
-      reader_.complain("user", "\"user\" and \"password-file\" belong together");
   }
 
   void check_uri(const char* key) {
@@ -225,12 +231,6 @@ class CameraReader {
     if (authority.find('@') != authority.npos)
       reader_.complain(
           key, std::string("\"") + key + "\" holds a user or a password: use \"user\" and \"password-file\"");
-  }
-
-  void file(const char* key, std::string& value, bool secret) {
-    if (!reader_.text(key, value)) return;
-    value = below(folder_, value);
-    files_.push_back({reader_.line(key), key, value, secret});
   }
 
   void read_part(const TomlValue& table, const char* where, std::span<const Option> options,
@@ -282,7 +282,8 @@ class CameraReader {
   }
 
   TableReader reader_;
-  std::string_view folder_;
+  Folders folders_;
+  std::string_view folder_;  // of the configuration
   Mistakes& mistakes_;
   std::vector<NamedFile>& files_;
   CameraSettings camera_;
@@ -297,9 +298,36 @@ std::string below(std::string_view folder, std::string_view path) {
   return whole.append(path);
 }
 
-CameraSettings read_camera(const TomlValue& table, std::string_view folder, Mistakes& mistakes,
+std::string read_password_path(TableReader& reader, const char* user_key, Folders folders,
+                               std::vector<NamedFile>& files) {
+  std::string file, credential;
+  const bool has_file = reader.text("password-file", file);
+  const bool has_credential = reader.text("password-credential", credential);
+  if (reader.has("password-file") && reader.has("password-credential")) {
+    reader.complain("password-credential",
+                    "\"password-file\" and \"password-credential\" name one secret: give one of them");
+  } else if ((reader.has("password-file") || reader.has("password-credential")) != reader.has(user_key)) {
+    reader.complain(user_key, std::string("\"") + user_key +
+                                  "\" and \"password-file\" belong together (or \"password-credential\")");
+  }
+  if (has_credential) {
+    if (credential.empty() || credential.front() == '.' || credential.find('/') != credential.npos)
+      reader.complain("password-credential",
+                      "\"password-credential\" is the name of a credential of systemd, without a path");
+    file = below(folders.credentials.empty() ? kCredentials : folders.credentials, credential);
+    // Outside of the service, as for --check, credentials are not there.
+    if (!folders.credentials.empty())
+      files.push_back({reader.line("password-credential"), "password-credential", file, true});
+  } else if (has_file) {
+    file = below(folders.configuration, file);
+    files.push_back({reader.line("password-file"), "password-file", file, true});
+  }
+  return file;
+}
+
+CameraSettings read_camera(const TomlValue& table, Folders folders, Mistakes& mistakes,
                            std::vector<NamedFile>& files) {
-  return CameraReader(table, folder, mistakes, files).read();
+  return CameraReader(table, folders, mistakes, files).read();
 }
 
 }  // namespace cerberus::robot

@@ -18,10 +18,20 @@ struct NamedFile {
   bool secret = false;
 };
 
+// Where files are that the configuration names by relative paths, and secrets that it names as credentials of systemd.
+struct Folders {
+  std::string_view configuration, credentials;
+};
+
 // `path`, below `folder` unless it is absolute; an empty folder changes nothing.
 std::string below(std::string_view folder, std::string_view path);
 
-CameraSettings read_camera(const text::TomlValue& table, std::string_view folder, Mistakes& mistakes,
+// The path of the secret that "password-file" or "password-credential" of a table names, which belongs to the user of
+// `user_key`; empty: there is none.
+std::string read_password_path(TableReader& reader, const char* user_key, Folders folders,
+                               std::vector<NamedFile>& files);
+
+CameraSettings read_camera(const text::TomlValue& table, Folders folders, Mistakes& mistakes,
                            std::vector<NamedFile>& files);
 
 }  // namespace cerberus::robot

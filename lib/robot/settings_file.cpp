@@ -118,7 +118,7 @@ constexpr Option kMqtt[] = {
     {"discovery-prefix", Option::Kind::text},
 };
 
-Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& mistakes,
+Properties read_mqtt(const TomlValue& table, Folders folders, Mistakes& mistakes,
                      std::vector<NamedFile>& files) {
   TableReader reader(table, "[mqtt]", mistakes);
   Properties properties;
@@ -127,14 +127,12 @@ Properties read_mqtt(const TomlValue& table, std::string_view folder, Mistakes& 
   for (const Property& property : properties)
     if (property.name == "topic-prefix" && !publish::is_topic_level(property.value))
       reader.complain("topic-prefix", "\"topic-prefix\" is one level of a topic, without / + #");
-  for (const char* key : {"password-file", "ca-file"}) {
-    std::string path;
-    if (!reader.text(key, path)) continue;
-    properties.push_back({key, below(folder, path)});
-    files.push_back({reader.line(key), key, properties.back().value, key[0] == 'p'});
+  if (std::string path = read_password_path(reader, "username", folders, files); !path.empty())
+    properties.push_back({"password-file", std::move(path)});
+  if (std::string path; reader.text("ca-file", path)) {
+    properties.push_back({"ca-file", below(folders.configuration, path)});
+    files.push_back({reader.line("ca-file"), "ca-file", properties.back().value, false});
   }
-  if (reader.has("password-file") != reader.has("username"))
-    reader.complain("username", "\"username\" and \"password-file\" belong together");
   std::vector<std::string> commands;
   reader.texts("commands", commands);
   std::string list;
@@ -183,7 +181,7 @@ struct Parsed {
   std::vector<NamedFile> files;
 };
 
-Parsed parse(std::string_view toml, std::string_view folder) {
+Parsed parse(std::string_view toml, Folders folders) {
   Parsed parsed;
   const text::TomlFile file = text::parse_toml(toml);
   if (!file.root) {
@@ -195,13 +193,13 @@ Parsed parse(std::string_view toml, std::string_view folder) {
   TableReader reader(*file.root, "the file", mistakes);
   reader.text("name", settings.name);
   if (reader.text("state-folder", settings.state_folder))
-    settings.state_folder = below(folder, settings.state_folder);
+    settings.state_folder = below(folders.configuration, settings.state_folder);
   if (const TomlValue* table = reader.table("mode")) settings.mode = read_mode(*table, mistakes);
   if (const TomlValue* table = reader.table("page")) settings.page = read_page(*table, mistakes);
   if (const TomlValue* table = reader.table("mqtt"))
-    settings.mqtt = read_mqtt(*table, folder, mistakes, parsed.files);
+    settings.mqtt = read_mqtt(*table, folders, mistakes, parsed.files);
   for (const TomlValue* table : reader.tables("camera", "[[camera]]"))
-    settings.cameras.push_back(read_camera(*table, folder, mistakes, parsed.files));
+    settings.cameras.push_back(read_camera(*table, folders, mistakes, parsed.files));
   if (settings.mqtt) limit_moves(settings);
   if (!reader.has("camera")) mistakes.push_back({0, "there is no camera: it needs a [[camera]]"});
   std::set<std::string> names;
@@ -227,12 +225,12 @@ std::string fault_of(const NamedFile& file) {
 }  // namespace
 
 SettingsFile parse_settings(std::string_view toml, std::string_view source, std::string_view folder) {
-  Parsed parsed = parse(toml, folder);
+  Parsed parsed = parse(toml, {folder, {}});
   if (!parsed.mistakes.empty()) return {std::nullopt, joined(std::move(parsed.mistakes), source)};
   return {std::move(parsed.settings), ""};
 }
 
-SettingsFile load_settings(const std::string& path) {
+SettingsFile load_settings(const std::string& path, std::string_view credentials) {
   using Fault = text::File::Fault;
   const text::File file = text::read_file(path, kMostBytes);
   switch (file.fault) {
@@ -246,7 +244,8 @@ SettingsFile load_settings(const std::string& path) {
       break;
   }
   const std::size_t slash = path.rfind('/');
-  Parsed parsed = parse(file.text, slash == path.npos ? "." : slash == 0 ? "/" : path.substr(0, slash));
+  const std::string folder = slash == path.npos ? "." : slash == 0 ? "/" : path.substr(0, slash);
+  Parsed parsed = parse(file.text, {folder, credentials});
   for (const NamedFile& named : parsed.files)
     if (std::string fault = fault_of(named); !fault.empty())
       parsed.mistakes.push_back({named.line, std::move(fault)});

@@ -16,8 +16,9 @@ struct SettingsFile {
 };
 
 // Reads and checks a file. Paths in it are relative to its folder; files that it names (secrets, rules, calibrations)
-// must be there, and secrets be readable for their owner alone (mode 0600 or 0640).
-SettingsFile load_settings(const std::string& path);
+// must be there, and secrets be readable for their owner alone (mode 0600 or 0640). `credentials` is the folder of
+// credentials of systemd; empty: the service's, of which none is looked at.
+SettingsFile load_settings(const std::string& path, std::string_view credentials = {});
 
 // The same from text, without a look at any file. `source` stands for the file's name in errors, `folder` is put before
 // relative paths (empty: they stay).

@@ -11,14 +11,18 @@
 
 namespace {
 
-// A program that was not installed finds the elements of its own build.
+constexpr int kWrongConfiguration = 78;  // EX_CONFIG of sysexits.h: its unit does not start the program again
+
+// A program that was not installed finds the elements of its own build; one that was installed where GStreamer does not
+// look finds those that were installed with it.
 void find_elements() {
   g_autoptr(GstElementFactory) there = gst_element_factory_find("motiondetect");
   if (there) return;
   std::error_code error;
   const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::filesystem::path plugins = program.parent_path().parent_path() / "plugins";
-  if (!error && std::filesystem::is_directory(plugins, error))
+  std::filesystem::path plugins = program.parent_path().parent_path() / "plugins";
+  if (error || !std::filesystem::is_directory(plugins, error)) plugins = CERBERUS_PLUGINS;
+  if (std::filesystem::is_directory(plugins, error))
     gst_registry_scan_path(gst_registry_get(), plugins.c_str());
 }
 
@@ -38,10 +42,12 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "cerberusd: %s\n", error ? error->message : "which FILE? (cerberusd --help)");
     return 2;
   }
-  cerberus::robot::SettingsFile file = cerberus::robot::load_settings(argv[1]);
+  const gchar* credentials = g_getenv("CREDENTIALS_DIRECTORY");
+  cerberus::robot::SettingsFile file =
+      cerberus::robot::load_settings(argv[1], credentials ? credentials : "");
   if (!file.settings) {
     std::fprintf(stderr, "%s\n", file.errors.c_str());
-    return 1;
+    return check ? 1 : kWrongConfiguration;
   }
   if (check) {
     std::printf("%s: no mistake\n", argv[1]);

@@ -231,6 +231,35 @@ START_TEST(files_that_are_named_must_be_there_and_secrets_be_secret) {
 }
 END_TEST
 
+START_TEST(a_secret_may_be_a_credential_of_systemd) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/r.toml";
+  const std::string camera = "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b\"\nuser = \"u\"\n";
+  const std::string credential = camera + "password-credential = \"gate\"\n";
+  write(path, credential + "[mqtt]\nhost = \"b\"\nusername = \"u\"\npassword-credential = \"broker\"\n");
+  // Outside of the service nothing is looked for.
+  SettingsFile file = load_settings(path);
+  ck_assert_msg(file.settings.has_value(), "%s", file.errors.c_str());
+  ck_assert_str_eq(file.settings->cameras[0].source.password_file.c_str(),
+                   "/run/credentials/cerberusd.service/gate");
+  ck_assert(value(*file.settings->mqtt, "password-file") == "/run/credentials/cerberusd.service/broker");
+  // Within it the credentials must be there.
+  write(folder.path + "/gate", "hush\n", 0400);
+  file = load_settings(path, folder.path);
+  ck_assert(file.errors == path + ":10: \"password-credential\" names " + folder.path +
+                               "/broker: No such file or directory");
+  write(folder.path + "/broker", "hush\n", 0400);
+  file = load_settings(path, folder.path);
+  ck_assert(file.settings && file.settings->cameras[0].source.password_file == folder.path + "/gate");
+
+  ck_assert(says(errors(credential + "password-file = \"p\"\n"), "give one of them"));
+  ck_assert(
+      says(errors(camera + "password-credential = \"../gate\"\n"), "r.toml:6: \"password-credential\" is"));
+  ck_assert(says(errors("[[camera]]\nname = \"a\"\nkind = \"test\"\npassword-credential = \"gate\"\n"),
+                 "r.toml:4: \"password-credential\" is not for kind = \"test\""));
+}
+END_TEST
+
 START_TEST(a_secret_is_the_first_line_of_its_file) {
   const TemporaryFolder folder;
   std::string error;
@@ -448,19 +477,24 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "robot settings",
-      {the_smallest_file_has_one_camera_and_a_page_on_loopback, a_whole_file_becomes_typed_settings,
-       every_mistake_is_reported_with_its_line, a_move_by_mqtt_ends_after_a_minute_or_as_configured,
-       all_mistakes_come_at_once_in_the_order_of_their_lines,
-       files_that_are_named_must_be_there_and_secrets_be_secret, a_secret_is_the_first_line_of_its_file,
-       the_examples_of_the_manual_and_the_demo_are_sound,
-       the_entry_of_a_schedule_that_took_effect_last_counts, a_mode_set_by_hand_holds_until_the_next_entry,
-       a_local_time_that_clocks_skip_is_the_moment_of_the_change,
-       a_local_time_that_clocks_show_twice_counts_the_first_time,
-       an_entry_of_the_schedule_counts_once_in_each_night_of_the_change,
-       the_mode_survives_a_restart_and_a_broken_state_is_privacy,
-       a_broken_state_is_privacy_until_the_next_entry_of_the_schedule,
-       texts_of_the_user_are_assigned_and_never_parsed, a_part_that_failed_or_is_not_configured_is_left_out,
-       what_a_network_camera_records_is_never_encoded_again,
-       a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
+      "robot settings", {the_smallest_file_has_one_camera_and_a_page_on_loopback,
+                         a_whole_file_becomes_typed_settings,
+                         every_mistake_is_reported_with_its_line,
+                         a_move_by_mqtt_ends_after_a_minute_or_as_configured,
+                         all_mistakes_come_at_once_in_the_order_of_their_lines,
+                         files_that_are_named_must_be_there_and_secrets_be_secret,
+                         a_secret_may_be_a_credential_of_systemd,
+                         a_secret_is_the_first_line_of_its_file,
+                         the_examples_of_the_manual_and_the_demo_are_sound,
+                         the_entry_of_a_schedule_that_took_effect_last_counts,
+                         a_mode_set_by_hand_holds_until_the_next_entry,
+                         a_local_time_that_clocks_skip_is_the_moment_of_the_change,
+                         a_local_time_that_clocks_show_twice_counts_the_first_time,
+                         an_entry_of_the_schedule_counts_once_in_each_night_of_the_change,
+                         the_mode_survives_a_restart_and_a_broken_state_is_privacy,
+                         a_broken_state_is_privacy_until_the_next_entry_of_the_schedule,
+                         texts_of_the_user_are_assigned_and_never_parsed,
+                         a_part_that_failed_or_is_not_configured_is_left_out,
+                         what_a_network_camera_records_is_never_encoded_again,
+                         a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
 }
