@@ -110,8 +110,11 @@ bool is_own_host(std::string_view host, std::string_view machine, std::span<cons
   });
 }
 
-bool is_own_origin(std::string_view origin, std::string_view host, std::span<const std::string> origins) {
-  if (origin.starts_with("http://") && !host.empty() && same_letters(origin.substr(7), host)) return true;
+bool is_own_origin(std::string_view origin, std::string_view host, std::span<const std::string> origins,
+                   bool tls) {
+  const std::string_view scheme = tls ? "https://" : "http://";
+  if (origin.starts_with(scheme) && !host.empty() && same_letters(origin.substr(scheme.size()), host))
+    return true;
   return std::ranges::find(origins, origin) != origins.end();
 }
 

@@ -38,8 +38,9 @@ const Route* find_route(std::string_view method, std::string_view path);
 // rebinding).
 bool is_own_host(std::string_view host, std::string_view machine, std::span<const std::string> origins);
 // Whether a request that changes something, or a WebSocket, comes from the page itself or from a configured origin. A
-// missing origin is refused: browsers send one.
-bool is_own_origin(std::string_view origin, std::string_view host, std::span<const std::string> origins);
+// missing origin is refused: browsers send one. `tls`: whether the page itself is served by HTTPS.
+bool is_own_origin(std::string_view origin, std::string_view host, std::span<const std::string> origins,
+                   bool tls = false);
 
 using AccessTime = std::chrono::steady_clock::time_point;
 

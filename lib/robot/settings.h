@@ -68,6 +68,13 @@ struct PageSettings {
   std::vector<std::string> origins;  // that may open the page's WebSocket beside the page's own
   int picture_width = 960;           // pixels at most
   int quality = 75;                  // of the JPEG pictures, percent
+  bool tls = false;                  // with a self-made certificate where none is named
+  std::string certificate, key;      // PEM files
+};
+
+struct WebhookSettings {
+  std::string url, secret_file, ca_file;
+  std::string topics = "track mode event";  // of mqttpublish, parted by blanks
 };
 
 struct ModeSettings {
@@ -81,6 +88,8 @@ struct Settings {
   ModeSettings mode;
   PageSettings page;
   std::optional<Properties> mqtt;  // of mqttpublish, for all cameras
+  bool list_cameras = false;       // the page lists what else publishes to the broker
+  std::optional<WebhookSettings> webhook;
   std::vector<CameraSettings> cameras;
 };
 

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstring>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include "publish/mqtt_report.h"
@@ -90,7 +91,8 @@ bool is_address(const std::string& text) {
          inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
 }
 
-PageSettings read_page(const TomlValue& table, Mistakes& mistakes) {
+PageSettings read_page(const TomlValue& table, Folders folders, Mistakes& mistakes,
+                       std::vector<NamedFile>& files) {
   TableReader reader(table, "[page]", mistakes);
   PageSettings settings;
   reader.truth("enabled", settings.enabled);
@@ -106,6 +108,17 @@ PageSettings read_page(const TomlValue& table, Mistakes& mistakes) {
   }
   reader.whole("picture-width", settings.picture_width, 160, 3840);
   reader.whole("quality", settings.quality, 10, 100);
+  reader.truth("tls", settings.tls);
+  for (const auto& [key, value, secret] : {std::tuple("certificate", &settings.certificate, false),
+                                           std::tuple("certificate-key", &settings.key, true)}) {
+    if (!reader.text(key, *value)) continue;
+    *value = below(folders.configuration, *value);
+    files.push_back({reader.line(key), key, *value, secret});
+  }
+  if (reader.has("certificate") != reader.has("certificate-key"))
+    reader.complain("certificate", "\"certificate\" and \"certificate-key\" belong together");
+  if (reader.has("certificate") && !settings.tls)
+    reader.complain("certificate", "\"certificate\" needs tls = true");
   reader.finish();
   return settings;
 }
@@ -118,9 +131,50 @@ constexpr Option kMqtt[] = {
     {"discovery-prefix", Option::Kind::text},
 };
 
-Properties read_mqtt(const TomlValue& table, Folders folders, Mistakes& mistakes,
+constexpr std::array<std::string_view, 7> kTopics{"track", "state", "pir",  "pantilt",
+                                                  "rule",  "mode",  "event"};
+
+WebhookSettings read_webhook(const TomlValue& table, Folders folders, Mistakes& mistakes,
+                             std::vector<NamedFile>& files) {
+  TableReader reader(table, "[webhook]", mistakes);
+  WebhookSettings settings;
+  for (const char* key : {"url", "secret-file"})
+    if (!reader.has(key)) reader.complain(key, std::string("[webhook] needs \"") + key + "\"");
+  if (reader.text("url", settings.url)) {
+    const bool http = settings.url.starts_with("http://");
+    const std::string_view rest =
+        std::string_view(settings.url).substr(std::min<std::size_t>(http ? 7 : 8, settings.url.size()));
+    if (!http && !settings.url.starts_with("https://"))
+      reader.complain("url", "\"url\" begins with https:// or http://");
+    else if (rest.empty() || rest.substr(0, rest.find('/')).find('@') != rest.npos)
+      reader.complain("url", "\"url\" has a host, and no user or password before it: requests are signed");
+  }
+  for (const auto& [key, value, secret] : {std::tuple("secret-file", &settings.secret_file, true),
+                                           std::tuple("ca-file", &settings.ca_file, false)}) {
+    if (!reader.text(key, *value)) continue;
+    *value = below(folders.configuration, *value);
+    files.push_back({reader.line(key), key, *value, secret});
+  }
+  std::vector<std::string> topics;
+  if (reader.texts("topics", topics)) {
+    settings.topics.clear();
+    for (const std::string& topic : topics) {
+      if (std::ranges::find(kTopics, topic) == kTopics.end())
+        reader.complain("topics",
+                        "\"" + topic + "\" is no topic: track, state, pir, pantilt, rule, mode, event");
+      if (!settings.topics.empty()) settings.topics += ' ';
+      settings.topics += topic;
+    }
+    if (topics.empty()) reader.complain("topics", "\"topics\" names none: leave [webhook] out");
+  }
+  reader.finish();
+  return settings;
+}
+
+Properties read_mqtt(const TomlValue& table, Folders folders, bool& list_cameras, Mistakes& mistakes,
                      std::vector<NamedFile>& files) {
   TableReader reader(table, "[mqtt]", mistakes);
+  reader.truth("list-cameras", list_cameras);
   Properties properties;
   if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
   reader.properties(kMqtt, properties);
@@ -195,9 +249,12 @@ Parsed parse(std::string_view toml, Folders folders) {
   if (reader.text("state-folder", settings.state_folder))
     settings.state_folder = below(folders.configuration, settings.state_folder);
   if (const TomlValue* table = reader.table("mode")) settings.mode = read_mode(*table, mistakes);
-  if (const TomlValue* table = reader.table("page")) settings.page = read_page(*table, mistakes);
+  if (const TomlValue* table = reader.table("page"))
+    settings.page = read_page(*table, folders, mistakes, parsed.files);
   if (const TomlValue* table = reader.table("mqtt"))
-    settings.mqtt = read_mqtt(*table, folders, mistakes, parsed.files);
+    settings.mqtt = read_mqtt(*table, folders, settings.list_cameras, mistakes, parsed.files);
+  if (const TomlValue* table = reader.table("webhook"))
+    settings.webhook = read_webhook(*table, folders, mistakes, parsed.files);
   for (const TomlValue* table : reader.tables("camera", "[[camera]]"))
     settings.cameras.push_back(read_camera(*table, folders, mistakes, parsed.files));
   if (settings.mqtt) limit_moves(settings);

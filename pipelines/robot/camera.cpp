@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "robot/events.h"
 #include "robot/settings_file.h"
 
 namespace cerberus::robot {
@@ -176,7 +177,9 @@ void Camera::connect() {
             newest.announced = false;
           }
           Camera* camera = newest.camera;
-          if (camera != nullptr && camera->on_picture_) camera->on_picture_(*camera);
+          if (camera == nullptr) return static_cast<gboolean>(G_SOURCE_REMOVE);
+          camera->send_asked_picture();
+          if (camera->on_picture_) camera->on_picture_(*camera);
           return static_cast<gboolean>(G_SOURCE_REMOVE);
         },
         new Holder(holder), [](gpointer data) { delete static_cast<Holder*>(data); });
@@ -200,6 +203,31 @@ void Camera::publish_mode() {
   if (!mqtt_ || pipeline_ == nullptr) return;
   g_autoptr(GstElement) mqtt = element("mqtt");
   if (mqtt) g_object_set(mqtt, "mode", std::string(robot::name(mode_)).c_str(), nullptr);
+}
+
+bool Camera::publish(const char* topic, GBytes* payload, bool retain) {
+  if (!mqtt_ || pipeline_ == nullptr) return false;
+  g_autoptr(GstElement) mqtt = element("mqtt");
+  gboolean done = FALSE;
+  if (mqtt) g_signal_emit_by_name(mqtt, "publish", topic, payload, static_cast<gboolean>(retain), &done);
+  return done;
+}
+
+void Camera::publish_event() {
+  if (!mqtt_ || !settings_.recorder) return;
+  std::string fault;
+  const std::string text = Events(settings_.recorder->folder).newest(settings_.name, fault);
+  if (!fault.empty()) return;  // the page says so where it is asked for
+  g_autoptr(GBytes) payload = g_bytes_new(text.data(), text.size());
+  publish("event", payload, true);
+}
+
+// Asks for a picture that is drawn from now on: while nobody looks there is none, or an old one.
+void Camera::publish_picture() {
+  const std::lock_guard lock(newest_->lock);
+  if (!newest_->show) return;
+  picture_asked_after_ = std::max<guint64>(newest_->number, 1);
+  draw_ = true;
 }
 
 void Camera::start() {
@@ -237,6 +265,7 @@ void Camera::start() {
   set_show(true);
   // What refuses to start posts an error on the bus.
   gst_element_set_state(pipeline_, GST_STATE_PLAYING);
+  publish_event();
 }
 
 // The part of the camera that an element belongs to.
@@ -272,7 +301,14 @@ void Camera::fail(const std::string& part, const std::string& text) {
 void Camera::on_report(const GstStructure* report) {
   if (gst_structure_has_name(report, "cerberus-command")) {
     const gchar* order = gst_structure_get_string(report, "name");
+    if (g_strcmp0(order, "picture") == 0) publish_picture();
     if (order != nullptr && on_order_) on_order_(order);
+    return;
+  }
+  if (gst_structure_has_name(report, "cerberus-publish")) {
+    const gchar *topic = gst_structure_get_string(report, "topic"),
+                *payload = gst_structure_get_string(report, "payload");
+    if (topic && payload && on_publish_) on_publish_(*this, topic, payload);
     return;
   }
   const gchar* state = gst_structure_get_string(report, "state");
@@ -283,6 +319,7 @@ void Camera::on_report(const GstStructure* report) {
     gst_structure_get_boolean(report, "last", &last);
     const std::string_view what = state;
     if (what == "started") recording_ = true;
+    if (what == "started" || what == "ended") publish_event();
     if ((what == "ended" && last) || what == "failed") recording_ = false;
   }
 }
@@ -330,6 +367,7 @@ void Camera::on_message(GstMessage* message) {
 // Forgets picture and facts either way: none outlasts the time in which it may be seen.
 void Camera::set_show(bool show) {
   draw_ = show && watched_;
+  picture_asked_after_ = 0;
   const std::lock_guard lock(newest_->lock);
   newest_->show = show;
   g_clear_pointer(&newest_->picture, g_bytes_unref);
@@ -339,7 +377,16 @@ void Camera::set_show(bool show) {
 void Camera::set_watched(bool watched) {
   watched_ = watched;
   const std::lock_guard lock(newest_->lock);
-  draw_ = watched && newest_->show;
+  draw_ = (watched || picture_asked_after_ > 0) && newest_->show;
+}
+
+void Camera::send_asked_picture() {
+  guint64 number = 0;
+  g_autoptr(GBytes) newest = picture(number);
+  if (picture_asked_after_ == 0 || newest == nullptr || number <= picture_asked_after_) return;
+  picture_asked_after_ = 0;
+  set_watched(watched_);
+  publish("picture", newest, false);
 }
 
 void Camera::set_mode(Mode mode) {

@@ -46,6 +46,9 @@ class Camera {
   // An order that arrived by MQTT and is not for the head: arm, disarm, privacy.
   using OnOrder = std::function<void(const std::string& order)>;
 
+  // A message of mqttpublish whose topic the webhook wants.
+  using OnPublish = std::function<void(const Camera&, const std::string& topic, const std::string& payload)>;
+
   // `mqtt`: properties of mqttpublish; nullptr: nothing is published.
   Camera(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt, OnOrder on_order);
   ~Camera();
@@ -71,6 +74,9 @@ class Camera {
   const std::string& head_state() const { return head_state_; }
   bool is_recording() const { return recording_; }
 
+  void set_on_publish(OnPublish on_publish) { on_publish_ = std::move(on_publish); }
+  // Publishes the newest recording by MQTT, or that there is none.
+  void publish_event();
   void set_on_picture(OnPicture on_picture) { on_picture_ = std::move(on_picture); }
   // Pictures are only drawn while somebody looks.
   void set_watched(bool watched);
@@ -98,6 +104,9 @@ class Camera {
   void set_show(bool show);
   void set_triggers();
   void publish_mode();
+  bool publish(const char* topic, GBytes* payload, bool retain);
+  void publish_picture();
+  void send_asked_picture();
   void drop_frames(const char* queue, std::atomic<bool>& pass);
   GstElement* element(const char* name) const;
   std::string part_of(GstObject* source) const;
@@ -109,6 +118,7 @@ class Camera {
   std::optional<Properties> mqtt_;
   OnOrder on_order_;
   OnPicture on_picture_;
+  OnPublish on_publish_;
   Parameters parameters_;
   Mode mode_ = Mode::privacy;
   State state_ = State::off;
@@ -125,6 +135,7 @@ class Camera {
   guint64 counted_ = 0;
   double rate_ = 0;
   bool watched_ = false;
+  guint64 picture_asked_after_ = 0;  // a picture newer than this one is published by MQTT; 0: none is
   std::atomic<bool> parked_ = false, draw_ = false, record_ = false;
   std::shared_ptr<Newest> newest_;
 };

@@ -53,6 +53,7 @@ GBytes* read_part(int descriptor, off_t from, gsize size) {
 
 // A whole file on its way, a chunk at a time: the next one is read when the one before it was written.
 struct Download {
+  PageListener* listener;
   record::OpenFile file;
   goffset at = 0, end = 0;
 
@@ -62,8 +63,7 @@ struct Download {
     g_autoptr(GBytes) bytes = read_part(file.descriptor(), at, static_cast<gsize>(size));
     if (bytes == nullptr) {  // what was promised cannot be sent: the connection ends
       at = end;
-      if (GSocket* socket = soup_server_message_get_socket(message))
-        g_socket_shutdown(socket, TRUE, TRUE, nullptr);
+      if (GSocketAddress* remote = soup_server_message_get_remote_address(message)) listener->abort(remote);
       bytes = g_bytes_new_static("", 1);
     }
     at += size;
@@ -71,8 +71,8 @@ struct Download {
   }
 };
 
-void send_whole(SoupServerMessage* message, record::OpenFile file, goffset size) {
-  auto* download = new Download{std::move(file), 0, size};
+void send_whole(PageListener& listener, SoupServerMessage* message, record::OpenFile file, goffset size) {
+  auto* download = new Download{&listener, std::move(file), 0, size};
   soup_message_body_set_accumulate(soup_server_message_get_response_body(message), FALSE);
   soup_message_headers_set_content_length(soup_server_message_get_response_headers(message), size);
   g_signal_connect_data(
@@ -155,7 +155,7 @@ void PageServer::answer_recording(Request& request) {
   }
   soup_message_headers_set_content_type(headers, type_of(file), nullptr);
   if (range.kind == ByteRange::Kind::whole)
-    return send_whole(request.message, std::move(open), about.st_size);
+    return send_whole(listener_, request.message, std::move(open), about.st_size);
   g_autoptr(GBytes) bytes =
       read_part(open.descriptor(), static_cast<off_t>(range.first), range.last - range.first + 1);
   if (bytes == nullptr)
@@ -179,6 +179,7 @@ void PageServer::change_recording(Request& request) {
       deletes ? events.remove(name, *id) : events.keep(name, *id, request.value("keep") == "1");
   if (!fault.empty()) return request.refuse(SOUP_STATUS_CONFLICT, fault);
   log_access(request.who(), (deletes ? "deleted " : "marked ") + name + " recording " + std::to_string(*id));
+  if (deletes) camera(name)->publish_event();
   request.done();
 }
 

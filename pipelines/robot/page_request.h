@@ -6,6 +6,8 @@
 
 namespace cerberus::robot {
 
+constexpr const char* kCookie = "cerberus";
+
 struct PageServer::Request {
   SoupServerMessage* message;
   std::string_view path;

@@ -14,7 +14,6 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr const char* kCookie = "cerberus";
 constexpr goffset kLongestBody = 2048;        // bytes of a form
 constexpr std::size_t kMostPasswords = 4096;  // bytes of the file
 
@@ -63,13 +62,6 @@ std::string token_of(SoupServerMessage* message) {
     at = cookies.find_first_not_of(' ', end + 1);
   }
   return {};
-}
-
-void set_cookie(SoupServerMessage* message, const std::string& token, const char* age) {
-  const std::string cookie =
-      std::string(kCookie) + '=' + token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + age;
-  soup_message_headers_append(soup_server_message_get_response_headers(message), "Set-Cookie",
-                              cookie.c_str());
 }
 
 AccessTime now() {
@@ -123,23 +115,7 @@ bool PageServer::open(std::string& error) {
       [](SoupServer*, SoupServerMessage* message, const char*, SoupWebsocketConnection* connection,
          gpointer page) { static_cast<PageServer*>(page)->open_socket(message, connection); },
       this, nullptr);
-  const PageSettings& page = house_.settings.page;
-  g_autoptr(GSocketAddress) address =
-      g_inet_socket_address_new_from_string(page.listen.c_str(), static_cast<guint>(page.port));
-  if (address == nullptr) {
-    error = "\"listen\" of [page] is a numeric address: 127.0.0.1, or 0.0.0.0 for every network";
-    return false;
-  }
-  g_autoptr(GError) fault = nullptr;
-  if (!soup_server_listen(server_, address, static_cast<SoupServerListenOptions>(0), &fault)) {
-    error =
-        "the page cannot listen at " + page.listen + ':' + std::to_string(page.port) + ": " + fault->message;
-    return false;
-  }
-  g_printerr("cerberusd: the page is at http://%s:%d\n", page.listen.c_str(), page.port);
-  if (!g_inet_address_get_is_loopback(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address))))
-    g_printerr(
-        "cerberusd: the page is open to the network, and without TLS passwords travel in plain text\n");
+  if (!listen(error)) return false;
   if (!passwords_.has(Role::owner)) {
     // Only where the program was started; a log keeps it, but it counts until a password is set, on this machine alone.
     g_print("One-time password of the owner, for a browser on this machine: %s\n",
@@ -151,6 +127,35 @@ bool PageServer::open(std::string& error) {
         if (viewer->camera() == &from) viewer->send_picture();
     });
   }
+  return true;
+}
+
+bool PageServer::listen(std::string& error) {
+  const PageSettings& page = house_.settings.page;
+  g_autoptr(GSocketAddress) address =
+      g_inet_socket_address_new_from_string(page.listen.c_str(), static_cast<guint>(page.port));
+  if (address == nullptr) {
+    error = "\"listen\" of [page] is a numeric address: 127.0.0.1, or 0.0.0.0 for every network";
+    return false;
+  }
+  g_autoptr(GTlsCertificate) certificate = nullptr;
+  if (page.tls) {
+    certificate = page.certificate.empty()
+                      ? self_made_certificate(house_.settings.state_folder, page.listen, error)
+                      : load_certificate(page.certificate, page.key, error);
+    if (certificate == nullptr) return false;
+  }
+  if (!listener_.open(server_, address, certificate, error)) {
+    error = "the page cannot listen at " + page.listen + ':' + std::to_string(page.port) + ": " + error;
+    return false;
+  }
+  g_printerr("cerberusd: the page is at %s://%s:%d\n", page.tls ? "https" : "http", page.listen.c_str(),
+             page.port);
+  if (certificate != nullptr)
+    g_printerr("cerberusd: SHA-256 of the page's certificate: %s\n", fingerprint(certificate).c_str());
+  else if (!g_inet_address_get_is_loopback(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address))))
+    g_printerr(
+        "cerberusd: the page is open to the network, and without TLS passwords travel in plain text\n");
   return true;
 }
 
@@ -177,7 +182,7 @@ void PageServer::authorize(SoupServerMessage* message, std::string_view path) {
   const Route* route = find_route(method, path);
   if (route == nullptr) return refuse(SOUP_STATUS_NOT_FOUND, "there is no such page\n");
   const bool changes = method == "POST" || path == "/socket";
-  if (changes && !is_own_origin(origin, host, origins))
+  if (changes && !is_own_origin(origin, host, origins, house_.settings.page.tls))
     return refuse(SOUP_STATUS_FORBIDDEN, "this does not come from the page\n");
   SoupMessageHeaders* asked = soup_server_message_get_request_headers(message);
   if (soup_message_headers_get_encoding(asked) == SOUP_ENCODING_CHUNKED ||
@@ -228,77 +233,6 @@ void PageServer::answer_session(Request& request) {
   line.key("first").boolean(!passwords_.has(Role::owner) && is_local(request.message));
   line.key("must-set-password").boolean(request.session != nullptr && request.session->must_set_password);
   request.respond(SOUP_STATUS_OK, "application/json", std::string(line.close('}').finish()));
-}
-
-void PageServer::log_in(Request& request) {
-  const std::chrono::seconds wait = limit_.wait(request.address, now());
-  if (wait.count() > 0) {
-    soup_message_headers_replace(soup_server_message_get_response_headers(request.message), "Retry-After",
-                                 std::to_string(wait.count()).c_str());
-    request.refuse(429, "too many wrong passwords: wait " + std::to_string(wait.count()) + " s");
-    return;
-  }
-  const Role role = role_of(request.value("user")).value_or(Role::none);
-  const std::string password = request.value("password");
-  const bool one_time = passwords_.is_one_time(role, password) && is_local(request.message);
-  if (!one_time && !passwords_.verify(role, password)) {
-    limit_.failed(request.address, now());
-    log_access(request.who(), "gave a wrong password");
-    request.refuse(SOUP_STATUS_FORBIDDEN, "wrong password");
-    return;
-  }
-  const std::string token = random_token();
-  if (token.empty()) {
-    request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR, "the system gives no random numbers");
-    return;
-  }
-  limit_.succeeded(request.address);
-  if (request.session != nullptr) sessions_.end(request.session->token);
-  Session& session = sessions_.begin(token, role, request.address, now());
-  session.must_set_password = one_time;
-  request.session = &session;
-  set_cookie(request.message, token, "604800");
-  log_access(request.who(), "logged in");
-  request.done();
-}
-
-void PageServer::log_out(Request& request) {
-  log_access(request.who(), "logged out");
-  sessions_.end(request.session->token);
-  request.session = nullptr;
-  set_cookie(request.message, "", "0");
-  close_strangers();
-  request.done();
-}
-
-void PageServer::set_password(Request& request) {
-  Session& session = *request.session;
-  const Role role = role_of(request.value("user")).value_or(Role::none);
-  if (session.must_set_password && role != Role::owner) {
-    request.refuse(SOUP_STATUS_FORBIDDEN, "the owner's password comes first");
-    return;
-  }
-  const std::string wrong = passwords_.set(role, request.value("password"));
-  if (!wrong.empty()) {
-    request.refuse(SOUP_STATUS_BAD_REQUEST, wrong);
-    return;
-  }
-  const std::string text = passwords_.state();
-  g_autoptr(GError) error = nullptr;
-  const auto how =
-      static_cast<GFileSetContentsFlags>(G_FILE_SET_CONTENTS_CONSISTENT | G_FILE_SET_CONTENTS_DURABLE);
-  if (!g_file_set_contents_full(path_of_passwords().c_str(), text.data(), static_cast<gssize>(text.size()),
-                                how, 0600, &error)) {
-    g_printerr("cerberusd: the passwords cannot be kept: %s\n", error->message);
-    request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR,
-                   "the password counts until the next start: it cannot be kept");
-    return;
-  }
-  session.must_set_password = false;
-  sessions_.end_all(role, std::string(session.token));
-  close_strangers();
-  log_access(request.address, "set the password of the " + std::string(name(role)));
-  request.done();
 }
 
 }  // namespace cerberus::robot

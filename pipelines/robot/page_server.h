@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "background_work.h"
 #include "camera.h"
+#include "page_listener.h"
 #include "robot/access.h"
 #include "robot/events.h"
 #include "robot/passwords.h"
@@ -62,6 +64,12 @@ class PageServer {
   Camera* camera(std::string_view name) const;
   Events& events_of(const Camera& camera);
   Session* session_of(SoupServerMessage* message);
+  // Continues a request in the background's thread and answers it then.
+  void answer_later(Request& request, std::function<void()> work, std::function<void(Request&)> done);
+  void finish_log_in(Request& request, Role role, bool one_time);
+  void keep_password(Request& request, Role role, std::string hash);
+  bool listen(std::string& error);
+  void set_cookie(SoupServerMessage* message, const std::string& token, const char* age) const;
   std::string path_of_passwords() const { return house_.settings.state_folder + "/passwords"; }
 
   House house_;
@@ -72,6 +80,8 @@ class PageServer {
   SoupServer* server_ = nullptr;
   std::vector<std::unique_ptr<Viewer>> viewers_;
   std::map<std::string, Events> events_;  // by folder
+  BackgroundWork background_;
+  PageListener listener_;
   double cpu_seconds_ = 0;
   gint64 measured_ = 0;  // microseconds
 };

@@ -64,13 +64,32 @@ bool Robot::open(Settings settings, std::string& error) {
     save_mode();
   }
   mode_->tick(now(), offset_of_zone);
+#if HAVE_PAGE
+  if (settings_.webhook) open_webhook();
+#else
+  if (settings_.webhook) g_printerr("cerberusd: this build has no webhook (it needs libsoup 3)\n");
+#endif
+  // What the webhook sends comes from mqttpublish, which works without a broker too.
+  std::optional<Properties> publishing = settings_.mqtt;
+#if HAVE_PAGE
+  if (webhook_) {
+    if (!publishing) publishing = Properties{{"host", ""}};
+    publishing->push_back({"post-topics", settings_.webhook->topics});
+  }
+#endif
   for (const CameraSettings& camera : settings_.cameras) {
     if (camera.recorder && g_mkdir_with_parents(camera.recorder->folder.c_str(), 0750) != 0)
       g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", camera.name.c_str(),
                  camera.recorder->folder.c_str(), g_strerror(errno));
-    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page,
-                                                settings_.mqtt ? &*settings_.mqtt : nullptr,
+    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page, publishing ? &*publishing : nullptr,
                                                 [this](const std::string& order) { on_order(order); }));
+#if HAVE_PAGE
+    if (webhook_)
+      cameras_.back()->set_on_publish(
+          [this](const Camera& from, const std::string& topic, const std::string& payload) {
+            webhook_->add(from.settings().name, topic, payload);
+          });
+#endif
   }
 #if HAVE_PAGE
   if (settings_.page.enabled) open_page();
@@ -82,6 +101,16 @@ bool Robot::open(Settings settings, std::string& error) {
 }
 
 #if HAVE_PAGE
+void Robot::open_webhook() {
+  std::string error;
+  g_autoptr(GstElementFactory) publisher = gst_element_factory_find("mqttpublish");
+  if (!publisher) error = "this build has no element mqttpublish (libmosquitto), which collects its events";
+  webhook_ = std::make_unique<Webhook>(*settings_.webhook, settings_.name);
+  if (error.empty() && webhook_->open(error)) return;
+  webhook_.reset();
+  g_printerr("cerberusd: there is no webhook: %s\n", error.c_str());
+}
+
 // The robot goes on without the page, which is tried again.
 void Robot::open_page() {
   page_ = std::make_unique<PageServer>(PageServer::House{settings_, cameras_, [this] { return this->mode(); },
@@ -156,6 +185,7 @@ void Robot::tick() {
       page_backoff_.is_due(std::chrono::steady_clock::now()))
     open_page();
   if (page_) page_->tick();
+  if (webhook_) webhook_->tick();
   if (!page_fault_.empty()) status += ", page (" + page_fault_ + ')';
 #endif
   if (sound) notify("WATCHDOG=1");
@@ -197,6 +227,7 @@ int Robot::run() {
   const bool stopped = std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_stopped(); });
 #if HAVE_PAGE
   page_.reset();
+  webhook_.reset();
 #endif
   if (!stopped) {
     // To stop a pipeline here could wait for ever for the element that does not stop.

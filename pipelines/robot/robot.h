@@ -11,6 +11,7 @@
 #include "camera.h"
 #if HAVE_PAGE
 #include "page_server.h"
+#include "webhook.h"
 #endif
 #include "robot/backoff.h"
 #include "robot/mode.h"
@@ -34,6 +35,7 @@ class Robot {
   void save_mode();
 #if HAVE_PAGE
   void open_page();
+  void open_webhook();
 #endif
   void tick();
   void report(const std::string& text) const;
@@ -44,6 +46,7 @@ class Robot {
   std::vector<std::unique_ptr<Camera>> cameras_;
 #if HAVE_PAGE
   std::unique_ptr<PageServer> page_;
+  std::unique_ptr<Webhook> webhook_;
   Backoff page_backoff_;
   std::string page_fault_;
 #endif

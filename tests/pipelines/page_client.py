@@ -5,6 +5,7 @@ import http.client
 import json
 import os
 import socket
+import ssl
 import struct
 import urllib.parse
 
@@ -12,14 +13,20 @@ PATIENCE = 100  # seconds
 
 
 class Page:
+    """With `certificate`, the file of a self-made one, over TLS."""
+    certificate = None
+
     def __init__(self, port, host=None):
         self.port, self.cookie = port, None
         self.host = host or f'127.0.0.1:{port}'
-        self.origin = f'http://{self.host}'
+        self.context = ssl.create_default_context(cafile=self.certificate) if self.certificate else None
+        self.origin = f'http{"s" if self.context else ""}://{self.host}'
 
     def ask(self, method, path, form=None, origin='own', headers=()):
         """Status, headers and body of one request."""
         line = http.client.HTTPConnection('127.0.0.1', self.port, timeout=PATIENCE)
+        if self.context:
+            line = http.client.HTTPSConnection('127.0.0.1', self.port, timeout=PATIENCE, context=self.context)
         send = {'Host': self.host} | dict(headers)
         if self.cookie:
             send['Cookie'] = f'other=1; cerberus={self.cookie}'
@@ -48,6 +55,8 @@ class Socket:
 
     def __init__(self, page, origin='own'):
         self.line = socket.create_connection(('127.0.0.1', page.port), PATIENCE)
+        if page.context:
+            self.line = page.context.wrap_socket(self.line, server_hostname='127.0.0.1')
         key = base64.b64encode(os.urandom(16)).decode()
         lines = ['GET /socket HTTP/1.1', f'Host: {page.host}', 'Upgrade: websocket', 'Connection: Upgrade',
                  f'Sec-WebSocket-Key: {key}', 'Sec-WebSocket-Version: 13']

@@ -98,6 +98,10 @@ START_TEST(an_origin_is_the_pages_own_or_configured) {
         "http://127.0.0.1:8080.evil", "http://", "https://robot.example"})
     ck_assert_msg(!is_own_origin(other, "127.0.0.1:8080", origins), "%s", other);
   ck_assert(!is_own_origin("http://", "", {}));
+  // A page with TLS is not reached without it, and the other way round.
+  ck_assert(is_own_origin("https://127.0.0.1:8080", "127.0.0.1:8080", origins, true));
+  ck_assert(!is_own_origin("http://127.0.0.1:8080", "127.0.0.1:8080", origins, true));
+  ck_assert(!is_own_origin("https://", "", {}, true));
 }
 END_TEST
 

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How a browser gets and loses its session: passwords are checked in a thread of their own.
+#include <gio/gio.h>
+
+#include "page_request.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+AccessTime now() {
+  return std::chrono::steady_clock::now();
+}
+
+bool is_local(SoupServerMessage* message) {
+  GSocketAddress* address = soup_server_message_get_remote_address(message);
+  return G_IS_INET_SOCKET_ADDRESS(address) &&
+         g_inet_address_get_is_loopback(g_inet_socket_address_get_address(G_INET_SOCKET_ADDRESS(address)));
+}
+
+}  // namespace
+
+void PageServer::set_cookie(SoupServerMessage* message, const std::string& token, const char* age) const {
+  std::string cookie =
+      std::string(kCookie) + '=' + token + "; Path=/; HttpOnly; SameSite=Strict; Max-Age=" + age;
+  if (house_.settings.page.tls) cookie += "; Secure";
+  soup_message_headers_append(soup_server_message_get_response_headers(message), "Set-Cookie",
+                              cookie.c_str());
+}
+
+void PageServer::log_in(Request& request) {
+  const std::chrono::seconds wait = limit_.wait(request.address, now());
+  if (wait.count() > 0) {
+    soup_message_headers_replace(soup_server_message_get_response_headers(request.message), "Retry-After",
+                                 std::to_string(wait.count()).c_str());
+    request.refuse(429, "too many wrong passwords: wait " + std::to_string(wait.count()) + " s");
+    return;
+  }
+  // Counts as wrong until it is found right: several at once are no way around the limit.
+  limit_.failed(request.address, now());
+  const Role role = role_of(request.value("user")).value_or(Role::none);
+  const std::string password = request.value("password");
+  if (passwords_.is_one_time(role, password) && is_local(request.message))
+    return finish_log_in(request, role, true);
+  auto right = std::make_shared<bool>(false);
+  answer_later(
+      request, [right, role, password, all = passwords_] { *right = all.verify(role, password); },
+      [this, right, role](Request& later) { finish_log_in(later, *right ? role : Role::none, false); });
+}
+
+void PageServer::answer_later(Request& request, std::function<void()> work,
+                              std::function<void(Request&)> done) {
+  SoupServerMessage* message = request.message;
+  auto held = std::shared_ptr<SoupServerMessage>(SOUP_SERVER_MESSAGE(g_object_ref(message)), g_object_unref);
+  const bool added =
+      background_.add(std::move(work), [this, held, address = request.address, done = std::move(done)] {
+        SoupServerMessage* message = held.get();
+        Request later{
+            message,
+            soup_server_message_get_uri(message) ? g_uri_get_path(soup_server_message_get_uri(message)) : "",
+            nullptr, session_of(message), address};
+        done(later);
+        soup_server_message_unpause(message);
+      });
+  if (!added) return request.refuse(SOUP_STATUS_SERVICE_UNAVAILABLE, "too many passwords at once: try again");
+  soup_server_message_pause(message);
+}
+
+// `role` none: the password is wrong.
+void PageServer::finish_log_in(Request& request, Role role, bool one_time) {
+  if (role == Role::none) {
+    log_access(request.who(), "gave a wrong password");
+    request.refuse(SOUP_STATUS_FORBIDDEN, "wrong password");
+    return;
+  }
+  const std::string token = random_token();
+  if (token.empty()) {
+    request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR, "the system gives no random numbers");
+    return;
+  }
+  limit_.succeeded(request.address);
+  if (request.session != nullptr) sessions_.end(request.session->token);
+  Session& session = sessions_.begin(token, role, request.address, now());
+  session.must_set_password = one_time;
+  request.session = &session;
+  set_cookie(request.message, token, "604800");
+  log_access(request.who(), "logged in");
+  request.done();
+}
+
+void PageServer::log_out(Request& request) {
+  log_access(request.who(), "logged out");
+  sessions_.end(request.session->token);
+  request.session = nullptr;
+  set_cookie(request.message, "", "0");
+  close_strangers();
+  request.done();
+}
+
+void PageServer::set_password(Request& request) {
+  Session& session = *request.session;
+  const Role role = role_of(request.value("user")).value_or(Role::none);
+  if (session.must_set_password && role != Role::owner) {
+    request.refuse(SOUP_STATUS_FORBIDDEN, "the owner's password comes first");
+    return;
+  }
+  const std::string password = request.value("password");
+  if (const std::string wrong = Passwords::fault_of(role, password); !wrong.empty())
+    return request.refuse(SOUP_STATUS_BAD_REQUEST, wrong);
+  auto hash = std::make_shared<std::string>();
+  answer_later(
+      request, [hash, password, all = passwords_] { *hash = all.hash_of(password); },
+      [this, hash, role](Request& later) { keep_password(later, role, *hash); });
+}
+
+void PageServer::keep_password(Request& request, Role role, std::string hash) {
+  if (request.session == nullptr || request.session->role != Role::owner)
+    return request.refuse(SOUP_STATUS_UNAUTHORIZED, "log in first");  // it ended meanwhile
+  if (hash.empty())
+    return request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR,
+                          "the system has no memory or no random numbers for a password");
+  Session& session = *request.session;
+  passwords_.keep(role, std::move(hash));
+  const std::string text = passwords_.state();
+  g_autoptr(GError) error = nullptr;
+  const auto how =
+      static_cast<GFileSetContentsFlags>(G_FILE_SET_CONTENTS_CONSISTENT | G_FILE_SET_CONTENTS_DURABLE);
+  if (!g_file_set_contents_full(path_of_passwords().c_str(), text.data(), static_cast<gssize>(text.size()),
+                                how, 0600, &error)) {
+    g_printerr("cerberusd: the passwords cannot be kept: %s\n", error->message);
+    request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR,
+                   "the password counts until the next start: it cannot be kept");
+    return;
+  }
+  session.must_set_password = false;
+  sessions_.end_all(role, std::string(session.token));
+  close_strangers();
+  log_access(request.address, "set the password of the " + std::string(name(role)));
+  request.done();
+}
+
+}  // namespace cerberus::robot
