@@ -21,8 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   Archive archive;
   archive.open({folder + "/in", "index.sqlite", {Time(1), 1, UINT64_MAX}},
-               {std::chrono::days(30'000), Time(0), 0});
-  archive.retain({std::chrono::days(30'000), std::chrono::hours(3), 0});
+               {std::chrono::days(40'000), Time(0), 0});
+  archive.retain({std::chrono::days(40'000), std::chrono::hours(3), 0});
   archive.close();
   if (!std::filesystem::exists(folder + "/precious.mp4")) std::abort();
   return 0;

@@ -3,13 +3,17 @@
 
 #include <check.h>
 #include <fcntl.h>
+#include <sqlite3.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <thread>
 
 #include "support/suite.h"
 #include "support/temporary_folder.h"
@@ -22,7 +26,11 @@ using std::chrono::hours;
 
 namespace {
 
-constexpr Surroundings kNow{days(1000), hours(1), 1 << 30};
+// Day 850 is the beginning of 2025.
+constexpr Time on(int day) {
+  return days(19239 + day);
+}
+constexpr Surroundings kNow{on(1000), hours(1), 1 << 30};
 
 // An archive of a folder of its own.
 struct Rig {
@@ -43,7 +51,7 @@ struct Rig {
   // The same, not closed.
   Recording begin(const std::string& name, int day) {
     Recording row;
-    row.begin = row.end = days(day);
+    row.begin = row.end = on(day);
     ck_assert((archive.begin(row, name, ".mp4", file)).empty());
     OpenFile lines;
     ck_assert_int_eq(archive.add_lines(row, lines), 0);
@@ -52,19 +60,22 @@ struct Rig {
   }
   // When it was written, by the system's clock.
   void written_on(const std::string& name, int day) const {
-    const timespec then{day * 86'400L, 0}, times[] = {then, then};
+    const timespec then{on(day) / std::chrono::seconds(1), 0}, times[] = {then, then};
     ck_assert_int_eq(utimensat(AT_FDCWD, (folder.path + '/' + name).c_str(), times, 0), 0);
   }
   void write(const std::string& name, std::size_t bytes) const {
     std::ofstream(folder.path + '/' + name) << std::string(bytes, 'x');
   }
   bool has(const std::string& name) const { return fs::exists(folder.path + '/' + name); }
-  std::vector<Recording> rows() const {
-    Index index;
+  std::unique_ptr<Index> index() const {
+    auto index = std::make_unique<Index>();
     bool damaged = false;
+    ck_assert((index->open(folder.path + "/index.sqlite", damaged)).empty());
+    return index;
+  }
+  std::vector<Recording> rows() const {
     std::vector<Recording> read;
-    ck_assert((index.open(folder.path + "/index.sqlite", damaged)).empty());
-    ck_assert((index.read(read)).empty());
+    ck_assert((index()->read(read)).empty());
     return read;
   }
 
@@ -75,6 +86,10 @@ struct Rig {
 };
 
 using Names = std::vector<std::string>;
+
+bool folder_has(const TemporaryFolder& folder, const std::string& name) {
+  return fs::exists(folder.path + '/' + name);
+}
 
 }  // namespace
 
@@ -288,13 +303,13 @@ START_TEST(files_of_others_are_never_touched_whatever_the_index_says) {
       Recording row;
       row.file = name;
       row.open = false;
-      row.begin = row.end = days(1);
+      row.begin = row.end = on(1);
       ck_assert((index.add(row, taken)).empty());
     }
     Recording row;
     row.file = "c.mp4";
     row.lines = "notes.txt";  // another file's name in a row of ours
-    row.begin = row.end = days(1);
+    row.begin = row.end = on(1);
     ck_assert((index.add(row, taken)).empty());
   }
   rig.archive.retain(kNow);
@@ -375,6 +390,148 @@ START_TEST(without_an_index_files_are_made_all_the_same_and_nothing_is_deleted) 
 }
 END_TEST
 
+START_TEST(an_index_that_can_be_opened_later_gets_the_rows_of_what_was_recorded_meanwhile) {
+  Rig rig;
+  rig.archive.close();
+  fs::remove(rig.folder.path + "/index.sqlite");
+  fs::create_directory(rig.folder.path + "/index.sqlite");  // it cannot be opened, and is no damaged one
+  rig.open();
+  ck_assert_uint_eq(rig.complaints.size(), 1);
+  rig.record("a", 999);
+  rig.record("old", 900);
+  Recording open = rig.begin("b", 999);
+  rig.write("b.mp4", 7);
+  Surroundings now = kNow;
+  const auto retain_after = [&](Time pause) {
+    now.steady += pause;
+    return rig.archive.retain(now);
+  };
+  ck_assert(retain_after(std::chrono::seconds(10)).empty());
+  ck_assert(rig.archive.take_complaints().empty());  // the same one
+  fs::remove(rig.folder.path + "/index.sqlite");
+  ck_assert(retain_after(std::chrono::seconds(19)).empty());  // the second pause is of 20 s
+  ck_assert(!rig.has("index.sqlite"));
+  ck_assert(retain_after(std::chrono::seconds(1)).empty());
+  ck_assert_uint_eq(rig.rows().size(), 2);
+  ck_assert_uint_eq(rig.rows()[0].bytes, 110);
+  rig.archive.finish(open, rig.file);
+  ck_assert_uint_eq(rig.rows().size(), 3);
+  ck_assert(rig.rows()[2].file == "b.mp4" && !rig.rows()[2].open);
+}
+END_TEST
+
+START_TEST(a_recording_that_another_program_keeps_during_retention_is_not_deleted) {
+  Rig rig;
+  rig.record("a", 990);
+  rig.record("b", 999);
+  // What retention does with a row that it found to be too old, after `keep` was set.
+  const auto id = rig.rows()[0].id;
+  ck_assert((rig.index()->set_keep("a.mp4", true)).empty());
+  bool called = false, removed = true;
+  const auto remove = [&] { return called = true; };
+  ck_assert((rig.index()->remove_with(id, remove, removed)).empty());
+  ck_assert(!called && !removed);
+  ck_assert_uint_eq(rig.rows().size(), 2);
+  ck_assert((rig.index()->set_keep("a.mp4", false)).empty());
+  // Nor can it be set any more between the decision and the row's end.
+  sqlite3* other = nullptr;
+  ck_assert_int_eq(sqlite3_open((rig.folder.path + "/index.sqlite").c_str(), &other), SQLITE_OK);
+  int late = SQLITE_OK;
+  const auto keep_late = [&] {
+    late = sqlite3_exec(other, "UPDATE recordings SET keep = 1", nullptr, nullptr, nullptr);
+    return true;
+  };
+  ck_assert((rig.index()->remove_with(id, keep_late, removed)).empty());
+  sqlite3_close(other);
+  ck_assert_int_eq(late, SQLITE_BUSY);
+  ck_assert(removed);
+  ck_assert_uint_eq(rig.rows().size(), 1);
+  ck_assert((rig.index()->remove_with(id, remove, removed)).empty());  // another recorder did it
+  ck_assert(!removed && !called);
+}
+END_TEST
+
+START_TEST(files_that_cannot_be_deleted_leave_the_row_as_it_is) {
+  Rig rig;
+  const auto id = rig.record("a", 990).id;
+  bool removed = true;
+  ck_assert((rig.index()->remove_with(id, [] { return false; }, removed)).empty());
+  ck_assert(!removed);
+  ck_assert_uint_eq(rig.rows().size(), 1);
+}
+END_TEST
+
+START_TEST(a_file_that_is_being_made_is_not_taken_for_what_a_killed_process_left) {
+  const TemporaryFolder folder;
+  const Folder ours(folder.path);
+  std::atomic<bool> over{false};
+  std::thread other([&] {  // deletes each file that is not locked, as reconciliation does with empty ones
+    OpenFile file;
+    while (!over) {
+      if (ours.lock("a.mp4", file) == 0) ours.remove("a.mp4");
+      file.close();
+    }
+  });
+  int lost = 0, made = 0;
+  for (int k = 0; k < 3000; ++k) {
+    OpenFile file;
+    if (ours.create("a.mp4", file) != 0) continue;
+    ++made;
+    lost += !ours.exists("a.mp4");
+    ours.remove("a.mp4");
+  }
+  over = true;
+  other.join();
+  ck_assert_int_gt(made, 0);
+  ck_assert_int_eq(lost, 0);
+}
+END_TEST
+
+// Two recorders begin, complete, keep and delete in one folder at once, and each starts anew again and again: nothing that
+// is being written is taken for what a killed process left, and files and rows stay the same set.
+START_TEST(two_recorders_and_their_retention_in_one_folder_lose_nothing) {
+  const TemporaryFolder folder;
+  constexpr int kRounds = 16;
+  const auto record = [&folder](char name) {
+    Archive archive;
+    for (int k = 0; k < kRounds; ++k) {
+      if (k % 3 == 0) archive.open({folder.path, "index.sqlite", {days(7), 300, 0}}, kNow);
+      Recording row;
+      OpenFile file;
+      row.begin = row.end = on(999);
+      ck_assert((archive.begin(row, std::string(1, name) + "/" + std::to_string(k), ".mp4", file)).empty());
+      OpenFile lines;
+      ck_assert_int_eq(archive.add_lines(row, lines), 0);
+      ck_assert_int_eq(file.write("0123456789", 10), 0);
+      ck_assert_int_eq(lines.write("0123456789", 10), 0);
+      ck_assert(folder_has(folder, row.file));  // no one has deleted it
+      row.tracks = "7";
+      archive.finish(row, file);
+      file.close();
+      archive.retain(kNow);
+      for (const std::string& text : archive.take_complaints()) ck_abort_msg("%s", text.c_str());
+    }
+  };
+  std::thread other(record, 'b');
+  record('a');
+  other.join();
+  Index index;
+  bool damaged = false;
+  std::vector<Recording> rows;
+  ck_assert((index.open(folder.path + "/index.sqlite", damaged)).empty());
+  ck_assert((index.read(rows)).empty());
+  std::size_t files = 0;
+  for (const auto& each : fs::recursive_directory_iterator(folder.path))
+    files += each.path().extension() == ".mp4";
+  ck_assert_uint_eq(files, rows.size());
+  ck_assert_uint_ge(rows.size(), 15);  // of 20 bytes each: the last retention leaves 300
+  for (const Recording& row : rows) {
+    ck_assert(folder_has(folder, row.file) && folder_has(folder, row.lines));
+    ck_assert_msg(!row.open && row.tracks == "7" && row.bytes == 20, "%s", row.file.c_str());
+  }
+}
+END_TEST
+
 int main() {
   Suite* suite = suite_create("archive");
   TCase* cases = tcase_create("archive");
@@ -397,8 +554,14 @@ int main() {
                             a_damaged_index_is_put_aside_and_recording_goes_on,
                             every_damaged_index_is_put_aside_under_a_name_of_its_own_with_its_journal,
                             a_deletion_that_fails_is_reported_once_and_the_row_stays,
-                            without_an_index_files_are_made_all_the_same_and_nothing_is_deleted})
+                            without_an_index_files_are_made_all_the_same_and_nothing_is_deleted,
+                            an_index_that_can_be_opened_later_gets_the_rows_of_what_was_recorded_meanwhile,
+                            a_recording_that_another_program_keeps_during_retention_is_not_deleted,
+                            files_that_cannot_be_deleted_leave_the_row_as_it_is,
+                            a_file_that_is_being_made_is_not_taken_for_what_a_killed_process_left,
+                            two_recorders_and_their_retention_in_one_folder_lose_nothing})
     tcase_add_test(cases, test);
+  tcase_set_timeout(cases, 60);
   suite_add_tcase(suite, cases);
   SRunner* runner = srunner_create(suite);
   srunner_run_all(runner, CK_ENV);

@@ -53,8 +53,15 @@ std::vector<std::string> Archive::open(const Settings& settings, const Surroundi
   folder_ = Folder(settings.folder);
   last_complaint_.clear();
   retention_ = Retention();
+  unlisted_.clear();
+  pause_ = Time::zero();
   index_.close();
   if (settings.index.empty()) return {};
+  open_index(now.steady);
+  return apply_retention(now);
+}
+
+void Archive::open_index(Time steady) {
   bool damaged = false;
   std::string fault = index_.open(index_path(), damaged);
   if (damaged) {
@@ -62,16 +69,29 @@ std::vector<std::string> Archive::open(const Settings& settings, const Surroundi
     std::string aside = index_path() + ".damaged";
     for (int k = 1; k < kMostNamesakes && std::filesystem::exists(aside, unknown); ++k)
       aside = index_path() + ".damaged~" + std::to_string(k);
-    complain(fault + "; it is now " + in_quotes(aside) + ", and another one is begun");
-    if (std::rename(index_path().c_str(), aside.c_str()) != 0) return {};
-    std::rename((index_path() + "-wal").c_str(), (aside + "-wal").c_str());
-    std::remove((index_path() + "-shm").c_str());
-    fault = index_.open(index_path(), damaged);
+    if (std::rename(index_path().c_str(), aside.c_str()) == 0) {
+      complain(fault + "; it is now " + in_quotes(aside) + ", and another one is begun");
+      std::rename((index_path() + "-wal").c_str(), (aside + "-wal").c_str());
+      std::remove((index_path() + "-shm").c_str());
+      fault = index_.open(index_path(), damaged);
+    }
   }
-  complain(fault);
-  if (!index_.is_open()) return {};
-  reconcile();
-  return retain(now);
+  if (!fault.empty()) complain(fault + (Index::available() ? "; it is tried again, recordings go on" : ""));
+  if (index_.is_open()) {
+    list();
+    return reconcile();
+  }
+  pause_ = std::clamp(2 * pause_, kFirstPause, kLongestPause);
+  open_again_ = steady + pause_;
+}
+
+// Adds the rows of recordings that were completed without one.
+void Archive::list() {
+  std::erase_if(unlisted_, [this](Recording& row) {
+    bool taken = false;
+    const auto listed = [&] { return row.id ? index_.update(row) : index_.add(row, taken); };
+    return !folder_.size(row.file) || listed().empty() || taken;
+  });
 }
 
 void Archive::close() {
@@ -84,8 +104,8 @@ void Archive::measure(Recording& recording) const {
     if (!name->empty()) recording.bytes += folder_.size(*name).value_or(0);
 }
 
-// Returns false where the row is not to be: its files are deleted then.
-bool Archive::restore(Recording& row) {
+// Returns false where the row is not to be: its files are deleted then. `file`: of an open row, locked.
+bool Archive::restore(Recording& row, const OpenFile& file) {
   const auto size = folder_.size(row.file);
   if (!size || (row.open && *size == 0)) return false;
   if (!row.open) return true;
@@ -95,8 +115,7 @@ bool Archive::restore(Recording& row) {
       *name = there;
   row.end = std::max(row.begin, Time(folder_.changed(row.file)));
   row.open = false;
-  OpenFile video;
-  if (row.file.ends_with(kVideos[0]) && folder_.open(row.file, video) == 0) repair_mp4(video.descriptor());
+  if (row.file.ends_with(kVideos[0]) && file) repair_mp4(file.descriptor());
   return true;
 }
 
@@ -111,22 +130,28 @@ void Archive::reconcile() {
              ": is its disk mounted? The rows stay until one of them is");
     return;
   }
-  for (Recording& row : rows) {
-    if (!is_recording(row)) {
-      complain("the index names " + in_quotes(row.file) +
-               ", which is no recording of this folder: the row is removed");
-      complain(index_.remove(row.id));
-      continue;
-    }
-    if (row.open && folder_.in_use(row.file)) continue;  // of another recorder
-    const Recording before = row;
-    if (!restore(row)) {
-      discard(row);
-      continue;
-    }
-    measure(row);
-    if (row.open != before.open || row.bytes != before.bytes) complain(index_.update(row));
+  for (Recording& row : rows) reconcile(row);
+}
+
+void Archive::reconcile(Recording& row) {
+  if (!is_recording(row)) {
+    complain("the index names " + in_quotes(row.file) +
+             ", which is no recording of this folder: the row is removed");
+    return complain(index_.remove(row.id));
   }
+  OpenFile file;
+  if (row.open) {
+    if (folder_.lock(row.file, file) == EWOULDBLOCK) return;  // of another recorder
+    // Another recorder may have completed it since the rows were read.
+    std::vector<Recording> again;
+    complain(index_.read_one(row.id, again));
+    if (again.empty()) return;
+    row = again.front();
+  }
+  const Recording before = row;
+  if (!restore(row, file)) return discard(row);
+  measure(row);
+  if (row.open != before.open || row.bytes != before.bytes) complain(index_.update(row));
 }
 
 std::string Archive::begin(Recording& recording, const std::string& name, std::string_view ending,
@@ -176,7 +201,11 @@ void Archive::finish(Recording& recording, const OpenFile& file) {
     complain(in_quotes(folder_.path_of(recording.file)) + ": " + std::strerror(error));
   measure(recording);
   recording.open = false;
-  if (index_.is_open()) complain(index_.update(recording));
+  if (settings_.index.empty()) return;
+  const std::string fault = index_.is_open() ? index_.update(recording) : std::string();
+  complain(fault);
+  if ((!fault.empty() || !index_.is_open()) && unlisted_.size() < kMostUnlisted)
+    unlisted_.push_back(recording);
 }
 
 // The video last: as long as it is there, the row is, too.
@@ -196,10 +225,19 @@ void Archive::discard(const Recording& recording) {
 }
 
 std::vector<std::string> Archive::retain(const Surroundings& now) {
+  if (Index::available() && !index_.is_open() && !settings_.index.empty() && now.steady >= open_again_)
+    open_index(now.steady);
+  return apply_retention(now);
+}
+
+std::vector<std::string> Archive::apply_retention(Surroundings now) {
   std::vector<std::string> deleted;
   std::vector<Recording> rows;
   if (!index_.is_open() || !now.free_bytes) return deleted;
+  if (!unlisted_.empty()) list();
   complain(index_.read(rows));
+  // Another recorder may have deleted what is not among the rows since the room was measured.
+  now.free_bytes = std::max(*now.free_bytes, folder_.free_bytes().value_or(0));
   // A file that is not there may be on a disk that is not mounted: its row waits for the next reconciliation.
   std::erase_if(rows, [this](const Recording& row) { return !is_recording(row) || !folder_.size(row.file); });
   std::vector<Candidate> candidates;
@@ -211,9 +249,9 @@ std::vector<std::string> Archive::retain(const Surroundings& now) {
   }
   for (const std::int64_t id : retention_.expired(candidates, settings_.limits, now)) {
     const auto row = std::ranges::find(rows, id, &Recording::id);
-    if (!remove_files(*row)) continue;
-    complain(index_.remove(id));
-    deleted.push_back(row->file);
+    bool removed = false;
+    complain(index_.remove_with(id, [&] { return remove_files(*row); }, removed));
+    if (removed) deleted.push_back(row->file);
   }
   complain(retention_.take_fault());
   return deleted;

@@ -27,6 +27,8 @@ class Archive {
   // Opens the index and reconciles rows and files: a row without its file is removed with what else is left of it; one
   // that a process left open is closed with what is there (an MP4 file is repaired); one of a file without content is removed with it. A damaged
   // index is renamed to NAME.damaged and begun anew. Then retention is applied: returns the files that were deleted.
+  // An index that cannot be opened is tried again by retain(), after pauses that double; what is recorded until then
+  // gets its rows then, where the process still runs.
   std::vector<std::string> open(const Settings& settings, const Surroundings& now);
   void set_limits(const Limits& limits) { settings_.limits = limits; }
   void close();
@@ -51,10 +53,20 @@ class Archive {
   std::vector<std::string> take_complaints();
 
  private:
+  // How often an index that could not be opened is tried again. Chosen: a mount that comes late is noticed soon, a broken
+  // disk is left alone. Guarded by the test of an index that can be opened later.
+  static constexpr Time kFirstPause = std::chrono::seconds(10), kLongestPause = std::chrono::minutes(10);
+  // Recordings that wait for their rows. Derived: a day of an event a minute; 300 bytes each.
+  static constexpr std::size_t kMostUnlisted = 1440;
+
   void complain(std::string text);
   std::string index_path() const;
+  void open_index(Time steady);
+  std::vector<std::string> apply_retention(Surroundings now);
+  void list();
   void reconcile();
-  bool restore(Recording& row);
+  void reconcile(Recording& row);
+  bool restore(Recording& row, const OpenFile& file);
   bool remove_files(const Recording& recording);
   void measure(Recording& recording) const;
 
@@ -62,6 +74,8 @@ class Archive {
   Folder folder_{"."};
   Index index_;
   Retention retention_;
+  Time open_again_{}, pause_{};      // steady: when the index is tried again, and the pause before
+  std::vector<Recording> unlisted_;  // complete, and without a row
   std::vector<std::string> complaints_;
   std::string last_complaint_;
 };

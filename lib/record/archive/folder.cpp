@@ -99,7 +99,8 @@ bool Folder::is_name(const std::string& name) {
 }
 
 int Folder::create(const std::string& name, OpenFile& file) const {
-  // Another recorder's retention may remove a folder between its making and its use.
+  // Another recorder may remove a folder between its making and its use, and take a file that is not locked yet for what
+  // a killed process left.
   int error = 0;
   for (int attempt = 0; attempt < 3; ++attempt) {
     OpenFile parent;
@@ -110,9 +111,14 @@ int Folder::create(const std::string& name, OpenFile& file) const {
       const int made =
           openat(fd, last.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_NOFOLLOW | O_CLOEXEC, kFileMode);
       if (made >= 0) {
-        file = OpenFile(made);
-        flock(made, LOCK_EX | LOCK_NB);
-        return 0;
+        OpenFile own(made);
+        struct stat about{};
+        flock(made, LOCK_EX);
+        if (fstat(made, &about) == 0 && about.st_nlink > 0) {
+          file = std::move(own);
+          return 0;
+        }
+        errno = ENOENT;
       }
       error = errno;
     }
@@ -121,8 +127,16 @@ int Folder::create(const std::string& name, OpenFile& file) const {
   return error;
 }
 
-int Folder::open(const std::string& name, OpenFile& file) const {
-  return open_regular(path_, name, O_RDWR, file);
+int Folder::lock(const std::string& name, OpenFile& file) const {
+  OpenFile opened;
+  if (const int error = open_regular(path_, name, O_RDWR, opened); error) return error;
+  // A file system without locks has none that another recorder could hold.
+  if (flock(opened.descriptor(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) return EWOULDBLOCK;
+  struct stat about{};
+  if (fstat(opened.descriptor(), &about) != 0 || about.st_nlink == 0)
+    return ENOENT;  // it was deleted meanwhile
+  file = std::move(opened);
+  return 0;
 }
 
 int Folder::open_to_read(const std::string& name, OpenFile& file) const {
@@ -147,14 +161,9 @@ std::int64_t Folder::changed(const std::string& name) const {
 }
 
 bool Folder::in_use(const std::string& name) const {
-  OpenFile parent;
-  int fd = -1;
-  std::string last;
-  if (open_parent(path_, name, false, parent, fd, last) != 0) return false;
-  const int opened = openat(fd, last.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
-  if (opened < 0) return false;
-  const OpenFile file(opened);
-  return flock(opened, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  OpenFile file;
+  return open_to_read(name, file) == 0 && flock(file.descriptor(), LOCK_SH | LOCK_NB) != 0 &&
+         errno == EWOULDBLOCK;
 }
 
 int Folder::remove(const std::string& name) const {

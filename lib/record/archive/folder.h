@@ -54,9 +54,9 @@ class Folder {
   // Makes a file (mode 0640) that is not there yet, and the folders in its name (mode 0750); never the folder itself,
   // which may be a disk that is not mounted. EEXIST: there is something of that name.
   int create(const std::string& name, OpenFile& file) const;
-  // Opens a regular file for reading and writing, without a lock.
-  int open(const std::string& name, OpenFile& file) const;
-  // The same for reading alone, as of a read-only disk.
+  // Opens a regular file for reading and writing, and locks it. EWOULDBLOCK: a recorder has it open.
+  int lock(const std::string& name, OpenFile& file) const;
+  // The same for reading alone, as of a read-only disk, and without a lock.
   int open_to_read(const std::string& name, OpenFile& file) const;
   // Whether there is anything of that name.
   bool exists(const std::string& name) const;

@@ -246,6 +246,19 @@ std::string Index::remove(std::int64_t id) {
   return statement.bind(id).step() == SQLITE_DONE ? std::string() : fault();
 }
 
+std::string Index::remove_with(std::int64_t id, const std::function<bool()>& remove_files, bool& removed) {
+  removed = false;
+  if (std::string text = run("BEGIN IMMEDIATE"); !text.empty()) return text;
+  std::string text;
+  {
+    Statement statement(database_.get(), "DELETE FROM recordings WHERE id = ? AND keep = 0 AND open = 0");
+    if (statement.bind(id).step() != SQLITE_DONE) text = fault();
+  }
+  removed = text.empty() && sqlite3_changes(database_.get()) > 0 && remove_files();
+  const std::string ended = run(removed ? "COMMIT" : "ROLLBACK");
+  return text.empty() ? ended : text;
+}
+
 std::string Index::set_keep(std::string_view file, bool keep) {
   Statement statement(database_.get(), "UPDATE recordings SET keep = ? WHERE file = ?");
   if (statement.bind(std::int64_t{keep}).bind(file).step() != SQLITE_DONE) return fault();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -53,6 +54,10 @@ class Index {
   // Overwrites all of a row but `keep`; adds it anew if it is gone.
   std::string update(Recording& recording);
   std::string remove(std::int64_t id);
+  // Removes a row that is neither open nor to be kept, and keeps every other program from changing it meanwhile:
+  // remove_files() is called in between, and where it returns false the row stays. `removed`: the row is gone now, and
+  // was there.
+  std::string remove_with(std::int64_t id, const std::function<bool()>& remove_files, bool& removed);
   std::string set_keep(std::string_view file, bool keep);
   // Reads the rows by rising id.
   std::string read(std::vector<Recording>& rows);

@@ -32,6 +32,10 @@ std::string Index::update(Recording&) {
 std::string Index::remove(std::int64_t) {
   return kNone;
 }
+std::string Index::remove_with(std::int64_t, const std::function<bool()>&, bool& removed) {
+  removed = false;
+  return kNone;
+}
 std::string Index::set_keep(std::string_view, bool) {
   return kNone;
 }
