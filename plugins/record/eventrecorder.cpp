@@ -295,12 +295,15 @@ bool check_settings(CerberusEventRecorder* self) {
 }
 
 void begin(CerberusEventRecorder* self) {
+  // A thread that waits for a disk may outlast the element's stop, and the element's owner.
+  const std::shared_ptr<CerberusEventRecorder> own(cerberus_event_recorder_self(gst_object_ref(self)),
+                                                   gst_object_unref);
   self->priv->session.begin(
-      [self](const plugin::FileReport& report) {
-        cerberus::guarded(self, [&] { post_report(self, report); });
+      [own](const plugin::FileReport& report) {
+        cerberus::guarded(own.get(), [&] { post_report(own.get(), report); });
       },
-      [self](const std::string& text) {
-        CERBERUS_ELEMENT_WARNING(self, RESOURCE, WRITE, (text), (nullptr));
+      [own](const std::string& text) {
+        CERBERUS_ELEMENT_WARNING(own.get(), RESOURCE, WRITE, (text), (nullptr));
       });
 }
 

@@ -74,6 +74,10 @@ const Property<Settings> kProperties[] = {
              "MiB that all recordings of the index may take; the oldest are deleted; 0 = no limit"),
     property("retention-free", &Settings::retention_free, 0, kMostMebibytes,
              "MiB that are to be free on the disk; the oldest recordings are deleted; 0 = no limit"),
+    property("stop-timeout", &Settings::stop_timeout,
+             "Nanoseconds for which the element's stop waits for the disk at most; files that are not "
+             "complete then "
+             "are reported as failed, and stay as far as they are written"),
 };
 
 std::uint64_t mebibytes(int count) {

@@ -28,6 +28,7 @@ struct RecorderSettings {
   std::string index = "recordings.sqlite";
   guint64 retention_age = clock_time(record::Limits{}.age);
   int retention_size = 0, retention_free = 512;
+  guint64 stop_timeout = 20 * GST_SECOND;
 };
 
 std::span<const Property<RecorderSettings>> recorder_properties();

@@ -9,6 +9,8 @@ namespace cerberus::plugin {
 
 namespace {
 
+constexpr guint64 kLongestStop = 24 * 3600 * GST_SECOND;  // what an unlimited `stop-timeout` means
+
 // A stream that is not live waits while more bytes than this wait for the disk.
 constexpr guint64 kPatience = 16 << 20;
 // Where times fall back by more than this the stream has begun anew. Derived: above every reordering of frames.
@@ -134,7 +136,8 @@ void Session::end() {
     files_.journal().reset();
     for (auto& input : inputs_) forget_stream(*input);
   }
-  writer_.stop();
+  writer_.stop(time_of(std::min(settings_.snapshot().stop_timeout, kLongestStop)));
+  warn_ = nullptr;
   const std::lock_guard guard(lock_);
   files_.forget();
 }

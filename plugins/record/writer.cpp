@@ -1,318 +1,83 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "writer.hpp"
 
-#include <sys/stat.h>
-
-#include <chrono>
-#include <cstring>
-#include <stdexcept>
-
-#include "frame_notes.hpp"
-#include "shared/clock_times.hpp"
-
 namespace cerberus::plugin {
 
 namespace {
-
-using namespace std::chrono_literals;
-constexpr auto kLongestStop = 10s;  // a disk that takes longer is not waited for
-constexpr auto kLook = 20ms;        // how often the pipelines' levels are read while bytes wait
-constexpr auto kRetention = 10s;    // how often retention is applied
-
-std::string comma_separated(const auto& values, auto text_of) {
-  std::string text;
-  for (const auto& value : values) {
-    if (!text.empty()) text += ',';
-    text += text_of(value);
-  }
-  return text;
-}
-
-std::uint64_t size_of(const std::string& path) {
-  struct stat about{};
-  return !path.empty() && stat(path.c_str(), &about) == 0 ? static_cast<std::uint64_t>(about.st_size) : 0;
-}
-
+// How long a thread may take to end that was given up: one that only waited for a slow disk ends at once.
+constexpr std::chrono::milliseconds kLongestEnd{500};
 }  // namespace
 
-void Writer::start(const record::Archive::Settings& archive, Report report, Warn warn) {
-  stop();
-  report_ = std::move(report);
-  warn_ = std::move(warn);
-  stopping_ = false;
-  folder_ = archive.folder;
-  report_deleted(archive_.open(archive, surroundings()));
-  thread_ = std::thread([this] {
-    run();
-    archive_.close();
-  });
+Writer::Writer() : disk_(std::make_shared<DiskWriter>(nullptr, nullptr)) {}
+
+std::shared_ptr<DiskWriter> Writer::disk() const {
+  const std::lock_guard guard(lock_);
+  return disk_;
 }
 
-void Writer::stop() {
+void Writer::start(const record::Archive::Settings& archive, const Report& report, Warn warn) {
+  stop(std::chrono::nanoseconds::zero());
+  report_ = report;
+  auto disk = std::make_shared<DiskWriter>(report, std::move(warn));
+  disk->open(archive);
+  {
+    const std::lock_guard guard(lock_);
+    disk_ = disk;
+  }
+  thread_ = std::thread([disk] { disk->run(); });
+}
+
+void Writer::stop(std::chrono::nanoseconds longest) {
   if (!thread_.joinable()) return;
-  {
-    const std::lock_guard guard(lock_);
-    stopping_ = true;
+  const std::shared_ptr<DiskWriter> disk = this->disk();
+  disk->stop();
+  bool ended = disk->ended_within(longest);
+  if (!ended) {
+    for (const FileReport& lost : disk->give_up()) report_(lost);
+    ended = disk->ended_within(kLongestEnd);
   }
-  changed_.notify_all();
-  thread_.join();
-}
-
-void Writer::enqueue(Command command, std::uint64_t bytes) {
-  {
-    const std::lock_guard guard(lock_);
-    commands_.push_back(std::move(command));
-    queued_ += bytes;
-  }
-  changed_.notify_all();
+  if (ended)
+    thread_.join();
+  else
+    thread_.detach();
+  report_ = nullptr;
+  const std::lock_guard guard(lock_);
+  disk_ = std::make_shared<DiskWriter>(nullptr, nullptr);
 }
 
 void Writer::open(std::shared_ptr<const FileSpec> spec) {
-  enqueue(Open{std::move(spec)});
+  disk()->enqueue(DiskWriter::Open{std::move(spec)});
 }
 void Writer::write(std::uint32_t file, int track, GstBuffer* buffer) {
   const std::uint64_t bytes = gst_buffer_get_size(buffer);
-  enqueue(Write{file, track, {buffer, gst_buffer_unref}}, bytes);
+  disk()->enqueue(DiskWriter::Write{file, track, {buffer, gst_buffer_unref}}, bytes);
 }
 void Writer::write_line(std::uint32_t file, std::string line) {
   const std::uint64_t bytes = line.size();
-  enqueue(Line{file, std::move(line)}, bytes);
+  disk()->enqueue(DiskWriter::Line{file, std::move(line)}, bytes);
 }
 void Writer::close(const record::FileEnd& end, record::Findings findings) {
-  enqueue(Close{end, std::move(findings)});
+  disk()->enqueue(DiskWriter::Close{end, std::move(findings)});
 }
 void Writer::set_limits(const record::Limits& limits) {
-  enqueue(Limit{limits});
+  disk()->enqueue(DiskWriter::Limit{limits});
 }
 void Writer::keep(const std::string& path, bool keep) {
-  enqueue(Keep{path, keep});
+  disk()->enqueue(DiskWriter::Keep{path, keep});
 }
 void Writer::abandon(std::uint32_t file, const std::string& reason) {
-  enqueue(Abandon{file, reason});
+  disk()->enqueue(DiskWriter::Abandon{file, reason});
 }
 void Writer::when_done(std::function<void()> done) {
-  enqueue(Done{std::move(done)});
+  disk()->enqueue(DiskWriter::Done{std::move(done)});
 }
 
 std::uint64_t Writer::pending() const {
-  const std::lock_guard guard(lock_);
-  return queued_ + level_;
+  return disk()->pending();
 }
 
 void Writer::wait_below(std::uint64_t bytes, const std::function<bool()>& go_on) {
-  std::unique_lock guard(lock_);
-  while (queued_ + level_ >= bytes && !stopping_ && go_on()) lower_.wait_for(guard, kLook);
-}
-
-void Writer::run() {
-  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
-  auto next_retention = std::chrono::steady_clock::now() + kRetention;
-  while (true) {
-    std::optional<Command> command;
-    {
-      std::unique_lock guard(lock_);
-      const auto ready = [this] { return !commands_.empty() || stopping_; };
-      if (level_ > 0 || stopping_)
-        changed_.wait_for(guard, kLook, [this] { return !commands_.empty(); });
-      else
-        changed_.wait_until(guard, next_retention, ready);
-      if (!commands_.empty()) {
-        command = std::move(commands_.front());
-        commands_.pop_front();
-        if (const auto* write = std::get_if<Write>(&*command))
-          queued_ -= gst_buffer_get_size(write->buffer.get());
-        else if (const auto* line = std::get_if<Line>(&*command))
-          queued_ -= line->text.size();
-      } else if (stopping_) {
-        const auto now = std::chrono::steady_clock::now();
-        if (deadline == std::chrono::steady_clock::time_point::max()) {
-          deadline = now + kLongestStop;
-          for (auto& [number, file] : files_)
-            if (!file.closing) file.pipeline->finish();
-        }
-        if (files_.empty() || now >= deadline) break;
-      }
-    }
-    if (command) std::visit([this](auto& each) { execute(each); }, *command);
-    if (std::chrono::steady_clock::now() >= next_retention) {
-      retain();
-      next_retention = std::chrono::steady_clock::now() + kRetention;
-    }
-    std::uint64_t level = 0;
-    for (const auto& [number, file] : files_) level += file.pipeline->level();
-    {
-      const std::lock_guard guard(lock_);
-      level_ = level;
-    }
-    lower_.notify_all();
-  }
-  files_.clear();
-  waiting_.clear();
-  const std::lock_guard guard(lock_);
-  level_ = 0;  // what a disk did not take by the deadline is given up
-}
-
-void Writer::execute(Open& command) {
-  const FileSpec& spec = *command.spec;
-  File file;
-  file.spec = command.spec;
-  const std::uint32_t number = spec.start.file;
-  file.row.camera = spec.camera;
-  file.row.event = spec.start.event;
-  file.row.part = spec.start.part;
-  file.row.begin = file.row.end = time_of(spec.when);
-  file.row.reason = spec.start.reason;
-  std::string fault = archive_.begin(file.row, spec.name, spec.mp4 ? ".mp4" : ".mkv", file.lock);
-  if (fault.empty()) {
-    file.path = folder_ + '/' + file.row.file;
-    try {
-      file.pipeline = std::make_unique<FilePipeline>(spec, file.path,
-                                                     [this, number](std::shared_ptr<const FileFault> error) {
-                                                       enqueue(Ended{number, std::move(error)});
-                                                     });
-    } catch (const std::exception& error) {
-      fault = error.what();
-      archive_.discard(file.row);
-    }
-  }
-  pass_complaints();
-  if (!fault.empty()) return report_end(file, FileReport::State::failed, {fault, ""});
-  report_({FileReport::State::started, file.spec, file.path, {}, {}, {}, 0, {}});
-  files_.emplace(number, std::move(file));
-}
-
-void Writer::execute(Write& command) {
-  const auto found = files_.find(command.file);
-  if (found == files_.end()) return;
-  File& file = found->second;
-  if (command.track == 0) file.last = std::max(file.last, GST_BUFFER_PTS(command.buffer.get()));
-  file.pipeline->push(command.track, gst_buffer_ref(command.buffer.get()));
-}
-
-void Writer::execute(Line& command) {
-  const auto found = files_.find(command.file);
-  if (found == files_.end() || found->second.without_lines) return;
-  File& file = found->second;
-  int error = file.lines ? 0 : archive_.add_lines(file.row, file.lines);
-  if (!error) error = file.lines.write(command.text.data(), command.text.size());
-  if (!error) return;
-  file.without_lines = true;
-  warn_("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
-}
-
-void Writer::save_picture(File& file, const record::Picture& picture) {
-  std::string fault;
-  record::OpenFile to;
-  if (GstSample* jpeg = encode_jpeg(picture, fault)) {
-    GstMapInfo map;
-    if (gst_buffer_map(gst_sample_get_buffer(jpeg), &map, GST_MAP_READ)) {
-      int error = archive_.add_picture(file.row, to);
-      if (!error) error = to.write(map.data, map.size);
-      if (!error) error = to.sync();
-      if (error) fault = std::strerror(error);
-      gst_buffer_unmap(gst_sample_get_buffer(jpeg), &map);
-    }
-    gst_sample_unref(jpeg);
-  }
-  if (!fault.empty()) warn_("the picture beside " + record::in_quotes(file.path) + ": " + fault);
-}
-
-void Writer::execute(Close& command) {
-  const auto found = files_.find(command.end.file);
-  if (found == files_.end()) return;
-  File& file = found->second;
-  file.end = command.end;
-  file.closing = true;
-  file.pipeline->finish();
-  const record::Findings& findings = command.findings;
-  file.row.tracks =
-      comma_separated(findings.tracks, [](std::uint32_t track) { return std::to_string(track); });
-  file.row.kinds = comma_separated(findings.kinds, [](std::string_view kind) { return std::string(kind); });
-  file.row.rule = findings.rule;
-  if (findings.picture) save_picture(file, findings.picture);
-}
-
-void Writer::execute(Limit& command) {
-  archive_.set_limits(command.limits);
-}
-
-void Writer::execute(Keep& command) {
-  if (const std::string fault = archive_.keep(command.path, command.keep); !fault.empty()) warn_(fault);
-  pass_complaints();
-}
-
-record::Surroundings Writer::surroundings() const {
-  const auto microseconds = [](gint64 time) { return record::Time(std::chrono::microseconds(time)); };
-  return {microseconds(g_get_real_time()), microseconds(g_get_monotonic_time()),
-          record::Folder(folder_).free_bytes()};
-}
-
-void Writer::retain() {
-  report_deleted(archive_.retain(surroundings()));
-}
-
-void Writer::report_deleted(const std::vector<std::string>& names) {
-  for (const std::string& name : names)
-    report_({FileReport::State::deleted, nullptr, folder_ + '/' + name, {}, {}, {}, 0, {}});
-  pass_complaints();
-}
-
-void Writer::pass_complaints() {
-  for (const std::string& text : archive_.take_complaints()) warn_(text);
-}
-
-void Writer::execute(Abandon& command) {
-  fail(command.file, {command.reason, ""});
-}
-
-void Writer::execute(Ended& command) {
-  if (command.fault) return fail(command.file, *command.fault);
-  const auto found = files_.find(command.file);
-  if (found == files_.end()) return;
-  File file = std::move(found->second);
-  files_.erase(found);
-  file.pipeline.reset();
-  report_end(file, FileReport::State::ended, {});
-  check_done();
-}
-
-void Writer::execute(Done& command) {
-  waiting_.push_back(std::move(command.done));
-  check_done();
-}
-
-void Writer::fail(std::uint32_t number, const FileFault& fault) {
-  const auto found = files_.find(number);
-  if (found == files_.end()) return;
-  File file = std::move(found->second);
-  files_.erase(found);
-  file.pipeline.reset();
-  report_end(file, FileReport::State::failed, fault);
-  check_done();
-}
-
-// What is acknowledged is on the disk, and in the index.
-void Writer::report_end(File& file, FileReport::State state, const FileFault& fault) {
-  const std::uint64_t bytes = size_of(file.path);
-  if (!file.path.empty()) {
-    file.row.end = file.row.begin + time_of(file.last);
-    if (const int error = file.lines.sync(); error)
-      warn_("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
-    if (bytes == 0)
-      archive_.discard(file.row);
-    else
-      archive_.finish(file.row, file.lock);
-  }
-  const auto path_of = [&](const std::string& name) { return name.empty() ? name : folder_ + '/' + name; };
-  report_({state, file.spec, file.path, path_of(file.row.lines), path_of(file.row.picture), file.end, bytes,
-           fault});
-  retain();
-}
-
-void Writer::check_done() {
-  for (const auto& [number, file] : files_)
-    if (file.closing) return;
-  for (const auto& done : std::exchange(waiting_, {})) done();
+  disk()->wait_below(bytes, go_on);
 }
 
 }  // namespace cerberus::plugin

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "recorder_rig.h"
 
@@ -286,7 +287,7 @@ namespace {
 struct StuckDisk {
   std::mutex lock;
   std::condition_variable changed;
-  bool stuck = true, reached = false;
+  bool stuck = true, reached = false, left = false, gone = false;
 
   static GstBusSyncReply handle(GstBus*, GstMessage* message, gpointer self) {
     auto& disk = *static_cast<StuckDisk*>(self);
@@ -295,9 +296,11 @@ struct StuckDisk {
         !gst_structure_has_name(facts, "cerberus-recording"))
       return GST_BUS_PASS;
     std::unique_lock guard(disk.lock);
-    disk.reached = true;
+    if (std::exchange(disk.reached, true)) return GST_BUS_PASS;  // of the thread that stops the recorder
     disk.changed.notify_all();
     disk.changed.wait(guard, [&] { return !disk.stuck; });
+    disk.left = true;
+    disk.changed.notify_all();
     return GST_BUS_PASS;
   }
   void wait() {
@@ -336,6 +339,46 @@ GST_START_TEST(a_disk_that_does_not_answer_costs_the_event_and_never_stops_the_s
   rig.finish();
   const auto later = numbers_of(read_back(rig.folder.path() + "/1-2.mp4"));
   fail_unless(!later.empty() && later == range(later.front(), 260));
+}
+GST_END_TEST
+
+GST_START_TEST(a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_what_is_lost) {
+  StuckDisk disk;
+  {
+    Rig rig;
+    gst_bus_set_sync_handler(rig.bus, StuckDisk::handle, &disk, nullptr);
+    g_object_set(rig.element, "stop-timeout", 50 * GST_MSECOND, nullptr);
+    const auto note = [](gpointer self, GObject*) {
+      auto& stuck = *static_cast<StuckDisk*>(self);
+      const std::lock_guard guard(stuck.lock);
+      stuck.gone = true;
+      stuck.changed.notify_all();
+    };
+    g_object_weak_ref(G_OBJECT(rig.element), note, &disk);
+    rig.start();
+    rig.play_to(20);
+    rig.start_event();
+    disk.wait();
+    rig.play_to(40);
+    rig.stop();  // returns although the writer's thread hangs
+    g_autoptr(GstMessage) warning = rig.take(GST_MESSAGE_WARNING);
+    g_autoptr(GError) error = nullptr;
+    gst_message_parse_warning(warning, &error, nullptr);
+    fail_unless(strstr(error->message, (rig.folder.path() + "/1.mp4").c_str()), "%s", error->message);
+    g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
+    fail_unless(gst_structure_get_string(failed, "location") == rig.folder.path() + "/1.mp4");
+    rig.start();  // the folder is on another disk now
+    rig.next = 0;
+    rig.play_to(20);
+    rig.start_event();
+    rig.play_to(40);
+    rig.finish();
+    fail_unless(numbers_of(read_back(rig.folder.path() + "/2.mp4")) == range(0, 40));
+  }
+  fail_unless(!disk.gone);  // the thread holds the recorder
+  disk.release();
+  std::unique_lock guard(disk.lock);
+  disk.changed.wait(guard, [&] { return disk.left && disk.gone; });
 }
 GST_END_TEST
 
@@ -396,6 +439,7 @@ static Suite* eventrecorder_archive_suite() {
   tcase_add_test(tests, zones_that_cannot_be_read_are_an_error_at_the_start_and_a_warning_later);
   tcase_add_test(tests, retention_deletes_the_oldest_recordings_but_those_that_are_kept);
   tcase_add_test(tests, a_disk_that_does_not_answer_costs_the_event_and_never_stops_the_stream);
+  tcase_add_test(tests, a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_what_is_lost);
   tcase_add_test(tests, a_pre_roll_larger_than_what_may_wait_for_the_disk_is_recorded);
   tcase_add_test(tests, a_folder_that_takes_no_files_is_named_and_stops_no_stream);
   suite_add_tcase(suite, tests);

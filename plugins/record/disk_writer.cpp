@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "disk_writer.hpp"
+
+#include <sys/stat.h>
+#include <sys/timex.h>
+
+#include <chrono>
+#include <cstring>
+#include <stdexcept>
+
+#include "frame_notes.hpp"
+#include "shared/clock_times.hpp"
+
+namespace cerberus::plugin {
+
+namespace {
+
+using namespace std::chrono_literals;
+constexpr auto kLook = 20ms;      // how often the pipelines' levels are read while bytes wait
+constexpr auto kRetention = 10s;  // how often retention is applied
+
+std::string comma_separated(const auto& values, auto text_of) {
+  std::string text;
+  for (const auto& value : values) {
+    if (!text.empty()) text += ',';
+    text += text_of(value);
+  }
+  return text;
+}
+
+std::uint64_t size_of(const std::string& path) {
+  struct stat about{};
+  return !path.empty() && stat(path.c_str(), &about) == 0 ? static_cast<std::uint64_t>(about.st_size) : 0;
+}
+
+}  // namespace
+
+void DiskWriter::open(const record::Archive::Settings& archive) {
+  folder_ = archive.folder;
+  report_deleted(archive_.open(archive, surroundings()));
+}
+
+void DiskWriter::enqueue(Command command, std::uint64_t bytes) {
+  {
+    const std::lock_guard guard(lock_);
+    commands_.push_back(std::move(command));
+    queued_ += bytes;
+  }
+  changed_.notify_all();
+}
+
+void DiskWriter::stop() {
+  {
+    const std::lock_guard guard(lock_);
+    stopping_ = true;
+  }
+  changed_.notify_all();
+}
+
+bool DiskWriter::ended_within(std::chrono::nanoseconds longest) {
+  std::unique_lock guard(lock_);
+  return over_.wait_for(guard, longest, [this] { return ended_; });
+}
+
+std::vector<FileReport> DiskWriter::give_up() {
+  std::vector<FileReport> lost;
+  const std::lock_guard guard(lock_);
+  given_up_ = true;
+  for (const Command& command : commands_)
+    if (const auto* open = std::get_if<Open>(&command))
+      unfinished_[open->spec->start.file] = {open->spec, ""};
+  for (const auto& [number, file] : unfinished_)
+    lost.push_back({FileReport::State::failed,
+                    file.spec,
+                    file.path,
+                    {},
+                    {},
+                    {},
+                    0,
+                    {"the disk had not taken it when the recorder stopped; what it took stays",
+                     std::to_string(queued_ + level_) + " bytes of all files waited"}});
+  unfinished_.clear();
+  commands_.clear();
+  queued_ = 0;
+  changed_.notify_all();
+  return lost;
+}
+
+void DiskWriter::report(const FileReport& what) {
+  {
+    const std::lock_guard guard(lock_);
+    if (given_up_) return;
+  }
+  report_(what);
+}
+
+void DiskWriter::warn(const std::string& text) {
+  {
+    const std::lock_guard guard(lock_);
+    if (given_up_) return;
+  }
+  warn_(text);
+}
+
+std::uint64_t DiskWriter::pending() const {
+  const std::lock_guard guard(lock_);
+  return queued_ + level_;
+}
+
+void DiskWriter::wait_below(std::uint64_t bytes, const std::function<bool()>& go_on) {
+  std::unique_lock guard(lock_);
+  while (queued_ + level_ >= bytes && !stopping_ && go_on()) lower_.wait_for(guard, kLook);
+}
+
+void DiskWriter::run() {
+  bool finishing = false;
+  auto next_retention = std::chrono::steady_clock::now() + kRetention;
+  while (true) {
+    std::optional<Command> command;
+    {
+      std::unique_lock guard(lock_);
+      const auto ready = [this] { return !commands_.empty() || stopping_; };
+      if (level_ > 0 || stopping_)
+        changed_.wait_for(guard, kLook, [this] { return !commands_.empty() || given_up_; });
+      else
+        changed_.wait_until(guard, next_retention, ready);
+      if (given_up_) break;
+      if (!commands_.empty()) {
+        command = std::move(commands_.front());
+        commands_.pop_front();
+        if (const auto* write = std::get_if<Write>(&*command))
+          queued_ -= gst_buffer_get_size(write->buffer.get());
+        else if (const auto* line = std::get_if<Line>(&*command))
+          queued_ -= line->text.size();
+        else if (const auto* open = std::get_if<Open>(&*command))
+          unfinished_[open->spec->start.file] = {open->spec, ""};
+      } else if (stopping_) {
+        for (auto& [number, file] : files_)
+          if (!finishing && !file.closing) file.pipeline->finish();
+        finishing = true;
+        if (files_.empty()) break;
+      }
+    }
+    if (command) std::visit([this](auto& each) { execute(each); }, *command);
+    if (std::chrono::steady_clock::now() >= next_retention) {
+      retain();
+      next_retention = std::chrono::steady_clock::now() + kRetention;
+    }
+    std::uint64_t level = 0;
+    for (const auto& [number, file] : files_) level += file.pipeline->level();
+    {
+      const std::lock_guard guard(lock_);
+      level_ = level;
+    }
+    lower_.notify_all();
+  }
+  files_.clear();
+  waiting_.clear();
+  archive_.close();
+  const std::lock_guard guard(lock_);
+  level_ = 0;  // what the disk did not take is given up
+  ended_ = true;
+  over_.notify_all();
+}
+
+void DiskWriter::execute(Open& command) {
+  const FileSpec& spec = *command.spec;
+  File file;
+  file.spec = command.spec;
+  const std::uint32_t number = spec.start.file;
+  file.row.camera = spec.camera;
+  file.row.event = spec.start.event;
+  file.row.part = spec.start.part;
+  file.row.begin = file.row.end = time_of(spec.when);
+  file.row.reason = spec.start.reason;
+  std::string fault = archive_.begin(file.row, spec.name, spec.mp4 ? ".mp4" : ".mkv", file.lock);
+  if (fault.empty()) {
+    file.path = folder_ + '/' + file.row.file;
+    {
+      const std::lock_guard guard(lock_);
+      unfinished_[number].path = file.path;
+    }
+    try {
+      file.pipeline = std::make_unique<FilePipeline>(spec, file.path,
+                                                     [this, number](std::shared_ptr<const FileFault> error) {
+                                                       enqueue(Ended{number, std::move(error)});
+                                                     });
+    } catch (const std::exception& error) {
+      fault = error.what();
+      archive_.discard(file.row);
+    }
+  }
+  pass_complaints();
+  if (!fault.empty()) return report_end(file, FileReport::State::failed, {fault, ""});
+  report({FileReport::State::started, file.spec, file.path, {}, {}, {}, 0, {}});
+  files_.emplace(number, std::move(file));
+}
+
+void DiskWriter::execute(Write& command) {
+  const auto found = files_.find(command.file);
+  if (found == files_.end()) return;
+  File& file = found->second;
+  if (command.track == 0) file.last = std::max(file.last, GST_BUFFER_PTS(command.buffer.get()));
+  file.pipeline->push(command.track, gst_buffer_ref(command.buffer.get()));
+}
+
+void DiskWriter::execute(Line& command) {
+  const auto found = files_.find(command.file);
+  if (found == files_.end() || found->second.without_lines) return;
+  File& file = found->second;
+  int error = file.lines ? 0 : archive_.add_lines(file.row, file.lines);
+  if (!error) error = file.lines.write(command.text.data(), command.text.size());
+  if (!error) return;
+  file.without_lines = true;
+  warn("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
+}
+
+void DiskWriter::save_picture(File& file, const record::Picture& picture) {
+  std::string fault;
+  record::OpenFile to;
+  if (GstSample* jpeg = encode_jpeg(picture, fault)) {
+    GstMapInfo map;
+    if (gst_buffer_map(gst_sample_get_buffer(jpeg), &map, GST_MAP_READ)) {
+      int error = archive_.add_picture(file.row, to);
+      if (!error) error = to.write(map.data, map.size);
+      if (!error) error = to.sync();
+      if (error) fault = std::strerror(error);
+      gst_buffer_unmap(gst_sample_get_buffer(jpeg), &map);
+    }
+    gst_sample_unref(jpeg);
+  }
+  if (!fault.empty()) warn("the picture beside " + record::in_quotes(file.path) + ": " + fault);
+}
+
+void DiskWriter::execute(Close& command) {
+  const auto found = files_.find(command.end.file);
+  if (found == files_.end()) return;
+  File& file = found->second;
+  file.end = command.end;
+  file.closing = true;
+  file.pipeline->finish();
+  const record::Findings& findings = command.findings;
+  file.row.tracks =
+      comma_separated(findings.tracks, [](std::uint32_t track) { return std::to_string(track); });
+  file.row.kinds = comma_separated(findings.kinds, [](std::string_view kind) { return std::string(kind); });
+  file.row.rule = findings.rule;
+  if (findings.picture) save_picture(file, findings.picture);
+}
+
+void DiskWriter::execute(Limit& command) {
+  archive_.set_limits(command.limits);
+}
+
+void DiskWriter::execute(Keep& command) {
+  if (const std::string fault = archive_.keep(command.path, command.keep); !fault.empty()) warn(fault);
+  pass_complaints();
+}
+
+record::Surroundings DiskWriter::surroundings() const {
+  const auto microseconds = [](gint64 time) { return record::Time(std::chrono::microseconds(time)); };
+  timex clock{};  // no modes: the clock is read
+  return {microseconds(g_get_real_time()), microseconds(g_get_monotonic_time()),
+          record::Folder(folder_).free_bytes(), adjtimex(&clock) >= 0 && !(clock.status & STA_UNSYNC)};
+}
+
+void DiskWriter::retain() {
+  report_deleted(archive_.retain(surroundings()));
+}
+
+void DiskWriter::report_deleted(const std::vector<std::string>& names) {
+  for (const std::string& name : names)
+    report({FileReport::State::deleted, nullptr, folder_ + '/' + name, {}, {}, {}, 0, {}});
+  pass_complaints();
+}
+
+void DiskWriter::pass_complaints() {
+  for (const std::string& text : archive_.take_complaints()) warn(text);
+}
+
+void DiskWriter::execute(Abandon& command) {
+  fail(command.file, {command.reason, ""});
+}
+
+void DiskWriter::execute(Ended& command) {
+  if (command.fault) return fail(command.file, *command.fault);
+  const auto found = files_.find(command.file);
+  if (found == files_.end()) return;
+  File file = std::move(found->second);
+  files_.erase(found);
+  file.pipeline.reset();
+  report_end(file, FileReport::State::ended, {});
+  check_done();
+}
+
+void DiskWriter::execute(Done& command) {
+  waiting_.push_back(std::move(command.done));
+  check_done();
+}
+
+void DiskWriter::fail(std::uint32_t number, const FileFault& fault) {
+  const auto found = files_.find(number);
+  if (found == files_.end()) return;
+  File file = std::move(found->second);
+  files_.erase(found);
+  file.pipeline.reset();
+  report_end(file, FileReport::State::failed, fault);
+  check_done();
+}
+
+// What is acknowledged is on the disk, and in the index.
+void DiskWriter::report_end(File& file, FileReport::State state, const FileFault& fault) {
+  {
+    const std::lock_guard guard(lock_);
+    unfinished_.erase(file.spec->start.file);
+  }
+  const std::uint64_t bytes = size_of(file.path);
+  if (!file.path.empty()) {
+    file.row.end = file.row.begin + time_of(file.last);
+    if (const int error = file.lines.sync(); error)
+      warn("the JSON lines beside " + record::in_quotes(file.path) + ": " + std::strerror(error));
+    if (bytes == 0)
+      archive_.discard(file.row);
+    else
+      archive_.finish(file.row, file.lock);
+  }
+  const auto path_of = [&](const std::string& name) { return name.empty() ? name : folder_ + '/' + name; };
+  report({state, file.spec, file.path, path_of(file.row.lines), path_of(file.row.picture), file.end, bytes,
+          fault});
+  retain();
+}
+
+void DiskWriter::check_done() {
+  for (const auto& [number, file] : files_)
+    if (file.closing) return;
+  for (const auto& done : std::exchange(waiting_, {})) done();
+}
+
+}  // namespace cerberus::plugin
