@@ -14,6 +14,7 @@
 #include "control/calibration.h"
 #include "control/timeout_trial.h"
 #include "drivers/head/head_calibration.h"
+#include "drivers/helper/repeated_start.h"
 #include "heads/head_link.h"
 #include "heads/tool.h"
 
@@ -179,22 +180,20 @@ struct Session {
     return wrong;
   }
 
-  // Starts a new helper, which stops the head, once a second until it answers. Returns what is wrong.
+  // Starts a new helper, which stops the head. Returns what is wrong.
   std::string start_again() {
-    constexpr double kPatience = 60;  // seconds; derived: a camera that starts anew takes less
     keys.clear();
-    for (const double end = now_seconds() + kPatience;;) {
-      const double next = now_seconds() + 1;
-      const std::string wrong = link.start(options.driver, options.setup);
-      if (wrong.empty()) return {};
-      std::fprintf(stderr,
-                   "cerberus-heads: %s. The head may still be turning: cut its power if it does. It is tried "
-                   "again; a key ends that\n",
-                   wrong.c_str());
-      while (now_seconds() < next && !keys.pressed()) g_usleep(10000);
-      if (now_seconds() >= end || keys.pressed())
-        return wrong + ". THE HEAD MAY STILL BE TURNING, and nothing stops it: cut its power";
-    }
+    const drivers::RepeatedStart again{
+        [this] { return link.start(options.driver, options.setup); }, now_seconds,
+        [this] { return keys.pressed(); }, [] { g_usleep(10000); },
+        [](const std::string& wrong) {
+          std::fprintf(
+              stderr,
+              "cerberus-heads: %s. The head may still be turning: cut its power if it does. It is tried "
+              "again; a key ends that\n",
+              wrong.c_str());
+        }};
+    return again.run();
   }
 };
 

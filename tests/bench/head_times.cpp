@@ -54,6 +54,7 @@ class SharedLines final : public drivers::LinePort {
     level = false;
     return 0;
   }
+  int probe() noexcept override { return 0; }
   void pause(motion::Time) noexcept override {}
 
  private:
@@ -78,6 +79,7 @@ class SharedControls final : public drivers::CameraControls {
     hardware_.act(value);
     return 0;
   }
+  int probe() noexcept override { return 0; }
 
  private:
   SharedHardware& hardware_;

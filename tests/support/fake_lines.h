@@ -24,7 +24,7 @@ struct FakeLines {
   std::vector<bool> levels;  // of the outputs
   std::vector<bool> inputs;
   std::vector<LineEdge> edges;
-  int set_error = 0, get_error = 0;
+  int set_error = 0, get_error = 0, probe_error = 0;
   std::string open_error;
   bool open = false;
   std::vector<motion::Time> pauses;
@@ -56,6 +56,7 @@ class FakePort final : public drivers::LinePort {
     level = lines_.inputs[input];
     return 0;
   }
+  int probe() noexcept override { return lines_.probe_error; }
   void pause(motion::Time time) noexcept override { lines_.pauses.push_back(time); }
 
  private:

@@ -43,6 +43,8 @@ struct HeadPlant {
   virtual double precision() const = 0;     // degrees: how near a move ends to its target
   virtual bool powered() const = 0;         // something moves pan, or could
   virtual std::size_t actions() const = 0;  // edges, writes or messages that arrived at the hardware
+  virtual void unplug() {}                  // the hardware is gone until plug()
+  virtual void plug() {}
 };
 
 inline void must(const std::string& wrong) {
@@ -80,6 +82,14 @@ struct StepperPlant final : HeadPlant {
   double precision() const override { return 0.0883; }
   std::size_t actions() const override { return lines.edges.size(); }
   bool powered() const override { return std::count(lines.levels.begin(), lines.levels.end(), true) > 0; }
+  void unplug() override {
+    lines.set_error = lines.get_error = lines.probe_error = ENODEV;
+    lines.open_error = "There is no GPIO chip \"chip0\"";
+  }
+  void plug() override {
+    lines.set_error = lines.get_error = lines.probe_error = 0;
+    lines.open_error.clear();
+  }
 };
 
 struct ServoPlant final : HeadPlant {
@@ -92,16 +102,24 @@ struct ServoPlant final : HeadPlant {
   ServoPlant() {
     char name[] = "/tmp/cerberus-pwm-XXXXXX";
     folder = ::mkdtemp(name);
-    for (const char* channel : {"/pwm0", "/pwm1"}) {
-      ::mkdir((folder + channel).c_str(), 0755);
-      for (const char* file : {"/period", "/duty_cycle", "/enable"})
-        std::ofstream(folder + channel + file) << "0\n";
-    }
+    ServoPlant::plug();
     drivers::ServoOptions options;
     options.chip = folder;
     must(drivers::parse_servo_axis("channel=0 pulse=500,2500 range=-180,180", options.pan));
     must(drivers::parse_servo_axis("channel=1 pulse=1000,2000 range=-90,90", options.tilt));
     head.emplace(options);
+  }
+  ~ServoPlant() override {
+    head.reset();
+    ServoPlant::unplug();
+  }
+  void plug() override {
+    ::mkdir(folder.c_str(), 0755);
+    for (const char* channel : {"/pwm0", "/pwm1"}) {
+      ::mkdir((folder + channel).c_str(), 0755);
+      for (const char* file : {"/period", "/duty_cycle", "/enable"})
+        std::ofstream(folder + channel + file) << "0\n";
+    }
     const auto open = [this](const char* file) {
       return ::open((folder + file).c_str(), O_RDONLY | O_CLOEXEC);
     };
@@ -110,9 +128,9 @@ struct ServoPlant final : HeadPlant {
     pan_enable_fd = open("/pwm0/enable");
     tilt_enable_fd = open("/pwm1/enable");
   }
-  ~ServoPlant() override {
-    head.reset();
-    for (const int fd : {pan_width_fd, tilt_width_fd, pan_enable_fd, tilt_enable_fd}) ::close(fd);
+  void unplug() override {
+    for (int* fd : {&pan_width_fd, &tilt_width_fd, &pan_enable_fd, &tilt_enable_fd})
+      ::close(std::exchange(*fd, -1));
     std::filesystem::remove_all(folder);
   }
   static long read(int fd) {
@@ -149,6 +167,8 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
   Time at{}, delay;
   std::deque<Coming> coming;  // written, and not obeyed yet
   std::size_t writes = 0;
+  bool reports = true;  // its positions can be read
+  bool gone = false;
   std::optional<drivers::V4l2Head> head;
   struct Lent final : drivers::CameraControls {
     CameraPlant& plant;
@@ -158,6 +178,7 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
     std::optional<drivers::ControlRange> query(std::uint32_t id) override { return plant.query(id); }
     int get(std::uint32_t id, std::int32_t& value) noexcept override { return plant.get(id, value); }
     int set(std::uint32_t id, std::int32_t value) noexcept override { return plant.set(id, value); }
+    int probe() noexcept override { return plant.probe(); }
   };
   // Looks along these angles (degrees) at the start. dead_time: from a write until it is obeyed.
   explicit CameraPlant(double pan = 0, double tilt = 0, Time dead_time = {}) : delay(dead_time) {
@@ -169,7 +190,10 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
     options.device = "/dev/video9";
     head.emplace(options, std::make_unique<Lent>(*this));
   }
-  int open(const std::string&) override { return 0; }
+  int open(const std::string&) override { return gone ? ENOENT : 0; }
+  int probe() noexcept override { return gone ? ENODEV : 0; }
+  void unplug() override { gone = true; }
+  void plug() override { gone = false; }
   void close() noexcept override {}
   std::optional<drivers::ControlRange> query(std::uint32_t id) override {
     if (id == drivers::camera_control::kPanAbsolute || id == drivers::camera_control::kTiltAbsolute)
@@ -178,10 +202,12 @@ struct CameraPlant final : HeadPlant, drivers::CameraControls {
   }
   Axis& axis(std::uint32_t id) { return id == drivers::camera_control::kPanAbsolute ? pan_axis : tilt_axis; }
   int get(std::uint32_t id, std::int32_t& value) noexcept override {
+    if (gone || !reports) return gone ? ENODEV : EACCES;
     value = static_cast<std::int32_t>(std::lround(axis(id).angle));
     return 0;
   }
   int set(std::uint32_t id, std::int32_t value) noexcept override {
+    if (gone) return ENODEV;
     coming.push_back({at + delay, &axis(id), value});
     obey(at);
     ++writes;

@@ -31,6 +31,7 @@ namespace cerberus::tests {
 struct ViscaFaults {
   bool acknowledges = true;
   bool reports = true;     // answers position inquiries
+  bool versions = false;   // answers the inquiry of its version
   bool zooms = false;      // has a zoom; without one it refuses its commands, as Sony's cameras do
   bool header = true;      // expects the header of VISCA over IP, over UDP
   int refuses = 0;         // as many moves are answered by "buffer full"
@@ -102,6 +103,14 @@ class ViscaCamera {
   }
   // The next reset of the sequence number is lost.
   void drop_reset() { drops_resets_ = 1; }
+  // While it has no power, what comes is lost, and it stands.
+  void set_power(bool on) {
+    const std::lock_guard guard(lock_);
+    advance();
+    powered_ = on;
+    coming_.clear();
+    pan_.speed = tilt_.speed = 0;
+  }
   // The camera's cable is pulled (TCP: the connection ends).
   void hang_up() { hang_up_ = true; }
 
@@ -171,6 +180,7 @@ class ViscaCamera {
       if (line_ == Line::tcp) ::close(fd_), fd_ = -1;
       return true;
     }
+    if (!powered_) return true;
     std::size_t skip = 0;
     if (line_ == Line::udp && faults_.header) {
       if (got < 9) return true;
@@ -233,6 +243,11 @@ class ViscaCamera {
       }
       reply.push_back(0xff);
       return answer(reply);
+    }
+    // CAM_VersionInq: vendor, model, ROM revision, sockets
+    if (m.size() == 5 && m[1] == 0x09 && m[2] == 0x00 && m[3] == 0x02) {
+      if (faults_.versions) answer({0x90, 0x50, 0x00, 0x20, 0x05, 0x11, 0x01, 0x03, 0x02, 0xff});
+      return;
     }
     if (m.size() == 5 && m[1] == 0x09 && m[2] == 0x04 && m[3] == 0x47) {  // CAM_ZoomPosInq
       const int z = zoom_;
@@ -308,7 +323,7 @@ class ViscaCamera {
   std::uint32_t next_ = 0;
   Clock::time_point last_, stopped_;
   std::atomic<int> moves_{0}, drops_resets_{0};
-  std::atomic<bool> end_{false}, hang_up_{false};
+  std::atomic<bool> end_{false}, hang_up_{false}, powered_{true};
   std::thread thread_;
 };
 

@@ -13,6 +13,7 @@
 #include <string>
 
 #include "drivers/head/head_calibration.h"
+#include "drivers/helper/repeated_start.h"
 #include "drivers/simulated/simulated_head.h"
 #include "support/suite.h"
 #include "support/text.h"
@@ -202,6 +203,59 @@ START_TEST(a_key_ends_the_trial_and_nothing_is_said_of_the_head) {
 }
 END_TEST
 
+namespace {
+
+// Starts of helpers in the test's own time, each of which takes `lasts` seconds; the first that works is number `good`.
+struct Starts {
+  double now = 100, lasts = 0, key_at = 1e9;
+  int good = 0, starts = 0, reports = 0;
+  std::string run() {
+    const RepeatedStart repeated{[this] {
+                                   now += lasts;
+                                   return ++starts == good ? "" : std::string("it does not answer");
+                                 },
+                                 [this] { return now; }, [this] { return now >= key_at; },
+                                 [this] { now += 0.01; },
+                                 [this](const std::string& wrong) {
+                                   assert_text(wrong, "it does not answer");
+                                   ++reports;
+                                 }};
+    return repeated.run();
+  }
+};
+constexpr char kTurns[] =
+    "it does not answer. THE HEAD MAY STILL BE TURNING, and nothing stops it: cut its power";
+
+}  // namespace
+
+START_TEST(a_helper_is_started_once_a_second_until_one_answers) {
+  Starts starts;
+  starts.good = 3;
+  assert_text(starts.run(), "");
+  ck_assert_int_eq(starts.starts, 3);
+  ck_assert_int_eq(starts.reports, 2);
+  ck_assert_double_eq_tol(starts.now, 102, 0.05);
+}
+END_TEST
+
+START_TEST(a_helper_that_never_answers_is_given_up_after_a_minute_or_at_a_key_with_a_warning) {
+  Starts never;
+  assert_text(never.run(), kTurns);
+  ck_assert_double_ge(never.now, 160);
+  ck_assert_int_le(never.starts, 61);
+  ck_assert_int_ge(never.starts, 59);
+  Starts slow;
+  slow.lasts = 5;  // it waits for each of them
+  assert_text(slow.run(), kTurns);
+  ck_assert_int_eq(slow.starts, 12);
+  Starts key;
+  key.key_at = 103.5;
+  assert_text(key.run(), kTurns);
+  ck_assert_int_eq(key.starts, 4);
+  ck_assert_double_eq_tol(key.now, 103.5, 0.05);
+}
+END_TEST
+
 START_TEST(a_speed_map_goes_both_ways) {
   const SpeedMap map({{1, 2}, {3, 3}});
   ck_assert_double_eq(map.actual(0.5), 1);
@@ -284,7 +338,10 @@ int main() {
        noise_of_the_picture_is_averaged, what_cannot_be_measured_ends_with_the_reason,
        the_trial_of_the_device_s_own_timeout_stays_within_the_limits,
        a_head_without_its_helper_stops_goes_on_or_was_not_seen, frames_that_are_not_measured_are_no_rest,
-       a_key_ends_the_trial_and_nothing_is_said_of_the_head, a_speed_map_goes_both_ways,
-       a_calibration_is_written_and_read, wrong_calibrations_are_refused_with_the_line,
-       a_calibration_of_another_device_is_refused_by_name, a_device_is_named_without_its_password});
+       a_key_ends_the_trial_and_nothing_is_said_of_the_head,
+       a_helper_is_started_once_a_second_until_one_answers,
+       a_helper_that_never_answers_is_given_up_after_a_minute_or_at_a_key_with_a_warning,
+       a_speed_map_goes_both_ways, a_calibration_is_written_and_read,
+       wrong_calibrations_are_refused_with_the_line, a_calibration_of_another_device_is_refused_by_name,
+       a_device_is_named_without_its_password});
 }

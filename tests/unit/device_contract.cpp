@@ -31,9 +31,11 @@ namespace {
 std::unique_ptr<HeadPlant> make_plant(int index) {
   if (index == 0) return std::make_unique<StepperPlant>();
   if (index == 1) return std::make_unique<ServoPlant>();
-  return std::make_unique<CameraPlant>();
+  auto camera = std::make_unique<CameraPlant>();
+  camera->reports = index == 2;
+  return camera;
 }
-constexpr int kPlants = 3;
+constexpr int kPlants = 4;
 constexpr double kHair = 1e-3;  // degrees: a pulse is a whole number of nanoseconds
 
 HeadSetup setup() {
@@ -172,6 +174,27 @@ START_TEST(feedback_is_where_the_head_is) {
 }
 END_TEST
 
+START_TEST(a_head_that_vanishes_at_rest_is_reported_within_a_second_and_used_again) {
+  Rig rig(_i);
+  rig.move({Kind::position, radians(30), radians(50)});
+  rig.run(10s);  // its motors are off, where they go off
+  const double there = rig.plant->pan();
+  rig.plant->unplug();
+  rig.run(1s);
+  const std::string fault = rig.head.fault();
+  ck_assert_msg(fault.find("does not") != std::string::npos, "'%s'", fault.c_str());
+  rig.run(5s);
+  assert_text(rig.head.fault(), fault.c_str());
+  rig.plant->plug();
+  rig.run(3s);
+  assert_text(rig.head.fault(), "");
+  ck_assert_double_eq(rig.plant->pan(), there);  // it stands until the next command
+  rig.move({Kind::position, radians(-20), radians(50)});
+  rig.run(5s);
+  ck_assert_double_eq_tol(rig.plant->pan(), -20, rig.plant->precision());
+}
+END_TEST
+
 START_TEST(an_emergency_stop_ends_what_moves_it) {
   Rig rig(_i);
   FakeLines contact;
@@ -219,7 +242,9 @@ int main() {
        {an_open_head_stands_and_a_move_arrives_within_its_precision, a_speed_is_kept_and_ends_at_the_limit,
         no_command_leads_beyond_a_limit, other_limits_hold_at_once_and_a_head_beyond_them_returns,
         a_stop_ends_all_motion_within_half_a_second_and_may_be_repeated, numbers_that_are_none_move_nothing,
-        feedback_is_where_the_head_is, an_emergency_stop_ends_what_moves_it})
+        feedback_is_where_the_head_is,
+        a_head_that_vanishes_at_rest_is_reported_within_a_second_and_used_again,
+        an_emergency_stop_ends_what_moves_it})
     tcase_add_loop_test(cases, test, 0, kPlants);
   suite_add_tcase(suite, cases);
   SRunner* runner = srunner_create(suite);

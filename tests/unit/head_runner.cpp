@@ -44,6 +44,16 @@ HeadCommand go(Time time, double pan) {
   return {time, {Kind::position, pan, 1}, {}};
 }
 
+// A runner whose head is blocked in a command of the time 1 s, which `record` has, until the writer of `gate` is closed.
+std::unique_ptr<HeadRunner> blocked_runner(Pipe& gate, Pipe& record, std::shared_ptr<HeadLease> lease = {}) {
+  auto runner =
+      runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
+  assert_text(record.line(), "open 0");
+  runner->command(go(1s, 0.125));
+  assert_text(record.line(), "command 1000000000 position 0.125 1 hold 0 0");
+  return runner;
+}
+
 }  // namespace
 
 START_TEST(questions_are_answered_with_all_pieces_of_the_way) {
@@ -72,6 +82,41 @@ START_TEST(a_failure_is_reported_once_and_cleared_by_the_next_success) {
   // A question alone is answered, and heals nothing.
   ck_assert(runner->ask({}, 1s, 1s, poses, 60s) == Answer::done);
   ck_assert(!runner->healthy());
+}
+END_TEST
+
+// A head whose device is unplugged and comes back without any command.
+START_TEST(a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same) {
+  struct Unplugged final : Head {
+    std::string why;
+    std::string open(const HeadSetup&) override { return {}; }
+    void close() noexcept override {}
+    void stop(Time) noexcept override {}
+    std::string command(const HeadCommand&) override { return why; }
+    std::string limit(Time, const Limits&) override { return {}; }
+    std::string state(Time time, Pose& pose) override {
+      pose = {};
+      pose.from = time;
+      return {};
+    }
+    std::string fault() override { return why; }
+    bool blocks() const override { return false; }
+  };
+  auto head = std::make_unique<Unplugged>();
+  Unplugged& device = *head;
+  HeadRunner runner(std::move(head), {});
+  ck_assert(runner.open({}, 60s) == Answer::done);
+  std::vector<Pose> poses;
+  ck_assert(runner.ask({}, 0s, 0s, poses, 60s) == Answer::done);
+  device.why = "it was unplugged";
+  poses.clear();
+  ck_assert(runner.ask({}, 1s, 1s, poses, 60s) == Answer::failed);
+  ck_assert_uint_eq(poses.size(), 1);
+  ck_assert(!runner.healthy());
+  assert_text(runner.failure(), "it was unplugged");
+  device.why.clear();
+  ck_assert(runner.ask({}, 2s, 2s, poses, 60s) == Answer::done);
+  ck_assert(runner.healthy());
 }
 END_TEST
 
@@ -232,10 +277,7 @@ END_TEST
 
 START_TEST(a_stop_beats_the_commands_before_it) {
   Pipe gate, record;
-  auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
-  record.line();
-  runner->command(go(1s, 0.125));
-  record.line();
+  auto runner = blocked_runner(gate, record);
   runner->command(go(2s, 0.25));
   runner->stop(3s, 1ms);
   gate.close_writer();
@@ -295,10 +337,7 @@ END_TEST
 
 START_TEST(new_limits_come_before_the_command_that_waits) {
   Pipe gate, record;
-  const auto runner = runner_with("record " + record.writer() + "; command wait " + gate.reader());
-  record.line();
-  runner->command(go(1s, 0.125));
-  record.line();
+  const auto runner = blocked_runner(gate, record);
   runner->command(go(2s, 2));
   Limits narrow;
   narrow.pan = {-0.5, 0.5};
@@ -342,11 +381,7 @@ START_TEST(a_blocked_driver_keeps_its_lease_and_closes_by_itself) {
   {
     auto lease = HeadLease::take("blocked");
     watch = lease;
-    auto runner =
-        runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
-    record.line();
-    runner->command(go(1s, 0.125));
-    record.line();
+    auto runner = blocked_runner(gate, record, std::move(lease));
     runner->set_close_patience(20ms);
     const auto start = Clock::now();
     runner.reset();
@@ -363,11 +398,7 @@ START_TEST(a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not) {
   Pipe gate, record, next_record;
   auto lease = HeadLease::take("gate");
   ck_assert(lease && lease->wait({}) && !HeadLease::take("gate"));  // in use
-  auto runner =
-      runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
-  record.line();
-  runner->command(go(1s, 0.125));
-  record.line();
+  auto runner = blocked_runner(gate, record, std::move(lease));
   runner->set_close_patience(1ms);
   runner.reset();
   auto next_lease = HeadLease::take("gate");
@@ -393,11 +424,7 @@ START_TEST(a_runner_that_is_destroyed_while_it_waits_opens_nothing) {
   Pipe gate, record, next_record;
   auto lease = HeadLease::take("given up");
   const std::weak_ptr<HeadLease> watch = lease;
-  auto runner =
-      runner_with("record " + record.writer() + "; command wait " + gate.reader(), std::move(lease));
-  record.line();
-  runner->command(go(1s, 0.125));
-  record.line();
+  auto runner = blocked_runner(gate, record, std::move(lease));
   runner->set_close_patience(1ms);
   runner.reset();
   auto next_lease = HeadLease::take("given up");
@@ -450,6 +477,7 @@ int main() {
       "head_runner",
       {questions_are_answered_with_all_pieces_of_the_way,
        a_failure_is_reported_once_and_cleared_by_the_next_success,
+       a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same,
        a_head_that_fails_is_stopped,
        a_caller_without_patience_is_not_blocked,
        interrupt_wakes_a_waiting_caller,

@@ -87,6 +87,31 @@ START_TEST(a_head_with_speed_commands_only_brakes_at_the_target) {
 }
 END_TEST
 
+// A head with positions that carries out its speeds a quarter of a second later, as a board that plans its jogs: at 20
+// degrees a second it is 5 degrees behind the model.
+START_TEST(an_axis_with_positions_that_holds_does_not_creep_to_where_the_model_rests) {
+  HeadSetup setup;
+  setup.limits.pan = {radians(-170), radians(170), radians(90), radians(600)};
+  Rig rig(setup, "ready 1 velocity feedback rate 20");
+  const auto report = [&](double pan) {
+    rig.client.handle("pose " + std::to_string(pan) + " 0 0 0 0", rig.now);
+    rig.run(rig.now + 50ms);
+  };
+  rig.command({0s, {Kind::velocity, radians(20), 0}, {}});
+  for (int k = 0; k < 20; ++k) report(std::max(0.0, k - 5.0));
+  ck_assert_double_gt(Rig::speed_of(rig.sent.back().line), 15);
+  rig.command({1s, {}, {Kind::velocity, radians(1), 0}});  // the other axis turns on
+  for (int k = 0; k < 4; ++k) report(15);                  // the model brakes in 33 ms
+  for (int k = 0; k < 100; ++k) {
+    report(15);
+    ck_assert(rig.sent.back().line.starts_with("move hold at "));
+  }
+  ck_assert_double_eq_tol(degrees(rig.at(rig.now).pan.position), 15, 0.01);
+  for (int k = 0; k < 20; ++k) report(171);  // it was turned beyond its limit
+  ck_assert_double_lt(Rig::speed_of(rig.sent.back().line), 0);
+}
+END_TEST
+
 // The mean speed of its first period of 100 ms at 600 degrees a second squared is 30 degrees a second.
 START_TEST(a_head_that_rests_is_sent_a_speed_with_the_command) {
   HeadSetup setup;
@@ -157,11 +182,12 @@ START_TEST(a_correction_leads_beyond_no_limit_unless_the_head_reports_that) {
 END_TEST
 
 int main() {
-  return cerberus::tests::run_suite("helper_client",
-                                    {a_head_with_speed_commands_only_brakes_at_the_target,
-                                     a_head_that_rests_is_sent_a_speed_with_the_command,
-                                     a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period,
-                                     limits_that_come_in_move_a_head_that_rests_beyond_them,
-                                     the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
-                                     a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
+  return cerberus::tests::run_suite(
+      "helper_client", {a_head_with_speed_commands_only_brakes_at_the_target,
+                        a_head_that_rests_is_sent_a_speed_with_the_command,
+                        an_axis_with_positions_that_holds_does_not_creep_to_where_the_model_rests,
+                        a_head_that_only_goes_to_angles_is_sent_the_end_of_each_period,
+                        limits_that_come_in_move_a_head_that_rests_beyond_them,
+                        the_speeds_that_a_helper_reports_are_reckoned_from_the_dead_time_on,
+                        a_correction_leads_beyond_no_limit_unless_the_head_reports_that});
 }

@@ -67,6 +67,24 @@ START_TEST(a_move_has_a_timeout_and_is_sent_again_before_it_is_over) {
 }
 END_TEST
 
+// A pipeline that is wrong, or cerberus-heads move: this one would drive on for ever.
+START_TEST(a_camera_without_positions_is_stopped_a_little_beyond_its_limits_by_the_speeds_that_it_was_sent) {
+  Rig rig;
+  assert_text(rig.served.line("ready"), "ready 1 velocity rate 10");
+  rig.served.say("limits -5 5 -5 5");
+  rig.served.say("move at 20 hold");
+  ck_assert(rig.served.until([&] { return rig.camera.pan() > 5 && rig.camera.speed() == 0; }));
+  ck_assert_double_lt(rig.camera.pan(),
+                      5 + 2 + 20 * .05);  // the slack, and 50 ms of the driver and the camera
+  rig.served.say("move at 20 at 10");
+  ck_assert(rig.served.until([&] { return rig.camera.tilt() > 4; }));
+  ck_assert_double_eq(rig.camera.speed(), 0);  // the other axis turns
+  ck_assert(rig.served.until([&] { return rig.camera.pan() < -4; }, "move at -20 hold"));
+  ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }, "move at -20 hold"));
+  ck_assert_double_gt(rig.camera.pan(), -5 - 2 - 20 * .05);
+}
+END_TEST
+
 // The camera ignores its Timeout, so that only Stop stops it.
 START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second) {
   for (const bool silent : {true, false}) {
@@ -342,28 +360,30 @@ START_TEST(a_velocity_falls_before_a_limit_and_towards_an_angle) {
 END_TEST
 
 int main() {
-  return run_suite("onvif_head",
-                   {a_camera_turns_and_stops,
-                    pan_is_positive_to_the_right_and_tilt_up,
-                    a_move_has_a_timeout_and_is_sent_again_before_it_is_over,
-                    silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
-                    the_camera_stops_by_its_own_timeout_when_the_helper_is_gone,
-                    a_stop_is_sent_until_the_camera_acknowledges_it,
-                    a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again,
-                    a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well,
-                    the_newest_move_waits_for_the_answer_to_the_last_one,
-                    positions_are_reported_and_a_camera_at_its_limit_is_stopped,
-                    a_camera_with_absolute_moves_goes_to_an_angle,
-                    a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
-                    a_camera_without_positions_finds_its_reference_by_a_preset,
-                    a_preset_that_is_not_there_is_a_fault,
-                    a_preset_that_is_not_listed_is_named_with_those_that_are,
-                    a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands,
-                    a_zoom_of_another_range_is_a_share_of_it,
-                    a_zoom_that_cannot_be_kept_any_more_is_a_warning_and_the_head_turns,
-                    a_zoom_that_cannot_be_kept_is_an_error,
-                    a_camera_whose_options_fail_is_refused_with_its_own_fault,
-                    a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known,
-                    a_velocity_falls_before_a_limit_and_towards_an_angle},
-                   200);
+  return run_suite(
+      "onvif_head",
+      {a_camera_turns_and_stops,
+       pan_is_positive_to_the_right_and_tilt_up,
+       a_camera_without_positions_is_stopped_a_little_beyond_its_limits_by_the_speeds_that_it_was_sent,
+       a_move_has_a_timeout_and_is_sent_again_before_it_is_over,
+       silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
+       the_camera_stops_by_its_own_timeout_when_the_helper_is_gone,
+       a_stop_is_sent_until_the_camera_acknowledges_it,
+       a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again,
+       a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well,
+       the_newest_move_waits_for_the_answer_to_the_last_one,
+       positions_are_reported_and_a_camera_at_its_limit_is_stopped,
+       a_camera_with_absolute_moves_goes_to_an_angle,
+       a_camera_that_claims_absolute_moves_and_refuses_them_is_turned_at_speeds,
+       a_camera_without_positions_finds_its_reference_by_a_preset,
+       a_preset_that_is_not_there_is_a_fault,
+       a_preset_that_is_not_listed_is_named_with_those_that_are,
+       a_locked_zoom_is_set_at_the_start_and_again_while_the_head_stands,
+       a_zoom_of_another_range_is_a_share_of_it,
+       a_zoom_that_cannot_be_kept_any_more_is_a_warning_and_the_head_turns,
+       a_zoom_that_cannot_be_kept_is_an_error,
+       a_camera_whose_options_fail_is_refused_with_its_own_fault,
+       a_camera_that_is_too_slow_for_a_whole_login_is_driven_by_what_is_known,
+       a_velocity_falls_before_a_limit_and_towards_an_angle},
+      200);
 }

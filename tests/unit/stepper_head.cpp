@@ -143,7 +143,7 @@ START_TEST(coils_that_are_never_released_stay_on_after_a_stop_and_go_off_with_th
 END_TEST
 
 START_TEST(coils_that_are_never_released_go_off_after_a_silence_and_at_the_end_and_not_at_a_stop) {
-  for (const char* last : {"stop", "silence", "end", "stop and end"}) {
+  for (const char* last : {"stop", "silence", "end", "stop and end", "stop and silence"}) {
     const std::string how = last;
     StepperOptions never = options(kCoils);
     never.release_delay.reset();
@@ -166,6 +166,7 @@ START_TEST(coils_that_are_never_released_go_off_after_a_silence_and_at_the_end_a
     run(2s, how == "end", how.starts_with("stop"));
     ck_assert_msg(bench.lit() == how.starts_with("stop"), "%s", last);
     if (how == "stop and end") run(2s, true, false);
+    if (how == "stop and silence") run(2s, false, false);
     ck_assert_msg(bench.lit() == (how == "stop"), "%s", last);
   }
 }

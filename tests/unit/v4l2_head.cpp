@@ -60,6 +60,7 @@ class FakeControls final : public CameraControls {
     camera_.sets.emplace_back(control, value);
     return 0;
   }
+  int probe() noexcept override { return camera_.open_error; }
 
  private:
   Camera& camera_;

@@ -46,6 +46,8 @@ class GpioLines {
   // Of one line, by its index in the request. Allocates nothing.
   int set(std::size_t output, bool level) noexcept;
   int level(std::size_t input, bool& level) noexcept;
+  // Reads one of the requested lines, to learn whether the chip is still there. Changes none.
+  int probe() noexcept;
 
  private:
   struct Handles;

@@ -177,4 +177,12 @@ int GpioLines::level(std::size_t input, bool& level) noexcept {
   return 0;
 }
 
+int GpioLines::probe() noexcept {
+  const Handles& h = *handles_;
+  errno = 0;
+  if (h.outputs.empty() && h.inputs.empty()) return EINVAL;
+  gpiod_line* line = h.outputs.empty() ? h.inputs.front() : h.outputs.front();
+  return gpiod_line_get_value(line) < 0 ? last_error() : 0;
+}
+
 }  // namespace cerberus::drivers

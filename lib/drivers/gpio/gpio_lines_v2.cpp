@@ -203,4 +203,15 @@ int GpioLines::level(std::size_t input, bool& level) noexcept {
   return 0;
 }
 
+int GpioLines::probe() noexcept {
+  Handles& h = *handles_;
+  errno = 0;
+  if (h.outputs && !h.out.empty())
+    return gpiod_line_request_get_value(h.outputs.get(), h.out.front()) == GPIOD_LINE_VALUE_ERROR
+               ? last_error()
+               : 0;
+  bool level = false;
+  return this->level(0, level);
+}
+
 }  // namespace cerberus::drivers

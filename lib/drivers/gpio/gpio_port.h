@@ -19,6 +19,7 @@ class GpioPort final : public LinePort {
   void close() noexcept override { lines_.close(); }
   int set(std::size_t output, bool level) noexcept override { return lines_.set(output, level); }
   int get(std::size_t input, bool& level) noexcept override { return lines_.level(input, level); }
+  int probe() noexcept override { return lines_.probe(); }
   // Spins: no timer of the kernel is that short.
   void pause(Time time) noexcept override;
 

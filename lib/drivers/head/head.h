@@ -62,6 +62,9 @@ class Head {
   virtual std::string state(Time time, motion::Pose& pose) = 0;
   // True while the device's emergency stop is pressed, and once after it was pressed between two calls.
   virtual bool emergency() { return false; }
+  // What is wrong with the device now, also at rest, where no command would report it; empty: nothing. Not the emergency
+  // stop.
+  virtual std::string fault() { return {}; }
   // True: the head has no clock of its own and follows the times that are passed, whatever their rate.
   virtual bool simulated() const { return false; }
   // False: every call returns at once, and the head needs no thread of its own.

@@ -126,7 +126,8 @@ void HeadRunner::Core::serve(std::unique_lock<std::mutex>& guard) {
   const unsigned long ticket = asked;
   if (blocks) guard.unlock();
   found.clear();
-  const std::string wrong = carry_out(batch);
+  std::string wrong = carry_out(batch);
+  if (wrong.empty() && batch.question && !batch.moves()) wrong = head->fault();
   const bool pressed = head->emergency();
   if (batch.quit) head->close();
   if (blocks) guard.lock();

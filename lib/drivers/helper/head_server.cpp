@@ -24,7 +24,8 @@ void HeadServer::obey(const std::string& text, Time now) {
     return;
   }
   if (!greeted_) return;
-  if (std::exchange(silent_, false)) send_("stopped silence");
+  silent_ = false;
+  if (std::exchange(stopped_, false)) send_("stopped silence");
   if (const auto* move = std::get_if<MoveLine>(&*line)) {
     device_.move(move->pan, move->tilt, now);
     obeyed_ = true;
@@ -51,14 +52,15 @@ void HeadServer::obey(const std::string& text, Time now) {
 Time HeadServer::serve(Time now) {
   if (!greeted_ || ended_) return motion::kNever;
   Time next = device_.tick(now);
-  if (at_work() && now - last_line_ >= timeout_) {
+  if (!silent_ && now - last_line_ >= timeout_) {
+    stopped_ = at_work();
     device_.leave(now);
     obeyed_ = false;
     silent_ = true;
     next = now;  // what tick() returned is of the plan before
   }
   report(now);
-  return std::min(next, at_work() ? last_line_ + timeout_ : motion::kNever);
+  return std::min(next, silent_ ? motion::kNever : last_line_ + timeout_);
 }
 
 Time HeadServer::finish(Time now) {

@@ -2,8 +2,10 @@
 // The helper's end of the line protocol (head_lines.h): what a device does for the lines of a pipeline, and which lines
 // report it. No descriptor and no clock: helper_loop.h connects both, and a test has its own time.
 //
-// The device stops when no line has come for the timeout of the first line; a line after such a silence brings
-// `stopped silence` first, and the next `move` is obeyed again. Lines that are not of the protocol are skipped.
+// The device stops when no line has come for the timeout of the first line, and is left as at the end of the pipeline
+// (HeadDevice::leave()): also one that rests, since a commanded stop may have left its motors on. A line after a silence
+// that stopped a device at work brings `stopped silence` first, and the next `move` is obeyed again. Lines that are not of
+// the protocol are skipped.
 #pragma once
 
 #include <functional>
@@ -45,8 +47,9 @@ class HeadServer {
   motion::Limits limits_;
   Time timeout_{}, last_line_{};
   bool greeted_ = false, ended_ = false, failed_ = false;
-  bool obeyed_ = false;  // a line that may move the head was carried out and no stop came after it
-  bool silent_ = false;  // the head was stopped by the timeout
+  bool obeyed_ = false;   // a line that may move the head was carried out and no stop came after it
+  bool silent_ = false;   // the timeout is over since the last line
+  bool stopped_ = false;  // it stopped a head at work, which the next line reports
   bool emergency_ = false;
   std::string fault_;
   std::optional<double> zoom_;  // as sent

@@ -107,21 +107,30 @@ void HelperClient::follow(Time now) {
     if (reckons_) return kParameters.follow_gain * (reckoned_axis.position - model_axis.position);
     return corrected ? correction : 0;
   };
-  const auto axis = [&](const AxisState& from, const AxisState& to, double correction,
-                        const motion::AxisLimits& limits, const motion::SpeedMap& map) -> AxisCommand {
+  // A head that is to hold stands where it came to rest, which its pose shows, and does not creep to where the model
+  // rests, unless it is beyond its limits.
+  const auto rests = [&](const AxisCommand& command, double mean, double reported,
+                         const motion::AxisLimits& limits) {
+    return corrected && command.kind == Kind::hold && mean == 0 && reported >= limits.from &&
+           reported <= limits.to;
+  };
+  const auto axis = [&](const AxisCommand& command, const AxisState& from, const AxisState& to,
+                        double correction, double reported, const motion::AxisLimits& limits,
+                        const motion::SpeedMap& map) -> AxisCommand {
     // The mean, not the speed at its begin: a head that rests would begin to turn a period later.
     const double mean = (to.position - from.position) / motion::seconds(period());
     if (!abilities_.velocity) return {Kind::position, to.position, std::abs(mean)};
+    if (rests(command, mean, reported, limits)) return {};
     const double speed = std::clamp(mean - correction, -limits.speed, limits.speed);
     return std::abs(speed) < kParameters.least_change
                ? AxisCommand{}
                : AxisCommand{Kind::velocity, map.command_for(speed), 0};
   };
   const std::string line =
-      move_line(axis(ahead.pan, next.pan, error(ahead.pan, reckoned.pan, pan_correction_), setup_.limits.pan,
-                     setup_.pan_speeds),
-                axis(ahead.tilt, next.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction_),
-                     setup_.limits.tilt, setup_.tilt_speeds));
+      move_line(axis(last_.pan, ahead.pan, next.pan, error(ahead.pan, reckoned.pan, pan_correction_),
+                     reported_.pan, setup_.limits.pan, setup_.pan_speeds),
+                axis(last_.tilt, ahead.tilt, next.tilt, error(ahead.tilt, reckoned.tilt, tilt_correction_),
+                     reported_.tilt, setup_.limits.tilt, setup_.tilt_speeds));
   if (line != last_move_) send_(line);
   last_move_ = line;
   if (ahead.settled && !measured_ && (!reckons_ || reckoned.settled)) follows_ = false;
@@ -193,9 +202,13 @@ std::string HelperClient::accept(const HeadCommand& command) {
   return {};
 }
 
-std::string HelperClient::execute(Time now) {
+std::string HelperClient::why_idle() const {
   if (!fault_.empty()) return fault_;
-  if (!ready_) return "the head's helper has been started again and is not ready yet";
+  return ready_ ? "" : "the head's helper has been started again and is not ready yet";
+}
+
+std::string HelperClient::execute(Time now) {
+  if (std::string wrong = why_idle(); !wrong.empty()) return wrong;
   if (last_.stop)
     send_stop();
   else

@@ -50,10 +50,13 @@ class HelperClient {
   bool emergency() { return std::exchange(was_pressed_, pressed_) || pressed_; }
   bool ready() const { return ready_; }
   const std::string& fault() const { return fault_; }
+  // As Head::fault(): also while a new helper is not ready.
+  std::string fault_at_rest() const { return pressed_ ? std::string() : why_idle(); }
   const HeadSetup& setup() const { return setup_; }
 
  private:
   void take(const HelperLine& line, Time now);
+  std::string why_idle() const;  // why no command is sent; empty: they are
   void send_command(Time now);
   void send_stop();
   void follow(Time now);

@@ -231,6 +231,12 @@ bool HelperHead::emergency() {
   return core_->client.emergency();
 }
 
+std::string HelperHead::fault() {
+  if (!core_ || !core_->open) return {};
+  const std::lock_guard guard(core_->lock);
+  return core_->client.fault_at_rest();
+}
+
 std::string HelperHead::home(Time now) {
   if (!core_ || !core_->open) return "the head's helper is not open";
   const std::lock_guard guard(core_->lock);

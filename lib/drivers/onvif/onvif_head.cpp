@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "sensing/angles.h"
@@ -39,6 +40,7 @@ OnvifHead::OnvifHead(std::unique_ptr<onvif::HttpClient> http, OnvifOptions optio
 
 std::string OnvifHead::open(const HeadSetup& setup, Time now) {
   limits_ = setup.limits;
+  reckoned_.begin(now, {setup.pan, setup.tilt});
   const auto begin = std::chrono::steady_clock::now();
   const auto elapsed = [&] {
     return std::chrono::duration_cast<Time>(std::chrono::steady_clock::now() - begin);
@@ -120,8 +122,14 @@ void OnvifHead::stop(Time now) noexcept {
   begin_stop(now);
 }
 
+// The camera turns at this velocity (degrees a second), as far as known.
+void OnvifHead::set_velocity(const Angles& velocity, Time now) {
+  sent_velocity_ = velocity;
+  reckoned_.set_speeds({radians(velocity.pan), radians(velocity.tilt)}, now);
+}
+
 void OnvifHead::begin_stop(Time now) {
-  sent_velocity_ = {};
+  set_velocity({}, now);
   sent_angle_ = false;
   if (camera_.profile.empty()) return;
   stopping_ = moved_ = true;
@@ -178,10 +186,16 @@ onvif::PanTilt OnvifHead::wanted_velocity(Time now) const {
     tilt = position_->tilt + sent_velocity_.tilt * seconds;
   }
   // A head that goes to angles keeps the limits itself, for which it needs its position; the others are sent speeds
-  // that brake before them.
-  return onvif::to_velocity({onvif::approach(pan_, limits_.pan, pan, keeps_limits_),
-                             onvif::approach(tilt_, limits_.tilt, tilt, keeps_limits_)},
-                            spaces_.front(), options_.mechanics);
+  // that brake before them. Without a position the reckoned one stops the camera a little beyond.
+  Angles speed{onvif::approach(pan_, limits_.pan, pan, keeps_limits_),
+               onvif::approach(tilt_, limits_.tilt, tilt, keeps_limits_)};
+  if (!positions_) {
+    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+    const motion::PanTilt allowed =
+        reckoned_.confined({radians(speed.pan), radians(speed.tilt)}, {kUnknown, kUnknown}, limits_, 0, now);
+    speed = {allowed.pan == 0 ? 0 : speed.pan, allowed.tilt == 0 ? 0 : speed.tilt};
+  }
+  return onvif::to_velocity(speed, spaces_.front(), options_.mechanics);
 }
 
 void OnvifHead::send_absolute(Time now) {
@@ -201,7 +215,7 @@ void OnvifHead::send_absolute(Time now) {
                                                 camera_.options, options_.mechanics)),
            now);
   sent_angle_ = moved_ = true;
-  sent_velocity_ = {};
+  set_velocity({}, now);
   sent_ = now;
 }
 
@@ -226,7 +240,7 @@ void OnvifHead::send_move(Time now) {
   std::optional<std::chrono::milliseconds> timeout;
   if (!timeout_refused_) timeout = std::chrono::ceil<std::chrono::milliseconds>(camera_timeout());
   move_ = send(onvif::continuous_move(camera_.profile, vector, timeout), now);
-  sent_velocity_ = wanted;
+  set_velocity(wanted, now);
   sent_angle_ = false;
   moved_ = true;
   sent_ = now;
@@ -248,14 +262,13 @@ void OnvifHead::send_home(Time now) {
 
 std::optional<HomedLine> OnvifHead::take_homed(Time now) {
   if (!homing_.take(now)) return std::nullopt;
+  reckoned_.set_reference({}, now);
   return HomedLine{};
 }
 
 std::optional<SpeedsLine> OnvifHead::take_speeds(Time now) {
-  if (positions_ || sent_velocity_ == reported_) return std::nullopt;
-  reported_ = sent_velocity_;
-  return SpeedsLine{{radians(reported_.pan), radians(reported_.tilt)},
-                    motion::seconds(now - std::max(sent_, stop_sent_))};
+  const auto speeds = reckoned_.take_speeds(now);
+  return positions_ ? std::nullopt : speeds;
 }
 
 void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
@@ -264,7 +277,7 @@ void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
   if (homing_.busy() && answer.fault && !answer.not_authorized()) return refuse(*answer.fault, now);
   if (homing_.busy()) homing_.want();
   const bool angle = std::exchange(sent_angle_, false);
-  sent_velocity_ = {};  // not in force: it is sent again, or something better
+  set_velocity({}, now);  // not in force: it is sent again, or something better
   if (!answer.fault) return;
   if (answer.not_authorized()) return log_in_again(now);
   if (angle) {

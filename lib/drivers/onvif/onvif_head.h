@@ -20,6 +20,7 @@
 #include <vector>
 
 #include "drivers/helper/head_device.h"
+#include "drivers/helper/speed_reckoning.h"
 #include "drivers/onvif/approach.h"
 #include "drivers/onvif/homing.h"
 #include "drivers/onvif/login.h"
@@ -110,6 +111,7 @@ class OnvifHead final : public HeadDevice {
   bool has_position(Time now) const;
   // The velocities that the commands ask for now, as the camera can execute them.
   onvif::PanTilt wanted_velocity(Time now) const;
+  void set_velocity(const onvif::Angles& velocity, Time now);
   Time camera_timeout() const;
   unsigned send(const onvif::Request& request, Time now);
 
@@ -140,7 +142,7 @@ class OnvifHead final : public HeadDevice {
   bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
   int stops_while_moving_ = 0;
-  onvif::Angles reported_;  // by take_speeds()
+  SpeedReckoning reckoned_;  // of sent_velocity_, for a camera without positions
   onvif::ZoomLock zoom_lock_;
   onvif::Homing homing_;
   std::optional<PoseLine> pose_;

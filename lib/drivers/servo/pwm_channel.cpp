@@ -2,6 +2,7 @@
 #include "drivers/servo/pwm_channel.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -58,6 +59,7 @@ int PwmChannel::open(const std::string& chip, int channel, Time period, std::chr
     if (enable_ < 0) error = errno;
   }
   if (error != 0) close();
+  duty_path_ = folder + "/duty_cycle";
   return error;
 }
 
@@ -73,6 +75,13 @@ int PwmChannel::set_width(Time width) noexcept {
 
 int PwmChannel::enable(bool on) noexcept {
   return enable_ < 0 ? ENODEV : write_number(enable_, on ? 1 : 0);
+}
+
+int PwmChannel::probe() const noexcept {
+  struct stat opened{}, named{};
+  if (duty_ < 0 || ::fstat(duty_, &opened) != 0 || ::stat(duty_path_.c_str(), &named) != 0) return ENODEV;
+  // A chip that was unplugged and is back has other files than those that are open.
+  return opened.st_ino == named.st_ino && opened.st_dev == named.st_dev ? 0 : ENODEV;
 }
 
 }  // namespace cerberus::drivers

@@ -28,12 +28,15 @@ class PwmChannel {
   // Width of the pulses, from the next period on; 0: none.
   int set_width(Time width) noexcept;
   int enable(bool on) noexcept;
+  // Whether the channel that was opened is still there: ENODEV if not. Writes nothing.
+  int probe() const noexcept;
 
   // derived: udev has changed the rights of a new channel by then
   static constexpr std::chrono::milliseconds kPatience{400};
 
  private:
   int duty_ = -1, enable_ = -1;  // descriptors
+  std::string duty_path_;
 };
 
 }  // namespace cerberus::drivers

@@ -182,6 +182,14 @@ void ServoHead::drive(Axis& axis, Time now) {
   }
 }
 
+// A moving axis writes anyway.
+void ServoHead::probe(Time now) noexcept {
+  if (now < next_probe_) return;
+  next_probe_ = now + kProbe;
+  for (Axis* axis : {&pan_, &tilt_})
+    if (axis->there() && !axis->moves && axis->error == 0) axis->error = axis->channel.probe();
+}
+
 Time ServoHead::tick(Time now) {
   if (gone_) {
     if (now < next_open_) return next_open_;
@@ -201,6 +209,7 @@ Time ServoHead::tick(Time now) {
   next_period_ = now + options_.period;
   drive(pan_, now);
   drive(tilt_, now);
+  probe(now);
   if (const int error = pan_.error != 0 ? pan_.error : tilt_.error; error != 0) {
     release(now);
     pan_.channel.close();

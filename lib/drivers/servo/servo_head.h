@@ -36,6 +36,8 @@ class ServoHead final : public HeadDevice {
 
   static constexpr std::chrono::milliseconds kStopTime{250};
   static constexpr std::chrono::milliseconds kReopen{1000};
+  // Between two looks at the chip of a head at rest, which write nothing. derived: its loss is reported within 1 s
+  static constexpr std::chrono::milliseconds kProbe{500};
   static constexpr double kRate = 50;  // commands a second
 
  private:
@@ -60,11 +62,12 @@ class ServoHead final : public HeadDevice {
   void halt(Axis& axis, Time now) noexcept;
   void drive(Axis& axis, Time now);
   void end_pulses(Axis& axis) noexcept;
+  void probe(Time now) noexcept;
   void set_limits(Axis& axis, const motion::AxisLimits& limits);
 
   ServoOptions options_;
   Axis pan_, tilt_;
-  Time next_period_{}, next_open_{}, next_report_{};
+  Time next_period_{}, next_open_{}, next_report_{}, next_probe_{};
   bool gone_ = false;
   std::string fault_;
 };

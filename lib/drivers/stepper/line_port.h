@@ -24,6 +24,8 @@ class LinePort {
   // Indices count within the names of open(). Both return errno, 0 = no error.
   virtual int set(std::size_t output, bool level) noexcept = 0;
   virtual int get(std::size_t input, bool& level) noexcept = 0;
+  // Returns errno if the lines are gone, 0 if they are there. Changes no line.
+  virtual int probe() noexcept = 0;
   // Waits for a few microseconds.
   virtual void pause(Time time) noexcept = 0;
 };

@@ -113,9 +113,20 @@ Time StepperHead::run(std::optional<StepperAxis>& axis, Time now) {
   return next;
 }
 
-// The chip does not take a level any more.
-void StepperHead::lose(Time now) {
-  const int error = pan_ && pan_->error() != 0 ? pan_->error() : tilt_->error();
+bool StepperHead::rests() const {
+  const auto still = [](const std::optional<StepperAxis>& axis) {
+    return !axis || (!axis->moving() && !axis->homing());
+  };
+  return still(pan_) && still(tilt_);
+}
+
+int StepperHead::error_of_axes() const {
+  if (pan_ && pan_->error() != 0) return pan_->error();
+  return tilt_ ? tilt_->error() : 0;
+}
+
+// The chip does not take or report a level any more.
+void StepperHead::lose(int error, Time now) {
   release(now);  // the lines that still obey
   port_->close();
   gone_ = true;
@@ -134,8 +145,13 @@ Time StepperHead::tick(Time now) {
   }
   Time next = now + kReportResting;
   next = std::min({next, run(pan_, now), run(tilt_, now)});
-  if ((pan_ && pan_->error() != 0) || (tilt_ && tilt_->error() != 0)) {
-    lose(now);
+  int error = error_of_axes();
+  if (error == 0 && now >= next_probe_) {
+    next_probe_ = now + kProbe;
+    if (rests()) error = port_->probe();  // a moving axis sets lines anyway
+  }
+  if (error != 0) {
+    lose(error, now);
     next = next_open_;
   }
   fault_ = gone_ ? gone_text_ : pan_ ? pan_->fault(now) : "";

@@ -39,6 +39,8 @@ class StepperHead final : public HeadDevice {
 
   static constexpr std::chrono::milliseconds kReportMoving{40}, kReportResting{200};
   static constexpr std::chrono::milliseconds kReopen{1000};
+  // Between two looks at the chip of a head at rest, which sets no line. derived: its loss is reported within 1 s
+  static constexpr std::chrono::milliseconds kProbe{500};
   static constexpr double kRate = 50;  // commands a second
 
  private:
@@ -46,14 +48,16 @@ class StepperHead final : public HeadDevice {
   std::optional<StepperAxis> make_axis(const char* name, const StepperAxisOptions& options,
                                        std::size_t first_output, std::size_t& inputs);
   Time run(std::optional<StepperAxis>& axis, Time now);
-  void lose(Time now);
+  bool rests() const;
+  int error_of_axes() const;
+  void lose(int error, Time now);
 
   StepperOptions options_;
   std::unique_ptr<LinePort> port_;
   std::FILE* record_;
   std::optional<StepperAxis> pan_, tilt_;
   motion::AxisState still_pan_, still_tilt_;  // of an axis that the head has not
-  Time next_report_{}, next_open_{};
+  Time next_report_{}, next_open_{}, next_probe_{};
   bool gone_ = false, new_pose_ = false;
   std::string fault_, gone_text_;
 };

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/transport/stream_device.h"
 
-#include <cmath>
 #include <utility>
-
-#include "motion/stop_margin.h"
 
 namespace cerberus::drivers {
 
@@ -46,35 +43,14 @@ void StreamDevice::set_silent(bool silent, Time now) {
   stop(now);
 }
 
-void StreamDevice::set_speeds(const motion::PanTilt& speed, Time now) {
-  const motion::PanTilt last = reckoned_.last();
-  if (speed.pan == last.pan && speed.tilt == last.tilt) return;
-  reckoned_.turn(now, speed);
-  speeds_ = now;
-}
-
 std::optional<SpeedsLine> StreamDevice::take_speeds(Time now) {
-  const auto changed = std::exchange(speeds_, std::nullopt);
-  if (!changed || reports_) return std::nullopt;
-  return SpeedsLine{reckoned_.last(), motion::seconds(now - *changed)};
+  const auto speeds = reckoned_.take_speeds(now);
+  return reports_ ? std::nullopt : speeds;
 }
 
 motion::PanTilt StreamDevice::confined(const motion::PanTilt& speed, const motion::PanTilt& measured,
                                        Time now) const {
-  constexpr Parameters kParameters;
-  const auto axis = [&](double v, double position, double reckoned, const motion::AxisLimits& limits) {
-    const double range = limits.to - limits.from;
-    double margin = motion::stop_margin(std::abs(v), kParameters.reaction, 0, range);
-    if (std::isnan(position)) {
-      position = reckoned;
-      margin = -kParameters.reckoned_slack;
-    }
-    const bool beyond = v > 0 ? position >= limits.to - margin : position <= limits.from + margin;
-    return beyond ? 0 : v;
-  };
-  const motion::Pose here = reckoned_.at(now);
-  return {axis(speed.pan, measured.pan, here.pan.position, limits_.pan),
-          axis(speed.tilt, measured.tilt, here.tilt.position, limits_.tilt)};
+  return reckoned_.confined(speed, measured, limits_, Parameters{}.reaction, now);
 }
 
 }  // namespace cerberus::drivers

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "drivers/helper/head_device.h"
+#include "drivers/helper/speed_reckoning.h"
 #include "drivers/transport/byte_stream.h"
 #include "drivers/transport/connector.h"
-#include "motion/reckoning.h"
 
 namespace cerberus::drivers {
 
@@ -27,9 +27,6 @@ class StreamDevice : public HeadDevice {
     // Seconds of way for which a head is stopped before a limit. derived: a position is 100 ms old, and a stop takes
     // half as long to arrive.
     double reaction = 0.15;
-    // Radians beyond a limit, by reckoning alone, where the device stops a head that its pipeline still drives on.
-    // derived: more than the pipeline's own reckoning of the same speeds can differ by.
-    double reckoned_slack = sensing::radians(2);
   };
 
   // name: for messages, as "VISCA camera".
@@ -46,9 +43,9 @@ class StreamDevice : public HeadDevice {
   void set_silent(bool silent, Time now);
 
   // The device turns at these speeds (radians a second) from now on.
-  void set_speeds(const motion::PanTilt& speed, Time now);
+  void set_speeds(const motion::PanTilt& speed, Time now) { reckoned_.set_speeds(speed, now); }
   // The device was found to be at `at`: its reckoning begins anew there.
-  void set_reference(const motion::PanTilt& at, Time now) { reckoned_.place(now, at); }
+  void set_reference(const motion::PanTilt& at, Time now) { reckoned_.set_reference(at, now); }
   // speed (radians a second), or 0 where it would lead beyond a limit. measured: the position that the device reported,
   // NaN without one.
   motion::PanTilt confined(const motion::PanTilt& speed, const motion::PanTilt& measured, Time now) const;
@@ -64,8 +61,7 @@ class StreamDevice : public HeadDevice {
   Connector connector_;
   bool connected_ = false;  // the last time that tick() looked
   Time tried_{};
-  motion::Reckoning reckoned_;
-  std::optional<Time> speeds_;  // when they changed, if that was not taken yet
+  SpeedReckoning reckoned_;
 };
 
 }  // namespace cerberus::drivers

@@ -22,6 +22,8 @@ class CameraControls {
   virtual std::optional<ControlRange> query(std::uint32_t control) = 0;
   virtual int get(std::uint32_t control, std::int32_t& value) noexcept = 0;
   virtual int set(std::uint32_t control, std::int32_t value) noexcept = 0;
+  // Whether the camera is still there. Changes nothing.
+  virtual int probe() noexcept = 0;
 };
 
 // Of linux/v4l2-controls.h. Angles are arc-seconds, pan positive to the right, tilt positive up; speeds have no unit.

@@ -32,10 +32,14 @@ int V4l2Controls::open(const std::string& device) {
   close();
   fd_ = ::open(device.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
   if (fd_ < 0) return errno;
-  v4l2_capability about{};
-  const int error = call(fd_, VIDIOC_QUERYCAP, &about);
+  const int error = probe();
   if (error != 0) close();
   return error;
+}
+
+int V4l2Controls::probe() noexcept {
+  v4l2_capability about{};
+  return call(fd_, VIDIOC_QUERYCAP, &about);
 }
 
 void V4l2Controls::close() noexcept {

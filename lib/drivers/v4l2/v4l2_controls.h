@@ -14,6 +14,7 @@ class V4l2Controls final : public CameraControls {
   std::optional<ControlRange> query(std::uint32_t control) override;
   int get(std::uint32_t control, std::int32_t& value) noexcept override;
   int set(std::uint32_t control, std::int32_t value) noexcept override;
+  int probe() noexcept override;
 
  private:
   int fd_ = -1;

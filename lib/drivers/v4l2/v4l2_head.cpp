@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "text/numbers.h"
 
@@ -205,18 +206,18 @@ double V4l2Head::speed_of(const Axis& axis) const {
   return axis.speeds && axis.sent ? *axis.sent * axis.fastest / axis.speeds->most : 0;
 }
 
-void V4l2Head::set_speed(Axis& axis, double speed, Time now) {
+// A camera goes no further than the limits, by its own positions or, without these, by the speeds in force.
+void V4l2Head::set_speeds(const motion::PanTilt& speed, Time now) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  const motion::PanTilt measured{pan_.reads ? pan_.position : kUnknown,
+                                 tilt_.reads ? tilt_.position : kUnknown};
+  const motion::PanTilt allowed = reckoned_.confined(speed, measured, {pan_.limits, tilt_.limits}, 0, now);
+  set_speed(pan_, allowed.pan);
+  set_speed(tilt_, allowed.tilt);
+}
+
+void V4l2Head::set_speed(Axis& axis, double speed) {
   if (!axis.speeds) return;
-  // A camera goes no further than the limits, by its own positions or, without these, by the speeds in force.
-  double position = axis.position, slack = 0;
-  if (!axis.reads) {
-    const motion::Pose here = reckoned_.at(now);
-    position = (&axis == &pan_ ? here.pan : here.tilt).position;
-    slack = kReckonedSlack;
-  }
-  if ((speed > 0 && position >= axis.limits.to + slack) ||
-      (speed < 0 && position <= axis.limits.from - slack))
-    speed = 0;
   const std::int32_t value = speed_step(speed, axis.limits.speed, axis.fastest, *axis.speeds);
   if (axis.sent == value) return;
   const int error = controls_->set(axis.speed, value);
@@ -226,17 +227,12 @@ void V4l2Head::set_speed(Axis& axis, double speed, Time now) {
 
 // The speeds in force have changed, perhaps.
 void V4l2Head::note_speeds(Time now) noexcept {
-  if (mode_ != Mode::speed) return;
-  const motion::PanTilt speed{speed_of(pan_), speed_of(tilt_)}, last = reckoned_.last();
-  if (speed.pan == last.pan && speed.tilt == last.tilt) return;
-  reckoned_.turn(now, speed);
-  speeds_changed_ = now;
+  if (mode_ == Mode::speed) reckoned_.set_speeds({speed_of(pan_), speed_of(tilt_)}, now);
 }
 
 std::optional<SpeedsLine> V4l2Head::take_speeds(Time now) {
-  const auto changed = std::exchange(speeds_changed_, std::nullopt);
-  if (!changed || reads_) return std::nullopt;
-  return SpeedsLine{reckoned_.last(), motion::seconds(now - *changed)};
+  const auto speeds = reckoned_.take_speeds(now);
+  return reads_ ? std::nullopt : speeds;
 }
 
 void V4l2Head::plan(Axis& axis, const AxisCommand& command, Time now) {
@@ -248,15 +244,15 @@ void V4l2Head::plan(Axis& axis, const AxisCommand& command, Time now) {
 void V4l2Head::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
   if (lost_) return;
   stop_owed_ = false;
-  const auto order = [&](Axis& axis, const AxisCommand& command) {
-    if (mode_ == Mode::speed)
-      set_speed(axis, command.kind == Kind::velocity && std::isfinite(command.value) ? command.value : 0,
-                now);
-    else
-      plan(axis, command, now);
-  };
-  order(pan_, pan);
-  order(tilt_, tilt);
+  if (mode_ == Mode::speed) {
+    const auto speed = [](const AxisCommand& command) {
+      return command.kind == Kind::velocity && std::isfinite(command.value) ? command.value : 0;
+    };
+    set_speeds({speed(pan), speed(tilt)}, now);
+  } else {
+    plan(pan_, pan, now);
+    plan(tilt_, tilt, now);
+  }
   note_speeds(now);
   next_ = std::min(next_, now);
 }
@@ -329,6 +325,13 @@ void V4l2Head::check_zoom(Time now) {
   zoom_ = std::clamp((value - static_cast<double>(zooms_->least)) / range, 0.0, 1.0);
 }
 
+// The positions of a camera that reports them are read more often than this.
+void V4l2Head::probe(Time now) {
+  if (lost_ || now < next_probe_) return;
+  next_probe_ = now + kProbe;
+  if (!pan_.reads && !tilt_.reads) check(controls_->probe());
+}
+
 Time V4l2Head::tick(Time now) {
   if (lost_ && !reconnect(now)) return next_open_;
   if (now < next_) return next_;
@@ -342,14 +345,12 @@ Time V4l2Head::tick(Time now) {
     axis->moves = now < axis->plan.end();
     send_angle(*axis, axis->plan.at(now + Time(kPeriod)).position);
   }
-  for (Axis* axis : {&pan_, &tilt_}) {
-    if (lost_) continue;
-    if (axis->reads && !read_position(*axis))
-      lose(ENODEV);
-    else if (mode_ == Mode::speed && axis->sent && *axis->sent != 0)
-      set_speed(*axis, speed_of(*axis), now);
-  }
+  for (Axis* axis : {&pan_, &tilt_})
+    if (!lost_ && axis->reads && !read_position(*axis)) lose(ENODEV);
+  const motion::PanTilt speed{speed_of(pan_), speed_of(tilt_)};
+  if (mode_ == Mode::speed && !lost_ && (speed.pan != 0 || speed.tilt != 0)) set_speeds(speed, now);
   note_speeds(now);
+  probe(now);
   check_zoom(now);
   new_pose_ = reads_ && !lost_;
   if (!lost_) return next_;

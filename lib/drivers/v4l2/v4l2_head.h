@@ -24,9 +24,8 @@
 #include <utility>
 
 #include "drivers/helper/head_device.h"
+#include "drivers/helper/speed_reckoning.h"
 #include "drivers/v4l2/camera_controls.h"
-#include "motion/reckoning.h"
-#include "sensing/angles.h"
 
 namespace cerberus::drivers {
 
@@ -61,12 +60,10 @@ class V4l2Head final : public HeadDevice {
   static constexpr std::chrono::milliseconds kPeriod{50};  // between two positions that are sent or read
   static constexpr std::chrono::milliseconds kZoomPeriod{
       500};  // between two looks at the zoom; a control takes 2 to 30 ms over USB
+  // Between two looks at a camera that reports no position. derived: its loss is reported within 1 s
+  static constexpr std::chrono::milliseconds kProbe{500};
   static constexpr std::chrono::milliseconds kReopen{1000};
   static constexpr std::chrono::milliseconds kStopAgain{200};  // while a camera that is gone may turn
-
-  // Radians beyond a limit, by reckoning alone, where a camera without positions is stopped that its pipeline still
-  // drives on. derived: as StreamDevice::Parameters
-  static constexpr double kReckonedSlack = sensing::radians(2);
 
  private:
   using Mode = V4l2Options::Mode;
@@ -99,12 +96,14 @@ class V4l2Head final : public HeadDevice {
   std::string choose_mode();
   bool drives(const Axis& axis) const;
   std::string check_range(const Axis& axis) const;
-  void set_speed(Axis& axis, double speed, Time now);
+  void set_speed(Axis& axis, double speed);
+  void set_speeds(const motion::PanTilt& speed, Time now);
   double speed_of(const Axis& axis) const;  // in force, radians a second
   void note_speeds(Time now) noexcept;
   bool read_position(Axis& axis) noexcept;
   void lose(int error);
   void check_zoom(Time now);
+  void probe(Time now);
   void check(int error) {
     if (error != 0) lose(error);
   }
@@ -121,11 +120,10 @@ class V4l2Head final : public HeadDevice {
   bool stop_owed_ = false;  // the camera may turn at a speed
   bool lost_ = false;       // it does not obey, or does not report any more
   bool new_pose_ = false;
-  motion::Reckoning reckoned_;          // of the speeds in force
-  std::optional<Time> speeds_changed_;  // when, if that was not taken yet
+  SpeedReckoning reckoned_;  // of the speeds in force
   std::optional<ControlRange> zooms_;
   std::optional<double> zoom_;  // read, and not taken yet
-  Time next_{}, next_open_{}, next_zoom_{};
+  Time next_{}, next_open_{}, next_zoom_{}, next_probe_{};
   std::string fault_;
 };
 

@@ -127,6 +127,10 @@ Message position_inquiry(int address) {
   return {head(address), 0x09, 0x06, 0x12, kEnd};
 }
 
+Message version_inquiry(int address) {
+  return {head(address), 0x09, 0x00, 0x02, kEnd};
+}
+
 Message zoom(int address, double position) {
   Message message{head(address), 0x01, 0x04, 0x47};
   const long units = std::lround(std::clamp(position, 0.0, kMostZoom) * kOpticalZoom);
@@ -165,6 +169,7 @@ Reply parse_reply(std::span<const std::uint8_t> m) {
     reply.pan = read_position(m.subspan(2, 4));
     reply.tilt = read_position(m.subspan(6, 4));
   }
+  if (m[1] == 0x50 && m.size() == 10) reply.kind = Reply::Kind::version;
   if (m[1] == 0x50 && m.size() == 7) {
     reply.kind = Reply::Kind::zoom;
     unsigned units = 0;

@@ -38,6 +38,7 @@ Message stop(int address);
 Message absolute(int address, double pan, double tilt, int pan_step, int tilt_step);
 Message home(int address);
 Message position_inquiry(int address);
+Message version_inquiry(int address);  // CAM_VersionInq, which every camera should answer and none turns for
 // CAM_Zoom Direct and CAM_ZoomPosInq. position: 0 to 1 of the optical zoom (0000 to 4000 hex), digital zoom up to
 // 1.918 (7ac0).
 inline constexpr double kMostZoom = 0x7ac0 / double{0x4000};
@@ -47,7 +48,7 @@ Message interface_clear();  // broadcast
 Message address_set();      // broadcast: numbers the chain
 
 struct Reply {
-  enum class Kind : std::uint8_t { ack, completion, position, zoom, error, other };
+  enum class Kind : std::uint8_t { ack, completion, position, zoom, version, error, other };
   Kind kind = Kind::other;
   int address = 0;  // of the camera that answers
   int socket = 0;   // of an ack, completion or error

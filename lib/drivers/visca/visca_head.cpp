@@ -54,6 +54,7 @@ void ViscaHead::on_connected(Time now) {
   sent_pan_ = sent_tilt_ = 0;
   asked_ = now;
   unanswered_.reset();
+  versions_asked_ = 0;
   last_pose_.reset();
   homing_.reset();
   if (numbered()) {
@@ -191,6 +192,16 @@ void ViscaHead::ask_zoom(Time now) {
   send(visca::zoom_inquiry(options_.address));
 }
 
+// A camera without positions is silent at rest: whether it is there is known by what all cameras should answer.
+void ViscaHead::ask_version(Time now) {
+  const bool ask = tells_version_ || versions_asked_ < kVersionInquiries;
+  if (reports_ || !ask || moved_ || waiting() || now - version_asked_ < kInquiryPeriod) return;
+  version_asked_ = now;
+  ++versions_asked_;
+  send(visca::version_inquiry(options_.address));
+  if (tells_version_ && !unanswered_) unanswered_ = now;
+}
+
 // The order that an answer belongs to; nothing: to none that is still waited for.
 std::optional<ViscaHead::Sent> ViscaHead::answered(std::uint32_t sequence) {
   auto at = unanswered_orders_.begin();
@@ -214,6 +225,10 @@ void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time n
     return;
   }
   if (reply.kind == Kind::zoom) return on_zoom(reply.zoom, now);
+  if (reply.kind == Kind::version) {
+    tells_version_ = true;
+    return;
+  }
   if (reply.kind == Kind::completion) {  // the end of what was acknowledged before
     const bool home = homing_ && reply.socket == *homing_;
     if (!home) return;
@@ -269,7 +284,8 @@ void ViscaHead::repeat_stop(Time now) {
 Time ViscaHead::tick(Time now) {
   read(now);
   if (Time next; !is_there(now, next)) return next;
-  set_silent((reports_ || acknowledges_) && unanswered_ && now - *unanswered_ > kSilence, now);
+  set_silent((reports_ || acknowledges_ || tells_version_) && unanswered_ && now - *unanswered_ > kSilence,
+             now);
   repeat_stop(now);
   send_drive(now);
   if (options_.feedback && now - asked_ >= kInquiryPeriod) {
@@ -280,6 +296,7 @@ Time ViscaHead::tick(Time now) {
   // An answer without a number must not be taken as the stop's.
   if (zoom_due_ && !stopping_) send_zoom(now);
   ask_zoom(now);
+  ask_version(now);
   return now + (stopping_ || pan_ != sent_pan_ || tilt_ != sent_tilt_ ? Time(std::chrono::milliseconds(10))
                                                                       : Time(kInquiryPeriod) / 2);
 }

@@ -56,6 +56,8 @@ class ViscaHead final : public StreamDevice {
   static constexpr std::chrono::milliseconds kZoomPeriod{500};
   static constexpr int kZoomInquiries = 3;  // without an answer, after which the camera is asked seldom
   static constexpr std::chrono::milliseconds kZoomSeldom{10000};
+  // Inquiries of the version, from a camera at rest that reports no position: whether it is there.
+  static constexpr int kVersionInquiries = 3;  // without an answer, after which the camera is asked no more
   static constexpr std::chrono::milliseconds kForgotten{1000};  // an answer that has not come by then is lost
   static constexpr double kRate =
       20;  // commands a second: a frame of 16 bytes at 9600 baud takes 17 ms both ways
@@ -75,6 +77,7 @@ class ViscaHead final : public StreamDevice {
   void send_drive(Time now);
   void repeat_stop(Time now);
   void ask_zoom(Time now);
+  void ask_version(Time now);
   void send_zoom(Time now);
   void on_zoom(double position, Time now);
   void read(Time now);
@@ -101,7 +104,10 @@ class ViscaHead final : public StreamDevice {
   std::optional<double> zoom_;  // read, and not taken yet
   Time zoom_asked_{}, zoom_sent_{};
   int zoom_unanswered_ = 0;  // inquiries
-  bool zoom_due_ = false;    // it is set when the stop at the start was answered
+  Time version_asked_{};
+  int versions_asked_ = 0;
+  bool tells_version_ = false;  // it has answered such an inquiry
+  bool zoom_due_ = false;       // it is set when the stop at the start was answered
 };
 
 }  // namespace cerberus::drivers
