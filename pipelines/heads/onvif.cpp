@@ -32,7 +32,7 @@ constexpr char kOptions[] =
 struct Settings {
   OnvifOptions head;
   SoupClientOptions http;
-  PasswordSource password;
+  SecretSource password;
   std::string emergency_stop;
   bool has_device = false, discover = false;
 };

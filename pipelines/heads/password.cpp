@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "heads/password.h"
 
-#include <glib.h>
-
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -25,23 +23,11 @@ std::string read_file(const std::string& path, std::string& password) {
 
 }  // namespace
 
-std::string read_password(const PasswordSource& source, std::string& password) {
-  password.clear();
-  const int sources = !source.file.empty() + !source.environment.empty() + !source.credential.empty();
-  if (sources > 1) return "give one of password-file, password-env and password-credential";
-  if (!source.file.empty()) return read_file(source.file, password);
-  if (!source.environment.empty()) {
-    const char* value = g_getenv(source.environment.c_str());
-    if (!value || !*value) return "the environment has no variable " + source.environment + " (password-env)";
-    password = value;
-  }
-  if (!source.credential.empty()) {
-    const char* folder = g_getenv("CREDENTIALS_DIRECTORY");
-    if (!folder) return "password-credential needs a service of systemd with LoadCredential=";
-    if (source.credential.find('/') != std::string::npos) return "a credential's name has no slash";
-    return read_file(std::string(folder) + "/" + source.credential, password);
-  }
-  return {};
+std::string read_password(const SecretSource& source, std::string& password) {
+  std::string path;
+  const SecretOptions options{"password-file", "password-env", "password-credential"};
+  std::string wrong = choose_secret(source, options, path, password);
+  return wrong.empty() && !path.empty() ? read_file(path, password) : wrong;
 }
 
 }  // namespace cerberus::heads

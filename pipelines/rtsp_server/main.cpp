@@ -106,7 +106,7 @@ int wrong(const std::string& text) {
 int main(int argc, char** argv) {
   using namespace cerberus::rtsp;
   ServerSettings settings;
-  UserSource users;
+  cerberus::SecretSource users;
   g_autofree gchar *address = nullptr, *file = nullptr, *environment = nullptr, *credential = nullptr,
                    *certificate = nullptr, *key = nullptr;
   gboolean anyone = FALSE;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Passwords in settings: what is shown of them, and which settings are refused.
+// Passwords in settings: what is shown of them, and which settings are refused; and where a secret is found.
 #include "drivers/helper/passwords.h"
 
+#include <cstdlib>
+
+#include "secret_source.h"
 #include "support/suite.h"
 #include "support/text.h"
 
@@ -39,7 +42,36 @@ START_TEST(what_holds_no_password_is_shown_whole) {
 }
 END_TEST
 
+START_TEST(a_secret_comes_from_one_source) {
+  const cerberus::SecretOptions options{"--users", "--users-env", "--users-credential"};
+  std::string path = "x", text = "x";
+  const auto choose = [&](const cerberus::SecretSource& source) {
+    return choose_secret(source, options, path, text);
+  };
+  assert_text(choose({}), "");
+  ck_assert(path.empty() && text.empty());
+  assert_text(choose({"/etc/users", "", ""}), "");
+  assert_text(path, "/etc/users");
+  ::setenv("CERBERUS_TEST_SECRET", "me:hush", 1);
+  assert_text(choose({"", "CERBERUS_TEST_SECRET", ""}), "");
+  assert_text(text, "me:hush");
+  ck_assert(path.empty());
+  ::setenv("CERBERUS_TEST_SECRET", "", 1);
+  assert_text(choose({"", "CERBERUS_TEST_SECRET", ""}),
+              "the environment has no variable CERBERUS_TEST_SECRET (--users-env)");
+  assert_text(choose({"a", "b", ""}), "give one of --users, --users-env and --users-credential");
+  ::unsetenv("CREDENTIALS_DIRECTORY");
+  assert_text(choose({"", "", "camera"}),
+              "--users-credential needs a service of systemd with LoadCredential=");
+  ::setenv("CREDENTIALS_DIRECTORY", "/run/credentials/robot", 1);
+  assert_text(choose({"", "", "camera"}), "");
+  assert_text(path, "/run/credentials/robot/camera");
+  assert_text(choose({"", "", "../shadow"}), "a credential's name has no slash");
+}
+END_TEST
+
 int main() {
-  return cerberus::tests::run_suite("passwords",
-                                    {a_password_is_shown_as_stars, what_holds_no_password_is_shown_whole});
+  return cerberus::tests::run_suite(
+      "passwords",
+      {a_password_is_shown_as_stars, what_holds_no_password_is_shown_whole, a_secret_comes_from_one_source});
 }
