@@ -82,6 +82,37 @@ int register_of(int number) {
   return data.byte;
 }
 
+void plug_pca9685() {
+  write_text("/sys/bus/i2c/devices/i2c-0/new_device", "pca9685 0x40");
+}
+void unplug_pca9685() {
+  write_text("/sys/bus/i2c/devices/i2c-0/delete_device", "0x40");
+}
+
+// Makes the PCA9685, of which the kernel keeps the registers only. False, and says why: there is none.
+bool has_pca9685() {
+  const char* module = std::getenv("CERBERUS_I2C_STUB");
+  if (!module) {
+    std::printf("skipped: the kernel has no i2c-stub\n");
+    return false;
+  }
+  if (::access("/sys/bus/i2c/devices/i2c-0", F_OK) == 0) return true;  // of another test
+  const int file = ::open(module, O_RDONLY | O_CLOEXEC);
+  must(file >= 0 && ::syscall(SYS_finit_module, file, "chip_addr=0x40", 0) == 0, "insmod i2c-stub");
+  ::close(file);
+  plug_pca9685();
+  return true;
+}
+
+// Of LED3: counts of 4096 in 20 ms.
+int pulse() {
+  return (register_of(0x15) & 15) * 256 + register_of(0x14) -
+         ((register_of(0x13) & 15) * 256 + register_of(0x12));  // LED3_OFF, LED3_ON
+}
+bool pulses_off() {
+  return register_of(0x15) & 16;
+}
+
 }  // namespace
 
 START_TEST(every_half_step_of_90_degrees_is_in_the_kernels_trace) {
@@ -166,7 +197,8 @@ START_TEST(coils_are_off_when_the_pipeline_is_killed) {
       HeadSetup setup;
       setup.helper = program;
       setup.device = chip.path();
-      setup.options = "pan='lines=2,3,4,5' late-limit=5000";
+      setup.options = "pan='lines=2,3,4,5' late-limit=5000 release-delay=never";
+      setup.helper_timeout = 10s;  // the end of its input stops it, and no silence
       return head.open(setup).empty() && head.command({0s, {Kind::velocity, radians(30), 0}, {}}).empty();
     };
     const pid_t pipeline = pipeline_that_drives(drive, [&] { return !coils_off(chip); });
@@ -193,6 +225,28 @@ START_TEST(a_chip_that_is_removed_while_the_head_moves_is_said) {
 }
 END_TEST
 
+// Its coils are off, and it sets no line.
+START_TEST(a_chip_that_is_removed_while_the_head_rests_is_said_and_used_again) {
+  Chip chip(12);
+  Helper helper(
+      {"stepper-gpio", "--device=" + chip.label(), kCoils, "--late-limit=5000", "--release-delay=0.1"},
+      HeadSetup{});
+  helper.send("move to 5 50 hold\n");
+  helper.arrive(5);
+  wait_off(chip, 60s);
+  chip.unplug();
+  const auto pulled = Clock::now();
+  const std::string fault = helper.expect("fault");
+  std::printf("chip removed at rest: said after %.0f ms\n", milliseconds(Clock::now() - pulled));
+  ck_assert_msg(fault.find("does not answer any more") != std::string::npos, "'%s'", fault.c_str());
+  chip.plug();
+  helper.expect("recovered");
+  ck_assert(coils_off(chip));
+  helper.send("move to 0 50 hold\n");
+  helper.arrive(0);
+}
+END_TEST
+
 START_TEST(lines_that_are_taken_are_named) {
   const Chip chip(12);
   Helper helper = stepper(chip, {});
@@ -208,32 +262,83 @@ START_TEST(lines_that_are_taken_are_named) {
 END_TEST
 
 START_TEST(a_servo_on_a_pca9685_gets_its_pulses) {
-  const char* module = std::getenv("CERBERUS_I2C_STUB");
-  if (!module) {
-    std::printf("skipped: the kernel has no i2c-stub\n");
-    return;
-  }
-  const int file = ::open(module, O_RDONLY | O_CLOEXEC);
-  must(file >= 0 && ::syscall(SYS_finit_module, file, "chip_addr=0x40", 0) == 0, "insmod i2c-stub");
-  ::close(file);
-  write_text("/sys/bus/i2c/devices/i2c-0/new_device", "pca9685 0x40");
+  if (!has_pca9685()) return;
   HeadSetup setup;
   setup.limits.pan = {radians(-45), radians(45), radians(90), radians(600)};
   {
     Helper helper({"servo-pwm", "--device=pwmchip0", "--pan=channel=3 slew=90"}, setup);
-    for (const auto& [angle, count] : {std::pair{45, 409.6}, {-45, 204.8}, {0, 307.2}}) {  // of 4096 in 20 ms
+    for (const auto& [angle, count] : {std::pair{45, 409.6}, {-45, 204.8}, {0, 307.2}}) {
       helper.send("move to " + std::to_string(angle) + " 90 hold\n");
       helper.arrive(angle);
       std::this_thread::sleep_for(200ms);  // two periods of an emulated machine
-      const int pulse = (register_of(0x15) & 15) * 256 + register_of(0x14) -
-                        ((register_of(0x13) & 15) * 256 + register_of(0x12));  // LED3_OFF, LED3_ON
-      ck_assert_msg(std::abs(pulse - count) <= 1, "%d counts at %d degrees, not %g", pulse, angle, count);
+      ck_assert_msg(std::abs(pulse() - count) <= 1, "%d counts at %d degrees, not %g", pulse(), angle, count);
     }
     ck_assert_int_eq(register_of(0xfe), 121);  // prescaler: 25 MHz / (4096 x 50 Hz) - 1
   }
-  for (const auto end = Clock::now() + 10s; !(register_of(0x15) & 16) && Clock::now() < end;)
+  for (const auto end = Clock::now() + 10s; !pulses_off() && Clock::now() < end;)
     std::this_thread::sleep_for(10ms);
-  ck_assert(register_of(0x15) & 16);  // full off
+  ck_assert(pulses_off());
+}
+END_TEST
+
+START_TEST(a_pwm_chip_that_is_removed_while_the_servo_rests_is_said_and_used_again) {
+  if (!has_pca9685()) return;
+  HeadSetup setup;
+  setup.limits.pan = {radians(-45), radians(45), radians(90), radians(600)};
+  Helper helper({"servo-pwm", "--device=pwmchip0", "--pan=channel=3", "--release-delay=0.1"}, setup);
+  helper.send("move to 10 90 hold\n");
+  helper.arrive(10);
+  for (const auto end = Clock::now() + 60s; !pulses_off() && Clock::now() < end;)
+    std::this_thread::sleep_for(10ms);
+  ck_assert(pulses_off());
+  unplug_pca9685();
+  const auto pulled = Clock::now();
+  const std::string fault = helper.expect("fault");
+  std::printf("PWM chip removed at rest: said after %.0f ms\n", milliseconds(Clock::now() - pulled));
+  ck_assert_msg(fault.find("pwmchip0 does not answer any more") != std::string::npos, "'%s'", fault.c_str());
+  plug_pca9685();
+  helper.expect("recovered");
+  ck_assert(pulses_off());
+  helper.send("move to 0 90 hold\n");
+  helper.arrive(0);
+}
+END_TEST
+
+// Its pulses are 4.55 counts a degree, so that they change 18 times a second.
+START_TEST(servos_stand_when_the_pipeline_is_killed) {
+  if (!has_pca9685()) return;
+  std::vector<Clock::duration> times;
+  for (int round = 0; round < kills(); ++round) {
+    HelperHead head("servo-pwm");
+    const auto drive = [&] {
+      HeadSetup setup;
+      setup.limits.pan = {radians(-45), radians(45), radians(90), radians(600)};
+      setup.pan = radians(-45);
+      setup.helper = program;
+      setup.device = "pwmchip0";
+      setup.options = "pan='channel=3 pulse=500,2500'";
+      setup.helper_timeout = 10s;
+      return head.open(setup).empty() && head.command({0s, {Kind::velocity, radians(4), 0}, {}}).empty();
+    };
+    const pid_t pipeline = pipeline_that_drives(drive, [] { return !pulses_off() && pulse() > 103 + 2; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(37 * round % 400));
+    ::kill(pipeline, SIGKILL);
+    const auto killed = Clock::now();
+    ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
+    auto changed = killed;
+    int last = pulse(), most = 0;
+    for (bool off = pulses_off(); Clock::now() - changed < 1s; std::this_thread::sleep_for(2ms)) {
+      const int now = pulse();
+      const bool ended = pulses_off();
+      if (now != last || off != ended) changed = Clock::now();
+      last = now;
+      off = ended;
+      if (!off) most = std::max(most, last);
+    }
+    ck_assert_int_lt(most, 512 - 2);  // it did not reach its limit
+    times.push_back(changed - killed);
+  }
+  ck_assert(report_kills("servo stands", times));
 }
 END_TEST
 
@@ -244,6 +349,9 @@ int main(int argc, char** argv) {
       "hardware_heads",
       {every_half_step_of_90_degrees_is_in_the_kernels_trace, an_open_contact_switches_the_coils_off,
        coils_are_off_when_the_pipeline_is_killed, a_chip_that_is_removed_while_the_head_moves_is_said,
-       lines_that_are_taken_are_named, a_servo_on_a_pca9685_gets_its_pulses},
-      120 + 4 * kills());
+       a_chip_that_is_removed_while_the_head_rests_is_said_and_used_again, lines_that_are_taken_are_named,
+       a_servo_on_a_pca9685_gets_its_pulses,
+       a_pwm_chip_that_is_removed_while_the_servo_rests_is_said_and_used_again,
+       servos_stand_when_the_pipeline_is_killed},
+      120 + 8 * kills());
 }

@@ -32,8 +32,8 @@ int play(const std::string& chip) {
   g_autoptr(GstPlugin) plugin = gst_plugin_load_file(PLUGINS_FOLDER "/libgstvideotestsrc.so", nullptr);
   const std::string line =
       "videotestsrc is-live=true ! pantiltsink name=sink "
-      "driver=stepper-gpio watchdog-timeout=0 device=" +
-      chip + " device-options=\"pan='lines=2,3,4,5' late-limit=5000\"";
+      "driver=stepper-gpio watchdog-timeout=0 helper-timeout=10000000000 device=" +
+      chip + " device-options=\"pan='lines=2,3,4,5' late-limit=5000 release-delay=never\"";
   g_autoptr(GError) error = nullptr;
   GstElement* pipeline = gst_parse_launch(line.c_str(), &error);
   if (!plugin || !pipeline || error) {

@@ -49,9 +49,7 @@ class Chip {
     write_text(config_ + "/bank0/label", label_);
     make_folder(config_ + "/bank0/line1");
     write_text(config_ + "/bank0/line1/name", "door");
-    write_text(config_ + "/live", "1");
-    device_ = read_text(config_ + "/dev_name");
-    name_ = read_text(config_ + "/bank0/chip_name");
+    plug();
   }
   ~Chip() {
     unplug();
@@ -70,6 +68,12 @@ class Chip {
     if (plugged_) write_text(config_ + "/live", "0");
     plugged_ = false;
   }
+  void plug() {
+    write_text(config_ + "/live", "1");
+    device_ = read_text(config_ + "/dev_name");
+    name_ = read_text(config_ + "/bank0/chip_name");
+    plugged_ = true;
+  }
 
  private:
   std::string attribute(int line, const char* which) const {
@@ -78,7 +82,7 @@ class Chip {
   }
 
   std::string label_, config_, device_, name_;
-  bool plugged_ = true;
+  bool plugged_ = false;
 };
 
 // The IIO dummy: in_voltage0 measures (73 + 7) x 0.001333 mV, for ever (drivers/iio/dummy/iio_simple_dummy.c).

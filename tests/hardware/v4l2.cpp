@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// cerberus-head with a camera of the kernel's own (vivid), whose controls are those of renamed_controls.cpp: pan is an
-// integer of 32 bits, zoom one from 0 to 255. The first argument is cerberus-head; CERBERUS_RENAMED_CONTROLS names what is
-// preloaded into it. The pan is read beside it, through a file of its own.
+// cerberus-head with a camera of the kernel's own (vivid), whose controls are those of renamed_controls.h. The first
+// argument is cerberus-head; CERBERUS_RENAMED_CONTROLS names what is preloaded into it. The controls are read beside it,
+// through a file of its own. Ends with 77 where the kernel has no such camera.
 #include <fcntl.h>
 #include <linux/videodev2.h>
 #include <sys/ioctl.h>
@@ -14,6 +14,7 @@
 
 #include "drivers/helper/helper_head.h"
 #include "helper.h"
+#include "renamed_controls.h"
 #include "simulated.h"
 
 using namespace simulated;
@@ -22,8 +23,6 @@ using Kind = cerberus::motion::AxisCommand::Kind;
 namespace {
 
 constexpr char kCamera[] = "/dev/video0";
-constexpr std::uint32_t kPan = (V4L2_CID_USER_BASE | 0xf000) + 2;
-constexpr int kDegree = 3600;  // arc-seconds
 
 class Camera {
  public:
@@ -40,11 +39,11 @@ class Camera {
     must(::ioctl(fd_, VIDIOC_S_CTRL, &wanted) == 0, "VIDIOC_S_CTRL");
   }
   int pan() const { return get(kPan); }
-  // Waits until the pan has not changed for a second. Returns when it changed last.
-  Clock::time_point rest() const {
+  // Waits until a control has not changed for a second. Returns when it changed last.
+  Clock::time_point rest(std::uint32_t control = kPan) const {
     auto changed = Clock::now();
-    for (int last = pan(); Clock::now() - changed < 1s; std::this_thread::sleep_for(2ms))
-      if (const int now = pan(); now != last) {
+    for (int last = get(control); Clock::now() - changed < 1s; std::this_thread::sleep_for(2ms))
+      if (const int now = get(control); now != last) {
         last = now;
         changed = Clock::now();
       }
@@ -63,6 +62,21 @@ HeadSetup camera_setup() {
 
 Helper helper_of(const std::string& more = "--mode=absolute") {
   return Helper({"v4l2", std::string("--device=") + kCamera, more}, camera_setup());
+}
+
+// 128 steps to each side, the fastest of 60 degrees a second.
+constexpr char kSpeeds[] = "mode=speed pan-speed=60 tilt-speed=60";
+Helper helper_of_speeds() {
+  return Helper(
+      {"v4l2", std::string("--device=") + kCamera, "--mode=speed", "--pan-speed=60", "--tilt-speed=60"},
+      camera_setup());
+}
+
+void unplug() {
+  write_text("/sys/bus/platform/drivers/vivid/unbind", "vivid.0");
+}
+void plug() {
+  write_text("/sys/bus/platform/drivers/vivid/bind", "vivid.0");
 }
 
 }  // namespace
@@ -100,6 +114,55 @@ START_TEST(a_stop_leaves_it_on_its_way) {
 }
 END_TEST
 
+START_TEST(a_tilt_of_20_degrees_arrives_on_the_cameras_grid) {
+  const Camera camera;
+  camera.set(kTilt, kMiddle);
+  Helper helper = helper_of();
+  helper.send("move hold to 19.7 60\n");
+  for (const auto end = Clock::now() + 60s; camera.get(kTilt) != kMiddle + 20 && Clock::now() < end;)
+    helper.expect("pose");
+  ck_assert_int_eq(camera.get(kTilt), kMiddle + 20);
+}
+END_TEST
+
+START_TEST(a_speed_is_a_step_of_the_camera_until_the_stop) {
+  const Camera camera;
+  Helper helper = helper_of_speeds();
+  helper.send("move at -30 hold\n");
+  for (const auto end = Clock::now() + 60s; camera.get(kPanSpeed) != -64 && Clock::now() < end;)
+    helper.expect("pose");
+  ck_assert_int_eq(camera.get(kPanSpeed), -64);
+  helper.send("stop\n");
+  camera.rest(kPanSpeed);
+  ck_assert_int_eq(camera.get(kPanSpeed), 0);
+}
+END_TEST
+
+START_TEST(a_camera_that_turns_at_a_speed_stands_when_the_pipeline_is_killed) {
+  const Camera camera;
+  std::vector<Clock::duration> times;
+  for (int round = 0; round < kills(); ++round) {
+    HelperHead head("v4l2");
+    const auto drive = [&] {
+      HeadSetup setup = camera_setup();
+      setup.helper = program;
+      setup.device = kCamera;
+      setup.options = kSpeeds;
+      setup.helper_timeout = 10s;
+      return head.open(setup).empty() && head.command({0s, {Kind::velocity, radians(20), 0}, {}}).empty();
+    };
+    const pid_t pipeline = pipeline_that_drives(drive, [&] { return camera.get(kPanSpeed) != 0; });
+    std::this_thread::sleep_for(std::chrono::milliseconds(37 * round % 400));
+    ::kill(pipeline, SIGKILL);
+    const auto killed = Clock::now();
+    ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
+    times.push_back(std::max(Clock::duration::zero(), camera.rest(kPanSpeed) - killed));
+    ck_assert_int_eq(camera.get(kPanSpeed), 0);
+  }
+  ck_assert(report_kills("camera at a speed stands", times));
+}
+END_TEST
+
 START_TEST(it_stands_when_the_pipeline_is_killed) {
   const Camera camera;
   std::vector<Clock::duration> times;
@@ -110,6 +173,7 @@ START_TEST(it_stands_when_the_pipeline_is_killed) {
       HeadSetup setup = camera_setup();
       setup.helper = program;
       setup.device = kCamera;
+      setup.helper_timeout = 10s;  // the end of its input stops it, and no silence
       return head.open(setup).empty() && head.command({0s, {Kind::velocity, radians(2), 0}, {}}).empty();
     };
     const pid_t pipeline = pipeline_that_drives(drive, [&] { return camera.pan() != 0; });
@@ -126,10 +190,10 @@ END_TEST
 
 START_TEST(a_locked_zoom_is_set) {
   const Camera camera;
-  camera.set(V4L2_CID_BRIGHTNESS, 10);
+  camera.set(kZoom, 10);
   Helper helper = helper_of("--zoom=0.2");
   assert_text(helper.expect("zoom"), "zoom 0.2");
-  ck_assert_int_eq(camera.get(V4L2_CID_BRIGHTNESS), 51);
+  ck_assert_int_eq(camera.get(kZoom), 51);
 }
 END_TEST
 
@@ -137,10 +201,10 @@ START_TEST(a_camera_that_is_unplugged_is_reported_and_used_again) {
   Helper helper = helper_of();
   helper.send("move at 5 hold\n");
   helper.expect("pose");
-  write_text("/sys/bus/platform/drivers/vivid/unbind", "vivid.0");
+  unplug();
   const std::string fault = helper.expect("fault");
   ck_assert_msg(fault.find("/dev/video0 does not obey any more") != std::string::npos, "'%s'", fault.c_str());
-  write_text("/sys/bus/platform/drivers/vivid/bind", "vivid.0");
+  plug();
   helper.expect("recovered");
   const Camera camera;
   const int there = camera.pan();
@@ -149,19 +213,40 @@ START_TEST(a_camera_that_is_unplugged_is_reported_and_used_again) {
 }
 END_TEST
 
+START_TEST(a_camera_without_positions_that_is_unplugged_at_rest_is_reported_and_used_again) {
+  must(::setenv("CERBERUS_CAMERA", "speeds", 1) == 0, "setenv");
+  Helper helper = helper_of_speeds();
+  helper.send("stop\n");
+  unplug();
+  const auto pulled = Clock::now();
+  const std::string fault = helper.expect("fault");
+  std::printf("camera unplugged at rest: said after %.0f ms\n", milliseconds(Clock::now() - pulled));
+  ck_assert_msg(fault.find("/dev/video0 does not obey any more") != std::string::npos, "'%s'", fault.c_str());
+  plug();
+  helper.expect("recovered");
+  const Camera camera;
+  ck_assert_int_eq(camera.get(kPanSpeed), 0);
+  helper.send("move at 30 hold\n");
+  while (camera.get(kPanSpeed) != 64) helper.expect("speeds");
+}
+END_TEST
+
 int main(int argc, char** argv) {
   if (argc < 2) return 2;
   program = argv[1];
   if (::access(kCamera, F_OK) != 0) {
     std::printf("skipped: the kernel has no test camera (vivid)\n");
-    return 0;
+    return 77;
   }
   const char* controls = std::getenv("CERBERUS_RENAMED_CONTROLS");
   must(controls != nullptr && ::setenv("LD_PRELOAD", controls, 1) == 0, "CERBERUS_RENAMED_CONTROLS");
   return cerberus::tests::run_suite(
       "hardware_v4l2",
       {a_move_of_90_degrees_arrives_and_never_turns_back, a_stop_leaves_it_on_its_way,
-       it_stands_when_the_pipeline_is_killed, a_locked_zoom_is_set,
-       a_camera_that_is_unplugged_is_reported_and_used_again},
-      120 + 4 * kills());
+       a_tilt_of_20_degrees_arrives_on_the_cameras_grid, a_speed_is_a_step_of_the_camera_until_the_stop,
+       it_stands_when_the_pipeline_is_killed,
+       a_camera_that_turns_at_a_speed_stands_when_the_pipeline_is_killed, a_locked_zoom_is_set,
+       a_camera_that_is_unplugged_is_reported_and_used_again,
+       a_camera_without_positions_that_is_unplugged_at_rest_is_reported_and_used_again},
+      120 + 8 * kills());
 }
