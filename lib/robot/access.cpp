@@ -8,7 +8,7 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr std::array<Route, 12> kRoutes{{
+constexpr std::array<Route, 15> kRoutes{{
     {"GET", "/", Role::none},
     {"GET", "/page.css", Role::none},
     {"GET", "/page.js", Role::none},
@@ -18,6 +18,9 @@ constexpr std::array<Route, 12> kRoutes{{
     {"GET", "/socket", Role::viewer},
     {"GET", "/events", Role::viewer},
     {"GET", "/events/*", Role::viewer},
+    {"GET", "/picture/*", Role::viewer},
+    {"POST", "/picture", Role::viewer},
+    {"GET", "/log", Role::owner},
     {"POST", "/keep", Role::operator_},
     {"POST", "/delete", Role::owner},
     {"POST", "/password", Role::owner},
@@ -75,7 +78,11 @@ Role needed(const PageCommand& command, Mode present) {
     case PageCommand::Kind::automatic:
     case PageCommand::Kind::turn:
     case PageCommand::Kind::follow:
+    case PageCommand::Kind::stage:
+    case PageCommand::Kind::drive:
       return Role::operator_;
+    case PageCommand::Kind::set:
+      return Role::owner;
     case PageCommand::Kind::mode:
       break;
   }

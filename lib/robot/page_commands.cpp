@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "robot/page_commands.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
+
+#include "robot/live_settings.h"
 
 namespace cerberus::robot {
 
 namespace {
 
 using Kind = PageCommand::Kind;
+
+// Of motionview, and the annotated picture.
+constexpr std::array<std::string_view, 8> kStages{"picture", "luma",   "difference", "previous-difference",
+                                                  "mask",    "labels", "histogram",  "burnt-in"};
 
 template <typename Number>
 bool read(std::string_view text, Number& number) {
@@ -56,6 +63,19 @@ std::optional<PageCommand> parse_command(std::string_view line) {
   } else if (is("follow", 1)) {
     command.kind = Kind::follow;
     good = read(words[1], command.number) && command.number <= 0xffffffff;
+  } else if (is("drive", 2)) {
+    command.kind = Kind::drive;
+    good = read_share(words[1], command.pan) && read_share(words[2], command.tilt);
+  } else if (is("stage", 1)) {
+    command.kind = Kind::stage;
+    command.name = words[1];
+    good = std::ranges::find(kStages, words[1]) != kStages.end();
+  } else if (is("set", 2)) {
+    command.kind = Kind::set;
+    command.name = words[1];
+    const LiveSetting* setting = find_live_setting(words[1]);
+    good = setting && read(words[2], command.value) && command.value >= setting->least &&
+           command.value <= setting->most;
   } else if (is("mode", 1)) {
     command.kind = Kind::mode;
     const std::optional<Mode> mode = mode_of(words[1]);

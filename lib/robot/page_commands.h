@@ -22,10 +22,14 @@ struct PageCommand {
     turn,       // `turn PAN TILT`: shares of the turning speed, -1 to 1; for 500 ms
     follow,     // `follow ID`: a track
     mode,       // `mode armed`
+    stage,      // `stage mask`: shows what one stage of the detection made; `stage picture`
+    set,        // `set quality 60`: a setting of live_settings.h
+    drive,      // `drive SPEED YAW`: the base, shares of its greatest speeds, -1 to 1; for 500 ms
   };
   Kind kind = Kind::ack;
   std::uint64_t number = 0;
-  double pan = 0, tilt = 0;
+  double pan = 0, tilt = 0;  // turn; drive: speed, yaw rate
+  double value = 0;          // set
   std::string name;
   Mode mode = Mode::armed;
 };

@@ -204,8 +204,16 @@ class Writer {
     add(std::string("  found. ! queue name=picture-queue ") + kNewest +
         " ! motionoverlay crosshair=true ! videoconvert ! videoscale ! video/x-raw,width=[1," +
         std::to_string(page_.picture_width) +
-        "],pixel-aspect-ratio=1/1 ! jpegenc quality=" + std::to_string(page_.quality) +
+        "],pixel-aspect-ratio=1/1 ! jpegenc name=jpeg quality=" + std::to_string(page_.quality) +
         " ! appsink name=picture sync=false async=false max-buffers=2 drop=true");
+    // One stage's result, while the page shows it: only then the frames keep the record (keep-planes).
+    add(std::string("  found. ! queue name=stage-queue ") + kNewest +
+        " ! motionview name=stage ! videoconvert ! videoscale ! video/x-raw,width=[1," +
+        std::to_string(page_.picture_width) +
+        "],pixel-aspect-ratio=1/1 ! jpegenc ! appsink name=stage-picture sync=false async=false "
+        "max-buffers=2 "
+        "drop=true");
+    set("detect", "keep-planes", "never");
     add(std::string("  found. ! queue ") + kNewest +
         " ! motionjson ! appsink name=facts sync=false async=false max-buffers=2 drop=true");
   }

@@ -49,6 +49,13 @@ struct RecorderSettings {
   Properties properties;            // of eventrecorder
 };
 
+// The robot's own drive: docs/manual/base.md.
+struct BaseSettings {
+  std::string command;       // a program that is given a line for each order
+  double max_speed = .5;     // metres a second
+  double max_yaw_rate = 45;  // degrees a second
+};
+
 struct CameraSettings {
   std::string name;
   std::uint32_t line = 0;
@@ -87,6 +94,7 @@ struct Settings {
   std::string state_folder;  // empty: the program chooses
   ModeSettings mode;
   PageSettings page;
+  std::optional<BaseSettings> base;
   std::optional<Properties> mqtt;  // of mqttpublish, for all cameras
   bool list_cameras = false;       // the page lists what else publishes to the broker
   std::optional<WebhookSettings> webhook;

@@ -131,6 +131,18 @@ constexpr Option kMqtt[] = {
     {"discovery-prefix", Option::Kind::text},
 };
 
+BaseSettings read_base(const TomlValue& table, Mistakes& mistakes) {
+  TableReader reader(table, "[base]", mistakes);
+  BaseSettings base;
+  if (!reader.has("command"))
+    reader.complain("command", "[base] needs the \"command\" of the program that drives the base");
+  reader.text("command", base.command);
+  reader.number("max-speed", base.max_speed, 0.01, 5);
+  reader.number("max-yaw-rate", base.max_yaw_rate, 1, 360);
+  reader.finish();
+  return base;
+}
+
 constexpr std::array<std::string_view, 7> kTopics{"track", "state", "pir",  "pantilt",
                                                   "rule",  "mode",  "event"};
 
@@ -253,6 +265,7 @@ Parsed parse(std::string_view toml, Folders folders) {
     settings.page = read_page(*table, folders, mistakes, parsed.files);
   if (const TomlValue* table = reader.table("mqtt"))
     settings.mqtt = read_mqtt(*table, folders, settings.list_cameras, mistakes, parsed.files);
+  if (const TomlValue* table = reader.table("base")) settings.base = read_base(*table, mistakes);
   if (const TomlValue* table = reader.table("webhook"))
     settings.webhook = read_webhook(*table, folders, mistakes, parsed.files);
   for (const TomlValue* table : reader.tables("camera", "[[camera]]"))

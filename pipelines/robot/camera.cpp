@@ -10,6 +10,7 @@
 
 #include "robot/events.h"
 #include "robot/settings_file.h"
+#include "text/numbers.h"
 
 namespace cerberus::robot {
 
@@ -52,6 +53,18 @@ bool set_property(GstElement* element, const Assignment& assignment, std::string
   else
     gst_util_set_object_arg(G_OBJECT(element), assignment.property.c_str(), assignment.value.c_str());
   return true;
+}
+
+// Time since a frame's capture, which its time stamp is, in ns; 0: it is not known.
+gint64 age_of(GstPad* pad, GstBuffer* buffer) {
+  g_autoptr(GstEvent) event = gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0);
+  g_autoptr(GstElement) parent = gst_pad_get_parent_element(pad);
+  if (!event || !parent) return 0;
+  const GstSegment* segment = nullptr;
+  gst_event_parse_segment(event, &segment);
+  const GstClockTime time = gst_segment_to_running_time(segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer)),
+                     now = gst_element_get_current_running_time(parent);
+  return GST_CLOCK_TIME_IS_VALID(time) && GST_CLOCK_TIME_IS_VALID(now) ? GST_CLOCK_DIFF(time, now) : 0;
 }
 
 }  // namespace
@@ -116,15 +129,17 @@ void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
 
 void Camera::connect() {
   drop_frames("picture-queue", draw_);
+  drop_frames("stage-queue", draw_stage_);
   drop_frames("record-queue", record_);
   drop_frames("analysis-queue", record_);
   g_autoptr(GstElement) detect = element("detect");
   g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
   gst_pad_add_probe(
       pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo* info, gpointer data) {
+      [](GstPad* pad, GstPadProbeInfo* info, gpointer data) {
         auto& camera = *static_cast<Camera*>(data);
         ++camera.frames_;
+        camera.latency_ = age_of(pad, GST_PAD_PROBE_INFO_BUFFER(info));
         const CerberusPose* pose = cerberus_buffer_peek_pose(GST_PAD_PROBE_INFO_BUFFER(info));
         camera.parked_ = pose != nullptr && !pose->moving && std::abs(pose->pan) < kParked &&
                          std::abs(pose->tilt) < kParked;
@@ -187,9 +202,11 @@ void Camera::connect() {
   };
   g_autoptr(GstElement) facts = element("facts");
   if (facts) gst_app_sink_set_callbacks(GST_APP_SINK(facts), &on_facts, new Holder(newest_), free_holder);
-  g_autoptr(GstElement) picture = element("picture");
-  if (picture)
-    gst_app_sink_set_callbacks(GST_APP_SINK(picture), &on_picture, new Holder(newest_), free_holder);
+  for (const char* name : {"picture", "stage-picture"}) {
+    g_autoptr(GstElement) picture = element(name);
+    if (picture)
+      gst_app_sink_set_callbacks(GST_APP_SINK(picture), &on_picture, new Holder(newest_), free_holder);
+  }
 }
 
 void Camera::set_triggers() {
@@ -227,7 +244,7 @@ void Camera::publish_picture() {
   const std::lock_guard lock(newest_->lock);
   if (!newest_->show) return;
   picture_asked_after_ = std::max<guint64>(newest_->number, 1);
-  draw_ = true;
+  update_draw();
 }
 
 void Camera::start() {
@@ -259,6 +276,7 @@ void Camera::start() {
     return;
   }
   connect();
+  stage_ = "picture";
   set_triggers();
   publish_mode();
   record_ = true;
@@ -366,18 +384,48 @@ void Camera::on_message(GstMessage* message) {
 
 // Forgets picture and facts either way: none outlasts the time in which it may be seen.
 void Camera::set_show(bool show) {
-  draw_ = show && watched_;
   picture_asked_after_ = 0;
   const std::lock_guard lock(newest_->lock);
   newest_->show = show;
+  update_draw();
   g_clear_pointer(&newest_->picture, g_bytes_unref);
   newest_->facts.clear();
 }
 
 void Camera::set_watched(bool watched) {
   watched_ = watched;
+  if (!watched && stage_ != "picture") set_stage("picture");
   const std::lock_guard lock(newest_->lock);
-  draw_ = (watched || picture_asked_after_ > 0) && newest_->show;
+  update_draw();
+}
+
+// Under the lock of newest_. Pictures are drawn while somebody looks or one was asked for, of one branch.
+void Camera::update_draw() {
+  const bool draw = (watched_ || picture_asked_after_ > 0) && newest_->show;
+  draw_ = draw && stage_ == "picture";
+  draw_stage_ = draw && stage_ != "picture";
+}
+
+void Camera::set_stage(const std::string& stage) {
+  stage_ = stage;
+  if (pipeline_ != nullptr) {
+    g_autoptr(GstElement) detect = element("detect");
+    g_autoptr(GstElement) view = element("stage");
+    if (detect && view) {
+      if (stage != "picture") gst_util_set_object_arg(G_OBJECT(view), "stage", stage.c_str());
+      gst_util_set_object_arg(G_OBJECT(detect), "keep-planes", stage == "picture" ? "never" : "always");
+    }
+  }
+  const std::lock_guard lock(newest_->lock);
+  update_draw();
+}
+
+bool Camera::set_live(const char* name, const char* property, double value) {
+  if (pipeline_ == nullptr || state_ != State::running) return false;
+  g_autoptr(GstElement) found = element(name);
+  if (!found) return false;
+  gst_util_set_object_arg(G_OBJECT(found), property, text::exact(value).string().c_str());
+  return true;
 }
 
 void Camera::send_asked_picture() {

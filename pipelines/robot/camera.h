@@ -90,6 +90,14 @@ class Camera {
   bool order(const char* signal);                  // stop, home, auto
   bool follow(guint track);
 
+  // Shows what one stage of the detection made (of motionview), or "picture", until nobody watches.
+  void set_stage(const std::string& stage);
+  const std::string& stage() const { return stage_; }
+  // Sets a property while the camera runs; false: it does not, or has no such part.
+  bool set_live(const char* element, const char* property, double value);
+  // Milliseconds from a frame's capture until it is analysed.
+  double latency() const { return static_cast<double>(latency_) / 1e6; }
+
  private:
   struct Newest;
 
@@ -102,6 +110,7 @@ class Camera {
   bool apply_secrets(std::string& error);
   void connect();
   void set_show(bool show);
+  void update_draw();
   void set_triggers();
   void publish_mode();
   bool publish(const char* topic, GBytes* payload, bool retain);
@@ -136,7 +145,9 @@ class Camera {
   double rate_ = 0;
   bool watched_ = false;
   guint64 picture_asked_after_ = 0;  // a picture newer than this one is published by MQTT; 0: none is
-  std::atomic<bool> parked_ = false, draw_ = false, record_ = false;
+  std::atomic<bool> parked_ = false, draw_ = false, draw_stage_ = false, record_ = false;
+  std::atomic<gint64> latency_ = 0;  // ns
+  std::string stage_ = "picture";
   std::shared_ptr<Newest> newest_;
 };
 

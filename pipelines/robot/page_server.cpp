@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cerrno>
 
+#include "page_log.h"
 #include "page_request.h"
 #include "text/file.h"
 #include "text/json_line.h"
@@ -121,6 +122,10 @@ bool PageServer::open(std::string& error) {
     g_print("One-time password of the owner, for a browser on this machine: %s\n",
             passwords_.make_one_time().c_str());
   }
+#if HAVE_MQTT
+  if (house_.settings.mqtt && house_.settings.list_cameras)
+    fleet_ = std::make_unique<FleetClient>(*house_.settings.mqtt);
+#endif
   for (const auto& camera : house_.cameras) {
     camera->set_on_picture([this](Camera& from) {
       for (const auto& viewer : viewers_)
@@ -206,6 +211,9 @@ void PageServer::answer(Request& request) {
   if (path == "/events") return answer_events(request);
   if (path.starts_with("/events/")) return answer_recording(request);
   if (path == "/keep" || path == "/delete") return change_recording(request);
+  if (path == "/log") return answer_log(request);
+  if (path == "/picture") return ask_for_picture(request);
+  if (path.starts_with("/picture/")) return answer_picture(request);
   if (path == "/socket") return request.refuse(SOUP_STATUS_BAD_REQUEST, "this is for WebSockets");
   answer_page(request);
 }
@@ -221,6 +229,30 @@ void PageServer::answer_page(Request& request) {
   gsize size = 0;
   const auto* text = static_cast<const char*>(g_bytes_get_data(bytes, &size));
   request.respond(SOUP_STATUS_OK, type, std::string(text, size));
+}
+
+void PageServer::answer_log(Request& request) {
+  request.respond(SOUP_STATUS_OK, "text/plain; charset=utf-8", collected_log());
+}
+
+// POST /picture (camera): asks a camera of the broker for one, which /picture/CAMERA is when it came.
+void PageServer::ask_for_picture(Request& request) {
+  if (house_.mode() == Mode::privacy)
+    return request.refuse(SOUP_STATUS_FORBIDDEN, "privacy: nothing is shown");
+#if HAVE_MQTT
+  if (fleet_ && fleet_->ask_for_picture(request.value("camera"))) return request.done();
+#endif
+  request.refuse(SOUP_STATUS_NOT_FOUND, "there is no such camera");
+}
+
+void PageServer::answer_picture(Request& request) {
+  if (house_.mode() == Mode::privacy)
+    return request.refuse(SOUP_STATUS_FORBIDDEN, "privacy: nothing is shown");
+#if HAVE_MQTT
+  const std::string* picture = fleet_ ? fleet_->fleet().picture(request.path.substr(9)) : nullptr;
+  if (picture != nullptr) return request.respond(SOUP_STATUS_OK, "image/jpeg", *picture);
+#endif
+  request.refuse(SOUP_STATUS_NOT_FOUND, "there is no such picture");
 }
 
 void PageServer::answer_session(Request& request) {

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "background_work.h"
+#include "base_output.h"
 #include "camera.h"
+#include "fleet_client.h"
 #include "page_listener.h"
 #include "robot/access.h"
 #include "robot/events.h"
@@ -24,6 +26,7 @@ class PageServer {
  public:
   struct House {
     const Settings& settings;
+    BaseOutput* base;  // nullptr: there is none
     const std::vector<std::unique_ptr<Camera>>& cameras;
     std::function<Mode()> mode;
     std::function<void(Mode)> set_mode;
@@ -52,10 +55,14 @@ class PageServer {
   void answer_events(Request& request);
   void answer_recording(Request& request);
   void change_recording(Request& request);
+  void answer_log(Request& request);
+  void answer_picture(Request& request);
+  void ask_for_picture(Request& request);
   void open_socket(SoupServerMessage* message, SoupWebsocketConnection* connection);
   void on_text(Viewer& viewer, std::string_view text);
   void execute(Viewer& viewer, const Session& session, const PageCommand& command);
   void steer(Viewer& viewer, const PageCommand& command);
+  bool set(Viewer& viewer, const PageCommand& command);
   void leave(SoupWebsocketConnection* connection);
   void close_strangers();
   void update_watched();
@@ -82,6 +89,9 @@ class PageServer {
   std::map<std::string, Events> events_;  // by folder
   BackgroundWork background_;
   PageListener listener_;
+#if HAVE_MQTT
+  std::unique_ptr<FleetClient> fleet_;
+#endif
   double cpu_seconds_ = 0;
   gint64 measured_ = 0;  // microseconds
 };

@@ -6,7 +6,9 @@
 
 #include "page_request.h"
 #include "record/archive/folder.h"
+#include "robot/live_settings.h"
 #include "text/json_line.h"
+#include "text/numbers.h"
 
 namespace cerberus::robot {
 
@@ -100,6 +102,7 @@ void PageServer::leave(SoupWebsocketConnection* connection) {
       std::ranges::any_of(viewers_, [&](const auto& one) { return one->token() == viewer->token(); });
   if (!another && steering_.is_held_by(viewer->token(), now())) {
     viewer->camera()->turn(0, 0);
+    if (house_.base != nullptr) house_.base->stop();
     steering_.release();
   }
   log_access(viewer->label(), "left");
@@ -153,6 +156,14 @@ void PageServer::execute(Viewer& viewer, const Session& session, const PageComma
       house_.set_mode(command.mode);
       tick();
       return;
+    case Kind::stage:
+      log_access(viewer.label(), "shows stage " + command.name + " of " + viewer.camera()->settings().name);
+      viewer.camera()->set_stage(command.name);
+      return;
+    case Kind::set:
+      if (set(viewer, command)) return;
+      viewer.send("{\"refused\":\"this camera has no such setting now\"}");
+      return;
     default:
       break;
   }
@@ -174,7 +185,13 @@ void PageServer::steer(Viewer& viewer, const PageCommand& command) {
   Camera& camera = *viewer.camera();
   bool done = false;
   if (command.kind == Kind::stop) {
-    done = camera.order("stop");
+    if (house_.base != nullptr) house_.base->stop();
+    done = camera.order("stop") || house_.base != nullptr;
+  } else if (command.kind == Kind::drive) {
+    if (house_.base == nullptr || house_.mode() == Mode::privacy ||
+        !house_.base->drive(command.pan, command.tilt))
+      viewer.send("{\"refused\":\"the base does not take this order now\"}");
+    return;
   } else if (command.kind == Kind::home) {
     done = camera.order("home");
   } else if (command.kind == Kind::automatic) {
@@ -188,10 +205,33 @@ void PageServer::steer(Viewer& viewer, const PageCommand& command) {
   if (!done) viewer.send("{\"refused\":\"the head does not take this order now\"}");
 }
 
+bool PageServer::set(Viewer& viewer, const PageCommand& command) {
+  const LiveSetting* setting = find_live_setting(command.name);
+  if (setting == nullptr ||
+      !viewer.camera()->set_live(std::string(setting->element).c_str(),
+                                 std::string(setting->property).c_str(), command.value * setting->scale))
+    return false;
+  log_access(viewer.label(), "sets " + command.name + " of " + viewer.camera()->settings().name + " to " +
+                                 text::exact(command.value).string());
+  return true;
+}
+
 std::string PageServer::hello(const Session& session) const {
   text::JsonLine line;
   line.open('{').key("hello").open('{').key("robot").text(house_.settings.name);
-  line.key("role").string(name(session.role)).key("cameras").open('[');
+  line.key("role").string(name(session.role)).key("base").boolean(house_.base != nullptr);
+  line.key("settings").open('[');
+  for (const LiveSetting& one : kLiveSettings) {
+    line.open('{').key("name").string(one.name).key("words").text(one.words);
+    line.key("least")
+        .fixed(one.least, 2)
+        .key("most")
+        .fixed(one.most, 2)
+        .key("head")
+        .boolean(one.head)
+        .close('}');
+  }
+  line.close(']').key("cameras").open('[');
   for (const auto& camera : house_.cameras) {
     const CameraSettings& is = camera->settings();
     line.open('{').key("name").text(is.name).key("fov").fixed(is.horizontal_fov, 2);
@@ -225,6 +265,7 @@ std::string PageServer::state() {
         .string(robot::name(camera->state()));
     line.key("fault").text(camera->fault()).key("rate").fixed(camera->frames_a_second(), 1);
     line.key("head").text(camera->head_state()).key("recording").boolean(camera->is_recording());
+    line.key("stage").string(camera->stage()).key("latency").fixed(camera->latency(), 1);
     if (camera->settings().recorder) {
       const auto free = record::Folder(camera->settings().recorder->folder).free_bytes();
       line.key("free").integer(free.value_or(0) >> 20);  // MiB
@@ -232,7 +273,11 @@ std::string PageServer::state() {
     line.close('}');
   }
   const std::string_view text = line.close(']').close('}').finish();
-  return std::string(text.substr(1, text.size() - 3));  // the members alone
+  std::string members(text.substr(1, text.size() - 3));
+#if HAVE_MQTT
+  if (fleet_) members += ",\"fleet\":" + fleet_->fleet().json();
+#endif
+  return members;
 }
 
 void PageServer::tick() {

@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstdio>
 
+#include "page_log.h"
 #include "text/file.h"
 #if HAVE_SYSTEMD
 #include <systemd/sd-daemon.h>
@@ -65,7 +66,9 @@ bool Robot::open(Settings settings, std::string& error) {
   }
   mode_->tick(now(), offset_of_zone);
 #if HAVE_PAGE
+  collect_log();
   if (settings_.webhook) open_webhook();
+  if (settings_.base) base_ = std::make_unique<BaseOutput>(*settings_.base);
 #else
   if (settings_.webhook) g_printerr("cerberusd: this build has no webhook (it needs libsoup 3)\n");
 #endif
@@ -113,7 +116,8 @@ void Robot::open_webhook() {
 
 // The robot goes on without the page, which is tried again.
 void Robot::open_page() {
-  page_ = std::make_unique<PageServer>(PageServer::House{settings_, cameras_, [this] { return this->mode(); },
+  page_ = std::make_unique<PageServer>(PageServer::House{settings_, base_.get(), cameras_,
+                                                         [this] { return this->mode(); },
                                                          [this](Mode mode) { set_mode(mode); }});
   page_fault_.clear();
   if (page_->open(page_fault_)) return;
@@ -186,6 +190,7 @@ void Robot::tick() {
     open_page();
   if (page_) page_->tick();
   if (webhook_) webhook_->tick();
+  if (base_) base_->tick();
   if (!page_fault_.empty()) status += ", page (" + page_fault_ + ')';
 #endif
   if (sound) notify("WATCHDOG=1");
@@ -228,6 +233,7 @@ int Robot::run() {
 #if HAVE_PAGE
   page_.reset();
   webhook_.reset();
+  base_.reset();
 #endif
   if (!stopped) {
     // To stop a pipeline here could wait for ever for the element that does not stop.

@@ -47,6 +47,7 @@ class Robot {
 #if HAVE_PAGE
   std::unique_ptr<PageServer> page_;
   std::unique_ptr<Webhook> webhook_;
+  std::unique_ptr<BaseOutput> base_;
   Backoff page_backoff_;
   std::string page_fault_;
 #endif

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """The rules of the house that a program can check: licences, the direction of dependencies, scripts that explain."""
+import json
 import os
 import pathlib
 import re
@@ -225,6 +226,15 @@ def check_links(path):
                 complain(path, f'points to {target}, which is not there')
 
 
+def check_json(path):
+    """Examples of configuration files are well formed."""
+    if path.suffix == '.json':
+        try:
+            json.loads(path.read_text('utf-8'))
+        except ValueError as error:
+            complain(path, f'is no JSON: {error}')
+
+
 PAGES = {page.name for page in TOP.glob('*.md')}
 PAGES |= {page.name for folder in FOLDERS for page in (TOP / folder).rglob('*.md')}
 
@@ -247,6 +257,7 @@ for each in files():
     check_launch_file(each)
     check_links(each)
     check_named_pages(each)
+    check_json(each)
 for each in TOP.glob('*.md'):
     check_links(each)
 check_shared()

@@ -53,6 +53,9 @@ WEBHOOK = '''
 url = "http://127.0.0.1:HOOK/cerberus"
 secret-file = "secret"
 topics = ["mode", "event"]
+[base]
+command = "sh -c 'cat > FOLDER/drive'"
+max-speed = 0.5
 '''
 SECRET = 'a secret of 24 characters'
 
@@ -134,7 +137,8 @@ def statuses(page, expected):
         assert got[0] == status, f'{method} {path}: {got[0]} where {status} is right: {got[2][:200]}'
 
 
-ROUTES = [('GET', '/events', None), ('GET', '/events/front/1/video', None), ('GET', '/socket', None),
+ROUTES = [('GET', '/log', None), ('GET', '/picture/front', None), ('POST', '/picture', (('camera', 'front'),)),
+          ('GET', '/events', None), ('GET', '/events/front/1/video', None), ('GET', '/socket', None),
           ('POST', '/keep', (('camera', 'front'), ('id', '1'))), ('POST', '/delete', (('camera', 'front'), ('id', '1'))),
           ('POST', '/password', (('user', 'owner'), ('password', 'another one'))), ('POST', '/logout', None)]
 
@@ -153,7 +157,7 @@ def first_password(page, one_time):
     assert page.log_in('viewer', one_time) == 403 and page.log_in('owner', one_time) == 200
     cookie = page.ask('POST', '/login', {'user': 'owner', 'password': one_time})[1]['Set-Cookie']
     assert 'HttpOnly' in cookie and ('Secure' in cookie) == bool(page.context), cookie
-    statuses(page, {route: 403 for route in ROUTES[:5]})
+    statuses(page, {route: 403 for route in ROUTES[:-2]})
     statuses(page, {('POST', '/password', (('user', 'viewer'), ('password', 'long enough'))): 403,
                     ('POST', '/password', (('user', 'owner'), ('password', 'short'))): 400})
     assert page.ask('POST', '/password', {'user': 'owner', 'password': 'long enough'})[0] == 200
@@ -227,11 +231,13 @@ def pictures(owner):
 
 def steering(owner, operator, viewer):
     first, second, third = Socket(owner), Socket(operator), Socket(viewer)
-    for order in ('turn 1 0', 'stop', 'home', 'auto', 'follow 1', 'mode disarmed', 'mode privacy'):
+    for order in ('turn 1 0', 'stop', 'home', 'auto', 'follow 1', 'mode disarmed', 'mode privacy', 'stage mask',
+                  'drive 1 0', 'set quality 50'):
         third.send(order)
         assert 'viewer' in reports(third, refused)['refused'], order
-    second.send('mode privacy')
-    assert 'operator' in reports(second, refused)['refused']
+    for order in ('mode privacy', 'set quality 50'):
+        second.send(order)
+        assert 'operator' in reports(second, refused)['refused'], order
     third.close()  # who does not answer for 30 s is closed
     # A turn is manual and ends by itself; while one steers no other may, but everyone may stop.
     second.send('turn 0.5 0')
@@ -279,6 +285,45 @@ def steering(owner, operator, viewer):
         third.close()
     for line in (first, second):
         line.close()
+
+
+def base(operator, folder):
+    """A drive that is not repeated ends by itself; STOP ends one at once, and so does the end of the page."""
+    drive = folder / 'drive'
+    line = Socket(operator)
+    wait_until('the program of the base', drive.exists)
+    before = len(drive.read_text())  # stops of other tests
+    lines = lambda: drive.read_text()[before:]
+    ended = lambda count: lines().count('stop') >= count
+
+    def goes(_):
+        line.send('drive 0.5 -1')
+        return lines().startswith('drive 0.25 -45\n')
+    reports(line, goes)
+    wait_until('the end of a drive', lambda: ended(1))
+    assert re.fullmatch(r'((drive 0.25 -45\n)+stop\n)+', lines()), lines()
+    count = lines().count('stop')
+    line.send('drive -1 0')
+    line.send('stop')
+    wait_until('a stop', lambda: ended(count + 1))
+    line.send('drive 1 0')
+    wait_until('a drive', lambda: 'drive 0.5 0' in lines())
+    line.close()
+    wait_until('the end with the page', lambda: lines().endswith('stop\n'))
+
+
+def stages(owner):
+    """The picture of another stage, the settings and the log of an owner."""
+    line = Socket(owner)
+    line.send('stage mask')
+    reports(line, lambda m: isinstance(m, dict) and m.get('cameras') and m['cameras'][0]['stage'] == 'mask')
+    reports(line, lambda m: isinstance(m, tuple))
+    line.send('stage picture')
+    line.send('set quality 30')
+    reports(line, lambda m: isinstance(m, dict) and m.get('cameras') and m['cameras'][0]['stage'] == 'picture')
+    line.close()
+    log = wait_until('the log', lambda: 'sets quality of front to 30' in owner.ask('GET', '/log')[2].decode())
+    assert log
 
 
 def many_sockets(viewer):
@@ -342,7 +387,7 @@ def main():
         tls = shutil.which('openssl')
         page = f'port = {port}\n' + ('tls = true' if tls else '')
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('port = PORT', page)
-                                           + WEBHOOK.replace('HOOK', str(receiver.server_port)))
+                                           + WEBHOOK.replace('HOOK', str(receiver.server_port)).replace('FOLDER', name))
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
             taken = socket.create_server(('127.0.0.1', port))
             process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
@@ -364,6 +409,9 @@ def main():
                 pictures(owner)
                 steering(owner, operator, viewer)
                 many_sockets(viewer)
+                base(operator, folder)
+                stages(owner)
+                assert operator.ask('GET', '/log')[0] == 403 and viewer.ask('POST', '/picture', {'camera': 'x'})[0] == 404
                 recordings(owner, operator, viewer, folder)
                 webhook()
                 idle_connections(owner)

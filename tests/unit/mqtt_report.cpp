@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "publish/burst_limit.h"
+#include "publish/fleet.h"
 #include "publish/webhook_queue.h"
 #include "support/suite.h"  // after the streams: check defines fail()
 
@@ -262,18 +263,40 @@ START_TEST(the_body_of_a_webhook_is_json_with_an_object_or_a_text) {
 }
 END_TEST
 
+START_TEST(the_fleet_is_what_the_broker_retains) {
+  Fleet fleet("cerberus");
+  ck_assert(fleet.take("cerberus/front/status", "online") &&
+            fleet.take("cerberus/front/event", "{\"id\":7}"));
+  ck_assert(fleet.take("cerberus/back/mode", "armed"));
+  // Nothing of other programs, of levels below, of what is too long; a picture makes no camera.
+  ck_assert(!fleet.take("other/front/status", "online") && !fleet.take("cerberus/front/command/stop", ""));
+  ck_assert(!fleet.take("cerberus/x/picture", "jpeg") && !fleet.take("cerberus//status", "online"));
+  ck_assert(!fleet.take("cerberus/front/mode", std::string(2001, 'a')) &&
+            !fleet.take("cerberus/gone/status", ""));
+  ck_assert(fleet.picture("front") == nullptr && fleet.take("cerberus/front/picture", "jpeg"));
+  ck_assert_str_eq(fleet.picture("front")->c_str(), "jpeg");
+  const json all = json::parse(fleet.json());
+  ck_assert_uint_eq(all.size(), 2);
+  ck_assert(all[0]["name"] == "back" && all[0]["mode"] == "armed" && all[0]["picture"] == 0);
+  ck_assert(all[1]["status"] == "online" && all[1]["event"] == "{\"id\":7}" && all[1]["picture"] == 1);
+  for (int k = 0; k < 1000; ++k) fleet.take("cerberus/" + std::to_string(k) + "/status", "online");
+  ck_assert_uint_eq(json::parse(fleet.json()).size(), Fleet::kMost);
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "MQTT report", {a_track_appears_is_updated_each_second_and_leaves_two_seconds_after_its_last_sight,
-                      a_stream_that_begins_anew_has_no_track_of_the_one_before,
-                      states_are_retained_and_published_when_they_change,
-                      a_frame_that_no_detector_saw_says_nothing_about_motion,
-                      a_moving_head_is_reported_twice_a_second_and_when_it_rests,
-                      home_assistant_finds_each_sensor_once_and_where_it_is_published,
-                      discovery_is_repeated_only_when_sensors_or_head_are_others,
-                      an_order_is_taken_only_where_it_is_allowed_and_whole,
-                      of_a_flood_ten_are_reported_at_once_and_then_one_a_second,
-                      events_for_a_webhook_are_sent_in_order_one_at_a_time_and_again_after_failures,
-                      a_webhook_that_does_not_answer_costs_256_events_and_no_more,
-                      the_body_of_a_webhook_is_json_with_an_object_or_a_text});
+      "MQTT report",
+      {a_track_appears_is_updated_each_second_and_leaves_two_seconds_after_its_last_sight,
+       a_stream_that_begins_anew_has_no_track_of_the_one_before,
+       states_are_retained_and_published_when_they_change,
+       a_frame_that_no_detector_saw_says_nothing_about_motion,
+       a_moving_head_is_reported_twice_a_second_and_when_it_rests,
+       home_assistant_finds_each_sensor_once_and_where_it_is_published,
+       discovery_is_repeated_only_when_sensors_or_head_are_others,
+       an_order_is_taken_only_where_it_is_allowed_and_whole,
+       of_a_flood_ten_are_reported_at_once_and_then_one_a_second,
+       events_for_a_webhook_are_sent_in_order_one_at_a_time_and_again_after_failures,
+       a_webhook_that_does_not_answer_costs_256_events_and_no_more, the_fleet_is_what_the_broker_retains,
+       the_body_of_a_webhook_is_json_with_an_object_or_a_text});
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "robot/base_drive.h"
 #include "robot/byte_range.h"
 #if HAVE_ARGON2
 #include "robot/passwords.h"
@@ -31,14 +32,46 @@ START_TEST(every_message_is_read_letter_by_letter) {
   ck_assert(taken("stop", Kind::stop) && taken("home", Kind::home) && taken("auto", Kind::automatic));
   ck_assert(taken("ack 18446744073709551615", Kind::ack) && taken("seen 7", Kind::seen));
   ck_assert(taken("camera front", Kind::camera) && taken("follow 4294967295", Kind::follow));
-  ck_assert(taken("mode privacy", Kind::mode));
+  ck_assert(taken("mode privacy", Kind::mode) && taken("stage mask", Kind::stage));
+  ck_assert(taken("stage picture", Kind::stage) && taken("set quality 60", Kind::set));
+  ck_assert(taken("drive 1 -0.5", Kind::drive));
   const std::optional<PageCommand> turn = parse_command("turn -0.25 1");
   ck_assert(turn && turn->kind == Kind::turn && turn->pan == -.25 && turn->tilt == 1);
-  for (const char* wrong : {"",           " ",         "stop ",      " stop",      "STOP",
-                            "stop now",   "ack",       "ack -1",     "ack 1x",     "ack 18446744073709551616",
-                            "turn 1",     "turn 1 2",  "turn nan 0", "turn inf 0", "turn 1e400 0",
-                            "turn 0 0 0", "turn  1 0", "turn 0,5 0", "camera ",    "follow 4294967296",
-                            "follow -1",  "mode",      "mode off",   "move 1 0",   "a b c d e f"})
+  for (const char* wrong : {"",
+                            " ",
+                            "stop ",
+                            " stop",
+                            "STOP",
+                            "stop now",
+                            "ack",
+                            "ack -1",
+                            "ack 1x",
+                            "ack 18446744073709551616",
+                            "turn 1",
+                            "turn 1 2",
+                            "turn nan 0",
+                            "turn inf 0",
+                            "turn 1e400 0",
+                            "turn 0 0 0",
+                            "turn  1 0",
+                            "turn 0,5 0",
+                            "drive 1",
+                            "drive 2 0",
+                            "drive nan 0",
+                            "stage",
+                            "stage x",
+                            "set quality",
+                            "set quality 9",
+                            "set quality 101",
+                            "set quality nan",
+                            "set x 1",
+                            "camera ",
+                            "follow 4294967296",
+                            "follow -1",
+                            "mode",
+                            "mode off",
+                            "move 1 0",
+                            "a b c d e f"})
     ck_assert_msg(!parse_command(wrong), "\"%s\" was taken", wrong);
   ck_assert(!parse_command("camera " + std::string(kLongestCommand, 'a')));
 }
@@ -54,7 +87,8 @@ START_TEST(a_viewer_may_watch_an_operator_steer_and_the_owner_begin_and_end_priv
       {"home", Role::operator_},       {"auto", Role::operator_},
       {"turn 0 0", Role::operator_},   {"follow 1", Role::operator_},
       {"mode armed", Role::operator_}, {"mode disarmed", Role::operator_},
-      {"mode privacy", Role::owner},
+      {"mode privacy", Role::owner},   {"stage mask", Role::operator_},
+      {"drive 0 0", Role::operator_},  {"set quality 60", Role::owner},
   };
   for (const auto& one : cases)
     ck_assert_msg(needed(*parse_command(one.line), Mode::armed) == one.role, "%s", one.line);
@@ -70,6 +104,7 @@ START_TEST(only_the_entrance_is_open_and_what_changes_needs_more) {
   }
   ck_assert(find_route("POST", "/delete")->role == Role::owner);
   ck_assert(find_route("POST", "/password")->role == Role::owner);
+  ck_assert(find_route("GET", "/log")->role == Role::owner && !find_route("GET", "/log/"));
   ck_assert(find_route("POST", "/keep")->role == Role::operator_);
   ck_assert(find_route("GET", "/events/a/1/video")->role == Role::viewer);
   ck_assert(!find_route("GET", "/delete") && !find_route("GET", "/eventsx") && !find_route("PUT", "/login"));
@@ -214,6 +249,22 @@ START_TEST(one_session_steers_until_it_was_silent_for_two_seconds) {
 }
 END_TEST
 
+START_TEST(a_drive_of_the_base_is_repeated_and_ends_after_half_a_second) {
+  BaseDrive base;
+  ck_assert(base.line(kStart).empty());
+  base.drive(.25, -10, kStart);
+  ck_assert(base.line(kStart) == "drive 0.25 -10\n");
+  ck_assert(base.line(kStart + milliseconds(99)).empty());
+  ck_assert(base.line(kStart + milliseconds(100)) == "drive 0.25 -10\n");
+  ck_assert(base.line(kStart + milliseconds(500)) == "stop\n");
+  ck_assert(!base.is_active() && base.line(kStart + seconds(9)).empty());
+  base.drive(.5, 0, kStart + seconds(10));
+  base.stop(kStart + seconds(10));
+  ck_assert(base.line(kStart + seconds(10)) == "stop\n");
+  ck_assert(base.line(kStart + seconds(11)).empty());
+}
+END_TEST
+
 #if HAVE_ARGON2
 START_TEST(a_password_counts_for_its_role_alone_and_survives_a_restart) {
   Passwords passwords;
@@ -260,6 +311,7 @@ int main() {
                           after_five_wrong_passwords_an_address_waits_twice_as_long_each_time,
                           many_addresses_together_are_slowed_down_too,
                           a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
+                          a_drive_of_the_base_is_repeated_and_ends_after_half_a_second,
                           one_session_steers_until_it_was_silent_for_two_seconds,
 #if HAVE_ARGON2
                           a_password_counts_for_its_role_alone_and_survives_a_restart,

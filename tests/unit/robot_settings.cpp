@@ -189,14 +189,14 @@ START_TEST(every_mistake_is_reported_with_its_line) {
        "r.toml:3: \"certificate\" and \"certificate-key\" belong"},
       {"[page]\ncertificate = \"c\"\ncertificate-key = \"k\"\n",
        "r.toml:2: \"certificate\" needs tls = true"},
-      {"[mqtt]\nhost = \"b\"\npassword = \"secret\"\n", "r.toml:3: unknown key \"password\" in [mqtt]"},
+      {"[mqtt]\nhost = \"b\"\npassword = \"hunter2\"\n", "r.toml:3: unknown key \"password\" in [mqtt]"},
       {"[mqtt]\nhost = \"b\"\nusername = \"u\"\n",
        "r.toml:3: \"username\" and \"password-file\" belong together"},
   };
   for (const auto& one : cases) {
     const std::string found = errors(one.text);
     ck_assert_msg(found.find(one.error) != found.npos, "\"%s\" is not in \"%s\"", one.error, found.c_str());
-    ck_assert_msg(found.find("secret") == found.npos, "a secret is in \"%s\"", found.c_str());
+    ck_assert_msg(found.find("hunter2") == found.npos, "a secret is in \"%s\"", found.c_str());
   }
 }
 END_TEST

@@ -69,6 +69,7 @@ function connect() {
   socket.onclose = async () => {
     socket = null;
     release();
+    park();
     if (gone) return;
     veil('The connection is lost. It is tried again.');
     setTimeout(async () => {
@@ -106,6 +107,8 @@ function onReport(report) {
     const wanted = cameraName;
     at('camera').replaceChildren(...hello.cameras.map((camera) => new Option(camera.name)));
     at('camera').hidden = hello.cameras.length < 2;
+    at('base').hidden = !hello.base;
+    showSettings();
     cameraName = hello.cameras[0].name;
     if (hello.cameras.some((camera) => camera.name === wanted)) choose(wanted);
     else choose(cameraName);
@@ -116,6 +119,7 @@ function onReport(report) {
     const wasRecording = state && isRecording();
     state = report;
     showState();
+    showFleet();
     if (before !== state.mode || (wasRecording && !isRecording())) loadEvents();
   }
 }
@@ -144,6 +148,10 @@ function enableButtons() {
   at('passwords').hidden = !may('owner');
   const steer = may('operator') && about() && about().head;
   for (const button of document.querySelectorAll('#steering button, #speed')) button.disabled = !steer;
+  if (hello && hello.base && may('operator')) at('stop').disabled = false;
+  for (const button of document.querySelectorAll('#drive-pad button')) button.disabled = !drives();
+  at('stage').disabled = !may('operator');
+  at('log-box').hidden = at('settings').hidden = !may('owner');
   for (const button of document.querySelectorAll('[data-mode]')) {
     const needsOwner = button.dataset.mode === 'privacy' || (state && state.mode === 'privacy');
     button.disabled = !may(needsOwner ? 'owner' : 'operator');
@@ -168,10 +176,16 @@ function showState() {
     veil(`The camera is ${camera.state}. ${camera.fault}`);
   }
   const rows = [['Camera', `${camera.state}, ${camera.rate} frames/s`]];
+  if (camera.latency > 0) rows.push(['Latency', `${camera.latency.toFixed(0)} ms until it is analysed`]);
+  if (document.activeElement !== at('stage')) at('stage').value = camera.stage;
   if (camera.fault) rows.push(['Fault', camera.fault]);
   if (about().head) rows.push(['Head', camera.head || '\u2013']);
   if (facts && facts.pose) rows.push(['Looks at', `${facts.pose.pan.toFixed(1)}\u00b0, ${facts.pose.tilt.toFixed(1)}\u00b0`]);
   if (facts && facts.fusion) rows.push(['Rule', `${facts.fusion.name} (${facts.fusion.action})`]);
+  if (facts && facts.pir) {
+    const words = facts.pir.map((reading) => ['quiet', 'detects', 'not ready'][reading] || 'unknown');
+    rows.push(['Sensors', words.join(', ')]);
+  }
   if (facts && facts.objects) rows.push(['Objects', String(facts.objects.length)]);
   if (camera.free !== undefined) rows.push(['Free disk', `${(camera.free / 1024).toFixed(1)} GiB`]);
   rows.push(['Processor', state.cpu === null ? '\u2013' : `${state.cpu} %`], ['Viewers', String(state.viewers)],
@@ -182,6 +196,79 @@ function showState() {
     detail.textContent = value;
     return [term, detail];
   }));
+}
+
+// ---- what an owner sees and sets
+
+function showSettings() {
+  const mine = (setting) => !setting.head || (about() && about().head);
+  at('live-settings').replaceChildren(...hello.settings.filter(mine).map((setting) => {
+    const label = document.createElement('label'), input = document.createElement('input');
+    label.textContent = setting.words;
+    Object.assign(input, {type: 'number', min: setting.least, max: setting.most, step: 'any'});
+    input.addEventListener('change', () => {
+      if (input.value !== '' && input.reportValidity()) send(`set ${setting.name} ${Number(input.value)}`);
+    });
+    label.append(input);
+    return label;
+  }));
+}
+at('live-settings').addEventListener('submit', (event) => event.preventDefault());
+
+async function loadLog() {
+  const response = await fetch('/log');
+  at('log').textContent = await response.text();
+  at('log').scrollTop = at('log').scrollHeight;
+}
+at('log-box').addEventListener('toggle', () => at('log-box').open && loadLog());
+at('log-reload').addEventListener('click', loadLog);
+at('stage').addEventListener('change', () => send(`stage ${at('stage').value}`));
+
+// ---- other robots, which publish to the same broker
+
+function parsed(text) {
+  try {
+    return JSON.parse(text);
+  } catch {
+    return null;
+  }
+}
+
+function showFleet() {
+  at('fleet').hidden = !state.fleet;
+  if (!state.fleet) return;
+  const list = at('fleet-list');
+  const have = new Map([...list.children].map((item) => [item.dataset.name, item]));
+  for (const [name, item] of have) if (!state.fleet.some((camera) => camera.name === name)) item.remove();
+  for (const camera of state.fleet) {
+    let item = have.get(camera.name);
+    if (!item) {
+      item = document.createElement('li');
+      item.dataset.name = camera.name;
+      const words = document.createElement('p'), image = document.createElement('img');
+      image.hidden = true;
+      image.alt = `Picture of ${camera.name}`;
+      words.setAttribute('role', 'status');
+      item.append(words, image, button('Picture', `Picture of ${camera.name}`, async () => {
+        const done = await post('/picture', {camera: camera.name});
+        if (!done.ok) say(done.text);
+      }));
+      list.append(item);
+    }
+    const [words, image] = item.children;
+    const found = parsed(camera.state), event = parsed(camera.event);
+    const parts = [camera.name, camera.status || 'unknown', camera.mode];
+    if (camera.status === 'online' && found && found.motion) parts.push(`${found.objects} in sight`);
+    if (event) parts.push(`last event ${new Date(event.begin).toLocaleString()}`);
+    const text = parts.filter(Boolean).join(', ');
+    if (words.textContent !== text) words.textContent = text;
+    words.className = camera.status === 'offline' ? 'offline' : '';
+    if (camera.picture > 0 && item.dataset.picture !== String(camera.picture)) {
+      item.dataset.picture = camera.picture;
+      image.src = `/picture/${encodeURIComponent(camera.name)}?${camera.picture}`;
+      image.hidden = false;
+    }
+  }
 }
 
 // ---- picture: number (8 bytes), length of the facts (4 bytes), facts, JPEG
@@ -248,6 +335,10 @@ for (const button of document.querySelectorAll('#pad button')) {
 }
 
 function stop() {
+  clearInterval(driver);
+  driver = 0;
+  drive = null;
+  driving.clear();
   clearInterval(repeater);
   repeater = 0;
   move = null;
@@ -264,6 +355,49 @@ at('auto').addEventListener('click', () => send('auto'));
 at('home').addEventListener('click', () => send('home'));
 for (const button of document.querySelectorAll('[data-mode]'))
   button.addEventListener('click', () => send(`mode ${button.dataset.mode}`));
+
+// The base: a key or a button that is held drives, as the head turns.
+const drives = () => may('operator') && hello && hello.base;
+let drive = null, driver = 0;
+
+function driveTo(speed, yaw) {
+  drive = `drive ${speed} ${yaw}`;
+  if (!driver) {
+    send(drive);
+    driver = setInterval(() => drive && send(drive), kRepeat);
+  }
+}
+
+function park() {
+  if (!driver) return;
+  clearInterval(driver);
+  driver = 0;
+  drive = null;
+  send('drive 0 0');
+}
+
+for (const button of document.querySelectorAll('#drive-pad button')) {
+  const speed = Number(button.dataset.speed), yaw = Number(button.dataset.yaw);
+  button.addEventListener('pointerdown', (event) => {
+    button.setPointerCapture(event.pointerId);
+    driveTo(speed, yaw);
+  });
+  for (const end of ['pointerup', 'pointercancel', 'lostpointercapture']) button.addEventListener(end, park);
+  button.addEventListener('contextmenu', (event) => event.preventDefault());
+  button.addEventListener('keydown', (event) => {
+    if (event.key === 'Enter' && !event.repeat) driveTo(speed, yaw);
+  });
+  button.addEventListener('keyup', park);
+}
+
+const kDriveKeys = {w: [1, 0], s: [-1, 0], a: [0, -1], d: [0, 1]};
+const driving = new Set();
+
+function driveByKeys() {
+  const sum = [...driving].reduce((all, key) => [all[0] + kDriveKeys[key][0], all[1] + kDriveKeys[key][1]], [0, 0]);
+  if (driving.size) driveTo(...sum);
+  else park();
+}
 
 const kArrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
 const pressed = new Set();
@@ -283,7 +417,11 @@ document.addEventListener('keydown', (event) => {
   const inField = event.target.closest('input, select, #strip');
   if (event.key === 'Escape' || (event.key === ' ' && !event.target.closest('button, input, select, a'))) {
     event.preventDefault();
-    if (steers()) stop();
+    if (steers() || drives()) stop();
+  } else if (kDriveKeys[event.key] && !inField && drives()) {
+    event.preventDefault();
+    driving.add(event.key);
+    driveByKeys();
   } else if (kArrows[event.key] && !inField && steers()) {
     event.preventDefault();
     pressed.add(event.key);
@@ -296,11 +434,14 @@ document.addEventListener('keydown', (event) => {
 });
 document.addEventListener('keyup', (event) => {
   if (pressed.delete(event.key)) turnByKeys();
+  if (driving.delete(event.key)) driveByKeys();
 });
 function letGo() {
   pressed.clear();
+  driving.clear();
   drag = null;
   release();
+  park();
 }
 window.addEventListener('blur', letGo);
 document.addEventListener('visibilitychange', () => document.hidden && letGo());
@@ -404,14 +545,28 @@ function drawRadar() {
 
 async function loadEvents() {
   const response = await fetch(`/events?camera=${encodeURIComponent(cameraName)}`);
-  const list = response.ok ? await response.json() : [];
+  events = response.ok ? await response.json() : [];
+  eventsFault = response.ok ? '' : await response.text();
+  const reasons = [...new Set(events.map((event) => event.reason))].sort(), chosen = at('filter-reason').value;
+  at('filter-reason').replaceChildren(new Option('all', ''), ...reasons.map((reason) => new Option(reason)));
+  at('filter-reason').value = reasons.includes(chosen) ? chosen : '';
+  showEvents();
+}
+
+let events = [], eventsFault = '';
+
+function showEvents() {
+  const day = at('filter-day').value, reason = at('filter-reason').value, kept = at('filter-kept').checked;
+  const isOf = (event) => new Date(event.begin).toLocaleDateString('sv') === day;  // as the field has it
+  const list = events.filter((event) => (!day || isOf(event)) && (!reason || event.reason === reason) && (!kept || event.keep));
   at('strip').replaceChildren(...list.map(eventItem));
   if (!list.length) {
     const item = document.createElement('li');
-    item.textContent = response.ok ? 'No event was recorded yet.' : await response.text();
+    item.textContent = eventsFault || (events.length ? 'No event is like that.' : 'No event was recorded yet.');
     at('strip').append(item);
   }
 }
+for (const id of ['filter-day', 'filter-reason', 'filter-kept']) at(id).addEventListener('change', showEvents);
 
 function button(text, label, on) {
   const made = document.createElement('button');
@@ -443,6 +598,12 @@ function eventItem(event) {
   buttons.className = 'buttons';
   if (!event.open) {
     buttons.append(button('Play', `Play ${when}`, () => play(address)));
+    const save = document.createElement('a');
+    save.href = `${address}/video`;
+    save.download = '';
+    save.textContent = 'Download';
+    save.setAttribute('aria-label', `Download ${when}`);
+    buttons.append(save);
     if (may('operator'))
       buttons.append(button(event.keep ? 'Free' : 'Keep', `${event.keep ? 'Do not keep' : 'Keep'} ${when}`, () =>
         change('/keep', event, {keep: event.keep ? '0' : '1'})));

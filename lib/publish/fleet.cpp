@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "publish/fleet.h"
+
+#include <utility>
+
+#include "text/json_line.h"
+
+namespace cerberus::publish {
+
+bool Fleet::take(std::string_view topic, std::string payload) {
+  if (!topic.starts_with(prefix_ + '/')) return false;
+  topic.remove_prefix(prefix_.size() + 1);
+  const std::size_t slash = topic.find('/');
+  if (slash == topic.npos || slash == 0 || slash > 64) return false;
+  const std::string_view name = topic.substr(0, slash), what = topic.substr(slash + 1);
+  std::string Camera::* member = nullptr;
+  if (what == "status") member = &Camera::status;
+  if (what == "mode") member = &Camera::mode;
+  if (what == "state") member = &Camera::state;
+  if (what == "event") member = &Camera::event;
+  if (what == "picture") member = &Camera::picture;
+  if (member == nullptr || payload.size() > (what == "picture" ? kLongestPicture : kLongestText))
+    return false;
+  auto found = cameras_.find(name);
+  if (found == cameras_.end()) {
+    // A picture alone makes no camera, nor does a retained topic that is cleared.
+    if (cameras_.size() >= kMost || what == "picture" || payload.empty()) return false;
+    found = cameras_.emplace(name, Camera{}).first;
+  }
+  if (what == "picture") ++found->second.pictures;
+  found->second.*member = std::move(payload);
+  return true;
+}
+
+std::string Fleet::json() const {
+  text::JsonLine line;
+  line.open('[');
+  for (const auto& [name, camera] : cameras_) {
+    line.open('{').key("name").text(name).key("status").text(camera.status).key("mode").text(camera.mode);
+    line.key("state").text(camera.state).key("event").text(camera.event);
+    line.key("picture").integer(camera.pictures).close('}');
+  }
+  std::string text(line.close(']').finish());
+  text.pop_back();  // the newline
+  return text;
+}
+
+const std::string* Fleet::picture(std::string_view camera) const {
+  const auto found = cameras_.find(camera);
+  return found == cameras_.end() || found->second.picture.empty() ? nullptr : &found->second.picture;
+}
+
+}  // namespace cerberus::publish

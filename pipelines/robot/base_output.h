@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The program that drives a robot's base: it is given lines, and started again when it ends. Main loop's thread; never
+// waits for it.
+#pragma once
+
+#include <gio/gio.h>
+
+#include <string>
+
+#include "robot/backoff.h"
+#include "robot/base_drive.h"
+#include "robot/settings.h"
+
+namespace cerberus::robot {
+
+class BaseOutput {
+ public:
+  explicit BaseOutput(BaseSettings settings) : settings_(std::move(settings)) {}
+  ~BaseOutput();
+  BaseOutput(const BaseOutput&) = delete;
+  BaseOutput& operator=(const BaseOutput&) = delete;
+
+  // Shares of the greatest speeds, -1 to 1; for 500 ms unless it is repeated. False: the program does not run.
+  bool drive(double speed, double yaw_rate);
+  void stop();
+  // Once a second: starts the program where it does not run.
+  void tick();
+
+ private:
+  void start();
+  void close();
+  void send();
+
+  BaseSettings settings_;
+  BaseDrive drive_;
+  Backoff backoff_;
+  GSubprocess* program_ = nullptr;
+  GOutputStream* input_ = nullptr;  // of program_, not blocking
+  guint timer_ = 0;
+};
+
+}  // namespace cerberus::robot

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "fleet_client.h"
+
+#include <glib.h>
+
+#include <utility>
+
+#include "robot/settings_file.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+struct Arrived {
+  std::shared_ptr<publish::Fleet> fleet;
+  std::string topic, payload;
+};
+
+plugin::MqttServer server_of(const Properties& mqtt, std::string& prefix) {
+  plugin::MqttServer server;
+  for (const Property& one : mqtt) {
+    if (one.name == "host") server.host = one.value;
+    if (one.name == "port") server.port = static_cast<int>(g_ascii_strtoll(one.value.c_str(), nullptr, 10));
+    if (one.name == "username") server.user = one.value;
+    if (one.name == "ca-file") server.ca_file = one.value;
+    if (one.name == "topic-prefix") prefix = one.value;
+    std::string error;
+    if (one.name == "password-file") server.password = read_secret(one.value, error).value_or("");
+    if (!error.empty()) g_printerr("cerberusd: the list of cameras: %s\n", error.c_str());
+  }
+  for (const std::string_view topic : publish::Fleet::kTopics)
+    server.topics.push_back(prefix + "/+/" + std::string(topic));
+  return server;
+}
+
+}  // namespace
+
+FleetClient::FleetClient(const Properties& mqtt) {
+  std::string prefix = "cerberus";
+  const plugin::MqttServer server = server_of(mqtt, prefix);
+  fleet_ = std::make_shared<publish::Fleet>(prefix);
+  client_.start(server, {.on_command = {},
+                         .on_message =
+                             [fleet = fleet_](const std::string& topic, std::string payload) {
+                               const bool picture = topic.ends_with("/picture");
+                               if (!g_utf8_validate_len(topic.data(), topic.size(), nullptr)) return;
+                               if (!picture && !g_utf8_validate_len(payload.data(), payload.size(), nullptr))
+                                 return;
+                               g_main_context_invoke_full(
+                                   nullptr, G_PRIORITY_DEFAULT,
+                                   [](gpointer data) {
+                                     auto& arrived = *static_cast<Arrived*>(data);
+                                     arrived.fleet->take(arrived.topic, std::move(arrived.payload));
+                                     return static_cast<gboolean>(G_SOURCE_REMOVE);
+                                   },
+                                   new Arrived{fleet, topic, std::move(payload)},
+                                   [](gpointer data) { delete static_cast<Arrived*>(data); });
+                             },
+                         .on_fault =
+                             [](const std::string& fault) {
+                               g_printerr(
+                                   "cerberusd: the list of cameras: the broker cannot be reached: %s\n",
+                                   fault.c_str());
+                             }});
+}
+
+FleetClient::~FleetClient() {
+  client_.stop();
+}
+
+bool FleetClient::ask_for_picture(const std::string& camera) {
+  if (!fleet_->has(camera)) return false;
+  client_.publish({fleet_->prefix() + '/' + camera + "/command/picture", "", false});
+  return true;
+}
+
+}  // namespace cerberus::robot
