@@ -29,47 +29,85 @@ struct ParserLost {};
 namespace cerberus::text {
 namespace {
 
-// The line of the first byte beyond ASCII that stands neither in a comment nor in quotes; 0: there is none. TOML has no
-// place for one, and toml++ 3.3 has undefined behaviour there (is_non_ascii_horizontal_whitespace reaches what it calls
-// unreachable for U+00A1 to U+049A; found by tests/fuzz/rules.cpp).
-toml::source_index line_of_foreign_letter(std::string_view text) {
-  toml::source_index line = 1;
-  std::string_view quotes;  // what ends the string at this place; empty: it is none
-  bool comment = false, foreign = false;
-  char before = '\n';  // the last character outside of strings that is no blank
+// toml++ 3.3 has undefined behaviour for letters beyond ASCII where none belongs (is_non_ascii_horizontal_whitespace
+// reaches what it calls unreachable for U+00A1 to U+049A; found by tests/fuzz). It is therefore given ASCII alone: each
+// byte beyond it, and each "~", becomes "~" and two digits of base 16. TOML has a place for "~" in strings and comments
+// only, as for such letters.
+std::string encode(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80 || c == '~')
+      out.append({'~', digits[byte >> 4], digits[byte & 15]});
+    else
+      out += c;
+  }
+  return out;
+}
+
+// The text of which encode() made `text`, or a message that cites a part of it.
+std::string decode(std::string_view text) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string out;
+  out.reserve(text.size());
   for (std::size_t i = 0; i < text.size(); ++i) {
-    const char c = text[i];
-    const bool ascii = static_cast<unsigned char>(c) < 0x80;
-    if (c == '\n') {
-      if (quotes.size() == 1 && foreign) return line;  // a string that does not end is none
-      ++line;
-      comment = false;
-      before = c;
-      if (quotes.size() == 1) quotes = {};
-    } else if (comment) {
-      continue;
-    } else if (!quotes.empty()) {
-      foreign = foreign || !ascii;
-      if (c == '\\' && quotes.front() == '"' && !text.substr(i + 1).starts_with('\n'))
-        ++i;
-      else if (text.substr(i).starts_with(quotes))
-        i += std::exchange(quotes, {}).size() - 1;
-    } else if (!ascii) {
-      return line;
-    } else if (c == '#') {
-      comment = true;
-    } else if ((c == '"' || c == '\'') &&
-               std::string_view("\n=[,{.").find(before) != std::string_view::npos) {
-      const std::string_view triple = text.substr(i, 3);
-      quotes = triple.size() == 3 && triple[1] == c && triple[2] == c ? triple : text.substr(i, 1);
-      i += quotes.size() - 1;
-      foreign = false;
-      before = c;
-    } else if (c != ' ' && c != '\t' && c != '\r') {
-      before = c;
+    const bool encoded = text[i] == '~' && i + 2 < text.size();
+    const std::size_t high = encoded ? digits.find(text[i + 1]) : digits.npos;
+    const std::size_t low = encoded ? digits.find(text[i + 2]) : digits.npos;
+    // No other pair of digits comes from encode().
+    if (high != digits.npos && low != digits.npos && (high >= 8 || (high == 7 && low == 14))) {
+      out += static_cast<char>(high << 4 | low);
+      i += 2;
+    } else {
+      out += text[i];
     }
   }
-  return !quotes.empty() && foreign ? line : 0;
+  return out;
+}
+
+// The length of the sequence of UTF-8 at the beginning of `text` (RFC 3629, 4), which is not empty; 0: there is none.
+std::size_t sequence_length(std::string_view text) {
+  const auto byte = [&](std::size_t at) { return static_cast<unsigned char>(text[at]); };
+  const unsigned char first = byte(0);
+  const std::size_t length = first < 0x80                    ? 1
+                             : first >= 0xc2 && first < 0xe0 ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                             : first >= 0xf0 && first < 0xf5 ? 4
+                                                             : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  // Forms that are longer than they need be, surrogates, and what lies beyond U+10FFFF.
+  if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) > 0x9f) ||
+      (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) > 0x8f))
+    return 0;
+  return length;
+}
+
+// The line of the first byte that is no UTF-8; 0: there is none.
+toml::source_index line_of_wrong_byte(std::string_view text) {
+  toml::source_index line = 1;
+  while (!text.empty()) {
+    const std::size_t length = sequence_length(text);
+    if (length == 0) return line;
+    if (text.front() == '\n') ++line;
+    text.remove_prefix(length);
+  }
+  return 0;
+}
+
+// Whether a letter beyond ASCII stands at a place of a text that encode() made.
+bool foreign_letter(std::string_view encoded, toml::source_position place) {
+  for (toml::source_index line = 1; line < place.line; ++line) {
+    const std::size_t end = encoded.find('\n');
+    if (end == encoded.npos) return false;
+    encoded.remove_prefix(end + 1);
+  }
+  if (place.column == 0 || place.column + 1 >= encoded.size()) return false;
+  const std::string_view at = encoded.substr(place.column - 1);
+  return at.front() == '~' && at[1] >= '8';
 }
 
 TomlValue convert(const toml::node& node) {
@@ -78,13 +116,13 @@ TomlValue convert(const toml::node& node) {
   value.line = node.source().begin.line;
   if (const toml::table* table = node.as_table()) {
     for (const auto& [key, child] : *table)
-      value.members.push_back({std::string(key.str()), key.source().begin.line, convert(child)});
+      value.members.push_back({decode(key.str()), key.source().begin.line, convert(child)});
   } else if (const toml::array* list = node.as_array()) {
     value.kind = Kind::list;
     for (const toml::node& child : *list) value.list.push_back(convert(child));
   } else if (const auto* text = node.as_string()) {
     value.kind = Kind::text;
-    value.text = text->get();
+    value.text = decode(text->get());
   } else if (const auto* truth = node.as_boolean()) {
     value.kind = Kind::boolean;
     value.boolean = truth->get();
@@ -127,12 +165,16 @@ const TomlValue* TomlValue::find(std::string_view key) const {
 
 TomlFile parse_toml(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
-  if (const toml::source_index line = line_of_foreign_letter(text); line != 0)
-    return {std::nullopt, {line, "letters beyond ASCII stand in quotes or comments only"}};
+  if (const toml::source_index line = line_of_wrong_byte(text); line != 0)
+    return {std::nullopt, {line, "this is not UTF-8: save the file in that encoding"}};
+  const std::string encoded = encode(text);
   try {
-    return {convert(toml::parse(text)), {}};
+    return {convert(toml::parse(encoded)), {}};
   } catch (const toml::parse_error& error) {
-    return {std::nullopt, {error.source().begin.line, std::string(error.description())}};
+    const toml::source_position place = error.source().begin;
+    if (foreign_letter(encoded, place))
+      return {std::nullopt, {place.line, "letters beyond ASCII stand in quotes or comments only"}};
+    return {std::nullopt, {place.line, decode(error.description())}};
   } catch (const ParserLost&) {
     return {std::nullopt, {0, "this is not TOML: a value, a key or a bracket is missing or misplaced"}};
   } catch (const std::exception& error) {

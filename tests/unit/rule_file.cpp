@@ -14,6 +14,7 @@
 #include "sensing/angles.h"
 #include "support/suite.h"  // after the streams: check defines fail()
 #include "support/temporary_file.h"
+#include "text/toml.h"
 
 using namespace cerberus::fusion;
 using cerberus::sensing::radians;
@@ -243,10 +244,11 @@ START_TEST(damaged_files_are_refused_or_read_but_never_harm) {
 }
 END_TEST
 
-// toml++ 3.3 has undefined behaviour for these; found by tests/fuzz/rules.cpp.
+// toml++ 3.3 has undefined behaviour for these; found by tests/fuzz.
 START_TEST(letters_beyond_ascii_stand_in_quotes_and_comments_only) {
-  assert_refused("a = 6\"\xc3\xa4\"\n", "f.toml:1: letters beyond ASCII");  // no string begins there
-  assert_refused("a = \"\xc3\xa4\n", "f.toml:1: letters beyond ASCII");     // none ends there
+  assert_refused("a = 6\"\xc3\xa4\"\n", "f.toml:1: ");  // no string begins there
+  assert_refused("a = \"\xc3\xa4\n", "f.toml:1: ");     // none ends there
+  assert_refused("a.c=0y1:c-D0X=\": t\xd3\xbb=\":\n", "f.toml:1: ");
   assert_refused("sensors = 2\nS\xd0\xbb = 1\n",
                  "f.toml:2: letters beyond ASCII stand in quotes or comments only");
   assert_refused("\xef\xbb\xbf\xc3\xa4 = 1\n", "letters beyond ASCII");
@@ -259,6 +261,24 @@ START_TEST(letters_beyond_ascii_stand_in_quotes_and_comments_only) {
 }
 END_TEST
 
+START_TEST(letters_beyond_ascii_and_tildes_arrive_as_they_were_written) {
+  const cerberus::text::TomlFile file = cerberus::text::parse_toml(
+      "\"gr\xc3\xb6\xc3\x9f\x65\" = '~ ~41 \xe2\x82\xac'\nb = \"\\u007e41\xf0\x9f\x98\x80~\"\n");
+  ck_assert(file.root.has_value());
+  const auto* const size = file.root->find("gr\xc3\xb6\xc3\x9f\x65");
+  ck_assert_ptr_nonnull(size);
+  ck_assert_str_eq(size->text.c_str(), "~ ~41 \xe2\x82\xac");
+  ck_assert_str_eq(file.root->find("b")->text.c_str(), "~41\xf0\x9f\x98\x80~");
+}
+END_TEST
+
+// A byte of Latin-1; a slash in two bytes; half of a surrogate pair; beyond U+10FFFF; a letter that is cut off.
+START_TEST(a_file_that_is_not_utf_8_is_refused_with_its_line) {
+  for (const char* wrong : {"\xe4", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80", "\xe2\x82"})
+    assert_refused(std::string("a = 1\nb = \"") + wrong + "\"\n", "f.toml:2: this is not UTF-8");
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "rule_file",
@@ -267,5 +287,7 @@ int main() {
        all_mistakes_are_reported_at_once, a_file_that_cannot_be_read_is_named, a_pipe_is_refused_at_once,
        a_file_that_may_not_be_read_is_named, a_file_is_read_as_its_text_is,
        damaged_files_are_refused_or_read_but_never_harm,
-       letters_beyond_ascii_stand_in_quotes_and_comments_only});
+       letters_beyond_ascii_stand_in_quotes_and_comments_only,
+       letters_beyond_ascii_and_tildes_arrive_as_they_were_written,
+       a_file_that_is_not_utf_8_is_refused_with_its_line});
 }
