@@ -37,18 +37,11 @@ Helper stepper(const Chip& chip, const std::vector<std::string>& more) {
   return Helper(words, setup);
 }
 
-bool coils_off(const Chip& chip) {
-  for (int line = 2; line <= 5; ++line)
-    if (chip.value(line) != 0) return false;
-  return true;
-}
-
 // Waits for the coils to be off. Returns how long it took.
 Clock::duration wait_off(const Chip& chip, Clock::duration most) {
-  const auto begin = Clock::now();
-  while (!coils_off(chip) && Clock::now() - begin < most) std::this_thread::sleep_for(1ms);
-  ck_assert_msg(coils_off(chip), "coils are on after %.0f ms", milliseconds(most));
-  return Clock::now() - begin;
+  const auto took = wait_coils(chip, true, most);
+  ck_assert_msg(took.has_value(), "coils are on after %.0f ms", milliseconds(most));
+  return took.value_or(most);
 }
 
 struct Set {

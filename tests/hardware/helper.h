@@ -33,7 +33,8 @@ using Clock = std::chrono::steady_clock;
 
 inline std::string program;  // cerberus-head
 
-// How often a pipeline is killed: CERBERUS_KILLS in the environment, on request.
+// How often a pipeline is killed: CERBERUS_KILLS in the environment, on request, and with `meson test -t 0`, whose time-out
+// is for the few.
 inline int kills() {
   const char* asked = std::getenv("CERBERUS_KILLS");
   return asked ? std::atoi(asked) : 5;

@@ -19,7 +19,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using simulated::Chip;
-using Clock = std::chrono::steady_clock;
 
 gboolean turn(gpointer sink) {
   gboolean done = FALSE;
@@ -46,23 +45,11 @@ int play(const std::string& chip) {
   return 0;
 }
 
-bool coils_off(const Chip& chip) {
-  for (int line = 2; line <= 5; ++line)
-    if (chip.value(line) != 0) return false;
-  return true;
-}
-
-// Waits until the coils are on or off. Returns how long it took, in milliseconds. Ten reads must agree: while the motor
-// steps, four lines that are read one after the other may all be off.
-double wait_coils(const Chip& chip, bool off, Clock::duration most) {
-  const auto begin = Clock::now();
-  int agreeing = 0;
-  while (agreeing < 10 && Clock::now() - begin < most) {
-    agreeing = coils_off(chip) == off ? agreeing + 1 : 0;
-    std::this_thread::sleep_for(1ms);
-  }
-  fail_unless(agreeing == 10, "the coils are still %s", off ? "on" : "off");
-  return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+// Returns how long it took until the coils were on or off, in milliseconds.
+double wait_for_coils(const Chip& chip, bool off) {
+  const auto took = simulated::wait_coils(chip, off, 60s);
+  fail_unless(took.has_value(), "the coils are still %s", off ? "on" : "off");
+  return std::chrono::duration<double, std::milli>(took.value_or(60s)).count();
 }
 
 GST_START_TEST(the_coils_are_off_when_a_pipeline_is_killed) {
@@ -74,10 +61,10 @@ GST_START_TEST(the_coils_are_off_when_a_pipeline_is_killed) {
       execl("/proc/self/exe", "hardware-pipeline", "play", chip.path().c_str(), nullptr);
       _exit(126);
     }
-    wait_coils(chip, false, 60s);
+    wait_for_coils(chip, false);
     std::this_thread::sleep_for(53ms * round);  // other moments of the motion
     kill(pipeline, SIGKILL);
-    const double took = wait_coils(chip, true, 60s);
+    const double took = wait_for_coils(chip, true);
     fail_unless(waitpid(pipeline, nullptr, 0) == pipeline);
     least = std::min(least, took);
     most = std::max(most, took);

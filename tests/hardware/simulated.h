@@ -6,10 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace simulated {
@@ -84,6 +87,30 @@ class Chip {
   std::string label_, config_, device_, name_;
   bool plugged_ = false;
 };
+
+// Of the motor on the lines 2 to 5, which are read one after the other.
+inline bool coils_off(const Chip& chip) {
+  for (int line = 2; line <= 5; ++line)
+    if (chip.value(line) != 0) return false;
+  return true;
+}
+
+// Waits until the coils are on or off, for at most `most`. Returns how long it took; nothing: they are not. Ten reads must
+// agree: while the motor steps, four lines that are read one after the other may all be off.
+inline std::optional<std::chrono::steady_clock::duration> wait_coils(
+    const Chip& chip, bool off, std::chrono::steady_clock::duration most) {
+  using Clock = std::chrono::steady_clock;
+  const auto begin = Clock::now();
+  auto since = begin;  // the first of the reads that agree
+  for (int agreeing = 0; Clock::now() - begin < most;
+       std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+    const auto now = Clock::now();
+    agreeing = coils_off(chip) == off ? agreeing + 1 : 0;
+    if (agreeing == 1) since = now;
+    if (agreeing == 10) return since - begin;
+  }
+  return std::nullopt;
+}
 
 // The IIO dummy: in_voltage0 measures (73 + 7) x 0.001333 mV, for ever (drivers/iio/dummy/iio_simple_dummy.c).
 class Converter {
