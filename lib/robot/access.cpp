@@ -45,10 +45,6 @@ bool is_numeric(std::string_view host) {
   return !host.empty() && host.find_first_not_of("0123456789.") == host.npos;
 }
 
-bool is_loopback(std::string_view address) {
-  return address == "::1" || address.starts_with("127.") || address.starts_with("::ffff:127.");
-}
-
 bool same_letters(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
   return std::ranges::equal(a, b, {}, lower, lower);
@@ -151,39 +147,6 @@ void Sessions::end(std::string token) {
 void Sessions::end_all(Role role, std::string_view except) {
   std::erase_if(sessions_,
                 [&](const Session& session) { return session.role == role && !same(session.token, except); });
-}
-
-void RateLimit::fail(Entry& entry, int free, AccessTime now) const {
-  entry.last = now;
-  if (++entry.failures < free) return;
-  const int doublings = std::min(entry.failures - free, 20);
-  entry.until = now + std::min(parameters_.first * (1 << doublings), parameters_.longest);
-}
-
-std::chrono::seconds RateLimit::wait(std::string_view address, AccessTime now) const {
-  AccessTime until = is_loopback(address) ? AccessTime{} : all_.until;
-  for (const Entry& entry : entries_)
-    if (entry.address == address) until = std::max(until, entry.until);
-  return until <= now ? std::chrono::seconds(0) : std::chrono::ceil<std::chrono::seconds>(until - now);
-}
-
-void RateLimit::failed(std::string_view address, AccessTime now) {
-  // An hour without a wrong password is forgotten.
-  if (now - all_.last > std::chrono::hours(1)) all_ = {};
-  std::erase_if(entries_, [&](const Entry& entry) { return now - entry.last > std::chrono::hours(1); });
-  fail(all_, parameters_.free_of_all, now);
-  auto found = std::ranges::find(entries_, address, &Entry::address);
-  if (found == entries_.end()) {
-    if (entries_.size() >= parameters_.most)
-      entries_.erase(std::ranges::min_element(entries_, {}, &Entry::last));
-    found = entries_.insert(entries_.end(), Entry{std::string(address), 0, {}, {}});
-  }
-  fail(*found, parameters_.free, now);
-}
-
-void RateLimit::succeeded(std::string_view address) {
-  all_ = {};
-  std::erase_if(entries_, [&](const Entry& entry) { return entry.address == address; });
 }
 
 bool Steering::take(std::string_view token, AccessTime now) {

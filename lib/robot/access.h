@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "publish/streams/rate_limit.h"
 #include "robot/page_commands.h"
 
 namespace cerberus::robot {
@@ -74,35 +75,7 @@ class Sessions {
   std::vector<Session> sessions_;
 };
 
-// After some wrong passwords an address waits before the next try, twice as long each time; so does everybody after
-// many.
-class RateLimit {
- public:
-  struct Parameters {
-    int free = 5, free_of_all = 50;
-    std::chrono::seconds first{1}, longest{60};
-    std::size_t most = 256;  // addresses that are remembered
-  };
-
-  // How long this address must wait; zero: it may try. Failures of other addresses do not delay one of loopback: the
-  // machine itself stays usable.
-  std::chrono::seconds wait(std::string_view address, AccessTime now) const;
-  void failed(std::string_view address, AccessTime now);
-  // The address, and all together, begin anew.
-  void succeeded(std::string_view address);
-
- private:
-  struct Entry {
-    std::string address;
-    int failures = 0;
-    AccessTime last{}, until{};
-  };
-  void fail(Entry& entry, int free, AccessTime now) const;
-
-  Parameters parameters_;
-  std::vector<Entry> entries_;
-  Entry all_;
-};
+using publish::RateLimit;
 
 // One controller at a time: the head belongs to the session that moved it last, until that is silent for `hold`.
 class Steering {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "rtsp_server/limited_auth.h"
+
 namespace cerberus::rtsp {
 namespace {
 
@@ -215,7 +217,7 @@ std::string RtspServer::add_mount(const std::shared_ptr<EncodedStream>& stream) 
 // With users each request needs one, by HTTP digest; without, only the connection may be protected.
 void RtspServer::protect() {
   if (settings_.users.empty() && !certificate_) return;
-  g_autoptr(GstRTSPAuth) auth = gst_rtsp_auth_new();
+  g_autoptr(GstRTSPAuth) auth = limited_auth_new();
   g_autoptr(GstRTSPToken) token =
       gst_rtsp_token_new(GST_RTSP_TOKEN_MEDIA_FACTORY_ROLE, G_TYPE_STRING, kRole, nullptr);
   if (certificate_) gst_rtsp_auth_set_tls_certificate(auth, certificate_);

@@ -3,6 +3,7 @@
 
 #include <sys/stat.h>
 #include <sys/timex.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <cstring>
@@ -31,6 +32,13 @@ std::string comma_separated(const auto& values, auto text_of) {
 std::uint64_t size_of(const std::string& path) {
   struct stat about{};
   return !path.empty() && stat(path.c_str(), &about) == 0 ? static_cast<std::uint64_t>(about.st_size) : 0;
+}
+
+// By the kernel; a hardened service (ProtectClock of systemd) may not ask it, and reads what systemd-timesyncd notes.
+bool clock_is_synchronised() {
+  timex clock{};  // no modes: it is read
+  if (adjtimex(&clock) >= 0) return !(clock.status & STA_UNSYNC);
+  return access("/run/systemd/timesync/synchronized", F_OK) == 0;
 }
 
 }  // namespace
@@ -258,9 +266,8 @@ void DiskWriter::execute(Keep& command) {
 
 record::Surroundings DiskWriter::surroundings() const {
   const auto microseconds = [](gint64 time) { return record::Time(std::chrono::microseconds(time)); };
-  timex clock{};  // no modes: the clock is read
   return {microseconds(g_get_real_time()), microseconds(g_get_monotonic_time()),
-          record::Folder(folder_).free_bytes(), adjtimex(&clock) >= 0 && !(clock.status & STA_UNSYNC)};
+          record::Folder(folder_).free_bytes(), clock_is_synchronised()};
 }
 
 void DiskWriter::retain() {

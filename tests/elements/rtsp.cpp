@@ -108,6 +108,11 @@ class Log {
   std::vector<std::string> entries_;
 };
 
+// Each test runs in a process of its own (but for CK_FORK=no).
+bool is_forked() {
+  return g_strcmp0(g_getenv("CK_FORK"), "no") != 0;
+}
+
 // A pipeline with this line, served.
 class Served {
  public:
@@ -128,7 +133,7 @@ class Served {
     server_.reset();
     gst_element_set_state(pipeline_, GST_STATE_NULL);
     gst_object_unref(pipeline_);
-    gst_rtsp_thread_pool_cleanup();
+    if (is_forked()) gst_rtsp_thread_pool_cleanup();  // it ends the threads of every server to come, too
   }
   int port() const { return server_->port(); }
   std::string address(const std::string& mount, const char* scheme = "rtsp") const {
@@ -352,6 +357,28 @@ GST_START_TEST(only_a_user_with_the_right_password_plays) {
 }
 GST_END_TEST
 
+GST_START_TEST(an_address_with_wrong_passwords_is_refused_for_a_while_and_longer_each_time) {
+  Served served(kPlain, with_user());
+  const std::string address = served.address("plain");
+  const auto is_refused = [&](const char* password) {
+    Client client(address, std::string("user-id=anna user-pw=") + password);
+    int error = 0;
+    wait_for("an answer", [&] { return (error = client.error()) != 0 || client.pictures.size() > 0; });
+    fail_unless(error == 0 || error == GST_RESOURCE_ERROR_NOT_AUTHORIZED, "error %d", error);
+    return error != 0;
+  };
+  for (int k = 0; k < 2; ++k) fail_unless(is_refused("wrong"));
+  fail_if(is_refused("\"right horse\""));  // which begins anew
+  // After about five clients there is a delay of 1, 2, 4 ... 60 s, of which a slow machine needs a longer one.
+  for (int count = 6;; ++count) {
+    fail_unless(count < 12, "the right password is never refused");
+    for (int k = 0; k < count; ++k) fail_unless(is_refused("wrong"));
+    if (is_refused("\"right horse\"")) break;
+  }
+  wait_for("the end of the delay", [&] { return !is_refused("\"right horse\""); });
+}
+GST_END_TEST
+
 GST_START_TEST(tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear) {
   if (!g_tls_backend_supports_tls(g_tls_backend_get_default())) {
     g_print("skipped: TLS needs glib-networking\n");
@@ -416,6 +443,7 @@ static Suite* rtsp_suite() {
   tcase_add_test(cases, two_clients_get_the_pictures_of_one_encoder_and_the_second_begins_at_once);
   tcase_add_test(cases, a_mount_that_every_client_left_encodes_nothing_and_is_served_again);
   tcase_add_test(cases, only_a_user_with_the_right_password_plays);
+  tcase_add_test(cases, an_address_with_wrong_passwords_is_refused_for_a_while_and_longer_each_time);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
   tcase_add_test(cases, what_cannot_be_served_is_named);
   suite_add_tcase(suite, cases);

@@ -25,10 +25,14 @@ from support import DISTANCE, LIMIT, TOP, ball, gst_launch, json_lines, must, pe
 WIDTH, HEIGHT, FRAMES = 320, 240, 75
 
 
+STARTED = []  # also what is left of a test that failed
+
+
 def start(name, *options, **variables):
     line = [str(TOP / 'pipelines' / 'run'), *options, name, *(f'{key}={value}' for key, value in variables.items())]
-    return subprocess.Popen(line, cwd=os.getcwd(), start_new_session=True, text=True,
-                            stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+    STARTED.append(subprocess.Popen(line, cwd=os.getcwd(), start_new_session=True, text=True,
+                                    stdout=subprocess.PIPE, stderr=subprocess.STDOUT))
+    return STARTED[-1]
 
 
 def finish(process):
@@ -473,8 +477,13 @@ def main():
     programs = [os.path.abspath(program) for program in sys.argv[3:]]
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
-        globals()['test_' + name.replace('-', '_')](kind, *programs)
-        os.chdir('/')
+        try:
+            globals()['test_' + name.replace('-', '_')](kind, *programs)
+        finally:
+            os.chdir('/')
+            for process in STARTED:
+                if process.poll() is None:
+                    os.killpg(process.pid, signal.SIGKILL)
 
 
 main()
