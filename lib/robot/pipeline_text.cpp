@@ -2,8 +2,8 @@
 #include "robot/pipeline_text.h"
 
 #include <array>
-#include <cmath>
-#include <numbers>
+#include <map>
+#include <utility>
 
 #include "text/numbers.h"
 
@@ -233,6 +233,25 @@ class Writer {
 PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts,
                            const Properties* mqtt) {
   return Writer(camera, page, parts, mqtt).write();
+}
+
+std::optional<std::vector<PropertyChange>> changes(const PipelineText& before, const PipelineText& after) {
+  if (before.line != after.line) return std::nullopt;
+  using Key = std::pair<std::string, std::string>;
+  const auto values = [](const PipelineText& text) {
+    std::map<Key, std::string> last;  // a later assignment wins
+    for (const Assignment& one : text.assignments) last[{one.element, one.property}] = one.value;
+    return last;
+  };
+  const std::map<Key, std::string> old_values = values(before), new_values = values(after);
+  std::vector<PropertyChange> all;
+  for (const auto& [key, value] : new_values) {
+    const auto old = old_values.find(key);
+    if (old == old_values.end() || old->second != value) all.push_back({key.first, key.second, value});
+  }
+  for (const auto& [key, value] : old_values)
+    if (!new_values.contains(key)) all.push_back({key.first, key.second, std::nullopt});
+  return all;
 }
 
 Properties triggers(const RecorderSettings& recorder) {

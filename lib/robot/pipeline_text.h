@@ -3,6 +3,7 @@
 // character of theirs is parsed.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,15 @@ struct Parts {
 // `mqtt`: properties of mqttpublish, called `mqtt`; nullptr: nothing is published.
 PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts,
                            const Properties* mqtt = nullptr);
+
+// A property whose value differs between two pipelines of one line.
+struct PropertyChange {
+  std::string element, property;
+  std::optional<std::string> value;  // nullopt: its default
+};
+
+// The properties that make `after` of `before`. nullopt: their lines differ, so that properties are not enough.
+std::optional<std::vector<PropertyChange>> changes(const PipelineText& before, const PipelineText& after);
 
 // What may begin an event while armed: the property and its value. While disarmed all of them are false.
 Properties triggers(const RecorderSettings& recorder);

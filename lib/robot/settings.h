@@ -54,6 +54,8 @@ struct BaseSettings {
   std::string command;       // a program that is given a line for each order
   double max_speed = .5;     // metres a second
   double max_yaw_rate = 45;  // degrees a second
+
+  bool operator==(const BaseSettings&) const = default;
 };
 
 struct CameraSettings {
@@ -77,11 +79,15 @@ struct PageSettings {
   int quality = 75;                  // of the JPEG pictures, percent
   bool tls = false;                  // with a self-made certificate where none is named
   std::string certificate, key;      // PEM files
+
+  bool operator==(const PageSettings&) const = default;
 };
 
 struct WebhookSettings {
   std::string url, secret_file, ca_file;
   std::string topics = "track mode event";  // of mqttpublish, parted by blanks
+
+  bool operator==(const WebhookSettings&) const = default;
 };
 
 struct ModeSettings {

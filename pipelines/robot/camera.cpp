@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "robot/events.h"
-#include "robot/settings_file.h"
 #include "text/numbers.h"
 
 namespace cerberus::robot {
@@ -39,20 +38,6 @@ void say(const std::string& camera, const std::string& text) {
 
 std::string seconds(Camera::Clock::duration duration) {
   return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(duration).count()) + " s";
-}
-
-// Sets a property by its text, as gst_parse_launch() would, but texts literally.
-bool set_property(GstElement* element, const Assignment& assignment, std::string& error) {
-  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), assignment.property.c_str());
-  if (spec == nullptr) {
-    error = "this build's " + assignment.element + " has no property " + assignment.property;
-    return false;
-  }
-  if (G_PARAM_SPEC_VALUE_TYPE(spec) == G_TYPE_STRING)
-    g_object_set(element, assignment.property.c_str(), assignment.value.c_str(), nullptr);
-  else
-    gst_util_set_object_arg(G_OBJECT(element), assignment.property.c_str(), assignment.value.c_str());
-  return true;
 }
 
 // Time since a frame's capture, which its time stamp is, in ns; 0: it is not known.
@@ -92,26 +77,6 @@ Camera::~Camera() {
 
 GstElement* Camera::element(const char* name) const {
   return gst_bin_get_by_name(GST_BIN(pipeline_), name);
-}
-
-bool Camera::apply(const PipelineText& text, std::string& error) {
-  for (const Assignment& assignment : text.assignments) {
-    g_autoptr(GstElement) found = element(assignment.element.c_str());
-    if (found == nullptr || !set_property(found, assignment, error)) return false;
-  }
-  return true;
-}
-
-bool Camera::apply_secrets(std::string& error) {
-  if (settings_.source.user.empty()) return true;
-  const std::optional<std::string> password = read_secret(settings_.source.password_file, error);
-  if (!password) return false;
-  for (const char* name : {"source", "recorded"}) {
-    g_autoptr(GstElement) source = element(name);
-    if (source)
-      g_object_set(source, "user-id", settings_.source.user.c_str(), "user-pw", password->c_str(), nullptr);
-  }
-  return true;
 }
 
 // Drops the buffers that would enter a queue while `pass` is false.
@@ -207,19 +172,6 @@ void Camera::connect() {
     if (picture)
       gst_app_sink_set_callbacks(GST_APP_SINK(picture), &on_picture, new Holder(newest_), free_holder);
   }
-}
-
-void Camera::set_triggers() {
-  if (recorder_ == nullptr) return;
-  for (const Property& trigger : triggers(*settings_.recorder))
-    gst_util_set_object_arg(G_OBJECT(recorder_), trigger.name.c_str(),
-                            mode_ == Mode::armed ? trigger.value.c_str() : "false");
-}
-
-void Camera::publish_mode() {
-  if (!mqtt_ || pipeline_ == nullptr) return;
-  g_autoptr(GstElement) mqtt = element("mqtt");
-  if (mqtt) g_object_set(mqtt, "mode", std::string(robot::name(mode_)).c_str(), nullptr);
 }
 
 bool Camera::publish(const char* topic, GBytes* payload, bool retain) {

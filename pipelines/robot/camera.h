@@ -62,6 +62,14 @@ class Camera {
 
   // Runs in this mode; privacy stops the pipeline once the head is parked.
   void set_mode(Mode mode);
+  // What a change of settings comes to.
+  enum class Change {
+    none,      // the pipeline is as before
+    live,      // properties were set while it plays
+    restarts,  // the pipeline is made anew
+  };
+  // Takes other settings of the same camera (its name stays).
+  Change change(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt);
   // Stops for good. is_stopped() tells when that is done.
   void shut_down();
   bool is_stopped() const;
@@ -108,6 +116,7 @@ class Camera {
   void fail(const std::string& part, const std::string& text);
   bool apply(const PipelineText& text, std::string& error);
   bool apply_secrets(std::string& error);
+  bool change_live(const PipelineText& before, const PipelineText& after);
   void connect();
   void set_show(bool show);
   void update_draw();

@@ -42,9 +42,11 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "cerberusd: %s\n", error ? error->message : "which FILE? (cerberusd --help)");
     return 2;
   }
-  const gchar* credentials = g_getenv("CREDENTIALS_DIRECTORY");
-  cerberus::robot::SettingsFile file =
-      cerberus::robot::load_settings(argv[1], credentials ? credentials : "");
+  const auto load = [path = std::string(argv[1])] {
+    const gchar* credentials = g_getenv("CREDENTIALS_DIRECTORY");
+    return cerberus::robot::load_settings(path, credentials ? credentials : "");
+  };
+  cerberus::robot::SettingsFile file = load();
   if (!file.settings) {
     std::fprintf(stderr, "%s\n", file.errors.c_str());
     return check ? 1 : kWrongConfiguration;
@@ -54,7 +56,7 @@ int main(int argc, char** argv) {
     return 0;
   }
   find_elements();
-  cerberus::robot::Robot robot;
+  cerberus::robot::Robot robot(load);
   std::string wrong;
   if (!robot.open(*std::move(file.settings), wrong)) {
     std::fprintf(stderr, "cerberusd: %s\n", wrong.c_str());

@@ -40,6 +40,25 @@ std::int64_t now() {
   return g_get_real_time() / G_USEC_PER_SEC;
 }
 
+bool have_stopped(const std::vector<std::unique_ptr<Camera>>& cameras) {
+  return std::ranges::all_of(cameras, [](const auto& camera) { return camera->is_stopped(); });
+}
+
+// Whether the page must be made anew: where it listens, or what it says once to each browser.
+bool page_differs(const Settings& before, const Settings& after) {
+  const auto description = [](const Settings& settings) {
+    std::string all = settings.name;
+    for (const CameraSettings& camera : settings.cameras)
+      all += '\n' + camera.name + (camera.head ? " head" : "") + (camera.recorder ? " recorder" : "") +
+             (camera.sensors ? " sensors" : "");
+    return all;
+  };
+  PageSettings page = before.page;
+  page.picture_width = after.page.picture_width;  // of the cameras' pipelines
+  page.quality = after.page.quality;
+  return page != after.page || before.base != after.base || description(before) != description(after);
+}
+
 void notify([[maybe_unused]] const std::string& text) {
 #if HAVE_SYSTEMD
   sd_notify(0, text.c_str());
@@ -67,33 +86,11 @@ bool Robot::open(Settings settings, std::string& error) {
   mode_->tick(now(), offset_of_zone);
 #if HAVE_PAGE
   collect_log();
-  if (settings_.webhook) open_webhook();
-  if (settings_.base) base_ = std::make_unique<BaseOutput>(*settings_.base);
-#else
-  if (settings_.webhook) g_printerr("cerberusd: this build has no webhook (it needs libsoup 3)\n");
 #endif
-  // What the webhook sends comes from mqttpublish, which works without a broker too.
-  std::optional<Properties> publishing = settings_.mqtt;
-#if HAVE_PAGE
-  if (webhook_) {
-    if (!publishing) publishing = Properties{{"host", ""}};
-    publishing->push_back({"post-topics", settings_.webhook->topics});
-  }
-#endif
-  for (const CameraSettings& camera : settings_.cameras) {
-    if (camera.recorder && g_mkdir_with_parents(camera.recorder->folder.c_str(), 0750) != 0)
-      g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", camera.name.c_str(),
-                 camera.recorder->folder.c_str(), g_strerror(errno));
-    cameras_.push_back(std::make_unique<Camera>(camera, settings_.page, publishing ? &*publishing : nullptr,
-                                                [this](const std::string& order) { on_order(order); }));
-#if HAVE_PAGE
-    if (webhook_)
-      cameras_.back()->set_on_publish(
-          [this](const Camera& from, const std::string& topic, const std::string& payload) {
-            webhook_->add(from.settings().name, topic, payload);
-          });
-#endif
-  }
+  open_base();
+  open_webhook();
+  set_publishing();
+  for (const CameraSettings& camera : settings_.cameras) cameras_.push_back(make_camera(camera));
 #if HAVE_PAGE
   if (settings_.page.enabled) open_page();
 #else
@@ -103,8 +100,42 @@ bool Robot::open(Settings settings, std::string& error) {
   return true;
 }
 
+std::unique_ptr<Camera> Robot::make_camera(const CameraSettings& settings) {
+  if (settings.recorder && g_mkdir_with_parents(settings.recorder->folder.c_str(), 0750) != 0)
+    g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", settings.name.c_str(),
+               settings.recorder->folder.c_str(), g_strerror(errno));
+  auto camera = std::make_unique<Camera>(settings, settings_.page, publishing(),
+                                         [this](const std::string& order) { on_order(order); });
 #if HAVE_PAGE
+  camera->set_on_publish([this](const Camera& from, const std::string& topic, const std::string& payload) {
+    if (webhook_) webhook_->add(from.settings().name, topic, payload);
+  });
+#endif
+  return camera;
+}
+
+void Robot::set_publishing() {
+  publishing_ = settings_.mqtt;
+#if HAVE_PAGE
+  // What the webhook sends comes from mqttpublish, which works without a broker too.
+  if (webhook_) {
+    if (!publishing_) publishing_ = Properties{{"host", ""}};
+    publishing_->push_back({"post-topics", settings_.webhook->topics});
+  }
+#endif
+}
+
+void Robot::open_base() {
+#if HAVE_PAGE
+  base_.reset();
+  if (settings_.base) base_ = std::make_unique<BaseOutput>(*settings_.base);
+#endif
+}
+
 void Robot::open_webhook() {
+#if HAVE_PAGE
+  webhook_.reset();
+  if (!settings_.webhook) return;
   std::string error;
   g_autoptr(GstElementFactory) publisher = gst_element_factory_find("mqttpublish");
   if (!publisher) error = "this build has no element mqttpublish (libmosquitto), which collects its events";
@@ -112,8 +143,12 @@ void Robot::open_webhook() {
   if (error.empty() && webhook_->open(error)) return;
   webhook_.reset();
   g_printerr("cerberusd: there is no webhook: %s\n", error.c_str());
+#else
+  if (settings_.webhook) g_printerr("cerberusd: this build has no webhook (it needs libsoup 3)\n");
+#endif
 }
 
+#if HAVE_PAGE
 // The robot goes on without the page, which is tried again.
 void Robot::open_page() {
   page_ = std::make_unique<PageServer>(PageServer::House{settings_, base_.get(), cameras_,
@@ -160,14 +195,81 @@ void Robot::apply_mode() {
   for (const auto& camera : cameras_) camera->set_mode(mode());
 }
 
+// A configuration with mistakes changes nothing.
+void Robot::reload() {
+  if (shutting_down_ > 0) return;
+  notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(g_get_monotonic_time()));
+  SettingsFile file = load_();
+  refused_ = !file.settings;
+  if (refused_)
+    g_printerr("%s\ncerberusd: the configuration is refused, and the robot goes on as before\n",
+               file.errors.c_str());
+  else
+    take(*std::move(file.settings));
+  notify("READY=1");
+}
+
+void Robot::take(Settings settings) {
+  if (settings.state_folder.empty()) settings.state_folder = default_state_folder();
+  if (settings.state_folder != settings_.state_folder)
+    g_printerr("cerberusd: \"state-folder\" stays %s until cerberusd is started anew\n",
+               settings_.state_folder.c_str());
+  settings.state_folder = settings_.state_folder;
+  mode_->set_schedule(settings.mode.schedule);
+  const bool new_page = page_differs(settings_, settings);
+#if HAVE_PAGE
+  if (new_page) page_.reset();  // before the cameras that it shows
+#endif
+  const bool new_webhook = settings_.webhook != settings.webhook || settings_.name != settings.name;
+  const bool new_base = settings_.base != settings.base;
+  settings_ = std::move(settings);
+  if (new_webhook) open_webhook();
+  if (new_base) open_base();
+  set_publishing();
+
+  std::vector<std::unique_ptr<Camera>> before = std::move(cameras_);
+  cameras_.clear();
+  for (const CameraSettings& camera : settings_.cameras) {
+    const auto same = [&](const auto& one) { return one && one->settings().name == camera.name; };
+    const auto found = std::ranges::find_if(before, same);
+    const char* how = "new";
+    if (found == before.end()) {
+      cameras_.push_back(make_camera(camera));
+      cameras_.back()->set_mode(mode());
+    } else {
+      cameras_.push_back(std::move(*found));
+      switch (cameras_.back()->change(camera, settings_.page, publishing())) {
+        case Camera::Change::none:
+          continue;
+        case Camera::Change::live:
+          how = "changed while it runs";
+          break;
+        case Camera::Change::restarts:
+          how = "changed, its pipeline starts anew";
+          break;
+      }
+    }
+    g_printerr("cerberusd: %s: %s\n", camera.name.c_str(), how);
+  }
+  for (auto& camera : before) {
+    if (!camera) continue;
+    g_printerr("cerberusd: %s: removed\n", camera->settings().name.c_str());
+    camera->shut_down();
+    leaving_.push_back(std::move(camera));
+  }
+  g_printerr("cerberusd: the configuration is taken\n");
+#if HAVE_PAGE
+  if (new_page && settings_.page.enabled) open_page();
+#endif
+}
+
 void Robot::report(const std::string& text) const {
   notify("STATUS=" + text);
 }
 
 void Robot::tick() {
   if (shutting_down_ > 0) {
-    const bool stopped =
-        std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_stopped(); });
+    const bool stopped = have_stopped(cameras_) && have_stopped(leaving_);
     if (stopped || --shutting_down_ == 0) {
       if (!stopped) g_printerr("cerberusd: a camera does not stop\n");
       g_main_loop_quit(loop_);
@@ -184,6 +286,12 @@ void Robot::tick() {
     status += ", " + camera->settings().name + ' ' + robot::name(camera->state());
     if (!camera->fault().empty()) status += " (" + camera->fault() + ')';
   }
+  for (const auto& camera : leaving_) {
+    camera->tick();
+    sound = sound && camera->is_sound();
+  }
+  std::erase_if(leaving_, [](const auto& camera) { return camera->is_stopped(); });
+  if (refused_) status += ", configuration refused";
 #if HAVE_PAGE
   if (!page_ && settings_.page.enabled && shutting_down_ == 0 &&
       page_backoff_.is_due(std::chrono::steady_clock::now()))
@@ -218,6 +326,13 @@ int Robot::run() {
   };
   g_unix_signal_add(SIGTERM, on_signal, this);
   g_unix_signal_add(SIGINT, on_signal, this);
+  g_unix_signal_add(
+      SIGHUP,
+      [](gpointer robot) {
+        static_cast<Robot*>(robot)->reload();
+        return static_cast<gboolean>(G_SOURCE_CONTINUE);
+      },
+      this);
   g_timeout_add_seconds(
       1,
       [](gpointer robot) {
@@ -229,7 +344,7 @@ int Robot::run() {
   notify("READY=1");
   g_main_loop_run(loop_);
   g_main_loop_unref(loop_);
-  const bool stopped = std::ranges::all_of(cameras_, [](const auto& camera) { return camera->is_stopped(); });
+  const bool stopped = have_stopped(cameras_) && have_stopped(leaving_);
 #if HAVE_PAGE
   page_.reset();
   webhook_.reset();
@@ -241,6 +356,7 @@ int Robot::run() {
     _exit(1);
   }
   cameras_.clear();
+  leaving_.clear();
   return 0;
 }
 

@@ -4,7 +4,9 @@
 
 #include <glib.h>
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,14 +18,18 @@
 #include "robot/backoff.h"
 #include "robot/mode.h"
 #include "robot/settings.h"
+#include "robot/settings_file.h"
 
 namespace cerberus::robot {
 
 class Robot {
  public:
+  // `load` reads the configuration file again.
+  explicit Robot(std::function<SettingsFile()> load) : load_(std::move(load)) {}
+
   // Makes the state folder and takes up the mode; false, and what is wrong.
   bool open(Settings settings, std::string& error);
-  // Runs until SIGTERM or SIGINT; returns the exit code of the process.
+  // Runs until SIGTERM or SIGINT, and reads the configuration again at SIGHUP; returns the exit code of the process.
   int run();
 
   Mode mode() const { return mode_->mode(); }
@@ -35,15 +41,24 @@ class Robot {
   void save_mode();
 #if HAVE_PAGE
   void open_page();
-  void open_webhook();
 #endif
+  void open_webhook();    // and closes the one before
+  void open_base();       // the same
+  void set_publishing();  // what the cameras publish: by MQTT, and for the webhook
+  const Properties* publishing() const { return publishing_ ? &*publishing_ : nullptr; }
   void tick();
   void report(const std::string& text) const;
   void begin_shut_down();
+  std::unique_ptr<Camera> make_camera(const CameraSettings& settings);
+  void reload();
+  void take(Settings settings);
 
+  std::function<SettingsFile()> load_;
   Settings settings_;
+  std::optional<Properties> publishing_;  // of mqttpublish
   std::unique_ptr<ModeKeeper> mode_;
   std::vector<std::unique_ptr<Camera>> cameras_;
+  std::vector<std::unique_ptr<Camera>> leaving_;  // no longer in the configuration, until they have stopped
 #if HAVE_PAGE
   std::unique_ptr<PageServer> page_;
   std::unique_ptr<Webhook> webhook_;
@@ -54,6 +69,7 @@ class Robot {
   GMainLoop* loop_ = nullptr;
   int shutting_down_ = 0;  // seconds left; 0: not
   std::string status_;
+  bool refused_ = false;  // the configuration that was read last has mistakes
 };
 
 }  // namespace cerberus::robot

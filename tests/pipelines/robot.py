@@ -38,6 +38,17 @@ file = "no-video.avi"
 '''
 
 
+# The same camera with another threshold, and another one in place of the broken one.
+RELOADED = CONFIGURATION.split('[[camera]]\nname = "broken"')[0].replace('[camera.head]', """[camera.detection]
+minimum-area = 30
+[camera.head]
+turn-speed = 15""") + '''
+[[camera]]
+name = "second"
+kind = "test"
+'''
+
+
 class Service:
     def __init__(self, folder):
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
@@ -67,6 +78,14 @@ class Service:
             if all(word in report for word in words):
                 return report
         raise AssertionError(f'no report with {words}')
+
+    def reload(self):
+        """Returns what is logged until the service is ready again."""
+        self.log.seek(0, os.SEEK_END)
+        self.process.send_signal(signal.SIGHUP)
+        self.wait_for('RELOADING=1', 'MONOTONIC_USEC=')
+        self.wait_for('READY=1')
+        return pathlib.Path(self.log.name).read_text()
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)
@@ -101,6 +120,20 @@ def main():
             while not rows(folder) and time.monotonic() < end:
                 time.sleep(.05)
             assert rows(folder), 'nothing was recorded'
+            (folder / 'robot.toml').write_text(RELOADED.replace('minimum-area', 'minimal-area'))
+            log = service.reload()
+            assert 'is "minimum-area" meant?' in log and 'the robot goes on as before' in log, log
+            service.wait_for('STATUS=', 'good running', 'broken', 'configuration refused')
+            (folder / 'robot.toml').write_text(RELOADED)
+            log = service.reload()
+            for line in ('good: changed while it runs', 'broken: removed', 'second: new', 'the configuration is taken'):
+                assert f'cerberusd: {line}\n' in log, f'{line} is not in {log}'
+            service.wait_for('STATUS=armed, good running, second running')
+            # A rate is part of the pipeline.
+            (folder / 'robot.toml').write_text(RELOADED.replace('framerate = 10', 'framerate = 15'))
+            log = service.reload()
+            assert 'good: changed, its pipeline starts anew\n' in log and 'second: ' not in log.split('taken')[-2], log
+            service.wait_for('WATCHDOG=1')
             code, log = service.stop()
         finally:
             service.process.kill()
@@ -115,7 +148,7 @@ def main():
             service = Service(folder)
             try:
                 service.wait_for('READY=1')
-                service.wait_for('STATUS=privacy, good off, broken off')
+                service.wait_for('STATUS=privacy, good off, second off')
                 service.wait_for('WATCHDOG=1')
                 code, log = service.stop()
             finally:

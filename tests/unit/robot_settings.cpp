@@ -144,7 +144,7 @@ START_TEST(every_mistake_is_reported_with_its_line) {
        "r.toml:4: \"width\" and \"height\" belong together"},
       {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"http://b\"\n",
        "r.toml:4: \"uri\" begins with rtsp://"},
-      {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://u:secret@b/c\"\n",
+      {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://u:hunter2@b/c\"\n",
        "r.toml:4: \"uri\" holds a user or a password: use \"user\" and \"password-file\""},
       {"[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b\"\nuser = \"u\"\n",
        "r.toml:5: \"user\" and \"password-file\" belong together"},
@@ -161,7 +161,7 @@ START_TEST(every_mistake_is_reported_with_its_line) {
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\ndriver = \"external\"\n",
        "r.toml:5: driver = \"external\" needs \"command\""},
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.head]\ndevice-options = \"user=u "
-       "password=secret\"\n",
+       "password=hunter2\"\n",
        "r.toml:5: \"device-options\" holds a password"},
       {"[[camera]]\nname = \"a\"\nkind = \"test\"\n[camera.recorder]\n",
        "r.toml:4: a [camera.recorder] needs a \"folder\""},
@@ -472,6 +472,26 @@ START_TEST(what_a_network_camera_records_is_never_encoded_again) {
 }
 END_TEST
 
+START_TEST(another_configuration_is_the_properties_that_differ_or_another_pipeline) {
+  const auto text = [](const std::string& more) {
+    const Settings all = settings(kSmallest + more);
+    return pipeline_text(all.cameras[0], all.page, {});
+  };
+  const std::string zones = "[camera.detection]\nzones = 'x'\nminimum-area = 20\n";
+  ck_assert(changes(text(zones), text(zones)).value().empty());
+
+  const auto other = changes(text(zones), text("[camera.detection]\nzones = 'y'\nminimum-area = 20\n"));
+  ck_assert(other && other->size() == 1);
+  ck_assert(other->at(0).element == "detect" && other->at(0).property == "zones" &&
+            other->at(0).value == "y");
+
+  const auto fewer = changes(text(zones), text("[camera.detection]\nminimum-area = 20\n"));
+  ck_assert(fewer && fewer->size() == 1 && fewer->at(0).property == "zones" && !fewer->at(0).value);
+
+  ck_assert(!changes(text(zones), text(zones + "[camera.head]\n")));  // an element more
+}
+END_TEST
+
 START_TEST(a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1) {
   using std::chrono::seconds;
   Backoff backoff;
@@ -508,5 +528,6 @@ int main() {
                          texts_of_the_user_are_assigned_and_never_parsed,
                          a_part_that_failed_or_is_not_configured_is_left_out,
                          what_a_network_camera_records_is_never_encoded_again,
+                         another_configuration_is_the_properties_that_differ_or_another_pipeline,
                          a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
 }

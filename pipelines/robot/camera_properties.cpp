@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The properties of a camera's elements: before its pipeline starts, as the mode changes, and when the configuration does.
+#include "camera.h"
+#include "robot/settings_file.h"
+
+namespace cerberus::robot {
+
+namespace {
+
+// Sets a property by its text, as gst_parse_launch() would, but texts literally.
+bool set_property(GstElement* element, const Assignment& assignment, std::string& error) {
+  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(element), assignment.property.c_str());
+  if (spec == nullptr) {
+    error = "this build's " + assignment.element + " has no property " + assignment.property;
+    return false;
+  }
+  if (G_PARAM_SPEC_VALUE_TYPE(spec) == G_TYPE_STRING)
+    g_object_set(element, assignment.property.c_str(), assignment.value.c_str(), nullptr);
+  else
+    gst_util_set_object_arg(G_OBJECT(element), assignment.property.c_str(), assignment.value.c_str());
+  return true;
+}
+
+}  // namespace
+
+bool Camera::apply(const PipelineText& text, std::string& error) {
+  for (const Assignment& assignment : text.assignments) {
+    g_autoptr(GstElement) found = element(assignment.element.c_str());
+    if (found == nullptr || !set_property(found, assignment, error)) return false;
+  }
+  return true;
+}
+
+bool Camera::apply_secrets(std::string& error) {
+  if (settings_.source.user.empty()) return true;
+  const std::optional<std::string> password = read_secret(settings_.source.password_file, error);
+  if (!password) return false;
+  for (const char* name : {"source", "recorded"}) {
+    g_autoptr(GstElement) source = element(name);
+    if (source)
+      g_object_set(source, "user-id", settings_.source.user.c_str(), "user-pw", password->c_str(), nullptr);
+  }
+  return true;
+}
+
+void Camera::set_triggers() {
+  if (recorder_ == nullptr) return;
+  for (const Property& trigger : triggers(*settings_.recorder))
+    gst_util_set_object_arg(G_OBJECT(recorder_), trigger.name.c_str(),
+                            mode_ == Mode::armed ? trigger.value.c_str() : "false");
+}
+
+void Camera::publish_mode() {
+  if (!mqtt_ || pipeline_ == nullptr) return;
+  g_autoptr(GstElement) mqtt = element("mqtt");
+  if (mqtt) g_object_set(mqtt, "mode", std::string(robot::name(mode_)).c_str(), nullptr);
+}
+
+// Sets what differs where all of it may change while the pipeline plays, else nothing.
+bool Camera::change_live(const PipelineText& before, const PipelineText& after) {
+  std::optional<std::vector<PropertyChange>> all = changes(before, after);
+  if (!all) return false;
+  // These follow the mode: set_triggers() sets them.
+  if (settings_.recorder)
+    for (const Property& trigger : triggers(*settings_.recorder))
+      std::erase_if(*all, [&](const PropertyChange& one) {
+        return one.element == "recorder" && one.property == trigger.name;
+      });
+  const auto spec_of = [](GstElement* element, const PropertyChange& one) {
+    return g_object_class_find_property(G_OBJECT_GET_CLASS(element), one.property.c_str());
+  };
+  for (const PropertyChange& one : *all) {
+    g_autoptr(GstElement) found = element(one.element.c_str());
+    const GParamSpec* spec = found ? spec_of(found, one) : nullptr;
+    if (spec == nullptr || (spec->flags & GST_PARAM_MUTABLE_PLAYING) == 0) return false;
+  }
+  std::string error;
+  for (const PropertyChange& one : *all) {
+    g_autoptr(GstElement) found = element(one.element.c_str());
+    if (one.value) {
+      set_property(found, {one.element, one.property, *one.value}, error);
+    } else {
+      GParamSpec* spec = spec_of(found, one);
+      g_auto(GValue) value = G_VALUE_INIT;
+      g_value_init(&value, G_PARAM_SPEC_VALUE_TYPE(spec));
+      g_param_value_set_default(spec, &value);
+      g_object_set_property(G_OBJECT(found), one.property.c_str(), &value);
+    }
+  }
+  set_triggers();
+  return true;
+}
+
+Camera::Change Camera::change(const CameraSettings& settings, const PageSettings& page,
+                              const Properties* mqtt) {
+  const auto text = [this](Parts parts) {
+    return pipeline_text(settings_, page_, parts, mqtt_ ? &*mqtt_ : nullptr);
+  };
+  const PipelineText whole_before = text({}), before = text(parts_);
+  const SourceSettings& source = settings.source;
+  const bool same_secret =
+      source.user == settings_.source.user && source.password_file == settings_.source.password_file;
+  settings_ = settings;
+  page_ = page;
+  mqtt_ = mqtt != nullptr ? std::optional(*mqtt) : std::nullopt;
+  const auto differences = changes(whole_before, text({}));
+  if (differences && differences->empty() && same_secret) return Change::none;
+  if (state_ == State::running && same_secret && change_live(before, text(parts_))) return Change::live;
+  // A part that failed is tried with its new settings.
+  parts_ = {};
+  camera_backoff_ = head_backoff_ = recorder_backoff_ = {};
+  if (state_ == State::running) {
+    if (head_ != nullptr) order("stop");
+    again_ = true;
+    close();
+  } else if (state_ == State::waiting) {
+    start();
+  }
+  return Change::restarts;
+}
+
+}  // namespace cerberus::robot
