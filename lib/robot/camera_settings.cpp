@@ -97,7 +97,7 @@ constexpr Option kRecorder[] = {
     {"trigger-zones", K::text},
 };
 
-constexpr std::array<std::string_view, 5> kKinds{"test", "world", "file", "v4l2", "rtsp"};
+constexpr std::array<std::string_view, 6> kKinds{"test", "world", "file", "v4l2", "rtsp", "libcamera"};
 constexpr std::array<std::string_view, 3> kCodecs{"h264", "h265", "jpeg"};
 constexpr std::array<std::string_view, 4> kEncoders{"x264enc", "openh264enc", "v4l2h264enc", "jpegenc"};
 
@@ -183,7 +183,7 @@ class CameraReader {
     std::size_t kind = 0, codec = 0;
     const bool known = reader_.choice("kind", kind, kKinds);
     if (!reader_.has("kind"))
-      reader_.complain("kind", "a [[camera]] needs a \"kind\": test, world, file, v4l2 or rtsp");
+      reader_.complain("kind", "a [[camera]] needs a \"kind\": test, world, file, v4l2, rtsp or libcamera");
     source.kind = static_cast<SourceKind>(kind);
     reader_.text("device", source.device);
     reader_.text("uri", source.uri);
@@ -205,12 +205,13 @@ class CameraReader {
     reader_.number("start-tilt", source.start_tilt, -90, 90);
     if (!known) return;
     using enum SourceKind;
-    only_with({"device", "motion-jpeg"}, {v4l2});
+    only_with({"device"}, {v4l2, libcamera});
+    only_with({"motion-jpeg"}, {v4l2});
     only_with({"uri", "record-uri", "user", "password-file", "password-credential", "codec"}, {rtsp});
     only_with({"file", "loop"}, {SourceKind::file, world});
     only_with({"wide-fov", "start-pan", "start-tilt"}, {world});
-    only_with({"width", "height"}, {test, world, v4l2});
-    only_with({"framerate"}, {test, v4l2});
+    only_with({"width", "height"}, {test, world, v4l2, libcamera});
+    only_with({"framerate"}, {test, v4l2, libcamera});
     if (source.kind == v4l2) needs("device");
     if (source.kind == rtsp) needs("uri");
     if (source.kind == SourceKind::file || source.kind == world) needs("file");

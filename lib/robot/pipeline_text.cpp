@@ -104,6 +104,11 @@ class Writer {
       case SourceKind::rtsp:
         network_camera();
         break;
+      case SourceKind::libcamera:
+        add("  libcamerasrc name=source ! video/x-raw");
+        add(size_and_rate());
+        if (!source_.device.empty()) set("source", "camera-name", source_.device);
+        break;
     }
   }
 

@@ -18,18 +18,19 @@ struct Property {
 using Properties = std::vector<Property>;
 
 enum class SourceKind : std::uint8_t {
-  test,   // a drawn picture with a ball that moves
-  world,  // a video as the world of a simulated head: a window that turns over it
-  file,   // a video file in real time
-  v4l2,   // a camera of the kernel
-  rtsp,   // a network camera
+  test,       // a drawn picture with a ball that moves
+  world,      // a video as the world of a simulated head: a window that turns over it
+  file,       // a video file in real time
+  v4l2,       // a camera of the kernel
+  rtsp,       // a network camera
+  libcamera,  // a camera that libcamera drives, as those of a Raspberry Pi
 };
 
 enum class Codec : std::uint8_t { h264, h265, jpeg };
 
 struct SourceSettings {
   SourceKind kind = SourceKind::test;
-  std::string device;                    // v4l2
+  std::string device;                    // v4l2; libcamera: its name there, empty: the first
   std::string uri;                       // rtsp: the stream that is analysed
   std::string record_uri;                // rtsp: the stream that is recorded; empty: the same
   std::string user, password_file;       // rtsp

@@ -218,10 +218,10 @@ END_TEST
 
 START_TEST(all_mistakes_come_at_once_in_the_order_of_their_lines) {
   const std::string found = errors("[page]\nprot = 1\n[[camera]]\nname = \"a\"\nkind = \"tset\"\n");
-  ck_assert_str_eq(
-      found.c_str(),
-      "r.toml:2: unknown key \"prot\" in [page]: is \"port\" meant?\n"
-      "r.toml:5: \"kind\" of [[camera]] is one of \"test\", \"world\", \"file\", \"v4l2\", \"rtsp\"");
+  ck_assert_str_eq(found.c_str(),
+                   "r.toml:2: unknown key \"prot\" in [page]: is \"port\" meant?\n"
+                   "r.toml:5: \"kind\" of [[camera]] is one of \"test\", \"world\", \"file\", \"v4l2\", "
+                   "\"rtsp\", \"libcamera\"");
 }
 END_TEST
 
@@ -455,6 +455,31 @@ START_TEST(a_part_that_failed_or_is_not_configured_is_left_out) {
 }
 END_TEST
 
+START_TEST(each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for) {
+  const auto text = [](const std::string& keys) {
+    const Settings all = settings("[[camera]]\nname = \"c\"\n" + keys);
+    return pipeline_text(all.cameras[0], all.page, {});
+  };
+  const std::string size = "width = 640\nheight = 480\nframerate = 30\n";
+  const std::string caps = ",width=640,height=480,framerate=30/1 ";
+  ck_assert(says(text("kind = \"test\"\n" + size).line,
+                 "videotestsrc name=source is-live=true pattern=ball ! video/x-raw" + caps));
+  ck_assert(says(text("kind = \"file\"\nfile = \"v.avi\"\n").line, "filesrc name=source ! decodebin"));
+  const PipelineText v4l2 = text("kind = \"v4l2\"\ndevice = \"/dev/video2\"\n" + size);
+  ck_assert(says(v4l2.line, "v4l2src name=source ! video/x-raw" + caps));
+  ck_assert(assigned(v4l2, "source", "device") == "/dev/video2");
+  ck_assert(says(text("kind = \"v4l2\"\ndevice = \"/dev/video2\"\nmotion-jpeg = true\n" + size).line,
+                 "v4l2src name=source ! image/jpeg" + caps + "! jpegdec"));
+  const PipelineText board =
+      text("kind = \"libcamera\"\ndevice = \"/base/soc/i2c0mux/i2c@1/imx708@1a\"\n" + size);
+  ck_assert(says(board.line, "libcamerasrc name=source ! video/x-raw" + caps));
+  ck_assert(assigned(board, "source", "camera-name") == "/base/soc/i2c0mux/i2c@1/imx708@1a");
+  ck_assert(assigned(text("kind = \"libcamera\"\n"), "source", "camera-name") == "(none)");
+  ck_assert(says(errors("[[camera]]\nname = \"c\"\nkind = \"libcamera\"\nuri = \"rtsp://b\"\n"),
+                 "r.toml:4: \"uri\" is not for kind = \"libcamera\""));
+}
+END_TEST
+
 START_TEST(what_a_network_camera_records_is_never_encoded_again) {
   const std::string camera =
       "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b/sub\"\n[camera.recorder]\nfolder = "
@@ -527,6 +552,7 @@ int main() {
                          a_broken_state_is_privacy_until_the_next_entry_of_the_schedule,
                          texts_of_the_user_are_assigned_and_never_parsed,
                          a_part_that_failed_or_is_not_configured_is_left_out,
+                         each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for,
                          what_a_network_camera_records_is_never_encoded_again,
                          another_configuration_is_the_properties_that_differ_or_another_pipeline,
                          a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
