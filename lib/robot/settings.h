@@ -14,6 +14,8 @@ namespace cerberus::robot {
 // A property of a GStreamer element, its value in the form of gst-launch-1.0.
 struct Property {
   std::string name, value;
+
+  bool operator==(const Property&) const = default;
 };
 using Properties = std::vector<Property>;
 

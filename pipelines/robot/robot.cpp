@@ -56,7 +56,9 @@ bool page_differs(const Settings& before, const Settings& after) {
   PageSettings page = before.page;
   page.picture_width = after.page.picture_width;  // of the cameras' pipelines
   page.quality = after.page.quality;
-  return page != after.page || before.base != after.base || description(before) != description(after);
+  // The page has its own connection to the broker, for the cameras of others.
+  return page != after.page || before.base != after.base || before.mqtt != after.mqtt ||
+         before.list_cameras != after.list_cameras || description(before) != description(after);
 }
 
 void notify([[maybe_unused]] const std::string& text) {
