@@ -2,9 +2,11 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """mqttpublish against a real mosquitto on loopback, with TLS (where the openssl tool is), passwords and an ACL: a broker
 that is absent at the start, a wrong password, a certificate of another CA, killed and started again; retained state, tracks,
-last will, orders for the head, 10,000 orders that are refused. Skipped where mosquitto is not installed."""
+last will, orders for the head, 10,000 orders that are refused. With the program cerberusd as argument: the page's list of
+cameras, a picture on demand, the newest recording and its deletion. Skipped where mosquitto is not installed."""
 import json
 import pathlib
+import re
 import shutil
 import signal
 import socket
@@ -15,6 +17,8 @@ import sys
 import tempfile
 import time
 
+from page_client import Page, Socket
+
 PATIENCE = 100  # seconds
 BROKER = shutil.which('mosquitto') or shutil.which('mosquitto', path='/usr/sbin')
 PASSWORDS = shutil.which('mosquitto_passwd')
@@ -22,7 +26,9 @@ OPENSSL = shutil.which('openssl')
 ACL = '''user camera
 topic write cerberus/front/#
 topic write homeassistant/#
+topic read cerberus/+/+
 topic read cerberus/front/command/+
+topic write cerberus/+/command/picture
 user reader
 topic read #
 topic write cerberus/front/command/+
@@ -90,7 +96,7 @@ class Client:
                 if topic.endswith('/track'):
                     self.tracks.append(json.loads(payload))
                 else:
-                    self.retained[topic] = payload.decode()
+                    self.retained[topic] = payload.decode(errors='replace')
 
     def publish(self, topic, payload, retain=False):
         self.packet(0x31 if retain else 0x30, struct.pack('>H', len(topic)) + topic.encode() + payload.encode())
@@ -140,6 +146,74 @@ def line(folder, port, password, ca='ca.pem'):
             'video/x-raw,format=GRAY8,width=160,height=120,framerate=10/1', '!', 'motiondetect', '!', 'mqttpublish',
             f'port={port}', 'camera-name=front', 'username=camera', f'password-file={folder / password}', *tls,
             'discovery-prefix=homeassistant', 'commands=move-to stop arm', 'mode=armed', '!', 'pantiltsink']
+
+
+ROBOT = '''
+state-folder = "state"
+[page]
+port = PAGE
+[mqtt]
+host = "127.0.0.1"
+port = BROKER
+username = "camera"
+password-file = "password"
+CA
+commands = ["picture"]
+list-cameras = true
+[[camera]]
+name = "front"
+kind = "test"
+width = 160
+height = 120
+framerate = 10
+[camera.recorder]
+folder = "recordings"
+encoder = "jpegenc"
+post-roll = 0
+longest-file = 2
+'''
+
+
+def robot(program, folder, port, ca, client):
+    """The page of a robot lists the cameras of the broker and shows a picture of one; a deleted event leaves it, too."""
+    page = Page(free_port())
+    (folder / 'password').chmod(0o600)
+    (folder / 'robot.toml').write_text(ROBOT.replace('PAGE', str(page.port)).replace('BROKER', str(port)).replace(
+        'CA', f'ca-file = "{ca}"' if ca else ''))
+    with open(folder / 'log', 'w', encoding='utf-8') as log:
+        process = subprocess.Popen([program, folder / 'robot.toml'], stdout=log, stderr=log)
+    try:
+        one_time = re.search(r'One-time password .*: ([0-9a-f]{16})', log_has(folder / 'log', 'One-time password', 'mode armed'))
+        assert page.log_in('owner', one_time[1]) == 200
+        assert page.ask('POST', '/password', {'user': 'owner', 'password': 'long enough'})[0] == 200
+        client.wait('a recording', lambda: '"open":true' in client.retained.get('cerberus/front/event', ''))
+        line, end, asked, seen = Socket(page), time.monotonic() + PATIENCE, False, None
+        while not (seen and seen['picture']) and time.monotonic() < end:
+            message = line.receive()
+            if isinstance(message, tuple):
+                line.send(f'ack {message[0]}')
+            elif 'number' in message:
+                line.send(f'seen {message["number"]}')
+                seen = next((one for one in message['fleet'] if one['name'] == 'front' and one['status'] == 'online'
+                             and one['event']), None)
+                if seen and not asked:
+                    asked = page.ask('POST', '/picture', {'camera': 'front'})[0] == 200
+        assert seen and seen['picture'] and seen['mode'] == 'armed', seen
+        assert page.ask('GET', '/picture/front')[2][:2] == b'\xff\xd8'
+        line.send('mode disarmed')
+        line.close()
+        client.wait('the newest recording', lambda: '"open":false' in client.retained.get('cerberus/front/event', ''))
+        events = lambda: json.loads(page.ask('GET', '/events?camera=front')[2])
+        while any(event['open'] for event in events()):
+            assert time.monotonic() < end
+            time.sleep(.1)
+        for event in events():
+            assert page.ask('POST', '/delete', {'camera': 'front', 'id': event['id']})[0] == 200
+        client.wait('no event is left', lambda: client.retained.get('cerberus/front/event') == '')
+        process.send_signal(signal.SIGTERM)
+        assert process.wait(PATIENCE) == 0
+    finally:
+        process.kill()
 
 
 def log_has(path, *words):
@@ -245,6 +319,8 @@ def main():
             camera.send_signal(signal.SIGINT)
             client.wait('offline at the end', lambda: has('status', 'offline'))
             assert camera.wait(PATIENCE) == 0
+            if len(sys.argv) > 1:
+                robot(sys.argv[1], folder, port, ca, client)
         except BaseException:
             print((folder / 'log').read_text(errors='replace')[-3000:], file=sys.stderr)
             raise
