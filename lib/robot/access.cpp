@@ -34,10 +34,12 @@ bool same(std::string_view a, std::string_view b) {
   return different == 0;
 }
 
-// "robot:8080", "[::1]:8080" without the port.
+// "robot:8080", "[::1]:8080" without the port; all of it where what follows is no port.
 std::string_view without_port(std::string_view host) {
-  if (host.starts_with('[')) return host.substr(0, std::min(host.find(']') + 1, host.size()));
-  return host.substr(0, host.find(':'));
+  const std::size_t bracket = host.starts_with('[') ? host.find(']') : 0;
+  const std::size_t colon = bracket == host.npos ? host.npos : host.find(':', bracket);
+  if (colon == host.npos || host.find_first_not_of("0123456789", colon + 1) != host.npos) return host;
+  return host.substr(0, colon);
 }
 
 bool is_numeric(std::string_view host) {

@@ -117,8 +117,9 @@ START_TEST(another_name_for_this_machine_is_refused) {
   for (const char* own : {"127.0.0.1:8080", "127.0.0.1", "[::1]:8080", "localhost:8080", "LOCALHOST",
                           "192.168.1.7:8080", "garden:8080", "Garden.local", "robot.example:8443"})
     ck_assert_msg(is_own_host(own, "garden", origins), "%s", own);
-  for (const char* other : {"", "evil.example", "127.0.0.1.evil.example:8080", "localhost.evil.example",
-                            "robot.example", "garden.evil", "gardenXlocal", ":8080", "[::1.evil", "1.2.3.4x"})
+  for (const char* other :
+       {"", "evil.example", "127.0.0.1.evil.example:8080", "localhost.evil.example", "robot.example",
+        "garden.evil", "gardenXlocal", ":8080", "[::1.evil", "1.2.3.4x", "1.2.3.4:80evil", "[::1]evil:80"})
     ck_assert_msg(!is_own_host(other, "garden", origins), "%s", other);
   ck_assert(!is_own_host("", "", {}) && !is_own_host(".local", "", {}));
 }
