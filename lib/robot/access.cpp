@@ -158,4 +158,17 @@ bool Steering::take(std::string_view token, AccessTime now) {
   return true;
 }
 
+void Steering::stop(std::string_view token) {
+  if (!token_.empty() && token_ != token && !must_let_go(token_)) {
+    if (must_let_go_.size() >= kMost) must_let_go_.erase(must_let_go_.begin());
+    must_let_go_.push_back(token_);
+  }
+  let_go(token);
+  release();
+}
+
+bool Steering::must_let_go(std::string_view token) const {
+  return std::ranges::find(must_let_go_, token) != must_let_go_.end();
+}
+
 }  // namespace cerberus::robot

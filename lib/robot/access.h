@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -51,6 +52,7 @@ struct Session {
   bool must_set_password = false;  // logged in with the one-time password: may do nothing else
   std::string address;
   AccessTime begun{}, used{};
+  std::set<std::string> played;  // recordings of which the access log has a line
 };
 
 class Sessions {
@@ -86,10 +88,18 @@ class Steering {
   bool take(std::string_view token, AccessTime now);
   bool is_held_by(std::string_view token, AccessTime now) const { return token_ == token && now < until_; }
   void release() { until_ = {}; }
+  // A session stopped what another moves: that one, which may go on sending orders, must let go before it moves again.
+  void stop(std::string_view token);
+  // An order of no speed, or a stop.
+  void let_go(std::string_view token) { std::erase(must_let_go_, token); }
+  bool must_let_go(std::string_view token) const;
 
  private:
+  static constexpr std::size_t kMost = 64;  // as sessions
+
   std::string token_;
   AccessTime until_{};
+  std::vector<std::string> must_let_go_;  // tokens
 };
 
 }  // namespace cerberus::robot

@@ -145,7 +145,9 @@ void PageServer::answer_recording(Request& request) {
       parse_range(header ? header : "", static_cast<std::uint64_t>(about.st_size), kMostOfAnswer);
   // The library would cut the first chunk by it.
   soup_message_headers_remove(asked, "Range");
-  if (what == "video" && range.first == 0) log_access(request.who(), "plays " + file);
+  // Once, whatever parts a player asks for.
+  if (what == "video" && request.session->played.insert(from->settings().name + '/' + file).second)
+    log_access(request.who(), "plays " + file);
   SoupMessageHeaders* headers = soup_server_message_get_response_headers(request.message);
   soup_message_headers_replace(headers, "Accept-Ranges", "bytes");
   if (range.kind == ByteRange::Kind::none) {

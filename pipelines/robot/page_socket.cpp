@@ -100,6 +100,7 @@ void PageServer::leave(SoupWebsocketConnection* connection) {
   // A turn ends by itself after 500 ms; here it ends at once.
   const bool another =
       std::ranges::any_of(viewers_, [&](const auto& one) { return one->token() == viewer->token(); });
+  if (!another) steering_.let_go(viewer->token());
   if (!another && steering_.is_held_by(viewer->token(), now())) {
     viewer->camera()->turn(0, 0);
     if (house_.base != nullptr) house_.base->stop();
@@ -168,7 +169,14 @@ void PageServer::execute(Viewer& viewer, const Session& session, const PageComma
       break;
   }
   // Stop is for everyone who may steer, whoever steers now, and the head is theirs then.
-  if (command.kind == Kind::stop) steering_.release();
+  if (command.kind == Kind::stop) steering_.stop(session.token);
+  if (command.kind == Kind::turn || command.kind == Kind::drive) {
+    if (command.pan == 0 && command.tilt == 0) steering_.let_go(session.token);
+    if (steering_.must_let_go(session.token)) {
+      viewer.send("{\"refused\":\"stopped from another page: let go, then steer again\"}");
+      return;
+    }
+  }
   const bool held = steering_.is_held_by(session.token, now());
   if (!steering_.take(session.token, now())) {
     viewer.send("{\"refused\":\"somebody else is steering\"}");

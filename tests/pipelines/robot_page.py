@@ -54,7 +54,7 @@ url = "http://127.0.0.1:HOOK/cerberus"
 secret-file = "secret"
 topics = ["mode", "event"]
 [base]
-command = "sh -c 'cat > FOLDER/drive'"
+command = "sh -c 'cat >> FOLDER/drive'"
 max-speed = 0.5
 '''
 SECRET = 'a secret of 24 characters'
@@ -62,7 +62,7 @@ SECRET = 'a secret of 24 characters'
 
 class Receiver(http.server.BaseHTTPRequestHandler):
     """A receiver as docs/manual/webhook.md has it, which refuses the first request for lack of time."""
-    events, tries = [], []
+    events, tries, cut = [], [], False
 
     def do_POST(self):
         body = self.rfile.read(int(self.headers['Content-Length']))
@@ -70,11 +70,25 @@ class Receiver(http.server.BaseHTTPRequestHandler):
         right = hmac.new(SECRET.encode(), stamp.encode() + b'.' + body, hashlib.sha256).hexdigest()
         assert abs(time.time() - int(stamp)) < 300 and self.headers['Cerberus-Signature'] == 'sha256=' + right
         Receiver.tries.append(json.loads(body)['id'])
-        first = len(Receiver.tries) == 1
+        first, third = len(Receiver.tries) == 1, len(Receiver.tries) == 3
         if not first:
             Receiver.events.append(json.loads(body))
-        self.send_response(503 if first else 204)
+        self.send_response(503 if first else 200 if third else 204)
+        if third:
+            self.send_header('Content-Length', '1000000')
         self.end_headers()
+        if third:
+            self.trickle()
+
+    def trickle(self):
+        """A body that does not end is not waited for: only its sender is."""
+        try:
+            for _ in range(5 * PATIENCE):
+                self.wfile.write(b'x')
+                time.sleep(.2)
+            raise AssertionError('the body was read')
+        except OSError:
+            Receiver.cut = True
 
     def log_message(self, *_):
         pass
@@ -85,6 +99,7 @@ def webhook():
     assert Receiver.tries[0] == Receiver.tries[1] == Receiver.events[0]['id'], Receiver.tries
     assert Receiver.events[0]['robot'] == 'the robot' and Receiver.events[0]['camera'] == 'front', Receiver.events[0]
     wait_until('privacy by webhook', lambda: has('mode', lambda data: data == 'privacy'))
+    wait_until('the end of an answer that does not end', lambda: Receiver.cut)
     wait_until('a recording by webhook', lambda: has('event', lambda data: data and not data['open']))
     assert len({one['id'] for one in Receiver.events}) == len(Receiver.events)
 
@@ -287,29 +302,49 @@ def steering(owner, operator, viewer):
         line.close()
 
 
-def base(operator, folder):
-    """A drive that is not repeated ends by itself; STOP ends one at once, and so does the end of the page."""
+def base(owner, operator, folder):
+    """A drive that is not repeated ends by itself; STOP ends one at once, also another's until that lets go, and so does
+    the end of the page. Orders are repeated: a program of the base that gets no processor time is started anew."""
     drive = folder / 'drive'
     line = Socket(operator)
     wait_until('the program of the base', drive.exists)
     before = len(drive.read_text())  # stops of other tests
     lines = lambda: drive.read_text()[before:]
-    ended = lambda count: lines().count('stop') >= count
 
-    def goes(_):
-        line.send('drive 0.5 -1')
-        return lines().startswith('drive 0.25 -45\n')
-    reports(line, goes)
-    wait_until('the end of a drive', lambda: ended(1))
+    def settled():
+        """Ends with a stop, and nothing comes any more."""
+        earlier = lines()
+        time.sleep(.6)
+        return earlier.endswith('stop\n') and earlier == lines()
+
+    def repeated(orders, question):
+        def sent(_):
+            for order in orders:
+                line.send(order)
+            return question()
+        reports(line, sent)
+    repeated(['drive 0.5 -1'], lambda: lines().startswith('drive 0.25 -45\n'))
+    wait_until('the end of a drive', settled)
     assert re.fullmatch(r'((drive 0.25 -45\n)+stop\n)+', lines()), lines()
     count = lines().count('stop')
-    line.send('drive -1 0')
-    line.send('stop')
-    wait_until('a stop', lambda: ended(count + 1))
-    line.send('drive 1 0')
-    wait_until('a drive', lambda: 'drive 0.5 0' in lines())
+    repeated(['drive -1 0', 'stop'], lambda: lines().count('stop') > count)
+    repeated(['drive 1 0'], lambda: 'drive 0.5 0' in lines())
+    # Of another session: what was moving is refused, for longer than the head is held, until it lets go.
+    other = Socket(owner)
+    other.send('stop')
+    is_refused = lambda m: refused(m) or line.send('drive 1 0')
+    reports(line, is_refused)
+    wait_until('the stop of another', settled)
+    stopped, end = lines(), time.monotonic() + 2.5  # the head is held for 2 s
+    while time.monotonic() < end:
+        reports(line, is_refused)
+    assert settled() and lines() == stopped, lines()
+    other.close()
+    line.send('drive 0 0')
+    before = len(drive.read_text())
+    repeated(['drive 1 0'], lambda: 'drive 0.5 0' in lines())
     line.close()
-    wait_until('the end with the page', lambda: lines().endswith('stop\n'))
+    wait_until('the end with the page', settled)
 
 
 def stages(owner):
@@ -320,10 +355,12 @@ def stages(owner):
     reports(line, lambda m: isinstance(m, tuple))
     line.send('stage picture')
     line.send('set quality 30')
+    line.send('set return-delay 60')
     reports(line, lambda m: isinstance(m, dict) and m.get('cameras') and m['cameras'][0]['stage'] == 'picture')
     line.close()
     log = wait_until('the log', lambda: 'sets quality of front to 30' in owner.ask('GET', '/log')[2].decode())
     assert log
+    wait_until('a long time', lambda: 'sets return-delay of front to 60' in owner.ask('GET', '/log')[2].decode())
 
 
 def many_sockets(viewer):
@@ -409,7 +446,7 @@ def main():
                 pictures(owner)
                 steering(owner, operator, viewer)
                 many_sockets(viewer)
-                base(operator, folder)
+                base(owner, operator, folder)
                 stages(owner)
                 assert operator.ask('GET', '/log')[0] == 403 and viewer.ask('POST', '/picture', {'camera': 'x'})[0] == 404
                 recordings(owner, operator, viewer, folder)

@@ -250,6 +250,25 @@ START_TEST(one_session_steers_until_it_was_silent_for_two_seconds) {
 }
 END_TEST
 
+START_TEST(after_a_stop_by_another_session_the_one_that_moved_must_let_go_first) {
+  Steering steering;
+  ck_assert(steering.take("a", kStart));
+  steering.stop("a");
+  ck_assert(!steering.must_let_go("a"));
+  ck_assert(steering.take("a", kStart));
+  steering.stop("b");
+  ck_assert(steering.must_let_go("a") && !steering.must_let_go("b"));
+  ck_assert(steering.take("b", kStart) && steering.must_let_go("a"));
+  steering.let_go("a");
+  ck_assert(!steering.must_let_go("a"));
+  for (int k = 0; k < 100; ++k) {
+    ck_assert(steering.take(std::to_string(k), kStart + seconds(3 * k + 3)));
+    steering.stop("b");
+  }
+  ck_assert(!steering.must_let_go("35") && steering.must_let_go("36") && steering.must_let_go("99"));
+}
+END_TEST
+
 START_TEST(a_drive_of_the_base_is_repeated_and_ends_after_half_a_second) {
   BaseDrive base;
   ck_assert(base.line(kStart).empty());
@@ -313,6 +332,7 @@ int main() {
                           many_addresses_together_are_slowed_down_too,
                           a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
                           a_drive_of_the_base_is_repeated_and_ends_after_half_a_second,
+                          after_a_stop_by_another_session_the_one_that_moved_must_let_go_first,
                           one_session_steers_until_it_was_silent_for_two_seconds,
 #if HAVE_ARGON2
                           a_password_counts_for_its_role_alone_and_survives_a_restart,

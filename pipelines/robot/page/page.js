@@ -68,8 +68,7 @@ function connect() {
   };
   socket.onclose = async () => {
     socket = null;
-    release();
-    park();
+    letGo();
     if (gone) return;
     veil('The connection is lost. It is tried again.');
     setTimeout(async () => {
@@ -101,14 +100,16 @@ function may(role) {
 }
 
 function onReport(report) {
-  if (report.refused) say(report.refused);
+  if (report.refused) {
+    say(report.refused);
+    letGo();
+  }
   if (report.hello) {
     hello = report.hello;
     const wanted = cameraName;
     at('camera').replaceChildren(...hello.cameras.map((camera) => new Option(camera.name)));
     at('camera').hidden = hello.cameras.length < 2;
     at('base').hidden = !hello.base;
-    showSettings();
     cameraName = hello.cameras[0].name;
     if (hello.cameras.some((camera) => camera.name === wanted)) choose(wanted);
     else choose(cameraName);
@@ -127,6 +128,7 @@ function onReport(report) {
 function choose(name) {
   cameraName = name;
   at('camera').value = name;
+  showSettings();
   send(`camera ${name}`);
   enableButtons();
   loadEvents();
@@ -267,6 +269,10 @@ function showFleet() {
       item.dataset.picture = camera.picture;
       image.src = `/picture/${encodeURIComponent(camera.name)}?${camera.picture}`;
       image.hidden = false;
+    } else if (camera.picture === 0) {
+      item.dataset.picture = '';
+      image.removeAttribute('src');
+      image.hidden = true;
     }
   }
 }
@@ -339,6 +345,8 @@ function stop() {
   driver = 0;
   drive = null;
   driving.clear();
+  pressed.clear();
+  drag = null;
   clearInterval(repeater);
   repeater = 0;
   move = null;
@@ -390,7 +398,8 @@ for (const button of document.querySelectorAll('#drive-pad button')) {
   button.addEventListener('keyup', park);
 }
 
-const kDriveKeys = {w: [1, 0], s: [-1, 0], a: [0, -1], d: [0, 1]};
+// By their places (event.code): a letter is another one while Shift is held, and its key would never be released.
+const kDriveKeys = {KeyW: [1, 0], KeyS: [-1, 0], KeyA: [0, -1], KeyD: [0, 1]};
 const driving = new Set();
 
 function driveByKeys() {
@@ -400,31 +409,36 @@ function driveByKeys() {
 }
 
 const kArrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1]};
-const pressed = new Set();
+const pressed = new Map();  // by event.code, what event.key was at first
 
 function turnByKeys() {
   let pan = 0, tilt = 0;
-  for (const key of pressed) {
-    pan += kArrows[key][0];
-    tilt += kArrows[key][1];
+  for (const [x, y] of pressed.values()) {
+    pan += x;
+    tilt += y;
   }
   if (pressed.size) turn(pan * speed(), tilt * speed());
   else release();
 }
 
+// A key that repeats itself begins nothing: STOP holds while one is still held.
 document.addEventListener('keydown', (event) => {
+  // The system may keep the release of a key that is held together with one of these.
+  if (['Meta', 'Control', 'Alt', 'AltGraph'].includes(event.key)) letGo();
   if (at('room').hidden || at('player').open || event.ctrlKey || event.altKey || event.metaKey) return;
   const inField = event.target.closest('input, select, #strip');
   if (event.key === 'Escape' || (event.key === ' ' && !event.target.closest('button, input, select, a'))) {
     event.preventDefault();
     if (steers() || drives()) stop();
-  } else if (kDriveKeys[event.key] && !inField && drives()) {
+  } else if (kDriveKeys[event.code] && !inField && drives()) {
     event.preventDefault();
-    driving.add(event.key);
+    if (event.repeat) return;
+    driving.add(event.code);
     driveByKeys();
   } else if (kArrows[event.key] && !inField && steers()) {
     event.preventDefault();
-    pressed.add(event.key);
+    if (event.repeat) return;
+    pressed.set(event.code, kArrows[event.key]);
     turnByKeys();
   } else if (event.key === 'Home' && !inField && steers()) {
     send('home');
@@ -433,8 +447,8 @@ document.addEventListener('keydown', (event) => {
   }
 });
 document.addEventListener('keyup', (event) => {
-  if (pressed.delete(event.key)) turnByKeys();
-  if (driving.delete(event.key)) driveByKeys();
+  if (pressed.delete(event.code)) turnByKeys();
+  if (driving.delete(event.code)) driveByKeys();
 });
 function letGo() {
   pressed.clear();
