@@ -10,7 +10,7 @@ namespace cerberus::robot {
 
 namespace {
 
-constexpr guint kPatience = 10;              // seconds for an answer
+constexpr guint kPatience = 10;              // seconds for a whole answer
 constexpr std::size_t kShortestSecret = 16;  // letters: 64 bits in hexadecimal digits
 
 publish::WebhookQueue::Time now() {
@@ -18,6 +18,58 @@ publish::WebhookQueue::Time now() {
 }
 
 }  // namespace
+
+// One request, which may outlive the webhook. It ends after kPatience whatever the receiver does: the session's own
+// timeout is that of one read or write.
+struct Webhook::Attempt {
+  explicit Attempt(std::weak_ptr<Webhook*> of)
+      : self(std::move(of)), timer(g_timeout_add_seconds(kPatience, on_time, this)) {}
+  ~Attempt() {
+    if (timer != 0) g_source_remove(timer);
+    g_object_unref(cancellable);
+    g_clear_object(&message);
+  }
+  Attempt(const Attempt&) = delete;
+  Attempt& operator=(const Attempt&) = delete;
+
+  static gboolean on_time(gpointer data) {
+    auto& attempt = *static_cast<Attempt*>(data);
+    attempt.timer = 0;
+    g_cancellable_cancel(attempt.cancellable);
+    return G_SOURCE_REMOVE;
+  }
+  // The status counts, the body does not: it is neither waited for nor read.
+  static void on_answer(GObject* session, GAsyncResult* result, gpointer data) {
+    std::unique_ptr<Attempt> attempt(static_cast<Attempt*>(data));
+    g_autoptr(GError) error = nullptr;
+    g_autoptr(GInputStream) answer = soup_session_send_finish(SOUP_SESSION(session), result, &error);
+    if (answer == nullptr) {
+      attempt->fault = attempt->timer == 0 ? "there is no answer" : error->message;
+      attempt->finish();
+      return;
+    }
+    attempt->message =
+        SOUP_MESSAGE(g_object_ref(soup_session_get_async_result_message(SOUP_SESSION(session), result)));
+    GCancellable* cancellable = attempt->cancellable;
+    g_input_stream_close_async(
+        answer, G_PRIORITY_DEFAULT, cancellable,
+        [](GObject* stream, GAsyncResult* closed, gpointer of) {
+          const std::unique_ptr<Attempt> done(static_cast<Attempt*>(of));
+          g_input_stream_close_finish(G_INPUT_STREAM(stream), closed, nullptr);
+          done->finish();
+        },
+        attempt.release());
+  }
+  void finish() const {
+    if (const auto webhook = self.lock()) (*webhook)->finished(message, fault);
+  }
+
+  std::weak_ptr<Webhook*> self;
+  GCancellable* cancellable = g_cancellable_new();
+  guint timer;
+  SoupMessage* message = nullptr;  // nullptr: without an answer
+  std::string fault;
+};
 
 Webhook::Webhook(WebhookSettings settings, std::string robot)
     : settings_(std::move(settings)), robot_(std::move(robot)) {}
@@ -73,17 +125,9 @@ void Webhook::send() {
   soup_message_add_flags(message, SOUP_MESSAGE_NO_REDIRECT);
   g_autoptr(GBytes) body = g_bytes_new(event->body.data(), event->body.size());
   soup_message_set_request_body_from_bytes(message, "application/json", body);
-  soup_session_send_async(
-      session_, message, G_PRIORITY_DEFAULT, nullptr,
-      [](GObject* session, GAsyncResult* result, gpointer data) {
-        g_autoptr(GError) fault = nullptr;
-        g_autoptr(GInputStream) answer = soup_session_send_finish(SOUP_SESSION(session), result, &fault);
-        SoupMessage* message = soup_session_get_async_result_message(SOUP_SESSION(session), result);
-        const std::unique_ptr<std::weak_ptr<Webhook*>> holder(static_cast<std::weak_ptr<Webhook*>*>(data));
-        if (const auto self = holder->lock())
-          (*self)->finished(fault ? nullptr : message, fault ? fault->message : "");
-      },
-      new std::weak_ptr<Webhook*>(self_));
+  auto* attempt = new Attempt(self_);
+  soup_session_send_async(session_, message, G_PRIORITY_DEFAULT, attempt->cancellable, Attempt::on_answer,
+                          attempt);
 }
 
 void Webhook::finished(SoupMessage* message, const std::string& fault) {

@@ -26,6 +26,7 @@ class Webhook {
   void tick() { send(); }
 
  private:
+  struct Attempt;
   void send();
   void finished(SoupMessage* message, const std::string& fault);
 
