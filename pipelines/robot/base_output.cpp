@@ -3,6 +3,7 @@
 
 #include <gio/gunixoutputstream.h>
 #include <glib-unix.h>
+#include <sys/ioctl.h>
 
 #include <utility>
 
@@ -11,6 +12,8 @@ namespace cerberus::robot {
 namespace {
 
 constexpr guint kInterval = 50;  // ms, half of the time between two lines
+// Bytes of lines that may be unread: those of 1.5 s. The pipe itself would hold them for minutes.
+constexpr int kMostUnread = 256;
 
 BaseDrive::Time now() {
   return std::chrono::steady_clock::now();
@@ -53,21 +56,35 @@ void BaseOutput::tick() {
     g_printerr("cerberusd: the base's program ended; it is started again\n");
   }
   if (program_ == nullptr && backoff_.is_due(now())) start();
+  // Nothing follows a stop that would show that it is not read.
+  const bool waits = program_ != nullptr && !drive_.is_active() && unread() > 0;
+  if (waits && lags_) kill("a stop is unread");
+  lags_ = waits && program_ != nullptr;
 }
 
-// A pipe that is full, or closed, belongs to a program that does not read: it is closed, so that the base stops.
+int BaseOutput::unread() const {
+  int bytes = 0;
+  if (ioctl(g_unix_output_stream_get_fd(G_UNIX_OUTPUT_STREAM(input_)), FIONREAD, &bytes) != 0) return 0;
+  return bytes;
+}
+
+void BaseOutput::kill(const std::string& why) {
+  g_printerr("cerberusd: the base's program does not read: %s\n", why.c_str());
+  g_subprocess_force_exit(program_);
+  close();
+  backoff_.failed(now());
+}
+
+// A pipe that fills, or is closed, belongs to a program that does not read: it is killed, so that the base stops.
 void BaseOutput::send() {
   const std::string line = drive_.line(now());
   if (line.empty() || program_ == nullptr) return;
   g_autoptr(GError) error = nullptr;
   const gssize written = g_pollable_output_stream_write_nonblocking(
       G_POLLABLE_OUTPUT_STREAM(input_), line.data(), line.size(), nullptr, &error);
-  if (written == static_cast<gssize>(line.size())) return;
-  g_printerr("cerberusd: the base's program does not read: %s\n",
-             error ? error->message : "its pipe is full");
-  g_subprocess_force_exit(program_);
-  close();
-  backoff_.failed(now());
+  lags_ = false;
+  if (written != static_cast<gssize>(line.size())) return kill(error ? error->message : "its pipe is full");
+  if (unread() > kMostUnread) kill("it is more than a second late");
 }
 
 bool BaseOutput::drive(double speed, double yaw_rate) {

@@ -30,6 +30,9 @@ class BaseOutput {
   void start();
   void close();
   void send();
+  // Bytes of lines that the program has not read.
+  int unread() const;
+  void kill(const std::string& why);
 
   BaseSettings settings_;
   BaseDrive drive_;
@@ -37,6 +40,7 @@ class BaseOutput {
   GSubprocess* program_ = nullptr;
   GOutputStream* input_ = nullptr;  // of program_, not blocking
   guint timer_ = 0;
+  bool lags_ = false;  // lines waited a second ago, and none was sent since
 };
 
 }  // namespace cerberus::robot
