@@ -7,7 +7,7 @@
 
 namespace cerberus::publish {
 
-bool Fleet::take(std::string_view topic, std::string payload) {
+bool Fleet::take(std::string_view topic, std::string payload, Time now) {
   if (!topic.starts_with(prefix_ + '/')) return false;
   topic.remove_prefix(prefix_.size() + 1);
   const std::size_t slash = topic.find('/');
@@ -27,9 +27,44 @@ bool Fleet::take(std::string_view topic, std::string payload) {
     if (cameras_.size() >= kMost || what == "picture" || payload.empty()) return false;
     found = cameras_.emplace(name, Camera{}).first;
   }
-  if (what == "picture") ++found->second.pictures;
-  found->second.*member = std::move(payload);
+  Camera& camera = found->second;
+  if (what == "status" && payload.empty()) {
+    cameras_.erase(found);
+    return true;
+  }
+  if (what == "picture") {
+    if (!camera.asked || now - *camera.asked > kPatience || camera.mode == "privacy" || payload.empty())
+      return false;
+    camera.number = ++pictures_;
+  }
+  camera.*member = std::move(payload);
+  if (camera.mode == "privacy") {
+    camera.picture = {};
+    camera.number = 0;
+    camera.asked.reset();
+  }
+  if (what == "picture") forget_oldest_picture();
   return true;
+}
+
+bool Fleet::ask(std::string_view camera, Time now) {
+  const auto found = cameras_.find(camera);
+  if (found == cameras_.end()) return false;
+  found->second.asked = now;
+  return true;
+}
+
+void Fleet::forget_oldest_picture() {
+  Camera* oldest = nullptr;
+  std::size_t count = 0;
+  for (auto& [name, camera] : cameras_) {
+    if (camera.number == 0) continue;
+    ++count;
+    if (oldest == nullptr || camera.number < oldest->number) oldest = &camera;
+  }
+  if (count <= kMostPictures) return;
+  oldest->picture = {};
+  oldest->number = 0;
 }
 
 std::string Fleet::json() const {
@@ -38,7 +73,7 @@ std::string Fleet::json() const {
   for (const auto& [name, camera] : cameras_) {
     line.open('{').key("name").text(name).key("status").text(camera.status).key("mode").text(camera.mode);
     line.key("state").text(camera.state).key("event").text(camera.event);
-    line.key("picture").integer(camera.pictures).close('}');
+    line.key("picture").integer(camera.number).close('}');
   }
   std::string text(line.close(']').finish());
   text.pop_back();  // the newline

@@ -74,7 +74,10 @@ AccessTime now() {
 PageServer::PageServer(House house) : house_(std::move(house)) {}
 
 PageServer::~PageServer() {
-  for (const auto& camera : house_.cameras) camera->set_on_picture({});
+  for (const auto& camera : house_.cameras) {
+    camera->set_on_picture({});
+    camera->set_watched(false);
+  }
   for (const auto& viewer : viewers_) g_signal_handlers_disconnect_by_data(viewer->connection(), this);
   viewers_.clear();
   if (server_ == nullptr) return;
@@ -240,7 +243,10 @@ void PageServer::ask_for_picture(Request& request) {
   if (house_.mode() == Mode::privacy)
     return request.refuse(SOUP_STATUS_FORBIDDEN, "privacy: nothing is shown");
 #if HAVE_MQTT
-  if (fleet_ && fleet_->ask_for_picture(request.value("camera"))) return request.done();
+  if (fleet_ && fleet_->ask_for_picture(request.value("camera"))) {
+    log_access(request.who(), "asks for a picture of " + request.value("camera"));
+    return request.done();
+  }
 #endif
   request.refuse(SOUP_STATUS_NOT_FOUND, "there is no such camera");
 }

@@ -192,6 +192,7 @@ class MqttClient::Connection : public std::enable_shared_from_this<Connection> {
     const std::string topic = message.topic;
     const bool command = !server_.commands.empty() && topic.starts_with(server_.commands);
     if (command && message.retain) return;
+    if (!command && message.payloadlen > static_cast<int>(kLongestMessage)) return;
     const std::size_t size = std::min(command ? kLongestPayload : kLongestMessage,
                                       static_cast<std::size_t>(std::max(message.payloadlen, 0)));
     std::string payload(static_cast<const char*>(message.payload), size);

@@ -19,8 +19,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (command && (!std::isfinite(command->first) || !std::isfinite(command->second))) __builtin_trap();
   if (!command && error.empty()) __builtin_trap();
   Fleet fleet("cerberus");
-  fleet.take("cerberus/front/" + std::string(name), std::string(payload));
-  fleet.take(text, "online");
+  fleet.take("cerberus/front/status", "online", {});
+  fleet.ask("front", {});
+  fleet.take("cerberus/front/" + std::string(name), std::string(payload), {});
+  fleet.take(text, "online", {});
   fleet.json();
   webhook_body("1", name, "front", "mode", {}, payload);
   return 0;

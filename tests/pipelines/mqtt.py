@@ -187,7 +187,7 @@ def robot(program, folder, port, ca, client):
         assert page.log_in('owner', one_time[1]) == 200
         assert page.ask('POST', '/password', {'user': 'owner', 'password': 'long enough'})[0] == 200
         client.wait('a recording', lambda: '"open":true' in client.retained.get('cerberus/front/event', ''))
-        line, end, asked, seen = Socket(page), time.monotonic() + PATIENCE, False, None
+        line, end, seen = Socket(page), time.monotonic() + PATIENCE, None
         while not (seen and seen['picture']) and time.monotonic() < end:
             message = line.receive()
             if isinstance(message, tuple):
@@ -196,10 +196,11 @@ def robot(program, folder, port, ca, client):
                 line.send(f'seen {message["number"]}')
                 seen = next((one for one in message['fleet'] if one['name'] == 'front' and one['status'] == 'online'
                              and one['event']), None)
-                if seen and not asked:
-                    asked = page.ask('POST', '/picture', {'camera': 'front'})[0] == 200
+                if seen and not seen['picture']:
+                    assert page.ask('POST', '/picture', {'camera': 'front'})[0] == 200
         assert seen and seen['picture'] and seen['mode'] == 'armed', seen
         assert page.ask('GET', '/picture/front')[2][:2] == b'\xff\xd8'
+        assert 'owner@127.0.0.1 asks for a picture of front' in (folder / 'log').read_text()
         line.send('mode disarmed')
         line.close()
         client.wait('the newest recording', lambda: '"open":false' in client.retained.get('cerberus/front/event', ''))

@@ -265,22 +265,58 @@ END_TEST
 
 START_TEST(the_fleet_is_what_the_broker_retains) {
   Fleet fleet("cerberus");
-  ck_assert(fleet.take("cerberus/front/status", "online") &&
-            fleet.take("cerberus/front/event", "{\"id\":7}"));
-  ck_assert(fleet.take("cerberus/back/mode", "armed"));
+  const Fleet::Time now{seconds(1000)};
+  const auto take = [&](const std::string& topic, const std::string& payload) {
+    return fleet.take(topic, payload, now);
+  };
+  ck_assert(take("cerberus/front/status", "online") && take("cerberus/front/event", "{\"id\":7}"));
+  ck_assert(take("cerberus/back/mode", "armed"));
   // Nothing of other programs, of levels below, of what is too long; a picture makes no camera.
-  ck_assert(!fleet.take("other/front/status", "online") && !fleet.take("cerberus/front/command/stop", ""));
-  ck_assert(!fleet.take("cerberus/x/picture", "jpeg") && !fleet.take("cerberus//status", "online"));
-  ck_assert(!fleet.take("cerberus/front/mode", std::string(2001, 'a')) &&
-            !fleet.take("cerberus/gone/status", ""));
-  ck_assert(fleet.picture("front") == nullptr && fleet.take("cerberus/front/picture", "jpeg"));
-  ck_assert_str_eq(fleet.picture("front")->c_str(), "jpeg");
+  ck_assert(!take("other/front/status", "online") && !take("cerberus/front/command/stop", ""));
+  ck_assert(!take("cerberus/x/picture", "jpeg") && !take("cerberus//status", "online"));
+  ck_assert(!take("cerberus/front/mode", std::string(2001, 'a')) && !take("cerberus/gone/status", ""));
   const json all = json::parse(fleet.json());
   ck_assert_uint_eq(all.size(), 2);
   ck_assert(all[0]["name"] == "back" && all[0]["mode"] == "armed" && all[0]["picture"] == 0);
-  ck_assert(all[1]["status"] == "online" && all[1]["event"] == "{\"id\":7}" && all[1]["picture"] == 1);
-  for (int k = 0; k < 1000; ++k) fleet.take("cerberus/" + std::to_string(k) + "/status", "online");
+  ck_assert(all[1]["status"] == "online" && all[1]["event"] == "{\"id\":7}" && all[1]["picture"] == 0);
+  // A camera whose status is cleared is gone.
+  ck_assert(take("cerberus/back/status", "offline") && take("cerberus/back/status", ""));
+  ck_assert_uint_eq(json::parse(fleet.json()).size(), 1);
+  for (int k = 0; k < 1000; ++k) take("cerberus/" + std::to_string(k) + "/status", "online");
   ck_assert_uint_eq(json::parse(fleet.json()).size(), Fleet::kMost);
+}
+END_TEST
+
+START_TEST(a_picture_of_the_fleet_was_asked_for_in_the_last_30_seconds_and_ends_with_privacy) {
+  Fleet fleet("cerberus");
+  const Fleet::Time now{seconds(1000)};
+  const auto add = [&](const std::string& name) {
+    fleet.take("cerberus/" + name + "/status", "online", now);
+  };
+  const auto send = [&](const std::string& name, Fleet::Time at) {
+    return fleet.take("cerberus/" + name + "/picture", "jpeg of " + name, at);
+  };
+  add("front");
+  ck_assert(!send("front", now) && !fleet.ask("back", now) && fleet.ask("front", now));
+  ck_assert(!send("front", now + seconds(31)) && fleet.picture("front") == nullptr);
+  ck_assert(send("front", now + seconds(30)));
+  ck_assert_str_eq(fleet.picture("front")->c_str(), "jpeg of front");
+  ck_assert(json::parse(fleet.json())[0]["picture"] == 1);
+  fleet.take("cerberus/front/mode", "privacy", now);
+  ck_assert(fleet.picture("front") == nullptr && json::parse(fleet.json())[0]["picture"] == 0);
+  fleet.ask("front", now);
+  ck_assert(!send("front", now));
+  fleet.take("cerberus/front/mode", "armed", now);
+  fleet.ask("front", now);
+  ck_assert(send("front", now) && json::parse(fleet.json())[0]["picture"] == 2);
+  // The newest 16 are kept.
+  for (int k = 0; k < 16; ++k) {
+    add(std::to_string(k));
+    fleet.ask(std::to_string(k), now);
+    ck_assert(send(std::to_string(k), now));
+  }
+  ck_assert(fleet.picture("front") == nullptr && fleet.picture("0") != nullptr &&
+            fleet.picture("15") != nullptr);
 }
 END_TEST
 
@@ -298,5 +334,6 @@ int main() {
        of_a_flood_ten_are_reported_at_once_and_then_one_a_second,
        events_for_a_webhook_are_sent_in_order_one_at_a_time_and_again_after_failures,
        a_webhook_that_does_not_answer_costs_256_events_and_no_more, the_fleet_is_what_the_broker_retains,
+       a_picture_of_the_fleet_was_asked_for_in_the_last_30_seconds_and_ends_with_privacy,
        the_body_of_a_webhook_is_json_with_an_object_or_a_text});
 }
