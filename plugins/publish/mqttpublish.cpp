@@ -101,7 +101,8 @@ const plugin::Property<Settings> kProperties[] = {
         .read_at_start(),
     property("commands", &Settings::commands,
              "Orders that are taken, parted by blanks or commas, of move-to move-by stop home auto follow "
-             "arm disarm privacy picture; empty = none"),
+             "arm disarm privacy picture; empty = none")
+        .read_at_start(),
     property("head", &Settings::head, "Name of the head that orders are for"),
     property("mode", &Settings::mode, "What the topic mode says; empty = nothing"),
     property(
