@@ -15,7 +15,7 @@ class BackgroundWork {
   static constexpr guint kMost = 8;
 
   BackgroundWork();
-  // Waits for the job that runs; no `done` is called afterwards.
+  // Waits for the jobs that were added, kMost at most; no `done` is called afterwards.
   ~BackgroundWork();
   BackgroundWork(const BackgroundWork&) = delete;
   BackgroundWork& operator=(const BackgroundWork&) = delete;

@@ -376,8 +376,19 @@ bool Camera::set_live(const char* name, const char* property, double value) {
   if (pipeline_ == nullptr || state_ != State::running) return false;
   g_autoptr(GstElement) found = element(name);
   if (!found) return false;
-  gst_util_set_object_arg(G_OBJECT(found), property, text::exact(value).string().c_str());
-  return true;
+  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(found), property);
+  if (spec == nullptr) return false;
+  const GType type = G_PARAM_SPEC_VALUE_TYPE(spec);
+  const bool is_whole = type != G_TYPE_DOUBLE && type != G_TYPE_FLOAT;
+  g_auto(GValue) number = G_VALUE_INIT, wanted = G_VALUE_INIT, is = G_VALUE_INIT;
+  g_value_init(&number, G_TYPE_DOUBLE);
+  g_value_init(&wanted, type);
+  g_value_init(&is, type);
+  g_value_set_double(&number, is_whole ? std::round(value) : value);
+  if (!g_value_transform(&number, &wanted)) return false;
+  g_object_set_property(G_OBJECT(found), property, &wanted);
+  g_object_get_property(G_OBJECT(found), property, &is);
+  return gst_value_compare(&wanted, &is) == GST_VALUE_EQUAL;
 }
 
 void Camera::send_asked_picture() {

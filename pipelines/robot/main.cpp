@@ -55,6 +55,8 @@ int main(int argc, char** argv) {
     std::printf("%s: no mistake\n", argv[1]);
     return 0;
   }
+  // What other threads hand to the main loop is never run by them, also before it runs.
+  g_main_context_acquire(nullptr);
   find_elements();
   cerberus::robot::Robot robot(load);
   std::string wrong;

@@ -32,10 +32,7 @@ PageListener::~PageListener() {
     g_signal_handlers_disconnect_by_data(service_, this);
     g_object_unref(service_);
   }
-  for (const auto& [connection, name] : open_)
-    g_object_weak_unref(
-        connection,
-        [](gpointer listener, GObject* gone) { static_cast<PageListener*>(listener)->forget(gone); }, this);
+  for (const auto& [connection, name] : open_) g_object_weak_unref(connection, forget, this);
   g_clear_object(&certificate_);
 }
 
@@ -82,14 +79,12 @@ void PageListener::accept(GSocketConnection* connection) {
     g_object_unref(std::exchange(stream, secure));
   }
   open_.emplace(G_OBJECT(connection), std::move(name));
-  g_object_weak_ref(
-      G_OBJECT(connection),
-      [](gpointer listener, GObject* gone) { static_cast<PageListener*>(listener)->forget(gone); }, this);
+  g_object_weak_ref(G_OBJECT(connection), forget, this);
   soup_server_accept_iostream(server_, stream, local, remote, &fault);
 }
 
-void PageListener::forget(GObject* connection) {
-  open_.erase(connection);
+void PageListener::forget(gpointer listener, GObject* connection) {
+  static_cast<PageListener*>(listener)->open_.erase(connection);
 }
 
 void PageListener::abort(GSocketAddress* remote) {

@@ -37,7 +37,7 @@ class PageListener {
     std::string name;  // "127.0.0.1:4711"
   };
   void accept(GSocketConnection* connection);
-  void forget(GObject* connection);
+  static void forget(gpointer listener, GObject* connection);  // which is gone
 
   Parameters parameters_;
   SoupServer* server_ = nullptr;

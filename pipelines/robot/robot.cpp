@@ -102,10 +102,14 @@ bool Robot::open(Settings settings, std::string& error) {
   return true;
 }
 
-std::unique_ptr<Camera> Robot::make_camera(const CameraSettings& settings) {
+void Robot::make_folder(const CameraSettings& settings) {
   if (settings.recorder && g_mkdir_with_parents(settings.recorder->folder.c_str(), 0750) != 0)
     g_printerr("cerberusd: %s: the folder of recordings %s cannot be made: %s\n", settings.name.c_str(),
                settings.recorder->folder.c_str(), g_strerror(errno));
+}
+
+std::unique_ptr<Camera> Robot::make_camera(const CameraSettings& settings) {
+  make_folder(settings);
   auto camera = std::make_unique<Camera>(settings, settings_.page, publishing(),
                                          [this](const std::string& order) { on_order(order); });
 #if HAVE_PAGE
@@ -240,6 +244,7 @@ void Robot::take(Settings settings) {
       cameras_.back()->set_mode(mode());
     } else {
       cameras_.push_back(std::move(*found));
+      make_folder(camera);
       switch (cameras_.back()->change(camera, settings_.page, publishing())) {
         case Camera::Change::none:
           continue;
@@ -317,6 +322,11 @@ void Robot::begin_shut_down() {
   }
   shutting_down_ = kPatience;
   notify("STOPPING=1");
+#if HAVE_PAGE
+  // From now on nothing steers or drives.
+  page_.reset();
+  if (base_) base_->stop();
+#endif
   for (const auto& camera : cameras_) camera->shut_down();
 }
 

@@ -49,6 +49,7 @@ class Robot {
   void tick();
   void report(const std::string& text) const;
   void begin_shut_down();
+  static void make_folder(const CameraSettings& settings);  // of its recordings
   std::unique_ptr<Camera> make_camera(const CameraSettings& settings);
   void reload();
   void take(Settings settings);

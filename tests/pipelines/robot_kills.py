@@ -70,7 +70,7 @@ def wait_until(condition, what):
 
 class Supervisor:
     def __init__(self, folder):
-        self.folder = folder
+        self.folder, self.process = folder, None
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
         self.socket.bind(str(folder / 'notify'))
         self.reports = queue.Queue()
@@ -130,8 +130,8 @@ def main(folder):
     supervisor = Supervisor(folder)
     stops, aways, moving = [], [], 0
     mode = 'armed'
-    supervisor.start()
     try:
+        supervisor.start()
         for number in range(KILLS):
             opened = wait_until(lambda: sum(word == 'open' for _, word in head_log(folder)) > number, 'the head opens')
             assert opened
@@ -158,7 +158,9 @@ def main(folder):
         supervisor.process.send_signal(signal.SIGTERM)
         assert supervisor.process.wait(PATIENCE) == 0
     finally:
-        supervisor.process.kill()
+        if supervisor.process:
+            supervisor.process.kill()
+            supervisor.process.wait()
     assert not rows(folder, 'open'), 'a recording is open that nothing writes'
     for file, *_, size in rows(folder, 'true'):
         assert 0 < (folder / 'recordings' / file).stat().st_size <= size, file
@@ -168,6 +170,7 @@ def main(folder):
           f'{len(rows(folder, "true"))} recordings')
     if IS_MEASURED:
         assert max(stops) <= MOST_STOP and max(aways) <= MOST_AWAY
+        assert moving, 'the head never moved: nothing is measured'
 
 
 with tempfile.TemporaryDirectory() as name:
