@@ -52,7 +52,7 @@ struct Session {
   bool must_set_password = false;  // logged in with the one-time password: may do nothing else
   std::string address;
   AccessTime begun{}, used{};
-  std::set<std::string> played;  // recordings of which the access log has a line
+  std::set<std::string> played{};  // recordings of which the access log has a line
 };
 
 class Sessions {
