@@ -306,6 +306,20 @@ START_TEST(a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a
 }
 END_TEST
 
+START_TEST(a_camera_that_answers_nothing_but_its_version_turns_without_a_fault) {
+  Rig rig({.acknowledges = false, .reports = false, .versions = true});
+  rig.served.line("ready");
+  ck_assert(rig.served.until([&] { return rig.camera.speed() == 15; }, "move at 15 hold"));
+  const Time begin = rig.served.now();
+  while (rig.served.now() - begin < 3s) {
+    rig.served.say("move at 15 hold");
+    rig.served.run(10ms);
+    ck_assert_double_eq(rig.camera.speed(), 15);
+  }
+  assert_text(rig.served.line("fault"), "");
+}
+END_TEST
+
 START_TEST(the_position_of_the_zoom_is_reported) {
   ViscaCamera camera(ViscaCamera::Line::serial, {.zooms = true});
   camera.set_zoom(0x2000);
@@ -399,6 +413,7 @@ int main() {
                             a_camera_without_positions_reports_the_speeds_of_its_steps,
                             a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
                             a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second,
+                            a_camera_that_answers_nothing_but_its_version_turns_without_a_fault,
                             the_position_of_the_zoom_is_reported,
                             a_locked_zoom_is_set_at_the_begin,
                             a_zoom_that_is_not_reported_at_first_is_asked_for_again,

@@ -101,7 +101,8 @@ void ViscaHead::send_order(Order order, const visca::Message& message, Time now)
   unanswered_orders_.push_back({order, sequence_, now});
   send(message);
   sent_ = now;
-  if (!unanswered_) unanswered_ = now;
+  // A camera that tells its version alone is silent while it moves.
+  if (!unanswered_ && (reports_ || acknowledges_)) unanswered_ = now;
 }
 
 void ViscaHead::move(const AxisCommand& pan, const AxisCommand& tilt, Time now) {
