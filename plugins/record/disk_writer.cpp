@@ -94,20 +94,17 @@ std::vector<FileReport> DiskWriter::give_up() {
   return lost;
 }
 
+bool DiskWriter::is_given_up() const {
+  const std::lock_guard guard(lock_);
+  return given_up_;
+}
+
 void DiskWriter::report(const FileReport& what) {
-  {
-    const std::lock_guard guard(lock_);
-    if (given_up_) return;
-  }
-  report_(what);
+  if (!is_given_up()) report_(what);
 }
 
 void DiskWriter::warn(const std::string& text) {
-  {
-    const std::lock_guard guard(lock_);
-    if (given_up_) return;
-  }
-  warn_(text);
+  if (!is_given_up()) warn_(text);
 }
 
 std::uint64_t DiskWriter::pending() const {
@@ -271,6 +268,7 @@ record::Surroundings DiskWriter::surroundings() const {
 }
 
 void DiskWriter::retain() {
+  if (is_given_up()) return;  // deletions could not be reported
   report_deleted(archive_.retain(surroundings()));
 }
 
@@ -337,6 +335,7 @@ void DiskWriter::report_end(File& file, FileReport::State state, const FileFault
 }
 
 void DiskWriter::check_done() {
+  if (is_given_up()) return;  // the element may have begun anew: run() drops what waits
   for (const auto& [number, file] : files_)
     if (file.closing) return;
   for (const auto& done : std::exchange(waiting_, {})) done();

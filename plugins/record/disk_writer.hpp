@@ -22,7 +22,7 @@ namespace cerberus::plugin {
 struct FileReport {
   enum class State { started, ended, failed, deleted };
   State state;
-  std::shared_ptr<const FileSpec> spec;  // nullptr: of one that retention deleted
+  std::shared_ptr<const FileSpec> spec;  // nullptr for a file that retention deleted
   std::string path;                      // empty: none could be made
   std::string lines, picture;            // paths of what is beside it; empty: there is none
   record::FileEnd end;                   // of one that ended
@@ -127,6 +127,7 @@ class DiskWriter {
   void fail(std::uint32_t file, const FileFault& fault);
   void report_end(File& file, FileReport::State state, const FileFault& fault);
   void check_done();
+  bool is_given_up() const;
   void report(const FileReport& what);
   void warn(const std::string& text);
 

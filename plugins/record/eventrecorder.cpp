@@ -56,7 +56,8 @@
  * up and a warning posted. A stream that is not live waits. Where a file cannot be written (disk full, folder gone)
  * a warning names it, the stream goes on, and every 5 s another file is tried, from the frames that no file has yet. If
  * `location` is missing or not writable at the start, the element does not start. Faults of lines, picture and index
- * are warnings, and recording goes on.
+ * are warnings, and recording goes on. A disk that does not answer when the element is stopped is waited for as long as
+ * `stop-timeout`; files that are not complete then are reported as failed.
  *
  * Posts element messages `cerberus-recording` with `state` (string: `started`, `ended`, `failed`; `deleted` by retention,
  * with `location` only), `event`, `part` (uint),

@@ -17,14 +17,14 @@ std::shared_ptr<DiskWriter> Writer::disk() const {
 
 void Writer::start(const record::Archive::Settings& archive, const Report& report, Warn warn) {
   stop(std::chrono::nanoseconds::zero());
-  report_ = report;
   auto disk = std::make_shared<DiskWriter>(report, std::move(warn));
   disk->open(archive);
-  {
-    const std::lock_guard guard(lock_);
-    disk_ = disk;
-  }
+  Report for_stop = report;
+  // Before anything is kept: it may throw, and callbacks may own the element that owns this.
   thread_ = std::thread([disk] { disk->run(); });
+  report_ = std::move(for_stop);
+  const std::lock_guard guard(lock_);
+  disk_ = std::move(disk);
 }
 
 void Writer::stop(std::chrono::nanoseconds longest) {
