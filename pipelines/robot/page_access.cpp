@@ -29,7 +29,8 @@ void PageServer::set_cookie(SoupServerMessage* message, const std::string& token
 }
 
 void PageServer::log_in(Request& request) {
-  const std::chrono::seconds wait = limit_.wait(request.address, now());
+  const Role role = role_of(request.value("user")).value_or(Role::none);
+  const std::chrono::seconds wait = limit_.wait(request.address, name(role), now());
   if (wait.count() > 0) {
     soup_message_headers_replace(soup_server_message_get_response_headers(request.message), "Retry-After",
                                  std::to_string(wait.count()).c_str());
@@ -37,8 +38,7 @@ void PageServer::log_in(Request& request) {
     return;
   }
   // Counts as wrong until it is found right: several at once are no way around the limit.
-  limit_.failed(request.address, now());
-  const Role role = role_of(request.value("user")).value_or(Role::none);
+  limit_.failed(request.address, name(role), now());
   const std::string password = request.value("password");
   if (passwords_.is_one_time(role, password) && is_local(request.message))
     return finish_log_in(request, role, true);
@@ -78,7 +78,7 @@ void PageServer::finish_log_in(Request& request, Role role, bool one_time) {
     request.refuse(SOUP_STATUS_INTERNAL_SERVER_ERROR, "the system gives no random numbers");
     return;
   }
-  limit_.succeeded(request.address);
+  limit_.withdraw(request.address, name(role));
   if (request.session != nullptr) sessions_.end(request.session->token);
   Session& session = sessions_.begin(token, role, request.address, now());
   session.must_set_password = one_time;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "publish/streams/rate_limit.h"
@@ -19,15 +20,30 @@ struct Limit {
   publish::RateLimit limit{kLimit};
 };
 
-struct LimitedAuth {
+struct CerberusLimitedAuth {
   GstRTSPAuth parent;
   Limit* limit;
 };
-struct LimitedAuthClass {
+struct CerberusLimitedAuthClass {
   GstRTSPAuthClass parent_class;
 };
 
-G_DEFINE_TYPE(LimitedAuth, limited_auth, GST_TYPE_RTSP_AUTH)
+G_DEFINE_TYPE(CerberusLimitedAuth, limited_auth, GST_TYPE_RTSP_AUTH)
+
+// The user that a request is of. Nothing: it has no log-in, or several, with which one request would be several tries.
+std::optional<std::string> user_of(const GstRTSPMessage* request) {
+  GstRTSPAuthCredential** const all = gst_rtsp_message_parse_auth_credentials(
+      const_cast<GstRTSPMessage*>(request), GST_RTSP_HDR_AUTHORIZATION);
+  std::optional<std::string> user;
+  int users = 0;
+  for (auto** each = all; each && *each; ++each)
+    for (auto** param = (*each)->params; param && *param; ++param)
+      if (g_strcmp0((*param)->name, "username") == 0 && (*param)->value && ++users == 1)
+        user = (*param)->value;
+  const bool one = all && all[0] && !all[1] && users == 1;
+  if (all) gst_rtsp_auth_credentials_free(all);
+  return one ? user : std::nullopt;
+}
 
 // Without a token the server answers 401, which is also the answer to a client's first request: that one has no
 // password, and does not count.
@@ -40,27 +56,29 @@ gboolean limited_auth_authenticate(GstRTSPAuth* auth, GstRTSPContext* context) {
   const gchar* ip = context->conn ? gst_rtsp_connection_get_ip(context->conn) : nullptr;
   const std::string address = ip ? ip : "";
   const auto now = std::chrono::steady_clock::now();
-  Limit& limit = *reinterpret_cast<LimitedAuth*>(auth)->limit;
+  const std::optional<std::string> user = user_of(context->request);
+  if (!user) return TRUE;
+  Limit& limit = *reinterpret_cast<CerberusLimitedAuth*>(auth)->limit;
   const std::lock_guard guard(limit.lock);
-  if (limit.limit.wait(address, now) > std::chrono::seconds::zero()) return TRUE;
+  if (limit.limit.wait(address, *user, now) > std::chrono::seconds::zero()) return TRUE;
   const gboolean done = parent(auth, context);
   if (context->token)
-    limit.limit.succeeded(address);
+    limit.limit.succeeded(address, *user);
   else
-    limit.limit.failed(address, now);
+    limit.limit.failed(address, *user, now);
   return done;
 }
 
-void limited_auth_init(LimitedAuth* self) {
+void limited_auth_init(CerberusLimitedAuth* self) {
   self->limit = new Limit;
 }
 
 void limited_auth_finalize(GObject* object) {
-  delete reinterpret_cast<LimitedAuth*>(object)->limit;
+  delete reinterpret_cast<CerberusLimitedAuth*>(object)->limit;
   G_OBJECT_CLASS(limited_auth_parent_class)->finalize(object);
 }
 
-void limited_auth_class_init(LimitedAuthClass* type) {
+void limited_auth_class_init(CerberusLimitedAuthClass* type) {
   type->parent_class.authenticate = limited_auth_authenticate;
   G_OBJECT_CLASS(type)->finalize = limited_auth_finalize;
 }

@@ -6,7 +6,7 @@
 
 namespace cerberus::rtsp {
 
-// A GstRTSPAuth that refuses an address for a while after some wrong passwords, for longer each time
+// A GstRTSPAuth that refuses an address with a user for a while after some wrong passwords, for longer each time
 // (publish::RateLimit). A refused request is answered as one with a wrong password.
 GstRTSPAuth* limited_auth_new();
 

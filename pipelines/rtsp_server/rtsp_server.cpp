@@ -214,7 +214,7 @@ std::string RtspServer::add_mount(const std::shared_ptr<EncodedStream>& stream) 
   return {};
 }
 
-// With users each request needs one, by HTTP digest; without, only the connection may be protected.
+// With users each request that names a mount needs one, by HTTP digest; without, only the connection may be protected.
 void RtspServer::protect() {
   if (settings_.users.empty() && !certificate_) return;
   g_autoptr(GstRTSPAuth) auth = limited_auth_new();

@@ -174,33 +174,70 @@ END_TEST
 START_TEST(after_five_wrong_passwords_an_address_waits_twice_as_long_each_time) {
   RateLimit limit;
   AccessTime now = kStart;
-  for (int k = 0; k < 4; ++k) limit.failed("a", now);
-  ck_assert_int_eq(limit.wait("a", now).count(), 0);
+  for (int k = 0; k < 4; ++k) limit.failed("a", "owner", now);
+  ck_assert_int_eq(limit.wait("a", "owner", now).count(), 0);
   for (const int expected : {1, 2, 4, 8, 16, 32, 60, 60}) {
-    limit.failed("a", now);
-    ck_assert_int_eq(limit.wait("a", now).count(), expected);
-    ck_assert_int_eq(limit.wait("b", now).count(), 0);
-    ck_assert_int_eq(limit.wait("a", now + milliseconds(500)).count(), expected == 1 ? 1 : expected);
+    limit.failed("a", "owner", now);
+    ck_assert_int_eq(limit.wait("a", "owner", now).count(), expected);
+    ck_assert_int_eq(limit.wait("b", "owner", now).count(), 0);
+    ck_assert_int_eq(limit.wait("a", "owner", now + milliseconds(500)).count(), expected == 1 ? 1 : expected);
     now += seconds(expected);
-    ck_assert_int_eq(limit.wait("a", now).count(), 0);
+    ck_assert_int_eq(limit.wait("a", "owner", now).count(), 0);
   }
-  limit.succeeded("a");
-  limit.failed("a", now);
-  ck_assert_int_eq(limit.wait("a", now).count(), 0);
+  limit.succeeded("a", "owner");
+  limit.failed("a", "owner", now);
+  ck_assert_int_eq(limit.wait("a", "owner", now).count(), 0);
 }
 END_TEST
 
 START_TEST(many_addresses_together_are_slowed_down_too) {
   RateLimit limit;
-  for (int k = 0; k < 50; ++k) limit.failed("address " + std::to_string(k), kStart);
-  ck_assert_int_eq(limit.wait("another", kStart).count(), 1);
+  for (int k = 0; k < 50; ++k) limit.failed("address " + std::to_string(k), "owner", kStart);
+  ck_assert_int_eq(limit.wait("another", "owner", kStart).count(), 1);
   for (const char* own : {"127.0.0.1", "::1", "::ffff:127.0.0.1"})
-    ck_assert_int_eq(limit.wait(own, kStart).count(), 0);
+    ck_assert_int_eq(limit.wait(own, "owner", kStart).count(), 0);
   RateLimit after = limit;
-  after.succeeded("address 7");
-  ck_assert_int_eq(after.wait("another", kStart).count(), 0);
-  limit.failed("another", kStart + hours(2));  // forgotten
-  ck_assert_int_eq(limit.wait("another", kStart + hours(2)).count(), 0);
+  after.succeeded("address 7", "owner");
+  ck_assert_int_eq(after.wait("another", "owner", kStart).count(),
+                   1);  // one right password does not clear all
+  for (int k = 0; k < 9; ++k) after.failed("address " + std::to_string(k), "owner", kStart);
+  ck_assert_int_eq(after.wait("another", "owner", kStart).count(), 5);  // never longer
+  limit.failed("another", "owner", kStart + hours(2));                  // forgotten
+  ck_assert_int_eq(limit.wait("another", "owner", kStart + hours(2)).count(), 0);
+}
+END_TEST
+
+START_TEST(a_right_password_of_one_account_does_not_make_up_for_wrong_ones_of_another) {
+  RateLimit limit;
+  for (int round = 0; round < 10; ++round) {
+    for (int k = 0; k < 4; ++k) limit.failed("a", "owner", kStart);
+    limit.failed("a", "viewer", kStart);  // until it is found right
+    limit.withdraw("a", "viewer");
+  }
+  ck_assert_int_eq(limit.wait("a", "owner", kStart).count(), 60);
+  ck_assert_int_eq(limit.wait("a", "viewer", kStart).count(), 0);
+  for (int k = 0; k < 300; ++k) limit.failed("a", "invented " + std::to_string(k), kStart);
+  ck_assert_int_eq(limit.wait("a", "owner", kStart).count(), 60);  // not forgotten for them
+}
+END_TEST
+
+START_TEST(log_ins_that_were_right_slow_no_one_down) {
+  RateLimit limit;
+  for (int k = 0; k < 200; ++k) {
+    limit.failed("a", "viewer", kStart);
+    limit.withdraw("a", "viewer");
+  }
+  ck_assert_int_eq(limit.wait("b", "viewer", kStart).count(), 0);
+}
+END_TEST
+
+START_TEST(all_addresses_of_an_ipv6_network_wait_together) {
+  RateLimit limit;
+  for (int k = 0; k < 5; ++k) limit.failed("2001:db8:0:1::" + std::to_string(k), "owner", kStart);
+  ck_assert_int_eq(limit.wait("2001:db8::1:aaaa:bbbb:cccc:dddd", "owner", kStart).count(), 1);
+  ck_assert_int_eq(limit.wait("2001:db8:0:2::1", "owner", kStart).count(), 0);
+  for (int k = 0; k < 5; ++k) limit.failed("::ffff:192.0.2." + std::to_string(k), "owner", kStart);
+  ck_assert_int_eq(limit.wait("::ffff:192.0.2.1", "owner", kStart).count(), 0);  // of IPv4: each its own
 }
 END_TEST
 
@@ -330,6 +367,9 @@ int main() {
                           of_too_many_sessions_the_one_used_longest_ago_ends,
                           after_five_wrong_passwords_an_address_waits_twice_as_long_each_time,
                           many_addresses_together_are_slowed_down_too,
+                          a_right_password_of_one_account_does_not_make_up_for_wrong_ones_of_another,
+                          log_ins_that_were_right_slow_no_one_down,
+                          all_addresses_of_an_ipv6_network_wait_together,
                           a_range_of_bytes_is_answered_in_part_as_a_whole_or_refused,
                           a_drive_of_the_base_is_repeated_and_ends_after_half_a_second,
                           after_a_stop_by_another_session_the_one_that_moved_must_let_go_first,
