@@ -53,9 +53,9 @@ std::vector<std::string> Archive::open(const Settings& settings, const Surroundi
   folder_ = Folder(settings.folder);
   last_complaint_.clear();
   retention_ = Retention();
-  unlisted_.clear();
   pause_ = Time::zero();
-  index_.close();
+  overflow_reported_ = false;
+  close();
   if (settings.index.empty()) return {};
   open_index(now.steady);
   return apply_retention(now);
@@ -87,15 +87,18 @@ void Archive::open_index(Time steady) {
 
 // Adds the rows of recordings that were completed without one.
 void Archive::list() {
+  if (!folder_.free_bytes()) return;
   std::erase_if(unlisted_, [this](Recording& row) {
+    if (!folder_.size(row.file)) return false;  // its disk may be mounted again
     bool taken = false;
-    const auto listed = [&] { return row.id ? index_.update(row) : index_.add(row, taken); };
-    return !folder_.size(row.file) || listed().empty() || taken;
+    const std::string fault = row.id ? index_.update(row) : index_.add(row, taken);
+    return fault.empty() || taken;
   });
 }
 
 void Archive::close() {
   index_.close();
+  unlisted_.clear();
 }
 
 void Archive::measure(Recording& recording) const {
@@ -141,15 +144,18 @@ void Archive::reconcile(Recording& row) {
   }
   OpenFile file;
   if (row.open) {
-    if (folder_.lock(row.file, file) == EWOULDBLOCK) return;  // of another recorder
+    const int error = folder_.lock(row.file, file);
+    if (error == EWOULDBLOCK) return;  // of another recorder
     // Another recorder may have completed it since the rows were read.
     std::vector<Recording> again;
     complain(index_.read_one(row.id, again));
     if (again.empty()) return;
     row = again.front();
+    // Another recorder may be about to make the file: it is left alone, and finish() adds the row again.
+    if (row.open && error == ENOENT) return complain(index_.remove(row.id));
   }
   const Recording before = row;
-  if (!restore(row, file)) return discard(row);
+  if (!restore(row, file)) return row.open && !file ? complain(index_.remove(row.id)) : discard(row);
   measure(row);
   if (row.open != before.open || row.bytes != before.bytes) complain(index_.update(row));
 }
@@ -204,8 +210,11 @@ void Archive::finish(Recording& recording, const OpenFile& file) {
   if (settings_.index.empty()) return;
   const std::string fault = index_.is_open() ? index_.update(recording) : std::string();
   complain(fault);
-  if ((!fault.empty() || !index_.is_open()) && unlisted_.size() < kMostUnlisted)
-    unlisted_.push_back(recording);
+  if (fault.empty() && index_.is_open()) return;
+  if (unlisted_.size() < kMostUnlisted) return unlisted_.push_back(recording);
+  if (!std::exchange(overflow_reported_, true))
+    complain(std::to_string(kMostUnlisted) + " recordings wait for their rows: " + in_quotes(recording.file) +
+             " and those after it stay without one until the index can be written");
 }
 
 // The video last: as long as it is there, the row is, too.

@@ -39,7 +39,7 @@ class Archive {
   // Makes a file beside it, and notes its name in `recording`. Returns an errno.
   int add_lines(Recording& recording, OpenFile& file) const;
   int add_picture(Recording& recording, OpenFile& file) const;
-  // Closes the row of a recording whose files are complete. `files` are written to the disk before.
+  // Closes the row of a recording whose files are complete. `file` is written to the disk before.
   void finish(Recording& recording, const OpenFile& file);
   // Deletes the files and the row.
   void discard(const Recording& recording);
@@ -76,6 +76,7 @@ class Archive {
   Retention retention_;
   Time open_again_{}, pause_{};      // steady: when the index is tried again, and the pause before
   std::vector<Recording> unlisted_;  // complete, and without a row
+  bool overflow_reported_ = false;   // of unlisted_
   std::vector<std::string> complaints_;
   std::string last_complaint_;
 };

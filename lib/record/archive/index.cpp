@@ -256,6 +256,10 @@ std::string Index::remove_with(std::int64_t id, const std::function<bool()>& rem
   }
   removed = text.empty() && sqlite3_changes(database_.get()) > 0 && remove_files();
   const std::string ended = run(removed ? "COMMIT" : "ROLLBACK");
+  if (!ended.empty()) {
+    removed = false;
+    if (!sqlite3_get_autocommit(database_.get())) run("ROLLBACK");
+  }
   return text.empty() ? ended : text;
 }
 
