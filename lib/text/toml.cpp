@@ -98,6 +98,25 @@ toml::source_index line_of_wrong_byte(std::string_view text) {
   return 0;
 }
 
+// The line of an escape of "~" (\u007e, \U0000007e), which decode() would take for one that encode() made; 0: there is
+// none.
+toml::source_index line_of_escaped_tilde(std::string_view text) {
+  const auto is_tilde = [](std::string_view digits) {
+    return digits.starts_with("007e") || digits.starts_with("007E");
+  };
+  toml::source_index line = 1;
+  std::size_t backslashes = 0;  // that stand before
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::string_view rest = text.substr(i + 1);
+    if (backslashes % 2 == 1 && ((text[i] == 'u' && is_tilde(rest)) ||
+                                 (text[i] == 'U' && rest.starts_with("0000") && is_tilde(rest.substr(4)))))
+      return line;
+    backslashes = text[i] == '\\' ? backslashes + 1 : 0;
+    if (text[i] == '\n') ++line;
+  }
+  return 0;
+}
+
 // Whether a letter beyond ASCII stands at a place of a text that encode() made.
 bool foreign_letter(std::string_view encoded, toml::source_position place) {
   for (toml::source_index line = 1; line < place.line; ++line) {
@@ -167,6 +186,8 @@ TomlFile parse_toml(std::string_view text) {
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);  // a byte order mark
   if (const toml::source_index line = line_of_wrong_byte(text); line != 0)
     return {std::nullopt, {line, "this is not UTF-8: save the file in that encoding"}};
+  if (const toml::source_index line = line_of_escaped_tilde(text); line != 0)
+    return {std::nullopt, {line, "write ~ itself instead of \\u007e"}};
   const std::string encoded = encode(text);
   try {
     return {convert(toml::parse(encoded)), {}};

@@ -263,12 +263,19 @@ END_TEST
 
 START_TEST(letters_beyond_ascii_and_tildes_arrive_as_they_were_written) {
   const cerberus::text::TomlFile file = cerberus::text::parse_toml(
-      "\"gr\xc3\xb6\xc3\x9f\x65\" = '~ ~41 \xe2\x82\xac'\nb = \"\\u007e41\xf0\x9f\x98\x80~\"\n");
+      "\"gr\xc3\xb6\xc3\x9f\x65\" = '~ ~41 \xe2\x82\xac'\nb = \"\\\\u007e41\xf0\x9f\x98\x80~\"\n");
   ck_assert(file.root.has_value());
   const auto* const size = file.root->find("gr\xc3\xb6\xc3\x9f\x65");
   ck_assert_ptr_nonnull(size);
   ck_assert_str_eq(size->text.c_str(), "~ ~41 \xe2\x82\xac");
-  ck_assert_str_eq(file.root->find("b")->text.c_str(), "~41\xf0\x9f\x98\x80~");
+  ck_assert_str_eq(file.root->find("b")->text.c_str(), "\\u007e41\xf0\x9f\x98\x80~");
+}
+END_TEST
+
+START_TEST(an_escaped_tilde_is_refused_with_its_line) {
+  for (const char* escape : {"\\u007e", "\\u007E", "\\U0000007e", "\\U0000007E", "\\\\\\u007e"})
+    assert_refused(std::string("a = 1\nb = \"") + escape + "e4\"\n",
+                   "f.toml:2: write ~ itself instead of \\u007e");
 }
 END_TEST
 
@@ -288,6 +295,6 @@ int main() {
        a_file_that_may_not_be_read_is_named, a_file_is_read_as_its_text_is,
        damaged_files_are_refused_or_read_but_never_harm,
        letters_beyond_ascii_stand_in_quotes_and_comments_only,
-       letters_beyond_ascii_and_tildes_arrive_as_they_were_written,
+       letters_beyond_ascii_and_tildes_arrive_as_they_were_written, an_escaped_tilde_is_refused_with_its_line,
        a_file_that_is_not_utf_8_is_refused_with_its_line});
 }
