@@ -230,6 +230,13 @@ gboolean cerberus_person_verify_sink_event(GstBaseTransform* transform, GstEvent
   return GST_BASE_TRANSFORM_CLASS(cerberus_person_verify_parent_class())->sink_event(transform, event);
 }
 
+vision::Candidate candidate_of(const CerberusRegion& region) {
+  return {.id = region.id,
+          .box = {region.x, region.y, region.width, region.height},
+          .state = static_cast<vision::TrackState>(region.state),
+          .kind = static_cast<vision::RegionKind>(region.kind)};
+}
+
 // Regions of interest of other elements, with identities that they keep from frame to frame.
 void read_foreign(State& state, GstBuffer* buffer) {
   std::swap(state.candidates, state.candidates_before);
@@ -243,7 +250,7 @@ void read_foreign(State& state, GstBuffer* buffer) {
     region.x = roi->x, region.y = roi->y, region.width = roi->w, region.height = roi->h;
     region.tracked = TRUE;
     state.before.push_back(region);
-    state.candidates.push_back({.box = {region.x, region.y, region.width, region.height}});
+    state.candidates.push_back(candidate_of(region));
   }
   vision::keep_identities(state.candidates_before, state.candidates, state.last_foreign);
   for (std::size_t i = 0; i < state.before.size(); ++i) state.before[i].id = state.candidates[i].id;
@@ -251,20 +258,13 @@ void read_foreign(State& state, GstBuffer* buffer) {
 
 void read_regions(State& state, GstBuffer* buffer) {
   state.foreign = !cerberus_buffer_regions_known(buffer);
-  if (state.foreign) {
-    read_foreign(state, buffer);
-  } else {
-    state.before.clear();
-    g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
-    for (guint i = 0; i < regions->len; ++i)
-      state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
+  if (state.foreign) return read_foreign(state, buffer);
+  state.before.clear(), state.candidates.clear();
+  g_autoptr(GPtrArray) regions = cerberus_buffer_get_regions(buffer);
+  for (guint i = 0; i < regions->len; ++i) {
+    state.before.push_back(*static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i)));
+    state.candidates.push_back(candidate_of(state.before.back()));
   }
-  state.candidates.clear();
-  for (const CerberusRegion& region : state.before)
-    state.candidates.push_back({.id = region.id,
-                                .box = {region.x, region.y, region.width, region.height},
-                                .state = static_cast<vision::TrackState>(region.state),
-                                .kind = static_cast<vision::RegionKind>(region.kind)});
 }
 
 void attach(State& state, GstBuffer* buffer, bool persons_only) {

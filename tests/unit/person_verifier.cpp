@@ -227,6 +227,10 @@ START_TEST(a_region_without_identity_keeps_that_of_the_one_before_which_it_overl
   ck_assert_uint_eq(now[2].id, 9);
   ck_assert_uint_eq(now[3].id, 5);
   ck_assert_uint_eq(last, 9);
+  std::vector<Candidate> known{{.id = 4, .box = {0, 0, 100, 100}}, {.box = {0, 0, 100, 100}}};
+  keep_identities(before, known, last);
+  ck_assert_uint_eq(known[0].id, 4);  // it has one
+  ck_assert_uint_eq(known[1].id, 3);
 }
 END_TEST
 

@@ -34,6 +34,7 @@ double share_within(const Box& box, const Box& outer) {
 
 void keep_identities(std::span<const Candidate> before, std::span<Candidate> now, std::uint32_t& last) {
   for (Candidate& region : now) {
+    if (region.id != 0) continue;
     double best = 0.3;
     for (const Candidate& each : before) {
       const double shared = intersection_over_union(each.box, region.box);

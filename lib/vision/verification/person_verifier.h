@@ -25,8 +25,8 @@ struct Candidate {
   RegionKind kind = RegionKind::person_like;
 };
 
-// Gives regions without an identity (id 0) the one of the region of the frame before that they overlap most, by an
-// intersection over union above 0.3, each once; else the next one after `last`, which counts on.
+// Gives regions without an identity (id 0), in the order of `now`, the one of the region of the frame before that they
+// overlap most, by an intersection over union above 0.3, each once; else the next one after `last`, which counts on.
 void keep_identities(std::span<const Candidate> before, std::span<Candidate> now, std::uint32_t& last);
 
 // What stands for the candidates after the verification.
