@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <filesystem>
 #include <optional>
 #include <thread>
 
@@ -104,6 +105,15 @@ int pulse() {
 }
 bool pulses_off() {
   return register_of(0x15) & 16;
+}
+bool a_helper_runs() {
+  std::error_code gone;  // processes end meanwhile
+  for (const auto& each : std::filesystem::directory_iterator("/proc", gone)) {
+    std::string name;
+    std::ifstream words(each.path() / "cmdline");  // nothing of one that has ended
+    if (std::getline(words, name, '\0') && name.ends_with("cerberus-head")) return true;
+  }
+  return false;
 }
 
 }  // namespace
@@ -206,7 +216,7 @@ START_TEST(coils_are_off_when_the_pipeline_is_killed) {
 }
 END_TEST
 
-START_TEST(a_chip_that_is_removed_while_the_head_moves_is_said) {
+START_TEST(a_chip_that_is_removed_while_the_head_moves_is_reported) {
   Chip chip(12);
   Helper helper = stepper(chip, {});
   helper.send("move at 20 hold\n");
@@ -219,7 +229,7 @@ START_TEST(a_chip_that_is_removed_while_the_head_moves_is_said) {
 END_TEST
 
 // Its coils are off, and it sets no line.
-START_TEST(a_chip_that_is_removed_while_the_head_rests_is_said_and_used_again) {
+START_TEST(a_chip_that_is_removed_while_the_head_rests_is_reported_and_used_again) {
   Chip chip(12);
   Helper helper(
       {"stepper-gpio", "--device=" + chip.label(), kCoils, "--late-limit=5000", "--release-delay=0.1"},
@@ -230,7 +240,7 @@ START_TEST(a_chip_that_is_removed_while_the_head_rests_is_said_and_used_again) {
   chip.unplug();
   const auto pulled = Clock::now();
   const std::string fault = helper.expect("fault");
-  std::printf("chip removed at rest: said after %.0f ms\n", milliseconds(Clock::now() - pulled));
+  std::printf("chip removed at rest: reported after %.0f ms\n", milliseconds(Clock::now() - pulled));
   ck_assert_msg(fault.find("does not answer any more") != std::string::npos, "'%s'", fault.c_str());
   chip.plug();
   helper.expect("recovered");
@@ -274,7 +284,7 @@ START_TEST(a_servo_on_a_pca9685_gets_its_pulses) {
 }
 END_TEST
 
-START_TEST(a_pwm_chip_that_is_removed_while_the_servo_rests_is_said_and_used_again) {
+START_TEST(a_pwm_chip_that_is_removed_while_the_servo_rests_is_reported_and_used_again) {
   if (!has_pca9685()) return;
   HeadSetup setup;
   setup.limits.pan = {radians(-45), radians(45), radians(90), radians(600)};
@@ -287,7 +297,7 @@ START_TEST(a_pwm_chip_that_is_removed_while_the_servo_rests_is_said_and_used_aga
   unplug_pca9685();
   const auto pulled = Clock::now();
   const std::string fault = helper.expect("fault");
-  std::printf("PWM chip removed at rest: said after %.0f ms\n", milliseconds(Clock::now() - pulled));
+  std::printf("PWM chip removed at rest: reported after %.0f ms\n", milliseconds(Clock::now() - pulled));
   ck_assert_msg(fault.find("pwmchip0 does not answer any more") != std::string::npos, "'%s'", fault.c_str());
   plug_pca9685();
   helper.expect("recovered");
@@ -320,14 +330,18 @@ START_TEST(servos_stand_when_the_pipeline_is_killed) {
     ck_assert_int_eq(::waitpid(pipeline, nullptr, 0), pipeline);
     auto changed = killed;
     int last = pulse(), most = 0;
-    for (bool off = pulses_off(); Clock::now() - changed < 1s; std::this_thread::sleep_for(2ms)) {
+    bool off = pulses_off();
+    const auto over = [&] { return off || !a_helper_runs(); };  // else it may only be slow
+    while (Clock::now() - changed < 1s || (!over() && Clock::now() - killed < 60s)) {
       const int now = pulse();
       const bool ended = pulses_off();
       if (now != last || off != ended) changed = Clock::now();
       last = now;
       off = ended;
       if (!off) most = std::max(most, last);
+      std::this_thread::sleep_for(2ms);
     }
+    ck_assert(over());
     ck_assert_int_lt(most, 512 - 2);  // it did not reach its limit
     times.push_back(changed - killed);
   }
@@ -341,10 +355,10 @@ int main(int argc, char** argv) {
   return cerberus::tests::run_suite(
       "hardware_heads",
       {every_half_step_of_90_degrees_is_in_the_kernels_trace, an_open_contact_switches_the_coils_off,
-       coils_are_off_when_the_pipeline_is_killed, a_chip_that_is_removed_while_the_head_moves_is_said,
-       a_chip_that_is_removed_while_the_head_rests_is_said_and_used_again, lines_that_are_taken_are_named,
+       coils_are_off_when_the_pipeline_is_killed, a_chip_that_is_removed_while_the_head_moves_is_reported,
+       a_chip_that_is_removed_while_the_head_rests_is_reported_and_used_again, lines_that_are_taken_are_named,
        a_servo_on_a_pca9685_gets_its_pulses,
-       a_pwm_chip_that_is_removed_while_the_servo_rests_is_said_and_used_again,
+       a_pwm_chip_that_is_removed_while_the_servo_rests_is_reported_and_used_again,
        servos_stand_when_the_pipeline_is_killed},
       120 + 8 * kills());
 }

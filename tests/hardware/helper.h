@@ -33,8 +33,8 @@ using Clock = std::chrono::steady_clock;
 
 inline std::string program;  // cerberus-head
 
-// How often a pipeline is killed: CERBERUS_KILLS in the environment, on request, and with `meson test -t 0`, whose time-out
-// is for the few.
+// Number of kills: $CERBERUS_KILLS, default 5. More than the default needs `meson test -t 0`, because the test's time limit
+// covers only the default.
 inline int kills() {
   const char* asked = std::getenv("CERBERUS_KILLS");
   return asked ? std::atoi(asked) : 5;

@@ -381,7 +381,7 @@ START_TEST(a_hard_stop_is_run_against_only_when_asked_for) {
 }
 END_TEST
 
-START_TEST(a_chip_that_goes_away_is_said_and_used_again) {
+START_TEST(a_chip_that_goes_away_is_reported_and_used_again) {
   Bench bench(kCoils);
   bench.open();
   bench.go(90);
@@ -525,7 +525,7 @@ int main() {
                        a_switch_that_is_never_pressed_ends_the_search_and_is_said,
                        an_end_stop_on_the_way_stops_the_axis,
                        a_hard_stop_is_run_against_only_when_asked_for,
-                       a_chip_that_goes_away_is_said_and_used_again,
+                       a_chip_that_goes_away_is_reported_and_used_again,
                        both_axes_move_at_once,
                        an_open_contact_switches_off_and_a_closed_one_moves_nothing,
                        a_contact_whose_chip_was_away_is_read_again,

@@ -434,7 +434,7 @@ START_TEST(what_cannot_be_is_named) {
 }
 END_TEST
 
-START_TEST(a_camera_that_goes_away_is_said_and_used_again) {
+START_TEST(a_camera_that_goes_away_is_reported_and_used_again) {
   Bench bench;
   bench.camera = with_angles();
   bench.open();
@@ -468,5 +468,5 @@ int main() {
        a_camera_that_never_reports_one_of_its_axes_has_no_feedback,
        a_speed_whose_minimum_is_wrong_is_not_used, relative_moves_add_up, the_zoom_is_a_share_of_its_range,
        a_locked_zoom_is_set_and_kept, the_zoom_is_read_twice_a_second, what_cannot_be_is_named,
-       a_camera_that_goes_away_is_said_and_used_again});
+       a_camera_that_goes_away_is_reported_and_used_again});
 }
