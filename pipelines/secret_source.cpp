@@ -17,7 +17,8 @@ std::string choose_secret(const SecretSource& source, const SecretOptions& optio
   if (!source.environment.empty()) {
     const char* value = std::getenv(source.environment.c_str());
     if (!value || !*value)
-      return "the environment has no variable " + source.environment + " (" + options.environment + ")";
+      return "the environment has no variable " + source.environment + ", or it is empty (" +
+             options.environment + ")";
     text = value;
   }
   if (!source.credential.empty()) {

@@ -58,7 +58,7 @@ START_TEST(a_secret_comes_from_one_source) {
   ck_assert(path.empty());
   ::setenv("CERBERUS_TEST_SECRET", "", 1);
   assert_text(choose({"", "CERBERUS_TEST_SECRET", ""}),
-              "the environment has no variable CERBERUS_TEST_SECRET (--users-env)");
+              "the environment has no variable CERBERUS_TEST_SECRET, or it is empty (--users-env)");
   assert_text(choose({"a", "b", ""}), "give one of --users, --users-env and --users-credential");
   ::unsetenv("CREDENTIALS_DIRECTORY");
   assert_text(choose({"", "", "camera"}),
