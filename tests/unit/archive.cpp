@@ -533,8 +533,8 @@ END_TEST
 START_TEST(two_recorders_and_their_retention_in_one_folder_lose_nothing) {
   const TemporaryFolder folder;
   constexpr int kRounds = 16;
-  // Returns what is wrong: checks are of the test's own thread. On a slow machine an index may be locked for longer than
-  // it is waited for: then it is tried again.
+  // Returns what is wrong: checks are of the test's own thread. On a slow machine an index may be locked for longer
+  // than it is waited for: then it is tried again.
   const auto record = [&folder](char name) {
     std::string wrong;
     Archive archive;
