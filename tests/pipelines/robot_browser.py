@@ -78,7 +78,7 @@ class Visit:
             assert box['y'] + box['height'] <= height and box['width'] >= 90 and box['height'] >= 90, (name, box)
 
 
-def owner_visits(driver, port, one_time, folder):
+def owner_visits(driver, port, one_time, folder, robot):
     page = Visit(driver, port)
     page.log_in('owner', one_time)
     page.wait('the form for the first password', lambda: page.one('new').is_displayed())
@@ -93,6 +93,7 @@ def owner_visits(driver, port, one_time, folder):
     page.one('stop').click()
     page.one('auto').click()
     page.wait('automatic', lambda: 'manual' not in page.status())
+    drives_by_keys(driver, page, robot / 'drive')
     driver.execute_script("document.getElementById('passwords').open = true")
     page.one('whose').send_keys('viewer')
     page.one('theirs').send_keys('also long' + Keys.ENTER)
@@ -104,6 +105,33 @@ def owner_visits(driver, port, one_time, folder):
     driver.find_element(By.CSS_SELECTOR, '[data-mode=armed]').click()
     page.one('logout').click()
     page.wait('logged out', lambda: page.one('password').is_displayed())
+
+
+def key(driver, kind, name, code, **more):
+    driver.execute_cdp_cmd('Input.dispatchKeyEvent', {'type': kind, 'key': name, 'code': code} | more)
+
+
+def drives_by_keys(driver, page, drive):
+    """A key that is released with Shift is released; STOP holds while a key is still held."""
+    def rests():
+        earlier = drive.read_text()
+        time.sleep(.6)
+        return earlier.endswith('stop\n') and earlier == drive.read_text()
+    driver.execute_script('document.activeElement.blur()')
+    page.wait('the program of the base', drive.exists)
+    key(driver, 'keyDown', 'w', 'KeyW')
+    page.wait('driven', lambda: 'drive 0.5 0' in drive.read_text())
+    key(driver, 'keyDown', 'Shift', 'ShiftLeft')
+    key(driver, 'keyUp', 'W', 'KeyW')
+    key(driver, 'keyUp', 'Shift', 'ShiftLeft')
+    page.wait('the end of a drive', rests)
+    key(driver, 'keyDown', 's', 'KeyS')
+    page.wait('driven back', lambda: 'drive -0.5 0' in drive.read_text())
+    key(driver, 'keyDown', 'Escape', 'Escape')
+    for _ in range(3):
+        key(driver, 'keyDown', 's', 'KeyS', autoRepeat=True)
+    page.wait('STOP while a key is held', rests)
+    key(driver, 'keyUp', 's', 'KeyS')
 
 
 def viewer_visits(driver, port):
@@ -121,7 +149,11 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder, port = pathlib.Path(name), free_port()
         pictures = pathlib.Path(sys.argv[2]) if len(sys.argv) > 2 else folder
-        (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(port)))
+        (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(port)) + f'''
+[base]
+command = "sh -c 'cat >> {name}/drive'"
+max-speed = 0.5
+''')
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
             process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
             driver = None
@@ -132,7 +164,7 @@ def main():
                     one_time = re.search(r'One-time password .*: ([0-9a-f]{16})\n', (folder / 'log').read_text())
                     time.sleep(.05)
                 assert one_time, 'cerberusd printed no one-time password'
-                owner_visits(driver, port, one_time[1], pictures)
+                owner_visits(driver, port, one_time[1], pictures, folder)
                 viewer_visits(driver, port)
                 errors = [entry for entry in driver.get_log('browser') if entry['level'] == 'SEVERE'
                           and '/events' not in entry['message'] and '/login' not in entry['message']]
