@@ -411,7 +411,8 @@ def recordings(owner, operator, viewer, folder):
 
 def wrong_passwords(port):
     tries = [Page(port).log_in('owner', 'guess') for _ in range(11)]
-    assert tries[:4] == [403] * 4 and 429 in tries[4:], tries  # one was given before, by who left
+    # Two were given before to this account: by a stranger, and on a connection that was closed.
+    assert tries[:3] == [403] * 3 and 429 in tries[3:], tries
 
 
 def main():
