@@ -101,6 +101,8 @@ class ViscaCamera {
     const std::lock_guard guard(lock_);
     return stopped_;
   }
+  // In the test's own time: as many stops are neither obeyed nor answered from now on.
+  void swallow_stops(int stops) { faults_.swallows_stops = stops; }
   // The next reset of the sequence number is lost.
   void drop_reset() { drops_resets_ = 1; }
   // While it has no power, what comes is lost, and it stands.

@@ -25,6 +25,14 @@ struct Rig {
 
   explicit Rig(OnvifFaults faults = {}, const std::function<void(OnvifOptions&)>& adjust = {})
       : plant(std::move(faults), adjust, 2ms), served(plant) {}
+
+  // Drives the camera to the right until its driver stops it. Returns the pan angle at which it stands.
+  double stopped_at_its_limit() {
+    served.run(3s);  // whatever was lost is over
+    ck_assert(served.until([&] { return camera.speed() > 19; }, "move at 20 hold"));
+    ck_assert(served.until([&] { return camera.speed() == 0; }, "move at 20 hold"));
+    return camera.pan();
+  }
 };
 
 // With the position range of the emulated camera, so that it has positions.
@@ -121,6 +129,37 @@ START_TEST(a_stop_is_sent_until_the_camera_acknowledges_it) {
   rig.served.run(500ms);
   ck_assert_double_eq(rig.camera.speed(), 0);
   ck_assert_int_eq(rig.served.status(), 0);
+}
+END_TEST
+
+// The camera goes on for three times 150 ms at 20 degrees a second: 9 degrees. Without them it would be stopped 9 degrees
+// beyond its limit of 40, with a slack of 2.
+START_TEST(a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost) {
+  Rig rig;
+  rig.served.say("limits -5 40 -5 5");
+  ck_assert(rig.served.until([&] { return rig.camera.pan() > 10; }, "move at 20 hold"));
+  rig.camera.lose_stops(3);
+  rig.served.say("move hold hold");
+  ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }));
+  ck_assert_double_gt(rig.camera.pan(), 10 + 20 * .4);
+  ck_assert_double_eq_tol(rig.stopped_at_its_limit(), 40 + 2, 20 * .05);
+}
+END_TEST
+
+// Nothing but its own Timeout ends the move, .5 to 1 s later: it has turned by 10 to 20 degrees.
+START_TEST(a_camera_that_cannot_be_reached_is_reckoned_to_turn_until_its_timeout_is_over) {
+  Rig rig;
+  rig.served.say("limits -5 60 -5 5");
+  ck_assert(rig.served.until([&] { return rig.camera.pan() > 10; }, "move at 20 hold"));
+  rig.camera.lose_stops(1000);
+  rig.served.say("move hold hold");
+  assert_text(rig.served.line("fault").substr(0, 5), "fault");
+  rig.served.run(1s);
+  ck_assert_double_eq(rig.camera.speed(), 0);
+  ck_assert_double_gt(rig.camera.pan(), 10 + 20 * .4);
+  rig.camera.lose_stops(0);
+  assert_text(rig.served.line("recovered"), "recovered");
+  ck_assert_double_eq_tol(rig.stopped_at_its_limit(), 60 + 2, 20 * .05);
 }
 END_TEST
 
@@ -369,6 +408,8 @@ int main() {
        silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second,
        the_camera_stops_by_its_own_timeout_when_the_helper_is_gone,
        a_stop_is_sent_until_the_camera_acknowledges_it,
+       a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost,
+       a_camera_that_cannot_be_reached_is_reckoned_to_turn_until_its_timeout_is_over,
        a_camera_that_acknowledges_stop_and_goes_on_is_stopped_again,
        a_move_that_the_camera_obeys_after_the_stop_is_stopped_as_well,
        the_newest_move_waits_for_the_answer_to_the_last_one,

@@ -282,6 +282,24 @@ START_TEST(a_camera_without_positions_is_stopped_a_little_beyond_its_limits) {
 }
 END_TEST
 
+// The camera goes on for four times 100 ms at 25 degrees a second: 10 degrees.
+START_TEST(a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost) {
+  for (const bool numbered : {true, false}) {
+    Rig rig({.reports = false, .header = numbered});
+    rig.served.say("limits -5 40 -5 5");
+    ck_assert(rig.served.until([&] { return rig.camera.pan() > 10; }, "move at 25 hold"));
+    rig.camera.swallow_stops(4);
+    rig.served.say("move hold hold");
+    ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }));
+    ck_assert_double_gt(rig.camera.pan(), 10 + 25 * .35);
+    rig.served.run(1s);
+    ck_assert(rig.served.until([&] { return rig.camera.speed() > 24; }, "move at 25 hold"));
+    ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }, "move at 25 hold"));
+    ck_assert_double_eq_tol(rig.camera.pan(), 40 + 2, 25 * .05);
+  }
+}
+END_TEST
+
 // What it sends at rest is an inquiry that every camera should answer; one that never has is not expected to.
 START_TEST(a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second) {
   for (const bool acknowledges : {true, false}) {
@@ -412,6 +430,7 @@ int main() {
                             a_camera_that_counts_is_driven_after_its_reset_was_lost,
                             a_camera_without_positions_reports_the_speeds_of_its_steps,
                             a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
+                            a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost,
                             a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second,
                             a_camera_that_answers_nothing_but_its_version_turns_without_a_fault,
                             the_position_of_the_zoom_is_reported,

@@ -40,8 +40,8 @@ class HeadDevice {
   virtual std::optional<PoseLine> take_pose(Time now) = 0;
   // True while an emergency stop keeps the motors off.
   virtual bool emergency() const { return false; }
-  // Of a device without feedback: the speeds that it was commanded last, in which its steps are counted, if they have
-  // changed since the last call.
+  // Of a device without feedback: the oldest change of the speeds in force, in which its steps are counted, that was not
+  // taken yet. Called until there is none.
   virtual std::optional<SpeedsLine> take_speeds(Time) { return std::nullopt; }
   // The position of the zoom (head_lines.h) since the last call, if it was read anew.
   virtual std::optional<double> take_zoom() { return std::nullopt; }

@@ -85,7 +85,7 @@ void HeadServer::report(Time now) {
     send_(pressed ? "emergency pressed" : "emergency released");
   }
   if (const auto pose = device_.take_pose(now)) send_(pose_line(*pose));
-  if (const auto speeds = device_.take_speeds(now)) send_(speeds_line(*speeds));
+  while (const auto speeds = device_.take_speeds(now)) send_(speeds_line(*speeds));
   if (const auto zoom = device_.take_zoom(); zoom && zoom != zoom_) {
     zoom_ = zoom;
     send_(zoom_line({*zoom}));

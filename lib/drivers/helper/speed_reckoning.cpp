@@ -1,24 +1,81 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "drivers/helper/speed_reckoning.h"
 
+#include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "motion/stop_margin.h"
 
 namespace cerberus::drivers {
 
-void SpeedReckoning::set_speeds(const motion::PanTilt& speed, Time now) {
+void SpeedReckoning::begin(Time now, const motion::PanTilt& at) {
+  reckoned_.begin(now, at);
+  in_force_ = before_ = {};
+  unstopped_.reset();
+  changed_ = 0;
+}
+
+void SpeedReckoning::turn(const motion::PanTilt& speed, Time time) {
   const motion::PanTilt last = reckoned_.last();
   if (speed.pan == last.pan && speed.tilt == last.tilt) return;
-  reckoned_.turn(now, speed);
-  changed_ = now;
+  reckoned_.turn(time, speed);
+  if (changed_ == changes_.size()) --changed_;  // the newest counts most
+  changes_[changed_++] = {speed, time};
+}
+
+void SpeedReckoning::set_speeds(const motion::PanTilt& speed, Time now, Time until) {
+  before_ = in_force_;
+  in_force_ = {speed, now, until};
+  unstopped_.reset();
+  turn(speed, now);
+}
+
+void SpeedReckoning::on_refused() {
+  if (unstopped_) {
+    unstopped_ = before_;
+    return;
+  }
+  turn(before_.speed, in_force_.from);
+  in_force_ = before_;
+}
+
+void SpeedReckoning::stop(Time now) {
+  if (!unstopped_) {
+    unstopped_ = in_force_;
+    stopped_ = now;
+  }
+  in_force_ = {.from = now};
+  turn({}, now);
+}
+
+void SpeedReckoning::on_stopped(Time sent) {
+  if (!unstopped_) return;
+  const Time end = std::min(sent, unstopped_->until);
+  if (end > stopped_) {
+    turn(unstopped_->speed, stopped_);
+    turn({}, end);
+  }
+  unstopped_.reset();
+}
+
+void SpeedReckoning::on_stop_lost() {
+  if (!unstopped_) return;
+  in_force_ = *unstopped_;
+  unstopped_.reset();
+  turn(in_force_.speed, stopped_);
+}
+
+void SpeedReckoning::expire(Time now) {
+  if (now < in_force_.until) return;
+  turn({}, in_force_.until);
+  in_force_ = {.from = in_force_.until};
 }
 
 std::optional<SpeedsLine> SpeedReckoning::take_speeds(Time now) {
-  const auto changed = std::exchange(changed_, std::nullopt);
-  if (!changed) return std::nullopt;
-  return SpeedsLine{reckoned_.last(), motion::seconds(now - *changed)};
+  if (changed_ == 0) return std::nullopt;
+  const Change oldest = changes_.front();
+  std::move(changes_.begin() + 1, changes_.begin() + changed_--, changes_.begin());
+  return SpeedsLine{oldest.speed, motion::seconds(now - oldest.time)};
 }
 
 motion::PanTilt SpeedReckoning::confined(const motion::PanTilt& speed, const motion::PanTilt& measured,

@@ -2,8 +2,12 @@
 // The limits of a head that is driven by speeds: they hold by the positions that its device reports or, without these, by
 // the speeds that it was sent, integrated (motion/reckoning.h). Every driver without positions reports these speeds to the
 // pipeline, which reckons the pose from the same.
+//
+// A stop is reckoned as obeyed from the time at which it was sent. Where it was lost on its way, which the next
+// acknowledgement or its absence shows, the way that the head has gone on since is added.
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "drivers/helper/head_lines.h"
@@ -21,12 +25,22 @@ class SpeedReckoning {
   };
 
   // The head rests at `at` (radians) from `now` on.
-  void begin(Time now, const motion::PanTilt& at) { reckoned_.begin(now, at); }
-  // The device turns at these speeds (radians a second) from now on.
-  void set_speeds(const motion::PanTilt& speed, Time now);
+  void begin(Time now, const motion::PanTilt& at);
+  // The device turns at these speeds (radians a second) from now on, until `until` if it then stops by itself.
+  void set_speeds(const motion::PanTilt& speed, Time now, Time until = motion::kNever);
+  // The device has refused the last speeds: those before it are in force still.
+  void on_refused();
+  // A stop is sent.
+  void stop(Time now);
+  // The device has obeyed the stop that was sent at `sent`, and none that was sent earlier.
+  void on_stopped(Time sent);
+  // The device has obeyed no stop, as far as known: its last speeds are in force still.
+  void on_stop_lost();
+  // Ends the speeds that the device has ended by itself until `now`.
+  void expire(Time now);
   // The device was found to be at `at` (radians).
   void set_reference(const motion::PanTilt& at, Time now) { reckoned_.place(now, at); }
-  // The speeds that have changed since the last call; nothing: none have.
+  // The oldest change of the speeds that was not taken yet; nothing: there is none.
   std::optional<SpeedsLine> take_speeds(Time now);
   // speed (radians a second), or 0 where it would lead beyond a limit. measured: the position that the device reported
   // (radians), NaN without one. reaction: seconds of way for which a head with positions is stopped before a limit.
@@ -34,8 +48,22 @@ class SpeedReckoning {
                            const motion::Limits& limits, double reaction, Time now) const;
 
  private:
+  struct InForce {
+    motion::PanTilt speed{};
+    Time from{}, until = motion::kNever;
+  };
+  struct Change {
+    motion::PanTilt speed;
+    Time time;
+  };
+  void turn(const motion::PanTilt& speed, Time time);
+
   motion::Reckoning reckoned_;
-  std::optional<Time> changed_;  // when, if that was not taken yet
+  InForce in_force_, before_;
+  std::optional<InForce> unstopped_;  // by the stop that is not acknowledged
+  Time stopped_{};                    // when the first such stop was sent
+  std::array<Change, 4> changes_{};   // not taken yet, the oldest first
+  unsigned changed_ = 0;
 };
 
 }  // namespace cerberus::drivers

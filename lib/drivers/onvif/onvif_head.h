@@ -9,6 +9,9 @@
 // move was on its way: cameras obey requests of two connections in any order. A camera that reports that it still moves
 // after that is sent Stop again.
 //
+// A camera without positions is reckoned to turn as it was sent last, until the Stop that it has acknowledged was sent or
+// its Timeout is over.
+//
 // A camera that does not answer, or refuses connections, is a fault. It is sent Stop and a new login until it answers;
 // then it stands until the next move.
 #pragma once
@@ -86,6 +89,7 @@ class OnvifHead final : public HeadDevice {
  private:
   struct SentStop {
     unsigned id;
+    Time time;
     bool last;  // no move was on its way when it was sent
   };
 
@@ -111,7 +115,7 @@ class OnvifHead final : public HeadDevice {
   bool has_position(Time now) const;
   // The velocities that the commands ask for now, as the camera can execute them.
   onvif::PanTilt wanted_velocity(Time now) const;
-  void set_velocity(const onvif::Angles& velocity, Time now);
+  void on_sent(const onvif::Angles& velocity, Time now);
   Time camera_timeout() const;
   unsigned send(const onvif::Request& request, Time now);
 
@@ -123,7 +127,7 @@ class OnvifHead final : public HeadDevice {
   std::optional<onvif::Space> position_space_;
   motion::Limits limits_;
   motion::AxisCommand pan_, tilt_;
-  onvif::Angles sent_velocity_;      // in force at the camera, as far as known
+  onvif::Angles sent_velocity_;      // of the last move; 0: it is to be sent again, or the camera is to stand
   bool sent_angle_ = false;          // the AbsoluteMove of pan_ and tilt_ was sent
   Time sent_{};                      // of the last move
   unsigned move_ = 0, inquiry_ = 0;  // requests on their way
@@ -142,7 +146,7 @@ class OnvifHead final : public HeadDevice {
   bool seen_moving_ = false, seen_idle_ = false;  // MoveStatus had both values: it is alive
   int failures_ = 0, unreadable_ = 0;             // answers in a row that did not arrive, or are no SOAP
   int stops_while_moving_ = 0;
-  SpeedReckoning reckoned_;  // of sent_velocity_, for a camera without positions
+  SpeedReckoning reckoned_;  // for a camera without positions
   onvif::ZoomLock zoom_lock_;
   onvif::Homing homing_;
   std::optional<PoseLine> pose_;

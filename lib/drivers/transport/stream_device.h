@@ -44,6 +44,9 @@ class StreamDevice : public HeadDevice {
 
   // The device turns at these speeds (radians a second) from now on.
   void set_speeds(const motion::PanTilt& speed, Time now) { reckoned_.set_speeds(speed, now); }
+  // A stop is sent to the device; it has obeyed the one that was sent at `sent`, and none before.
+  void set_stopped(Time now) { reckoned_.stop(now); }
+  void on_stopped(Time sent) { reckoned_.on_stopped(sent); }
   // The device was found to be at `at`: its reckoning begins anew there.
   void set_reference(const motion::PanTilt& at, Time now) { reckoned_.set_reference(at, now); }
   // speed (radians a second), or 0 where it would lead beyond a limit. measured: the position that the device reported,

@@ -127,7 +127,7 @@ void ViscaHead::stop(Time now) noexcept {
   stopping_ = moved_ = true;
   stops_ = 1;
   send_order(Order::stop, visca::stop(options_.address), now);
-  set_speeds({}, now);
+  set_stopped(now);
 }
 
 void ViscaHead::home(Time now) {
@@ -242,7 +242,10 @@ void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time n
   if (reply.kind == Kind::ack) {
     acknowledges_ = true;
     if (!sent) return;
-    if (sent->order == Order::stop && stopping_) stopping_ = moved_ = false;
+    if (sent->order == Order::stop && stopping_) {
+      stopping_ = moved_ = false;
+      on_stopped(numbered() ? sent->time : sent_);  // without a number: of the newest
+    }
     if (sent->order == Order::home && homing_) homing_ = reply.socket;
     return;
   }
