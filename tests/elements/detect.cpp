@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The stages' properties changed while they play, and their results: camera, zones, limits, places, tracks.
+#include <algorithm>
 #include <cmath>
 #include <set>
 #include <string>
