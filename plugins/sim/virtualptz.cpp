@@ -51,6 +51,7 @@
 #include <gst/video/video-overlay-composition.h>
 #include <gst/video/video.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>

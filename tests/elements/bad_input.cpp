@@ -3,6 +3,7 @@
 // headers come first: check's macros (fail) break standard headers.
 #include "records.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "outputs.h"

@@ -2,6 +2,7 @@
 // What the recorder puts beside a file, its index and retention, and a disk that is slow or takes nothing.
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <condition_variable>
 #include <fstream>
 #include <memory>

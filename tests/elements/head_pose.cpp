@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What cameramotion makes of a head's pose.
+#include <algorithm>
+
 #include "scene.h"
 #include "support.h"
 

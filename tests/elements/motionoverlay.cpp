@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What motionoverlay draws: boxes, labels, the panel in the corner.
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>

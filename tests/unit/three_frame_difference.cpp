@@ -4,6 +4,7 @@
 
 #include <check.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>

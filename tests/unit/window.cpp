@@ -5,6 +5,7 @@
 
 #include <check.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>

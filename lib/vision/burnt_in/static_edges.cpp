@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/burnt_in/static_edges.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/change/light_samples.h"
 
+#include <algorithm>
+
 namespace cerberus::vision {
 
 void LightSamples::take(GrayView reference, GrayView present, std::span<const RowSpan> spans) {
