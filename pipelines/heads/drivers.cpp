@@ -4,11 +4,13 @@
 #include <sched.h>
 #include <sys/prctl.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 
 #include "drivers/helper/emergency_stop.h"
 #include "drivers/helper/helper_loop.h"
+#include "text/numbers.h"
 #if HAVE_GPIOD
 #include "drivers/gpio/gpio_port.h"
 #endif
@@ -19,6 +21,28 @@ int fail(const std::string& text) {
   std::printf("fault %s\n", text.c_str());
   std::fflush(stdout);
   return 2;
+}
+
+void warn(const std::string& text) {
+  std::fprintf(stderr, "cerberus-head: warning: %s\n", text.c_str());
+}
+
+std::string read_number(const drivers::OptionWord& word, double least, double most, double& number) {
+  const auto read = drivers::number_of(word.value);
+  if (!read || *read < least || *read > most)
+    return word.key + "=" + word.value + ": a number, " + text::significant(least, 4).string() + " to " +
+           text::significant(most, 4).string();
+  number = *read;
+  return {};
+}
+
+std::string read_whole(const drivers::OptionWord& word, int least, int most, int& number) {
+  const auto read = drivers::number_of(word.value);
+  if (!read || *read < least || *read > most || *read != std::floor(*read))
+    return word.key + "=" + word.value + ": a whole number, " + std::to_string(least) + " to " +
+           std::to_string(most);
+  number = static_cast<int>(*read);
+  return {};
 }
 
 int serve(drivers::HeadDevice& device, const std::string& emergency_stop) {
@@ -36,6 +60,8 @@ int serve(drivers::HeadDevice& device, const std::string& emergency_stop) {
 }
 
 Run find_driver(const std::string& name) {
+  if (name == "visca") return run_visca;
+  if (name == "pelco-d") return run_pelco;
   if (name == "onvif") return run_onvif;
   if (name == "stepper-gpio") return run_stepper;
   if (name == "servo-pwm") return run_servo;

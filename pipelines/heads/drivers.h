@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// Drivers of cerberus-head whose options are words (drivers/helper/option_words.h), and what all drivers share.
+// The drivers of cerberus-head, whose options are words (drivers/helper/option_words.h), and what all drivers share.
 #pragma once
 
 #include <string>
@@ -13,17 +13,26 @@ namespace cerberus::heads {
 // Prints `fault TEXT`, which the pipeline reads from standard output. Returns the exit status.
 int fail(const std::string& text);
 
+// Writes a warning to standard error, which is the pipeline's.
+void warn(const std::string& text);
+
+// The number of `word`, least to most. Returns what is wrong; then `number` is unchanged.
+std::string read_number(const drivers::OptionWord& word, double least, double most, double& number);
+std::string read_whole(const drivers::OptionWord& word, int least, int most, int& number);
+
 // Serves the device until the end. emergency_stop: "CHIP:LINE" of a normally closed contact; empty: there is none.
 int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
 
 // One driver. Returns the process's exit status.
 using Run = int (*)(const std::vector<drivers::OptionWord>& words);
+int run_visca(const std::vector<drivers::OptionWord>& words);
+int run_pelco(const std::vector<drivers::OptionWord>& words);
 int run_onvif(const std::vector<drivers::OptionWord>& words);
 int run_stepper(const std::vector<drivers::OptionWord>& words);
 int run_servo(const std::vector<drivers::OptionWord>& words);
 int run_v4l2(const std::vector<drivers::OptionWord>& words);
 
-// The driver of that name; nullptr: it is none of these.
+// The driver of that name; nullptr: there is none.
 Run find_driver(const std::string& name);
 
 // Asks the kernel to wake this process on time: real-time priority where that is permitted, and exact timers.

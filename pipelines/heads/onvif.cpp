@@ -160,9 +160,7 @@ std::string read_words(const std::vector<OptionWord>& words, Settings& s) {
 int run_onvif(const std::vector<OptionWord>& words) {
   Settings settings;
   if (const std::string wrong = read_words(words, settings); !wrong.empty()) return fail(wrong);
-  settings.head.warn = [](const std::string& text) {
-    std::fprintf(stderr, "cerberus-head: warning: %s\n", text.c_str());
-  };
+  settings.head.warn = warn;
   drivers::OnvifHead head(std::make_unique<SoupClient>(std::move(settings.http)), std::move(settings.head));
   return serve(head, settings.emergency_stop);
 }

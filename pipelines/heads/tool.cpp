@@ -6,10 +6,12 @@
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 
+#include "drivers/helper/option_words.h"
 #include "heads/head_link.h"
 #include "sensing/angles.h"
 
@@ -91,7 +93,7 @@ constexpr char kSummary[] =
     "(VISCA) only if it is named\n"
     "  move DRIVER         turns a head: --pan and --tilt in degrees a second, for --seconds\n"
     "  calibrate DRIVER    measures a head through its camera (--source, --horizontal-fov) into --output\n"
-    "Drivers: visca, pelco-d, onvif, stepper-gpio, external and what else cerberus-head has.";
+    "Drivers: visca, pelco-d, onvif, stepper-gpio, servo-pwm, v4l2, external.";
 
 // The helper beside this program, or the installed one.
 std::string helper_program(const char* self) {
@@ -107,11 +109,23 @@ int usage(const char* text) {
   return 2;
 }
 
+std::string read_limits(const char* text, cerberus::motion::Limits& head) {
+  std::vector<double> degrees;
+  for (const std::string& part : cerberus::drivers::comma_list(text))
+    if (const auto number = cerberus::drivers::number_of(part)) degrees.push_back(*number);
+  if (degrees.size() != 4 || std::ranges::count(std::string_view(text), ',') != 3)
+    return std::string("--limits=") + text +
+           ": four numbers of degrees, PAN-MIN,PAN-MAX,TILT-MIN,TILT-MAX (-60,60,-20,20)";
+  head.pan = {radians(degrees[0]), radians(degrees[1])};
+  head.tilt = {radians(degrees[2]), radians(degrees[3])};
+  return {};
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  gchar *device = nullptr, *words = nullptr, *command = nullptr, *limits = nullptr, *source = nullptr,
-        *output = nullptr;
+  g_autofree gchar *device = nullptr, *words = nullptr, *command = nullptr, *limits = nullptr,
+                   *source = nullptr, *output = nullptr;
   gdouble pan = 0, tilt = 0, seconds = 1, fov = 0;
   gboolean yes = FALSE;
   const GOptionEntry entries[] = {
@@ -149,13 +163,9 @@ int main(int argc, char** argv) {
   options.setup.command = command ? command : "";
   if (options.driver == "external" ? !command : !device)
     return usage("name the head: --device, or --command of external");
-  double l[4] = {-60, 60, -20, 20};
-  g_auto(GStrv) parts = limits ? g_strsplit(limits, ",", 5) : nullptr;
-  if (limits && g_strv_length(parts) != 4) return usage("--limits has four numbers");
-  for (int i = 0; limits && i < 4; ++i) l[i] = g_ascii_strtod(parts[i], nullptr);
   auto& head = options.setup.limits;
-  head.pan = {radians(l[0]), radians(l[1])};
-  head.tilt = {radians(l[2]), radians(l[3])};
+  if (const std::string wrong = read_limits(limits ? limits : "-60,60,-20,20", head); !wrong.empty())
+    return usage(wrong.c_str());
   if (const std::string wrong = cerberus::motion::check(head); !wrong.empty()) return usage(wrong.c_str());
   options.pan = pan;
   options.tilt = tilt;

@@ -6,6 +6,7 @@
 #include "cerberus/private/messages.hpp"
 #include "drivers/head/head_calibration.h"
 #include "drivers/head/head_lease.h"
+#include "drivers/head/head_place.h"
 #include "shared/choices.hpp"
 #include "shared/poses.hpp"
 
@@ -25,8 +26,10 @@ CerberusPose pose_of(const char* head, const motion::Pose& pose) {
 }
 
 void refuse(GstElement* element, const char* head, const std::string& why) {
-  CERBERUS_ELEMENT_ERROR(element, RESOURCE, OPEN_READ_WRITE,
-                         ("The head \"%s\" cannot be opened: %s.", head, why.c_str()), (nullptr));
+  CERBERUS_ELEMENT_ERROR(
+      element, RESOURCE, OPEN_READ_WRITE,
+      ("The head \"%s\" cannot be opened: %s%s", head, why.c_str(), why.ends_with('.') ? "" : "."),
+      (nullptr));
 }
 
 static_assert(static_cast<int>(control::HeadState::stopped) == CERBERUS_PANTILT_STOPPED &&
@@ -92,12 +95,15 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
     CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
     return nullptr;
   }
-  auto lease = drivers::HeadLease::take(s.head);
+  const std::string place = drivers::head_place(s.driver, setup);
+  auto lease = drivers::HeadLease::take(s.head, place);
   if (!lease) {
-    CERBERUS_ELEMENT_ERROR(
-        element, RESOURCE, BUSY,
-        ("Another pantiltsink drives the head \"%s\" already: give each its own name (head=).", name),
-        (nullptr));
+    const bool named = drivers::HeadLease::is_taken(s.head);
+    CERBERUS_ELEMENT_ERROR(element, RESOURCE, BUSY,
+                           ("Another pantiltsink drives the head %s%s%s already: %s.", named ? "\"" : "at ",
+                            named ? name : place.c_str(), named ? "\"" : "",
+                            named ? "give each its own name (head=)" : "a head has one sink"),
+                           (nullptr));
     return nullptr;
   }
   auto runner = std::make_unique<drivers::HeadRunner>(std::move(head), std::move(lease), std::move(moved),

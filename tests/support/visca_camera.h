@@ -38,6 +38,7 @@ struct ViscaFaults {
   int loses_answers = 0;   // as many acknowledgements are lost
   int swallows_moves = 0;  // likewise of moves
   int swallows_stops = 0;  // as many stops are neither obeyed nor answered
+  bool garbles = false;    // its answers arrive as at another baud rate
   bool strict = false;     // refuses a sequence number that is not the next one, as Sony's cameras do
   std::chrono::milliseconds delay{0};      // of each answer
   std::chrono::milliseconds dead_time{0};  // from a move or stop until the camera turns so
@@ -214,6 +215,7 @@ class ViscaCamera {
     return true;
   }
   void answer(std::vector<std::uint8_t> message) {
+    if (faults_.garbles) message.assign(message.size(), 0x1c);
     if (!time_) std::this_thread::sleep_for(faults_.delay);
     if (line_ == Line::udp && faults_.header) {
       const std::uint8_t head[8] = {

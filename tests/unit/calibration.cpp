@@ -302,9 +302,12 @@ START_TEST(wrong_calibrations_are_refused_with_the_line) {
   assert_text(wrong_with("cerberus-calibration = 1\n# a comment\n\nspeed = 3"),
               "line 4: a calibration has no \"speed\"");
   assert_text(wrong_with("hello"), "line 1: \"hello\" is no `key = value`");
-  assert_text(wrong_with("dead-time = 0,15"), "line 1: \"0,15\" cannot be dead-time");
-  assert_text(wrong_with("dead-time = nan"), "line 1: \"nan\" cannot be dead-time");
-  assert_text(wrong_with("pan-speeds = 4:4 3:5"), "line 1: \"4:4 3:5\" cannot be pan-speeds");
+  assert_text(wrong_with("dead-time = 0,15"), "line 1: \"0,15\" cannot be dead-time: write seconds, 0 to 5");
+  assert_text(wrong_with("dead-time = nan"), "line 1: \"nan\" cannot be dead-time: write seconds, 0 to 5");
+  assert_text(
+      wrong_with("pan-speeds = 4:4 3:5"),
+      "line 1: \"4:4 3:5\" cannot be pan-speeds: write pairs COMMANDED:ACTUAL in degrees a second, both "
+      "rising, parted by blanks: 1:0.9 10:9.5");
   assert_text(wrong_with("cerberus-calibration = 1"), "it does not name its driver and device");
 }
 END_TEST

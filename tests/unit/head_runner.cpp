@@ -11,6 +11,7 @@
 #include <string>
 #include <thread>
 
+#include "drivers/head/head_place.h"
 #include "support/pipe.h"
 #include "support/suite.h"
 #include "support/text.h"
@@ -420,6 +421,38 @@ START_TEST(a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not) {
 }
 END_TEST
 
+START_TEST(a_device_has_one_head_whatever_its_names_are_and_however_it_is_written) {
+  const auto place = [](const char* driver, const char* device, const char* options = "") {
+    HeadSetup setup;
+    setup.device = device;
+    setup.options = options;
+    return head_place(driver, setup);
+  };
+  assert_text(place("onvif", "http://Camera/onvif/device_service"), place("onvif", "camera").c_str());
+  assert_text(place("onvif", "camera:80"), place("onvif", "camera").c_str());
+  assert_text(place("onvif", "https://camera"), place("onvif", "camera:443").c_str());
+  assert_text(place("onvif", "http://[fe80::1]/"), "[fe80::1]:80 profile ");
+  ck_assert(place("onvif", "camera", "profile=a") != place("onvif", "camera", "profile=b"));
+  assert_text(place("v4l2", "/dev/../dev/null"), "/dev/null");
+  assert_text(place("visca", "serial:/dev/../dev/null"), "serial:/dev/null address 1");
+  assert_text(place("pelco-d", "tcp:gateway:4001", "baud=2400 address=2"), "tcp:gateway:4001 address 2");
+  for (const char* driver : {"simulated", "external", "stepper-gpio", "servo-pwm"})
+    assert_text(place(driver, "gpiochip0"), "");  // the kernel keeps lines and channels apart
+  assert_text(place("onvif", "discover"), "");
+
+  auto lease = HeadLease::take("a", "camera");
+  ck_assert(lease && !HeadLease::take("b", "camera") && !HeadLease::take("a", "other"));
+  ck_assert(HeadLease::is_taken("a") && !HeadLease::is_taken("b"));
+  ck_assert(HeadLease::take("b", "other") != nullptr);
+  ck_assert(HeadLease::take("b") != nullptr);
+  lease->announce_return();
+  const auto next = HeadLease::take("b", "camera");
+  ck_assert(next && !next->wait(1ms));
+  lease.reset();
+  ck_assert(next->wait(1ms));
+}
+END_TEST
+
 START_TEST(a_runner_that_is_destroyed_while_it_waits_opens_nothing) {
   Pipe gate, record, next_record;
   auto lease = HeadLease::take("given up");
@@ -493,6 +526,7 @@ int main() {
        a_stop_beats_the_commands_before_it,
        a_blocked_driver_keeps_its_lease_and_closes_by_itself,
        a_head_that_is_being_closed_is_waited_for_and_one_in_use_is_not,
+       a_device_has_one_head_whatever_its_names_are_and_however_it_is_written,
        a_runner_that_is_destroyed_while_it_waits_opens_nothing,
        a_driver_that_does_not_open_returns_the_reason,
        a_thousand_heads_come_and_go},

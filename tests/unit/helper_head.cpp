@@ -172,8 +172,10 @@ END_TEST
 START_TEST(a_helper_that_cannot_open_its_head_reports_the_reason) {
   assert_text(refusal_of("sh -c 'echo fault no port /dev/ttyUSB9: permission denied; cat >/dev/null'"),
               "no port /dev/ttyUSB9: permission denied");
-  assert_text(refusal_of("false"), "the head's helper `false` is gone: it ended");
-  assert_text(refusal_of("false --password=secret"), "the head's helper `false` is gone: it ended");
+  const char* ended =
+      "the head's helper `false` did not become ready: it ended (its standard error may say why)";
+  assert_text(refusal_of("false"), ended);
+  assert_text(refusal_of("false --password=secret"), ended);
   assert_text(refusal_of(""), "the driver external needs a helper to run (command=)");
 }
 END_TEST

@@ -186,6 +186,20 @@ START_TEST(a_head_that_returns_and_reports_no_more_is_a_fault) {
 }
 END_TEST
 
+START_TEST(a_head_with_feedback_that_never_reports_is_a_fault_with_what_to_check) {
+  Line line;
+  PelcoHead head(options_for(line, true));
+  assert_text(head.open({}, 0s), "");
+  Time now{};
+  for (; now < 500ms; now += 50ms) head.tick(now);
+  assert_text(head.fault(), "");
+  for (; now < 2s; now += 50ms) head.tick(now);
+  const std::string expected = "the Pelco-D head at " + line.device() +
+                               " does not answer: check baud, address and wiring, or leave out feedback";
+  assert_text(head.fault(), expected.c_str());
+}
+END_TEST
+
 START_TEST(what_cannot_be_is_named) {
   Line line;
   PelcoOptions options = options_for(line);
@@ -199,8 +213,10 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "pelco_head", {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
-                     positions_are_asked_for_and_a_head_at_its_limit_stops,
-                     an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head,
-                     a_head_that_returns_and_reports_no_more_is_a_fault, what_cannot_be_is_named});
+      "pelco_head",
+      {speeds_become_steps_and_are_sent_again, a_stop_is_sent_five_times,
+       positions_are_asked_for_and_a_head_at_its_limit_stops,
+       an_axis_that_ceases_to_report_makes_no_pose_and_stops_the_head,
+       a_head_that_returns_and_reports_no_more_is_a_fault,
+       a_head_with_feedback_that_never_reports_is_a_fault_with_what_to_check, what_cannot_be_is_named});
 }

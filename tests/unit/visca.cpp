@@ -116,6 +116,8 @@ START_TEST(a_speed_table_of_ones_own_is_read_or_refused) {
   ck_assert_double_eq(table.tilt[1], 4);
   for (const char* wrong : {"", "1 2", "1; 2", "2 1; 1 2", "1 2; 1 x", "1 2; 1 2; 1 2", "0 1; 1 2"})
     ck_assert_msg(!parse_speed_table(wrong, table).empty(), "%s", wrong);
+  assert_text(parse_speed_table("2 1; 1 2", table),
+              "1 is not above the speed before it: each step is faster");
   ck_assert_double_eq(table.pan[2], 3.5);  // what was there stays
 }
 END_TEST

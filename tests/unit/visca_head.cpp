@@ -392,6 +392,24 @@ START_TEST(a_camera_without_a_zoom_turns_and_stops_all_the_same) {
 }
 END_TEST
 
+START_TEST(answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning) {
+  ViscaCamera garbled(ViscaCamera::Line::serial, {.garbles = true});
+  ViscaHead unread(options_for(garbled));
+  const std::string expected =
+      "what the VISCA camera at " + garbled.device() + " sends is no VISCA: check baud=9600 and address=";
+  assert_text(unread.open({}, 0s), expected.c_str());
+  ViscaCamera silent(ViscaCamera::Line::serial, {.acknowledges = false, .reports = false});
+  std::string warned;
+  ViscaOptions options = options_for(silent);
+  options.warn = [&](const std::string& text) { warned = text; };
+  ViscaHead driven(options);
+  assert_text(driven.open({}, 0s), "");
+  ck_assert_msg(warned.starts_with("the VISCA camera at " + silent.device() + " answers nothing"), "%s",
+                warned.c_str());
+  ck_assert_msg(warned.ends_with("baud=9600 and address="), "%s", warned.c_str());
+}
+END_TEST
+
 START_TEST(what_cannot_be_opened_is_named) {
   const auto refusal = [](const char* device, int baud = 9600) {
     ViscaOptions options;
@@ -400,7 +418,9 @@ START_TEST(what_cannot_be_opened_is_named) {
     return ViscaHead(options).open({}, 0s);
   };
   assert_text(refusal("serial:/dev/no-such-port"),
-              "the serial port /dev/no-such-port cannot be opened: No such file or directory");
+              "the serial port /dev/no-such-port cannot be opened: No such file or directory (cerberus-heads "
+              "list names "
+              "those that are there)");
   assert_text(refusal("serial:/dev/null"), "/dev/null is no serial port");
   ck_assert(refusal("/dev/ttyUSB0").find("write serial:/dev/ttyUSB0") != std::string::npos);
   ck_assert(refusal("udp:127.0.0.1").find("names no port") != std::string::npos);
@@ -438,6 +458,7 @@ int main() {
                             a_zoom_that_is_not_reported_at_first_is_asked_for_again,
                             a_zoom_beyond_the_lens_is_refused,
                             a_camera_without_a_zoom_turns_and_stops_all_the_same,
+                            answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning,
                             what_cannot_be_opened_is_named})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);

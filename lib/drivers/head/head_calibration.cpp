@@ -91,6 +91,16 @@ bool take(std::string_view key, std::string_view value, HeadCalibration& c, bool
   return true;
 }
 
+// How a value of this key is written.
+const char* form_of(std::string_view key) {
+  if (key.ends_with("-speeds"))
+    return "write pairs COMMANDED:ACTUAL in degrees a second, both rising, parted by blanks: 1:0.9 10:9.5";
+  if (key.ends_with("-backlash")) return "write degrees, 0 to 90";
+  if (key == "dead-time") return "write seconds, 0 to 5";
+  if (key == "stops-alone") return "write seconds, or no";
+  return "name the one that was measured";
+}
+
 void append(std::string& text, const char* key, double value) {
   text.append(key).append(" = ") += text::rounded(value, 4).string_view();
   text += '\n';
@@ -135,7 +145,8 @@ std::string parse_calibration(std::string_view text, HeadCalibration& calibratio
     }
     bool known = false;
     if (!take(key, value, read, known))
-      return where + "\"" + std::string(value.substr(0, 60)) + "\" cannot be " + std::string(key);
+      return where + "\"" + std::string(value.substr(0, 60)) + "\" cannot be " + std::string(key) + ": " +
+             form_of(key);
     if (!known) return where + "a calibration has no \"" + std::string(key.substr(0, 60)) + "\"";
   }
   if (!versioned) return "there is no line `cerberus-calibration = 1`: it is no calibration of a head";

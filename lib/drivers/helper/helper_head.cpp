@@ -27,6 +27,8 @@ struct Parameters {
   Time ready_timeout = std::chrono::seconds(5);  // derived: a slow network camera logs in within it
   Time restart_delay =
       std::chrono::seconds(1);  // derived: issue "used again when it returns", without a busy loop
+  // For a helper that was refused, which has moved nothing; derived: the error comes before users give up.
+  std::chrono::milliseconds refused_patience{500};
 };
 constexpr Parameters kParameters;
 
@@ -93,7 +95,10 @@ void HelperHead::Core::start_again() {
 // The helper ended, or does not read any more. A command starts it again after restart_delay.
 void HelperHead::Core::lose(const std::string& why) {
   process.hang_up();
-  client.lose(why == client.fault() ? why : "the head's helper `" + name + "` is gone: " + why);
+  const std::string helper = "the head's helper `" + name + "` ";
+  client.lose(why == client.fault() ? why
+              : open                ? helper + "is gone: " + why
+                     : helper + "did not become ready: " + why + " (its standard error may say why)");
   next_start = since_start(Clock::now()) + kParameters.restart_delay;
   answered.notify_all();
 }
@@ -182,11 +187,16 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const std::string fault = core->client.fault(), name = core->name;
   guard.unlock();
   if (core->open) return {};
-  close();
+  leave(kParameters.refused_patience);
   return came ? fault : "the head's helper `" + name + "` does not answer with `ready 1 ...`";
 }
 
 void HelperHead::close() noexcept {
+  leave(2 * HelperProcess::kPatience);
+}
+
+// A helper that does not end within `patience` is left to its thread.
+void HelperHead::leave(std::chrono::steady_clock::duration patience) noexcept {
   if (!core_) return;
   {
     const std::lock_guard guard(core_->lock);
@@ -194,7 +204,7 @@ void HelperHead::close() noexcept {
     core_->open = false;
   }
   core_->poke();
-  if (worker_) worker_->leave(2 * HelperProcess::kPatience);
+  if (worker_) worker_->leave(patience);
   worker_.reset();
   core_.reset();
 }

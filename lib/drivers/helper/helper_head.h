@@ -36,6 +36,7 @@ class HelperHead final : public Head {
   std::string fault() override;
 
  private:
+  void leave(std::chrono::steady_clock::duration patience) noexcept;
   struct Core;
   std::string driver_;
   std::shared_ptr<Core> core_;

@@ -135,7 +135,10 @@ Time PelcoHead::tick(Time now) {
   const auto silent = [&](std::optional<Time> reported) {
     return now - reported.value_or(connected_at_) > kSilence;
   };
-  set_silent((pan_reports_ && silent(pan_at_)) || (tilt_reports_ && silent(tilt_at_)), now);
+  if (options_.feedback && !pan_reports_ && !tilt_reports_ && silent({}))
+    set_silent(true, now, ": check baud, address and wiring, or leave out feedback");
+  else
+    set_silent((pan_reports_ && silent(pan_at_)) || (tilt_reports_ && silent(tilt_at_)), now);
   if (!home_at_) drive(pan_, tilt_, now);  // stops at a limit
   const Time again = stops_owed_ > 0 ? Time(kStopAgain) : Time(kRepeat);
   if ((stops_owed_ > 0 || pan_ != 0 || tilt_ != 0) && now - sent_ >= again) {

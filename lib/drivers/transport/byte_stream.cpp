@@ -43,6 +43,8 @@ std::string why_not(const std::string& path) {
   const int error = errno;
   std::string text = "the serial port " + path + " cannot be opened: " + std::strerror(error);
   if (error == EACCES) text += " (its group is " + group_of(path) + ": add the user to it)";
+  if (error == ENOENT || error == ENXIO || error == ENODEV)
+    text += " (cerberus-heads list names those that are there)";
   if (error == EBUSY) text += " (another program has it open)";
   return text;
 }

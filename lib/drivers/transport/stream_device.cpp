@@ -36,10 +36,10 @@ bool StreamDevice::is_there(Time now, Time& next) {
   return stream_.is_open();
 }
 
-void StreamDevice::set_silent(bool silent, Time now) {
+void StreamDevice::set_silent(bool silent, Time now, const char* advice) {
   if (!silent) return fault_.clear();
   if (!fault_.empty()) return;
-  fault_ = "the " + name_ + " at " + device_ + " does not answer";
+  fault_ = "the " + name_ + " at " + device_ + " does not answer" + advice;
   stop(now);
 }
 

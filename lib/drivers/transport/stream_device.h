@@ -39,8 +39,11 @@ class StreamDevice : public HeadDevice {
   bool is_there(Time now, Time& next);
   // A new connection: forgets what was on its way, greets the device and stops it.
   virtual void on_connected(Time now) = 0;
-  // Reports a device that should have answered and has not, and stops it once.
-  void set_silent(bool silent, Time now);
+  // Reports a device that should have answered and has not, and stops it once. advice: what the user may do.
+  void set_silent(bool silent, Time now, const char* advice = "");
+
+  // "VISCA camera at serial:/dev/ttyUSB0"
+  std::string title() const { return name_ + " at " + device_; }
 
   // The device turns at these speeds (radians a second) from now on.
   void set_speeds(const motion::PanTilt& speed, Time now) { reckoned_.set_speeds(speed, now); }

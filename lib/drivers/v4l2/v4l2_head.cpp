@@ -107,6 +107,7 @@ std::string V4l2Head::connect(Time now) {
       return "no permission to use " + options_.device + ": add the user to the group video";
     if (error == ENOENT)
       return "there is no camera " + options_.device + " (v4l2-ctl --list-devices lists them)";
+    if (error == ENOTTY) return options_.device + " is no camera (v4l2-ctl --list-devices lists them)";
     return options_.device + " cannot be used as a camera: " + std::strerror(error);
   }
   for (Axis* axis : {&pan_, &tilt_}) {

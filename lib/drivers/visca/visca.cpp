@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "text/numbers.h"
+
 namespace cerberus::drivers::visca {
 namespace {
 
@@ -62,7 +64,7 @@ std::string parse_speed_table(const std::string& text, SpeedTable& table) {
       continue;
     }
     if (*at == ';') {
-      if (axis == &read.tilt) return "a speed table has two parts: pan; tilt";
+      if (axis == &read.tilt) return "a speed table has two parts, pan; tilt";
       axis = &read.tilt;
       ++at;
       continue;
@@ -70,13 +72,17 @@ std::string parse_speed_table(const std::string& text, SpeedTable& table) {
     double speed = 0;
     const auto number = std::from_chars(at, end, speed);
     if (number.ec != std::errc() || !(speed > 0) || speed > 1000)
-      return "\"" + text + "\" is no speed table: write speeds in degrees a second, pan; tilt";
-    if (!axis->empty() && speed <= axis->back()) return "the speeds of a speed table must rise";
+      return std::string("no speed begins at \"").append(at, end) +=
+             "\": write those of the steps in degrees a second, above 0 and up to 1000, '0.3 1 2; 0.3 1 2' "
+             "for pan; tilt";
+    if (!axis->empty() && speed <= axis->back())
+      return text::significant(speed, 4).string() + " is not above the speed before it: each step is faster";
     axis->push_back(speed);
     at = number.ptr;
   }
   for (const auto& part : {read.pan, read.tilt})
-    if (part.size() < 2 || part.size() > 25) return "a speed table has 2 to 25 speeds for pan, then for tilt";
+    if (part.size() < 2 || part.size() > 25)
+      return "a speed table has 2 to 25 speeds for pan and as many for tilt, '0.3 1 2; 0.3 1 2'";
   table = read;
   return {};
 }

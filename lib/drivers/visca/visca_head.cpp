@@ -82,6 +82,20 @@ std::string ViscaHead::open(const HeadSetup& setup, Time now) {
     ::poll(&wait, 1, 10);
     read(now);
   }
+  return check_answers();
+}
+
+std::string ViscaHead::check_answers() const {
+  if (has_answered_) return {};
+  const bool serial = options_.device.starts_with("serial:");
+  const std::string check = serial ? "baud=" + std::to_string(options_.baud) + " and address="
+                                   : "its port, and whether it needs no-header";
+  if (has_bytes_ && !has_visca_) return "what the " + title() + " sends is no VISCA: check " + check;
+  if (options_.warn)
+    options_.warn("the " + title() +
+                  " answers nothing, and is driven all the same. If it does not move, check its power "
+                  "and cable, " +
+                  check);
   return {};
 }
 
@@ -216,6 +230,7 @@ std::optional<ViscaHead::Sent> ViscaHead::answered(std::uint32_t sequence) {
 void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time now) {
   using Kind = visca::Reply::Kind;
   if (reply.kind == Kind::other || reply.address != options_.address) return;
+  has_answered_ = true;
   unanswered_.reset();
   if (reply.kind == Kind::position) {
     reports_ = true;
@@ -270,8 +285,13 @@ void ViscaHead::read(Time now) {
       cutter_.append(datagram.payload);
     }
     const std::uint32_t sequence = datagram.sequence;
+    has_bytes_ = true;
+    has_answered_ = has_answered_ || datagram.control;
     bytes.clear();
-    while (const auto message = cutter_.take()) handle(visca::parse_reply(*message), sequence, now);
+    while (const auto message = cutter_.take()) {
+      has_visca_ = has_visca_ || (message->size() >= 3 && message->front() >= 0x80);
+      handle(visca::parse_reply(*message), sequence, now);
+    }
   }
   // An answer that was lost belongs to no later command.
   std::erase_if(unanswered_orders_, [now](const Sent& sent) { return now - sent.time > kForgotten; });

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -27,6 +28,8 @@ struct ViscaOptions {
   bool feedback = true;  // ask for positions
   double zoom = -1;      // the position of the zoom to keep (visca.h); negative: whatever it is
   visca::SpeedTable speeds = visca::default_speed_table();
+  // Called for what is wrong and keeps no head from turning; empty: nothing is.
+  std::function<void(const std::string&)> warn{};
 };
 
 class ViscaHead final : public StreamDevice {
@@ -35,7 +38,8 @@ class ViscaHead final : public StreamDevice {
       : StreamDevice("VISCA camera", options.device, options.baud), options_(options) {
     unanswered_orders_.reserve(kMostOrders);
   }
-  // Blocks up to kAnswerTime to learn whether the camera answers position inquiries.
+  // Blocks up to kAnswerTime to learn whether the camera answers position inquiries. A camera that answers nothing is
+  // warned of, one whose bytes are no VISCA is refused: its baud rate is another one.
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
@@ -80,6 +84,7 @@ class ViscaHead final : public StreamDevice {
   void ask_version(Time now);
   void send_zoom(Time now);
   void on_zoom(double position, Time now);
+  std::string check_answers() const;
   void read(Time now);
   void handle(const visca::Reply& reply, std::uint32_t sequence, Time now);
   std::optional<Sent> answered(std::uint32_t sequence);
@@ -93,7 +98,9 @@ class ViscaHead final : public StreamDevice {
   static constexpr std::size_t kMostOrders = 64;  // more than are sent in kForgotten
   std::vector<Sent> unanswered_orders_;           // the oldest first
   bool acknowledges_ = false, stopping_ = false;
-  int stops_ = 0;  // sent without an answer
+  bool has_answered_ = false;                   // this camera, whatever
+  bool has_bytes_ = false, has_visca_ = false;  // something has come; a message, which may be an echo
+  int stops_ = 0;                               // sent without an answer
   Time sent_{}, asked_{};
   std::optional<Time> unanswered_;  // since when a camera that answers has not answered
   bool moved_ = false;              // a drive was sent, and no stop after it is acknowledged

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The driver visca.
+#include "drivers/visca/visca_head.h"
+
+#include <cstdio>
+
+#include "heads/drivers.h"
+
+namespace cerberus::heads {
+namespace {
+
+std::string read_speeds(const drivers::OptionWord& word, drivers::visca::SpeedTable& table) {
+  const std::string wrong = drivers::visca::parse_speed_table(word.value, table);
+  return wrong.empty() ? wrong : "speeds=" + word.value + ": " + wrong;
+}
+
+std::string read_word(const drivers::OptionWord& word, drivers::ViscaOptions& options) {
+  const std::string& key = word.key;
+  if (key == "baud") return read_whole(word, 1, 1000000, options.baud);
+  if (key == "address") return read_whole(word, 1, 7, options.address);
+  if (key == "zoom") return read_number(word, 0, 1000, options.zoom);  // the head knows its lens
+  if (key == "speeds") return read_speeds(word, options.speeds);
+  if (key == "no-header")
+    options.header = false;
+  else if (key == "no-feedback")
+    options.feedback = false;
+  else
+    return "\"" + key +
+           "\" is no option of visca: device, baud, address, speeds, no-header, no-feedback, zoom, "
+           "emergency-stop";
+  return word.has_value ? key + " takes no value" : "";
+}
+
+}  // namespace
+
+int run_visca(const std::vector<drivers::OptionWord>& words) {
+  drivers::ViscaOptions options;
+  std::string emergency_stop;
+  for (const drivers::OptionWord& word : words) {
+    std::string wrong;
+    if (word.key == "device")
+      options.device = word.value;
+    else if (word.key == "emergency-stop")
+      emergency_stop = word.value;
+    else
+      wrong = read_word(word, options);
+    if (!wrong.empty()) return fail(wrong);
+  }
+  if (options.device.empty()) return fail("visca needs a camera (device=serial:/dev/ttyUSB0)");
+  options.warn = warn;
+  drivers::ViscaHead head(options);
+  return serve(head, emergency_stop);
+}
+
+}  // namespace cerberus::heads
