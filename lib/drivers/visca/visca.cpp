@@ -82,7 +82,7 @@ std::string parse_speed_table(const std::string& text, SpeedTable& table) {
   }
   for (const auto& part : {read.pan, read.tilt})
     if (part.size() < 2 || part.size() > 25)
-      return "a speed table has 2 to 25 speeds for pan and as many for tilt, '0.3 1 2; 0.3 1 2'";
+      return "a speed table has 2 to 25 speeds for pan and 2 to 25 for tilt: '0.3 1 2; 0.3 1 2'";
   table = read;
   return {};
 }
