@@ -89,7 +89,7 @@ END_TEST
 // A head whose device is unplugged and comes back without any command.
 START_TEST(a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same) {
   struct Unplugged final : Head {
-    std::string why;
+    std::string why, blind;
     std::string open(const HeadSetup&) override { return {}; }
     void close() noexcept override {}
     void stop(Time) noexcept override {}
@@ -98,7 +98,7 @@ START_TEST(a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same
     std::string state(Time time, Pose& pose) override {
       pose = {};
       pose.from = time;
-      return {};
+      return blind;
     }
     std::string fault() override { return why; }
     bool blocks() const override { return false; }
@@ -118,6 +118,9 @@ START_TEST(a_fault_at_rest_is_found_by_a_question_which_is_answered_all_the_same
   device.why.clear();
   ck_assert(runner.ask({}, 2s, 2s, poses, 60s) == Answer::done);
   ck_assert(runner.healthy());
+  device.blind = "it has no position";  // and no fault of its own
+  ck_assert(runner.ask({}, 3s, 3s, poses, 60s) == Answer::failed);
+  assert_text(runner.failure(), "it has no position");
 }
 END_TEST
 

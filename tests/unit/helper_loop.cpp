@@ -21,7 +21,7 @@ namespace {
 // Reports its first stop.
 class NotingDevice final : public HeadDevice {
  public:
-  std::string open(const HeadSetup&, Time) override { return {}; }
+  std::string open(const HeadSetup&, Time) override { return refusal; }
   HeadAbilities abilities() const override { return {.velocity = true}; }
   void move(const cerberus::motion::AxisCommand&, const cerberus::motion::AxisCommand&, Time) override {}
   void limit(const cerberus::motion::Limits& to, Time) override {
@@ -34,13 +34,17 @@ class NotingDevice final : public HeadDevice {
   void release(Time) noexcept override { ++releases; }
   bool stopping() const override { return false; }
   void watch(std::vector<pollfd>&) const override {}
-  Time tick(Time now) override { return now + 1s; }
+  Time tick(Time now) override {
+    ++ticks;
+    return now + 1s;
+  }
   std::optional<PoseLine> take_pose(Time) override { return std::nullopt; }
   std::string fault() const override { return {}; }
 
   std::promise<void> limited, stopped;
   cerberus::motion::Limits limits;
-  int releases = 0;
+  std::string refusal;  // of open()
+  int releases = 0, ticks = 0;
 
  private:
   bool stopped_ = false;
@@ -79,6 +83,24 @@ START_TEST(the_end_of_the_pipeline_stops_a_head_whose_steps_are_overdue) {
   ::close(ends[0]);
   ck_assert_int_eq(serve_head(ends[1], ends[1], device), 0);  // it would wait for ever
   ck_assert(!device.stopping());
+  ::close(ends[1]);
+}
+END_TEST
+
+START_TEST(a_head_that_cannot_be_opened_is_left_alone_and_ends_the_helper) {
+  NotingDevice device;
+  device.refusal = "no such port";
+  int ends[2];
+  ck_assert_int_eq(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  const std::string text =
+      "cerberus-head 1 timeout 0.5 limits -170 170 -45 45 speed 90 90 acceleration 600 600 start 0 0\n";
+  ck_assert_int_eq(::send(ends[0], text.data(), text.size(), MSG_NOSIGNAL), static_cast<int>(text.size()));
+  ck_assert_int_eq(serve_head(ends[1], ends[1], device), 2);
+  char answer[64] = {};
+  ck_assert(::recv(ends[0], answer, sizeof answer - 1, 0) > 0);
+  ck_assert_str_eq(answer, "fault no such port\n");
+  ck_assert_int_eq(device.ticks, 0);
+  ::close(ends[0]);
   ::close(ends[1]);
 }
 END_TEST
@@ -136,7 +158,8 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "helper_loop",
-      {the_end_of_the_pipeline_stops_a_head_whose_steps_are_overdue,
+      {a_head_that_cannot_be_opened_is_left_alone_and_ends_the_helper,
+       the_end_of_the_pipeline_stops_a_head_whose_steps_are_overdue,
        silence_after_other_limits_stops_a_head_that_returns_within_them,
        other_limits_leave_the_speeds_of_the_first_line, a_stop_while_the_emergency_contact_is_open_releases});
 }

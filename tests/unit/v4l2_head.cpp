@@ -224,6 +224,7 @@ START_TEST(a_camera_without_positions_reports_its_speeds_and_stops_at_its_limits
   ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
   const auto rest = bench.head->take_speeds(bench.now);
   ck_assert(rest && rest->speed.pan == 0);
+  ck_assert(rest->age >= 0 && rest->age <= .1);
   bench.head->move({Kind::velocity, radians(50), 0}, {}, bench.now);
   ck_assert_int_eq(bench.camera.values[id::kPanSpeed], 0);
   bench.head->move({Kind::velocity, radians(-50), 0}, {}, bench.now);
