@@ -39,22 +39,11 @@ struct Settings {
 
 constexpr std::chrono::milliseconds kDiscovery{1000};  // the pipeline waits 5 s for a helper, login included
 
-// Takes the one camera that is found. Any machine can answer a probe: it is sent no credentials.
 std::string find_camera(Settings& s) {
-  std::string wrong;
+  std::string wrong, device;
   const auto found = drivers::onvif::discover(kDiscovery, wrong);
-  if (!wrong.empty()) return wrong;
-  if (found.empty()) return "no ONVIF camera was found on this network: name it (device=http://HOST)";
-  std::string list;
-  for (const auto& camera : found) {
-    if (!list.empty()) list.append(", ");
-    list.append(camera.device);
-    if (!camera.name.empty()) list.append(" (").append(camera.name).append(")");
-  }
-  if (found.size() > 1) return "several ONVIF cameras were found: name one (device=): " + list;
-  if (!s.http.user.empty())
-    return "a camera that was only found is sent no password: name it (device=): " + list;
-  return parse_device(found.front().device, s.head.login.device);
+  if (wrong.empty()) wrong = drivers::onvif::choose_found(found, !s.http.user.empty(), device);
+  return wrong.empty() ? parse_device(device, s.head.login.device) : wrong;
 }
 
 // The number of `word`, above 0 and at most `most`.

@@ -5,6 +5,7 @@
 #include "heads/drivers.h"
 
 namespace cerberus::heads {
+#if HAVE_PELCO
 namespace {
 
 constexpr double kMostSpeed = 3600;  // degrees a second, as of pantiltsink
@@ -44,5 +45,10 @@ int run_pelco(const std::vector<drivers::OptionWord>& words) {
   drivers::PelcoHead head(options);
   return serve(head, emergency_stop);
 }
+#else
+int run_pelco(const std::vector<drivers::OptionWord>&) {
+  return fail("pelco-d was left out of this build");
+}
+#endif
 
 }  // namespace cerberus::heads

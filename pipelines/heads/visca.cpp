@@ -7,6 +7,7 @@
 #include "heads/drivers.h"
 
 namespace cerberus::heads {
+#if HAVE_VISCA
 namespace {
 
 std::string read_speeds(const drivers::OptionWord& word, drivers::visca::SpeedTable& table) {
@@ -51,5 +52,10 @@ int run_visca(const std::vector<drivers::OptionWord>& words) {
   drivers::ViscaHead head(options);
   return serve(head, emergency_stop);
 }
+#else
+int run_visca(const std::vector<drivers::OptionWord>&) {
+  return fail("visca was left out of this build");
+}
+#endif
 
 }  // namespace cerberus::heads

@@ -38,6 +38,7 @@ struct ViscaFaults {
   int loses_answers = 0;   // as many acknowledgements are lost
   int swallows_moves = 0;  // likewise of moves
   int swallows_stops = 0;  // as many stops are neither obeyed nor answered
+  int address = 1;         // on a serial line
   bool garbles = false;    // its answers arrive as at another baud rate
   bool strict = false;     // refuses a sequence number that is not the next one, as Sony's cameras do
   std::chrono::milliseconds delay{0};      // of each answer
@@ -127,6 +128,7 @@ class ViscaCamera {
   };
   static constexpr double kHomeSpeed = 60;
 
+  std::uint8_t to_me() const { return static_cast<std::uint8_t>(0x80 | faults_.address); }
   double state(double& value) {
     const std::lock_guard guard(lock_);
     advance();
@@ -215,6 +217,7 @@ class ViscaCamera {
     return true;
   }
   void answer(std::vector<std::uint8_t> message) {
+    message[0] = static_cast<std::uint8_t>(0x80 | faults_.address << 4);
     if (faults_.garbles) message.assign(message.size(), 0x1c);
     if (!time_) std::this_thread::sleep_for(faults_.delay);
     if (line_ == Line::udp && faults_.header) {
@@ -237,7 +240,7 @@ class ViscaCamera {
       return;
   }
   void obey(const std::vector<std::uint8_t>& m) {
-    if (m.size() == 5 && m[0] == 0x81 && m[1] == 0x09 && m[2] == 0x06 && m[3] == 0x12) {
+    if (m.size() == 5 && m[0] == to_me() && m[1] == 0x09 && m[2] == 0x06 && m[3] == 0x12) {
       if (!faults_.reports) return;
       std::vector<std::uint8_t> reply{0x90, 0x50};
       for (const double angle : {pan(), tilt()}) {
@@ -266,7 +269,7 @@ class ViscaCamera {
       answer({0x90, 0x41, 0xff});
       return answer({0x90, 0x51, 0xff});
     }
-    if (m == std::vector<std::uint8_t>{0x81, 0x01, 0x06, 0x04, 0xff}) {
+    if (m == std::vector<std::uint8_t>{to_me(), 0x01, 0x06, 0x04, 0xff}) {
       {
         const std::lock_guard guard(lock_);
         advance();
@@ -277,7 +280,7 @@ class ViscaCamera {
       ++homes_;
       return answer({0x90, 0x42, 0xff});
     }
-    if (m.size() != 9 || m[0] != 0x81 || m[1] != 1 || m[2] != 6 || m[3] != 1) return;
+    if (m.size() != 9 || m[0] != to_me() || m[1] != 1 || m[2] != 6 || m[3] != 1) return;
     const bool stop = m[6] == 3 && m[7] == 3;
     if (stop && faults_.swallows_stops > 0) return void(--faults_.swallows_stops);
     if (!stop && faults_.swallows_moves > 0) return void(--faults_.swallows_moves);

@@ -295,6 +295,22 @@ START_TEST(cameras_are_found_by_the_answers_to_the_own_probe) {
 }
 END_TEST
 
+START_TEST(a_camera_that_was_only_found_is_sent_no_login) {
+  const Found door{"urn:uuid:1", "http://192.0.2.1/onvif/device_service", "door"};
+  const Found gate{"urn:uuid:2", "http://192.0.2.2/onvif/device_service", ""};
+  std::string device;
+  assert_text(choose_found({door}, false, device), "");
+  assert_text(device, door.device.c_str());
+  device.clear();
+  assert_text(choose_found({door}, true, device),
+              "a camera that was only found is sent no password: name it (device=): "
+              "http://192.0.2.1/onvif/device_service (door)");
+  ck_assert(choose_found({door, gate}, false, device).find("name one (device=)") != std::string::npos);
+  ck_assert(choose_found({}, false, device).find("no ONVIF camera was found") == 0);
+  assert_text(device, "");
+}
+END_TEST
+
 START_TEST(requests_go_to_the_named_host_whatever_the_camera_claims) {
   Address named;
   assert_text(parse_device("192.0.2.7:8080", named), "");
@@ -373,6 +389,7 @@ int main() {
        the_cameras_time_is_read, faults_have_their_innermost_code_and_a_printable_reason,
        services_are_read_from_both_answers, a_status_may_lack_everything_or_hold_what_is_no_number,
        presets_and_probe_matches_are_read, cameras_are_found_by_the_answers_to_the_own_probe,
+       a_camera_that_was_only_found_is_sent_no_login,
        requests_go_to_the_named_host_whatever_the_camera_claims,
        degrees_become_the_units_of_the_cameras_spaces, fingerprints_are_read_in_every_notation});
 }

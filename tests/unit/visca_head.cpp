@@ -392,6 +392,23 @@ START_TEST(a_camera_without_a_zoom_turns_and_stops_all_the_same) {
 }
 END_TEST
 
+START_TEST(a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is) {
+  ViscaCamera camera(ViscaCamera::Line::serial, {.address = 2});
+  ViscaOptions options = options_for(camera);
+  {
+    Served first(options);
+    assert_text(first.line("ready"), "ready 1 velocity home rate 20");  // address 1 answers nothing
+    first.say("move at 45 hold");
+  }
+  options.address = 2;
+  Served second(options);
+  assert_text(second.line("ready"), "ready 1 velocity feedback rate 20");
+  ck_assert_double_eq(camera.pan(), 0);
+  ck_assert(second.until([&] { return camera.speed() == 45; }, "move at 45 hold"));
+  ck_assert(second.until([&] { return camera.speed() == 0; }, "stop"));
+}
+END_TEST
+
 START_TEST(answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning) {
   ViscaCamera garbled(ViscaCamera::Line::serial, {.garbles = true});
   ViscaHead unread(options_for(garbled));
@@ -458,6 +475,7 @@ int main() {
                             a_zoom_that_is_not_reported_at_first_is_asked_for_again,
                             a_zoom_beyond_the_lens_is_refused,
                             a_camera_without_a_zoom_turns_and_stops_all_the_same,
+                            a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is,
                             answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning,
                             what_cannot_be_opened_is_named})
     tcase_add_test(cases, test);

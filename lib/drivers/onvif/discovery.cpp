@@ -166,4 +166,18 @@ std::vector<Found> discover(std::chrono::milliseconds time, std::string& wrong, 
   return found;
 }
 
+std::string choose_found(const std::vector<Found>& found, bool has_login, std::string& device) {
+  if (found.empty()) return "no ONVIF camera was found on this network: name it (device=http://HOST)";
+  std::string list;
+  for (const Found& camera : found) {
+    if (!list.empty()) list.append(", ");
+    list.append(camera.device);
+    if (!camera.name.empty()) list.append(" (").append(camera.name).append(")");
+  }
+  if (found.size() > 1) return "several ONVIF cameras were found: name one (device=): " + list;
+  if (has_login) return "a camera that was only found is sent no password: name it (device=): " + list;
+  device = found.front().device;
+  return {};
+}
+
 }  // namespace cerberus::drivers::onvif

@@ -29,6 +29,10 @@ struct ProbeTarget {
 // Blocks for `time`. wrong: why there could be no probe; empty: good.
 std::vector<Found> discover(std::chrono::milliseconds time, std::string& wrong, const ProbeTarget& to = {});
 
+// The device service of the only camera of `found`, for a head whose device is `discover`. Any machine can answer a probe:
+// a found camera is sent no password, so that a login is refused. Returns what is wrong; empty: good.
+std::string choose_found(const std::vector<Found>& found, bool has_login, std::string& device);
+
 // The camera of one match that came from the host `sender`; an empty device: it has no address that could be used.
 Found read_match(const ProbeMatch& match, std::string_view sender);
 

@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: LGPL-2.1-or-later
+"""cerberus-heads as a user runs it: nothing moves before Enter, the first key ends it, ports are only asked if named.
+
+    heads_tool.py CERBERUS-HEADS
+"""
+import os
+import pty
+import re
+import select
+import subprocess
+import sys
+import time
+
+from support import LIMIT, TOP, all_tests, run
+
+TOOL = os.path.abspath(sys.argv[1])
+EXAMPLE = ['--command', f'{sys.executable} {TOP}/pipelines/heads/example.py']
+
+
+class Terminal:
+    """A terminal in which the tool runs."""
+    def __init__(self, *words):
+        self.far, near = pty.openpty()
+        self.process = subprocess.Popen([TOOL, *words], stdin=near, stdout=near, stderr=near)
+        os.close(near)
+        self.said = ''
+
+    def read(self):
+        if select.select([self.far], [], [], .05)[0]:
+            try:
+                self.said += os.read(self.far, 4096).decode()
+            except OSError:  # it ended
+                pass
+
+    def until(self, pattern):
+        end = time.monotonic() + LIMIT
+        while not re.search(pattern, self.said):
+            assert time.monotonic() < end, f'no {pattern} in:\n{self.said}'
+            self.read()
+
+    def press(self, keys):
+        os.write(self.far, keys)
+
+    def status(self):
+        end = time.monotonic() + LIMIT
+        while self.process.poll() is None:
+            assert time.monotonic() < end, f'it goes on:\n{self.said}'
+            self.read()
+        self.read()
+        os.close(self.far)
+        return self.process.returncode
+
+    def pan(self):
+        """The last angle that the head reported; none before it was opened."""
+        angles = re.findall(r'pan (-?[0-9.]+) tilt', self.said)
+        return float(angles[-1]) if angles else None
+
+
+def test_it_says_that_the_head_will_move_and_the_first_key_ends_it():
+    terminal = Terminal('move', 'external', *EXAMPLE, '--pan=0.5', '--seconds=60')  # 30 degrees in all
+    terminal.until('Press Enter to begin; the first key then ends it')
+    assert 'The head will turn at 0.5 degrees a second to the right and 0 up, for 60 s' in terminal.said
+    assert terminal.pan() is None
+    terminal.press(b'\n')
+    terminal.until(r'pan 0\.[1-9]')
+    terminal.press(b'x')
+    assert terminal.status() == 0
+    assert terminal.pan() < 25, terminal.said
+
+
+def test_without_enter_nothing_moves():
+    terminal = Terminal('move', 'external', *EXAMPLE, '--pan=5')
+    terminal.until('Press Enter')
+    terminal.press(b'n\n')
+    assert terminal.status() == 1
+    assert terminal.pan() is None
+
+
+def test_a_port_is_asked_if_it_is_named():
+    far, near = pty.openpty()
+    status, said = run([TOOL, 'list', 'serial:' + os.ttyname(near)])
+    assert status == 1 and 'no answer' in said, said
+    assert bytes.fromhex('81090612ff') in os.read(far, 4096)
+    os.close(near)
+    os.close(far)
+
+
+def test_what_cannot_be_is_named():
+    for words, text in ((['--limits=a,b,c,d', '--pan=5'], '--limits=a,b,c,d: four numbers of degrees'),
+                        (['--limits=10,60,-20,20', '--pan=5'], 'exclude 0'),
+                        (['--seconds=100'], '--seconds is up to 60')):
+        status, said = run([TOOL, 'move', 'external', *EXAMPLE, '--yes', *words])
+        assert status == 2 and text in said, said
+    status, said = run([TOOL, 'calibrate', 'external', *EXAMPLE, '--yes'])
+    assert status == 1 and '--horizontal-fov is needed' in said, said
+
+
+all_tests(globals())
