@@ -63,7 +63,7 @@ def test_it_says_that_the_head_will_move_and_the_first_key_ends_it():
     assert 'The head will turn at 0.5 degrees a second to the right and 0 up, for 60 s' in terminal.said
     assert terminal.pan() is None
     terminal.press(b'\n')
-    terminal.until(r'pan 0\.[1-9]')
+    terminal.until(r'pan (0\.[1-9]|[1-9])')
     terminal.press(b'x')
     assert terminal.status() == 0
     assert terminal.pan() < 25, terminal.said
