@@ -5,6 +5,8 @@
 #include <array>
 #include <cstdlib>
 
+#include "publish/streams/encoders.h"
+
 namespace cerberus::robot {
 
 namespace {
@@ -99,7 +101,6 @@ constexpr Option kRecorder[] = {
 
 constexpr std::array<std::string_view, 6> kKinds{"test", "world", "file", "v4l2", "rtsp", "libcamera"};
 constexpr std::array<std::string_view, 3> kCodecs{"h264", "h265", "jpeg"};
-constexpr std::array<std::string_view, 4> kEncoders{"x264enc", "openh264enc", "v4l2h264enc", "jpegenc"};
 
 std::string* value_of(Properties& properties, std::string_view name) {
   for (Property& property : properties)
@@ -270,10 +271,10 @@ class CameraReader {
     RecorderSettings& recorder = camera_.recorder.emplace();
     if (!reader.has("folder")) reader.complain("folder", "a [camera.recorder] needs a \"folder\"");
     if (reader.text("folder", recorder.folder)) recorder.folder = below(folder_, recorder.folder);
-    std::size_t encoder = 0;
-    if (reader.choice("encoder", encoder, kEncoders)) recorder.encoder = kEncoders[encoder];
-    if (reader.has("encoder") && camera_.source.kind == SourceKind::rtsp)
-      reader.complain("encoder", "the stream of kind = \"rtsp\" is recorded as it comes, without an encoder");
+    read_encoder(reader, {"h264", "jpeg"}, recorder.encoder);
+    for (const char* key : {"encoder", "bitrate"})
+      if (reader.has(key) && camera_.source.kind == SourceKind::rtsp)
+        reader.complain(key, "the stream of kind = \"rtsp\" is recorded as it comes, without an encoder");
     double days = 7;
     if (reader.number("retention-days", days, 0, 36500))
       recorder.properties.push_back(
@@ -299,6 +300,29 @@ std::string below(std::string_view folder, std::string_view path) {
   return whole.append(path);
 }
 
+std::string credential_path(TableReader& reader, const char* key, const std::string& name, Folders folders,
+                            std::vector<NamedFile>& files) {
+  if (name.empty() || name.front() == '.' || name.find('/') != name.npos)
+    reader.complain(key,
+                    std::string("\"") + key + "\" is the name of a credential of systemd, without a path");
+  std::string path = below(folders.credentials.empty() ? kCredentials : folders.credentials, name);
+  // Outside of the service, as for --check, credentials are not there.
+  if (!folders.credentials.empty()) files.push_back({reader.line(key), key, path, true});
+  return path;
+}
+
+void read_encoder(TableReader& reader, std::initializer_list<std::string_view> codecs,
+                  EncoderSettings& encoder) {
+  std::vector<std::string_view> elements;
+  for (const publish::Encoder& one : publish::encoders())
+    if (std::ranges::find(codecs, one.codec) != codecs.end()) elements.push_back(one.element);
+  std::size_t chosen = 0;
+  if (reader.choice("encoder", chosen, elements)) encoder.element = elements[chosen];
+  reader.whole("bitrate", encoder.bitrate, 50, 100000);
+  if (reader.has("bitrate") && encoder.element == "jpegenc")
+    reader.complain("bitrate", "\"bitrate\" is not for encoder = \"jpegenc\"");
+}
+
 std::string read_password_path(TableReader& reader, const char* user_key, Folders folders,
                                std::vector<NamedFile>& files) {
   std::string file, credential;
@@ -312,13 +336,7 @@ std::string read_password_path(TableReader& reader, const char* user_key, Folder
                                   "\" and \"password-file\" belong together (or \"password-credential\")");
   }
   if (has_credential) {
-    if (credential.empty() || credential.front() == '.' || credential.find('/') != credential.npos)
-      reader.complain("password-credential",
-                      "\"password-credential\" is the name of a credential of systemd, without a path");
-    file = below(folders.credentials.empty() ? kCredentials : folders.credentials, credential);
-    // Outside of the service, as for --check, credentials are not there.
-    if (!folders.credentials.empty())
-      files.push_back({reader.line("password-credential"), "password-credential", file, true});
+    file = credential_path(reader, "password-credential", credential, folders, files);
   } else if (has_file) {
     file = below(folders.configuration, file);
     files.push_back({reader.line("password-file"), "password-file", file, true});

@@ -5,6 +5,7 @@
 #include <map>
 #include <utility>
 
+#include "publish/streams/encoders.h"
 #include "text/numbers.h"
 
 namespace cerberus::robot {
@@ -16,6 +17,11 @@ constexpr const char* kUnlimited = "queue max-size-buffers=0 max-size-bytes=0 ma
 constexpr const char* kPatient = "max-size-buffers=0 max-size-bytes=0 max-size-time=5000000000";
 // The newest frame counts.
 constexpr const char* kNewest = "leaky=downstream max-size-buffers=2 max-size-bytes=0 max-size-time=0";
+
+// Closed while no client watches: then nothing is drawn or encoded.
+constexpr const char* kValve = " ! valve drop-mode=forward-sticky-events name=";
+// Frames: 2 s of 25 a second, so that a player that seeks in a recording finds a keyframe near.
+constexpr int kKeyframeDistance = 50;
 
 struct Coding {
   const char *depayloader, *parser, *decoder;
@@ -35,10 +41,15 @@ Coding coding(Codec codec) {
 
 class Writer {
  public:
-  Writer(const CameraSettings& camera, const PageSettings& page, Parts parts, const Properties* mqtt)
-      : camera_(camera), source_(camera.source), page_(page), mqtt_(mqtt) {
+  Writer(const CameraSettings& camera, const SharedSettings& shared, Parts parts)
+      : camera_(camera),
+        source_(camera.source),
+        page_(shared.page),
+        mqtt_(shared.mqtt ? &*shared.mqtt : nullptr),
+        rtsp_(shared.rtsp ? &*shared.rtsp : nullptr) {
     head_ = camera.head && parts.head;
     recorder_ = camera.recorder && parts.recorder;
+    plain_ = rtsp_ != nullptr && rtsp_->plain;
   }
 
   PipelineText write() {
@@ -59,7 +70,9 @@ class Writer {
       set_all("sensors", *camera_.sensors);
     }
     if (head_) head();
-    if (recorder_) record_frames();
+    if (recorder_) add(std::string("  found. ! ") + kUnlimited + " name=analysis-queue ! recorder.analysis");
+    if ((recorder_ || plain_) && source_.kind != SourceKind::rtsp) encode_plain();
+    if (rtsp_ != nullptr) serve();
     if (page_.enabled) pictures();
     // A pipeline needs a branch that takes every frame.
     add("  found. ! fakesink sync=false async=false");
@@ -115,22 +128,33 @@ class Writer {
   void network_camera() {
     const Coding with = coding(source_.codec);
     const std::string parsed = std::string(" ! ") + with.depayloader + " ! " + with.parser;
-    const bool two = !source_.record_uri.empty();
-    if (recorder_ && two) {
+    const bool two = !source_.record_uri.empty(), needed = recorder_ || plain_;
+    if (needed && two) {
       add("  rtspsrc name=recorded latency=200");
       add(parsed);
-      add(std::string(" ! ") + kUnlimited + " name=record-queue ! recorder.video");
+      encoded();
       set("recorded", "location", source_.record_uri);
     }
     add("  rtspsrc name=source latency=200");
     set("source", "location", source_.uri);
     add(parsed);
-    if (recorder_ && !two) {
-      add(std::string(" ! tee name=encoded  encoded. ! ") + kUnlimited +
-          " name=record-queue ! recorder.video");
+    if (needed && !two) {
+      encoded(true);
       add("  encoded. ! queue");
     }
     add(std::string(" ! ") + with.decoder);
+  }
+
+  // The plain picture, encoded once for the recorder, the clients of the server, and what else is `decoded`.
+  void encoded(bool decoded = false) {
+    const std::string record = std::string(" ! ") + kUnlimited + " name=record-queue ! recorder.video";
+    if (!plain_ && !decoded) {
+      add(record);
+      return;
+    }
+    add(" ! tee name=encoded");
+    if (recorder_) add("  encoded." + record);
+    if (plain_) add(std::string("  encoded. ! ") + kUnlimited + " ! appsink name=rtsp-plain");
   }
 
   // The window that a simulated head turns over the video.
@@ -189,20 +213,32 @@ class Writer {
     set_all("recorder", camera_.recorder->properties);
   }
 
-  void record_frames() {
-    add(std::string("  found. ! ") + kUnlimited + " name=analysis-queue ! recorder.analysis");
-    if (source_.kind == SourceKind::rtsp) return;
-    const std::string& encoder = camera_.recorder->encoder;
-    add(std::string("  found. ! queue name=record-queue leaky=downstream ") + kPatient + " ! videoconvert");
-    if (encoder == "x264enc")
-      add(" ! video/x-raw,format=I420 ! x264enc tune=zerolatency key-int-max=50 ! h264parse");
-    else if (encoder == "openh264enc")
-      add(" ! video/x-raw,format=I420 ! openh264enc gop-size=50 ! h264parse");
-    else if (encoder == "v4l2h264enc")
-      add(" ! v4l2h264enc ! video/x-h264,level=(string)4 ! h264parse");
-    else
-      add(" ! jpegenc");
-    add(" ! recorder.video");
+  // What is recorded goes on for ever: its encoder is behind no valve. `encode-queue` bridges a slow encoder.
+  void encode_plain() {
+    add(std::string("  found. ! queue name=encode-queue leaky=downstream ") + kPatient);
+    if (!recorder_) add(std::string(kValve) + "rtsp-plain-valve");
+    encoder(camera_.recorder ? camera_.recorder->encoder : rtsp_->encoder);
+    encoded();
+  }
+
+  void encoder(const EncoderSettings& settings) {
+    const publish::Encoder* found = publish::encoder_of(settings.element);
+    if (found == nullptr) return;  // the settings name no other
+    add(" ! videoconvert ! video/x-raw,format=I420 ! ");
+    add(publish::encoder_line(*found, kKeyframeDistance, settings.bitrate));
+    if (found->codec == "h264") add(" ! h264parse");
+  }
+
+  void serve() {
+    if (rtsp_->annotated) {
+      add(std::string("  found. ! queue ") + kNewest + kValve + "rtsp-annotated-valve" +
+          " ! motionoverlay crosshair=true");
+      encoder(rtsp_->encoder);
+      add(" ! appsink name=rtsp-annotated");
+    }
+    add(std::string("  found. ! queue ") + kNewest + kValve +
+        "rtsp-metadata-valve ! onvifmeta name=onvif ! appsink name=rtsp-metadata");
+    set("onvif", "horizontal-fov", number(camera_.horizontal_fov));
   }
 
   void pictures() {
@@ -229,15 +265,15 @@ class Writer {
   const SourceSettings& source_;
   const PageSettings& page_;
   const Properties* mqtt_;
-  bool head_ = false, recorder_ = false;
+  const RtspSettings* rtsp_;
+  bool head_ = false, recorder_ = false, plain_ = false;
   PipelineText text_;
 };
 
 }  // namespace
 
-PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts,
-                           const Properties* mqtt) {
-  return Writer(camera, page, parts, mqtt).write();
+PipelineText pipeline_text(const CameraSettings& camera, const SharedSettings& shared, Parts parts) {
+  return Writer(camera, shared, parts).write();
 }
 
 std::optional<std::vector<PropertyChange>> changes(const PipelineText& before, const PipelineText& after) {

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "robot/settings.h"
@@ -26,11 +27,12 @@ struct Parts {
 };
 
 // Names in the line: `source` (and `recorded`, the second stream), `detect`, `fusion`, `sensors`, `head`, `recorder`;
-// the queues `picture-queue`, `record-queue`, `analysis-queue` at which frames may be dropped; the appsinks `picture`
-// (JPEG) and `facts` (JSON lines).
-// `mqtt`: properties of mqttpublish, called `mqtt`; nullptr: nothing is published.
-PipelineText pipeline_text(const CameraSettings& camera, const PageSettings& page, Parts parts,
-                           const Properties* mqtt = nullptr);
+// `mqtt`; the queues `picture-queue`, `record-queue`, `analysis-queue` at which frames may be dropped; the appsinks
+// `picture` (JPEG) and `facts` (JSON lines), and those of the RTSP server: kRtspPrefix with `plain`, `annotated` (encoded)
+// or `metadata` (ONVIF), each behind a valve of its name with `-valve` where nothing else needs the stream.
+PipelineText pipeline_text(const CameraSettings& camera, const SharedSettings& shared, Parts parts);
+
+inline constexpr std::string_view kRtspPrefix = "rtsp-";
 
 // A property whose value differs between two pipelines of one line.
 struct PropertyChange {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,10 +47,18 @@ struct SourceSettings {
   double start_pan = 0, start_tilt = 0;  // world: where the head looks at first, degrees
 };
 
+// How pictures are encoded that do not come encoded.
+struct EncoderSettings {
+  std::string element = "x264enc";  // of publish::encoders()
+  int bitrate = 2000;               // kilobits a second
+
+  bool operator==(const EncoderSettings&) const = default;
+};
+
 struct RecorderSettings {
   std::string folder;
-  std::string encoder = "x264enc";  // of pictures that do not come encoded
-  Properties properties;            // of eventrecorder
+  EncoderSettings encoder;
+  Properties properties;  // of eventrecorder
 };
 
 // The robot's own drive: docs/manual/base.md.
@@ -86,6 +95,18 @@ struct PageSettings {
   bool operator==(const PageSettings&) const = default;
 };
 
+struct RtspSettings {
+  std::string listen = "127.0.0.1";
+  int port = 8554;
+  std::string users_file;               // lines NAME:PASSWORD; empty: no log-in
+  bool tls = false;                     // with a self-made certificate where none is named
+  std::string certificate, key;         // PEM files
+  bool plain = true, annotated = true;  // what is served of each camera, with the metadata
+  EncoderSettings encoder;  // of annotated pictures, and of plain ones that no recorder has encoded
+
+  bool operator==(const RtspSettings&) const = default;
+};
+
 struct WebhookSettings {
   std::string url, secret_file, ca_file;
   std::string topics = "track mode event";  // of mqttpublish, parted by blanks
@@ -98,6 +119,14 @@ struct ModeSettings {
   Schedule schedule;
 };
 
+// What a camera takes from the robot.
+struct SharedSettings {
+  PageSettings page;
+  std::optional<Properties> mqtt;  // of mqttpublish; nullopt: nothing is published
+  std::optional<RtspSettings> rtsp;
+  std::string stamp{};  // another text once a file was written anew that the camera's table or [mqtt] names
+};
+
 struct Settings {
   std::string name = "cerberus";
   std::string state_folder;  // empty: the program chooses
@@ -107,7 +136,10 @@ struct Settings {
   std::optional<Properties> mqtt;  // of mqttpublish, for all cameras
   bool list_cameras = false;       // the page lists what else publishes to the broker
   std::optional<WebhookSettings> webhook;
+  std::optional<RtspSettings> rtsp;
   std::vector<CameraSettings> cameras;
+  // Of the files that "page", "rtsp", "mqtt", "webhook" or "camera NAME" names: another text once one was written anew.
+  std::map<std::string, std::string> stamps;
 };
 
 }  // namespace cerberus::robot

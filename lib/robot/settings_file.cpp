@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "robot/settings_file.h"
 
-#include <arpa/inet.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
 #include <cstring>
 #include <set>
-#include <tuple>
 #include <utility>
 
-#include "publish/mqtt_report.h"
+#include "publish/streams/users.h"
 #include "robot/camera_settings.h"
 #include "robot/table_reader.h"
+#include "robot/tables/network_tables.h"
 #include "text/file.h"
 
 namespace cerberus::robot {
@@ -24,6 +23,7 @@ using text::TomlValue;
 
 // Largest configuration file, largest secret, in bytes. A larger file was named by mistake.
 constexpr std::size_t kMostBytes = 1 << 20, kMostSecret = 4096;
+constexpr std::size_t kMostUsers = 1 << 21;  // bytes: 1000 users with the longest passwords
 
 // ns, 60 s: the longest way of a slow head takes less, and a person who steers looks more often.
 constexpr std::string_view kManualTimeout = "60000000000";
@@ -85,138 +85,6 @@ ModeSettings read_mode(const TomlValue& table, Mistakes& mistakes) {
   return settings;
 }
 
-bool is_address(const std::string& text) {
-  std::array<unsigned char, sizeof(in6_addr)> bytes{};
-  return inet_pton(AF_INET, text.c_str(), bytes.data()) == 1 ||
-         inet_pton(AF_INET6, text.c_str(), bytes.data()) == 1;
-}
-
-PageSettings read_page(const TomlValue& table, Folders folders, Mistakes& mistakes,
-                       std::vector<NamedFile>& files) {
-  TableReader reader(table, "[page]", mistakes);
-  PageSettings settings;
-  reader.truth("enabled", settings.enabled);
-  if (reader.text("listen", settings.listen) && !is_address(settings.listen))
-    reader.complain("listen", "\"listen\" is a numeric address: 127.0.0.1, or 0.0.0.0 for every network");
-  reader.whole("port", settings.port, 1, 65535);
-  reader.texts("origins", settings.origins);
-  for (const std::string& origin : settings.origins) {
-    const std::size_t scheme = origin.find("://");
-    if (scheme == origin.npos || origin.find('/', scheme + 3) != origin.npos || origin.size() == scheme + 3)
-      reader.complain("origins",
-                      "\"" + origin + "\" is no origin: \"https://robot.example:8443\", without a path");
-  }
-  reader.whole("picture-width", settings.picture_width, 160, 3840);
-  reader.whole("quality", settings.quality, 10, 100);
-  reader.truth("tls", settings.tls);
-  for (const auto& [key, value, secret] : {std::tuple("certificate", &settings.certificate, false),
-                                           std::tuple("certificate-key", &settings.key, true)}) {
-    if (!reader.text(key, *value)) continue;
-    *value = below(folders.configuration, *value);
-    files.push_back({reader.line(key), key, *value, secret});
-  }
-  if (reader.has("certificate") != reader.has("certificate-key"))
-    reader.complain("certificate", "\"certificate\" and \"certificate-key\" belong together");
-  if (reader.has("certificate") && !settings.tls)
-    reader.complain("certificate", "\"certificate\" needs tls = true");
-  reader.finish();
-  return settings;
-}
-
-constexpr Option kMqtt[] = {
-    {"host", Option::Kind::text},
-    {"port", Option::Kind::whole, 1, 65535},
-    {"username", Option::Kind::text},
-    {"topic-prefix", Option::Kind::text},
-    {"discovery-prefix", Option::Kind::text},
-};
-
-BaseSettings read_base(const TomlValue& table, Mistakes& mistakes) {
-  TableReader reader(table, "[base]", mistakes);
-  BaseSettings base;
-  if (!reader.has("command"))
-    reader.complain("command", "[base] needs the \"command\" of the program that drives the base");
-  reader.text("command", base.command);
-  reader.number("max-speed", base.max_speed, 0.01, 5);
-  reader.number("max-yaw-rate", base.max_yaw_rate, 1, 360);
-  reader.finish();
-  return base;
-}
-
-constexpr std::array<std::string_view, 7> kTopics{"track", "state", "pir",  "pantilt",
-                                                  "rule",  "mode",  "event"};
-
-WebhookSettings read_webhook(const TomlValue& table, Folders folders, Mistakes& mistakes,
-                             std::vector<NamedFile>& files) {
-  TableReader reader(table, "[webhook]", mistakes);
-  WebhookSettings settings;
-  for (const char* key : {"url", "secret-file"})
-    if (!reader.has(key)) reader.complain(key, std::string("[webhook] needs \"") + key + "\"");
-  if (reader.text("url", settings.url)) {
-    const bool http = settings.url.starts_with("http://");
-    const std::string_view rest =
-        std::string_view(settings.url).substr(std::min<std::size_t>(http ? 7 : 8, settings.url.size()));
-    if (!http && !settings.url.starts_with("https://"))
-      reader.complain("url", "\"url\" begins with https:// or http://");
-    else if (rest.empty() || rest.substr(0, rest.find('/')).find('@') != rest.npos)
-      reader.complain("url", "\"url\" has a host, and no user or password before it: requests are signed");
-  }
-  for (const auto& [key, value, secret] : {std::tuple("secret-file", &settings.secret_file, true),
-                                           std::tuple("ca-file", &settings.ca_file, false)}) {
-    if (!reader.text(key, *value)) continue;
-    *value = below(folders.configuration, *value);
-    files.push_back({reader.line(key), key, *value, secret});
-  }
-  std::vector<std::string> topics;
-  if (reader.texts("topics", topics)) {
-    settings.topics.clear();
-    for (const std::string& topic : topics) {
-      if (std::ranges::find(kTopics, topic) == kTopics.end())
-        reader.complain("topics",
-                        "\"" + topic + "\" is no topic: track, state, pir, pantilt, rule, mode, event");
-      if (!settings.topics.empty()) settings.topics += ' ';
-      settings.topics += topic;
-    }
-    if (topics.empty()) reader.complain("topics", "\"topics\" names none: leave [webhook] out");
-  }
-  reader.finish();
-  return settings;
-}
-
-Properties read_mqtt(const TomlValue& table, Folders folders, bool& list_cameras, Mistakes& mistakes,
-                     std::vector<NamedFile>& files) {
-  TableReader reader(table, "[mqtt]", mistakes);
-  reader.truth("list-cameras", list_cameras);
-  Properties properties;
-  if (!reader.has("host")) reader.complain("host", "[mqtt] needs the \"host\" of the broker");
-  reader.properties(kMqtt, properties);
-  for (const Property& property : properties)
-    if (property.name == "topic-prefix" && !publish::is_topic_level(property.value))
-      reader.complain("topic-prefix", "\"topic-prefix\" is one level of a topic, without / + #");
-  if (std::string path = read_password_path(reader, "username", folders, files); !path.empty())
-    properties.push_back({"password-file", std::move(path)});
-  if (std::string path; reader.text("ca-file", path)) {
-    properties.push_back({"ca-file", below(folders.configuration, path)});
-    files.push_back({reader.line("ca-file"), "ca-file", properties.back().value, false});
-  }
-  std::vector<std::string> commands;
-  reader.texts("commands", commands);
-  std::string list;
-  for (const std::string& command : commands) {
-    if (!publish::arguments_of(command))
-      reader.complain(
-          "commands",
-          "\"" + command +
-              "\" is no command: move-to, move-by, stop, home, auto, follow, arm, disarm, privacy, "
-              "picture");
-    if (!list.empty()) list += ' ';
-    list += command;
-  }
-  if (!list.empty()) properties.push_back({"commands", list});
-  reader.finish();
-  return properties;
-}
-
 // An order to move that arrived by MQTT ends after a time, as a network may fail before the next one.
 void limit_moves(Settings& settings) {
   const auto find = [](const Properties& properties, std::string_view name) {
@@ -260,16 +128,28 @@ Parsed parse(std::string_view toml, Folders folders) {
   reader.text("name", settings.name);
   if (reader.text("state-folder", settings.state_folder))
     settings.state_folder = below(folders.configuration, settings.state_folder);
+  std::vector<NamedFile>& files = parsed.files;
+  auto owned_by = [&files, owned = std::size_t{0}](const std::string& owner) mutable {
+    for (; owned < files.size(); ++owned) files[owned].owner = owner;
+  };
   if (const TomlValue* table = reader.table("mode")) settings.mode = read_mode(*table, mistakes);
   if (const TomlValue* table = reader.table("page"))
-    settings.page = read_page(*table, folders, mistakes, parsed.files);
+    settings.page = read_page(*table, folders, mistakes, files);
+  owned_by("page");
+  if (const TomlValue* table = reader.table("rtsp"))
+    settings.rtsp = read_rtsp(*table, folders, mistakes, files);
+  owned_by("rtsp");
   if (const TomlValue* table = reader.table("mqtt"))
-    settings.mqtt = read_mqtt(*table, folders, settings.list_cameras, mistakes, parsed.files);
+    settings.mqtt = read_mqtt(*table, folders, settings.list_cameras, mistakes, files);
+  owned_by("mqtt");
   if (const TomlValue* table = reader.table("base")) settings.base = read_base(*table, mistakes);
   if (const TomlValue* table = reader.table("webhook"))
-    settings.webhook = read_webhook(*table, folders, mistakes, parsed.files);
-  for (const TomlValue* table : reader.tables("camera", "[[camera]]"))
-    settings.cameras.push_back(read_camera(*table, folders, mistakes, parsed.files));
+    settings.webhook = read_webhook(*table, folders, mistakes, files);
+  owned_by("webhook");
+  for (const TomlValue* table : reader.tables("camera", "[[camera]]")) {
+    settings.cameras.push_back(read_camera(*table, folders, mistakes, files));
+    owned_by("camera " + settings.cameras.back().name);
+  }
   if (settings.mqtt) limit_moves(settings);
   if (!reader.has("camera")) mistakes.push_back({0, "there is no camera: it needs a [[camera]]"});
   std::set<std::string> names;
@@ -289,7 +169,23 @@ std::string fault_of(const NamedFile& file) {
     return "\"" + file.key + "\" names " + file.path + ", which is no regular file";
   if (file.secret && (about.st_mode & 07) != 0)
     return file.path + " holds a secret that every user of this machine can read: chmod 600 " + file.path;
-  return {};
+  if (!file.users) return {};
+  const text::File list = text::read_file(file.path, kMostUsers);
+  if (list.fault == text::File::Fault::failed)
+    return "\"" + file.key + "\" names " + file.path + ": " + std::strerror(list.error);
+  if (list.fault != text::File::Fault::none)
+    return "\"" + file.key + "\" names " + file.path + ", which is no list of users";
+  std::vector<publish::User> users;
+  const std::string wrong = publish::parse_users(list.text, users);
+  return wrong.empty() ? "" : file.path + ": " + wrong;
+}
+
+// Differs once the file was written anew.
+std::string stamp_of(const NamedFile& file) {
+  struct stat about{};
+  if (::stat(file.path.c_str(), &about) != 0) return file.path + '\n';
+  return file.path + ' ' + std::to_string(about.st_ino) + ' ' + std::to_string(about.st_size) + ' ' +
+         std::to_string(about.st_mtim.tv_sec) + '.' + std::to_string(about.st_mtim.tv_nsec) + '\n';
 }
 
 }  // namespace
@@ -320,6 +216,7 @@ SettingsFile load_settings(const std::string& path, std::string_view credentials
     if (std::string fault = fault_of(named); !fault.empty())
       parsed.mistakes.push_back({named.line, std::move(fault)});
   if (!parsed.mistakes.empty()) return {std::nullopt, joined(std::move(parsed.mistakes), path)};
+  for (const NamedFile& named : parsed.files) parsed.settings.stamps[named.owner] += stamp_of(named);
   return {std::move(parsed.settings), ""};
 }
 

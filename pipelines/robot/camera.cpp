@@ -58,14 +58,17 @@ const char* name(Camera::State state) {
   return kStates[static_cast<int>(state)];
 }
 
-Camera::Camera(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt,
-               OnOrder on_order)
-    : settings_(settings), page_(page), on_order_(std::move(on_order)), newest_(std::make_shared<Newest>()) {
+Camera::Camera(const CameraSettings& settings, SharedSettings shared, RtspOutput& rtsp, OnOrder on_order)
+    : settings_(settings),
+      shared_(std::move(shared)),
+      rtsp_(rtsp),
+      on_order_(std::move(on_order)),
+      newest_(std::make_shared<Newest>()) {
   newest_->camera = this;
-  if (mqtt != nullptr) mqtt_ = *mqtt;
 }
 
 Camera::~Camera() {
+  rtsp_.forget(settings_.name, pipeline_);
   newest_->camera = nullptr;
   if (bus_watch_ != 0) g_source_remove(bus_watch_);
   if (pipeline_ == nullptr) return;
@@ -175,7 +178,7 @@ void Camera::connect() {
 }
 
 bool Camera::publish(const char* topic, GBytes* payload, bool retain) {
-  if (!mqtt_ || pipeline_ == nullptr) return false;
+  if (!shared_.mqtt || pipeline_ == nullptr) return false;
   g_autoptr(GstElement) mqtt = element("mqtt");
   gboolean done = FALSE;
   if (mqtt) g_signal_emit_by_name(mqtt, "publish", topic, payload, static_cast<gboolean>(retain), &done);
@@ -183,7 +186,7 @@ bool Camera::publish(const char* topic, GBytes* payload, bool retain) {
 }
 
 void Camera::publish_event() {
-  if (!mqtt_ || !settings_.recorder) return;
+  if (!shared_.mqtt || !settings_.recorder) return;
   std::string fault;
   const std::string text = Events(settings_.recorder->folder).newest(settings_.name, fault);
   if (!fault.empty()) return;  // the page says so where it is asked for
@@ -202,7 +205,7 @@ void Camera::publish_picture() {
 void Camera::start() {
   again_ = false;
   since_ = last_frame_ = Clock::now();
-  const PipelineText text = pipeline_text(settings_, page_, parts_, mqtt_ ? &*mqtt_ : nullptr);
+  const PipelineText text = pipeline_text(settings_, shared_, parts_);
   GST_DEBUG("%s: %s", settings_.name.c_str(), text.line.c_str());
   g_autoptr(GError) error = nullptr;
   pipeline_ = gst_parse_launch_full(text.line.c_str(), nullptr, GST_PARSE_FLAG_FATAL_ERRORS, &error);
@@ -337,6 +340,10 @@ void Camera::on_message(GstMessage* message) {
 // Forgets picture and facts either way: none outlasts the time in which it may be seen.
 void Camera::set_show(bool show) {
   picture_asked_after_ = 0;
+  if (show)
+    rtsp_.show(settings_.name, pipeline_);
+  else
+    rtsp_.hide(settings_.name, pipeline_);
   const std::lock_guard lock(newest_->lock);
   newest_->show = show;
   update_draw();
@@ -483,6 +490,7 @@ void Camera::close() {
 }
 
 void Camera::closed() {
+  rtsp_.forget(settings_.name, pipeline_);
   g_clear_pointer(&head_, gst_object_unref);
   g_clear_pointer(&recorder_, gst_object_unref);
   g_clear_pointer(&pipeline_, gst_object_unref);

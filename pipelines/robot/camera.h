@@ -15,6 +15,7 @@
 #include "robot/backoff.h"
 #include "robot/pipeline_text.h"
 #include "robot/settings.h"
+#include "rtsp_output.h"
 
 namespace cerberus::robot {
 
@@ -49,8 +50,8 @@ class Camera {
   // A message of mqttpublish whose topic the webhook wants.
   using OnPublish = std::function<void(const Camera&, const std::string& topic, const std::string& payload)>;
 
-  // `mqtt`: properties of mqttpublish; nullptr: nothing is published.
-  Camera(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt, OnOrder on_order);
+  // `rtsp` outlives the camera.
+  Camera(const CameraSettings& settings, SharedSettings shared, RtspOutput& rtsp, OnOrder on_order);
   ~Camera();
   Camera(const Camera&) = delete;
   Camera& operator=(const Camera&) = delete;
@@ -69,7 +70,7 @@ class Camera {
     restarts,  // the pipeline is made anew
   };
   // Takes other settings of the same camera (its name stays).
-  Change change(const CameraSettings& settings, const PageSettings& page, const Properties* mqtt);
+  Change change(const CameraSettings& settings, SharedSettings shared);
   // Stops for good. is_stopped() tells when that is done.
   void shut_down();
   bool is_stopped() const;
@@ -132,8 +133,8 @@ class Camera {
   void on_report(const GstStructure* report);
 
   CameraSettings settings_;
-  PageSettings page_;
-  std::optional<Properties> mqtt_;
+  SharedSettings shared_;
+  RtspOutput& rtsp_;
   OnOrder on_order_;
   OnPicture on_picture_;
   OnPublish on_publish_;

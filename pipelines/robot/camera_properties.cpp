@@ -51,7 +51,7 @@ void Camera::set_triggers() {
 }
 
 void Camera::publish_mode() {
-  if (!mqtt_ || pipeline_ == nullptr) return;
+  if (!shared_.mqtt || pipeline_ == nullptr) return;
   g_autoptr(GstElement) mqtt = element("mqtt");
   if (mqtt) g_object_set(mqtt, "mode", std::string(robot::name(mode_)).c_str(), nullptr);
 }
@@ -91,18 +91,15 @@ bool Camera::change_live(const PipelineText& before, const PipelineText& after) 
   return true;
 }
 
-Camera::Change Camera::change(const CameraSettings& settings, const PageSettings& page,
-                              const Properties* mqtt) {
-  const auto text = [this](Parts parts) {
-    return pipeline_text(settings_, page_, parts, mqtt_ ? &*mqtt_ : nullptr);
-  };
+Camera::Change Camera::change(const CameraSettings& settings, SharedSettings shared) {
+  const auto text = [this](Parts parts) { return pipeline_text(settings_, shared_, parts); };
   const PipelineText whole_before = text({}), before = text(parts_);
   const SourceSettings& source = settings.source;
-  const bool same_secret =
-      source.user == settings_.source.user && source.password_file == settings_.source.password_file;
+  const bool same_secret = source.user == settings_.source.user &&
+                           source.password_file == settings_.source.password_file &&
+                           shared.stamp == shared_.stamp;
   settings_ = settings;
-  page_ = page;
-  mqtt_ = mqtt != nullptr ? std::optional(*mqtt) : std::nullopt;
+  shared_ = std::move(shared);
   const auto differences = changes(whole_before, text({}));
   if (differences && differences->empty() && same_secret) return Change::none;
   if (state_ == State::running && same_secret && change_live(before, text(parts_))) return Change::live;

@@ -44,6 +44,11 @@ bool have_stopped(const std::vector<std::unique_ptr<Camera>>& cameras) {
   return std::ranges::all_of(cameras, [](const auto& camera) { return camera->is_stopped(); });
 }
 
+std::string stamp_of(const Settings& settings, const std::string& owner) {
+  const auto found = settings.stamps.find(owner);
+  return found == settings.stamps.end() ? std::string() : found->second;
+}
+
 // Whether the page must be made anew: where it listens, or what it says once to each browser.
 bool page_differs(const Settings& before, const Settings& after) {
   const auto description = [](const Settings& settings) {
@@ -58,7 +63,8 @@ bool page_differs(const Settings& before, const Settings& after) {
   page.quality = after.page.quality;
   // The page has its own connection to the broker, for the cameras of others.
   return page != after.page || before.base != after.base || before.mqtt != after.mqtt ||
-         before.list_cameras != after.list_cameras || description(before) != description(after);
+         before.list_cameras != after.list_cameras || stamp_of(before, "page") != stamp_of(after, "page") ||
+         stamp_of(before, "mqtt") != stamp_of(after, "mqtt") || description(before) != description(after);
 }
 
 void notify([[maybe_unused]] const std::string& text) {
@@ -92,6 +98,7 @@ bool Robot::open(Settings settings, std::string& error) {
   open_base();
   open_webhook();
   set_publishing();
+  rtsp_.configure(settings_.rtsp, settings_.state_folder);
   for (const CameraSettings& camera : settings_.cameras) cameras_.push_back(make_camera(camera));
 #if HAVE_PAGE
   if (settings_.page.enabled) open_page();
@@ -110,7 +117,7 @@ void Robot::make_folder(const CameraSettings& settings) {
 
 std::unique_ptr<Camera> Robot::make_camera(const CameraSettings& settings) {
   make_folder(settings);
-  auto camera = std::make_unique<Camera>(settings, settings_.page, publishing(),
+  auto camera = std::make_unique<Camera>(settings, shared(settings), rtsp_,
                                          [this](const std::string& order) { on_order(order); });
 #if HAVE_PAGE
   camera->set_on_publish([this](const Camera& from, const std::string& topic, const std::string& payload) {
@@ -129,6 +136,11 @@ void Robot::set_publishing() {
     publishing_->push_back({"post-topics", settings_.webhook->topics});
   }
 #endif
+}
+
+SharedSettings Robot::shared(const CameraSettings& camera) const {
+  return {settings_.page, publishing_, RtspOutput::is_built() ? settings_.rtsp : std::nullopt,
+          stamp_of(settings_, "camera " + camera.name) + stamp_of(settings_, "mqtt")};
 }
 
 void Robot::open_base() {
@@ -226,12 +238,16 @@ void Robot::take(Settings settings) {
 #if HAVE_PAGE
   if (new_page) page_.reset();  // before the cameras that it shows
 #endif
-  const bool new_webhook = settings_.webhook != settings.webhook || settings_.name != settings.name;
+  const bool new_webhook = settings_.webhook != settings.webhook || settings_.name != settings.name ||
+                           stamp_of(settings_, "webhook") != stamp_of(settings, "webhook");
+  const bool new_rtsp =
+      settings_.rtsp != settings.rtsp || stamp_of(settings_, "rtsp") != stamp_of(settings, "rtsp");
   const bool new_base = settings_.base != settings.base;
   settings_ = std::move(settings);
   if (new_webhook) open_webhook();
   if (new_base) open_base();
   set_publishing();
+  if (new_rtsp) rtsp_.configure(settings_.rtsp, settings_.state_folder);
 
   std::vector<std::unique_ptr<Camera>> before = std::move(cameras_);
   cameras_.clear();
@@ -245,7 +261,7 @@ void Robot::take(Settings settings) {
     } else {
       cameras_.push_back(std::move(*found));
       make_folder(camera);
-      switch (cameras_.back()->change(camera, settings_.page, publishing())) {
+      switch (cameras_.back()->change(camera, shared(camera))) {
         case Camera::Change::none:
           continue;
         case Camera::Change::live:
@@ -299,6 +315,8 @@ void Robot::tick() {
   }
   std::erase_if(leaving_, [](const auto& camera) { return camera->is_stopped(); });
   if (refused_) status += ", configuration refused";
+  if (shutting_down_ == 0) rtsp_.tick();
+  if (!rtsp_.fault().empty()) status += ", RTSP (" + rtsp_.fault() + ')';
 #if HAVE_PAGE
   if (!page_ && settings_.page.enabled && shutting_down_ == 0 &&
       page_backoff_.is_due(std::chrono::steady_clock::now()))

@@ -19,6 +19,7 @@
 #include "robot/mode.h"
 #include "robot/settings.h"
 #include "robot/settings_file.h"
+#include "rtsp_output.h"
 
 namespace cerberus::robot {
 
@@ -45,7 +46,7 @@ class Robot {
   void open_webhook();    // and closes the one before
   void open_base();       // the same
   void set_publishing();  // what the cameras publish: by MQTT, and for the webhook
-  const Properties* publishing() const { return publishing_ ? &*publishing_ : nullptr; }
+  SharedSettings shared(const CameraSettings& camera) const;
   void tick();
   void report(const std::string& text) const;
   void begin_shut_down();
@@ -58,6 +59,7 @@ class Robot {
   Settings settings_;
   std::optional<Properties> publishing_;  // of mqttpublish
   std::unique_ptr<ModeKeeper> mode_;
+  RtspOutput rtsp_;  // outlives the cameras
   std::vector<std::unique_ptr<Camera>> cameras_;
   std::vector<std::unique_ptr<Camera>> leaving_;  // no longer in the configuration, until they have stopped
 #if HAVE_PAGE

@@ -4,6 +4,7 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace cerberus::rtsp {
 namespace {
@@ -21,12 +22,13 @@ GstBuffer* in_running_time(GstBuffer* buffer, const GstSegment* segment) {
 
 }  // namespace
 
-EncodedStream::EncodedStream(GstAppSink* sink, GstElement* valve)
+EncodedStream::EncodedStream(GstAppSink* sink, GstElement* valve, std::string name)
     : sink_(GST_APP_SINK(gst_object_ref(sink))),
-      valve_(valve ? GST_ELEMENT(gst_object_ref(valve)) : nullptr) {}
+      valve_(valve ? GST_ELEMENT(gst_object_ref(valve)) : nullptr),
+      name_(std::move(name)) {}
 
-std::shared_ptr<EncodedStream> EncodedStream::make(GstAppSink* sink, GstElement* valve) {
-  std::shared_ptr<EncodedStream> stream(new EncodedStream(sink, valve));
+std::shared_ptr<EncodedStream> EncodedStream::make(GstAppSink* sink, GstElement* valve, std::string name) {
+  std::shared_ptr<EncodedStream> stream(new EncodedStream(sink, valve, std::move(name)));
   // Frames are sent when they come; a stream without frames keeps no other one from starting.
   g_object_set(sink, "sync", FALSE, "async", FALSE, nullptr);
   GstAppSinkCallbacks callbacks = {};
@@ -43,10 +45,6 @@ EncodedStream::~EncodedStream() {
   gst_clear_caps(&caps_);
 }
 
-std::string EncodedStream::name() const {
-  return GST_OBJECT_NAME(sink_.get());
-}
-
 GstCaps* EncodedStream::caps() const {
   const std::lock_guard lock(mutex_);
   return caps_ ? gst_caps_ref(caps_) : nullptr;
@@ -54,6 +52,7 @@ GstCaps* EncodedStream::caps() const {
 
 void EncodedStream::add(GstAppSrc* receiver) {
   const std::lock_guard lock(mutex_);
+  if (closed_) return;
   gst_app_src_set_caps(receiver, caps_);
   receivers_.push_back({Ref<GstAppSrc>(GST_APP_SRC(gst_object_ref(receiver))), {}});
   set_valve();
@@ -92,6 +91,19 @@ void EncodedStream::request_keyframe() {
 void EncodedStream::end() {
   const std::lock_guard lock(mutex_);
   for (const Receiver& each : receivers_) gst_app_src_end_of_stream(each.source.get());
+}
+
+void EncodedStream::close() {
+  const std::lock_guard lock(mutex_);
+  closed_ = true;
+  for (const Receiver& each : receivers_) gst_app_src_end_of_stream(each.source.get());
+  receivers_.clear();
+  set_valve();
+}
+
+void EncodedStream::reopen() {
+  const std::lock_guard lock(mutex_);
+  closed_ = false;
 }
 
 // Upstream from the sink: every element hands it on until the encoder takes it.

@@ -27,12 +27,12 @@ class EncodedStream {
  public:
   // `sink` is an appsink of the pipeline; its frames come here from now on. `valve` (or null) is in front of its
   // encoder: it is closed while there is no receiver, which costs nothing then.
-  static std::shared_ptr<EncodedStream> make(GstAppSink* sink, GstElement* valve);
+  static std::shared_ptr<EncodedStream> make(GstAppSink* sink, GstElement* valve, std::string name);
   ~EncodedStream();
   EncodedStream(const EncodedStream&) = delete;
   EncodedStream& operator=(const EncodedStream&) = delete;
 
-  std::string name() const;
+  const std::string& name() const { return name_; }
   // The caps of the stream; null before its first frame. To be unreferenced by the caller.
   GstCaps* caps() const;
 
@@ -46,6 +46,9 @@ class EncodedStream {
 
   // The receivers are given the end of the stream.
   void end();
+  // From now on there is no receiver, until reopen(): frames that come are given to none.
+  void close();
+  void reopen();
 
  private:
   struct Receiver {
@@ -53,7 +56,7 @@ class EncodedStream {
     publish::StreamGate gate;
   };
 
-  EncodedStream(GstAppSink* sink, GstElement* valve);
+  EncodedStream(GstAppSink* sink, GstElement* valve, std::string name);
   static GstFlowReturn on_sample(GstAppSink* sink, gpointer holder);
   void deliver(GstSample* sample);
   void set_valve();
@@ -61,11 +64,13 @@ class EncodedStream {
 
   Ref<GstAppSink> sink_;
   Ref<GstElement> valve_;
+  std::string name_;
   mutable std::mutex mutex_;  // all below
   GstCaps* caps_ = nullptr;
   std::vector<Receiver> receivers_;
   publish::KeyframeRequests requests_;
   std::chrono::nanoseconds newest_{0};  // running time of the newest frame
+  bool closed_ = false;
   bool has_delta_frames_ = false;  // else every frame is a keyframe, and none is asked for (JPEG, metadata)
   guint asked_ = 0;                // keyframes that were asked for
 };

@@ -19,6 +19,7 @@ constexpr int kPatience = 10'000;  // milliseconds after which what has not begu
 struct Run {
   GstElement* pipeline;
   RtspServer& server;
+  PipelineStreams& streams;
   GMainLoop* loop;
   int waited = 0;  // milliseconds
   bool interrupted = false;
@@ -33,12 +34,14 @@ struct Run {
 gboolean on_begin(gpointer data) {
   Run& run = *static_cast<Run*>(data);
   run.waited += kPeriod;
-  if (!run.server.has_begun()) {
+  if (!run.streams.has_begun()) {
     if (run.waited == kPatience)
-      std::fprintf(stderr, "rtsp: waiting for the first picture of: %s\n", run.server.missing().c_str());
+      std::fprintf(stderr, "rtsp: waiting for the first picture of: %s\n", run.streams.missing().c_str());
     return G_SOURCE_CONTINUE;
   }
-  if (std::string wrong = run.server.listen(); !wrong.empty()) {
+  std::string wrong = run.server.add({}, run.streams);
+  if (wrong.empty()) wrong = run.server.listen();
+  if (!wrong.empty()) {
     run.end(std::move(wrong));
     return G_SOURCE_REMOVE;
   }
@@ -52,7 +55,7 @@ gboolean on_message(GstBus*, GstMessage* message, gpointer data) {
   g_autoptr(GError) error = nullptr;
   g_autofree gchar* debug = nullptr;
   if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS) {
-    run.server.end();
+    run.streams.end();
     run.end("");
   } else if (GST_MESSAGE_TYPE(message) == GST_MESSAGE_WARNING) {
     gst_message_parse_warning(message, &error, &debug);
@@ -76,8 +79,10 @@ gboolean on_interrupt(gpointer data) {
 }
 
 int serve(GstElement* pipeline, const ServerSettings& settings) {
-  RtspServer server(pipeline, settings);
-  Run run{pipeline, server, g_main_loop_new(nullptr, FALSE), 0, false, server.prepare()};
+  RtspServer server(settings);
+  PipelineStreams streams;
+  Run run{pipeline, server, streams, g_main_loop_new(nullptr, FALSE), 0, false, server.prepare()};
+  if (run.error.empty()) run.error = streams.collect(pipeline);
   if (run.error.empty()) {
     g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
     gst_bus_add_watch(bus, on_message, &run);

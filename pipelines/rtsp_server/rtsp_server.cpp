@@ -4,7 +4,6 @@
 #include <gst/video/video.h>
 
 #include <algorithm>
-#include <cctype>
 
 #include "rtsp_server/limited_auth.h"
 
@@ -12,7 +11,6 @@ namespace cerberus::rtsp {
 namespace {
 
 constexpr char kRole[] = "viewer";
-constexpr char kMetadata[] = "metadata";
 constexpr guint kMostSessions = 100;  // of all clients
 constexpr guint kCleaningPeriod = 2;  // seconds after which sessions without a client are looked for
 
@@ -31,18 +29,13 @@ std::string payloader_of(const GstCaps* caps) {
   return {};
 }
 
-// The mount's name is part of an address.
-bool fits_address(const std::string& name) {
-  return std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isalnum(c) || c == '-' || c == '_'; });
-}
-
 std::string source_name(std::size_t stream) {
   return "cerberus_source_" + std::to_string(stream);
 }
 
 // The sources of one media: fed until the media ends.
 struct Feed {
+  std::string folder;
   std::vector<std::pair<std::shared_ptr<EncodedStream>, Ref<GstAppSrc>>> sources;
 
   ~Feed() { stop(); }
@@ -61,21 +54,22 @@ GstPadProbeReturn on_upstream_event(GstPad*, GstPadProbeInfo* info, gpointer str
 }
 
 // What a factory makes its media of.
-struct Mount {
-  GstElement* pipeline;                                 // that encodes
+struct Served {
+  std::string folder;
+  GstClockTime base_time;                               // of the pipeline that encodes
   std::vector<std::shared_ptr<EncodedStream>> streams;  // pay0, pay1
 };
 
 // The media of a mount is made for the first client that describes it. It counts time as the pipeline does that
 // encodes, so that buffers keep their stamps and the streams of a mount their distance.
 void on_media_configure(GstRTSPMediaFactory*, GstRTSPMedia* media, gpointer data) {
-  const auto& [pipeline, streams] = *static_cast<Mount*>(data);
+  const auto& [folder, base_time, streams] = *static_cast<Served*>(data);
   g_autoptr(GstElement) element = gst_rtsp_media_get_element(media);
   g_autoptr(GstObject) whole = gst_object_get_parent(GST_OBJECT(element));
   gst_element_set_start_time(GST_ELEMENT(whole),
                              GST_CLOCK_TIME_NONE);  // it keeps the base time that it is given
-  gst_element_set_base_time(GST_ELEMENT(whole), gst_element_get_base_time(pipeline));
-  auto* feed = new Feed;
+  gst_element_set_base_time(GST_ELEMENT(whole), base_time);
+  auto* feed = new Feed{folder, {}};
   for (std::size_t k = 0; k < streams.size(); ++k) {
     GstElement* source = gst_bin_get_by_name(GST_BIN(element), source_name(k).c_str());
     if (!source) continue;
@@ -97,14 +91,37 @@ void on_play(GstRTSPClient*, GstRTSPContext* context, gpointer) {
     for (const auto& [stream, source] : feed->sources) stream->play(source.get());
 }
 
+// Filters that find the clients of a folder: those that have set up media of it.
+GstRTSPFilterResult find_media(GstRTSPSession*, GstRTSPSessionMedia* of_session, gpointer folder) {
+  GstRTSPMedia* media = gst_rtsp_session_media_get_media(of_session);
+  const auto* feed = static_cast<Feed*>(g_object_get_data(G_OBJECT(media), kFeed));
+  const bool same = feed && feed->folder == *static_cast<const std::string*>(folder);
+  return same ? GST_RTSP_FILTER_REF : GST_RTSP_FILTER_KEEP;
+}
+
+GstRTSPFilterResult find_session(GstRTSPClient*, GstRTSPSession* session, gpointer folder) {
+  GList* found = gst_rtsp_session_filter(session, find_media, folder);
+  const bool any = found != nullptr;
+  g_list_free_full(found, g_object_unref);
+  return any ? GST_RTSP_FILTER_REF : GST_RTSP_FILTER_KEEP;
+}
+
+// Closes the connection of a client of the folder.
+GstRTSPFilterResult end_of_folder(GstRTSPServer*, GstRTSPClient* client, gpointer folder) {
+  GList* found = gst_rtsp_client_session_filter(client, find_session, folder);
+  const bool any = found != nullptr;
+  g_list_free_full(found, g_object_unref);
+  return any ? GST_RTSP_FILTER_REMOVE : GST_RTSP_FILTER_KEEP;
+}
+
 void on_client(GstRTSPServer*, GstRTSPClient* client, gpointer) {
   g_signal_connect(client, "play-request", G_CALLBACK(on_play), nullptr);
 }
 
 }  // namespace
 
-RtspServer::RtspServer(GstElement* pipeline, ServerSettings settings)
-    : pipeline_(pipeline), settings_(std::move(settings)) {}
+RtspServer::RtspServer(ServerSettings settings)
+    : settings_(std::move(settings)), server_(gst_rtsp_server_new()) {}
 
 RtspServer::~RtspServer() {
   if (cleaner_) g_source_remove(cleaner_);
@@ -112,10 +129,8 @@ RtspServer::~RtspServer() {
     g_source_destroy(listener_);
     g_source_unref(listener_);
   }
-  if (server_) {
-    const auto remove = [](GstRTSPServer*, GstRTSPClient*, gpointer) { return GST_RTSP_FILTER_REMOVE; };
-    g_list_free_full(gst_rtsp_server_client_filter(server_.get(), remove, nullptr), g_object_unref);
-  }
+  const auto remove = [](GstRTSPServer*, GstRTSPClient*, gpointer) { return GST_RTSP_FILTER_REMOVE; };
+  g_list_free_full(gst_rtsp_server_client_filter(server_.get(), remove, nullptr), g_object_unref);
   g_clear_object(&certificate_);
 }
 
@@ -132,53 +147,15 @@ std::string RtspServer::prepare() {
              " cannot be used: " + error->message + (same ? " (--key names another file)" : "");
     }
   }
-
-  // One clock for all, so that what the server sends has the stamps of the pipeline.
-  g_autoptr(GstClock) clock = gst_system_clock_obtain();
-  gst_pipeline_use_clock(GST_PIPELINE(pipeline_), clock);
-
-  std::string wrong;
-  // Those of the line itself, in its order; an element may have appsinks of its own inside.
-  GstBin* bin = GST_BIN(pipeline_);
-  for (GList* child = g_list_last(bin->children); child; child = child->prev) {
-    if (!GST_IS_APP_SINK(child->data)) continue;
-    g_autofree gchar* valve_name = g_strdup_printf("%s-valve", GST_OBJECT_NAME(child->data));
-    g_autoptr(GstElement) valve = gst_bin_get_by_name(bin, valve_name);
-    auto stream = EncodedStream::make(GST_APP_SINK(child->data), valve);
-    if (stream->name() == kMetadata)
-      metadata_ = stream;
-    else if (fits_address(stream->name()))
-      streams_.push_back(stream);
-    else
-      wrong = "the appsink \"" + stream->name() +
-              "\" cannot be a mount: name it by letters, digits, - and _ (appsink name=annotated)";
-  }
-  if (wrong.empty() && streams_.empty())
-    wrong = "the line has no appsink: what follows an encoder is served by `appsink name=annotated`";
-  return wrong;
+  return {};
 }
 
-std::string RtspServer::missing() const {
-  std::string names;
-  auto streams = streams_;
-  if (metadata_) streams.push_back(metadata_);
-  for (const auto& stream : streams) {
-    g_autoptr(GstCaps) caps = stream->caps();
-    if (!caps) names += (names.empty() ? "" : ", ") + stream->name();
-  }
-  return names;
-}
-
-bool RtspServer::has_begun() const {
-  return missing().empty();
-}
-
-std::string RtspServer::add_mount(const std::shared_ptr<EncodedStream>& stream) {
-  Streams streams = {stream};
-  if (metadata_) streams.push_back(metadata_);
-  std::string line, kinds;
+// The text of the media of one mount. `kinds` says what the streams are. Returns what is wrong, or nothing.
+std::string RtspServer::make_line(const std::vector<std::shared_ptr<EncodedStream>>& streams,
+                                  std::string& line, std::string& kinds) {
   for (std::size_t k = 0; k < streams.size(); ++k) {
     g_autoptr(GstCaps) caps = streams[k]->caps();
+    if (!caps) return "the stream " + streams[k]->name() + " has not begun";
     const std::string payloader = payloader_of(caps);
     const std::string kind = gst_structure_get_name(gst_caps_get_structure(caps, 0));
     if (payloader.empty())
@@ -192,26 +169,49 @@ std::string RtspServer::add_mount(const std::shared_ptr<EncodedStream>& stream) 
             " name=pay" + std::to_string(k) + " pt=" + std::to_string(96 + k) + " ";
     kinds += (kinds.empty() ? "" : " + ") + kind;
   }
-
-  GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
-  gst_rtsp_media_factory_set_launch(factory, ("( " + line + ")").c_str());
-  gst_rtsp_media_factory_set_shared(factory, TRUE);
-  // Only what goes through the connection itself is encrypted by TLS. Multicast is never offered.
-  const int udp = certificate_ ? 0 : GST_RTSP_LOWER_TRANS_UDP;
-  gst_rtsp_media_factory_set_protocols(factory,
-                                       static_cast<GstRTSPLowerTrans>(udp | GST_RTSP_LOWER_TRANS_TCP));
-  g_autoptr(GstClock) clock = gst_system_clock_obtain();
-  gst_rtsp_media_factory_set_clock(factory, clock);
-  gst_rtsp_media_factory_add_role(factory, kRole, GST_RTSP_PERM_MEDIA_FACTORY_ACCESS, G_TYPE_BOOLEAN, TRUE,
-                                  GST_RTSP_PERM_MEDIA_FACTORY_CONSTRUCT, G_TYPE_BOOLEAN, TRUE, nullptr);
-  auto* mount = new Mount{pipeline_, std::move(streams)};
-  g_object_set_data_full(G_OBJECT(factory), "cerberus-mount", mount,
-                         [](gpointer gone) { delete static_cast<Mount*>(gone); });
-  g_signal_connect(factory, "media-configure", G_CALLBACK(on_media_configure), mount);
-  g_autoptr(GstRTSPMountPoints) mounts = gst_rtsp_server_get_mount_points(server_.get());
-  gst_rtsp_mount_points_add_factory(mounts, ("/" + stream->name()).c_str(), factory);
-  mounts_.push_back("/" + stream->name() + "  " + kinds);
   return {};
+}
+
+std::string RtspServer::add(const std::string& folder, const PipelineStreams& streams) {
+  g_autoptr(GstRTSPMountPoints) mounts = gst_rtsp_server_get_mount_points(server_.get());
+  for (const auto& stream : streams.streams()) {
+    std::vector<std::shared_ptr<EncodedStream>> together = {stream};
+    if (streams.metadata()) together.push_back(streams.metadata());
+    std::string line, kinds;
+    if (std::string wrong = make_line(together, line, kinds); !wrong.empty()) {
+      remove(folder);
+      return wrong;
+    }
+    GstRTSPMediaFactory* factory = gst_rtsp_media_factory_new();
+    gst_rtsp_media_factory_set_launch(factory, ("( " + line + ")").c_str());
+    gst_rtsp_media_factory_set_shared(factory, TRUE);
+    // Only what goes through the connection itself is encrypted by TLS. Multicast is never offered.
+    const int udp = settings_.certificate.empty() ? GST_RTSP_LOWER_TRANS_UDP : 0;
+    gst_rtsp_media_factory_set_protocols(factory,
+                                         static_cast<GstRTSPLowerTrans>(udp | GST_RTSP_LOWER_TRANS_TCP));
+    g_autoptr(GstClock) clock = gst_system_clock_obtain();
+    gst_rtsp_media_factory_set_clock(factory, clock);
+    gst_rtsp_media_factory_add_role(factory, kRole, GST_RTSP_PERM_MEDIA_FACTORY_ACCESS, G_TYPE_BOOLEAN, TRUE,
+                                    GST_RTSP_PERM_MEDIA_FACTORY_CONSTRUCT, G_TYPE_BOOLEAN, TRUE, nullptr);
+    auto* served = new Served{folder, streams.base_time(), std::move(together)};
+    g_object_set_data_full(G_OBJECT(factory), "cerberus-served", served,
+                           [](gpointer gone) { delete static_cast<Served*>(gone); });
+    g_signal_connect(factory, "media-configure", G_CALLBACK(on_media_configure), served);
+    const std::string path = (folder.empty() ? "/" : "/" + folder + "/") + stream->name();
+    gst_rtsp_mount_points_add_factory(mounts, path.c_str(), factory);
+    mounts_.push_back({folder, path, kinds});
+  }
+  return {};
+}
+
+void RtspServer::remove(const std::string& folder) {
+  g_autoptr(GstRTSPMountPoints) points = gst_rtsp_server_get_mount_points(server_.get());
+  for (const Mount& mount : mounts_)
+    if (mount.folder == folder) gst_rtsp_mount_points_remove_factory(points, mount.path.c_str());
+  std::erase_if(mounts_, [&](const Mount& mount) { return mount.folder == folder; });
+  g_list_free_full(
+      gst_rtsp_server_client_filter(server_.get(), end_of_folder, const_cast<std::string*>(&folder)),
+      g_object_unref);
 }
 
 // With users each request that names a mount needs one, by HTTP digest; without, only the connection may be protected.
@@ -230,12 +230,9 @@ void RtspServer::protect() {
 }
 
 std::string RtspServer::listen() {
-  server_.reset(gst_rtsp_server_new());
   gst_rtsp_server_set_address(server_.get(), settings_.address.c_str());
   gst_rtsp_server_set_service(server_.get(), std::to_string(settings_.port).c_str());
   protect();
-  for (const auto& stream : streams_)
-    if (std::string wrong = add_mount(stream); !wrong.empty()) return wrong;
   g_signal_connect(server_.get(), "client-connected", G_CALLBACK(on_client), nullptr);
 
   g_autoptr(GError) error = nullptr;
@@ -267,15 +264,10 @@ std::vector<std::string> RtspServer::mounts() const {
   std::vector<std::string> addresses;
   const bool six = settings_.address.find(':') != std::string::npos;
   const std::string host = six ? "[" + settings_.address + "]" : settings_.address;
-  for (const std::string& mount : mounts_)
+  for (const Mount& mount : mounts_)
     addresses.push_back((certificate_ ? "rtsps://" : "rtsp://") + host + ":" + std::to_string(port()) +
-                        mount);
+                        mount.path + "  " + mount.kinds);
   return addresses;
-}
-
-void RtspServer::end() {
-  for (const auto& stream : streams_) stream->end();
-  if (metadata_) metadata_->end();
 }
 
 }  // namespace cerberus::rtsp

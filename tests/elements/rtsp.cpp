@@ -123,11 +123,22 @@ class Served {
     fail_unless(pipeline_ && !error, "%s", error ? error->message : "");
     watch("encoder", [](Log& log, GstBuffer* buffer) { log.add(slices_of(bytes_of(buffer))); }, pictures);
     watch("documents", [](Log& log, GstBuffer* buffer) { log.add(bytes_of(buffer)); }, documents);
-    server_ = std::make_unique<RtspServer>(pipeline_, settings);
+    server_ = std::make_unique<RtspServer>(settings);
     assert_text(server_->prepare(), "");
+    assert_text(streams_.collect(pipeline_), "");
     gst_element_set_state(pipeline_, GST_STATE_PLAYING);
-    wait_for("the first pictures", [this] { return server_->has_begun(); });
-    wrong = server_->listen();
+    wait_for("the first pictures", [this] { return streams_.has_begun(); });
+    wrong = server_->add({}, streams_);
+    if (wrong.empty()) wrong = server_->listen();
+  }
+  // As a camera that is hidden, and shown again below a folder.
+  void hide() {
+    streams_.close();
+    server_->remove({});
+  }
+  void show(const std::string& folder) {
+    streams_.reopen();
+    assert_text(server_->add(folder, streams_), "");
   }
   ~Served() {
     server_.reset();
@@ -180,6 +191,7 @@ class Served {
   }
 
   GstElement* pipeline_ = nullptr;
+  PipelineStreams streams_;
   std::unique_ptr<RtspServer> server_;
 };
 
@@ -288,8 +300,9 @@ std::string prepared(const char* line, const std::string& certificate = "") {
   ServerSettings settings;
   settings.certificate = certificate;
   g_autoptr(GstElement) pipeline = gst_parse_launch(line, nullptr);
-  RtspServer server(pipeline, settings);
-  return server.prepare();
+  RtspServer server(settings);
+  const std::string wrong = server.prepare();
+  return wrong.empty() ? PipelineStreams().collect(pipeline) : wrong;
 }
 
 }  // namespace
@@ -339,6 +352,23 @@ GST_START_TEST(a_mount_that_every_client_left_encodes_nothing_and_is_served_agai
     fail_unless(is_keyframe(received[0]));
     places_in(served.pictures.all(), received);
   }
+}
+GST_END_TEST
+
+GST_START_TEST(a_mount_that_is_removed_ends_for_its_clients_and_may_come_back_below_a_folder) {
+  Served served(kIdle);
+  Client first(served.address("plain"), "protocols=tcp");
+  wait_for_pictures(first, 3);
+  served.hide();
+  wait_for("an idle encoder", [&] { return served.is_idle(); });
+  Client refused(served.address("plain"), "protocols=tcp");
+  int error = 0;
+  wait_for("a refusal", [&] { return (error = refused.error()) != 0; });
+  fail_unless_equals_int(error, GST_RESOURCE_ERROR_NOT_FOUND);
+  fail_unless(refused.pictures.size() == 0);
+  served.show("front");
+  Client second(served.address("front/plain"), "protocols=tcp");
+  wait_for_pictures(second, 3);
 }
 GST_END_TEST
 
@@ -416,10 +446,14 @@ GST_START_TEST(what_cannot_be_served_is_named) {
   ServerSettings settings;
   settings.port = served.port();
   {
-    RtspServer server(second, settings);
+    RtspServer server(settings);
+    PipelineStreams streams;
     assert_text(server.prepare(), "");
+    assert_text(streams.collect(second), "");
+    assert_text(server.add({}, streams), "the stream plain has not begun");
     gst_element_set_state(second, GST_STATE_PLAYING);
-    wait_for("the first pictures", [&] { return server.has_begun(); });
+    wait_for("the first pictures", [&] { return streams.has_begun(); });
+    assert_text(server.add({}, streams), "");
     fail_unless(server.listen().find("port " + std::to_string(served.port()) + " of 127.0.0.1 is in use") ==
                 0);
     gst_element_set_state(second, GST_STATE_NULL);
@@ -442,6 +476,7 @@ static Suite* rtsp_suite() {
   tcase_set_timeout(cases, 200);
   tcase_add_test(cases, two_clients_get_the_pictures_of_one_encoder_and_the_second_begins_at_once);
   tcase_add_test(cases, a_mount_that_every_client_left_encodes_nothing_and_is_served_again);
+  tcase_add_test(cases, a_mount_that_is_removed_ends_for_its_clients_and_may_come_back_below_a_folder);
   tcase_add_test(cases, only_a_user_with_the_right_password_plays);
   tcase_add_test(cases, an_address_with_wrong_passwords_is_refused_for_a_while_and_longer_each_time);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);

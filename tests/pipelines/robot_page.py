@@ -20,6 +20,7 @@ import threading
 import time
 
 from page_client import PATIENCE, Page, Socket
+from rtsp_client import Rtsp
 
 
 def free_port():
@@ -45,6 +46,14 @@ folder = "recordings"
 encoder = "jpegenc"
 post-roll = 0
 longest-file = 2
+'''
+
+
+RTSP = '''
+[rtsp]
+port = STREAM
+users-file = "viewers"
+encoder = "jpegenc"
 '''
 
 
@@ -244,7 +253,22 @@ def pictures(owner):
     line.close()
 
 
-def steering(owner, operator, viewer):
+def watch_streams(port):
+    """With a log-in both mounts of the camera give pictures, once they are there. Returns a client that watches."""
+    if not port:
+        return None
+    for mount in ('plain', 'annotated'):
+        client = wait_until(f'the mount {mount}', lambda: player(port, f'/front/{mount}'))
+        client.frames(3)
+    return client
+
+
+def player(port, path):
+    client = Rtsp(port, 'anna', 'long enough')
+    return client if client.watch(path) == 200 else None
+
+
+def steering(owner, operator, viewer, stream):
     first, second, third = Socket(owner), Socket(operator), Socket(viewer)
     for order in ('turn 1 0', 'stop', 'home', 'auto', 'follow 1', 'mode disarmed', 'mode privacy', 'stage mask',
                   'drive 1 0', 'set quality 50'):
@@ -278,8 +302,13 @@ def steering(owner, operator, viewer):
     first.send('mode disarmed')
     reports(first, lambda m: isinstance(m, dict) and m.get('mode') == 'disarmed')
     before = reports(first, lambda m: isinstance(m, tuple) and m[1])[1]['frame']
+    watching = watch_streams(stream)
+    if stream:
+        assert Rtsp(stream).watch('/front/plain') == 401 and Rtsp(stream, 'anna', 'guess').watch('/front/plain') == 401
     first.send('mode privacy')
     reports(first, lambda m: isinstance(m, dict) and m.get('mode') == 'privacy' and m['cameras'][0]['state'] == 'off')
+    assert not watching or watching.is_closed() and Rtsp(stream, 'anna', 'long enough').watch('/front/plain') == 404, \
+        'privacy shows a stream'
     assert owner.ask('GET', '/events?camera=front')[0] == 403, 'privacy shows events'
     second = Socket(operator)
     second.send('mode armed')
@@ -288,6 +317,7 @@ def steering(owner, operator, viewer):
     first.send('mode disarmed')
     first.send('camera front')
     first_facts = reports(first, lambda m: isinstance(m, tuple))[1]
+    watch_streams(stream)
     assert first_facts is None or first_facts['frame'] < before, 'a picture from before privacy is shown after it'
     for wrong in ('nonsense', 'ack 1000000', 'seen 1000000'):
         third = Socket(viewer)
@@ -422,10 +452,14 @@ def main():
         threading.Thread(target=receiver.serve_forever, daemon=True).start()
         (folder / 'secret').write_text(SECRET + '\n')
         (folder / 'secret').chmod(0o600)
+        stream = free_port() if sys.argv[2] == 'rtsp' else None
+        (folder / 'viewers').write_text('anna:long enough\n')
+        (folder / 'viewers').chmod(0o600)
         tls = shutil.which('openssl')
         page = f'port = {port}\n' + ('tls = true' if tls else '')
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('port = PORT', page)
-                                           + WEBHOOK.replace('HOOK', str(receiver.server_port)).replace('FOLDER', name))
+                                           + WEBHOOK.replace('HOOK', str(receiver.server_port)).replace('FOLDER', name)
+                                           + (RTSP.replace('STREAM', str(stream)) if stream else ''))
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
             taken = socket.create_server(('127.0.0.1', port))
             process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
@@ -445,7 +479,7 @@ def main():
                 assert viewer.log_in('viewer', 'password of viewer') == 200
                 strangers(owner)
                 pictures(owner)
-                steering(owner, operator, viewer)
+                steering(owner, operator, viewer, stream)
                 many_sockets(viewer)
                 base(owner, operator, folder)
                 stages(owner)

@@ -175,6 +175,18 @@ START_TEST(every_mistake_is_reported_with_its_line) {
       {"[mqtt]\nhost = \"b\"\ntopic-prefix = \"a/b\"\n",
        "r.toml:3: \"topic-prefix\" is one level of a topic"},
       {"[mqtt]\nhost = \"b\"\ntopic-prefix = \"\"\n", "r.toml:3: \"topic-prefix\" is one level of a topic"},
+      {"[rtsp]\nport = 0\n", "r.toml:2: \"port\" of [rtsp] is a whole number from 1 to 65535"},
+      {"[rtsp]\nlisten = \"0.0.0.0\"\n", "r.toml:2: at 0.0.0.0 the whole network could watch"},
+      {"[rtsp]\nlisten = \"robot\"\n", "r.toml:2: \"listen\" is a numeric address"},
+      {"[rtsp]\nusers-file = \"a\"\nusers-credential = \"b\"\n", "r.toml:3: \"users-file\" and"},
+      {"[rtsp]\nusers-file = \"a\"\nanyone = true\n", "r.toml:3: \"anyone\" is for a server without users"},
+      {"[rtsp]\nmounts = [\"plain\", \"mask\"]\n", "r.toml:2: \"mask\" is no mount: plain, annotated"},
+      {"[rtsp]\nmounts = []\n", "r.toml:2: \"mounts\" names none"},
+      {"[rtsp]\ncertificate = \"c\"\n", "r.toml:2: \"certificate\" and \"certificate-key\" belong together"},
+      {"[rtsp]\nencoder = \"theoraenc\"\n", "r.toml:2: \"encoder\" of [rtsp] is one of \"v4l2h264enc\""},
+      {"[rtsp]\nencoder = \"jpegenc\"\nbitrate = 500\n",
+       "r.toml:3: \"bitrate\" is not for encoder = \"jpegenc\""},
+      {"[rtsp]\npasswort = \"x\"\n", "r.toml:2: unknown key \"passwort\" in [rtsp]"},
       {"[mqtt]\n", "r.toml:1: [mqtt] needs the \"host\" of the broker"},
       {"[mqtt]\nhost = \"b\"\ncommands = [\"stop\", \"jump\"]\n", "r.toml:3: \"jump\" is no command"},
       {"[webhook]\nsecret-file = \"s\"\n", "r.toml:1: [webhook] needs \"url\""},
@@ -269,6 +281,22 @@ START_TEST(a_secret_may_be_a_credential_of_systemd) {
       says(errors(camera + "password-credential = \"../gate\"\n"), "r.toml:6: \"password-credential\" is"));
   ck_assert(says(errors("[[camera]]\nname = \"a\"\nkind = \"test\"\npassword-credential = \"gate\"\n"),
                  "r.toml:4: \"password-credential\" is not for kind = \"test\""));
+}
+END_TEST
+
+START_TEST(a_list_of_users_is_read_and_a_file_that_was_written_anew_is_noticed) {
+  const TemporaryFolder folder;
+  const std::string path = folder.path + "/robot.toml", viewers = folder.path + "/viewers";
+  write(path, "[rtsp]\nusers-file = \"viewers\"\n" + kSmallest);
+  write(viewers, "anna\n");
+  ck_assert_msg(says(load_settings(path).errors, path + ":2: " + viewers + ": "), "%s",
+                load_settings(path).errors.c_str());
+  write(viewers, "anna:long enough\n");
+  const SettingsFile before = load_settings(path), same = load_settings(path);
+  ck_assert_msg(before.settings && same.settings, "%s", before.errors.c_str());
+  ck_assert(before.settings->stamps == same.settings->stamps);
+  write(viewers, "anna:another, longer one\n");
+  ck_assert(load_settings(path).settings->stamps.at("rtsp") != before.settings->stamps.at("rtsp"));
 }
 END_TEST
 
@@ -432,7 +460,7 @@ START_TEST(texts_of_the_user_are_assigned_and_never_parsed) {
   const std::string name = "a! fakesink \\\" b.avi";
   const Settings all = settings("[[camera]]\nname = \"c\"\nkind = \"file\"\nfile = '/" + name +
                                 "'\n[camera.detection]\nzones = 'x ! y'\n");
-  const PipelineText text = pipeline_text(all.cameras[0], all.page, {});
+  const PipelineText text = pipeline_text(all.cameras[0], {all.page, {}, {}}, {});
   ck_assert(text.line.find("fakesink \\") == std::string::npos &&
             text.line.find("x ! y") == std::string::npos);
   ck_assert(assigned(text, "source", "location") == "/" + name);
@@ -443,11 +471,11 @@ END_TEST
 START_TEST(a_part_that_failed_or_is_not_configured_is_left_out) {
   const Settings all =
       settings(kSmallest + "[camera.head]\npan-min = -40\n[camera.recorder]\nfolder = \"rec\"\n");
-  const std::string whole = pipeline_text(all.cameras[0], all.page, {}).line;
+  const std::string whole = pipeline_text(all.cameras[0], {all.page, {}, {}}, {}).line;
   ck_assert(says(whole, "pantiltsink") && says(whole, "eventrecorder") && says(whole, "jpegenc"));
   PageSettings hidden = all.page;
   hidden.enabled = false;
-  const PipelineText less = pipeline_text(all.cameras[0], hidden, {false, false});
+  const PipelineText less = pipeline_text(all.cameras[0], {hidden, {}, {}}, {false, false});
   for (const char* part : {"pantiltsink", "eventrecorder", "jpegenc"})
     ck_assert_msg(less.line.find(part) == std::string::npos, "%s is in %s", part, less.line.c_str());
   ck_assert(assigned(less, "fusion", "pan-min") == "-40");  // fusion knows the limits all the same
@@ -458,7 +486,7 @@ END_TEST
 START_TEST(each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for) {
   const auto text = [](const std::string& keys) {
     const Settings all = settings("[[camera]]\nname = \"c\"\n" + keys);
-    return pipeline_text(all.cameras[0], all.page, {});
+    return pipeline_text(all.cameras[0], {all.page, {}, {}}, {});
   };
   const std::string size = "width = 640\nheight = 480\nframerate = 30\n";
   const std::string caps = ",width=640,height=480,framerate=30/1 ";
@@ -485,22 +513,58 @@ START_TEST(what_a_network_camera_records_is_never_encoded_again) {
       "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b/sub\"\n[camera.recorder]\nfolder = "
       "\"rec\"\n";
   const Settings one = settings(camera);
-  const std::string line = pipeline_text(one.cameras[0], one.page, {}).line;
+  const std::string line = pipeline_text(one.cameras[0], {one.page, {}, {}}, {}).line;
   ck_assert(line.find("x264enc") == std::string::npos && says(line, "tee name=encoded"));
   const Settings two = settings(
       "[[camera]]\nname = \"a\"\nkind = \"rtsp\"\nuri = \"rtsp://b/sub\"\nrecord-uri = "
       "\"rtsp://b/main\"\n[camera.recorder]\nfolder = \"rec\"\n");
-  const PipelineText text = pipeline_text(two.cameras[0], two.page, {});
+  const PipelineText text = pipeline_text(two.cameras[0], {two.page, {}, {}}, {});
   ck_assert(assigned(text, "recorded", "location") == "rtsp://b/main");
   ck_assert(assigned(text, "source", "location") == "rtsp://b/sub");
   ck_assert(text.line.find("tee name=encoded") == std::string::npos);
 }
 END_TEST
 
+// The number of times that a word stands in a text.
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(word, at)) != text.npos; at += word.size()) ++found;
+  return found;
+}
+
+START_TEST(the_rtsp_server_listens_on_loopback_and_serves_both_pictures_unless_asked_otherwise) {
+  const Settings all = settings("[rtsp]\n" + kSmallest);
+  ck_assert(all.rtsp && all.rtsp->listen == "127.0.0.1" && all.rtsp->port == 8554 && !all.rtsp->tls);
+  ck_assert(all.rtsp->plain && all.rtsp->annotated && all.rtsp->users_file.empty());
+  ck_assert(!settings(kSmallest).rtsp);
+  const Settings other = settings(
+      "[rtsp]\nlisten = \"0.0.0.0\"\nusers-file = \"viewers\"\nmounts = [\"annotated\"]\n" + kSmallest);
+  ck_assert(other.rtsp->users_file == "/etc/robot/viewers" && !other.rtsp->plain && other.rtsp->annotated);
+}
+END_TEST
+
+START_TEST(one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_clients) {
+  const Settings all = settings("[rtsp]\nencoder = \"openh264enc\"\nbitrate = 800\n" + kSmallest +
+                                "[camera.recorder]\nfolder = \"rec\"\nbitrate = 3000\n");
+  const std::string line = pipeline_text(all.cameras[0], {all.page, {}, all.rtsp, {}}, {}).line;
+  ck_assert_uint_eq(count(line, "x264enc"), 1);  // the recorder's
+  ck_assert_uint_eq(count(line, "openh264enc"), 1);
+  ck_assert(says(line, "bitrate=3000") && says(line, "bitrate=800000"));
+  for (const char* sink : {"rtsp-plain ", "rtsp-annotated", "rtsp-metadata", "rtsp-annotated-valve"})
+    ck_assert_msg(says(line + ' ', std::string("name=") + sink), "%s: %s", sink, line.c_str());
+  // What is recorded goes on without clients.
+  ck_assert(line.find("rtsp-plain-valve") == std::string::npos);
+  const std::string alone = pipeline_text(all.cameras[0], {all.page, {}, all.rtsp, {}}, {true, false}).line;
+  ck_assert(says(alone, "rtsp-plain-valve"));
+  ck_assert(pipeline_text(all.cameras[0], {all.page, {}, {}, {}}, {}).line.find("rtsp-") ==
+            std::string::npos);
+}
+END_TEST
+
 START_TEST(another_configuration_is_the_properties_that_differ_or_another_pipeline) {
   const auto text = [](const std::string& more) {
     const Settings all = settings(kSmallest + more);
-    return pipeline_text(all.cameras[0], all.page, {});
+    return pipeline_text(all.cameras[0], {all.page, {}, {}}, {});
   };
   const std::string zones = "[camera.detection]\nzones = 'x'\nminimum-area = 20\n";
   ck_assert(changes(text(zones), text(zones)).value().empty());
@@ -541,6 +605,7 @@ int main() {
                          all_mistakes_come_at_once_in_the_order_of_their_lines,
                          files_that_are_named_must_be_there_and_secrets_be_secret,
                          a_secret_may_be_a_credential_of_systemd,
+                         a_list_of_users_is_read_and_a_file_that_was_written_anew_is_noticed,
                          a_secret_is_the_first_line_of_its_file,
                          the_examples_of_the_manual_and_the_demo_are_sound,
                          the_entry_of_a_schedule_that_took_effect_last_counts,
@@ -554,6 +619,8 @@ int main() {
                          a_part_that_failed_or_is_not_configured_is_left_out,
                          each_kind_of_camera_has_its_source_at_the_size_and_rate_that_are_asked_for,
                          what_a_network_camera_records_is_never_encoded_again,
+                         the_rtsp_server_listens_on_loopback_and_serves_both_pictures_unless_asked_otherwise,
+                         one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_clients,
                          another_configuration_is_the_properties_that_differ_or_another_pipeline,
                          a_part_is_tried_again_after_1_2_4_to_60_seconds_and_after_a_sound_minute_after_1});
 }
