@@ -16,13 +16,14 @@ void FrameHistory::lose() {
   if (++lost_ > parameters_.lost_pictures) drop();
 }
 
-std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nominal) {
+std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nominal, bool damaged) {
   if (!any_) return std::nullopt;
   ++repeats_;
+  damage_ |= damaged;
   shown_ = time;
   if (time && previous_ && *time > *previous_) {
     const double seconds = seconds_between(*previous_, *time);
-    held_ = std::min(seconds, parameters_.longest_repeat);
+    held_ = std::min(seconds, damage_ ? parameters_.longest_damage : parameters_.longest_repeat);
     return seconds;
   }
   return repeats_ * (usual_ > 0 ? usual_ : nominal > 0 ? nominal : parameters_.unknown_distance);
@@ -48,6 +49,7 @@ FrameHistory::Step FrameHistory::next(std::optional<Time> time, double nominal) 
   any_ = true;
   lost_ = repeats_ = 0;
   held_ = 0;
+  damage_ = false;
   previous_ = shown_ = time;
   if (!time) return step;
   stamp_ = time;
@@ -80,7 +82,7 @@ void FrameHistory::follow(Step& step, std::optional<Time> time, double rhythm) {
     usual_ = seconds;  // caps that promise more frames than come must not make every frame a gap
     step.seconds = 0;
     step.previous.reset();
-  } else if (late_ == 0) {
+  } else if (late_ == 0 && !damage_) {  // the distance across damage is not the stream's own
     if (usual_ <= 0) usual_ = rhythm > 0 ? rhythm : seconds;
     // Faster is believed at once, so that a long distance learnt from a gap does not excuse the next gap.
     usual_ = seconds * parameters_.gap_factor < usual_ ? seconds

@@ -25,6 +25,9 @@ class FrameHistory {
     // Seconds for which a repeated picture stands for the stream: no gap is counted within. Derived: a source of two
     // frames a second, of which another element has made more; slower ones are too slow to follow people.
     double longest_repeat = .5;
+    // Seconds for which damaged pictures stand for the stream. Derived: a camera's keyframes, which mend the picture, are
+    // at most 10 s apart, and two of three may be damaged, too.
+    double longest_damage = 30;
     int lost_pictures = 5;  // pictures in a row that may be lost within a scene: a fifth of a second of video
     double unknown_distance = .04;  // seconds, where neither caps nor frames have shown one: 25 a second
   };
@@ -38,9 +41,9 @@ class FrameHistory {
   // row.
   void lose();
 
-  // Records a frame that repeats the last picture. Returns how long ago that came, in seconds; nothing where a scene
-  // begins. time, nominal: as of next().
-  std::optional<double> repeat(std::optional<Time> time, double nominal);
+  // Records a frame that repeats the last picture, or (damaged) one in whose place the last picture counts. Returns how
+  // long ago that came, in seconds; nothing where a scene begins. time, nominal: as of next().
+  std::optional<double> repeat(std::optional<Time> time, double nominal, bool damaged = false);
 
   // Running time of the last frame with a picture of its own, where it had one.
   std::optional<Time> previous() const { return previous_; }
@@ -69,7 +72,9 @@ class FrameHistory {
   bool any_ = false;  // a frame of this scene was seen
   int lost_ = 0;      // since the last picture
   int repeats_ = 0;   // likewise
-  double held_ = 0;   // seconds for which the last picture is known to have stayed, at most longest_repeat
+  double held_ =
+      0;  // seconds for which the last picture stands for the stream, at most longest_repeat or _damage
+  bool damage_ = false;           // since the last picture
   std::optional<Time> previous_;  // of the last picture
   std::optional<Time> shown_;     // of the last frame, repeated or not
   std::optional<Time> stamp_;     // of the last frame of this scene that had a time at all

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cerberus/private/video.hpp"
+#include "damage_mark.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
 #include "shared/clock_times.hpp"
@@ -118,7 +119,8 @@ double nominal_distance(const GstVideoInfo& info) {
   return n > 0 ? static_cast<double>(d) / n : 0;
 }
 
-GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer) {
+GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBuffer* buffer,
+                           bool damaged = false) {
   Frame frame = frame_of(trans, priv, buffer);
   const auto time = known_time(frame.running_time);
   const double nominal = nominal_distance(priv.info);
@@ -127,7 +129,7 @@ GstFlowReturn repeat_frame(GstBaseTransform* trans, AnalysisPrivate& priv, GstBu
   const bool goes_on = priv.analyser->measures_camera() ? priv.history.misses_frames(time, nominal)
                                                         : path_point(buffer).has_value();
   if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !goes_on) priv.history.drop();
-  const auto since = priv.history.repeat(time, nominal);
+  const auto since = priv.history.repeat(time, nominal, damaged);
   if (!since) return GST_FLOW_OK;  // of nothing
   frame.fresh = false;
   frame.seconds = *since;
@@ -195,7 +197,10 @@ GstFlowReturn transform_ip(GstBaseTransform* trans, GstBuffer* buffer) {
   AnalysisPrivate& priv = priv_of(trans);
   return guarded(trans, GST_FLOW_ERROR, [&] {
     ask_downstream(trans, priv);
-    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP)) return repeat_frame(trans, priv, buffer);
+    const bool damaged = is_damaged(buffer);
+    if (damaged) GST_BUFFER_FLAG_SET(buffer, GST_BUFFER_FLAG_GAP | GST_BUFFER_FLAG_CORRUPTED);
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP))
+      return repeat_frame(trans, priv, buffer, damaged);
     check_settings(trans, priv);
     const vision::FrameHistory history = priv.history;
     const vision::CameraFollower camera = priv.camera;

@@ -8,11 +8,13 @@ GST_ELEMENT_REGISTER_DECLARE(fuzzythreshold)
 GST_ELEMENT_REGISTER_DECLARE(motionregions)
 GST_ELEMENT_REGISTER_DECLARE(motiontrack)
 GST_ELEMENT_REGISTER_DECLARE(motiondetect)
+GST_ELEMENT_REGISTER_DECLARE(streamdamage)
 
 static gboolean plugin_init(GstPlugin* plugin) {
   return GST_ELEMENT_REGISTER(cameramotion, plugin) && GST_ELEMENT_REGISTER(threeframediff, plugin) &&
          GST_ELEMENT_REGISTER(fuzzythreshold, plugin) && GST_ELEMENT_REGISTER(motionregions, plugin) &&
-         GST_ELEMENT_REGISTER(motiontrack, plugin) && GST_ELEMENT_REGISTER(motiondetect, plugin);
+         GST_ELEMENT_REGISTER(motiontrack, plugin) && GST_ELEMENT_REGISTER(motiondetect, plugin) &&
+         GST_ELEMENT_REGISTER(streamdamage, plugin);
 }
 
 GST_PLUGIN_DEFINE(GST_VERSION_MAJOR, GST_VERSION_MINOR, cerberusdetect,

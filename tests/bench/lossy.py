@@ -2,11 +2,13 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """What lost RTP packets do to the boxes on vtest.avi: eight runs with other packets lost, and one without loss.
 
-    lossy.py [PROBABILITY] [ENCODER]        0.02 and "x264enc tune=zerolatency"
+    lossy.py [PROBABILITY] [ENCODER] [RECEIVER]    0.02, "x264enc tune=zerolatency" and "rtph264depay"
 
+RECEIVER stands between the network and avdec_h264: "rtph264depay request-keyframe=true ! streamdamage", for example. The
+encoder answers its requests for a keyframe.
+whole: decoded frames that are undamaged, because no packet of theirs or of any frame back to the last keyframe is lost.
 boxes: all that are published. recall: of the people of the ground truth whose box ends before column 735 (IoU >= .5), in all
-decoded frames, and in those of whose own packets none was lost: damage stays in the picture until it is refreshed, so
-these may be damaged, too.
+decoded frames, and in the whole ones, of which the run without loss has the recall in the last column.
 """
 import json
 import os
@@ -52,13 +54,14 @@ def truth_of(folder):
     return truth
 
 
-def run(video, encoder, probability, seed, path):
-    """The lines of motionjson, and the times of the frames that lost a packet."""
+def run(video, encoder, receiver, probability, seed, path):
+    """The lines of motionjson, and the times of the damaged frames."""
     chance = random.Random(seed)
-    damaged = set()
+    damaged, state = set(), {'damaged': False, 'any': False}
+    depayloader, _, rest = receiver.partition(' ')
     pipeline = Gst.parse_launch(
         f'filesrc location={video} ! decodebin ! videoconvert ! video/x-raw,format=I420 ! {encoder} ! rtph264pay ! '
-        'identity name=network ! rtph264depay name=depay ! avdec_h264 ! motiondetect ! motionjson ! '
+        f'identity name=network ! {depayloader} name=depay {rest} ! avdec_h264 ! motiondetect ! motionjson ! '
         f'filesink location={path}')
 
     def lose(_pad, _info):
@@ -66,7 +69,11 @@ def run(video, encoder, probability, seed, path):
 
     def mark(_pad, info):
         buffer = info.get_buffer()
-        if buffer.has_flags(Gst.BufferFlags.DISCONT):
+        lost = buffer.has_flags(Gst.BufferFlags.DISCONT) and state['any']
+        state['any'] = True
+        if lost or not buffer.has_flags(Gst.BufferFlags.DELTA_UNIT):
+            state['damaged'] = lost
+        if state['damaged']:
             damaged.add(buffer.pts)
         return Gst.PadProbeReturn.OK
 
@@ -97,6 +104,7 @@ def score(lines, damaged, truth, numbers):
 def main():
     probability = float(sys.argv[1]) if len(sys.argv) > 1 else 0.02
     encoder = sys.argv[2] if len(sys.argv) > 2 else 'x264enc tune=zerolatency'
+    receiver = sys.argv[3] if len(sys.argv) > 3 else 'rtph264depay'
     folder = pathlib.Path(os.environ.get('CERBERUS_DATA', TOP.parent / 'shared' / 'data')) / 'pets09_s2l1_view1'
     if not (folder / 'vtest.avi').exists():
         print(f'skipped: {folder} is missing')
@@ -105,21 +113,23 @@ def main():
     truth = truth_of(folder)
     with tempfile.TemporaryDirectory() as place:
         path = pathlib.Path(place) / 'lines'
-        clean, _ = run(folder / 'vtest.avi', encoder, 0, 0, path)
+        clean, _ = run(folder / 'vtest.avi', encoder, receiver, 0, 0, path)
         numbers = {line['pts']: number for number, line in enumerate(clean)}
         whole = score(clean, set(), truth, numbers)
-        print(f'{encoder}, {100 * probability:g} % of the packets lost\n'
-              f'{"run":>4}{"frames":>8}{"damaged":>9}{"boxes":>8}{"ratio":>7}{"recall":>8}{"whole frames":>14}')
-        print(f'{"-":>4}{len(clean):8}{0:9}{whole[0]:8}{1:7.2f}{whole[1]:8.3f}{whole[2]:14.3f}')
+        print(f'{encoder} | {receiver}, {100 * probability:g} % of the packets lost\n'
+              f'{"run":>4}{"frames":>8}{"whole":>7}{"boxes":>8}{"ratio":>7}{"recall":>8}{"of whole":>10}{"lossless":>10}')
+        print(f'{"-":>4}{len(clean):8}{len(clean):7}{whole[0]:8}{1:7.2f}{whole[1]:8.3f}{whole[2]:10.3f}{whole[2]:10.3f}')
         scores = []
         for seed in range(1, RUNS + 1):
-            lines, damaged = run(folder / 'vtest.avi', encoder, probability, seed, path)
-            one = score(lines, damaged, truth, numbers)
+            lines, damaged = run(folder / 'vtest.avi', encoder, receiver, probability, seed, path)
+            seen = {line['pts'] for line in lines} - damaged
+            one = (*score(lines, damaged, truth, numbers),
+                   score(clean, set(numbers) - seen, truth, numbers)[2], len(seen))
             scores.append(one)
-            print(f'{seed:4}{len(lines):8}{len(damaged):9}{one[0]:8}{one[0] / whole[0]:7.2f}{one[1]:8.3f}{one[2]:14.3f}',
-                  flush=True)
+            print(f'{seed:4}{len(lines):8}{one[4]:7}{one[0]:8}{one[0] / whole[0]:7.2f}{one[1]:8.3f}{one[2]:10.3f}'
+                  f'{one[3]:10.3f}', flush=True)
         mean = [sum(each) / RUNS for each in zip(*scores)]
-        print(f'mean{mean[0]:25.0f}{mean[0] / whole[0]:7.2f}{mean[1]:8.3f}{mean[2]:14.3f}')
+        print(f'mean{mean[4]:15.0f}{mean[0]:8.0f}{mean[0] / whole[0]:7.2f}{mean[1]:8.3f}{mean[2]:10.3f}{mean[3]:10.3f}')
 
 
 main()

@@ -239,6 +239,45 @@ GST_START_TEST(a_repeated_frame_is_drawn_on_as_its_picture_was) {
 }
 GST_END_TEST
 
+// Frames: keyframe, predicted, predicted after a loss, predicted, keyframe, predicted.
+GST_START_TEST(encoded_frames_from_a_loss_to_the_next_keyframe_are_marked) {
+  Line line("streamdamage ! identity", "video/x-h264,stream-format=avc,alignment=au");
+  const bool predicted[] = {false, true, true, true, false, true};
+  const bool marked[] = {false, false, true, true, false, false};
+  for (int k = 0; k < 6; ++k) {
+    GstBuffer* in = gst_buffer_new_memdup("frame", 5);
+    GST_BUFFER_PTS(in) = k * scene::kStep;
+    if (predicted[k]) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DELTA_UNIT);
+    if (k == 0 || k == 2) GST_BUFFER_FLAG_SET(in, GST_BUFFER_FLAG_DISCONT);
+    GstBuffer* out = line.through(in);
+    fail_unless_equals_int(gst_buffer_get_custom_meta(out, "CerberusDamagedPicture") != nullptr, marked[k]);
+    gst_buffer_unref(out);
+  }
+}
+GST_END_TEST
+
+GST_START_TEST(a_damaged_picture_counts_as_the_last_whole_one) {
+  Line line(kLines[__i__]), plain(kLines[__i__]);
+  const World world;
+  guint found = 0;
+  for (int k = 0; k < 40; ++k) {
+    const bool damaged = k >= 25 && k < 30;
+    GstBuffer* in = damaged ? repeated(k, 0, 1) : scene::grey_buffer(world, k);
+    GST_BUFFER_FLAG_UNSET(in, GST_BUFFER_FLAG_GAP);
+    if (damaged) gst_buffer_add_custom_meta(in, "CerberusDamagedPicture");
+    GstBuffer* out = line.through(in);
+    GstBuffer* should = plain.through(damaged ? repeated(k, 0, 1) : scene::grey_buffer(world, k));
+    fail_unless_equals_int(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_CORRUPTED), damaged);
+    fail_unless_equals_int(GST_BUFFER_FLAG_IS_SET(out, GST_BUFFER_FLAG_GAP), damaged);
+    fail_unless(Regions(out).text() == Regions(should).text());
+    found += damaged ? Regions(out).size() : 0;
+    gst_buffer_unref(out);
+    gst_buffer_unref(should);
+  }
+  fail_unless(found > 0, "nothing was found at all");
+}
+GST_END_TEST
+
 // ---- frames that stop coming
 
 // A figure that is seen until frame 24, and then nothing; a clock that goes by hand.
@@ -370,6 +409,8 @@ Suite* repeated_suite() {
   tcase_add_loop_test(tests, a_mark_of_dropped_frames_on_a_repeated_frame_ends_no_scene, 0, 2);
   tcase_add_test(tests, a_repeated_frame_is_drawn_on_as_its_picture_was);
   tcase_add_test(tests, a_repeated_frame_has_the_pose_of_its_picture_and_the_rate_of_the_base);
+  tcase_add_test(tests, encoded_frames_from_a_loss_to_the_next_keyframe_are_marked);
+  tcase_add_loop_test(tests, a_damaged_picture_counts_as_the_last_whole_one, 0, G_N_ELEMENTS(kLines));
   tcase_add_test(tests, live_motion_ends_by_the_clock_when_frames_stop);
   tcase_add_test(tests, there_is_one_timer_however_many_frames_come);
   tcase_add_test(tests, what_is_not_live_is_not_watched_by_the_clock);

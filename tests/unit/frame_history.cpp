@@ -4,8 +4,10 @@
 #include <check.h>
 
 #include <cmath>
+#include <string>
 
 #include "support/suite.h"
+#include "vision/stream_damage.h"
 
 using namespace cerberus::vision;
 using namespace std::chrono_literals;
@@ -269,17 +271,83 @@ START_TEST(repeated_frames_are_not_missing) {
 }
 END_TEST
 
+START_TEST(damaged_pictures_of_seconds_leave_no_gap_and_no_rhythm) {
+  FrameHistory history;
+  for (int k = 0; k < 10; ++k) history.next(k * kStep, 0);
+  for (int k = 10; k < 260; ++k) history.repeat(k * kStep, 0, true);  // ten seconds
+  const FrameHistory::Step step = history.next(260 * kStep, 0);
+  ck_assert(!step.fresh);
+  ck_assert(std::abs(step.seconds - 251 * .04) < 1e-9);
+  ck_assert(!history.next(261 * kStep, 0).fresh);
+  ck_assert(history.next(268 * kStep, 0).fresh);  // .28 s: the distance across the damage is not learnt
+}
+END_TEST
+
+START_TEST(damage_without_end_ends_the_scene) {
+  FrameHistory history;
+  for (int k = 0; k < 10; ++k) history.next(k * kStep, 0);
+  for (int k = 10; k < 800; ++k) history.repeat(k * kStep, 0, true);  // 31.6 s
+  ck_assert(history.next(800 * kStep, 0).fresh);
+}
+END_TEST
+
+// Each letter is a frame: K keyframe, P predicted, k and p the same after a loss. Expected: x where it is damaged.
+START_TEST(frames_from_a_loss_to_the_next_whole_keyframe_are_damaged) {
+  struct Stream {
+    const char *frames, *damaged;
+  };
+  for (const Stream& stream :
+       {Stream{"KPPPKPPP", "........"}, Stream{"kPPpPPKPpK", "...xxx..x."}, Stream{"KPkPPKPP", "..xxx..."},
+        Stream{"pPKP", "...."}, Stream{"KkkK", "...."}}) {
+    StreamDamage damage;
+    std::string is;
+    for (const char* frame = stream.frames; *frame; ++frame)
+      is += damage.add({.after_loss = *frame == 'k' || *frame == 'p',
+                        .keyframe = *frame == 'K' || *frame == 'k',
+                        .time = (frame - stream.frames) * kStep})
+                ? 'x'
+                : '.';
+    ck_assert_str_eq(is.c_str(), stream.damaged);
+  }
+}
+END_TEST
+
+START_TEST(without_keyframes_for_25_seconds_nothing_counts_as_damaged) {
+  StreamDamage damage;
+  damage.add({.keyframe = true, .time = 0s});
+  ck_assert(damage.add({.after_loss = true, .time = 1s}));
+  ck_assert(damage.add({.time = 25s}));
+  ck_assert(!damage.add({.time = 25040ms}));
+  ck_assert(!damage.add({.after_loss = true, .time = 26s}));
+  damage.add({.keyframe = true, .time = 27s});
+  ck_assert(damage.add({.after_loss = true, .time = 28s}));
+  damage.begin();
+  ck_assert(!damage.add({.after_loss = true, .time = 29s}));  // the mark of a stream's first frame
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
-      "frame_history",
-      {frames_in_order_follow_each_other, a_dropped_history_and_time_far_back_begin_a_scene,
-       small_steps_back_are_a_matter_of_the_timestamps_only, times_are_believed_again_soon_after_a_step_back,
-       times_that_no_camera_can_have_are_not_known, lost_pictures_are_passed_over_unless_they_are_many,
-       a_gap_is_judged_by_the_rhythm_of_the_stream, a_stream_slower_than_its_caps_is_not_blind,
-       missing_timestamps_are_taken_as_evenly_spaced, missing_frames_are_told_from_a_mark_alone,
-       a_repeated_frame_counts_from_the_last_picture, repeated_frames_without_times_are_counted,
-       repeated_frames_are_not_missing, a_picture_that_is_seen_to_stay_leaves_no_gap,
-       a_long_freeze_ends_the_scene, a_frame_may_repeat_a_picture_of_the_last_half_second,
-       where_times_are_out_of_order_no_frame_repeats_another,
-       pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them});
+      "frame_history", {frames_in_order_follow_each_other,
+                        a_dropped_history_and_time_far_back_begin_a_scene,
+                        small_steps_back_are_a_matter_of_the_timestamps_only,
+                        times_are_believed_again_soon_after_a_step_back,
+                        times_that_no_camera_can_have_are_not_known,
+                        lost_pictures_are_passed_over_unless_they_are_many,
+                        a_gap_is_judged_by_the_rhythm_of_the_stream,
+                        a_stream_slower_than_its_caps_is_not_blind,
+                        missing_timestamps_are_taken_as_evenly_spaced,
+                        missing_frames_are_told_from_a_mark_alone,
+                        a_repeated_frame_counts_from_the_last_picture,
+                        repeated_frames_without_times_are_counted,
+                        repeated_frames_are_not_missing,
+                        a_picture_that_is_seen_to_stay_leaves_no_gap,
+                        a_long_freeze_ends_the_scene,
+                        a_frame_may_repeat_a_picture_of_the_last_half_second,
+                        where_times_are_out_of_order_no_frame_repeats_another,
+                        pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them,
+                        damaged_pictures_of_seconds_leave_no_gap_and_no_rhythm,
+                        damage_without_end_ends_the_scene,
+                        frames_from_a_loss_to_the_next_whole_keyframe_are_damaged,
+                        without_keyframes_for_25_seconds_nothing_counts_as_damaged});
 }
