@@ -2,16 +2,34 @@
 // cerberus-head: the helper process that drives a real head for pantiltsink. It reads the line protocol
 // (docs/manual/head-protocol.md) from its standard input. It lives on when the pipeline is killed, for as long as it
 // takes to stop the head.
+#include <chrono>
 #include <csignal>
 #include <cstdio>
 #include <string>
 #include <vector>
 
+#include "drivers/head/head_place.h"
 #include "heads/drivers.h"
+#include "heads/one_program.h"
 
 namespace {
 
 constexpr char kDrivers[] = "visca, pelco-d, onvif, stepper-gpio, servo-pwm or v4l2";
+
+// Time for the helper of a pipeline that has just ended to stop its head. Less than the time after which a helper that is
+// silent at its start counts as failed (5 s).
+constexpr std::chrono::milliseconds kPatience{4000};
+
+// The place of the head that these words mean.
+std::string place_of(const std::string& driver, const std::vector<cerberus::drivers::OptionWord>& words) {
+  cerberus::drivers::HeadSetup setup;
+  for (const auto& word : words)
+    if (word.key == "device")
+      setup.device = word.value;
+    else
+      setup.options += word.key + "=" + word.value + " ";
+  return cerberus::drivers::head_place(driver, setup);
+}
 
 int help() {
   std::printf(
@@ -35,5 +53,7 @@ int main(int argc, char** argv) {
   if (!run) return heads::fail("there is no head driver \"" + driver + "\": take " + kDrivers);
   std::vector<cerberus::drivers::OptionWord> words;
   for (int i = 2; i < argc; ++i) words.push_back(cerberus::drivers::option_word(argv[i]));
+  if (const std::string wrong = heads::hold_place(place_of(driver, words), kPatience); !wrong.empty())
+    return heads::fail(wrong);
   return run(words);
 }

@@ -76,7 +76,7 @@
  * `pelco-d`, `onvif`, `v4l2` (a camera at `device`), `stepper-gpio` and `servo-pwm` (motors on the GPIO or PWM chip
  * `device`). All but the first two run in a helper process, which stops the head when this one dies, hangs or is silent
  * for `helper-timeout`.
- * One head has one name (`head`) and in a process one sink.
+ * One head has one name (`head`) and in a process one sink; a real one is driven by one program of a machine.
  *
  * No change of state waits for its first frame (`async=false`).
  *

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """cerberus-heads as a user runs it: nothing moves before Enter, the first key ends it, ports are only asked if named.
 
-    heads_tool.py CERBERUS-HEADS
+    heads_tool.py CERBERUS-HEADS CERBERUS-HEAD
 """
 import os
 import pty
@@ -14,7 +14,7 @@ import time
 
 from support import LIMIT, TOP, all_tests, run
 
-TOOL = os.path.abspath(sys.argv[1])
+TOOL, HELPER = map(os.path.abspath, sys.argv[1:])
 EXAMPLE = ['--command', f'{sys.executable} {TOP}/pipelines/heads/example.py']
 
 
@@ -84,6 +84,19 @@ def test_a_port_is_asked_if_it_is_named():
     assert bytes.fromhex('81090612ff') in os.read(far, 4096)
     os.close(near)
     os.close(far)
+
+
+def test_one_program_drives_a_head_and_a_killed_one_frees_it():
+    camera = [HELPER, 'visca', '--device=udp:127.0.0.1:9']  # nothing is sent before the pipeline's first line
+    with subprocess.Popen(camera, stdin=subprocess.PIPE, stdout=subprocess.PIPE) as first:
+        end, said = time.monotonic() + LIMIT, ''
+        while not said and time.monotonic() < end:  # until the first one was faster than the second
+            said = run([*camera, 'address=1'], stdin=subprocess.DEVNULL)[1]  # 1 is the usual address
+        assert f'fault another program (process {first.pid}) drives the head at udp:127.0.0.1:9 address 1 ' \
+            'already: end it first' in said, said
+        assert run([*camera, 'address=2'], stdin=subprocess.DEVNULL)[1] == ''
+        first.kill()
+    assert run(camera, stdin=subprocess.DEVNULL)[1] == ''
 
 
 def test_what_cannot_be_is_named():

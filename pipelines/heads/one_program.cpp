@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "heads/one_program.h"
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstddef>
+#include <cstring>
+#include <thread>
+
+namespace cerberus::heads {
+namespace {
+
+struct Address {
+  sockaddr_un value{};
+  socklen_t size;
+
+  // A name that is too long for an address (107 bytes) is cut: two such heads count as one, which is the safe side.
+  explicit Address(const std::string& place) {
+    const std::string name = "cerberus-head " + place;
+    const std::size_t length = std::min(name.size(), sizeof value.sun_path - 1);
+    value.sun_family = AF_UNIX;
+    std::memcpy(value.sun_path + 1, name.data(), length);  // a first byte of 0 makes the name an abstract one
+    size = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + length);
+  }
+  const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&value); }
+};
+
+// " (process 1234)" of the program that holds the place; empty: it is not known.
+std::string holder(const Address& address) {
+  const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  ucred credentials{};
+  socklen_t size = sizeof credentials;
+  const bool known = ::connect(asking, address.get(), address.size) == 0 &&
+                     ::getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &credentials, &size) == 0;
+  ::close(asking);
+  return known && credentials.pid > 0 ? " (process " + std::to_string(credentials.pid) + ")" : "";
+}
+
+}  // namespace
+
+std::string hold_place(const std::string& place, std::chrono::milliseconds patience) {
+  if (place.empty()) return {};
+  const Address address(place);
+  const auto end = std::chrono::steady_clock::now() + patience;
+  const int held = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (held < 0) return std::string("no socket could be made: ") + std::strerror(errno);
+  while (::bind(held, address.get(), address.size) != 0) {
+    const int wrong = errno;
+    if (wrong == EADDRINUSE && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      continue;
+    }
+    ::close(held);
+    if (wrong != EADDRINUSE)
+      return "the head at " + place + " could not be reserved: " + std::strerror(wrong);
+    return "another program" + holder(address) + " drives the head at " + place +
+           " already: end it first; a head has one controller";
+  }
+  ::listen(held, 4);  // so that the holder can be named
+  return {};
+}
+
+}  // namespace cerberus::heads
