@@ -30,7 +30,7 @@ struct Coding {
 Coding coding(Codec codec) {
   switch (codec) {
     case Codec::h264:
-      return {"rtph264depay", "h264parse", "avdec_h264"};
+      return {"rtph264depay request-keyframe=true", "h264parse", "avdec_h264"};
     case Codec::h265:
       return {"rtph265depay", "h265parse", "avdec_h265"};
     case Codec::jpeg:
