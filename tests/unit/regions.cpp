@@ -169,6 +169,21 @@ START_TEST(a_low_shadow_on_the_floor_is_not_part_of_the_box) {
 }
 END_TEST
 
+// A trunk of 15 x 80 pixels. The arm is 6 rows thick, 36 columns long and at half height.
+START_TEST(an_outstretched_arm_is_part_of_the_box_and_a_swaying_tape_is_not) {
+  for (const bool tape : {false, true}) {
+    RegionFinder finder = settled();
+    Picture picture;
+    picture.fill(100, 60, 115, 140);
+    for (int x = 115; x < 151; x += tape ? 4 : 1) picture.fill(x, 90, x + 1, 96);
+    const auto regions = picture.find(finder);
+    ck_assert_uint_eq(regions.size(), 1);
+    ck_assert_double_eq(regions[0].box.x, 100);
+    ck_assert_double_eq(regions[0].box.right(), tape ? 116 : 151);
+  }
+}
+END_TEST
+
 START_TEST(two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen) {
   RegionFinder finder;
   Picture picture;
@@ -527,6 +542,7 @@ int main() {
                   in_the_first_frames_of_a_scene_a_box_takes_in_both_sides_of_its_edge,
                   the_mask_comes_back_closed_and_without_specks,
                   a_low_shadow_on_the_floor_is_not_part_of_the_box,
+                  an_outstretched_arm_is_part_of_the_box_and_a_swaying_tape_is_not,
                   two_people_arm_in_arm_are_one_region_before_and_two_after_people_were_seen,
                   a_region_s_area_is_the_foreground_in_its_box,
                   head_and_legs_without_a_trunk_are_one_person_once_people_are_known,

@@ -19,7 +19,6 @@ struct RegionParameters {
   double usual_least = 0.8,
          usual_most = 1.2;    // heights of a person by the prior: so high is one whole person,
   double usual_aspect = 1.8;  // if its height / width is above this
-  double skirt = 0.3;         // columns lower than this share of the highest are a shadow
 
   // Samples of the height prior. Lengths in heights of the component.
   double alone = 0.4;                   // distance to the next component

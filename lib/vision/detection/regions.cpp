@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vision/detection/height_prior.h"
+#include "vision/detection/outline.h"
 #include "vision/detection/people.h"
 #include "vision/detection/person_box.h"
 #include "vision/detection/region_parameters.h"
@@ -61,8 +62,8 @@ struct RegionFinder::State {
   std::vector<Walker> walkers, walkers_before;
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
-  std::vector<Bounds> bodies;              // of each component: its box without the shadow it casts
-  std::vector<int> columns;                // scratch: moving pixels of a component in each of its columns
+  OutlineFinder outline_finder;
+  std::vector<Outline> outlines;  // of each component
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
@@ -71,7 +72,6 @@ struct RegionFinder::State {
                                                                : kParameters.least_share * size.area());
   }
   void preallocate(Size picture);
-  void trim();
   void learn(const Transform& motion);
   void group_components();
   void explain(int group);
@@ -93,34 +93,10 @@ void RegionFinder::State::preallocate(Size picture) {
   vision::preallocate(blocks, kMostBlocks);
   vision::preallocate(blocks_before, kMostBlocks);
   vision::preallocate(group, std::min(parts, kMostParts));
-  vision::preallocate(bodies, parts);
-  vision::preallocate(columns, static_cast<std::size_t>(picture.width) + 1);
+  outline_finder.preallocate(picture.width);
+  vision::preallocate(outlines, parts);
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
   size = picture;  // assigned last: after a failed allocation the next call tries again
-}
-
-// A shadow on the floor is wide and low: a component's box ends where its columns become low.
-void RegionFinder::State::trim() {
-  const auto runs = labeller.runs();
-  bodies.clear();
-  for (std::size_t i = 0; const Component& c : labeller.components()) {
-    // Each run adds one to its columns: steps up and down first, summed up afterwards.
-    const int width = c.width();
-    columns.assign(static_cast<std::size_t>(width) + 1, 0);
-    auto run = std::ranges::lower_bound(runs, c.top, {}, &Run::row);
-    for (; run != runs.end() && run->row < c.bottom; ++run) {
-      if (run->component != i) continue;
-      ++columns[run->first - c.left];
-      --columns[run->end - c.left];
-    }
-    int highest = columns[0];
-    for (int x = 1; x < width; ++x) highest = std::max(highest, columns[x] += columns[x - 1]);
-    int left = 0, right = width;
-    while (columns[left] < kParameters.skirt * highest) ++left;
-    while (columns[right - 1] < kParameters.skirt * highest) --right;
-    bodies.push_back({c.left + left, c.top, c.left + right, c.bottom});
-    ++i;
-  }
 }
 
 // Only walkers are samples of the height prior: blobs that look like one person, isolated, of the same height for three
@@ -132,7 +108,7 @@ void RegionFinder::State::learn(const Transform& motion) {
   walkers.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Component& c = parts[i];
-    const Bounds& body = bodies[i];
+    const Bounds& body = outlines[i].body;
     if (!looks_like_one_person(c, body, size)) continue;
     const double reach = p.alone * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(),
@@ -191,7 +167,7 @@ void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
   const bool person = kind == RegionKind::person_like;
   const Component& c = labeller.components()[i];
   if (regions.size() == regions.capacity()) return;
-  Box box = box_of(bodies[i]);
+  Box box = box_of(outlines[i].whole);
   const double filled = c.area / box.area();
   // An object that was there when the scene began uncovers its place: the foreground edge has the object on one side
   // and the place on the other, and in a young scene they cannot be distinguished. The box takes in both.
@@ -246,7 +222,7 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
                        RegionKind::person_like});
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (group[i] != g) continue;
-    const Box box = box_of(bodies[i]);
+    const Box box = box_of(outlines[i].body);
     double covered = 0;
     for (const Person& person : found) covered += overlap_area(person.box, box);
     if (covered < kParameters.explained * box.area())
@@ -268,7 +244,8 @@ void RegionFinder::State::explain(int g) {
              std::max(all.bottom, bottom)};
     };
     unite(window, parts[i].left, parts[i].top, parts[i].right, parts[i].bottom);
-    unite(body, bodies[i].left, bodies[i].top, bodies[i].right, bodies[i].bottom);
+    const Bounds& own = outlines[i].body;
+    unite(body, own.left, own.top, own.right, own.bottom);
   }
   const auto add_all = [&](auto kind) {
     for (std::size_t i = 0; i < parts.size(); ++i)
@@ -323,8 +300,8 @@ std::size_t RegionFinder::bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
          s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
-         bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.bodies) +
-         bytes_of(s.columns) + bytes_of(s.regions);
+         bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.outlines) +
+         s.outline_finder.bytes() + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -346,7 +323,9 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   const auto parts = s.labeller.find(s.closed.view(), mask.width, s.least());
   unpack(s.closed.view(), mask);
   if (!labels.empty()) s.labeller.write(labels);  // empty: not wanted
-  s.trim();
+  s.outlines.clear();
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    s.outlines.push_back(s.outline_finder.outline(parts[i], i, s.labeller.runs(), s.moving.view()));
   if (!s.options.people || parts.size() > kMostParts) {
     for (std::size_t i = 0; i < parts.size(); ++i) s.add_plain(i);
   } else {
