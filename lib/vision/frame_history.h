@@ -25,8 +25,8 @@ class FrameHistory {
     // Seconds for which a repeated picture stands for the stream: no gap is counted within. Derived: a source of two
     // frames a second, of which another element has made more; slower ones are too slow to follow people.
     double longest_repeat = .5;
-    // Seconds for which damaged pictures stand for the stream. Derived: a camera's keyframes, which mend the picture, are
-    // at most 10 s apart, and two of three may be damaged, too.
+    // Seconds for which damaged pictures stand for the stream. Derived: a camera's keyframes, which mend the picture,
+    // are at most 10 s apart, and two of three may be damaged, too.
     double longest_damage = 30;
     int lost_pictures = 5;  // pictures in a row that may be lost within a scene: a fifth of a second of video
     double unknown_distance = .04;  // seconds, where neither caps nor frames have shown one: 25 a second

@@ -5,16 +5,18 @@
  * @short_description: Marks the frames that decode to damaged pictures
  * @see_also: motiondetect
  *
- * Put it between the depayloader and the decoder of a stream that may lose packets. After a loss (`rtph264depay` and its
- * relatives mark it by DISCONT) every frame up to the next keyframe decodes to a damaged picture, because it is predicted
- * from damaged ones; decoders conceal what is missing and report nothing. This element attaches a meta to these frames,
- * which the decoder copies to their pictures. `motiondetect` and its stages treat such a picture as a repetition of the
- * last whole one: they publish the last result, set the flags GAP and CORRUPTED, and learn nothing from it.
+ * Put it between the depayloader and the decoder of a stream that may lose packets. After a loss (`rtph264depay` and
+ * its relatives mark it by DISCONT) every frame up to the next keyframe decodes to a damaged picture, because it is
+ * predicted from damaged ones; decoders conceal what is missing and report nothing. This element attaches a meta to
+ * these frames, which the decoder copies to their pictures. `motiondetect` and its stages treat such a picture as a
+ * repetition of the last whole one: they publish the last result, set the flags GAP and CORRUPTED, and learn nothing
+ * from it.
  *
- * Nothing is found while the picture is damaged, and tracks that are published meanwhile are old. Where much is lost,
- * `request-keyframe=true` of the depayloader alone finds more: docs/manual/recorders.md has figures. Use it with short distances between keyframes (a second or less) or with
- * `request-keyframe=true` of the depayloader, where the sender answers. Where no keyframe comes for 25 seconds, as with
- * intra refresh, no picture counts as damaged. The stream itself is passed on unchanged, to recorders, too.
+ * Nothing is found while the picture is damaged, and tracks that are published meanwhile are old. Use it with short
+ * distances between keyframes (a second or less) or with `request-keyframe=true` of the depayloader, where the sender
+ * answers; where much is lost, `request-keyframe=true` alone finds more: docs/manual/recorders.md has figures. Where
+ * no keyframe comes for 25 seconds, as with intra refresh, no picture counts as damaged. The stream itself is passed
+ * on unchanged, to recorders, too.
  *
  * Pads: one sink, one src, encoded video whose buffers are whole frames (`alignment=au`).
  *
