@@ -23,7 +23,8 @@ std::optional<double> FrameHistory::repeat(std::optional<Time> time, double nomi
   shown_ = time;
   if (time && previous_ && *time > *previous_) {
     const double seconds = seconds_between(*previous_, *time);
-    held_ = std::min(seconds, damage_ ? parameters_.longest_damage : parameters_.longest_repeat);
+    held_ =
+        std::max(held_, std::min(seconds, damaged ? parameters_.longest_damage : parameters_.longest_repeat));
     return seconds;
   }
   return repeats_ * (usual_ > 0 ? usual_ : nominal > 0 ? nominal : parameters_.unknown_distance);

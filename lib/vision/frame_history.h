@@ -72,8 +72,9 @@ class FrameHistory {
   bool any_ = false;  // a frame of this scene was seen
   int lost_ = 0;      // since the last picture
   int repeats_ = 0;   // likewise
-  double held_ =
-      0;  // seconds for which the last picture stands for the stream, at most longest_repeat or _damage
+  // Seconds for which the last picture stands for the stream: up to the last damaged frame (at most longest_damage) or
+  // plain repetition (at most longest_repeat).
+  double held_ = 0;
   bool damage_ = false;           // since the last picture
   std::optional<Time> previous_;  // of the last picture
   std::optional<Time> shown_;     // of the last frame, repeated or not

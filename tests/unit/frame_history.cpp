@@ -283,6 +283,18 @@ START_TEST(damaged_pictures_of_seconds_leave_no_gap_and_no_rhythm) {
 }
 END_TEST
 
+START_TEST(repetitions_after_damage_stand_for_the_stream_no_longer_than_others) {
+  for (const int repeats : {5, 50}) {
+    FrameHistory history;
+    int k = 0;
+    for (; k < 10; ++k) history.next(k * kStep, 0);
+    for (const int end = k + 50; k < end; ++k) history.repeat(k * kStep, 0, true);
+    for (const int end = k + repeats; k < end; ++k) history.repeat(k * kStep, 0);
+    ck_assert(history.next(k * kStep, 0).fresh == (repeats == 50));
+  }
+}
+END_TEST
+
 START_TEST(damage_without_end_ends_the_scene) {
   FrameHistory history;
   for (int k = 0; k < 10; ++k) history.next(k * kStep, 0);
@@ -347,6 +359,7 @@ int main() {
                         where_times_are_out_of_order_no_frame_repeats_another,
                         pictures_without_times_are_as_far_apart_as_the_repeated_frames_between_them,
                         damaged_pictures_of_seconds_leave_no_gap_and_no_rhythm,
+                        repetitions_after_damage_stand_for_the_stream_no_longer_than_others,
                         damage_without_end_ends_the_scene,
                         frames_from_a_loss_to_the_next_whole_keyframe_are_damaged,
                         without_keyframes_for_25_seconds_nothing_counts_as_damaged});
