@@ -213,10 +213,14 @@ class Writer {
     set_all("recorder", camera_.recorder->properties);
   }
 
-  // What is recorded goes on for ever: its encoder is behind no valve. `encode-queue` bridges a slow encoder.
+  // What is recorded goes on for ever: its encoder is behind no valve, and `encode-queue` bridges a slow one. What is
+  // only watched is late behind a long queue, and frames are dropped instead.
   void encode_plain() {
-    add(std::string("  found. ! queue name=encode-queue leaky=downstream ") + kPatient);
-    if (!recorder_) add(std::string(kValve) + "rtsp-plain-valve");
+    add("  found. ! queue name=encode-queue ");
+    if (recorder_)
+      add(std::string("leaky=downstream ") + kPatient);
+    else
+      add(std::string(kNewest) + kValve + "rtsp-plain-valve");
     encoder(camera_.recorder ? camera_.recorder->encoder : rtsp_->encoder);
     encoded();
   }

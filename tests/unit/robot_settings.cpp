@@ -556,6 +556,9 @@ START_TEST(one_encoder_makes_the_plain_picture_of_the_recorder_and_of_all_client
   ck_assert(line.find("rtsp-plain-valve") == std::string::npos);
   const std::string alone = pipeline_text(all.cameras[0], {all.page, {}, all.rtsp, {}}, {true, false}).line;
   ck_assert(says(alone, "rtsp-plain-valve"));
+  // The recorder's frames wait for a slow encoder; those that are only watched do not.
+  ck_assert(says(line, "name=encode-queue leaky=downstream max-size-buffers=0 "));
+  ck_assert(says(alone, "name=encode-queue leaky=downstream max-size-buffers=2 "));
   ck_assert(pipeline_text(all.cameras[0], {all.page, {}, {}, {}}, {}).line.find("rtsp-") ==
             std::string::npos);
 }
