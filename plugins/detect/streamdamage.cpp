@@ -41,10 +41,8 @@ GST_DEBUG_CATEGORY_STATIC(streamdamage_debug);
 
 using cerberus::vision::StreamDamage;
 
-#define ENCODED_VIDEO                                                                               \
-  "video/x-h264; video/x-h265; video/mpeg, systemstream=(boolean)false; video/x-vp8; video/x-vp9; " \
-  "video/x-av1; "                                                                                   \
-  "image/jpeg"
+// Not video/mpeg: its depayloaders do not mark the frames that are no keyframes.
+#define ENCODED_VIDEO "video/x-h264; video/x-h265; video/x-vp8; video/x-vp9; video/x-av1; image/jpeg"
 
 GstStaticPadTemplate sink_template =
     GST_STATIC_PAD_TEMPLATE("sink", GST_PAD_SINK, GST_PAD_ALWAYS, GST_STATIC_CAPS(ENCODED_VIDEO));
