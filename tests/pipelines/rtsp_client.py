@@ -3,6 +3,7 @@
 import hashlib
 import re
 import socket
+import time
 
 PATIENCE = 100  # seconds
 
@@ -86,8 +87,10 @@ class Rtsp:
 
     def is_closed(self):
         """Reads what is left; True: the server has closed the connection. Raises TimeoutError if it does not."""
+        end = time.monotonic() + PATIENCE
         try:
-            while True:
+            while time.monotonic() < end:
                 self.packet()
         except ConnectionError:
             return True
+        raise TimeoutError('packets come all the time')
