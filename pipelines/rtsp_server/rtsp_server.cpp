@@ -12,6 +12,8 @@ namespace {
 
 constexpr char kRole[] = "viewer";
 constexpr guint kMostSessions = 100;  // of all clients
+constexpr guint kMostClients = 128;   // connections, with and without a session
+constexpr int kThreads = 8;  // for all clients: one that waits for a mount's first frame blocks its thread
 constexpr guint kCleaningPeriod = 2;  // seconds after which sessions without a client are looked for
 
 // What packs a stream into RTP. Parameter sets go along with every keyframe, so that a client that joins has them.
@@ -114,7 +116,21 @@ GstRTSPFilterResult end_of_folder(GstRTSPServer*, GstRTSPClient* client, gpointe
   return any ? GST_RTSP_FILTER_REMOVE : GST_RTSP_FILTER_KEEP;
 }
 
-void on_client(GstRTSPServer*, GstRTSPClient* client, gpointer) {
+// Closes the connection: the client's own thread reads its end and tears the client down.
+void shut_down(GstRTSPClient* client) {
+  GstRTSPConnection* connection = gst_rtsp_client_get_connection(client);
+  GSocket* socket = connection ? gst_rtsp_connection_get_read_socket(connection) : nullptr;
+  if (socket) g_socket_shutdown(socket, TRUE, TRUE, nullptr);
+}
+
+void on_client(GstRTSPServer* server, GstRTSPClient* client, gpointer) {
+  GList* all = gst_rtsp_server_client_filter(server, nullptr, nullptr);
+  const guint others = g_list_length(all) - (g_list_find(all, client) ? 1 : 0);
+  g_list_free_full(all, g_object_unref);
+  if (others >= kMostClients) {
+    shut_down(client);
+    return;
+  }
   g_signal_connect(client, "play-request", G_CALLBACK(on_play), nullptr);
 }
 
@@ -233,6 +249,8 @@ std::string RtspServer::listen() {
   gst_rtsp_server_set_address(server_.get(), settings_.address.c_str());
   gst_rtsp_server_set_service(server_.get(), std::to_string(settings_.port).c_str());
   protect();
+  g_autoptr(GstRTSPThreadPool) threads = gst_rtsp_server_get_thread_pool(server_.get());
+  gst_rtsp_thread_pool_set_max_threads(threads, kThreads);
   g_signal_connect(server_.get(), "client-connected", G_CALLBACK(on_client), nullptr);
 
   g_autoptr(GError) error = nullptr;
@@ -240,7 +258,7 @@ std::string RtspServer::listen() {
   if (!listener_) {
     const std::string where = "port " + std::to_string(settings_.port) + " of " + settings_.address;
     if (g_error_matches(error, G_IO_ERROR, G_IO_ERROR_ADDRESS_IN_USE))
-      return where + " is in use: end the program that has it, or take another one (--port 8555)";
+      return where + " is in use: end the program that has it, or take another port";
     return where + " cannot be opened: " + error->message;
   }
   g_source_attach(listener_, nullptr);

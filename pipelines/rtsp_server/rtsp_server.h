@@ -31,7 +31,8 @@ class RtspServer {
 
   // Reads the certificate. Returns what is wrong, or nothing.
   std::string prepare();
-  // Opens the port, after prepare(); clients are served by the default main context. Returns what is wrong.
+  // Opens the port, after prepare(). Clients are accepted by the default main context and served by threads of their
+  // own. Returns what is wrong.
   std::string listen();
 
   // Serves the streams, which have begun, below the folder (empty: none). Returns what is wrong; then none is served.

@@ -409,6 +409,36 @@ GST_START_TEST(an_address_with_wrong_passwords_is_refused_for_a_while_and_longer
 }
 GST_END_TEST
 
+// Whether the other end has closed the connection.
+bool is_closed(GSocketConnection* connection) {
+  char byte = 0;
+  return g_socket_receive_with_blocking(g_socket_connection_get_socket(connection), &byte, 1, FALSE, nullptr,
+                                        nullptr) == 0;
+}
+
+GST_START_TEST(connections_are_limited_and_others_take_the_place_of_those_that_end) {
+  Served served(kPlain);
+  g_autoptr(GSocketClient) connector = g_socket_client_new();
+  std::vector<GSocketConnection*> all;
+  for (int k = 0; k < 130; ++k) {
+    all.push_back(g_socket_client_connect_to_host(connector, "127.0.0.1", static_cast<guint16>(served.port()),
+                                                  nullptr, nullptr));
+    fail_unless(all.back());
+    while (g_main_context_iteration(nullptr, FALSE)) {
+    }
+  }
+  for (const int k : {128, 129}) wait_for("the end of a connection", [&] { return is_closed(all[k]); });
+  for (int k = 0; k < 128; ++k) fail_if(is_closed(all[k]), "connection %d is closed", k);
+  for (GSocketConnection* each : all) g_object_unref(each);
+  // The server needs a moment until it has noticed.
+  wait_for("a player", [&] {
+    Client client(served.address("plain"), "protocols=tcp");
+    wait_for("an answer", [&] { return client.error() != 0 || client.pictures.size() >= 3; });
+    return client.pictures.size() >= 3;
+  });
+}
+GST_END_TEST
+
 GST_START_TEST(tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear) {
   if (!g_tls_backend_supports_tls(g_tls_backend_get_default())) {
     g_print("skipped: TLS needs glib-networking\n");
@@ -479,6 +509,7 @@ static Suite* rtsp_suite() {
   tcase_add_test(cases, a_mount_that_is_removed_ends_for_its_clients_and_may_come_back_below_a_folder);
   tcase_add_test(cases, only_a_user_with_the_right_password_plays);
   tcase_add_test(cases, an_address_with_wrong_passwords_is_refused_for_a_while_and_longer_each_time);
+  tcase_add_test(cases, connections_are_limited_and_others_take_the_place_of_those_that_end);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
   tcase_add_test(cases, what_cannot_be_served_is_named);
   suite_add_tcase(suite, cases);
