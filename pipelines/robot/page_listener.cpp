@@ -6,6 +6,7 @@
 #include <netinet/tcp.h>
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 namespace cerberus::robot {
@@ -102,8 +103,8 @@ GTlsCertificate* load_certificate(const std::string& certificate, const std::str
   return loaded;
 }
 
-GTlsCertificate* self_made_certificate(const std::string& folder, const std::string& address,
-                                       std::string& error) {
+GTlsCertificate* self_made_certificate(const Settings& settings, std::string& error) {
+  const std::string& folder = settings.state_folder;
   const std::string certificate = folder + "/page-certificate.pem", key = folder + "/page-key.pem";
   if (!g_file_test(certificate.c_str(), G_FILE_TEST_EXISTS) ||
       !g_file_test(key.c_str(), G_FILE_TEST_EXISTS)) {
@@ -112,7 +113,10 @@ GTlsCertificate* self_made_certificate(const std::string& folder, const std::str
     if (host.empty() || host.size() > 60 || std::ranges::any_of(host, is_odd)) host = "robot";
     std::string names =
         "subjectAltName=DNS:" + host + ",DNS:" + host + ".local,DNS:localhost,IP:127.0.0.1,IP:::1";
-    if (address != "0.0.0.0" && address != "::" && address != "127.0.0.1") names += ",IP:" + address;
+    std::set<std::string> addresses{settings.page.listen};
+    if (settings.rtsp) addresses.insert(settings.rtsp->listen);
+    for (const std::string& address : addresses)
+      if (address != "0.0.0.0" && address != "::" && address != "127.0.0.1") names += ",IP:" + address;
     const std::string subject = "/CN=" + host;
     // Ten years: a person accepts it once in a browser, by its fingerprint.
     const char* words[] = {"openssl",

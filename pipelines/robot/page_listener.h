@@ -9,6 +9,8 @@
 #include <map>
 #include <string>
 
+#include "robot/settings.h"
+
 namespace cerberus::robot {
 
 class PageListener {
@@ -46,11 +48,10 @@ class PageListener {
   std::map<GObject*, std::string> open_;  // the connections by their remote address and port
 };
 
-// The certificate of the files, or the self-made one in `folder`, which the openssl tool makes at the first start. The
-// caller unrefs; nullptr, and what is wrong.
+// The certificate of the files, or the self-made one in the state folder, which the openssl tool makes at the first start,
+// for the addresses of the page and of [rtsp]. The caller unrefs; nullptr, and what is wrong.
 GTlsCertificate* load_certificate(const std::string& certificate, const std::string& key, std::string& error);
-GTlsCertificate* self_made_certificate(const std::string& folder, const std::string& address,
-                                       std::string& error);
+GTlsCertificate* self_made_certificate(const Settings& settings, std::string& error);
 // SHA-256 of a certificate as browsers show it: "AB:CD:...".
 std::string fingerprint(GTlsCertificate* certificate);
 

@@ -148,9 +148,8 @@ bool PageServer::listen(std::string& error) {
   }
   g_autoptr(GTlsCertificate) certificate = nullptr;
   if (page.tls) {
-    certificate = page.certificate.empty()
-                      ? self_made_certificate(house_.settings.state_folder, page.listen, error)
-                      : load_certificate(page.certificate, page.key, error);
+    certificate = page.certificate.empty() ? self_made_certificate(house_.settings, error)
+                                           : load_certificate(page.certificate, page.key, error);
     if (certificate == nullptr) return false;
   }
   if (!listener_.open(server_, address, certificate, error)) {

@@ -98,7 +98,7 @@ bool Robot::open(Settings settings, std::string& error) {
   open_base();
   open_webhook();
   set_publishing();
-  rtsp_.configure(settings_.rtsp, settings_.state_folder);
+  rtsp_.configure(settings_);
   for (const CameraSettings& camera : settings_.cameras) cameras_.push_back(make_camera(camera));
 #if HAVE_PAGE
   if (settings_.page.enabled) open_page();
@@ -247,7 +247,7 @@ void Robot::take(Settings settings) {
   if (new_webhook) open_webhook();
   if (new_base) open_base();
   set_publishing();
-  if (new_rtsp) rtsp_.configure(settings_.rtsp, settings_.state_folder);
+  if (new_rtsp) rtsp_.configure(settings_);
 
   std::vector<std::unique_ptr<Camera>> before = std::move(cameras_);
   cameras_.clear();

@@ -28,8 +28,7 @@ struct RtspOutput::State {
     bool shown = false, mounted = false;
   };
 
-  std::optional<RtspSettings> settings;
-  std::string state_folder;
+  Settings settings;  // as of configure()
   std::map<std::string, Entry> entries;
   std::unique_ptr<rtsp::RtspServer> server;
   Backoff backoff;
@@ -42,18 +41,17 @@ bool RtspOutput::is_built() {
   return true;
 }
 
-void RtspOutput::configure(const std::optional<RtspSettings>& settings, const std::string& state_folder) {
+void RtspOutput::configure(const Settings& settings) {
   state_->server.reset();
   for (auto& [camera, entry] : state_->entries) entry.mounted = false;
   state_->settings = settings;
-  state_->state_folder = state_folder;
   state_->backoff = {};
   fault_.clear();
-  if (settings) open();
+  if (settings.rtsp) open();
 }
 
 void RtspOutput::open() {
-  const RtspSettings& settings = *state_->settings;
+  const RtspSettings& settings = *state_->settings.rtsp;
   rtsp::ServerSettings wanted;
   wanted.address = settings.listen;
   wanted.port = settings.port;
@@ -64,9 +62,9 @@ void RtspOutput::open() {
   if (settings.tls && settings.certificate.empty()) {
 #if HAVE_PAGE
     // The page's, so that a client accepts one certificate of the robot.
-    g_autoptr(GTlsCertificate) made = self_made_certificate(state_->state_folder, settings.listen, fault_);
-    wanted.certificate = state_->state_folder + "/page-certificate.pem";
-    wanted.key = state_->state_folder + "/page-key.pem";
+    g_autoptr(GTlsCertificate) made = self_made_certificate(state_->settings, fault_);
+    wanted.certificate = state_->settings.state_folder + "/page-certificate.pem";
+    wanted.key = state_->settings.state_folder + "/page-key.pem";
 #else
     fault_ = "this build makes no certificates: name a \"certificate\" in [rtsp]";
 #endif
@@ -85,7 +83,7 @@ void RtspOutput::open() {
 }
 
 void RtspOutput::tick() {
-  if (!state_->server && state_->settings && state_->backoff.is_due(Clock::now())) open();
+  if (!state_->server && state_->settings.rtsp && state_->backoff.is_due(Clock::now())) open();
   if (!state_->server) return;
   for (auto& [camera, entry] : state_->entries) {
     if (!entry.shown || entry.mounted || !entry.streams.has_begun()) continue;
@@ -96,7 +94,7 @@ void RtspOutput::tick() {
 }
 
 void RtspOutput::show(const std::string& camera, GstElement* pipeline) {
-  if (!state_->settings) return;
+  if (!state_->settings.rtsp) return;
   State::Entry& entry = state_->entries[camera];
   if (entry.pipeline == pipeline) {
     entry.streams.reopen();
@@ -139,8 +137,8 @@ RtspOutput::~RtspOutput() = default;
 bool RtspOutput::is_built() {
   return false;
 }
-void RtspOutput::configure(const std::optional<RtspSettings>& settings, const std::string&) {
-  if (settings) g_printerr("cerberusd: this build has no RTSP server (it needs gst-rtsp-server)\n");
+void RtspOutput::configure(const Settings& settings) {
+  if (settings.rtsp) g_printerr("cerberusd: this build has no RTSP server (it needs gst-rtsp-server)\n");
 }
 void RtspOutput::open() {}
 void RtspOutput::tick() {}

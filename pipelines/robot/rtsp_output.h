@@ -22,8 +22,8 @@ class RtspOutput {
   // Whether this build has the server.
   static bool is_built();
 
-  // Opens the server anew; nullopt: there is none. `state_folder` keeps a self-made certificate.
-  void configure(const std::optional<RtspSettings>& settings, const std::string& state_folder);
+  // Opens the server anew, or closes it where the settings have no [rtsp].
+  void configure(const Settings& settings);
   // Serves what has begun, and tries again what failed. Once a second.
   void tick();
   const std::string& fault() const { return fault_; }  // empty: there is none
