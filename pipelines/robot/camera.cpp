@@ -340,10 +340,10 @@ void Camera::on_message(GstMessage* message) {
 // Forgets picture and facts either way: none outlasts the time in which it may be seen.
 void Camera::set_show(bool show) {
   picture_asked_after_ = 0;
-  if (show)
-    rtsp_.show(settings_.name, pipeline_);
-  else
+  if (!show)
     rtsp_.hide(settings_.name, pipeline_);
+  else if (shared_.rtsp)
+    rtsp_.show(settings_.name, pipeline_);
   const std::lock_guard lock(newest_->lock);
   newest_->show = show;
   update_draw();

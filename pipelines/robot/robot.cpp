@@ -138,8 +138,22 @@ void Robot::set_publishing() {
 #endif
 }
 
+// A pipeline with an encoder that is not installed would not run at all: the camera is not served then.
+std::optional<RtspSettings> Robot::rtsp_of(const CameraSettings& camera) const {
+  if (!settings_.rtsp || !RtspOutput::is_built()) return std::nullopt;
+  const RtspSettings& rtsp = *settings_.rtsp;
+  const bool encodes_plain = rtsp.plain && !camera.recorder && camera.source.kind != SourceKind::rtsp;
+  if (!rtsp.annotated && !encodes_plain) return rtsp;
+  g_autoptr(GstElementFactory) encoder = gst_element_factory_find(rtsp.encoder.element.c_str());
+  if (encoder) return rtsp;
+  g_printerr(
+      "cerberusd: %s: RTSP: the encoder %s is not installed (\"encoder\" of [rtsp]); nothing is served\n",
+      camera.name.c_str(), rtsp.encoder.element.c_str());
+  return std::nullopt;
+}
+
 SharedSettings Robot::shared(const CameraSettings& camera) const {
-  return {settings_.page, publishing_, RtspOutput::is_built() ? settings_.rtsp : std::nullopt,
+  return {settings_.page, publishing_, rtsp_of(camera),
           stamp_of(settings_, "camera " + camera.name) + stamp_of(settings_, "mqtt")};
 }
 

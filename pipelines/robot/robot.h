@@ -47,6 +47,7 @@ class Robot {
   void open_base();       // the same
   void set_publishing();  // what the cameras publish: by MQTT, and for the webhook
   SharedSettings shared(const CameraSettings& camera) const;
+  std::optional<RtspSettings> rtsp_of(const CameraSettings& camera) const;
   void tick();
   void report(const std::string& text) const;
   void begin_shut_down();

@@ -49,6 +49,12 @@ kind = "test"
 '''
 
 
+def free_port():
+    with socket.socket() as probe:
+        probe.bind(('127.0.0.1', 0))
+        return probe.getsockname()[1]
+
+
 class Service:
     def __init__(self, folder):
         self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)
@@ -134,10 +140,17 @@ def main():
             log = service.reload()
             assert 'good: changed, its pipeline starts anew\n' in log and 'second: ' not in log.split('taken')[-2], log
             service.wait_for('WATCHDOG=1')
+            # An encoder that is not installed is no reason to be blind.
+            if subprocess.run(['gst-inspect-1.0', '--exists', 'nvh264enc'], check=False).returncode != 0:
+                (folder / 'robot.toml').write_text(f'{RELOADED}[rtsp]\nport = {free_port()}\nencoder = "nvh264enc"\n')
+                log = service.reload()
+                assert 'good: RTSP: the encoder nvh264enc is not installed' in log or 'has no RTSP server' in log, log
+                service.wait_for('WATCHDOG=1')
             code, log = service.stop()
         finally:
             service.process.kill()
         assert code == 0, f'exit code {code}: {log}'
+        assert 'a part of GStreamer is missing' not in log, log
         assert 'broken: camera: ' in log and 'it is tried again in 1 s' in log, log
         recorded = rows(folder)
         for file, is_open, size in recorded:
