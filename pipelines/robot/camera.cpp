@@ -203,7 +203,7 @@ void Camera::publish_picture() {
 }
 
 void Camera::start() {
-  again_ = false;
+  again_ = stale_ = false;
   since_ = last_frame_ = Clock::now();
   const PipelineText text = pipeline_text(settings_, shared_, parts_);
   GST_DEBUG("%s: %s", settings_.name.c_str(), text.line.c_str());
@@ -429,6 +429,12 @@ void Camera::set_mode(Mode mode) {
   if (state_ == State::off || (before == Mode::privacy && state_ == State::ended)) {
     start();
   } else if (state_ == State::parking) {  // privacy ended while the head was on its way
+    if (std::exchange(stale_, false)) {
+      order("stop");
+      again_ = true;
+      close();
+      return;
+    }
     order("auto");
     record_ = true;
     set_show(true);

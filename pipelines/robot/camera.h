@@ -142,6 +142,7 @@ class Camera {
   Mode mode_ = Mode::privacy;
   State state_ = State::off;
   bool wanted_ = false, again_ = false, final_ = false;
+  bool stale_ = false;  // the settings changed while the head parks: the pipeline is not of these
   Clock::time_point since_{}, last_frame_{}, last_tick_{};
   Parts parts_;
   Backoff camera_backoff_, head_backoff_, recorder_backoff_;

@@ -44,7 +44,8 @@ bool Camera::apply_secrets(std::string& error) {
 }
 
 void Camera::set_triggers() {
-  if (recorder_ == nullptr) return;
+  if (recorder_ == nullptr || !settings_.recorder)
+    return;  // of a pipeline that ends, with settings of the next
   for (const Property& trigger : triggers(*settings_.recorder))
     gst_util_set_object_arg(G_OBJECT(recorder_), trigger.name.c_str(),
                             mode_ == Mode::armed ? trigger.value.c_str() : "false");
@@ -112,6 +113,8 @@ Camera::Change Camera::change(const CameraSettings& settings, SharedSettings sha
     close();
   } else if (state_ == State::waiting) {
     start();
+  } else if (state_ == State::parking) {
+    stale_ = true;
   }
   return Change::restarts;
 }

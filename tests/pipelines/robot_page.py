@@ -332,6 +332,22 @@ def steering(owner, operator, viewer, stream):
         line.close()
 
 
+def reload_while_parking(owner, process, folder):
+    """Settings that change while the head parks count where privacy ends before it has."""
+    log, file, line = folder / 'log', folder / 'robot.toml', Socket(owner)
+    before = reports(line, lambda m: isinstance(m, tuple) and m[1])[1]['frame']
+    count = log.read_text().count('cerberusd: mode privacy')
+    line.send('mode privacy')
+    wait_until('privacy', lambda: log.read_text().count('cerberusd: mode privacy') > count)
+    file.write_text(file.read_text().replace('framerate = 10', 'framerate = 11'))
+    process.send_signal(signal.SIGHUP)
+    wait_until('the other settings', lambda: 'front: changed, its pipeline starts anew' in log.read_text())
+    line.send('mode disarmed')
+    after = reports(line, lambda m: isinstance(m, tuple) and m[1])[1]['frame']
+    assert after < before, 'the pipeline of the old settings goes on'
+    line.close()
+
+
 def base(owner, operator, folder):
     """A drive that is not repeated ends by itself; STOP ends one at once, also another's until that lets go, and so does
     the end of the page. Orders are repeated: a program of the base that gets no processor time is started anew."""
@@ -480,6 +496,7 @@ def main():
                 strangers(owner)
                 pictures(owner)
                 steering(owner, operator, viewer, stream)
+                reload_while_parking(owner, process, folder)
                 many_sockets(viewer)
                 base(owner, operator, folder)
                 stages(owner)
