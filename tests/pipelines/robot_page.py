@@ -254,13 +254,12 @@ def pictures(owner):
 
 
 def watch_streams(port):
-    """With a log-in both mounts of the camera give pictures, once they are there. Returns a client that watches."""
-    if not port:
-        return None
-    for mount in ('plain', 'annotated'):
-        client = wait_until(f'the mount {mount}', lambda: player(port, f'/front/{mount}'))
-        client.frames(3)
-    return client
+    """With a log-in both mounts of the camera give pictures, once they are there. Returns the clients, which watch."""
+    clients = []
+    for mount in ('plain', 'annotated') if port else ():
+        clients.append(wait_until(f'the mount {mount}', lambda mount=mount: player(port, f'/front/{mount}')))
+        clients[-1].frames(3)
+    return clients
 
 
 def player(port, path):
@@ -306,9 +305,11 @@ def steering(owner, operator, viewer, stream):
     if stream:
         assert Rtsp(stream).watch('/front/plain') == 401 and Rtsp(stream, 'anna', 'guess').watch('/front/plain') == 401
     first.send('mode privacy')
+    # Nothing is shown from now on, also while the head parks.
+    reports(first, lambda m: isinstance(m, dict) and m.get('mode') == 'privacy')
+    assert not stream or Rtsp(stream, 'anna', 'long enough').watch('/front/plain') == 404, 'privacy has a stream'
+    assert all(client.is_closed() for client in watching), 'privacy shows a stream'
     reports(first, lambda m: isinstance(m, dict) and m.get('mode') == 'privacy' and m['cameras'][0]['state'] == 'off')
-    assert not watching or watching.is_closed() and Rtsp(stream, 'anna', 'long enough').watch('/front/plain') == 404, \
-        'privacy shows a stream'
     assert owner.ask('GET', '/events?camera=front')[0] == 403, 'privacy shows events'
     second = Socket(operator)
     second.send('mode armed')
