@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/head/head_place.h"
+#include "drivers/helper/head_server.h"
 #include "heads/drivers.h"
 #include "heads/one_program.h"
 
@@ -16,19 +17,17 @@ namespace {
 
 constexpr char kDrivers[] = "visca, pelco-d, onvif, stepper-gpio, servo-pwm or v4l2";
 
-// Time for the helper of a pipeline that has just ended to stop its head. Less than the time after which a helper that is
-// silent at its start counts as failed (5 s).
-constexpr std::chrono::milliseconds kPatience{4000};
+// The helper of a pipeline that has just ended may still be stopping its head. Less than the time after which a helper
+// that is silent at its start counts as failed (5 s).
+constexpr std::chrono::milliseconds kPatience =
+    cerberus::drivers::kStopPatience + std::chrono::milliseconds(200);
 
 // The place of the head that these words mean.
 std::string place_of(const std::string& driver, const std::vector<cerberus::drivers::OptionWord>& words) {
-  cerberus::drivers::HeadSetup setup;
+  std::string device;
   for (const auto& word : words)
-    if (word.key == "device")
-      setup.device = word.value;
-    else
-      setup.options += word.key + "=" + word.value + " ";
-  return cerberus::drivers::head_place(driver, setup);
+    if (word.key == "device") device = word.value;
+  return cerberus::drivers::head_place(driver, device, words);
 }
 
 int help() {

@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 namespace cerberus::heads {
@@ -29,7 +30,16 @@ struct Address {
   const sockaddr* get() const { return reinterpret_cast<const sockaddr*>(&value); }
 };
 
-// " (process 1234)" of the program that holds the place; empty: it is not known.
+// The process that started `process`; 0: it is not known, or has ended.
+long parent(long process) {
+  std::ifstream status("/proc/" + std::to_string(process) + "/status");
+  for (std::string word; status >> word;)
+    if (long number = 0; word == "PPid:" && status >> number) return number > 1 ? number : 0;
+  return 0;
+}
+
+// " (process 1234)" of the program whose helper holds the place; empty: it is not known. Not of the helper itself: killing
+// that would leave a head turning.
 std::string holder(const Address& address) {
   const int asking = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
   ucred credentials{};
@@ -37,7 +47,8 @@ std::string holder(const Address& address) {
   const bool known = ::connect(asking, address.get(), address.size) == 0 &&
                      ::getsockopt(asking, SOL_SOCKET, SO_PEERCRED, &credentials, &size) == 0;
   ::close(asking);
-  return known && credentials.pid > 0 ? " (process " + std::to_string(credentials.pid) + ")" : "";
+  const long program = known ? parent(credentials.pid) : 0;
+  return program > 0 ? " (process " + std::to_string(program) + ")" : "";
 }
 
 }  // namespace
@@ -60,7 +71,7 @@ std::string hold_place(const std::string& place, std::chrono::milliseconds patie
     return "another program" + holder(address) + " drives the head at " + place +
            " already: end it first; a head has one controller";
   }
-  ::listen(held, 4);  // so that the holder can be named
+  ::listen(held, SOMAXCONN);  // so that the holder can be named; nothing is accepted
   return {};
 }
 

@@ -95,7 +95,7 @@ std::unique_ptr<drivers::HeadRunner> open_head(GstElement* element, const HeadSe
     CERBERUS_ELEMENT_ERROR(element, RESOURCE, SETTINGS, (wrong + "."), ("head %s", name));
     return nullptr;
   }
-  const std::string place = drivers::head_place(s.driver, setup);
+  const std::string place = drivers::head_place(s.driver, setup.device, drivers::option_words(setup.options));
   auto lease = drivers::HeadLease::take(s.head, place);
   if (!lease) {
     const bool named = drivers::HeadLease::is_taken(s.head);

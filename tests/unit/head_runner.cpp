@@ -426,16 +426,16 @@ END_TEST
 
 START_TEST(a_device_has_one_head_whatever_its_names_are_and_however_it_is_written) {
   const auto place = [](const char* driver, const char* device, const char* options = "") {
-    HeadSetup setup;
-    setup.device = device;
-    setup.options = options;
-    return head_place(driver, setup);
+    return head_place(driver, device, option_words(options));
   };
   assert_text(place("onvif", "http://Camera/onvif/device_service"), place("onvif", "camera").c_str());
   assert_text(place("onvif", "camera:80"), place("onvif", "camera").c_str());
   assert_text(place("onvif", "https://camera"), place("onvif", "camera:443").c_str());
   assert_text(place("onvif", "http://[fe80::1]/"), "[fe80::1]:80 profile ");
   ck_assert(place("onvif", "camera", "profile=a") != place("onvif", "camera", "profile=b"));
+  ck_assert(place("onvif", "camera", "profile='PTZ 1'") != place("onvif", "camera", "profile='PTZ 2'"));
+  assert_text(place("visca", "udp:camera:52381", "speeds='1 address=3' address='02'"),
+              "udp:camera:52381 address 2");
   assert_text(place("v4l2", "/dev/../dev/null"), "/dev/null");
   assert_text(place("visca", "serial:/dev/../dev/null"), "serial:/dev/null address 1");
   assert_text(place("pelco-d", "tcp:gateway:4001", "baud=2400 address=2"), "tcp:gateway:4001 address 2");
@@ -449,6 +449,7 @@ START_TEST(a_device_has_one_head_whatever_its_names_are_and_however_it_is_writte
   ck_assert(HeadLease::take("b", "other") != nullptr);
   ck_assert(HeadLease::take("b") != nullptr);
   lease->announce_return();
+  ck_assert(!HeadLease::is_taken("a"));
   const auto next = HeadLease::take("b", "camera");
   ck_assert(next && !next->wait(1ms));
   lease.reset();

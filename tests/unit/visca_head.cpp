@@ -300,6 +300,40 @@ START_TEST(a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are
 }
 END_TEST
 
+// Its stop is lost, because it has no power for 20 s: at 25 degrees a second it would be beyond the limit of 170 degrees.
+START_TEST(a_camera_that_was_out_of_reach_is_not_reckoned_to_have_turned_all_the_time) {
+  for (const bool numbered : {true, false}) {
+    Rig rig({.reports = false, .header = numbered});
+    ck_assert(rig.served.until([&] { return rig.camera.pan() > 10; }, "move at 25 hold"));
+    rig.camera.set_power(false);
+    rig.served.say("move hold hold");
+    ck_assert(!rig.served.line("fault").empty());
+    rig.served.run(20s);
+    rig.camera.set_power(true);
+    assert_text(rig.served.line("recovered"), "recovered");
+    ck_assert(rig.served.until([&] { return rig.camera.speed() > 24; }, "move at 25 hold"));
+  }
+}
+END_TEST
+
+// Stop is sent again after 100 ms; the answer that comes after 150 is that to the first one.
+START_TEST(a_camera_that_acknowledges_late_is_not_reckoned_to_have_turned_on) {
+  for (const bool numbered : {true, false}) {
+    Rig rig({.reports = false, .header = numbered, .delay = 150ms});
+    rig.served.say("limits -5 40 -5 5");
+    for (int at = 4; at <= 20; at += 4) {
+      ck_assert(rig.served.until([&] { return rig.camera.pan() > at; }, "move at 25 hold"));
+      rig.served.say("move hold hold");
+      ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }));
+      rig.served.run(1s);
+    }
+    ck_assert(rig.served.until([&] { return rig.camera.speed() > 24; }, "move at 25 hold"));
+    ck_assert(rig.served.until([&] { return rig.camera.speed() == 0; }, "move at 25 hold"));
+    ck_assert_double_eq_tol(rig.camera.pan(), 40 + 2, 25 * .2);  // .15 of it the delay
+  }
+}
+END_TEST
+
 // What it sends at rest is an inquiry that every camera should answer; one that never has is not expected to.
 START_TEST(a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second) {
   for (const bool acknowledges : {true, false}) {
@@ -468,6 +502,8 @@ int main() {
                             a_camera_without_positions_reports_the_speeds_of_its_steps,
                             a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
                             a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost,
+                            a_camera_that_was_out_of_reach_is_not_reckoned_to_have_turned_all_the_time,
+                            a_camera_that_acknowledges_late_is_not_reckoned_to_have_turned_on,
                             a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second,
                             a_camera_that_answers_nothing_but_its_version_turns_without_a_fault,
                             the_position_of_the_zoom_is_reported,

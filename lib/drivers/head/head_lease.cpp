@@ -43,7 +43,8 @@ std::shared_ptr<HeadLease> HeadLease::take(const std::string& name, const std::s
 
 bool HeadLease::is_taken(const std::string& name) {
   const std::lock_guard guard(taken().lock);
-  return taken().heads.contains("name " + name);
+  const auto leases = taken().heads.find("name " + name);
+  return leases != taken().heads.end() && !leases->second.back()->returns_;
 }
 
 HeadLease::~HeadLease() {

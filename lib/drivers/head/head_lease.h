@@ -25,8 +25,8 @@ class HeadLease {
 
   // Announces that this lease will be destroyed as soon as its head has stopped.
   void announce_return();
-  // Waits until all earlier leases of the name and of the device are returned, no longer than `patience` and no longer than until the
-  // return of this one is announced. Returns whether the head may be driven.
+  // Waits until all earlier leases of the name and of the device are returned, no longer than `patience` and no longer
+  // than until the return of this one is announced. Returns whether the head may be driven.
   bool wait(std::chrono::steady_clock::duration patience) const;
 
  private:

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <system_error>
 
-#include "drivers/helper/option_words.h"
+#include "text/numbers.h"
 
 namespace cerberus::drivers {
 namespace {
@@ -17,8 +17,8 @@ std::string real_path(const std::string& path) {
 }
 
 // The last value of that word; else `usual`.
-std::string word_of(const std::string& options, std::string_view key, std::string usual) {
-  for (const OptionWord& word : option_words(options))
+std::string word_of(std::span<const OptionWord> options, std::string_view key, std::string usual) {
+  for (const OptionWord& word : options)
     if (word.key == key) usual = word.value;
   return usual;
 }
@@ -36,17 +36,19 @@ std::string host_of(std::string device) {
 
 }  // namespace
 
-std::string head_place(const std::string& driver, const HeadSetup& setup) {
+std::string head_place(const std::string& driver, const std::string& device,
+                       std::span<const OptionWord> options) {
   constexpr std::string_view kSerial = "serial:";
-  if (setup.device.empty()) return {};
-  if (driver == "v4l2") return real_path(setup.device);
-  if (driver == "onvif" && setup.device != "discover")
-    return host_of(setup.device) + " profile " + word_of(setup.options, "profile", "");
+  if (device.empty()) return {};
+  if (driver == "v4l2") return real_path(device);
+  if (driver == "onvif" && device != "discover")
+    return host_of(device) + " profile " + word_of(options, "profile", "");
   if (driver != "visca" && driver != "pelco-d") return {};
-  const bool serial = setup.device.starts_with(kSerial);
-  const std::string line =
-      serial ? std::string(kSerial) + real_path(setup.device.substr(kSerial.size())) : setup.device;
-  return line + " address " + word_of(setup.options, "address", "1");
+  const bool serial = device.starts_with(kSerial);
+  const std::string line = serial ? std::string(kSerial) + real_path(device.substr(kSerial.size())) : device;
+  const std::string address = word_of(options, "address", "1");
+  const auto number = number_of(address);  // 01 is 1
+  return line + " address " + (number ? text::significant(*number, 3).string() : address);
 }
 
 }  // namespace cerberus::drivers

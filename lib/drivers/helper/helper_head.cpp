@@ -14,6 +14,7 @@
 
 #include "drivers/helper/helper_client.h"
 #include "drivers/helper/helper_process.h"
+#include "drivers/helper/option_words.h"
 #include "drivers/helper/passwords.h"
 #include "text/numbers.h"
 
@@ -35,14 +36,7 @@ constexpr Parameters kParameters;
 // HeadSetup::options as words; blanks part them, single quotes keep them.
 std::vector<std::string> own_helper(const std::string& driver, const HeadSetup& setup) {
   std::vector<std::string> words{setup.helper, driver, "--device=" + setup.device};
-  bool quoted = false, begun = false;
-  for (const char c : setup.options) {
-    if (c == '\'') quoted = !quoted;
-    const bool blank = c == ' ' && !quoted;
-    if (!blank && !begun) words.emplace_back("--");
-    begun = !blank;
-    if (!blank && c != '\'') words.back() += c;
-  }
+  for (const std::string& word : quoted_words(setup.options)) words.push_back("--" + word);
   return words;
 }
 
@@ -187,7 +181,7 @@ std::string HelperHead::open(const HeadSetup& setup) {
   const std::string fault = core->client.fault(), name = core->name;
   guard.unlock();
   if (core->open) return {};
-  leave(kParameters.refused_patience);
+  leave(came ? Clock::duration(kParameters.refused_patience) : 2 * HelperProcess::kPatience);
   return came ? fault : "the head's helper `" + name + "` does not answer with `ready 1 ...`";
 }
 

@@ -13,10 +13,22 @@ OptionWord option_word(std::string_view text) {
   return {std::string(text.substr(0, sign)), std::string(text.substr(sign + 1)), true};
 }
 
+std::vector<std::string> quoted_words(std::string_view text) {
+  std::vector<std::string> words;
+  bool quoted = false, begun = false;
+  for (const char c : text) {
+    if (c == '\'') quoted = !quoted;
+    const bool blank = c == ' ' && !quoted;
+    if (!blank && !begun) words.emplace_back();
+    begun = !blank;
+    if (!blank && c != '\'') words.back() += c;
+  }
+  return words;
+}
+
 std::vector<OptionWord> option_words(std::string_view text) {
   std::vector<OptionWord> words;
-  for (const std::string& word : split(text, ' '))
-    if (!word.empty()) words.push_back(option_word(word));
+  for (const std::string& word : quoted_words(text)) words.push_back(option_word(word));
   return words;
 }
 

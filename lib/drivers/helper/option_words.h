@@ -16,7 +16,8 @@ struct OptionWord {
 
 // One word: "steps=400", "--steps=400" or "invert".
 OptionWord option_word(std::string_view text);
-// The words of a text, parted by blanks.
+// The words of a text, parted by blanks; single quotes keep blanks together, and are left out.
+std::vector<std::string> quoted_words(std::string_view text);
 std::vector<OptionWord> option_words(std::string_view text);
 // The parts of a list that a character parts; empty parts are kept.
 std::vector<std::string> split(std::string_view text, char separator);

@@ -48,9 +48,14 @@ void SpeedReckoning::stop(Time now) {
   turn({}, now);
 }
 
+Time SpeedReckoning::end_of_lost() const {
+  constexpr Parameters kParameters;
+  return unstopped_->until == motion::kNever ? stopped_ + kParameters.most_lost : unstopped_->until;
+}
+
 void SpeedReckoning::on_stopped(Time sent) {
   if (!unstopped_) return;
-  const Time end = std::min(sent, unstopped_->until);
+  const Time end = std::min(sent, end_of_lost());
   if (end > stopped_) {
     turn(unstopped_->speed, stopped_);
     turn({}, end);
@@ -61,6 +66,7 @@ void SpeedReckoning::on_stopped(Time sent) {
 void SpeedReckoning::on_stop_lost() {
   if (!unstopped_) return;
   in_force_ = *unstopped_;
+  in_force_.until = end_of_lost();
   unstopped_.reset();
   turn(in_force_.speed, stopped_);
 }

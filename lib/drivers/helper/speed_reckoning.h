@@ -22,6 +22,10 @@ class SpeedReckoning {
     // Radians beyond a limit, by reckoning alone, where the device stops a head that its pipeline still drives on.
     // derived: more than the pipeline's own reckoning of the same speeds can differ by.
     double slack = sensing::radians(2);
+    // The longest time for which a device that does not stop by itself is reckoned to have gone on after a lost stop. One
+    // that is out of reach for longer may have no power, or stand at its end: its position is unknown, not far away.
+    // derived: the oldest change of speeds that the pipeline takes (HelperClient). Guard: unit/visca_head.
+    Time most_lost = std::chrono::seconds(1);
   };
 
   // The head rests at `at` (radians) from `now` on.
@@ -57,6 +61,8 @@ class SpeedReckoning {
     Time time;
   };
   void turn(const motion::PanTilt& speed, Time time);
+  // Until when the speeds that a lost stop left in force are reckoned.
+  Time end_of_lost() const;
 
   motion::Reckoning reckoned_;
   InForce in_force_, before_;

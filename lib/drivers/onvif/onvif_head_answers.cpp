@@ -64,11 +64,12 @@ void OnvifHead::on_move(const SoapAnswer& answer, Time now) {
   move_ = 0;
   if (answer.good()) return;
   if (homing_.busy() && answer.fault && !answer.not_authorized()) return refuse(*answer.fault, now);
-  if (homing_.busy()) homing_.want();
+  const bool home = homing_.busy();  // whose request put no speeds in force
+  if (home) homing_.want();
   const bool angle = std::exchange(sent_angle_, false);
   sent_velocity_ = {};        // it is sent again, or something better
   if (!answer.fault) return;  // the camera may have obeyed it all the same
-  reckoned_.on_refused();
+  if (!home) reckoned_.on_refused();
   if (answer.not_authorized()) return log_in_again(now);
   if (angle) {
     absolute_ = false;  // from now on angles are reached at speeds

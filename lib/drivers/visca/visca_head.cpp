@@ -90,7 +90,8 @@ std::string ViscaHead::check_answers() const {
   const bool serial = options_.device.starts_with("serial:");
   const std::string check = serial ? "baud=" + std::to_string(options_.baud) + " and address="
                                    : "its port, and whether it needs no-header";
-  if (has_bytes_ && !has_visca_) return "what the " + title() + " sends is no VISCA: check " + check;
+  if (received_ >= kLeastReply && !has_visca_)
+    return "what the " + title() + " sends is no VISCA: check " + check;
   if (options_.warn)
     options_.warn("the " + title() +
                   " answers nothing, and is driven all the same. If it does not move, check its power "
@@ -259,7 +260,8 @@ void ViscaHead::handle(const visca::Reply& reply, std::uint32_t sequence, Time n
     if (!sent) return;
     if (sent->order == Order::stop && stopping_) {
       stopping_ = moved_ = false;
-      on_stopped(numbered() ? sent->time : sent_);  // without a number: of the newest
+      // Without numbers it may be the answer to a later one, if it comes late.
+      on_stopped(numbered() || now - sent->time <= kAnswerTime ? sent->time : sent_);
     }
     if (sent->order == Order::home && homing_) homing_ = reply.socket;
     return;
@@ -285,7 +287,7 @@ void ViscaHead::read(Time now) {
       cutter_.append(datagram.payload);
     }
     const std::uint32_t sequence = datagram.sequence;
-    has_bytes_ = true;
+    received_ += datagram.payload.size();
     has_answered_ = has_answered_ || datagram.control;
     bytes.clear();
     while (const auto message = cutter_.take()) {

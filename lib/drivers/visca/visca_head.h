@@ -53,7 +53,8 @@ class ViscaHead final : public StreamDevice {
   std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
 
   static constexpr std::chrono::milliseconds kAnswerTime{
-      200};  // VISCA: an answer within 16 ms; slow firmwares need more
+      200};                                      // VISCA: an answer within 16 ms; slow firmwares need more
+  static constexpr std::size_t kLeastReply = 3;  // bytes of the shortest; fewer may be noise of the line
   static constexpr std::chrono::milliseconds kStopAgain{100};
   static constexpr int kStopsWithoutAnswer = 5;  // to a camera that never acknowledged anything
   static constexpr std::chrono::milliseconds kInquiryPeriod{100};
@@ -98,9 +99,10 @@ class ViscaHead final : public StreamDevice {
   static constexpr std::size_t kMostOrders = 64;  // more than are sent in kForgotten
   std::vector<Sent> unanswered_orders_;           // the oldest first
   bool acknowledges_ = false, stopping_ = false;
-  bool has_answered_ = false;                   // this camera, whatever
-  bool has_bytes_ = false, has_visca_ = false;  // something has come; a message, which may be an echo
-  int stops_ = 0;                               // sent without an answer
+  bool has_answered_ = false;  // this camera, whatever
+  std::size_t received_ = 0;   // bytes
+  bool has_visca_ = false;     // a message has come, which may be an echo
+  int stops_ = 0;              // sent without an answer
   Time sent_{}, asked_{};
   std::optional<Time> unanswered_;  // since when a camera that answers has not answered
   bool moved_ = false;              // a drive was sent, and no stop after it is acknowledged
