@@ -42,8 +42,12 @@ bool RtspOutput::is_built() {
 }
 
 void RtspOutput::configure(const Settings& settings) {
+  for (auto& [camera, entry] : state_->entries) entry.streams.close();
   state_->server.reset();
-  for (auto& [camera, entry] : state_->entries) entry.mounted = false;
+  for (auto& [camera, entry] : state_->entries) {
+    entry.mounted = false;
+    if (entry.shown) entry.streams.reopen();
+  }
   state_->settings = settings;
   state_->backoff = {};
   fault_.clear();

@@ -108,19 +108,23 @@ GstRTSPFilterResult find_session(GstRTSPClient*, GstRTSPSession* session, gpoint
   return any ? GST_RTSP_FILTER_REF : GST_RTSP_FILTER_KEEP;
 }
 
+// Closes the connection: the client's own thread reads its end and tears the client down. That would race here, as
+// connections are not thread-safe.
+void shut_down(GstRTSPClient* client) {
+  GstRTSPConnection* connection = gst_rtsp_client_get_connection(client);
+  if (!connection) return;
+  // Two where RTSP goes through HTTP.
+  for (GSocket* socket :
+       {gst_rtsp_connection_get_read_socket(connection), gst_rtsp_connection_get_write_socket(connection)})
+    if (socket) g_socket_shutdown(socket, TRUE, TRUE, nullptr);
+}
+
 // Closes the connection of a client of the folder.
 GstRTSPFilterResult end_of_folder(GstRTSPServer*, GstRTSPClient* client, gpointer folder) {
   GList* found = gst_rtsp_client_session_filter(client, find_session, folder);
-  const bool any = found != nullptr;
+  if (found) shut_down(client);
   g_list_free_full(found, g_object_unref);
-  return any ? GST_RTSP_FILTER_REMOVE : GST_RTSP_FILTER_KEEP;
-}
-
-// Closes the connection: the client's own thread reads its end and tears the client down.
-void shut_down(GstRTSPClient* client) {
-  GstRTSPConnection* connection = gst_rtsp_client_get_connection(client);
-  GSocket* socket = connection ? gst_rtsp_connection_get_read_socket(connection) : nullptr;
-  if (socket) g_socket_shutdown(socket, TRUE, TRUE, nullptr);
+  return GST_RTSP_FILTER_KEEP;
 }
 
 void on_client(GstRTSPServer* server, GstRTSPClient* client, gpointer) {
