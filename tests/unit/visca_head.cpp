@@ -300,6 +300,19 @@ START_TEST(a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are
 }
 END_TEST
 
+START_TEST(a_camera_without_positions_that_vanishes_while_it_turns_is_reported_within_a_second) {
+  for (const bool numbered : {true, false}) {
+    Rig rig({.reports = false, .header = numbered});
+    ck_assert(rig.served.until([&] { return rig.camera.pan() > 10; }, "move at 25 hold"));
+    rig.camera.set_power(false);
+    const Time pulled = rig.served.now();
+    const std::string fault = rig.served.line("fault");
+    ck_assert_msg(fault.find("does not answer") != std::string::npos, "'%s'", fault.c_str());
+    ck_assert_int_le((rig.served.now() - pulled).count(), Time(1s).count());
+  }
+}
+END_TEST
+
 // Its stop is lost, because it has no power for 20 s: at 25 degrees a second it would be beyond the limit of 170 degrees.
 START_TEST(a_camera_that_was_out_of_reach_is_not_reckoned_to_have_turned_all_the_time) {
   for (const bool numbered : {true, false}) {
@@ -488,32 +501,34 @@ int main() {
   for (const TTest* test : {a_camera_turns_reports_and_stops_on_every_line,
                             silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second})
     tcase_add_loop_test(cases, test, 0, std::size(kLines));
-  for (const TTest* test : {cameras_that_never_acknowledge_are_driven_all_the_same,
-                            a_camera_finds_its_home_and_says_so,
-                            a_stop_is_sent_until_the_camera_obeys,
-                            what_a_full_camera_refused_is_sent_again,
-                            a_lost_move_is_sent_again,
-                            a_camera_that_acknowledges_and_reports_nothing_is_no_fault,
-                            a_camera_at_its_limit_is_stopped,
-                            a_camera_without_the_header_of_visca_over_ip_is_understood,
-                            a_camera_that_goes_away_is_reported_and_used_again_at_rest,
-                            the_answer_to_a_move_is_not_taken_for_that_to_the_stop,
-                            a_camera_that_counts_is_driven_after_its_reset_was_lost,
-                            a_camera_without_positions_reports_the_speeds_of_its_steps,
-                            a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
-                            a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost,
-                            a_camera_that_was_out_of_reach_is_not_reckoned_to_have_turned_all_the_time,
-                            a_camera_that_acknowledges_late_is_not_reckoned_to_have_turned_on,
-                            a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second,
-                            a_camera_that_answers_nothing_but_its_version_turns_without_a_fault,
-                            the_position_of_the_zoom_is_reported,
-                            a_locked_zoom_is_set_at_the_begin,
-                            a_zoom_that_is_not_reported_at_first_is_asked_for_again,
-                            a_zoom_beyond_the_lens_is_refused,
-                            a_camera_without_a_zoom_turns_and_stops_all_the_same,
-                            a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is,
-                            answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning,
-                            what_cannot_be_opened_is_named})
+  for (const TTest* test :
+       {cameras_that_never_acknowledge_are_driven_all_the_same,
+        a_camera_finds_its_home_and_says_so,
+        a_stop_is_sent_until_the_camera_obeys,
+        what_a_full_camera_refused_is_sent_again,
+        a_lost_move_is_sent_again,
+        a_camera_that_acknowledges_and_reports_nothing_is_no_fault,
+        a_camera_at_its_limit_is_stopped,
+        a_camera_without_the_header_of_visca_over_ip_is_understood,
+        a_camera_that_goes_away_is_reported_and_used_again_at_rest,
+        the_answer_to_a_move_is_not_taken_for_that_to_the_stop,
+        a_camera_that_counts_is_driven_after_its_reset_was_lost,
+        a_camera_without_positions_reports_the_speeds_of_its_steps,
+        a_camera_without_positions_is_stopped_a_little_beyond_its_limits,
+        a_camera_without_positions_is_reckoned_to_turn_on_while_its_stops_are_lost,
+        a_camera_without_positions_that_vanishes_while_it_turns_is_reported_within_a_second,
+        a_camera_that_was_out_of_reach_is_not_reckoned_to_have_turned_all_the_time,
+        a_camera_that_acknowledges_late_is_not_reckoned_to_have_turned_on,
+        a_camera_without_positions_that_vanishes_at_rest_is_reported_within_a_second,
+        a_camera_that_answers_nothing_but_its_version_turns_without_a_fault,
+        the_position_of_the_zoom_is_reported,
+        a_locked_zoom_is_set_at_the_begin,
+        a_zoom_that_is_not_reported_at_first_is_asked_for_again,
+        a_zoom_beyond_the_lens_is_refused,
+        a_camera_without_a_zoom_turns_and_stops_all_the_same,
+        a_camera_is_driven_at_its_address_on_a_serial_line_and_no_other_is,
+        answers_of_another_baud_rate_are_an_error_and_none_at_all_are_a_warning,
+        what_cannot_be_opened_is_named})
     tcase_add_test(cases, test);
   suite_add_tcase(suite, cases);
   SRunner* runner = srunner_create(suite);

@@ -176,12 +176,16 @@ void ViscaHead::send_drive(Time now) {
     return;
   }
   const bool unanswered = waiting() && now - sent_ >= kAnswerTime;
-  if (pan == sent_pan_ && tilt == sent_tilt_ && !unanswered) return;
-  if (acknowledges_ && waiting() && !unanswered) return;
+  // While a camera without positions turns, its acknowledgement of the same speed is all that shows that it is there.
+  const bool same = pan == sent_pan_ && tilt == sent_tilt_;
+  const bool again = acknowledges_ && !reports_ && now - sent_ >= kSameAgain;
+  if (same && !unanswered && !again) return;
+  if (acknowledges_ && waiting() && !unanswered && (same || !repeated_)) return;
   if (now - sent_ < Time(static_cast<Time::rep>(1e9 / kRate))) return;
   send_order(Order::move, visca::drive(options_.address, pan, tilt), now);
   sent_pan_ = pan;
   sent_tilt_ = tilt;
+  repeated_ = same;
   moved_ = true;
   set_speeds(allowed, now);
 }

@@ -2,10 +2,10 @@
 // A camera that speaks VISCA, over a serial line, UDP (with and without the header of VISCA over IP) or TCP.
 //
 // At most one move is on its way: the newest waits until the camera acknowledges the last one, refuses it, or has not
-// answered for kAnswerTime. A camera that has never acknowledged anything is sent commands at its rate. Stop goes out at
-// once, and again until it is acknowledged. Which command an answer belongs to is known from its sequence number, where
-// the line has these, else from the order: a camera answers in the order in which it was asked. Positions are asked for
-// every kInquiryPeriod, where the camera answers.
+// answered for kAnswerTime. A camera that has never acknowledged anything is sent commands at its rate. Stop goes out
+// at once, and again until it is acknowledged. Which command an answer belongs to is known from its sequence number,
+// where the line has these, else from the order: a camera answers in the order in which it was asked. Positions are
+// asked for every kInquiryPeriod, where the camera answers; one without them is sent the same speed again while it turns.
 #pragma once
 
 #include <cstdint>
@@ -58,6 +58,8 @@ class ViscaHead final : public StreamDevice {
   static constexpr std::chrono::milliseconds kStopAgain{100};
   static constexpr int kStopsWithoutAnswer = 5;  // to a camera that never acknowledged anything
   static constexpr std::chrono::milliseconds kInquiryPeriod{100};
+  static constexpr std::chrono::milliseconds kSameAgain{
+      150};  // and the silence after which a camera is lost: below 1 s
   static constexpr std::chrono::milliseconds kZoomPeriod{500};
   static constexpr int kZoomInquiries = 3;  // without an answer, after which the camera is asked seldom
   static constexpr std::chrono::milliseconds kZoomSeldom{10000};
@@ -99,6 +101,8 @@ class ViscaHead final : public StreamDevice {
   static constexpr std::size_t kMostOrders = 64;  // more than are sent in kForgotten
   std::vector<Sent> unanswered_orders_;           // the oldest first
   bool acknowledges_ = false, stopping_ = false;
+  bool repeated_ =
+      false;  // the last move was the same as the one before it: a new one does not wait for its answer
   bool has_answered_ = false;  // this camera, whatever
   std::size_t received_ = 0;   // bytes
   bool has_visca_ = false;     // a message has come, which may be an echo
