@@ -5,7 +5,8 @@
 // answered for kAnswerTime. A camera that has never acknowledged anything is sent commands at its rate. Stop goes out
 // at once, and again until it is acknowledged. Which command an answer belongs to is known from its sequence number,
 // where the line has these, else from the order: a camera answers in the order in which it was asked. Positions are
-// asked for every kInquiryPeriod, where the camera answers; one without them is sent the same speed again while it turns.
+// asked for every kInquiryPeriod, where the camera answers; one without them is sent the same speed again while it
+// turns.
 #pragma once
 
 #include <cstdint>
