@@ -20,6 +20,23 @@ void warn(const std::string& text);
 std::string read_number(const drivers::OptionWord& word, double least, double most, double& number);
 std::string read_whole(const drivers::OptionWord& word, int least, int most, int& number);
 
+// Reads the words of a driver: `device` and `emergency-stop` here, all others by read_word(word, options). Returns what
+// is wrong with the first one that cannot be read.
+template <typename Options>
+std::string read_words(const std::vector<drivers::OptionWord>& words, Options& options,
+                       std::string& emergency_stop,
+                       std::string (*read_word)(const drivers::OptionWord&, Options&)) {
+  for (const drivers::OptionWord& word : words) {
+    if (word.key == "device")
+      options.device = word.value;
+    else if (word.key == "emergency-stop")
+      emergency_stop = word.value;
+    else if (std::string wrong = read_word(word, options); !wrong.empty())
+      return wrong;
+  }
+  return {};
+}
+
 // Serves the device until the end. emergency_stop: "CHIP:LINE" of a normally closed contact; empty: there is none.
 int serve(drivers::HeadDevice& device, const std::string& emergency_stop);
 

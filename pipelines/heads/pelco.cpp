@@ -31,16 +31,8 @@ std::string read_word(const drivers::OptionWord& word, drivers::PelcoOptions& op
 int run_pelco(const std::vector<drivers::OptionWord>& words) {
   drivers::PelcoOptions options;
   std::string emergency_stop;
-  for (const drivers::OptionWord& word : words) {
-    std::string wrong;
-    if (word.key == "device")
-      options.device = word.value;
-    else if (word.key == "emergency-stop")
-      emergency_stop = word.value;
-    else
-      wrong = read_word(word, options);
-    if (!wrong.empty()) return fail(wrong);
-  }
+  if (const std::string wrong = read_words(words, options, emergency_stop, read_word); !wrong.empty())
+    return fail(wrong);
   if (options.device.empty()) return fail("pelco-d needs a head (device=serial:/dev/ttyUSB0)");
   drivers::PelcoHead head(options);
   return serve(head, emergency_stop);

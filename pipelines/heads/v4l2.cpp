@@ -8,38 +8,44 @@
 
 namespace cerberus::heads {
 
-int run_v4l2([[maybe_unused]] const std::vector<drivers::OptionWord>& words) {
 #if HAVE_V4L2
+namespace {
+
+std::string read_word(const drivers::OptionWord& word, drivers::V4l2Options& options) {
+  const std::string& key = word.key;
+  const std::string given = key + "=" + word.value + ": ";
+  const auto number = drivers::number_of(word.value);
+  if (key == "mode") {
+    const auto mode = drivers::v4l2_mode(word.value);
+    if (!mode) return given + "auto, speed, absolute or relative";
+    options.mode = *mode;
+  } else if (key == "pan-speed" || key == "tilt-speed") {
+    if (!number || *number <= 0 || *number > 3600) return given + "degrees a second";
+    (key == "pan-speed" ? options.pan_speed : options.tilt_speed) = *number;
+  } else if (key == "zoom") {
+    if (!number || *number < 0 || *number > 1) return given + "0 to 1 of the zoom's range";
+    options.zoom = *number;
+  } else {
+    return "\"" + key + "\" is no option of v4l2: device, mode, pan-speed, tilt-speed, zoom, emergency-stop";
+  }
+  return {};
+}
+
+}  // namespace
+
+int run_v4l2(const std::vector<drivers::OptionWord>& words) {
   drivers::V4l2Options options;
   std::string emergency_stop;
-  for (const auto& [key, value, has_value] : words) {
-    const auto number = drivers::number_of(value);
-    if (key == "device") {
-      options.device = value;
-    } else if (key == "mode") {
-      const auto mode = drivers::v4l2_mode(value);
-      if (!mode) return fail("mode=" + value + ": auto, speed, absolute or relative");
-      options.mode = *mode;
-    } else if (key == "pan-speed" || key == "tilt-speed") {
-      if (!number || *number <= 0 || *number > 3600) return fail(key + "=" + value + ": degrees a second");
-      (key == "pan-speed" ? options.pan_speed : options.tilt_speed) = *number;
-    } else if (key == "zoom") {
-      if (!number || *number < 0 || *number > 1)
-        return fail("zoom=" + value + ": 0 to 1 of the zoom's range");
-      options.zoom = *number;
-    } else if (key == "emergency-stop") {
-      emergency_stop = value;
-    } else {
-      return fail("\"" + key +
-                  "\" is no option of v4l2: device, mode, pan-speed, tilt-speed, zoom, emergency-stop");
-    }
-  }
+  if (const std::string wrong = read_words(words, options, emergency_stop, read_word); !wrong.empty())
+    return fail(wrong);
   if (options.device.empty()) return fail("v4l2 needs a camera (device=/dev/video0)");
   drivers::V4l2Head head(options, std::make_unique<drivers::V4l2Controls>());
   return serve(head, emergency_stop);
-#else
-  return fail("v4l2 was left out of this build");
-#endif
 }
+#else
+int run_v4l2(const std::vector<drivers::OptionWord>&) {
+  return fail("v4l2 was left out of this build");
+}
+#endif
 
 }  // namespace cerberus::heads

@@ -37,16 +37,8 @@ std::string read_word(const drivers::OptionWord& word, drivers::ViscaOptions& op
 int run_visca(const std::vector<drivers::OptionWord>& words) {
   drivers::ViscaOptions options;
   std::string emergency_stop;
-  for (const drivers::OptionWord& word : words) {
-    std::string wrong;
-    if (word.key == "device")
-      options.device = word.value;
-    else if (word.key == "emergency-stop")
-      emergency_stop = word.value;
-    else
-      wrong = read_word(word, options);
-    if (!wrong.empty()) return fail(wrong);
-  }
+  if (const std::string wrong = read_words(words, options, emergency_stop, read_word); !wrong.empty())
+    return fail(wrong);
   if (options.device.empty()) return fail("visca needs a camera (device=serial:/dev/ttyUSB0)");
   options.warn = warn;
   drivers::ViscaHead head(options);

@@ -51,7 +51,8 @@ struct PoseLine {
 };
 struct SpeedsLine {
   motion::PanTilt speed;  // radians a second
-  double age = 0;         // seconds since they were commanded
+  double age = 0;         // seconds since they were commanded; more than kMostAge counts as that
+  static constexpr double kMostAge = 1;
 };
 struct ZoomLine {
   double position = 0;  // 0 to motion::kMostZoom

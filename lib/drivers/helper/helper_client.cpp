@@ -179,7 +179,8 @@ void HelperClient::take(const HelperLine& line, Time now) {
     correct(pan_correction_, pose->pan.position - expected.pan.position);
     correct(tilt_correction_, pose->tilt.position - expected.tilt.position);
   } else if (const auto* speeds = std::get_if<SpeedsLine>(&line)) {
-    const Time at = now - Time(static_cast<Time::rep>(std::min(speeds->age, 1.0) * 1e9)) + setup_.latency;
+    const Time at = now - Time(static_cast<Time::rep>(std::min(speeds->age, SpeedsLine::kMostAge) * 1e9)) +
+                    setup_.latency;
     Pose here;
     if (!std::exchange(reckons_, true) && model_.state(now, here).empty())
       reckoning_.begin(at, {here.pan.position, here.tilt.position});

@@ -50,7 +50,8 @@ void SpeedReckoning::stop(Time now) {
 
 Time SpeedReckoning::end_of_lost() const {
   constexpr Parameters kParameters;
-  return unstopped_->until == motion::kNever ? stopped_ + kParameters.most_lost : unstopped_->until;
+  if (unstopped_->until != motion::kNever) return unstopped_->until;
+  return stopped_ + Time(static_cast<Time::rep>(kParameters.most_lost * 1e9));
 }
 
 void SpeedReckoning::on_stopped(Time sent) {

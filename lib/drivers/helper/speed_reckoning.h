@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The limits of a head that is driven by speeds: they hold by the positions that its device reports or, without these, by
-// the speeds that it was sent, integrated (motion/reckoning.h). Every driver without positions reports these speeds to the
-// pipeline, which reckons the pose from the same.
+// The limits of a head that is driven by speeds: they hold by the positions that its device reports or, without these,
+// by the speeds that it was sent, integrated (motion/reckoning.h). Every driver without positions reports these speeds
+// to the pipeline, which reckons the pose from the same.
 //
 // A stop is reckoned as obeyed from the time at which it was sent. Where it was lost on its way, which the next
 // acknowledgement or its absence shows, the way that the head has gone on since is added.
@@ -22,10 +22,10 @@ class SpeedReckoning {
     // Radians beyond a limit, by reckoning alone, where the device stops a head that its pipeline still drives on.
     // derived: more than the pipeline's own reckoning of the same speeds can differ by.
     double slack = sensing::radians(2);
-    // The longest time for which a device that does not stop by itself is reckoned to have gone on after a lost stop. One
-    // that is out of reach for longer may have no power, or stand at its end: its position is unknown, not far away.
-    // derived: the oldest change of speeds that the pipeline takes (HelperClient). Guard: unit/visca_head.
-    Time most_lost = std::chrono::seconds(1);
+    // Seconds for which a device that does not stop by itself is reckoned to have gone on after a lost stop, at most.
+    // One that is out of reach for longer may have no power, or stand at its end: its position is unknown, not far away.
+    // derived: the oldest change of speeds that the pipeline takes. Guard: unit/visca_head.
+    double most_lost = SpeedsLine::kMostAge;
   };
 
   // The head rests at `at` (radians) from `now` on.

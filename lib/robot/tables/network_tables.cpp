@@ -26,6 +26,13 @@ bool is_loopback(const std::string& address) {
   return address.starts_with("127.") || address == "::1";
 }
 
+// The address and the port of a server.
+void read_listen(TableReader& reader, std::string& listen, int& port) {
+  if (reader.text("listen", listen) && !is_address(listen))
+    reader.complain("listen", "\"listen\" is a numeric address: 127.0.0.1, or 0.0.0.0 for every network");
+  reader.whole("port", port, 1, 65535);
+}
+
 // A key that names a file, and where it is.
 void read_path(TableReader& reader, const char* key, std::string& path, bool secret, Folders folders,
                std::vector<NamedFile>& files) {
@@ -75,9 +82,7 @@ PageSettings read_page(const TomlValue& table, Folders folders, Mistakes& mistak
   TableReader reader(table, "[page]", mistakes);
   PageSettings settings;
   reader.truth("enabled", settings.enabled);
-  if (reader.text("listen", settings.listen) && !is_address(settings.listen))
-    reader.complain("listen", "\"listen\" is a numeric address: 127.0.0.1, or 0.0.0.0 for every network");
-  reader.whole("port", settings.port, 1, 65535);
+  read_listen(reader, settings.listen, settings.port);
   reader.texts("origins", settings.origins);
   for (const std::string& origin : settings.origins) {
     const std::size_t scheme = origin.find("://");
@@ -175,9 +180,7 @@ RtspSettings read_rtsp(const TomlValue& table, Folders folders, Mistakes& mistak
                        std::vector<NamedFile>& files) {
   TableReader reader(table, "[rtsp]", mistakes);
   RtspSettings settings;
-  if (reader.text("listen", settings.listen) && !is_address(settings.listen))
-    reader.complain("listen", "\"listen\" is a numeric address: 127.0.0.1, or 0.0.0.0 for every network");
-  reader.whole("port", settings.port, 1, 65535);
+  read_listen(reader, settings.listen, settings.port);
   read_users(reader, settings.users_file, folders, files);
   bool anyone = false;
   reader.truth("anyone", anyone);
