@@ -14,7 +14,6 @@ using namespace cerberus::vision;
 namespace {
 
 constexpr Size kFrame{640, 480};
-using State = TrackHypothesis::State;
 
 Region region(double x, double y, double width, double height, double confidence = 0.4) {
   return {{x, y, width, height},
@@ -25,10 +24,10 @@ Region region(double x, double y, double width, double height, double confidence
 }
 
 // A track at this box, seen for `age` seconds.
-TrackHypothesis track(const Box& box, State state = State::confirmed, double age = 2) {
+TrackHypothesis track(const Box& box, const TrackLife& life = Confirmed{}, double age = 2) {
   TrackHypothesis t = TrackHypothesis::first_seen({box, box.area(), 0.9, 1, RegionKind::person_like});
-  if (state != State::tentative) t.confirm(1);
-  t.state = state;
+  if (phase_of(life) != TrackPhase::tentative) t.id = 1;
+  t.life = life;
   t.age = age;
   for (MovingValue* a : {&t.x, &t.y}) a->pp = a->vv = 1;
   return t;
@@ -63,7 +62,7 @@ START_TEST(each_track_has_the_region_at_its_place_and_what_is_left_is_new) {
 END_TEST
 
 START_TEST(a_track_in_view_comes_before_a_tentative_one_that_is_nearer) {
-  Scene s{{track({100, 100, 40, 100}, State::tentative), track({108, 100, 40, 100}, State::coasted)},
+  Scene s{{track({100, 100, 40, 100}, Tentative{}), track({108, 100, 40, 100}, Coasted{})},
           {region(100, 100, 40, 100)},
           {},
           {}};
@@ -75,11 +74,11 @@ END_TEST
 
 START_TEST(an_off_screen_track_comes_before_a_tentative_one_and_has_no_region_while_it_is_behind_the_camera) {
   for (const bool in_front : {true, false}) {
-    Scene s{{track({100, 100, 40, 100}, State::tentative), track({108, 100, 40, 100}, State::off_screen)},
+    Scene s{{track({100, 100, 40, 100}, Tentative{}), track({108, 100, 40, 100}, OffScreen{})},
             {region(100, 100, 40, 100)},
             {},
             {}};
-    s.tracks[1].off_screen.in_front = in_front;
+    std::get<OffScreen>(s.tracks[1].life).in_front = in_front;
     const auto matches = s.associate();
     ck_assert_int_eq(matches[in_front ? 1 : 0].region, 0);
     ck_assert_int_eq(matches[in_front ? 0 : 1].region, -1);
@@ -90,7 +89,7 @@ END_TEST
 // Twice the area when it left, .25 more than that.
 START_TEST(a_track_comes_back_as_a_region_of_at_most_twice_its_area) {
   for (const double height : {120.0, 250.0}) {
-    Scene s{{track({100, 100, 40, 100}, State::off_screen)}, {region(100, 100, 40, height)}, {}, {}};
+    Scene s{{track({100, 100, 40, 100}, OffScreen{})}, {region(100, 100, 40, height)}, {}, {}};
     for (MovingValue* a : {&s.tracks[0].x, &s.tracks[0].y}) a->pp = 1e4;
     ck_assert_int_eq(s.associate()[0].region, height > 200 ? -1 : 0);
   }
@@ -129,13 +128,13 @@ START_TEST(two_upright_regions_side_by_side_are_two_persons_and_not_fragments_of
 END_TEST
 
 START_TEST(a_track_without_region_shares_the_blob_it_is_expected_in_unless_it_has_stopped) {
-  for (const State state : {State::confirmed, State::coasted, State::stopped}) {
+  for (const TrackLife& life : {TrackLife(Confirmed{}), TrackLife(Coasted{}), TrackLife(Stopped{})}) {
     Scene s{
-        {track({100, 100, 40, 100}), track({150, 100, 40, 100}, state)}, {region(95, 98, 100, 104)}, {}, {}};
+        {track({100, 100, 40, 100}), track({150, 100, 40, 100}, life)}, {region(95, 98, 100, 104)}, {}, {}};
     s.tracks[1].id = 2;
     s.tracks[0].x.position = 140;  // the blob's centre is nearer to it
     const auto matches = s.associate();
-    const bool shares = state != State::stopped;
+    const bool shares = phase_of(life) != TrackPhase::stopped;
     ck_assert_int_eq(matches[0].region, 0);
     ck_assert_int_eq(matches[1].region, shares ? 0 : -1);
     ck_assert_int_eq(matches[0].sharers, shares ? 2 : 1);
@@ -146,11 +145,11 @@ END_TEST
 // Head and legs of one person, the legs seen for longer, in the person's own region since .3 s.
 START_TEST(fragments_one_above_the_other_merge_into_the_older_one) {
   for (const double shared : {0.25, 0.3}) {
-    Scene s{{track({100, 100, 40, 40}, State::confirmed, 1), track({100, 145, 40, 55})},
+    Scene s{{track({100, 100, 40, 40}, Confirmed{}, 1), track({100, 145, 40, 55})},
             {region(100, 100, 40, 100)},
             {},
             {}};
-    s.tracks[0].shared = s.tracks[1].shared = shared;
+    s.tracks[0].shared.time = s.tracks[1].shared.time = shared;
     const auto matches = s.associate();
     const bool merges = shared >= 0.3;
     ck_assert_int_eq(matches[0].region, 0);
@@ -165,8 +164,7 @@ END_TEST
 START_TEST(others_are_expected_only_in_a_larger_region_that_holds_half_of_them) {
   const DataAssociation association;
   const std::vector<TrackHypothesis> tracks{track({100, 100, 40, 100}), track({150, 100, 40, 100}),
-                                            track({400, 100, 40, 100}),
-                                            track({150, 100, 40, 100}, State::lost)};
+                                            track({400, 100, 40, 100}), track({150, 100, 40, 100}, Lost{})};
   const auto expected = [&](const Box& box) {
     return association.others_expected(tracks, tracks[0], box, kFrame);
   };
@@ -185,7 +183,7 @@ START_TEST(a_region_is_crowded_where_another_track_covers_a_fifth_of_it) {
   tracks[1].x.position += 2;
   ck_assert(!association.crowded(tracks, tracks[0], box));  // 7
   tracks[1].x.position -= 2;
-  tracks[1].state = State::tentative;
+  tracks[1].life = Tentative{};
   ck_assert(!association.crowded(tracks, tracks[0], box));
 }
 END_TEST

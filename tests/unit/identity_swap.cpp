@@ -8,6 +8,7 @@
 
 #include "support/allocations.h"
 #include "support/suite.h"
+#include "vision/tracking/life_cycle.h"
 
 using namespace cerberus::vision;
 
@@ -25,7 +26,7 @@ AppearanceModel looks(int bin) {
 // A person 100 pixels tall whose appearance has long been learnt.
 TrackHypothesis person(std::uint32_t id, double x, int bin) {
   TrackHypothesis b = TrackHypothesis::first_seen({{x - 20, 100, 40, 100}, 2000, 0.9, 1});
-  b.confirm(id);
+  LifeCycle::confirm(b, id);
   for (int k = 0; k < 50; ++k) {
     b.predict(kFrame);
     b.remember(looks(bin), kFrame, true);
@@ -114,8 +115,8 @@ END_TEST
 
 START_TEST(tentative_and_off_screen_tracks_take_no_part) {
   auto one = swapped(), two = swapped();
-  one[1].state = TrackHypothesis::State::tentative;
-  two[1].state = TrackHypothesis::State::off_screen;
+  one[1].life = Tentative{};
+  two[1].life = OffScreen{};
   undo_identity_swaps(one);
   undo_identity_swaps(two);
   ck_assert_uint_eq(one[0].id, 1);

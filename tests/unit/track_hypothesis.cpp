@@ -10,6 +10,7 @@
 
 #include "support/motions.h"
 #include "support/suite.h"
+#include "vision/tracking/life_cycle.h"
 
 using namespace cerberus::vision;
 
@@ -20,10 +21,10 @@ constexpr double kDegree = std::numbers::pi / 180;
 
 TrackHypothesis walker(double x, double y) {
   TrackHypothesis track = TrackHypothesis::first_seen({{x - 20, y - 50, 40, 100}, 2000, 0.9, 1});
-  track.widest = 44;
-  track.tallest = 110;
-  track.x.velocity = track.free_velocity.x = 30;
-  track.y.velocity = track.free_velocity.y = -12;
+  track.uncut.width = 44;
+  track.uncut.height = 110;
+  track.x.velocity = track.uncut.velocity.x = 30;
+  track.y.velocity = track.uncut.velocity.y = -12;
   track.x.pv = 7;
   return track;
 }
@@ -36,12 +37,12 @@ void check_scaled(const TrackHypothesis& before, const TrackHypothesis& after, d
   };
   equal(after.width(), scale * before.width());
   equal(after.height(), scale * before.height());
-  equal(after.widest, scale * before.widest);
-  equal(after.tallest, scale * before.tallest);
+  equal(after.uncut.width, scale * before.uncut.width);
+  equal(after.uncut.height, scale * before.uncut.height);
   equal(after.x.velocity, scale * before.x.velocity);
   equal(after.y.velocity, scale * before.y.velocity);
-  equal(after.free_velocity.x, scale * before.free_velocity.x);
-  equal(after.free_velocity.y, scale * before.free_velocity.y);
+  equal(after.uncut.velocity.x, scale * before.uncut.velocity.x);
+  equal(after.uncut.velocity.y, scale * before.uncut.velocity.y);
   equal(after.x.pp, scale * scale * (before.x.pp + more));
   equal(after.x.pv, scale * scale * before.x.pv);
   equal(after.x.vv, scale * scale * before.x.vv);
@@ -65,8 +66,8 @@ START_TEST(a_camera_that_rolls_turns_the_velocity) {
   ck_assert(track.carry({{0, -1, 400, 1, 0, 0, 0, 0, 1}}, kFrame));  // a quarter: x becomes y
   ck_assert_double_eq_tol(track.x.velocity, 12, 1e-9);
   ck_assert_double_eq_tol(track.y.velocity, 30, 1e-9);
-  ck_assert_double_eq_tol(track.free_velocity.x, 12, 1e-9);
-  ck_assert_double_eq_tol(track.free_velocity.y, 30, 1e-9);
+  ck_assert_double_eq_tol(track.uncut.velocity.x, 12, 1e-9);
+  ck_assert_double_eq_tol(track.uncut.velocity.y, 30, 1e-9);
 }
 END_TEST
 
@@ -76,7 +77,7 @@ START_TEST(a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene) {
     for (const bool turns : {false, true}) {
       TrackHypothesis track = walker(200, 240);
       track.x.velocity = track.y.velocity = 0;
-      track.fitted = track.slow = 2;
+      track.fit.time = track.slow = 2;
       const double step = 8, scene = turns ? -step : 0, piece = walks ? scene + step : scene;
       for (int k = 0; k < 9; ++k) {
         track.predict(0.1);
@@ -107,7 +108,7 @@ START_TEST(towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole
   ck_assert_double_lt(scale, 0.7);
   const TrackHypothesis before = walker(320 + 320 * std::tan(40 * kDegree), 240);
   TrackHypothesis track = before;
-  track.leave({lens, 0, 0});
+  LifeCycle::leave(track, {lens, 0, 0});
   track.predict_off_screen(0, {lens, 40 * kDegree, 0});
   ck_assert_double_eq_tol(track.x.position, 320, 1);
   check_scaled(before, track, scale, 0, 1e-4);
@@ -167,48 +168,39 @@ START_TEST(a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps) {
 END_TEST
 
 START_TEST(each_transition_leads_to_its_state) {
-  using State = TrackHypothesis::State;
-  const Region seen{{180, 190, 40, 100}, 4000, 0.9, 1};
+  const Box seen{180, 190, 40, 100};
   const CameraOrientation camera{Lens(60 * kDegree, kFrame), 0, 0};
   TrackHypothesis track = walker(200, 240);
-  ck_assert(track.state == State::tentative && !track.in_view());
-  track.correct(seen, true, 0.1, kFrame);
-  track.miss(0.1);
-  ck_assert(track.state == State::tentative);
-  track.confirm(7);
-  ck_assert(track.state == State::confirmed && track.id == 7);
-  track.miss(0.1);
-  ck_assert(track.state == State::coasted && track.in_view() && !track.stands());
-  track.stop();
-  ck_assert(track.state == State::stopped && track.stands());
+  ck_assert(track.is(TrackPhase::tentative) && !track.in_view());
+  LifeCycle::confirm(track, 7);
+  ck_assert(track.is(TrackPhase::confirmed) && track.in_view() && track.id == 7);
+  LifeCycle::coast(track);
+  ck_assert(track.is(TrackPhase::coasted) && track.in_view() && !track.stands());
+  LifeCycle::stop(track);
+  ck_assert(track.is(TrackPhase::stopped) && track.in_view() && track.stands());
   ck_assert_double_eq(track.speed(), 0);
-  track.miss(0.1);
-  ck_assert(track.state == State::stopped);
-  track.correct(seen, true, 0.1, kFrame);
-  ck_assert(track.state == State::confirmed);
+  LifeCycle::see(track);
+  ck_assert(track.is(TrackPhase::confirmed));
   // A stopped track comes back as a stopped one, another as a coasted one: the region that it is matched with corrects
   // it.
   for (const bool stopped : {true, false}) {
-    track.miss(0.1);
-    if (stopped) track.stop();
-    track.leave(camera);
-    ck_assert(track.state == State::off_screen && !track.in_view() && track.stands() == stopped);
-    track.miss(0.1);
-    ck_assert(track.state == State::off_screen);
-    track.come_back(seen.box);
-    ck_assert(track.state == (stopped ? State::stopped : State::coasted));
-    track.correct(seen, true, 0.1, kFrame);
-    ck_assert(track.state == State::confirmed);
+    LifeCycle::coast(track);
+    if (stopped) LifeCycle::stop(track);
+    LifeCycle::leave(track, camera);
+    ck_assert(track.is(TrackPhase::off_screen) && !track.in_view() && track.stands() == stopped);
+    LifeCycle::come_back(track, seen);
+    ck_assert(track.is(stopped ? TrackPhase::stopped : TrackPhase::coasted));
+    LifeCycle::see(track);
+    ck_assert(track.is(TrackPhase::confirmed));
   }
-  track.miss(0.1);
-  track.stop();
-  track.leave(camera);
-  track.off_screen.absent = 0.4;
-  track.resume_stop();
-  ck_assert(track.state == State::stopped);
-  ck_assert_double_eq(track.stop_data.absent, 0.4);
-  track.lose();
-  ck_assert(track.state == State::lost && !track.in_view());
+  LifeCycle::coast(track);
+  LifeCycle::stop(track);
+  LifeCycle::leave(track, camera);
+  std::get<OffScreen>(track.life).absent = 0.4;
+  LifeCycle::resume_stop(track);
+  ck_assert_double_eq(std::get<Stopped>(track.life).absent, 0.4);
+  LifeCycle::lose(track);
+  ck_assert(track.is(TrackPhase::lost) && !track.in_view());
 }
 END_TEST
 

@@ -17,10 +17,10 @@ Box bounding(const Box& a, const Box& b) {
 }  // namespace
 
 DataAssociation::Turn DataAssociation::turn_of(const TrackHypothesis& t) {
-  switch (t.state) {
-    case TrackHypothesis::State::tentative:
+  switch (t.phase()) {
+    case TrackPhase::tentative:
       return Turn::tentative;
-    case TrackHypothesis::State::off_screen:
+    case TrackPhase::off_screen:
       return Turn::off_screen;
     default:
       return Turn::in_view;
@@ -59,8 +59,8 @@ bool DataAssociation::is_part(const Box& part, const Box& whole) const {
 double DataAssociation::pair_cost(const TrackHypothesis& t, std::size_t j) const {
   const Parameters& q = parameters_;
   const Region& region = regions_[j];
-  const bool returns = turn_of(t) == Turn::off_screen;
-  if (returns && !t.off_screen.in_front) return Assignment::kForbidden;
+  const auto* returns = std::get_if<OffScreen>(&t.life);
+  if (returns && !returns->in_front) return Assignment::kForbidden;
   const double distance = t.distance(region.box, frame_.size);
   if (distance < 0) return Assignment::kForbidden;
   if (returns && region.box.area() > q.returned_area * t.box().area()) return Assignment::kForbidden;
@@ -165,7 +165,7 @@ void DataAssociation::gather_fragments() {
 // ways.
 bool DataAssociation::occludes(const TrackHypothesis& front, const TrackHypothesis& t,
                                const Box& region) const {
-  return turn_of(front) == Turn::in_view && t.has_appearance() && t.unlocated < parameters_.crossing &&
+  return turn_of(front) == Turn::in_view && t.has_appearance() && t.shared.unlocated < parameters_.crossing &&
          (look_different(t, front) || went_apart(t, front)) &&
          intersection_over_union(t.visible(frame_.size), region) > parameters_.occluded_overlap;
 }
@@ -200,7 +200,7 @@ void DataAssociation::share_regions() {
 bool DataAssociation::merges(const TrackHypothesis& t, const TrackHypothesis& oldest, const Box& region,
                              double filled, bool& above) const {
   above = false;
-  if (t.shared < parameters_.merge_time) return false;
+  if (t.shared.time < parameters_.merge_time) return false;
   if (one_above_another(t.box(), oldest.box(), region)) return above = true;
   if (went_apart(t, oldest)) return false;
   if (is_part(t.box(), oldest.box())) return true;  // a part does not look like the whole

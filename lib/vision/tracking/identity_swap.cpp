@@ -23,8 +23,8 @@ void exchange(TrackHypothesis& a, TrackHypothesis& b) {
   std::swap(a.appearance.frames, b.appearance.frames);
   std::swap(a.age, b.age);
   std::swap(a.top_speed, b.top_speed);
-  std::swap(a.origin, b.origin);
-  std::swap(a.travelled, b.travelled);
+  std::swap(a.travel.origin, b.travel.origin);
+  std::swap(a.travel.most, b.travel.most);
   for (TrackHypothesis* p : {&a, &b}) {
     TrackHypothesis::Appearance& look = p->appearance;
     look.change =
@@ -50,8 +50,8 @@ bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b,
                 const IdentitySwapParameters& parameters) {
   const double both = std::min(a.age, b.age);
   if (!(both > 0)) return false;
-  const double x = (a.x.position - a.origin.x) / a.age - (b.x.position - b.origin.x) / b.age;
-  const double y = (a.y.position - a.origin.y) / a.age - (b.y.position - b.origin.y) / b.age;
+  const double x = (a.x.position - a.travel.origin.x) / a.age - (b.x.position - b.travel.origin.x) / b.age;
+  const double y = (a.y.position - a.travel.origin.y) / a.age - (b.y.position - b.travel.origin.y) / b.age;
   return std::hypot(x, y) * both > parameters.apart * std::max(a.size(), b.size());
 }
 

@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// One object as the tracker believes it to be: its life cycle, two filters for its position, two for its extent, and
-// what it looks like.
-//
-//            confirm            miss              stop
-//  tentative -------> confirmed ----> coasted ----------> stopped
-//                         ^  <--------- correct ------------'
-//                         |  come_back              ^
-//                         '----------- off_screen --' come_back, resume_stop
-//                           leave: from confirmed, coasted or stopped to off_screen
-//                           lose: from every state to lost; the tracker removes lost tracks
+// One object as the tracker believes it to be: the state of its life, two filters for its position, two for its
+// extent, what it looks like, and what has been observed of it so far.
 //
 // Lengths are in S = max(width, height) of the object, see TrackParameters.
 #pragma once
@@ -17,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <variant>
 
 #include "vision/detection/regions.h"
 #include "vision/geometry/camera_orientation.h"
@@ -24,6 +17,7 @@
 #include "vision/tracking/appearance_model.h"
 #include "vision/tracking/kalman.h"
 #include "vision/tracking/track_parameters.h"
+#include "vision/tracking/track_states.h"
 
 namespace cerberus::vision {
 
@@ -48,32 +42,32 @@ struct Match {
 };
 
 struct TrackHypothesis {
-  enum class State {
-    tentative,   // not confirmed yet: no identity
-    confirmed,   // with a region in the last frame
-    coasted,     // without one, carried on along its velocity
-    stopped,     // without one, at the place where it ceased to move
-    off_screen,  // the camera turned away from it: kept by bearing and elevation
-    lost         // ended
+  // How far the object has gone since it was first seen. Places and lengths are carried with the scene.
+  struct Travel {
+    Point origin;                          // first position
+    double log_width = 0, log_height = 0;  // logarithms of the first extent
+    double top_rise = 0, bottom_drop = 0;  // frame pixels that its ends have gone outwards step by step
+    double most = 0;  // S: largest distance from the origin, or of its ends (approach(), stretch())
   };
-
-  // Data of states.
-  struct Stopped {
-    double absent = 0;  // s that the place has looked otherwise
+  // What is known of it from where the picture's edges did not cut it.
+  struct Uncut {
+    double width = 0, height = 0;  // the largest extent so far, frame pixels
+    Point velocity;                // frame pixels a second, when last seen so
+    bool leaving = false;          // the picture's edge cut it when last seen
   };
-  struct OffScreen {
-    Direction direction;
-    double magnification = 1;  // CameraOrientation::magnification() there
-    bool in_front = true;      // of the camera: the position in pixels is valid
-    bool stopped = false;      // it was when the camera turned away
-    double absent = 0;         // s that it was expected in the picture and not found
-  };
-  // A region of another extent, since when and how.
-  struct Misfit {
-    double time = 0;         // s since a region had the track's extent
-    Point from;              // centre of the first region that had not, carried with the scene
+  // How long regions have had its extent, and since when the last ones have had another.
+  struct Fit {
+    double time = 0;         // s of regions of its extent since that was last replaced
+    double longest = 0;      // s, the largest `time` so far
+    double misfit = 0;       // s since a region had its extent
+    Point misfit_from;       // centre of the first region that had not, carried with the scene
     bool jumped = false;     // the region has grown by a jump meanwhile
-    bool was_still = false;  // the object stood, or nearly, when it began
+    bool was_still = false;  // the object stood, or nearly, when the misfit began
+  };
+  // Regions of several objects.
+  struct Shared {
+    double time = 0;       // s that it has shared a region
+    double unlocated = 0;  // s in shared regions without being located there
   };
   struct Appearance {
     AppearanceModel model;       // learnt while the object is alone
@@ -87,60 +81,41 @@ struct TrackHypothesis {
   };
 
   const TrackParameters* parameters = &kTrackParameters;
-  State state = State::tentative;
+  TrackLife life;
   std::uint32_t id = 0;  // 0: tentative
-  Stopped stop_data;
-  OffScreen off_screen;
-
-  MovingValue x, y;                // centre, frame pixels
-  SlowValue w, h;                  // logarithms of the extent
-  double widest = 0, tallest = 0;  // the largest extent so far, frame pixels
-  Point origin;                    // first position, carried with the scene
-  // Logarithms of the first extent, carried with the scene.
-  double first_log_width = 0, first_log_height = 0;
-  bool newly_visible = false;            // first seen where the camera had just begun to look
-  Box last;                              // the last region that the track had alone, carried with the scene
-  double top_rise = 0, bottom_drop = 0;  // frame pixels that its ends have gone outwards step by step
-  double travelled = 0;  // S: largest distance from the origin, or of its ends (approach(), stretch())
+  MovingValue x, y;      // centre, frame pixels
+  SlowValue w, h;        // logarithms of the extent
   double top_speed = 0;  // frame pixels a second, since it was confirmed
-  Point free_velocity;   // frame pixels a second, when last seen away from the picture's edges
-  bool leaving = false;  // the picture's edge cut it when last seen
-  Misfit misfit;
-  RegionKind kind = RegionKind::thing;  // of the region that it was last seen in alone
   double confidence = 0;
-  double age = 0, unseen = 0;  // s since first and since last seen
-  int hits = 0, frames = 0;    // frames with a region, frames in all
-  double fitted = 0;           // s of regions of its extent since that was last replaced
-  double longest_fit = 0;      // s, the largest `fitted` so far
-  double shared = 0;           // s that it has shared a region
-  double unlocated = 0;        // s in shared regions without being located there
-  double slow = 0;             // s that it has been seen standing, or nearly, up to now
+  double age = 0, unseen = 0;           // s since first and since last seen
+  double slow = 0;                      // s that it has been seen standing, or nearly, up to now
+  Box last;                             // the last region that the track had alone, carried with the scene
+  RegionKind kind = RegionKind::thing;  // of that region
+  Travel travel;
+  Uncut uncut;
+  Fit fit;
+  Shared shared;
   Appearance appearance;
   Match match;  // of this frame
 
   static TrackHypothesis first_seen(const Region& region,
                                     const TrackParameters& parameters = kTrackParameters);
 
-  // Transitions; the comment of each names the states in which it may be called.
-  void confirm(std::uint32_t identity);         // tentative
-  void stop();                                  // coasted
-  void leave(const CameraOrientation& camera);  // any but tentative: the camera has turned away from it
-  void come_back(const Box& seen);              // off_screen: matched with a region
-  void resume_stop();                           // off_screen and stopped: its place is in the picture again
-  void lose() { state = State::lost; }
-  // correct() leads from coasted and stopped to confirmed, miss() from confirmed to coasted.
-
+  TrackPhase phase() const { return phase_of(life); }
+  bool is(TrackPhase p) const { return phase() == p; }
   bool in_view() const {
-    return state == State::confirmed || state == State::coasted || state == State::stopped;
+    return is(TrackPhase::confirmed) || is(TrackPhase::coasted) || is(TrackPhase::stopped);
   }
   bool stands() const {
-    return state == State::stopped || (state == State::off_screen && off_screen.stopped);
+    const auto* away = std::get_if<OffScreen>(&life);
+    return is(TrackPhase::stopped) || (away && away->stopped);
   }
 
   double width() const { return std::exp(w.value); }
   double height() const { return std::exp(h.value); }
   double size() const { return std::max(width(), height()); }  // S in frame pixels
   double speed() const { return std::hypot(x.velocity, y.velocity); }
+  double seen_for() const { return age - unseen; }  // s from first to last seen
   Box box() const;
   // The part of the box inside the frame; all of it where that part is next to nothing.
   Box visible(Size frame) const;
@@ -158,15 +133,17 @@ struct TrackHypothesis {
   // Cost of a region: 0 fits perfectly; negative: outside the validation gate.
   double distance(const Box& seen, Size frame) const;
 
-  // The object stood and its place looks as it did: it is still there, whatever moves.
-  bool stays() const;
   // Seen in this region. alone: no other track has it. found: offset of the best position by appearance from the
   // expected one, in a region of several.
   void correct(const Region& region, bool alone, double seconds, Size frame,
                const std::optional<Point>& found = {});
-  // Not seen.
+  // The region's extent and place replace the track's.
+  void adopt(const Box& seen);
+  // Not seen: it slows down.
   void miss(double seconds);
 
+  // The object stood and its place looks as it did: it is still there, whatever moves.
+  bool stays() const;
   // Learns the appearance of a region of its own extent. isolated: no other track covers a part of the region.
   void remember(const AppearanceModel& seen, double seconds, bool isolated);
   // Learns what the whole box looks like; after correct(), for a track that is alone there.
@@ -181,15 +158,35 @@ struct TrackHypothesis {
   bool is_ambiguous() const;
 
  private:
+  // A region beside the box in which the track expects it.
+  struct Comparison {
+    Residual x, y;
+    bool fits = false;                        // both extents agree
+    bool smaller = false;                     // in area
+    bool within_x = false, within_y = false;  // it lies in the expected box
+    bool cut_x = false, cut_y = false;        // by the picture's edge: it changes as the object comes or goes
+    bool stays = false;                       // the object is seen to stay where it stood
+    bool cut() const { return cut_x || cut_y; }
+  };
+
   void magnify(double scale);
   double approach() const;
   double stretch() const;
-  void follow_ends(const Box& seen, double seconds, Size frame);
-  bool jumps(const Box& seen, double seconds) const;
-  void adopt(const Box& seen);
-  bool outgrown(const Box& seen, bool whole, bool cut, double seconds);
-  void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
+
+  // Steps of correct(), in track_correction.cpp.
+  Comparison compare(const Box& seen, Size frame) const;
   bool is_cut(double from, double to, double largest, int side) const;
+  bool outgrown(const Region& region, bool cut, double seconds);
+  bool jumps(const Box& seen, double seconds) const;
+  void replace_extent(const Box& seen, bool cut);
+  void move_to(const Point& found, double seconds);
+  void move_by(const Comparison& how, Size frame);
+  void refine_extent(const Box& seen, const Comparison& how, double seconds, Size frame);
+  void resize(SlowValue& extent, double seen, bool is_cut, double seconds);
+  void follow_ends(const Box& seen, double seconds, Size frame);
+  void brake_fragment(const Comparison& how, double seconds);
+  void shrink_into(const Box& region);
+  void note_seen(double seen_confidence, bool fits, double size_before, double seconds);
 };
 
 }  // namespace cerberus::vision

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/tracking/life_cycle.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "vision/tracking/identity_swap.h"
+
+namespace cerberus::vision {
+
+void LifeCycle::confirm(TrackHypothesis& t, std::uint32_t id) {
+  t.life = Confirmed{};
+  t.id = id;
+  t.top_speed = t.speed();
+}
+
+void LifeCycle::coast(TrackHypothesis& t) {
+  t.life = Coasted{};
+}
+
+void LifeCycle::stop(TrackHypothesis& t) {
+  t.life = Stopped{};
+  t.x.velocity = t.y.velocity = 0;
+}
+
+void LifeCycle::see(TrackHypothesis& t) {
+  t.life = Confirmed{};
+}
+
+void LifeCycle::leave(TrackHypothesis& t, const CameraOrientation& camera) {
+  const bool stopped = t.is(TrackPhase::stopped), still = stopped || t.slow > 0;
+  // The velocity of the part at the picture's edge is not used: its centre lags behind the object's.
+  t.x.velocity = still ? 0 : t.uncut.velocity.x;
+  t.y.velocity = still ? 0 : t.uncut.velocity.y;
+  if (t.uncut.leaving) {
+    t.w.value = std::log(t.uncut.width);
+    t.h.value = std::log(t.uncut.height);
+  }
+  t.fit.misfit = 0;
+  const Direction direction = camera.direction({t.x.position, t.y.position});
+  t.life = OffScreen{direction, camera.magnification(direction), true, stopped, 0};
+}
+
+// The extent before was a guess where the picture's edge had cut it, and may have been a group's.
+void LifeCycle::come_back(TrackHypothesis& t, const Box& seen) {
+  if (std::get<OffScreen>(t.life).stopped)
+    t.life = Stopped{};
+  else
+    t.life = Coasted{};
+  t.adopt(seen);
+}
+
+void LifeCycle::resume_stop(TrackHypothesis& t) {
+  t.life = Stopped{std::get<OffScreen>(t.life).absent};
+}
+
+void LifeCycle::lose(TrackHypothesis& t) {
+  t.life = Lost{};
+}
+
+void LifeCycle::advance(std::span<TrackHypothesis> tracks, const Frame& frame, const TrackOptions& options) {
+  tracks_ = tracks;
+  frame_ = frame;
+  options_ = options;
+  for (TrackHypothesis& t : tracks) {
+    if (t.match.region >= 0) {
+      if (t.is(TrackPhase::tentative) && is_confirmed(t)) confirm(t, ++last_id_);
+      continue;
+    }
+    if (t.is(TrackPhase::confirmed)) coast(t);
+    t.miss(frame.seconds);
+    switch (t.phase()) {
+      case TrackPhase::tentative:
+        advance_tentative(t);
+        break;
+      case TrackPhase::coasted:
+        advance_coasted(t);
+        break;
+      case TrackPhase::stopped:
+        advance_stopped(t);
+        break;
+      case TrackPhase::off_screen:
+        advance_off_screen(t);
+        break;
+      case TrackPhase::confirmed:
+      case TrackPhase::lost:
+        break;
+    }
+  }
+  tracks_ = {};
+}
+
+bool LifeCycle::is_confirmed(const TrackHypothesis& t) const {
+  const Parameters& q = parameters_;
+  const Tentative& data = std::get<Tentative>(t.life);
+  if (options_.confirm_time <= 0) return true;
+  const bool enough = data.hits >= q.least_hits ||
+                      (data.hits >= q.slow_least_hits && t.age >= q.slow_confirm * options_.confirm_time);
+  return enough && (data.newly_visible || t.travel.most >= q.least_travel) &&
+         t.age >= q.confirm_slack * options_.confirm_time && data.hits >= q.hit_share * data.frames;
+}
+
+// Lost when it has been without region for a while, and mostly was.
+void LifeCycle::advance_tentative(TrackHypothesis& t) {
+  const Parameters& q = parameters_;
+  const Tentative& data = std::get<Tentative>(t.life);
+  if (t.unseen > q.tentative_coast * options_.confirm_time && data.hits < q.hit_share * data.frames) lose(t);
+}
+
+// Stops, or departs when it has been coasted for too long or its centre has left the picture.
+void LifeCycle::advance_coasted(TrackHypothesis& t) {
+  if (has_stopped(t)) {
+    stop(t);
+    advance_stopped(t);
+    return;
+  }
+  fade(t, options_.coast_time);
+  const double longest = t.at_border(frame_.size) ? parameters_.border_coast * coast_time(t) : coast_time(t);
+  if (outside(t) || t.unseen > longest) depart(t);
+}
+
+// Departs after hold-stopped; sooner from a place at the picture's edge that looks otherwise for a while and is not
+// covered: then the object has left.
+void LifeCycle::advance_stopped(TrackHypothesis& t) {
+  fade(t, options_.hold_stopped);
+  double& absent = std::get<Stopped>(t.life).absent;
+  absent = left_place(t) && !covered(t) ? absent + frame_.seconds : 0;
+  if (outside(t) || t.unseen > options_.hold_stopped || absent > parameters_.border_coast * coast_time(t))
+    depart(t);
+}
+
+// A stopped track whose place is in view again is a stopped one again. Lost when it has been away for too long, or is
+// not where it is expected.
+void LifeCycle::advance_off_screen(TrackHypothesis& t) {
+  OffScreen& data = std::get<OffScreen>(t.life);
+  if (t.expected_in(frame_.size)) data.absent += frame_.seconds;
+  const double longest = data.stopped ? options_.hold_stopped : options_.away_time;
+  if (t.unseen > longest || data.absent > options_.coast_time)
+    lose(t);
+  else if (data.stopped && data.absent > 0)
+    resume_stop(t);
+}
+
+// Goes off-screen where the camera has turned away from a well-known object, else it is lost.
+void LifeCycle::depart(TrackHypothesis& t) {
+  const Parameters& q = parameters_;
+  if (frame_.turning && (outside(t) || t.at_border(frame_.size)) && t.unseen < options_.away_time &&
+      t.fit.longest >= q.off_screen_fit && t.travel.most >= q.off_screen_travel)
+    leave(t, frame_.camera);
+  else
+    lose(t);
+}
+
+// Has the object ceased to move, rather than left or gone behind another one? It was well seen before, slower and
+// slower until nothing moved any more, uncovered; at the picture's edge its place must look as before.
+bool LifeCycle::has_stopped(const TrackHypothesis& t) const {
+  const Parameters& q = parameters_;
+  if (t.slow < q.still || t.fit.time < q.fitted || t.travel.most < q.stop_travel || t.seen_for() < q.seen ||
+      t.uncut.leaving)
+    return false;
+  return !left_place(t) && !covered(t);
+}
+
+// Is it at the picture's edge, and its place looks otherwise?
+bool LifeCycle::left_place(const TrackHypothesis& t) const {
+  return t.appearance.place_change >= 0 && !t.stays() && t.at_border(frame_.size);
+}
+
+// Does another track, one with a region, lie in front of it?
+bool LifeCycle::covered(const TrackHypothesis& t) const {
+  const Box box = t.box();
+  return std::ranges::any_of(tracks_, [&](const TrackHypothesis& o) {
+    return &o != &t && o.id != 0 && o.match.region >= 0 &&
+           overlap_area(o.box(), box) > parameters_.covered * box.area();
+  });
+}
+
+bool LifeCycle::outside(const TrackHypothesis& t) const {
+  return t.x.position < 0 || t.y.position < 0 || t.x.position > frame_.size.width ||
+         t.y.position > frame_.size.height;
+}
+
+double LifeCycle::coast_time(const TrackHypothesis& t) const {
+  return std::min(options_.coast_time, parameters_.coast_share * t.seen_for());
+}
+
+// The confidence of a track without region falls. time: time constant in s, may be 0.
+void LifeCycle::fade(TrackHypothesis& t, double time) const {
+  constexpr double kLeastTime = 1e-3;
+  t.confidence *= std::exp(-frame_.seconds / std::max(time, kLeastTime));
+}
+
+void LifeCycle::end_hollow(std::span<TrackHypothesis> tracks, std::span<const Region> regions) const {
+  for (TrackHypothesis& t : tracks) {
+    if (t.match.region >= 0 || !t.in_view()) continue;
+    const Box box = t.box();
+    const auto inside = std::ranges::count_if(regions, [&](const Region& r) {
+      return overlap_area(r.box, box) > parameters_.hollow_inside * r.box.area() &&
+             r.box.area() > parameters_.hollow_part * box.area();
+    });
+    if (inside > 1) lose(t);
+  }
+}
+
+bool LifeCycle::are_duplicates(const TrackHypothesis& a, const TrackHypothesis& b) const {
+  const Parameters& q = parameters_;
+  if (intersection_over_union(a.box(), b.box()) < q.duplicate) return false;
+  const bool different = look_different(a, b);
+  if (a.match.region == b.match.region && a.match.region >= 0) {
+    if (different && std::max(a.shared.unlocated, b.shared.unlocated) < q.crossing) return false;
+    return std::max(a.shared.time, b.shared.time) >= (went_apart(a, b) ? q.crossing : q.duplicate_shared);
+  }
+  if (a.match.region >= 0 && b.match.region >= 0) return false;
+  // One passes in front of the other, which stands there.
+  if ((a.stands() || b.stands()) && (different || went_apart(a, b))) return false;
+  return std::max(a.unseen, b.unseen) >= q.duplicate_unseen;
+}
+
+void LifeCycle::end_duplicates(std::span<TrackHypothesis> tracks) const {
+  for (std::size_t i = 0; i < tracks.size(); ++i)
+    for (std::size_t j = i + 1; j < tracks.size(); ++j) {
+      TrackHypothesis &a = tracks[i], &b = tracks[j];
+      if (!a.in_view() || !b.in_view() || !are_duplicates(a, b)) continue;
+      const bool first = a.unseen != b.unseen ? a.unseen > b.unseen : a.age < b.age;
+      lose(first ? a : b);
+    }
+}
+
+std::optional<TrackState> LifeCycle::published(const TrackHypothesis& t) const {
+  const Parameters& q = parameters_;
+  if (t.match.occluded && t.shared.unlocated > q.occluded_coast) return {};
+  if (t.is(TrackPhase::confirmed)) return TrackState::seen;
+  if (!t.in_view() || t.shared.unlocated >= q.crossing) return {};
+  if (t.is(TrackPhase::stopped)) return TrackState::stopped;
+  // A coasted track: while its position is certain; away from the picture's edge, where it probably has left; and if it
+  // was seen for long enough not to be noise.
+  if (std::sqrt(t.x.pp) > q.certain * t.width() || t.at_border(frame_.size) ||
+      t.seen_for() < q.proven * options_.confirm_time)
+    return {};
+  return TrackState::coasted;
+}
+
+}  // namespace cerberus::vision

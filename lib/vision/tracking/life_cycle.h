@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The life of a track: the transitions between its states (track_states.h), and the rules by which they happen.
+//
+//   tentative --confirm--> confirmed --coast--> coasted --stop--> stopped
+//
+//   see          coasted, stopped -> confirmed
+//   leave        coasted, stopped -> off_screen
+//   come_back    off_screen -> coasted or stopped, as it was; then see in the same frame
+//   resume_stop  off_screen -> stopped
+//   lose         every state -> lost; the tracker removes lost tracks
+//
+// docs/design/track-states.md has a drawing.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+
+#include "vision/detection/regions.h"
+#include "vision/geometry/camera_orientation.h"
+#include "vision/tracking/track_hypothesis.h"
+#include "vision/tracking/tracker.h"
+
+namespace cerberus::vision {
+
+class LifeCycle {
+ public:
+  // Where no origin stands the value was chosen by hand on vtest.avi and davis_tennis. Guard: boxes on vtest.avi
+  // (precision .84, recall .83), MOTA 70 on PETS09-S2L1, tests/unit (tracker, standing, straight, turning).
+  struct Parameters {
+    // Confirmation.
+    // S that an object has moved. The uncovered place of an object that belonged to the background model, and a lamp
+    // that was switched on, never move.
+    double least_travel = 0.12;
+    int least_hits = 3;            // frames with a region,
+    int slow_least_hits = 2;       // or these, at a low frame rate: after slow_confirm x confirm-time
+    double slow_confirm = 3;       // times confirm-time
+    double confirm_slack = 0.99;   // of confirm-time: rounding of the frame distances adds up
+    double hit_share = 0.6;        // of the frames in which a tentative track has a region
+    double tentative_coast = 0.5;  // of confirm-time that it is kept without
+    // Coasting.
+    double coast_share = 0.5;   // of the time for which the object was seen
+    double border_coast = 0.3;  // of the coast time, at the picture's edge
+    double proven = 3;     // times confirm-time for which a coasted track was seen before it is published
+    double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
+    double occluded_coast = 0.3;  // s for which an occluded track is published
+    double crossing = 3;          // s for which two tracks may overlap
+    // Stopping: the object was well seen, slower and slower.
+    double still = 0.3;         // s of standing, or nearly
+    double fitted = 0.5;        // s of regions of its extent
+    double stop_travel = 0.45;  // S that it came
+    double seen = 1.5;          // s for which it was seen
+    double covered = 0.2;       // of its box that another track covers: it may be behind that one
+    // Off-screen.
+    double off_screen_fit = 0.5;      // s of regions of its extent
+    double off_screen_travel = 0.45;  // S
+    // Blobs that have come apart: a track without region was a blob of several if two regions lie in it with
+    double hollow_inside = 0.6;  // of the region's area,
+    double hollow_part = 0.1;    // and of the track's
+    // Two tracks on one object.
+    double duplicate = 0.7;         // intersection over union
+    double duplicate_shared = 1.0;  // s in one region after which one of the two ends
+    double duplicate_unseen = 0.5;  // s, the same where one has no region
+  };
+
+  struct Frame {
+    Size size;             // pixels
+    double seconds = 0;    // since the previous frame
+    bool turning = false;  // the camera moved since the previous frame
+    CameraOrientation camera;
+  };
+
+  // Transitions. The comment names the states in which each may be called.
+  static void confirm(TrackHypothesis& track, std::uint32_t id);  // tentative
+  static void coast(TrackHypothesis& track);                      // confirmed: no region
+  static void stop(TrackHypothesis& track);                       // coasted
+  static void see(TrackHypothesis& track);                        // coasted, stopped: a region corrected it
+  static void leave(TrackHypothesis& track, const CameraOrientation& camera);  // coasted, stopped
+  static void come_back(TrackHypothesis& track, const Box& seen);  // off_screen: matched with a region
+  static void resume_stop(TrackHypothesis& track);  // off_screen, stopped before: its place is in view again
+  static void lose(TrackHypothesis& track);         // any
+
+  // A frame's transitions of all tracks, after those with a region were corrected.
+  void advance(std::span<TrackHypothesis> tracks, const Frame& frame, const TrackOptions& options);
+  // Ends tracks without region whose box holds several regions: each was the blob that they have come out of.
+  void end_hollow(std::span<TrackHypothesis> tracks, std::span<const Region> regions) const;
+  // Ends one of two tracks in view on one object: the one without region, or else the younger.
+  void end_duplicates(std::span<TrackHypothesis> tracks) const;
+  // The state in which a track is published after advance(), if it is.
+  std::optional<TrackState> published(const TrackHypothesis& track) const;
+
+ private:
+  void advance_tentative(TrackHypothesis& track);
+  void advance_coasted(TrackHypothesis& track);
+  void advance_stopped(TrackHypothesis& track);
+  void advance_off_screen(TrackHypothesis& track);
+  void depart(TrackHypothesis& track);
+  bool is_confirmed(const TrackHypothesis& track) const;
+  bool has_stopped(const TrackHypothesis& track) const;
+  bool left_place(const TrackHypothesis& track) const;
+  bool covered(const TrackHypothesis& track) const;
+  bool outside(const TrackHypothesis& track) const;
+  double coast_time(const TrackHypothesis& track) const;
+  void fade(TrackHypothesis& track, double time) const;
+  bool are_duplicates(const TrackHypothesis& a, const TrackHypothesis& b) const;
+
+  Parameters parameters_;
+  std::uint32_t last_id_ = 0;
+  // Of the frame in progress.
+  std::span<const TrackHypothesis> tracks_;
+  Frame frame_;
+  TrackOptions options_;
+};
+
+}  // namespace cerberus::vision

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// What a region says of the object that it was matched with: its place, its extent, how far it has gone.
+#include "vision/tracking/track_hypothesis.h"
+
+namespace cerberus::vision {
+namespace {
+
+double square(double v) {
+  return v * v;
+}
+
+Point centre(const Box& b) {
+  return {b.x + b.width / 2, b.y + b.height / 2};
+}
+
+}  // namespace
+
+void TrackHypothesis::correct(const Region& region, bool alone, double seconds, Size frame,
+                              const std::optional<Point>& found) {
+  const Box& seen = region.box;
+  const Comparison how = compare(seen, frame);
+  const double before = size();
+  uncut.leaving = (how.cut_x && seen.width < parameters->leaving * uncut.width) ||
+                  (how.cut_y && seen.height < parameters->leaving * uncut.height);
+  if (!how.fits && alone && outgrown(region, how.cut(), seconds)) {
+    replace_extent(seen, how.cut());
+  } else if (found) {
+    move_to(*found, seconds);
+  } else {
+    move_by(how, frame);
+    if (alone && how.fits)
+      refine_extent(seen, how, seconds, frame);
+    else if (alone && how.smaller)
+      brake_fragment(how, seconds);
+  }
+  if (alone) last = seen, kind = region.kind;
+  if (!alone && !match.occluded && !how.stays) shrink_into(seen);
+  if (!how.cut()) uncut.velocity = {x.velocity, y.velocity};
+  uncut.width = std::max(uncut.width, width());
+  uncut.height = std::max(uncut.height, height());
+  note_seen(region.confidence, how.fits, before, seconds);
+}
+
+TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, Size frame) const {
+  const Box b = box();
+  Comparison c;
+  c.x = compare_extents(b.x, b.right(), seen.x, seen.right(), *parameters);
+  c.y = compare_extents(b.y, b.bottom(), seen.y, seen.bottom(), *parameters);
+  c.fits = c.x.same_extent && c.y.same_extent;
+  c.smaller = seen.area() < b.area();
+  c.within_x = seen.x >= b.x && seen.right() <= b.right();
+  c.within_y = seen.y >= b.y && seen.bottom() <= b.bottom();
+  // Where the edge cuts a region off it changes because the object comes or goes, unless the object is seen to stand
+  // there and only its moving part became smaller.
+  c.stays = stays();
+  if (!c.stays) {
+    c.cut_x = is_cut(seen.x, seen.right(), uncut.width, frame.width);
+    c.cut_y = is_cut(seen.y, seen.bottom(), uncut.height, frame.height);
+    return c;
+  }
+  const bool fragment = !c.fits && c.smaller;
+  if (c.within_x || fragment) c.x.distance = 0;
+  if (c.within_y || fragment) c.y.distance = 0;
+  return c;
+}
+
+// Does the picture's edge cut a region off? Not the ends of an object that fills the picture from side to side.
+bool TrackHypothesis::is_cut(double from, double to, double largest, int side) const {
+  const double margin = parameters->cut_margin * side;
+  return (from < margin || to > side - margin) && largest < parameters->cut_most * side;
+}
+
+// One object, one region, extents that disagree: does the region's extent replace the track's?
+//   cut by the picture's edge: yes, the object comes or goes.
+//   person-like: after whole_misfit.
+//   larger: soon. Only a part was seen before, or the object runs off and its region stretches from the place where it
+//     stood, which stays foreground until the background model has learnt it. Later if the region jumped: it may be a group.
+//   smaller: a fragment (an arm) of a standing object, as long as it stays in place. Yes if the object moved, if its
+//     extent was never well known, or if the fragment walks away on its own.
+bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
+  const TrackParameters& q = *parameters;
+  const Box& seen = region.box;
+  if (fit.misfit == 0) {
+    fit.misfit_from = centre(seen);
+    fit.was_still = slow > 0 || stands();
+    fit.jumped = false;
+  }
+  fit.jumped = fit.jumped || jumps(seen, stands() ? seconds : seconds + unseen);
+  fit.misfit += seconds;
+  if (cut || match.reshaped) return true;
+  if (is_person_like(region)) return fit.misfit >= q.whole_misfit;
+  const bool known = fit.time >= q.extent_known;
+  if (seen.area() > box().area())
+    return fit.misfit >= (known && fit.jumped ? q.jumped_misfit : q.growing_misfit);
+  const Point to = centre(seen);
+  const double gone = std::hypot(to.x - fit.misfit_from.x, to.y - fit.misfit_from.y);
+  return fit.misfit >= q.shrinking_misfit && (!fit.was_still || !known || gone > q.fragment_walk * size());
+}
+
+// A region that grows by so much from one frame to the next has met another object, or reveals more of its own.
+bool TrackHypothesis::jumps(const Box& seen, double seconds) const {
+  return std::max(
+             {last.x - seen.x, seen.right() - last.right(), last.y - seen.y, seen.bottom() - last.bottom()}) >
+         (parameters->jump + parameters->jump_speed * seconds) * size();
+}
+
+void TrackHypothesis::adopt(const Box& seen) {
+  w = {std::log(seen.width), square(parameters->size_noise)};
+  h = {std::log(seen.height), square(parameters->size_noise)};
+  travel.log_width = w.value;
+  travel.log_height = h.value;
+  travel.top_rise = travel.bottom_drop = 0;
+  x.position = centre(seen).x;
+  y.position = centre(seen).y;
+  fit.misfit = fit.time = 0;
+  last = seen;
+}
+
+// Another extent is no distance travelled, unless the object came in meanwhile: what it has travelled, in S, stays.
+void TrackHypothesis::replace_extent(const Box& seen, bool cut) {
+  const double before = size();
+  const Point was{x.position, y.position};
+  adopt(seen);
+  if (!is(TrackPhase::tentative) || cut) return;
+  travel.origin = {x.position - (was.x - travel.origin.x) * size() / before,
+                   y.position - (was.y - travel.origin.y) * size() / before};
+}
+
+// To the place in a group where the object was found by its appearance, which determines height poorly.
+void TrackHypothesis::move_to(const Point& found, double seconds) {
+  const double variance = square(parameters->found_noise * size());
+  x.correct(found.x, variance);
+  y.correct(found.y, variance);
+  y.velocity *= std::exp(-seconds / parameters->found_brake);
+}
+
+// By the residual. A smaller region within the expected box is no distance travelled of a tentative track.
+void TrackHypothesis::move_by(const Comparison& how, Size frame) {
+  const TrackParameters& q = *parameters;
+  const double noise = square(q.position_noise * size()) + square(q.grain * frame.width);
+  const double variance = how.fits && !match.occluded ? noise : q.blob_noise * noise;
+  const Point was{x.position, y.position};
+  x.correct(how.x.distance, variance);
+  y.correct(how.y.distance, variance);
+  if (!is(TrackPhase::tentative)) return;
+  if (how.within_x) travel.origin.x += x.position - was.x;
+  if (how.within_y) travel.origin.y += y.position - was.y;
+}
+
+// A region of the track's own extent, which no other track has.
+void TrackHypothesis::refine_extent(const Box& seen, const Comparison& how, double seconds, Size frame) {
+  if (is(TrackPhase::tentative)) follow_ends(seen, seconds + unseen, frame);
+  if (!(how.stays && how.within_x)) resize(w, seen.width, how.cut_x, seconds);
+  if (!(how.stays && how.within_y)) resize(h, seen.height, how.cut_y, seconds);
+  fit.misfit = 0;
+  fit.time += seconds;
+  fit.longest = std::max(fit.longest, fit.time);
+}
+
+// A person who stands dissolves from the mask piece by piece without getting smaller; an object that the picture's edge
+// cuts shows more or less of itself with every frame.
+void TrackHypothesis::resize(SlowValue& extent, double seen, bool is_cut, double seconds) {
+  const TrackParameters& q = *parameters;
+  const bool fades = !is_cut && speed() < q.stand_speed * size() && std::log(seen) < extent.value;
+  if (is_cut) extent.variance += q.border_wander * seconds;
+  extent.correct(std::log(seen), square(q.size_noise) * (fades ? q.fade : 1));
+}
+
+// An end that goes on steadily is a walker's. One that jumps reveals more of the object.
+void TrackHypothesis::follow_ends(const Box& seen, double seconds, Size frame) {
+  const double most = parameters->end_speed * size() * seconds + parameters->grain * frame.width;
+  const auto follow = [most](double& gone, double step) {
+    gone = step > most ? 0 : std::max(0.0, gone + step);
+  };
+  follow(travel.top_rise, last.y - seen.y);
+  follow(travel.bottom_drop, seen.bottom() - last.bottom());
+}
+
+// A fragment of the object says little of its velocity.
+void TrackHypothesis::brake_fragment(const Comparison& how, double seconds) {
+  const double brake = std::exp(-seconds / parameters->fragment_brake);
+  if (!how.x.same_extent) x.velocity *= brake;
+  if (!how.y.same_extent) y.velocity *= brake;
+}
+
+// A track is not larger than a region that it shares, if the region holds all of the object.
+void TrackHypothesis::shrink_into(const Box& region) {
+  if (region.width < width()) w.value = std::log(region.width);
+  if (region.height < height()) h.value = std::log(region.height);
+}
+
+// size_before: S before the correction, frame pixels.
+void TrackHypothesis::note_seen(double seen_confidence, bool fits, double size_before, double seconds) {
+  const TrackParameters& q = *parameters;
+  unseen = 0;
+  const double keep = std::exp(-seconds / q.confidence_time);
+  confidence =
+      keep * confidence + (1 - keep) * (0.5 + 0.5 * seen_confidence) * (fits ? 1 : q.misfit_confidence);
+  const double gone = std::hypot(x.position - travel.origin.x, y.position - travel.origin.y) / size_before;
+  travel.most = std::max({travel.most, gone, approach(), stretch()});
+  slow = speed() < q.stand_speed * size_before ? slow + seconds : 0;
+  if (auto* data = std::get_if<Tentative>(&life))
+    ++data->hits;
+  else
+    top_speed = std::max(top_speed, speed());
+}
+
+}  // namespace cerberus::vision
