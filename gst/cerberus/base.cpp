@@ -31,6 +31,12 @@ bool read(const GstStructure* from, CerberusBase& base) {
 
 }  // namespace
 
+template <typename Archive>
+static void exchange(Archive& archive, CerberusBase& base) {
+  archive(base.yaw_rate, base.source, cerberus::publish::Moment{base.valid_from});
+  base = sane(base);
+}
+
 CERBERUS_DEFINE_BOXED(CerberusBase, cerberus_base, unknown)
 CERBERUS_DEFINE_ENUM(CerberusBaseSource, cerberus_base_source,
                      {CERBERUS_BASE_ESTIMATED, "CERBERUS_BASE_ESTIMATED", "estimated"},

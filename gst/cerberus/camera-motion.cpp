@@ -29,6 +29,12 @@ gboolean transform_meta(GstBuffer* to, GstMeta* meta, GstBuffer* from, GQuark ty
 
 }  // namespace
 
+template <typename Archive>
+static void exchange(Archive& archive, CerberusCameraMotion& m) {
+  archive(m.matrix, cerberus::publish::Moment{m.from}, m.confidence, m.residual, m.still, m.scene_age,
+          m.path_id, m.path);
+}
+
 CERBERUS_DEFINE_BOXED(CerberusCameraMotion, cerberus_camera_motion, unknown)
 CERBERUS_DEFINE_META(CerberusCameraMotion, camera_motion, std::identity{}, transform_meta,
                      GST_META_TAG_VIDEO_STR, GST_META_TAG_VIDEO_SIZE_STR)

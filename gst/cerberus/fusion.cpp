@@ -56,6 +56,14 @@ bool is_complete(const CerberusFusion& fusion) {
 
 }  // namespace
 
+template <typename Archive>
+static void exchange(Archive& archive, CerberusFusion& f) {
+  archive(f.rule, f.rule_name, f.action, f.target, f.pan, f.sector_from, f.sector_to, f.limited,
+          f.camera_found, f.n_sensors, f.sensors, f.bearings, f.doubtful,
+          cerberus::publish::Moment{f.decided}, f.head);
+  f = sane(f);
+}
+
 CERBERUS_DEFINE_BOXED(CerberusFusion, cerberus_fusion, hold)
 CERBERUS_DEFINE_ENUM(CerberusFusionAction, cerberus_fusion_action,
                      {CERBERUS_FUSION_TRACK, "CERBERUS_FUSION_TRACK", "track"},

@@ -49,6 +49,14 @@ bool read(const GstStructure* from, CerberusPose& pose) {
 
 }  // namespace
 
+template <typename Archive>
+static void exchange(Archive& archive, CerberusPose& pose) {
+  archive(pose.head, cerberus::publish::Moment{pose.valid_from}, cerberus::publish::Moment{pose.valid_until},
+          pose.source, pose.moving, pose.settled, pose.pan, pose.tilt, pose.pan_speed, pose.tilt_speed,
+          pose.pan_acceleration, pose.tilt_acceleration, pose.field_of_view);
+  pose = sane(pose);
+}
+
 CERBERUS_DEFINE_BOXED(CerberusPose, cerberus_pose, straight_ahead)
 CERBERUS_DEFINE_ENUM(CerberusPoseSource, cerberus_pose_source,
                      {CERBERUS_POSE_COMMANDED, "CERBERUS_POSE_COMMANDED", "commanded"},

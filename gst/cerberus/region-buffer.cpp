@@ -134,8 +134,28 @@ gboolean meta_transform(GstBuffer* to, GstMeta* meta, GstBuffer*, GQuark type, g
   return TRUE;
 }
 
+// Across processes: a region is attached as a detector does, with all that others read.
+struct RegionPacking {
+  static GstClockTime frame_time(const GstMeta*) { return GST_CLOCK_TIME_NONE; }  // it has no point in time
+  static void exchange(auto& archive, CerberusRegion& r) {
+    archive(r.id, r.tracked, r.person, r.kind, r.x, r.y, r.width, r.height, r.confidence, r.vx, r.vy, r.age,
+            r.state, r.bearing, r.distance);
+  }
+  static void pack(const GstMeta* meta, cerberus::publish::Packer& to) {
+    CerberusRegion region = reinterpret_cast<const RegionMeta*>(meta)->region;
+    exchange(to, region);
+  }
+  static GstMeta* unpack(GstBuffer* buffer, cerberus::publish::Unpacker& from) {
+    CerberusRegion region{};
+    exchange(from, region);
+    return from.complete() && cerberus_buffer_add_region(buffer, &region)
+               ? gst_buffer_get_meta(buffer, region_meta_info()->api)
+               : nullptr;
+  }
+};
+
 const GstMetaInfo* region_meta_info() {
-  static const GstMetaInfo* const info = cerberus::register_meta<RegionMeta>(
+  static const GstMetaInfo* const info = cerberus::register_meta<RegionMeta, RegionPacking>(
       cerberus::register_meta_api("CerberusRegionMetaAPI", GST_META_TAG_VIDEO_STR,
                                   GST_META_TAG_VIDEO_SIZE_STR),
       "CerberusRegionMeta", [](GstMeta*, gpointer, GstBuffer*) -> gboolean { return TRUE; }, nullptr,
@@ -148,6 +168,7 @@ const GstMetaInfo* region_meta_info() {
 constexpr struct Known {
 } kKnown;
 void init(Known*) {}
+void exchange(auto&, Known&) {}
 const GstMetaInfo* known_meta_info();
 using KnownMeta = cerberus::ValueMeta<Known, init, known_meta_info, true>;
 

@@ -18,6 +18,12 @@ CerberusStamp sane(CerberusStamp stamp) {
 
 }  // namespace
 
+template <typename Archive>
+static void exchange(Archive& archive, CerberusStamp& stamp) {
+  archive(cerberus::publish::Moment{stamp.running_time}, stamp.utc, stamp.utc_source, stamp.camera_name);
+  stamp = sane(stamp);
+}
+
 CERBERUS_DEFINE_BOXED(CerberusStamp, cerberus_stamp, unknown)
 CERBERUS_DEFINE_ENUM(CerberusUtcSource, cerberus_utc_source,
                      {CERBERUS_UTC_UNKNOWN, "CERBERUS_UTC_UNKNOWN", "unknown"},

@@ -8,7 +8,6 @@
 #include <optional>
 #include <string>
 
-#include "cerberus/private/video.hpp"
 #include "damage_mark.hpp"
 #include "shared/camera_mount.hpp"
 #include "shared/camera_path.hpp"
@@ -17,6 +16,7 @@
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
 #include "shared/single_fields.hpp"
+#include "shared/video.hpp"
 #include "vision/frame_history.h"
 #include "vision/scene_breaks.h"
 

@@ -7,9 +7,9 @@
 #include <iterator>
 
 #include "cerberus/private/messages.hpp"
-#include "cerberus/private/video.hpp"
 #include "region_conversion.hpp"
 #include "shared/clock_times.hpp"
+#include "shared/video.hpp"
 
 GST_DEBUG_CATEGORY_STATIC(detection_debug);
 #define GST_CAT_DEFAULT detection_debug

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The loadable module of detection.
+#include <cerberus/version.h>
 #include <gst/gst.h>
 
 GST_ELEMENT_REGISTER_DECLARE(cameramotion)
@@ -11,6 +12,7 @@ GST_ELEMENT_REGISTER_DECLARE(motiondetect)
 GST_ELEMENT_REGISTER_DECLARE(streamdamage)
 
 static gboolean plugin_init(GstPlugin* plugin) {
+  cerberus_init();
   return GST_ELEMENT_REGISTER(cameramotion, plugin) && GST_ELEMENT_REGISTER(threeframediff, plugin) &&
          GST_ELEMENT_REGISTER(fuzzythreshold, plugin) && GST_ELEMENT_REGISTER(motionregions, plugin) &&
          GST_ELEMENT_REGISTER(motiontrack, plugin) && GST_ELEMENT_REGISTER(motiondetect, plugin) &&

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "composition.hpp"
 
-#include "cerberus/private/video.hpp"
+#include "shared/video.hpp"
 
 namespace cerberus::plugin {
 

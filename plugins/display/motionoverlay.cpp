@@ -51,7 +51,6 @@
 
 #include "cerberus/private/element.hpp"
 #include "cerberus/private/text.hpp"
-#include "cerberus/private/video.hpp"
 #include "composition.hpp"
 #include "overlay/painter.h"
 #include "overlay/trails.h"
@@ -61,6 +60,7 @@
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
+#include "shared/video.hpp"
 
 namespace {
 

@@ -45,13 +45,13 @@
 #include <cstring>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/video.hpp"
 #include "overlay/plane_view.h"
 #include "overlay/threshold_figure.h"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
 #include "shared/single_fields.hpp"
+#include "shared/video.hpp"
 #include "vision/detector.h"
 
 namespace {

@@ -42,7 +42,6 @@
 #include <string>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/video.hpp"
 #include "composition.hpp"
 #include "overlay/privacy/privacy_zones.h"
 #include "shared/camera_mount.hpp"
@@ -50,6 +49,7 @@
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
 #include "shared/record.hpp"
+#include "shared/video.hpp"
 
 namespace {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The loadable module that publishes results in the formats of others.
+#include <cerberus/version.h>
 #include <gst/gst.h>
 
 #if HAVE_MQTT
@@ -9,6 +10,7 @@ GST_ELEMENT_REGISTER_DECLARE(onvifmeta)
 GST_ELEMENT_REGISTER_DECLARE(rtponvifmetapay)
 
 static gboolean plugin_init(GstPlugin* plugin) {
+  cerberus_init();
 #if HAVE_MQTT
   if (!GST_ELEMENT_REGISTER(mqttpublish, plugin)) return FALSE;
 #endif

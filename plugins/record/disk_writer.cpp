@@ -45,7 +45,28 @@ bool clock_is_synchronised() {
 
 void DiskWriter::open(const record::Archive::Settings& archive) {
   folder_ = archive.folder;
-  report_deleted(archive_.open(archive, surroundings()));
+  const int error = record::Folder(folder_).usable();
+  std::string fault;
+  if (error)
+    fault = "The folder " + record::in_quotes(folder_) + " takes no recordings: " + std::strerror(error) +
+            ". Make it, or set \"location\".";
+  const bool late = [&] {
+    const std::lock_guard guard(lock_);
+    if (!fault.empty()) folder_fault_ = fault;
+    return late_;
+  }();
+  if (late && !fault.empty()) warn(fault);
+  if ((fault.empty() || late) && !is_given_up()) report_deleted(archive_.open(archive, surroundings()));
+  const std::lock_guard guard(lock_);
+  if (!folder_fault_) folder_fault_ = "";
+  opened_.notify_all();
+}
+
+std::optional<std::string> DiskWriter::opened_within(std::chrono::nanoseconds longest) {
+  std::unique_lock guard(lock_);
+  opened_.wait_for(guard, longest, [this] { return folder_fault_.has_value(); });
+  late_ = !folder_fault_;
+  return folder_fault_;
 }
 
 void DiskWriter::enqueue(Command command, std::uint64_t bytes) {
@@ -117,7 +138,8 @@ void DiskWriter::wait_below(std::uint64_t bytes, const std::function<bool()>& go
   while (queued_ + level_ >= bytes && !stopping_ && go_on()) lower_.wait_for(guard, kLook);
 }
 
-void DiskWriter::run() {
+void DiskWriter::run(const record::Archive::Settings& archive) {
+  open(archive);
   bool finishing = false;
   auto next_retention = std::chrono::steady_clock::now() + kRetention;
   while (true) {

@@ -74,10 +74,12 @@ class DiskWriter {
 
   DiskWriter(Report report, Warn warn) : report_(std::move(report)), warn_(std::move(warn)) {}
 
-  // Opens the archive, which reconciles it.
-  void open(const record::Archive::Settings& archive);
-  // The thread: until every command is carried out and every file is complete after stop(), or until give_up().
-  void run();
+  // The thread: opens the archive, which reconciles it, and carries out commands until every one is done and every file
+  // complete after stop(), or until give_up().
+  void run(const record::Archive::Settings& archive);
+  // Waits so long until the archive is open. Returns what is wrong with its folder, empty: nothing; nullopt: the disk has
+  // not answered yet. What is wrong then is a warning, and every file is tried as while the recorder runs.
+  std::optional<std::string> opened_within(std::chrono::nanoseconds longest);
   void enqueue(Command command, std::uint64_t bytes = 0);
   void stop();
   // Returns whether run() has ended, for which it waits so long.
@@ -110,6 +112,7 @@ class DiskWriter {
     std::string path;  // empty: it was not made yet
   };
 
+  void open(const record::Archive::Settings& archive);
   void execute(Open& command);
   void execute(Write& command);
   void execute(Line& command);
@@ -134,10 +137,12 @@ class DiskWriter {
   Report report_;
   Warn warn_;
   mutable std::mutex lock_;
-  std::condition_variable changed_, lower_, over_;
+  std::condition_variable changed_, lower_, opened_, over_;
   std::deque<Command> commands_;
   std::uint64_t queued_ = 0, level_ = 0;  // bytes in commands_, and in the files' pipelines
   bool stopping_ = false, given_up_ = false, ended_ = false;
+  std::optional<std::string> folder_fault_;  // see opened_within()
+  bool late_ = false;                        // that returned nullopt
   std::map<std::uint32_t, Unfinished> unfinished_;
 
   // Of the writer's thread:

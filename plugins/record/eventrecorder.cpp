@@ -57,7 +57,8 @@
  * a warning names it, the stream goes on, and every 5 s another file is tried, from the frames that no file has yet. If
  * `location` is missing or not writable at the start, the element does not start. Faults of lines, picture and index
  * are warnings, and recording goes on. A disk that does not answer when the element is stopped is waited for as long as
- * `stop-timeout`; files that are not complete then are reported as failed.
+ * `stop-timeout`; files that are not complete then are reported as failed. A start goes on after `stop-timeout` (2 s at
+ * least) with a warning, and what is recorded waits until the disk answers.
  *
  * Posts element messages `cerberus-recording` with `state` (string: `started`, `ended`, `failed`; `deleted` by retention,
  * with `location` only), `event`, `part` (uint),
@@ -288,24 +289,26 @@ bool check_settings(CerberusEventRecorder* self) {
   if (!fault) return true;
   if (fault->kind == Kind::settings)
     CERBERUS_ELEMENT_ERROR(self, RESOURCE, SETTINGS, (fault->text), (nullptr));
-  else if (fault->kind == Kind::folder)
-    CERBERUS_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE, (fault->text), (nullptr));
   else
     CERBERUS_ELEMENT_ERROR(self, CORE, MISSING_PLUGIN, (fault->text), (nullptr));
   return false;
 }
 
-void begin(CerberusEventRecorder* self) {
+bool begin(CerberusEventRecorder* self) {
   // A thread that waits for a disk may outlast the element's stop, and the element's owner.
   const std::shared_ptr<CerberusEventRecorder> own(cerberus_event_recorder_self(gst_object_ref(self)),
                                                    gst_object_unref);
-  self->priv->session.begin(
+  const std::string fault = self->priv->session.begin(
       [own](const plugin::FileReport& report) {
         cerberus::guarded(own.get(), [&] { post_report(own.get(), report); });
       },
       [own](const std::string& text) {
         CERBERUS_ELEMENT_WARNING(own.get(), RESOURCE, WRITE, (text), (nullptr));
       });
+  if (fault.empty()) return true;
+  self->priv->session.end();
+  CERBERUS_ELEMENT_ERROR(self, RESOURCE, OPEN_WRITE, (fault), (nullptr));
+  return false;
 }
 
 GstStateChangeReturn cerberus_event_recorder_change_state(GstElement* element, GstStateChange transition) {
@@ -314,8 +317,7 @@ GstStateChangeReturn cerberus_event_recorder_change_state(GstElement* element, G
   return cerberus::guarded(self, GST_STATE_CHANGE_FAILURE, [&] {
     const bool up = transition == GST_STATE_CHANGE_READY_TO_PAUSED;
     if (up) {
-      if (!check_settings(self)) return GST_STATE_CHANGE_FAILURE;
-      begin(self);
+      if (!check_settings(self) || !begin(self)) return GST_STATE_CHANGE_FAILURE;
       priv.gate.await_data(element);
     }
     if (transition == GST_STATE_CHANGE_PAUSED_TO_PLAYING) priv.gate.begin_playing();

@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "recorder_settings.hpp"
 
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
-
 #include "record/file_names.h"
 #include "shared/camera_mount.hpp"
 
@@ -74,10 +68,10 @@ const Property<Settings> kProperties[] = {
              "MiB that all recordings of the index may take; the oldest are deleted; 0 = no limit"),
     property("retention-free", &Settings::retention_free, 0, kMostMebibytes,
              "MiB that are to be free on the disk; the oldest recordings are deleted; 0 = no limit"),
-    property("stop-timeout", &Settings::stop_timeout,
-             "Nanoseconds for which the element's stop waits for the disk at most; files that are not "
-             "complete then "
-             "are reported as failed, and stay as far as they are written"),
+    property(
+        "stop-timeout", &Settings::stop_timeout,
+        "Nanoseconds for which the element's start (2 s at least) and stop wait for the disk at most; at a "
+        "stop files that are not complete then are reported as failed, and stay as far as they are written"),
 };
 
 std::uint64_t mebibytes(int count) {
@@ -119,13 +113,6 @@ std::optional<SettingsFault> settings_fault(const RecorderSettings& settings) {
                                              " of \"file-name\" is refused: " + fault + "."};
   if (const std::string fault = record::TriggerZones().parse(settings.trigger_zones); !fault.empty())
     return SettingsFault{Kind::settings, "trigger-" + fault};
-  struct stat about{};
-  int error = stat(settings.location.c_str(), &about) != 0 ? errno : S_ISDIR(about.st_mode) ? 0 : ENOTDIR;
-  if (!error && access(settings.location.c_str(), W_OK | X_OK) != 0) error = errno;
-  if (error)
-    return SettingsFault{Kind::folder, "The folder " + record::in_quotes(settings.location) +
-                                           " takes no recordings: " + std::strerror(error) +
-                                           ". Make it, or set \"location\"."};
   for (const char* name : {"mp4mux", "matroskamux", "filesink", "appsrc"}) {
     g_autoptr(GstElementFactory) factory = gst_element_factory_find(name);
     if (!factory)

@@ -39,7 +39,7 @@ record::Archive::Settings archive_settings(const RecorderSettings& settings);
 
 // What is wrong with settings that are read at the start, in words for a user and as GStreamer's error domain and code.
 struct SettingsFault {
-  enum class Kind { settings, folder, missing_element } kind;
+  enum class Kind { settings, missing_element } kind;
   std::string text;
 };
 std::optional<SettingsFault> settings_fault(const RecorderSettings& settings);

@@ -9,7 +9,14 @@ namespace cerberus::plugin {
 
 namespace {
 
-constexpr guint64 kLongestStop = 24 * 3600 * GST_SECOND;  // what an unlimited `stop-timeout` means
+// How long a start waits for the disk at least. Chosen: several times what opening a large index takes, and no more than
+// a user waits for. Guarded by the test of a disk that does not answer at the start.
+constexpr std::chrono::nanoseconds kShortestStart = std::chrono::seconds(2);
+
+// How long a stop waits for the disk. An unlimited `stop-timeout` is a day.
+std::chrono::nanoseconds longest_wait(const RecorderSettings& settings) {
+  return time_of(std::min<guint64>(settings.stop_timeout, 24 * 3600 * GST_SECOND));
+}
 
 // A stream that is not live waits while more bytes than this wait for the disk.
 constexpr guint64 kPatience = 16 << 20;
@@ -109,11 +116,12 @@ void Session::apply(const Trigger& trigger, record::Time time) {
     recorder_.trigger(time, trigger.reason);
 }
 
-void Session::begin(Writer::Report report, Writer::Warn warn) {
+std::string Session::begin(Writer::Report report, Writer::Warn warn) {
   const RecorderSettings settings = settings_.snapshot();
   live_.reset();
   warn_ = warn;
-  writer_.start(archive_settings(settings), std::move(report), std::move(warn));
+  std::string fault = writer_.start(archive_settings(settings), report, warn,
+                                    std::max(longest_wait(settings), kShortestStart));
   const std::lock_guard guard(lock_);
   settings_.refresh();
   apply_settings();
@@ -124,6 +132,7 @@ void Session::begin(Writer::Report report, Writer::Warn warn) {
     input->stamps.reset();
   }
   if (has_analysis()) recorder_.expect_analysis();
+  return fault;
 }
 
 // Also without EOS the files are complete: Ctrl-C of gst-launch.
@@ -136,7 +145,7 @@ void Session::end() {
     files_.journal().reset();
     for (auto& input : inputs_) forget_stream(*input);
   }
-  writer_.stop(time_of(std::min(settings_.snapshot().stop_timeout, kLongestStop)));
+  writer_.stop(longest_wait(settings_.snapshot()));
   warn_ = nullptr;
   const std::lock_guard guard(lock_);
   files_.forget();

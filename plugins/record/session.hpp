@@ -37,8 +37,8 @@ class Session {
   // The number of the next audio track, from 1.
   int next_audio_track();
 
-  // Files can be written from begin() to end().
-  void begin(Writer::Report report, Writer::Warn warn);
+  // Files can be written from begin() to end(). begin() returns what is wrong with the folder; an empty string: nothing.
+  std::string begin(Writer::Report report, Writer::Warn warn);
   void end();
 
   // A pad's stream. False: the buffer has no time, or the caps lack the picture's size.

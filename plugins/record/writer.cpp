@@ -15,16 +15,23 @@ std::shared_ptr<DiskWriter> Writer::disk() const {
   return disk_;
 }
 
-void Writer::start(const record::Archive::Settings& archive, const Report& report, Warn warn) {
+std::string Writer::start(const record::Archive::Settings& archive, const Report& report, const Warn& warn,
+                          std::chrono::nanoseconds longest) {
   stop(std::chrono::nanoseconds::zero());
-  auto disk = std::make_shared<DiskWriter>(report, std::move(warn));
-  disk->open(archive);
+  auto disk = std::make_shared<DiskWriter>(report, warn);
   Report for_stop = report;
   // Before anything is kept: it may throw, and callbacks may own the element that owns this.
-  thread_ = std::thread([disk] { disk->run(); });
+  thread_ = std::thread([disk, archive] { disk->run(archive); });
   report_ = std::move(for_stop);
-  const std::lock_guard guard(lock_);
-  disk_ = std::move(disk);
+  {
+    const std::lock_guard guard(lock_);
+    disk_ = disk;
+  }
+  const std::optional<std::string> fault = disk->opened_within(longest);
+  if (!fault)
+    warn("The folder " + record::in_quotes(archive.folder) +
+         " does not answer. What is recorded until it does waits in memory, as far as that goes.");
+  return fault.value_or("");
 }
 
 void Writer::stop(std::chrono::nanoseconds longest) {

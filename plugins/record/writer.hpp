@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Writes files, what goes beside them and their index in a thread of its own, so that a slow disk stops no stream: files
-// are opened, filled and closed in the order of the calls. Every method may be called in any thread; none but stop() and
-// wait_below() blocks.
+// are opened, filled and closed in the order of the calls. Every method may be called in any thread; none but start(),
+// stop() and wait_below() blocks.
 #pragma once
 
 #include <thread>
@@ -19,8 +19,11 @@ class Writer {
 
   Writer();
   ~Writer() { stop(std::chrono::nanoseconds::zero()); }
-  // Opens the archive, which reconciles it, and begins the thread.
-  void start(const record::Archive::Settings& archive, const Report& report, Warn warn);
+  // Begins the thread, and waits until it has opened the archive, which reconciles it. Returns what is wrong with the
+  // folder; an empty string: nothing. Where the disk does not answer within `longest`, a warning says so, and what comes
+  // waits for the disk as ever.
+  std::string start(const record::Archive::Settings& archive, const Report& report, const Warn& warn,
+                    std::chrono::nanoseconds longest);
   // Carries out every call of before, completes the files that are still open, waits for them, and ends the thread. What
   // the disk has not taken after `longest` is reported as failed, and the thread is left alone with it.
   void stop(std::chrono::nanoseconds longest);

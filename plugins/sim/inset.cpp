@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cerberus/private/video.hpp"
+#include "shared/video.hpp"
 
 namespace cerberus::plugin {
 

@@ -57,13 +57,13 @@
 #include <optional>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/video.hpp"
 #include "motion/frame_times.h"
 #include "motion/pose_feed.h"
 #include "shared/complaint.hpp"
 #include "shared/poses.hpp"
 #include "shared/single_fields.hpp"
 #include "shared/times.hpp"
+#include "shared/video.hpp"
 #include "text/numbers.h"
 #include "window_caps.hpp"
 #include "window_settings.hpp"

@@ -3,8 +3,8 @@
 
 #include <cerberus/cerberus.h>
 
-#include "cerberus/private/video.hpp"
 #include "sensing/angles.h"
+#include "shared/video.hpp"
 #include "vision/geometry/window_misfit.h"
 
 namespace cerberus::plugin {

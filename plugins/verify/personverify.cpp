@@ -57,12 +57,12 @@
 #include <vector>
 
 #include "cerberus/private/element.hpp"
-#include "cerberus/private/video.hpp"
 #include "daimler_detector.hpp"
 #include "model_detector.hpp"
 #include "shared/clock_times.hpp"
 #include "shared/complaint.hpp"
 #include "shared/properties.hpp"
+#include "shared/video.hpp"
 #include "vision/verification/look_worker.h"
 #include "vision/verification/person_verifier.h"
 

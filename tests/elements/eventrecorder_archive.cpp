@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // What the recorder puts beside a file, its index and retention, and a disk that is slow or takes nothing.
+#include <fcntl.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -12,6 +14,38 @@
 #include "recorder_rig.h"
 
 using namespace recorder_rig;
+
+namespace {
+
+// A folder whose disk does not answer. Before main() it is all zero, which is valid.
+struct BlockedFolder {
+  GMutex lock;
+  GCond changed;
+  char path[64];
+
+  void block(const std::string& folder) {
+    g_mutex_lock(&lock);
+    g_strlcpy(path, folder.c_str(), sizeof path);
+    g_mutex_unlock(&lock);
+  }
+  void release() {
+    block("");
+    g_cond_broadcast(&changed);
+  }
+  void await(const char* folder) {
+    g_mutex_lock(&lock);
+    while (*path && strcmp(folder, path) == 0) g_cond_wait(&changed, &lock);
+    g_mutex_unlock(&lock);
+  }
+} blocked_folder;
+
+}  // namespace
+
+// In place of the C library's, for every module of this process.
+extern "C" int access(const char* path, int mode) noexcept {
+  blocked_folder.await(path);
+  return faccessat(AT_FDCWD, path, mode, 0);
+}
 
 namespace {
 
@@ -304,6 +338,13 @@ struct StuckDisk {
     disk.changed.notify_all();
     return GST_BUS_PASS;
   }
+  // As a weak reference to the recorder.
+  static void note_gone(gpointer self, GObject*) {
+    auto& disk = *static_cast<StuckDisk*>(self);
+    const std::lock_guard guard(disk.lock);
+    disk.gone = true;
+    disk.changed.notify_all();
+  }
   void wait() {
     std::unique_lock guard(lock);
     changed.wait(guard, [&] { return reached; });
@@ -348,15 +389,9 @@ GST_START_TEST(a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_
   {
     Rig rig;
     gst_bus_set_sync_handler(rig.bus, StuckDisk::handle, &disk, nullptr);
-    g_object_set(rig.element, "stop-timeout", 50 * GST_MSECOND, nullptr);
-    const auto note = [](gpointer self, GObject*) {
-      auto& stuck = *static_cast<StuckDisk*>(self);
-      const std::lock_guard guard(stuck.lock);
-      stuck.gone = true;
-      stuck.changed.notify_all();
-    };
-    g_object_weak_ref(G_OBJECT(rig.element), note, &disk);
+    g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
     rig.start();
+    g_object_set(rig.element, "stop-timeout", 50 * GST_MSECOND, nullptr);
     rig.play_to(20);
     rig.start_event();
     disk.wait();
@@ -368,6 +403,7 @@ GST_START_TEST(a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_
     fail_unless(strstr(error->message, (rig.folder.path() + "/1.mp4").c_str()), "%s", error->message);
     g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
     fail_unless(gst_structure_get_string(failed, "location") == rig.folder.path() + "/1.mp4");
+    g_object_set(rig.element, "stop-timeout", 20 * GST_SECOND, nullptr);
     rig.start();  // the folder is on another disk now
     rig.next = 0;
     rig.play_to(20);
@@ -380,6 +416,48 @@ GST_START_TEST(a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_
   disk.release();
   std::unique_lock guard(disk.lock);
   disk.changed.wait(guard, [&] { return disk.left && disk.gone; });
+}
+GST_END_TEST
+
+GST_START_TEST(a_disk_that_does_not_answer_at_the_start_holds_nothing_up_and_costs_no_frame) {
+  Rig rig;
+  g_object_set(rig.element, "stop-timeout", guint64{0}, nullptr);
+  blocked_folder.block(rig.folder.path());
+  rig.start();
+  g_autoptr(GstMessage) warning = rig.take(GST_MESSAGE_WARNING);
+  g_autoptr(GError) error = nullptr;
+  gst_message_parse_warning(warning, &error, nullptr);
+  fail_unless(strstr(error->message, (rig.folder.path() + "\" does not answer").c_str()), "%s",
+              error->message);
+  rig.play_to(20);
+  rig.start_event();
+  rig.play_to(40);
+  fail_unless(rig.folder.files().empty());
+  blocked_folder.release();
+  g_object_set(rig.element, "stop-timeout", 60 * GST_SECOND, nullptr);
+  rig.finish();
+  fail_unless(numbers_of(read_back(rig.folder.path() + "/1.mp4")) == range(0, 40));
+}
+GST_END_TEST
+
+GST_START_TEST(a_start_and_a_stop_return_though_the_disk_never_answers) {
+  StuckDisk disk;
+  {
+    Rig rig;
+    g_object_set(rig.element, "stop-timeout", guint64{0}, nullptr);
+    g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
+    blocked_folder.block(rig.folder.path());
+    rig.start();
+    rig.play_to(20);
+    rig.start_event();
+    rig.play_to(40);
+    rig.stop();
+    g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
+  }
+  fail_unless(!disk.gone);  // the thread holds the recorder
+  blocked_folder.release();
+  std::unique_lock guard(disk.lock);
+  disk.changed.wait(guard, [&] { return disk.gone; });
 }
 GST_END_TEST
 
@@ -441,6 +519,8 @@ static Suite* eventrecorder_archive_suite() {
   tcase_add_test(tests, retention_deletes_the_oldest_recordings_but_those_that_are_kept);
   tcase_add_test(tests, a_disk_that_does_not_answer_costs_the_event_and_never_stops_the_stream);
   tcase_add_test(tests, a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_what_is_lost);
+  tcase_add_test(tests, a_disk_that_does_not_answer_at_the_start_holds_nothing_up_and_costs_no_frame);
+  tcase_add_test(tests, a_start_and_a_stop_return_though_the_disk_never_answers);
   tcase_add_test(tests, a_pre_roll_larger_than_what_may_wait_for_the_disk_is_recorded);
   tcase_add_test(tests, a_folder_that_takes_no_files_is_named_and_stops_no_stream);
   suite_add_tcase(suite, tests);

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cerberus/private/video.hpp"
+#include "../../plugins/shared/video.hpp"
 
 #include <cerberus/cerberus.h>
 #include <gst/check/gstcheck.h>

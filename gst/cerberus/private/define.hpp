@@ -74,7 +74,7 @@ inline bool has_running_time(const GstStructure* structure) {
   CERBERUS_DEFINE_OWNING_BOXED(Type, prefix, defaults, cerberus::zero, cerberus::zero)
 
 // A fact on a buffer. `sane`: Type(Type), makes what an application attaches safe to read. `transform`: nullptr for a
-// fact about the moment. Then the tags.
+// fact about the moment. Then the tags. Its fields: see ValueMeta.
 #define CERBERUS_DEFINE_META(Type, name, sane, transform, ...)                                         \
   namespace {                                                                                          \
   const GstMetaInfo* name##_meta_info();                                                               \

@@ -8,16 +8,18 @@
 #include <array>
 #include <optional>
 
+#include "cerberus/private/compat.hpp"
 #include "vision/image/image.h"
 
 namespace cerberus {
 
 using MetaTransform = gboolean (*)(GstBuffer* to, GstMeta* meta, GstBuffer* from, GQuark type, gpointer data);
 
-template <typename Meta>
+// `Packing`: see register_meta_info(); void: the meta stays in this process.
+template <typename Meta, typename Packing = void>
 const GstMetaInfo* register_meta(GType api, const char* name, GstMetaInitFunction init,
                                  GstMetaFreeFunction free, MetaTransform transform) {
-  return gst_meta_register(api, name, sizeof(Meta), init, free, transform);
+  return register_meta_info<Packing>(api, name, sizeof(Meta), init, free, transform);
 }
 
 template <typename... Tags>
@@ -52,18 +54,21 @@ inline Crop crop_of(GstBuffer* buffer) {
 
 // A meta that carries one plain C structure, at most one a buffer. kInit sets its empty value; kInfo: the meta's
 // info, which comes from register_as(). kInPixels: true of one picture only, so that a later crop in place removes it.
+// Its fields are named by `template <typename Archive> void exchange(Archive&, Value&)` beside the structure.
 template <typename Value, void (*kInit)(Value*), const GstMetaInfo* (*kInfo)(), bool kInPixels>
 class ValueMeta {
   struct Meta {
     GstMeta meta;
     Value value;
     Crop crop;  // of the buffer when it was attached
+    GstClockTime
+        frame_time;  // of the buffer then: its timestamp, the running time of a segment that begins at 0
   };
 
  public:
   // Without a transform function: true of the moment, whatever is done to the picture.
   static const GstMetaInfo* register_as(GType api, const char* name, MetaTransform transform) {
-    return register_meta<Meta>(api, name, init, nullptr, transform ? transform : carry_over);
+    return register_meta<Meta, ValueMeta>(api, name, init, nullptr, transform ? transform : carry_over);
   }
   static Value& value_of(GstMeta* meta) { return reinterpret_cast<Meta*>(meta)->value; }
 
@@ -85,7 +90,23 @@ class ValueMeta {
     if (!meta && !(meta = gst_buffer_add_meta(buffer, kInfo(), nullptr))) return FALSE;
     value_of(meta) = *value;
     reinterpret_cast<Meta*>(meta)->crop = crop_of(buffer);
+    reinterpret_cast<Meta*>(meta)->frame_time = GST_BUFFER_PTS(buffer);
     return TRUE;
+  }
+
+  // Across processes.
+  static GstClockTime frame_time(const GstMeta* meta) {
+    return reinterpret_cast<const Meta*>(meta)->frame_time;
+  }
+  static void pack(const GstMeta* meta, publish::Packer& to) {
+    Value value = reinterpret_cast<const Meta*>(meta)->value;
+    exchange(to, value);
+  }
+  static GstMeta* unpack(GstBuffer* buffer, publish::Unpacker& from) {
+    Value value;
+    kInit(&value);
+    exchange(from, value);
+    return from.complete() && set(buffer, &value) ? gst_buffer_get_meta(buffer, kInfo()->api) : nullptr;
   }
 
  private:

@@ -98,6 +98,13 @@ bool Folder::is_name(const std::string& name) {
   }
 }
 
+int Folder::usable() const {
+  struct stat about{};
+  if (stat(path_.c_str(), &about) != 0) return errno;
+  if (!S_ISDIR(about.st_mode)) return ENOTDIR;
+  return access(path_.c_str(), W_OK | X_OK) != 0 ? errno : 0;
+}
+
 int Folder::create(const std::string& name, OpenFile& file) const {
   // Another recorder may remove a folder between its making and its use, and take a file that is not locked yet for what
   // a killed process left.

@@ -48,6 +48,8 @@ class Folder {
   const std::string& path() const { return path_; }
   std::string path_of(const std::string& name) const { return path_ + '/' + name; }
 
+  // 0: it is there, and this process may make files in it.
+  int usable() const;
   // Whether `name` can be a file's name below the folder.
   static bool is_name(const std::string& name);
 
