@@ -10,6 +10,7 @@ void cerberus_version(guint* major, guint* minor, guint* micro) {
 void cerberus_init(void) {
   g_autoptr(GstBuffer) buffer = gst_buffer_new();  // every meta is registered by its first use
   cerberus_buffer_set_regions(buffer, nullptr);
+  cerberus_buffer_regions_known(buffer);
   cerberus_buffer_peek_camera_motion(buffer);
   cerberus_buffer_peek_pose(buffer);
   cerberus_buffer_peek_base(buffer);

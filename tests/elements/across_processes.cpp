@@ -149,10 +149,10 @@ GstPadProbeReturn receive(GstPad*, GstPadProbeInfo* info, gpointer data) {
 
 // The receiving process. Nothing of the library is used before the data comes, but `registering`.
 int run_receiver(const std::string& socket, const char* registering) {
-  if (registering)
-    gst_object_unref(gst_element_factory_make(registering, nullptr));
-  else
-    cerberus_init();
+  if (!registering) cerberus_init();
+  GstElement* element = registering ? gst_element_factory_make(registering, nullptr) : nullptr;
+  if (registering && !element) return 3;
+  gst_clear_object(&element);
   Received received;
   GstElement* pipeline = gst_parse_launch(
       ("unixfdsrc socket-path=" + socket + " ! fakesink name=sink sync=false").c_str(), nullptr);
@@ -166,7 +166,7 @@ int run_receiver(const std::string& socket, const char* registering) {
   return received.fault ? 1 : 0;
 }
 
-const char* const kRegistering[] = {nullptr, "motiondetect"};  // cerberus_init(), or any element
+const char* const kRegistering[] = {nullptr, "onvifmeta"};  // cerberus_init(), or any element
 
 GST_START_TEST(another_process_reads_what_was_found) {
   g_autoptr(GstElementFactory) factory = gst_element_factory_find("unixfdsink");
