@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "vision/parameters.h"
+
 namespace cerberus::vision {
 
 void Detector::set_options(const DetectorOptions& options) {
@@ -16,6 +18,11 @@ void Detector::set_options(const DetectorOptions& options) {
   if (foreground_) foreground_->set_options(options.foreground);
   regions_.set_options(options.regions);
   tracker_.set_options(options.tracks);
+}
+
+void Detector::set_parameters(const DetectorParameters& parameters) {
+  regions_.set_parameters(parameters.detection);
+  tracker_.set_parameters(parameters.tracking);
 }
 
 void Detector::reset() {

@@ -17,6 +17,8 @@
 
 namespace cerberus::vision {
 
+struct DetectorParameters;  // parameters.h
+
 struct DetectorOptions {
   int analysis_width = 320;  // pixels; 0: the frame's own width
   CameraMotionOptions camera;
@@ -69,6 +71,8 @@ struct DetectorFrame {
 class Detector {
  public:
   void set_options(const DetectorOptions& options);
+  // For sweeps; before the first frame. The options stay.
+  void set_parameters(const DetectorParameters& parameters);
   Zones& zones() { return zones_; }
   // What the camera writes into its pictures, as far as it is learnt, analysis pixels.
   std::span<const Box> burnt_in() const { return burnt_in_.boxes(); }

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // How right the results are: pixel F on masked sequences, box precision / recall on vtest.avi and tracks of people on four
 // sequences, through GStreamer and with no property set, under the scoring of the data folder's README.
+//
+// With arguments: `bench-quality "motiondetect closing=5" ...` measures these launch lines; `bench-quality --set
+// track.gate=3 --set people.price=0.5` the boxes and tracks of the library's detector with these tuned numbers
+// (vision/parameters.h). Masks depend on none of them.
 #include <cerberus/cerberus.h>
 #include <gst/video/video.h>
 
 #include <cstdio>
+#include <cstring>
 
 #include "asked.h"
 #include "boxes.h"
 #include "sequences.h"
 #include "support/data.h"
 #include "tracks.h"
+#include "vision/detector.h"
+#include "vision/parameters.h"
 
 using namespace cerberus;
 using namespace cerberus::bench;
@@ -46,9 +53,87 @@ Counts mask_quality(const Sequence& s, const fs::path& data, const std::string& 
   return counts;
 }
 
+// What finds people: elements of a launch line, or the library's detector with these numbers.
+struct Finder {
+  std::string name;
+  const vision::DetectorParameters* numbers = nullptr;
+  bool judged() const { return name == kJudged; }
+};
+
+struct Found {
+  Person person;
+  bool group = false;
+};
+using OnFrame = std::function<void(const std::vector<Found>&, int)>;
+
+std::vector<Found> found_on(GstBuffer* frame) {
+  std::vector<Found> found;
+  GPtrArray* regions = cerberus_buffer_get_regions(frame);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto* r = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    found.push_back({{static_cast<int>(r->id), {r->x, r->y, r->width, r->height}},
+                     r->kind == CERBERUS_REGION_KIND_GROUP});
+  }
+  g_ptr_array_unref(regions);
+  return found;
+}
+
+// vision::Detector as motiondetect uses it with no property set.
+class SetDetector {
+ public:
+  explicit SetDetector(const vision::DetectorParameters& numbers) {
+    vision::DetectorOptions options;
+    options.burnt_in = true;
+    detector_.set_options(options);
+    detector_.set_parameters(numbers);
+  }
+
+  // An I420 frame.
+  std::vector<Found> find(GstSample* sample) {
+    GstVideoInfo info;
+    GstVideoFrame mapped;
+    GstBuffer* buffer = gst_sample_get_buffer(sample);
+    if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample)) ||
+        !gst_video_frame_map(&mapped, &info, buffer, GST_MAP_READ))
+      return {};
+    const vision::Record record =
+        detector_.begin({static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)), info.width,
+                         info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0), 1, false, 0, 0, 0});
+    gst_video_frame_unmap(&mapped);
+    vision::DetectorFrame frame;
+    frame.size = {info.width, info.height};
+    frame.fresh = number_ == 0;
+    frame.number = ++number_;
+    if (!frame.fresh) frame.seconds = 1e-9 * static_cast<double>(GST_BUFFER_PTS(buffer) - last_);
+    last_ = GST_BUFFER_PTS(buffer);
+    detector_.run(*record, frame);
+    std::vector<Found> found;
+    for (const vision::Track& t : *record->tracks)
+      found.push_back({{static_cast<int>(t.id), t.box}, t.kind == vision::RegionKind::group});
+    return found;
+  }
+
+ private:
+  vision::Detector detector_;
+  std::uint64_t number_ = 0;
+  GstClockTime last_ = 0;
+};
+
+bool for_each_frame(const std::string& source, const Finder& finder, const OnFrame& each) {
+  if (!finder.numbers)
+    return for_each_sample(source + " ! " + finder.name + " ! appsink name=out sync=false",
+                           [&](GstSample* s, int n) { each(found_on(gst_sample_get_buffer(s)), n); });
+  SetDetector detector(*finder.numbers);
+  return for_each_sample(
+      source + " ! videoconvert ! video/x-raw,format=I420 ! appsink name=out sync=false max-buffers=4",
+      [&](GstSample* s, int n) { each(detector.find(s), n); });
+}
+
 // The boxes that end before the truth does.
-std::vector<vision::Box> scored(std::vector<vision::Box> boxes) {
-  std::erase_if(boxes, [](const vision::Box& b) { return b.right() > kTruthEnds; });
+std::vector<vision::Box> scored(const std::vector<Found>& found) {
+  std::vector<vision::Box> boxes;
+  for (const Found& f : found)
+    if (f.person.box.right() <= kTruthEnds) boxes.push_back(f.person.box);
   return boxes;
 }
 
@@ -75,41 +160,33 @@ void masks(const fs::path& data, const std::string& detector, Asked& asked) {
       "  (two, AND: differences of two and three frames; tolerant: compensated, with a tolerance of 3 x 3)");
 }
 
-void boxes(const fs::path& data, const std::string& video, const std::string& detector, Asked& asked) {
+void boxes(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
   const fs::path folder = data / "pets09_s2l1_view1";
   const auto keys = read_people(folder / "gt_keyframes.txt"),
              between = read_people(folder / "gt_interpolated.txt");
   Counts on_keys, on_all;
-  if (!for_each_sample(video + " ! " + detector + " ! appsink name=out sync=false",
-                       [&](GstSample* sample, int n) {
-                         const auto found = scored(found_boxes(gst_sample_get_buffer(sample)));
-                         if (const auto t = keys.find(n); t != keys.end())
-                           match(on_keys, found, boxes_of(t->second));
-                         if (const auto t = between.find(n); t != between.end())
-                           match(on_all, found, boxes_of(t->second));
-                       }))
+  if (!for_each_frame(video, finder, [&](const std::vector<Found>& all, int n) {
+        const auto found = scored(all);
+        if (const auto t = keys.find(n); t != keys.end()) match(on_keys, found, boxes_of(t->second));
+        if (const auto t = between.find(n); t != between.end()) match(on_all, found, boxes_of(t->second));
+      }))
     on_keys = on_all = {};
-  const bool judged = detector == kJudged;
   const auto line = [&](const char* name, double on_key, double all) {
     std::printf("  %-16s %20.3f %10.3f%s\n", name, on_key, all,
-                judged ? asked.at_least(name, on_key, 0.7).c_str() : "");
+                finder.judged() ? asked.at_least(name, on_key, 0.7).c_str() : "");
   };
-  std::printf("\nBoxes on vtest.avi, %s, IoU >= 0.5     annotated frames  interpolated\n", detector.c_str());
+  std::printf("\nBoxes on vtest.avi, %s, IoU >= 0.5     annotated frames  interpolated\n",
+              finder.name.c_str());
   line("precision", on_keys.precision(), on_all.precision());
   line("recall", on_keys.recall(), on_all.recall());
 }
 
 // Tracks, all frames and all of the picture. Groups count on neither side: they claim no person.
-std::vector<Person> found_people(GstBuffer* frame) {
-  std::vector<Person> found;
-  GPtrArray* regions = cerberus_buffer_get_regions(frame);
-  for (guint i = 0; i < regions->len; ++i) {
-    const auto* r = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
-    if (r->kind != CERBERUS_REGION_KIND_GROUP)
-      found.push_back({static_cast<int>(r->id), {r->x, r->y, r->width, r->height}});
-  }
-  g_ptr_array_unref(regions);
-  return found;
+std::vector<Person> people_of(const std::vector<Found>& found) {
+  std::vector<Person> people;
+  for (const Found& f : found)
+    if (!f.group) people.push_back(f.person);
+  return people;
 }
 
 // What a sequence's tracks must reach; `promised` as Asked has it.
@@ -122,7 +199,7 @@ struct Tracks {
   bool promised;
 };
 
-void tracks(const fs::path& data, const std::string& video, const std::string& detector, Asked& asked) {
+void tracks(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
   const auto file = [&](const char* path) {
     return "filesrc location=" + (data / path).string() + " ! decodebin";
   };
@@ -134,7 +211,7 @@ void tracks(const fs::path& data, const std::string& video, const std::string& d
                         {"davis_tennis", source_of(sequence("tennis"), data),
                          data / "davis_tennis" / "boxes.txt", 0, 0, 1000, false}};
   std::printf("\nTracks of people, %s, IoU >= 0.5     MOTA   IDF1  precision  recall  switches\n",
-              detector.c_str());
+              finder.name.c_str());
   for (const Tracks& t : all) {
     if (!fs::exists(t.truth)) {
       std::printf("  %-16s %s\n", t.name, tests::kNoData);
@@ -142,13 +219,12 @@ void tracks(const fs::path& data, const std::string& video, const std::string& d
     }
     const People truth = read_people(t.truth, 1e9);
     TrackScore score;
-    if (!for_each_sample(t.source + " ! " + detector + " ! appsink name=out sync=false",
-                         [&](GstSample* sample, int n) {
-                           if (const auto people = truth.find(n); people != truth.end())
-                             score.add(people->second, found_people(gst_sample_get_buffer(sample)));
-                         }))
+    if (!for_each_frame(t.source, finder, [&](const std::vector<Found>& found, int n) {
+          if (const auto people = truth.find(n); people != truth.end())
+            score.add(people->second, people_of(found));
+        }))
       score = {};
-    const bool judged = detector == kJudged;
+    const bool judged = finder.judged();
     const std::string name = t.name;
     std::printf("  %-16s %20.3f %6.3f %10.3f %7.3f %9d%s%s%s\n", t.name, score.mota(), score.idf1(),
                 score.precision(), score.recall(), score.switches(),
@@ -160,23 +236,53 @@ void tracks(const fs::path& data, const std::string& video, const std::string& d
   }
 }
 
+// Reads the arguments --set NAME=VALUE into `numbers`, the others are launch lines. False: prints what is wrong.
+bool read_arguments(std::span<char*> arguments, vision::DetectorParameters& numbers, std::string& set,
+                    std::vector<std::string>& detectors) {
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    const bool is_set = std::strcmp(arguments[i], "--set") == 0;
+    if (!is_set && *arguments[i] != '-') {
+      detectors.emplace_back(arguments[i]);
+      continue;
+    }
+    const char* value = is_set && i + 1 < arguments.size() ? arguments[++i] : "";
+    const std::string wrong =
+        is_set ? vision::set_number(numbers, value) : std::string(arguments[i]) + " is no option";
+    if (!wrong.empty()) {
+      std::fprintf(stderr, "%s\nbench-quality [--set STAGE.NAME=VALUE]... [LAUNCH LINE]...\n", wrong.c_str());
+      return false;
+    }
+    set += std::string(set.empty() ? "" : " ") + value;
+  }
+  return true;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   gst_init(&argc, &argv);
+  vision::DetectorParameters numbers;
+  std::string set;
+  std::vector<std::string> detectors;
+  if (!read_arguments({argv + 1, argv + argc}, numbers, set, detectors)) return 2;
   const auto data = tests::data_folder();
   const auto video = tests::vtest_source();
   if (!data || !video) {
     std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
     return 77;
   }
-  std::vector<std::string> detectors{kJudged, "motiondetect preset=paper"};
-  if (argc > 1) detectors.assign(argv + 1, argv + argc);
   Asked asked;
+  if (!set.empty()) {  // judged by the one who sweeps
+    boxes(*data, *video, {set, &numbers}, asked);
+    tracks(*data, *video, {set, &numbers}, asked);
+    if (detectors.empty()) return 0;
+  } else if (detectors.empty()) {
+    detectors = {kJudged, "motiondetect preset=paper"};
+  }
   for (const std::string& detector : detectors) {
     masks(*data, detector, asked);
-    boxes(*data, *video, detector, asked);
-    if (detector == kJudged) tracks(*data, *video, detector, asked);
+    boxes(*data, *video, {detector}, asked);
+    if (detector == kJudged) tracks(*data, *video, {detector}, asked);
   }
   return asked.verdict();
 }

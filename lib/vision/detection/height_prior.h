@@ -36,12 +36,11 @@ class HeightPrior {
     double zoom = 2;          // times within two frames; beyond it the scene is another one
   };
 
+  HeightPrior() = default;
+  explicit HeightPrior(const Parameters& parameters) : parameters_(parameters) {}
+
   // Forgets the samples.
-  void reset() {
-    const Parameters kept = parameters_;
-    *this = HeightPrior();
-    parameters_ = kept;
-  }
+  void reset() { *this = HeightPrior(parameters_); }
 
   // Moves the prior with the camera (frame k-1 to k, pixels): a pan or tilt shifts the rows, a zoom scales them.
   void advance(const Transform& motion, Size picture);

@@ -32,6 +32,9 @@ class OutlineFinder {
     double shadow_zone = 0.4;  // from the ground upwards
   };
 
+  OutlineFinder() = default;
+  explicit OutlineFinder(const Parameters& parameters) : parameters_(parameters) {}
+
   // Takes the memory for pictures of this width; outline() takes none.
   void preallocate(int width);
   // closed: the component `self` and the runs of all of them, by row. moving: the foreground before closing, of the same

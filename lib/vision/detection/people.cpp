@@ -25,7 +25,7 @@ int whole(double value) {
 
 }  // namespace
 
-PeopleFinder::PeopleFinder() {
+PeopleFinder::PeopleFinder(const Parameters& parameters) : parameters_(parameters) {
   const Parameters& q = parameters_;
   const Part parts[] = {q.free_space, q.body[0], q.body[1], q.body[2]};
   static_assert(std::size(parts) == kParts);

@@ -75,7 +75,8 @@ class PeopleFinder {
   };
   static constexpr std::size_t kMostPeople = 12;  // in one group
 
-  PeopleFinder();
+  PeopleFinder() : PeopleFinder(Parameters()) {}
+  explicit PeopleFinder(const Parameters& parameters);
 
   // Takes the memory for pictures of this size; find() takes none.
   void preallocate(Size picture);

@@ -5,6 +5,12 @@
 // vtest.avi (precision .84, recall .83).
 #pragma once
 
+#include "vision/detection/height_prior.h"
+#include "vision/detection/outline.h"
+#include "vision/detection/people.h"
+#include "vision/detection/person_box.h"
+#include "vision/detection/two_frame_confirmation.h"
+
 namespace cerberus::vision {
 
 struct RegionParameters {
@@ -48,6 +54,16 @@ struct RegionParameters {
   // Confidence of a box: that of a component rises with its filled share.
   double person_confidence = 0.5;  // of one whole person with an empty box, 1 with a full one
   double other_confidence = 0.45;  // of any other component with a full box
+};
+
+// All tuned numbers from the mask to regions.
+struct DetectionParameters {
+  RegionParameters regions;
+  PeopleFinder::Parameters people;
+  HeightPrior::Parameters height;
+  OutlineFinder::Parameters outline;
+  PersonBoxParameters box;
+  TwoFrameConfirmation::Parameters confirmation;
 };
 
 }  // namespace cerberus::vision

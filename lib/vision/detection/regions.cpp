@@ -8,12 +8,7 @@
 #include <cstring>
 #include <vector>
 
-#include "vision/detection/height_prior.h"
-#include "vision/detection/outline.h"
-#include "vision/detection/people.h"
-#include "vision/detection/person_box.h"
 #include "vision/detection/region_parameters.h"
-#include "vision/detection/two_frame_confirmation.h"
 #include "vision/image/labelling.h"
 #include "vision/image/mask.h"
 #include "vision/image/morphology.h"
@@ -22,17 +17,14 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr RegionParameters kParameters;
-
 constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
 constexpr std::size_t kMostWalkers = 32;  // isolated walking persons, at a time
 constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // persons and the components that they do not explain
 
 // Returns whether a component may be one person: upright, reasonably filled, and not cut by the picture's edge.
-bool looks_like_one_person(const Component& c, const Bounds& body, Size picture) {
+bool looks_like_one_person(const Component& c, const Bounds& body, Size picture, const RegionParameters& p) {
   const double aspect = static_cast<double>(body.height()) / body.width();
-  const RegionParameters& p = kParameters;
   return c.height() >= p.least_height && aspect > p.widest && aspect < p.narrowest &&
          c.area > p.least_filled * body.width() * body.height() && c.left > 0 && c.top > 0 &&
          c.right < picture.width && c.bottom < picture.height;
@@ -46,14 +38,17 @@ Box box_of(const Bounds& w) {
 }  // namespace
 
 struct RegionFinder::State {
+  explicit State(const DetectionParameters& numbers = {}) : parameters(numbers) {}
+
+  const DetectionParameters parameters;
   RegionOptions options;
   Size size;
   BitMask moving, closed;
   Morphology morphology;
   Labeller labeller;
-  HeightPrior prior;
-  PeopleFinder people;
-  TwoFrameConfirmation newcomers;
+  HeightPrior prior{parameters.height};
+  PeopleFinder people{parameters.people};
+  TwoFrameConfirmation newcomers{parameters.confirmation};
   struct Walker {      // a blob that looks like one person
     Point foot, from;  // its present place and the first one, both in pixels of the present frame
     double height;
@@ -62,14 +57,14 @@ struct RegionFinder::State {
   std::vector<Walker> walkers, walkers_before;
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
-  OutlineFinder outline_finder;
+  OutlineFinder outline_finder{parameters.outline};
   std::vector<Outline> outlines;  // of each component
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
   std::uint32_t least() const {
-    return static_cast<std::uint32_t>(options.minimum_area > 0 ? options.minimum_area
-                                                               : kParameters.least_share * size.area());
+    return static_cast<std::uint32_t>(
+        options.minimum_area > 0 ? options.minimum_area : parameters.regions.least_share * size.area());
   }
   void preallocate(Size picture);
   void learn(const Transform& motion);
@@ -102,14 +97,14 @@ void RegionFinder::State::preallocate(Size picture) {
 // Only walkers are samples of the height prior: blobs that look like one person, isolated, of the same height for three
 // frames, and moving. Fragments of a person close by come in crowds, flicker and stay in place.
 void RegionFinder::State::learn(const Transform& motion) {
-  const RegionParameters& p = kParameters;
+  const RegionParameters& p = parameters.regions;
   const auto parts = labeller.components();
   std::swap(walkers, walkers_before);
   walkers.clear();
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const Component& c = parts[i];
     const Bounds& body = outlines[i].body;
-    if (!looks_like_one_person(c, body, size)) continue;
+    if (!looks_like_one_person(c, body, size, p)) continue;
     const double reach = p.alone * c.height();
     const bool alone = std::none_of(parts.begin(), parts.end(),
                                     [&](const Component& o) { return &o != &c && are_within(reach, c, o); });
@@ -135,7 +130,7 @@ void RegionFinder::State::learn(const Transform& motion) {
 
 // Components that may be pieces of one person: one above the other within half a body height, or almost touching.
 void RegionFinder::State::group_components() {
-  const RegionParameters& p = kParameters;
+  const RegionParameters& p = parameters.regions;
   const auto parts = labeller.components();
   group.resize(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -158,12 +153,12 @@ void RegionFinder::State::group_components() {
 // What no person explains, where no block was found.
 RegionKind RegionFinder::State::kind_of(const Component& c) const {
   const double expected = prior.height(c.bottom);
-  if (expected <= 0 || c.height() > kParameters.tallest * expected) return RegionKind::thing;
-  return c.height() < kParameters.usual_least * expected ? RegionKind::part : RegionKind::group;
+  if (expected <= 0 || c.height() > parameters.regions.tallest * expected) return RegionKind::thing;
+  return c.height() < parameters.regions.usual_least * expected ? RegionKind::part : RegionKind::group;
 }
 
 void RegionFinder::State::add_plain(std::size_t i, RegionKind kind) {
-  const RegionParameters& p = kParameters;
+  const RegionParameters& p = parameters.regions;
   const bool person = kind == RegionKind::person_like;
   const Component& c = labeller.components()[i];
   if (regions.size() == regions.capacity()) return;
@@ -205,7 +200,7 @@ double RegionFinder::State::unexplained(const Bounds& window, std::span<const Pe
       ++all;
       explained += std::ranges::any_of(found, [&](const Person& person) {
         const Box& b = person.box;
-        const double slack = kParameters.slack * b.height;
+        const double slack = parameters.regions.slack * b.height;
         return x >= b.x - slack && x < b.right() + slack && y >= b.y - slack && y < b.bottom() + slack;
       });
     });
@@ -217,7 +212,7 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
   const auto parts = labeller.components();
   const auto first = std::ranges::find(group, g) - group.begin();
   for (std::size_t k = 0; k < found.size() && regions.size() < regions.capacity(); ++k)
-    regions.push_back({fit_box(moving.view(), window, k, found), 0,
+    regions.push_back({fit_box(moving.view(), window, k, found, parameters.box), 0,
                        std::clamp(0.5 + 0.5 * found[k].score, 0.5, 1.0), static_cast<int>(first) + 1,
                        RegionKind::person_like});
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -225,14 +220,14 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
     const Box box = box_of(outlines[i].body);
     double covered = 0;
     for (const Person& person : found) covered += overlap_area(person.box, box);
-    if (covered < kParameters.explained * box.area())
+    if (covered < parameters.regions.explained * box.area())
       add_plain(i, people.found_wide_block() ? RegionKind::thing : kind_of(parts[i]));
   }
 }
 
 // One group of components: persons, or what it is otherwise.
 void RegionFinder::State::explain(int g) {
-  const RegionParameters& p = kParameters;
+  const RegionParameters& p = parameters.regions;
   const auto parts = labeller.components();
   Bounds window{size.width, size.height, 0, 0}, body = window;
   int members = 0;
@@ -283,6 +278,12 @@ RegionFinder::RegionFinder(RegionFinder&&) noexcept = default;
 RegionFinder& RegionFinder::operator=(RegionFinder&&) noexcept = default;
 
 void RegionFinder::set_options(const RegionOptions& options) {
+  state_->options = options;
+}
+
+void RegionFinder::set_parameters(const DetectionParameters& parameters) {
+  const RegionOptions options = state_->options;
+  state_ = std::make_unique<State>(parameters);
   state_->options = options;
 }
 

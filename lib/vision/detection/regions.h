@@ -13,6 +13,8 @@
 
 namespace cerberus::vision {
 
+struct DetectionParameters;  // region_parameters.h
+
 struct RegionOptions {
   int closing = 9;     // side of the closing, analysis pixels at 320 wide; scaled with the picture
   bool people = true;  // merge and split by a person's learnt height; off: plain components, to the pixel
@@ -49,6 +51,8 @@ class RegionFinder {
   RegionFinder& operator=(RegionFinder&&) noexcept;
 
   void set_options(const RegionOptions& options);
+  // Begins anew with these numbers, and the options that were set.
+  void set_parameters(const DetectionParameters& parameters);
   // Forgets the scene: learnt heights, young-scene rules. Called at a cut.
   void reset();
   // mask: in the moving area (0 / 255), out the cleaned mask that the regions were made from. labels: 0 = background,

@@ -27,6 +27,9 @@ class TwoFrameConfirmation {
   };
   static constexpr std::size_t kMost = 64;  // regions a frame that are remembered
 
+  TwoFrameConfirmation() = default;
+  explicit TwoFrameConfirmation(const Parameters& parameters) : parameters_(parameters) {}
+
   void preallocate();
   void reset() { last_.clear(); }
   // Removes from `regions` what is small and was not there one frame ago, in the first Parameters::frames frames of a

@@ -7,13 +7,12 @@
 namespace cerberus::vision {
 namespace {
 
-constexpr const AppearanceParameters& q = kAppearanceParameters;
 constexpr double kLowest = 3, kHighest = 8.05;  // log2 of 0 and of 255, each plus AppearanceParameters::dark
 constexpr int kShares = 16;                     // a pixel is shared between two bins in 1/16
 
 }  // namespace
 
-BrightnessLevel::BrightnessLevel() {
+BrightnessLevel::BrightnessLevel(const AppearanceParameters& parameters) : parameters_(parameters) {
   make_bins();
 }
 
@@ -24,6 +23,7 @@ void BrightnessLevel::reset() {
 }
 
 void BrightnessLevel::make_bins() {
+  const AppearanceParameters& q = parameters_;
   made_for_ = level_;
   for (int grey = 0; grey < 256; ++grey) {
     const double at = (std::log2(grey * std::exp2(-level_) + q.dark) - kLowest) / (kHighest - kLowest) *
@@ -38,6 +38,7 @@ void BrightnessLevel::make_bins() {
 
 // The median change of grid points carried with the scene: people cover few of them.
 void BrightnessLevel::update(GrayView luma, const Transform& motion) {
+  const AppearanceParameters& q = parameters_;
   std::array<double, kColumns * kRows> ratio;
   int count = 0;
   const auto place = [&](int i) {
@@ -53,7 +54,7 @@ void BrightnessLevel::update(GrayView luma, const Transform& motion) {
       ratio[count++] = std::log2(static_cast<double>(now) / then);
     }
   }
-  if (count >= q.least_pairs) {
+  if (count > 0 && count >= q.least_pairs) {
     const auto middle = ratio.begin() + count / 2;
     std::nth_element(ratio.begin(), middle, ratio.begin() + count);
     level_ = q.keep * level_ + *middle;
@@ -86,6 +87,7 @@ void AppearanceModel::learn(const AppearanceModel& seen, double weight) {
 }
 
 AppearanceModel appearance_of(const Sight& sight, const BrightnessLevel& level, const Box& box, int samples) {
+  const AppearanceParameters& q = level.parameters();
   AppearanceModel look;
   const int x0 = std::max(0, static_cast<int>(std::lround(box.x)));
   const int x1 = std::min(sight.luma.width, static_cast<int>(std::lround(box.right())));
@@ -114,7 +116,7 @@ AppearanceModel appearance_of(const Sight& sight, const BrightnessLevel& level, 
     }
     const double all =
         whole / AppearanceModel::kBands / (step * step);  // samples of a band that is all foreground
-    if (count < q.least_samples || count < q.least_filled * all) continue;
+    if (count < static_cast<std::uint32_t>(q.least_samples) || count < q.least_filled * all) continue;
     for (int i = 0; i < AppearanceModel::kBins; ++i)
       look.share[b][i] =
           static_cast<std::uint16_t>(counts[i] * std::uint64_t{AppearanceModel::kAll} / (count * kShares));

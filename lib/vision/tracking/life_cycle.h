@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The life of a track: the transitions between its states (track_states.h), and the rules by which they happen.
+// The life of a track: the transitions between its states (track_hypothesis.h), and the rules by which they happen.
 //
 //   tentative --confirm--> confirmed --coast--> coasted --stop--> stopped
 //
@@ -44,7 +44,6 @@ class LifeCycle {
     double proven = 3;     // times confirm-time for which a coasted track was seen before it is published
     double certain = 0.4;  // of the box's width: standard deviation up to which a coasted track is published
     double occluded_coast = 0.3;  // s for which an occluded track is published
-    double crossing = 3;          // s for which two tracks may overlap
     // Stopping: the object was well seen, slower and slower.
     double still = 0.3;         // s of standing, or nearly
     double fitted = 0.5;        // s of regions of its extent
@@ -62,6 +61,9 @@ class LifeCycle {
     double duplicate_shared = 1.0;  // s in one region after which one of the two ends
     double duplicate_unseen = 0.5;  // s, the same where one has no region
   };
+
+  LifeCycle() = default;
+  explicit LifeCycle(const Parameters& parameters) : parameters_(parameters) {}
 
   struct Frame {
     Size size;             // pixels

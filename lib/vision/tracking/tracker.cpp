@@ -6,11 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "vision/tracking/data_association.h"
-#include "vision/tracking/identity_swap.h"
-#include "vision/tracking/life_cycle.h"
-#include "vision/tracking/region_appearances.h"
-#include "vision/tracking/track_hypothesis.h"
+#include "vision/tracking/tracking_parameters.h"
 
 namespace cerberus::vision {
 namespace {
@@ -21,33 +17,26 @@ constexpr std::size_t kMaximumRegions = 256;  // the largest; more is not a scen
 // Capacity at first. When it is exceeded it is doubled, up to the maximum.
 constexpr std::size_t kUsualTracks = 8, kUsualRegions = 16;
 
-// The part of the picture that has been in view for a while. Guard: tests/unit/turning.
-struct Parameters {
-  // s until what the camera has turned to counts as seen for a while: foreground there moves, as no object can have left
-  // a hole in a model that did not exist
-  double newly_visible = 0.5;
-  double newly_visible_share = 0.5;  // of a region outside the established view
-};
-
 }  // namespace
 
 struct Tracker::State {
-  Parameters parameters;
-  TrackParameters track_parameters;
+  const TrackingParameters parameters;
   TrackOptions options;
   std::vector<TrackHypothesis> tracks;
   std::vector<Region> regions;
   std::vector<Track> published;
   double seconds = kDefaultSeconds;
   Size frame;
-  DataAssociation association;
-  LifeCycle life_cycle;
+  DataAssociation association{parameters.association};
+  LifeCycle life_cycle{parameters.life};
   OrientationEstimate orientation;
-  RegionAppearances appearances;
+  RegionAppearances appearances{parameters.search, parameters.appearance};
   Box established;       // part of the picture that has been in view for a while
   bool turning = false;  // the camera moved since the last frame
 
-  State() { preallocate(kUsualTracks, kUsualRegions); }
+  explicit State(const TrackingParameters& numbers = {}) : parameters(numbers) {
+    preallocate(kUsualTracks, kUsualRegions);
+  }
   void preallocate(std::size_t track_count, std::size_t region_count);
   void update_view(const Transform& motion);
   void take(std::span<const Region> input);
@@ -77,7 +66,7 @@ void Tracker::State::update_view(const Transform& motion) {
   if (!turning && established.area() == whole.area()) return;
   const Point low = motion.apply({established.x, established.y});
   const Point high = motion.apply({established.right(), established.bottom()});
-  const double gain = std::min(1.0, seconds / parameters.newly_visible);
+  const double gain = std::min(1.0, seconds / parameters.view.newly_visible);
   const auto side = [&](double at, double edge, double most) {
     const double inside = std::clamp(std::isfinite(at) ? at : edge, 0.0, most);
     return inside + gain * (edge - inside);
@@ -159,10 +148,10 @@ void Tracker::State::start_tracks() {
     if (!association.is_new(j) || tracks.size() >= kMaximumTracks) continue;
     if (tracks.size() == tracks.capacity()) preallocate(2 * tracks.size(), regions.capacity());
     const Box& box = regions[j].box;
-    tracks.push_back(TrackHypothesis::first_seen(regions[j], track_parameters));
+    tracks.push_back(TrackHypothesis::first_seen(regions[j], parameters.track));
     tracks.back().match.region = static_cast<int>(j);
     std::get<Tentative>(tracks.back().life).newly_visible =
-        overlap_area(box, established) < parameters.newly_visible_share * box.area();
+        overlap_area(box, established) < parameters.view.newly_visible_share * box.area();
   }
 }
 
@@ -203,6 +192,12 @@ void Tracker::set_options(const TrackOptions& options) {
   state_->options = options;
 }
 
+void Tracker::set_parameters(const TrackingParameters& parameters) {
+  const TrackOptions options = state_->options;
+  state_ = std::make_unique<State>(parameters);
+  state_->options = options;
+}
+
 void Tracker::reset() {
   state_->tracks.clear();
   state_->published.clear();
@@ -236,7 +231,7 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   s.associate();
   s.life_cycle.end_hollow(s.tracks, s.regions);
   s.remove_lost();
-  undo_identity_swaps(s.tracks);
+  undo_identity_swaps(s.tracks, s.parameters.swap);
   s.start_tracks();
   s.life_cycle.advance(s.tracks, {frame, s.seconds, s.turning, s.orientation.gaze()}, s.options);
   s.remove_lost();

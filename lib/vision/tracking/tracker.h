@@ -16,6 +16,8 @@
 
 namespace cerberus::vision {
 
+struct TrackingParameters;  // tracking_parameters.h
+
 enum class TrackState { seen, coasted, stopped };
 
 struct TrackOptions {
@@ -54,6 +56,8 @@ class Tracker {
   Tracker& operator=(Tracker&&) noexcept;
 
   void set_options(const TrackOptions& options);
+  // Begins anew with these numbers, and the options that were set.
+  void set_parameters(const TrackingParameters& parameters);
   // Drops all tracks (identities go on counting).
   void reset();
   // regions: boxes in frame pixels. motion: frame k-1 to k, frame pixels. seconds: time since the previous frame

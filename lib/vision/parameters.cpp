@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "vision/parameters.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <initializer_list>
+#include <utility>
+
+namespace cerberus::vision {
+namespace {
+
+// The numbers of one stage.
+class Numbers {
+ public:
+  Numbers(std::vector<NamedNumber>& all, std::string stage) : all_(all), stage_(std::move(stage)) {}
+  Numbers part(const char* name) { return {all_, stage_ + '.' + name}; }
+  struct Number {
+    const char* name;
+    std::variant<double*, int*> number;
+  };
+  void add(std::initializer_list<Number> numbers) {
+    for (const Number& n : numbers) all_.push_back({stage_ + '.' + n.name, n.number});
+  }
+
+ private:
+  std::vector<NamedNumber>& all_;
+  std::string stage_;
+};
+
+// A member of a struct's table: a name cannot stand for another member. tests/unit/parameters finds missing ones.
+#define N(member)      \
+  Numbers::Number {    \
+    #member, &p.member \
+  }
+
+void name(Numbers n, RegionParameters& p) {
+  n.add({N(least_share),
+         N(least_height),
+         N(narrowest),
+         N(widest),
+         N(least_filled),
+         N(tallest),
+         N(usual_least),
+         N(usual_most),
+         N(usual_aspect),
+         N(alone),
+         N(step_x),
+         N(step_y),
+         N(shrinks),
+         N(grows),
+         N(least_looks),
+         N(walked),
+         N(across),
+         N(down),
+         N(joined),
+         N(loose),
+         N(slack),
+         N(explained),
+         N(same_block),
+         N(young),
+         N(rim),
+         N(person_confidence),
+         N(other_confidence)});
+}
+
+void name(Numbers n, PeopleFinder::Part& p) {
+  n.add({N(top), N(bottom), N(core), N(reach), N(core_moving), N(side_moving)});
+}
+
+void name(Numbers n, PeopleFinder::Parameters& p) {
+  n.add({N(elsewhere), N(price), N(height_weight), N(spread), N(other_height), N(least_gain), N(aspect),
+         N(cells), N(above), N(below), N(least_feet), N(least_part), N(edge_part), N(edge_step), N(one_wide),
+         N(solid), N(block_width), N(gaps), N(gaps_after)});
+  name(n.part("free_space"), p.free_space);
+  name(n.part("head"), p.body[0]);
+  name(n.part("trunk"), p.body[1]);
+  name(n.part("legs"), p.body[2]);
+}
+
+void name(Numbers n, HeightPrior::Parameters& p) {
+  n.add({N(spread), N(agree), N(share), N(least), N(uncertain), N(repeats), N(guesses), N(through_horizon),
+         N(baseline), N(steepest), N(refit), N(least_height), N(zoom)});
+}
+
+void name(Numbers n, OutlineFinder::Parameters& p) {
+  n.add({N(skirt), N(reach), N(thickness), N(shadow_zone)});
+}
+
+void name(Numbers n, PersonBoxParameters& p) {
+  n.add({N(aspect), N(measured), N(reach), N(column), N(below_head), N(above_feet), N(head_reach),
+         N(head_row), N(head_rise), N(head_fall), N(leg_reach), N(foot_row), N(foot_fall), N(shadow_reach),
+         N(legs_from), N(legs_to), N(shadow_wide), N(shadow_from), N(shadow_tip)});
+}
+
+void name(Numbers n, TwoFrameConfirmation::Parameters& p) {
+  n.add({N(frames), N(first), N(small), N(speck), N(common), N(reach), N(slack)});
+}
+
+void name(Numbers n, TrackParameters& p) {
+  n.add({N(acceleration),
+         N(birth_speed),
+         N(position_noise),
+         N(grain),
+         N(blob_noise),
+         N(size_noise),
+         N(size_wander),
+         N(border_wander),
+         N(fade),
+         N(stopped_wander),
+         N(stopped_uncertainty),
+         N(coast_brake),
+         N(off_screen_brake),
+         N(fragment_brake),
+         N(confidence_time),
+         N(misfit_confidence),
+         N(same_extent_least),
+         N(same_extent_most),
+         N(gate_noise),
+         N(gate),
+         N(off_screen_gate),
+         N(fragment_area),
+         N(fragment_gate),
+         N(largest_ratio),
+         N(size_cost),
+         N(gate_cost),
+         N(border),
+         N(least_visible),
+         N(cut_margin),
+         N(cut_most),
+         N(leaving),
+         N(end_speed),
+         N(upright),
+         N(camera_still),
+         N(jump),
+         N(jump_speed),
+         N(whole_misfit),
+         N(growing_misfit),
+         N(jumped_misfit),
+         N(shrinking_misfit),
+         N(extent_known),
+         N(fragment_walk),
+         N(stand_speed),
+         N(settled),
+         N(same_place),
+         N(appearance_time),
+         N(appearance_frames),
+         N(recent_time),
+         N(recent_frames),
+         N(ambiguous_time),
+         N(freeze),
+         N(relearn),
+         N(changed),
+         N(found_noise),
+         N(found_brake),
+         N(apart),
+         N(different),
+         N(crossing)});
+}
+
+void name(Numbers n, LifeCycle::Parameters& p) {
+  n.add({N(least_travel),  N(least_hits),     N(slow_least_hits),   N(slow_confirm),
+         N(confirm_slack), N(hit_share),      N(tentative_coast),   N(coast_share),
+         N(border_coast),  N(proven),         N(certain),           N(occluded_coast),
+         N(still),         N(fitted),         N(stop_travel),       N(seen),
+         N(covered),       N(off_screen_fit), N(off_screen_travel), N(hollow_inside),
+         N(hollow_part),   N(duplicate),      N(duplicate_shared),  N(duplicate_unseen)});
+}
+
+void name(Numbers n, DataAssociation::Parameters& p) {
+  n.add({N(unmatched),         N(worst),           N(shared),          N(returned_area),
+         N(speed_slack),       N(usual_change),    N(appearance_cost), N(sudden_change),
+         N(off_screen_change), N(larger),          N(inside),          N(crowd),
+         N(occluded_overlap),  N(fragment_inside), N(fragment_most),   N(completed),
+         N(merge_time),        N(filled),          N(part_area),       N(part_inside),
+         N(upright),           N(alike),           N(common_height),   N(gap),
+         N(common_rows),       N(common_columns),  N(slender)});
+}
+
+void name(Numbers n, RegionAppearances::Parameters& p) {
+  n.add({N(samples), N(rough_samples), N(familiar), N(reach), N(reach_up), N(columns), N(displacement),
+         N(least_reach), N(steps), N(inside)});
+}
+
+void name(Numbers n, AppearanceParameters& p) {
+  n.add({N(dark), N(darkest), N(brightest), N(least_pairs), N(keep), N(rebin), N(least_filled),
+         N(least_samples)});
+}
+
+void name(Numbers n, IdentitySwapParameters& p) {
+  n.add({N(gain), N(contact), N(parting), N(longest)});
+}
+
+void name(Numbers n, ViewParameters& p) {
+  n.add({N(newly_visible), N(newly_visible_share)});
+}
+
+#undef N
+
+std::string quoted(std::string_view text) {
+  return '"' + std::string(text) + '"';
+}
+
+// "names: track.gate track.gate_noise ...", of one stage if there is such a stage.
+std::string names_like(const std::vector<NamedNumber>& all, std::string_view name) {
+  const std::string stage(name.substr(0, name.find('.') + 1));
+  const auto is_like = [&](const NamedNumber& n) { return !stage.empty() && n.name.starts_with(stage); };
+  const bool known = std::ranges::any_of(all, is_like);
+  std::string names;
+  for (const NamedNumber& n : all)
+    if (!known || is_like(n)) names += ' ' + n.name;
+  return "; the names are:" + names;
+}
+
+}  // namespace
+
+std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
+  std::vector<NamedNumber> all;
+  const auto stage = [&](const char* of, auto& numbers) { name({all, of}, numbers); };
+  stage("regions", p.detection.regions);
+  stage("people", p.detection.people);
+  stage("height", p.detection.height);
+  stage("outline", p.detection.outline);
+  stage("box", p.detection.box);
+  stage("confirmation", p.detection.confirmation);
+  stage("track", p.tracking.track);
+  stage("life", p.tracking.life);
+  stage("association", p.tracking.association);
+  stage("search", p.tracking.search);
+  stage("appearance", p.tracking.appearance);
+  stage("swap", p.tracking.swap);
+  stage("view", p.tracking.view);
+  return all;
+}
+
+std::string set_number(DetectorParameters& parameters, std::string_view assignment) {
+  const auto all = named_numbers(parameters);
+  const auto equals = assignment.find('=');
+  if (equals == std::string_view::npos)
+    return quoted(assignment) + " is not stage.name=value" + names_like(all, assignment);
+  const std::string_view name = assignment.substr(0, equals), value = assignment.substr(equals + 1);
+  const auto found = std::ranges::find(all, name, &NamedNumber::name);
+  if (found == all.end()) return "no number is named " + quoted(name) + names_like(all, name);
+  const bool set = std::visit(
+      [&](auto* number) {
+        auto read = *number;
+        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), read);
+        if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(1.0 * read))
+          return false;
+        *number = read;
+        return true;
+      },
+      found->number);
+  if (set) return {};
+  const bool whole = std::holds_alternative<int*>(found->number);
+  return std::string(name) + " takes " + (whole ? "a whole number" : "a number") + ", not " + quoted(value) +
+         names_like(all, name);
+}
+
+}  // namespace cerberus::vision

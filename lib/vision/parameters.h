@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The tuned numbers of detection and tracking, as numbers with names: for sweeps (bench-quality --set).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "vision/detection/region_parameters.h"
+#include "vision/tracking/tracking_parameters.h"
+
+namespace cerberus::vision {
+
+struct DetectorParameters {
+  DetectionParameters detection;
+  TrackingParameters tracking;
+};
+
+struct NamedNumber {
+  std::string name;  // "stage.name", as "track.gate" or "people.head.reach"
+  std::variant<double*, int*> number;
+};
+// All of them; they point into `parameters`.
+std::vector<NamedNumber> named_numbers(DetectorParameters& parameters);
+
+// Sets one number. assignment: "stage.name=value". Returns what is wrong with it, with the names that there are, or
+// nothing; then `parameters` is unchanged.
+std::string set_number(DetectorParameters& parameters, std::string_view assignment);
+
+}  // namespace cerberus::vision
