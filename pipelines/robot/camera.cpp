@@ -1,36 +1,17 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "camera.h"
 
-#include <cerberus/cerberus.h>
-#include <gst/app/gstappsink.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <utility>
 
-#include "robot/events.h"
-#include "text/numbers.h"
+#include "camera_pictures.h"
 
 namespace cerberus::robot {
-
-// What the streaming threads left for the main loop; lives as long as a callback may run.
-struct Camera::Newest {
-  ~Newest() { g_clear_pointer(&picture, g_bytes_unref); }
-
-  std::mutex lock;
-  Camera* camera = nullptr;  // nullptr: it is gone; main loop's thread
-  GBytes* picture = nullptr;
-  guint64 number = 0;
-  std::string facts;
-  bool show = false;       // else what arrives is dropped
-  bool announced = false;  // a call of on_picture is on its way
-};
 
 namespace {
 
 constexpr const char* kStates[] = {"off", "running", "parking", "ending", "closing", "waiting", "ended"};
-
-constexpr double kParked = 1;  // degrees from zero: several steps of the coarsest motors
 
 void say(const std::string& camera, const std::string& text) {
   g_printerr("cerberusd: %s: %s\n", camera.c_str(), text.c_str());
@@ -38,18 +19,6 @@ void say(const std::string& camera, const std::string& text) {
 
 std::string seconds(Camera::Clock::duration duration) {
   return std::to_string(std::chrono::duration_cast<std::chrono::seconds>(duration).count()) + " s";
-}
-
-// Time since a frame's capture, which its time stamp is, in ns; 0: it is not known.
-gint64 age_of(GstPad* pad, GstBuffer* buffer) {
-  g_autoptr(GstEvent) event = gst_pad_get_sticky_event(pad, GST_EVENT_SEGMENT, 0);
-  g_autoptr(GstElement) parent = gst_pad_get_parent_element(pad);
-  if (!event || !parent) return 0;
-  const GstSegment* segment = nullptr;
-  gst_event_parse_segment(event, &segment);
-  const GstClockTime time = gst_segment_to_running_time(segment, GST_FORMAT_TIME, GST_BUFFER_PTS(buffer)),
-                     now = gst_element_get_current_running_time(parent);
-  return GST_CLOCK_TIME_IS_VALID(time) && GST_CLOCK_TIME_IS_VALID(now) ? GST_CLOCK_DIFF(time, now) : 0;
 }
 
 }  // namespace
@@ -80,126 +49,6 @@ Camera::~Camera() {
 
 GstElement* Camera::element(const char* name) const {
   return gst_bin_get_by_name(GST_BIN(pipeline_), name);
-}
-
-// Drops the buffers that would enter a queue while `pass` is false.
-void Camera::drop_frames(const char* queue, std::atomic<bool>& pass) {
-  g_autoptr(GstElement) found = element(queue);
-  if (found == nullptr) return;
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(found, "sink");
-  gst_pad_add_probe(
-      pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad*, GstPadProbeInfo*, gpointer flag) {
-        return *static_cast<std::atomic<bool>*>(flag) ? GST_PAD_PROBE_OK : GST_PAD_PROBE_DROP;
-      },
-      &pass, nullptr);
-}
-
-void Camera::connect() {
-  drop_frames("picture-queue", draw_);
-  drop_frames("stage-queue", draw_stage_);
-  drop_frames("record-queue", record_);
-  drop_frames("analysis-queue", record_);
-  g_autoptr(GstElement) detect = element("detect");
-  g_autoptr(GstPad) pad = gst_element_get_static_pad(detect, "src");
-  gst_pad_add_probe(
-      pad, GST_PAD_PROBE_TYPE_BUFFER,
-      [](GstPad* pad, GstPadProbeInfo* info, gpointer data) {
-        auto& camera = *static_cast<Camera*>(data);
-        ++camera.frames_;
-        camera.latency_ = age_of(pad, GST_PAD_PROBE_INFO_BUFFER(info));
-        const CerberusPose* pose = cerberus_buffer_peek_pose(GST_PAD_PROBE_INFO_BUFFER(info));
-        camera.parked_ = pose != nullptr && !pose->moving && std::abs(pose->pan) < kParked &&
-                         std::abs(pose->tilt) < kParked;
-        return GST_PAD_PROBE_OK;
-      },
-      this, nullptr);
-
-  using Holder = std::shared_ptr<Newest>;
-  const auto free_holder = [](gpointer holder) { delete static_cast<Holder*>(holder); };
-  GstAppSinkCallbacks on_facts{};
-  on_facts.new_sample = [](GstAppSink* sink, gpointer data) {
-    g_autoptr(GstSample) sample = gst_app_sink_pull_sample(sink);
-    GstBuffer* buffer = sample ? gst_sample_get_buffer(sample) : nullptr;
-    GstMapInfo map;
-    if (buffer == nullptr || !gst_buffer_map(buffer, &map, GST_MAP_READ)) return GST_FLOW_OK;
-    Newest& newest = **static_cast<Holder*>(data);
-    const std::size_t size = map.size > 0 && map.data[map.size - 1] == '\n' ? map.size - 1 : map.size;
-    {
-      const std::lock_guard lock(newest.lock);
-      if (newest.show) newest.facts.assign(reinterpret_cast<const char*>(map.data), size);
-    }
-    gst_buffer_unmap(buffer, &map);
-    return GST_FLOW_OK;
-  };
-  GstAppSinkCallbacks on_picture{};
-  on_picture.new_sample = [](GstAppSink* sink, gpointer data) {
-    g_autoptr(GstSample) sample = gst_app_sink_pull_sample(sink);
-    GstBuffer* buffer = sample ? gst_sample_get_buffer(sample) : nullptr;
-    gpointer bytes = nullptr;
-    gsize size = 0;
-    if (buffer == nullptr) return GST_FLOW_OK;
-    gst_buffer_extract_dup(buffer, 0, static_cast<gsize>(-1), &bytes, &size);
-    g_autoptr(GBytes) drawn = g_bytes_new_take(bytes, size);
-    const Holder& holder = *static_cast<Holder*>(data);
-    bool announce = false;
-    {
-      const std::lock_guard lock(holder->lock);
-      if (!holder->show) return GST_FLOW_OK;
-      std::swap(holder->picture, drawn);
-      ++holder->number;
-      announce = !std::exchange(holder->announced, true);
-    }
-    if (!announce) return GST_FLOW_OK;
-    g_main_context_invoke_full(
-        nullptr, G_PRIORITY_DEFAULT,
-        [](gpointer data) {
-          Newest& newest = **static_cast<Holder*>(data);
-          {
-            const std::lock_guard lock(newest.lock);
-            newest.announced = false;
-          }
-          Camera* camera = newest.camera;
-          if (camera == nullptr) return static_cast<gboolean>(G_SOURCE_REMOVE);
-          camera->send_asked_picture();
-          if (camera->on_picture_) camera->on_picture_(*camera);
-          return static_cast<gboolean>(G_SOURCE_REMOVE);
-        },
-        new Holder(holder), [](gpointer data) { delete static_cast<Holder*>(data); });
-    return GST_FLOW_OK;
-  };
-  g_autoptr(GstElement) facts = element("facts");
-  if (facts) gst_app_sink_set_callbacks(GST_APP_SINK(facts), &on_facts, new Holder(newest_), free_holder);
-  for (const char* name : {"picture", "stage-picture"}) {
-    g_autoptr(GstElement) picture = element(name);
-    if (picture)
-      gst_app_sink_set_callbacks(GST_APP_SINK(picture), &on_picture, new Holder(newest_), free_holder);
-  }
-}
-
-bool Camera::publish(const char* topic, GBytes* payload, bool retain) {
-  if (!shared_.mqtt || pipeline_ == nullptr) return false;
-  g_autoptr(GstElement) mqtt = element("mqtt");
-  gboolean done = FALSE;
-  if (mqtt) g_signal_emit_by_name(mqtt, "publish", topic, payload, static_cast<gboolean>(retain), &done);
-  return done;
-}
-
-void Camera::publish_event() {
-  if (!shared_.mqtt || !settings_.recorder) return;
-  std::string fault;
-  const std::string text = Events(settings_.recorder->folder).newest(settings_.name, fault);
-  if (!fault.empty()) return;  // the page says so where it is asked for
-  g_autoptr(GBytes) payload = g_bytes_new(text.data(), text.size());
-  publish("event", payload, true);
-}
-
-// Asks for a picture that is drawn from now on: while nobody looks there is none, or an old one.
-void Camera::publish_picture() {
-  const std::lock_guard lock(newest_->lock);
-  if (!newest_->show) return;
-  picture_asked_after_ = std::max<guint64>(newest_->number, 1);
-  update_draw();
 }
 
 void Camera::start() {
@@ -335,76 +184,6 @@ void Camera::on_message(GstMessage* message) {
     default:
       break;
   }
-}
-
-// Forgets picture and facts either way: none outlasts the time in which it may be seen.
-void Camera::set_show(bool show) {
-  picture_asked_after_ = 0;
-  if (!show)
-    rtsp_.hide(settings_.name, pipeline_);
-  else if (shared_.rtsp)
-    rtsp_.show(settings_.name, pipeline_);
-  const std::lock_guard lock(newest_->lock);
-  newest_->show = show;
-  update_draw();
-  g_clear_pointer(&newest_->picture, g_bytes_unref);
-  newest_->facts.clear();
-}
-
-void Camera::set_watched(bool watched) {
-  watched_ = watched;
-  if (!watched && stage_ != "picture") set_stage("picture");
-  const std::lock_guard lock(newest_->lock);
-  update_draw();
-}
-
-// Under the lock of newest_. Pictures are drawn while somebody looks or one was asked for, of one branch.
-void Camera::update_draw() {
-  const bool draw = (watched_ || picture_asked_after_ > 0) && newest_->show;
-  draw_ = draw && stage_ == "picture";
-  draw_stage_ = draw && stage_ != "picture";
-}
-
-void Camera::set_stage(const std::string& stage) {
-  stage_ = stage;
-  if (pipeline_ != nullptr) {
-    g_autoptr(GstElement) detect = element("detect");
-    g_autoptr(GstElement) view = element("stage");
-    if (detect && view) {
-      if (stage != "picture") gst_util_set_object_arg(G_OBJECT(view), "stage", stage.c_str());
-      gst_util_set_object_arg(G_OBJECT(detect), "keep-planes", stage == "picture" ? "never" : "always");
-    }
-  }
-  const std::lock_guard lock(newest_->lock);
-  update_draw();
-}
-
-bool Camera::set_live(const char* name, const char* property, double value) {
-  if (pipeline_ == nullptr || state_ != State::running) return false;
-  g_autoptr(GstElement) found = element(name);
-  if (!found) return false;
-  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(found), property);
-  if (spec == nullptr) return false;
-  const GType type = G_PARAM_SPEC_VALUE_TYPE(spec);
-  const bool is_whole = type != G_TYPE_DOUBLE && type != G_TYPE_FLOAT;
-  g_auto(GValue) number = G_VALUE_INIT, wanted = G_VALUE_INIT, is = G_VALUE_INIT;
-  g_value_init(&number, G_TYPE_DOUBLE);
-  g_value_init(&wanted, type);
-  g_value_init(&is, type);
-  g_value_set_double(&number, is_whole ? std::round(value) : value);
-  if (!g_value_transform(&number, &wanted)) return false;
-  g_object_set_property(G_OBJECT(found), property, &wanted);
-  g_object_get_property(G_OBJECT(found), property, &is);
-  return gst_value_compare(&wanted, &is) == GST_VALUE_EQUAL;
-}
-
-void Camera::send_asked_picture() {
-  guint64 number = 0;
-  g_autoptr(GBytes) newest = picture(number);
-  if (picture_asked_after_ == 0 || newest == nullptr || number <= picture_asked_after_) return;
-  picture_asked_after_ = 0;
-  set_watched(watched_);
-  publish("picture", newest, false);
 }
 
 void Camera::set_mode(Mode mode) {
@@ -565,36 +344,6 @@ bool Camera::is_sound() const {
   if (state_ == State::running) return now - last_frame_ <= parameters_.stall + std::chrono::seconds(2);
   if (state_ == State::closing) return now - since_ <= parameters_.closing;
   return true;
-}
-
-GBytes* Camera::picture(guint64& number) const {
-  const std::lock_guard lock(newest_->lock);
-  number = newest_->number;
-  return newest_->picture ? g_bytes_ref(newest_->picture) : nullptr;
-}
-
-std::string Camera::facts() const {
-  const std::lock_guard lock(newest_->lock);
-  return newest_->facts;
-}
-
-bool Camera::turn(double pan_speed, double tilt_speed) {
-  gboolean done = FALSE;
-  if (head_ != nullptr && state_ == State::running)
-    g_signal_emit_by_name(head_, "turn", pan_speed, tilt_speed, &done);
-  return done;
-}
-
-bool Camera::order(const char* signal) {
-  gboolean done = FALSE;
-  if (head_ != nullptr) g_signal_emit_by_name(head_, signal, &done);
-  return done;
-}
-
-bool Camera::follow(guint track) {
-  gboolean done = FALSE;
-  if (head_ != nullptr && state_ == State::running) g_signal_emit_by_name(head_, "follow", track, &done);
-  return done;
 }
 
 }  // namespace cerberus::robot

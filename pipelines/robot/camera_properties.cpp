@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-// The properties of a camera's elements: before its pipeline starts, as the mode changes, and when the configuration does.
+// The properties of a camera's elements: before its pipeline starts, as the mode changes, when the configuration or the
+// page changes them; and the orders for its head.
 #include "camera.h"
+
+#include <cmath>
+
 #include "robot/settings_file.h"
 
 namespace cerberus::robot {
@@ -117,6 +121,44 @@ Camera::Change Camera::change(const CameraSettings& settings, SharedSettings sha
     stale_ = true;
   }
   return Change::restarts;
+}
+
+bool Camera::set_live(const char* name, const char* property, double value) {
+  if (pipeline_ == nullptr || state_ != State::running) return false;
+  g_autoptr(GstElement) found = element(name);
+  if (!found) return false;
+  GParamSpec* spec = g_object_class_find_property(G_OBJECT_GET_CLASS(found), property);
+  if (spec == nullptr) return false;
+  const GType type = G_PARAM_SPEC_VALUE_TYPE(spec);
+  const bool is_whole = type != G_TYPE_DOUBLE && type != G_TYPE_FLOAT;
+  g_auto(GValue) number = G_VALUE_INIT, wanted = G_VALUE_INIT, is = G_VALUE_INIT;
+  g_value_init(&number, G_TYPE_DOUBLE);
+  g_value_init(&wanted, type);
+  g_value_init(&is, type);
+  g_value_set_double(&number, is_whole ? std::round(value) : value);
+  if (!g_value_transform(&number, &wanted)) return false;
+  g_object_set_property(G_OBJECT(found), property, &wanted);
+  g_object_get_property(G_OBJECT(found), property, &is);
+  return gst_value_compare(&wanted, &is) == GST_VALUE_EQUAL;
+}
+
+bool Camera::turn(double pan_speed, double tilt_speed) {
+  gboolean done = FALSE;
+  if (head_ != nullptr && state_ == State::running)
+    g_signal_emit_by_name(head_, "turn", pan_speed, tilt_speed, &done);
+  return done;
+}
+
+bool Camera::order(const char* signal) {
+  gboolean done = FALSE;
+  if (head_ != nullptr) g_signal_emit_by_name(head_, signal, &done);
+  return done;
+}
+
+bool Camera::follow(guint track) {
+  gboolean done = FALSE;
+  if (head_ != nullptr && state_ == State::running) g_signal_emit_by_name(head_, "follow", track, &done);
+  return done;
 }
 
 }  // namespace cerberus::robot

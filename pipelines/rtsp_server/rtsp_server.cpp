@@ -14,7 +14,9 @@ constexpr char kRole[] = "viewer";
 constexpr guint kMostSessions = 100;  // of all clients
 constexpr guint kMostClients = 128;   // connections, with and without a session
 constexpr int kThreads = 8;  // for all clients: one that waits for a mount's first frame blocks its thread
-constexpr guint kCleaningPeriod = 2;  // seconds after which sessions without a client are looked for
+constexpr guint kCleaningPeriod = 2;   // seconds after which sessions without a client are looked for
+constexpr gulong kEndingPause = 5000;  // microseconds between looks whether connections have ended
+constexpr int kEndingTries = 400;      // looks: 2 s
 
 // What packs a stream into RTP. Parameter sets go along with every keyframe, so that a client that joins has them.
 std::string payloader_of(const GstCaps* caps) {
@@ -127,15 +129,29 @@ GstRTSPFilterResult end_of_folder(GstRTSPServer*, GstRTSPClient* client, gpointe
   return GST_RTSP_FILTER_KEEP;
 }
 
-void on_client(GstRTSPServer* server, GstRTSPClient* client, gpointer) {
-  GList* all = gst_rtsp_server_client_filter(server, nullptr, nullptr);
-  const guint others = g_list_length(all) - (g_list_find(all, client) ? 1 : 0);
-  g_list_free_full(all, g_object_unref);
-  if (others >= kMostClients) {
+std::string address_of(GstRTSPClient* client) {
+  GstRTSPConnection* connection = gst_rtsp_client_get_connection(client);
+  const char* address = connection ? gst_rtsp_connection_get_ip(connection) : nullptr;
+  return address ? address : "";
+}
+
+constexpr char kIdleSince[] = "cerberus-idle-since";  // of a GstRTSPClient: seconds of the monotonic clock
+
+gsize seconds_now() {
+  return static_cast<gsize>(g_get_monotonic_time() / G_USEC_PER_SEC);
+}
+
+// Closes a connection that has had no session for `idle` seconds.
+GstRTSPFilterResult end_of_idle(GstRTSPServer*, GstRTSPClient* client, gpointer idle) {
+  GList* sessions = gst_rtsp_client_session_filter(client, nullptr, nullptr);
+  const bool is_used = sessions != nullptr;
+  g_list_free_full(sessions, g_object_unref);
+  const gsize since = GPOINTER_TO_SIZE(g_object_get_data(G_OBJECT(client), kIdleSince));
+  if (is_used || since == 0)
+    g_object_set_data(G_OBJECT(client), kIdleSince, GSIZE_TO_POINTER(seconds_now()));
+  else if (seconds_now() - since > *static_cast<const gsize*>(idle))
     shut_down(client);
-    return;
-  }
-  g_signal_connect(client, "play-request", G_CALLBACK(on_play), nullptr);
+  return GST_RTSP_FILTER_KEEP;
 }
 
 }  // namespace
@@ -149,9 +165,46 @@ RtspServer::~RtspServer() {
     g_source_destroy(listener_);
     g_source_unref(listener_);
   }
-  const auto remove = [](GstRTSPServer*, GstRTSPClient*, gpointer) { return GST_RTSP_FILTER_REMOVE; };
-  g_list_free_full(gst_rtsp_server_client_filter(server_.get(), remove, nullptr), g_object_unref);
+  g_signal_handlers_disconnect_by_data(server_.get(), this);
+  const auto end = [](GstRTSPServer*, GstRTSPClient* client, gpointer) {
+    shut_down(client);
+    return GST_RTSP_FILTER_REF;
+  };
+  // A client that is still there after that keeps the server's object, and is torn down by its thread later.
+  for (int k = 0; k < kEndingTries; ++k) {
+    GList* left = gst_rtsp_server_client_filter(server_.get(), end, nullptr);
+    const bool any = left != nullptr;
+    g_list_free_full(left, g_object_unref);
+    if (!any) break;
+    g_usleep(kEndingPause);
+  }
   g_clear_object(&certificate_);
+}
+
+void RtspServer::accept(GstRTSPClient* client) {
+  GList* all = gst_rtsp_server_client_filter(server_.get(), nullptr, nullptr);
+  guint others = 0, of_address = 0;
+  const std::string address = address_of(client);
+  for (GList* one = all; one; one = one->next) {
+    if (one->data == client) continue;
+    ++others;
+    of_address += address_of(GST_RTSP_CLIENT(one->data)) == address;
+  }
+  g_list_free_full(all, g_object_unref);
+  if (others >= kMostClients || of_address >= settings_.most_of_address) {
+    shut_down(client);
+    return;
+  }
+  g_object_set_data(G_OBJECT(client), kIdleSince, GSIZE_TO_POINTER(seconds_now()));
+  g_signal_connect(client, "play-request", G_CALLBACK(on_play), nullptr);
+}
+
+// Ends the sessions that are not kept alive, and the connections that have none.
+void RtspServer::clean() {
+  g_autoptr(GstRTSPSessionPool) pool = gst_rtsp_server_get_session_pool(server_.get());
+  gst_rtsp_session_pool_cleanup(pool);
+  gsize idle = static_cast<gsize>(settings_.idle.count());
+  gst_rtsp_server_client_filter(server_.get(), end_of_idle, &idle);
 }
 
 std::string RtspServer::prepare() {
@@ -255,7 +308,11 @@ std::string RtspServer::listen() {
   protect();
   g_autoptr(GstRTSPThreadPool) threads = gst_rtsp_server_get_thread_pool(server_.get());
   gst_rtsp_thread_pool_set_max_threads(threads, kThreads);
-  g_signal_connect(server_.get(), "client-connected", G_CALLBACK(on_client), nullptr);
+  g_signal_connect(server_.get(), "client-connected",
+                   G_CALLBACK(+[](GstRTSPServer*, GstRTSPClient* client, gpointer server) {
+                     static_cast<RtspServer*>(server)->accept(client);
+                   }),
+                   this);
 
   g_autoptr(GError) error = nullptr;
   listener_ = gst_rtsp_server_create_source(server_.get(), nullptr, &error);
@@ -270,11 +327,10 @@ std::string RtspServer::listen() {
   g_autoptr(GstRTSPSessionPool) sessions = gst_rtsp_server_get_session_pool(server_.get());
   gst_rtsp_session_pool_set_max_sessions(sessions, kMostSessions);
   const auto clean = +[](gpointer server) -> gboolean {
-    g_autoptr(GstRTSPSessionPool) pool = gst_rtsp_server_get_session_pool(GST_RTSP_SERVER(server));
-    gst_rtsp_session_pool_cleanup(pool);
+    static_cast<RtspServer*>(server)->clean();
     return G_SOURCE_CONTINUE;
   };
-  cleaner_ = g_timeout_add_seconds(kCleaningPeriod, clean, server_.get());
+  cleaner_ = g_timeout_add_seconds(kCleaningPeriod, clean, this);
   return {};
 }
 

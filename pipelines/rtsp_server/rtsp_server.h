@@ -4,6 +4,7 @@
 
 #include <gst/rtsp-server/rtsp-server.h>
 
+#include <chrono>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct ServerSettings {
   int port = 8554;                   // 0: any free one
   std::vector<publish::User> users;  // who may play (HTTP digest); none: whoever reaches the address
   std::string certificate, key;      // PEM files; the key may be in the certificate's. Given: TLS only
+  unsigned most_of_address = 48;     // connections: a recorder takes two of each camera
+  std::chrono::seconds idle{60};     // after which a connection without a session is closed
 };
 
 // Each stream is a mount: `annotated` of the folder `front` is rtsp://ADDRESS:PORT/front/annotated. Clients of a mount
@@ -25,6 +28,7 @@ struct ServerSettings {
 class RtspServer {
  public:
   explicit RtspServer(ServerSettings settings);
+  // Closes the port and all connections, and waits until their threads have torn them down, 2 s at most.
   ~RtspServer();
   RtspServer(const RtspServer&) = delete;
   RtspServer& operator=(const RtspServer&) = delete;
@@ -52,6 +56,8 @@ class RtspServer {
   static std::string make_line(const std::vector<std::shared_ptr<EncodedStream>>& streams, std::string& line,
                                std::string& kinds);
   void protect();
+  void accept(GstRTSPClient* client);
+  void clean();
 
   ServerSettings settings_;
   std::vector<Mount> mounts_;

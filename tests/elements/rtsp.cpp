@@ -416,17 +416,45 @@ bool is_closed(GSocketConnection* connection) {
                                         nullptr) == 0;
 }
 
-GST_START_TEST(connections_are_limited_and_others_take_the_place_of_those_that_end) {
-  Served served(kPlain);
+// Connections that ask for nothing.
+std::vector<GSocketConnection*> connect(const Served& served, int count) {
   g_autoptr(GSocketClient) connector = g_socket_client_new();
   std::vector<GSocketConnection*> all;
-  for (int k = 0; k < 130; ++k) {
+  for (int k = 0; k < count; ++k) {
     all.push_back(g_socket_client_connect_to_host(connector, "127.0.0.1", static_cast<guint16>(served.port()),
                                                   nullptr, nullptr));
     fail_unless(all.back());
     while (g_main_context_iteration(nullptr, FALSE)) {
     }
   }
+  return all;
+}
+
+GST_START_TEST(an_address_has_few_connections_and_those_without_a_session_end_while_a_player_goes_on) {
+  ServerSettings settings;
+  settings.most_of_address = 3;
+  settings.idle = std::chrono::seconds(1);
+  Served served(kPlain, settings);
+  std::unique_ptr<Client> client;
+  wait_for("a player", [&] {  // a slow machine may let one be idle for too long
+    client = std::make_unique<Client>(served.address("plain"), "protocols=tcp");
+    wait_for("an answer", [&] { return client->error() != 0 || client->pictures.size() > 0; });
+    return client->pictures.size() > 0;
+  });
+  std::vector<GSocketConnection*> all = connect(served, 3);
+  // The last one at once, the others after their time. The player has a session.
+  for (const int k : {2, 0, 1}) wait_for("the end of a connection", [&] { return is_closed(all[k]); });
+  for (GSocketConnection* each : all) g_object_unref(each);
+  wait_for_pictures(*client, client->pictures.size() + 3);
+  fail_unless_equals_int(client->error(), 0);
+}
+GST_END_TEST
+
+GST_START_TEST(connections_are_limited_and_others_take_the_place_of_those_that_end) {
+  ServerSettings settings;
+  settings.most_of_address = 200;
+  Served served(kPlain, settings);
+  std::vector<GSocketConnection*> all = connect(served, 130);
   for (const int k : {128, 129}) wait_for("the end of a connection", [&] { return is_closed(all[k]); });
   for (int k = 0; k < 128; ++k) fail_if(is_closed(all[k]), "connection %d is closed", k);
   for (GSocketConnection* each : all) g_object_unref(each);
@@ -509,6 +537,8 @@ static Suite* rtsp_suite() {
   tcase_add_test(cases, a_mount_that_is_removed_ends_for_its_clients_and_may_come_back_below_a_folder);
   tcase_add_test(cases, only_a_user_with_the_right_password_plays);
   tcase_add_test(cases, an_address_with_wrong_passwords_is_refused_for_a_while_and_longer_each_time);
+  tcase_add_test(cases,
+                 an_address_has_few_connections_and_those_without_a_session_end_while_a_player_goes_on);
   tcase_add_test(cases, connections_are_limited_and_others_take_the_place_of_those_that_end);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
   tcase_add_test(cases, what_cannot_be_served_is_named);

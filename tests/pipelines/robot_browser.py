@@ -179,4 +179,5 @@ max-speed = 0.5
                 process.wait(PATIENCE)
 
 
-main()
+if __name__ == '__main__':
+    main()
