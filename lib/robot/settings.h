@@ -87,7 +87,7 @@ struct PageSettings {
   std::string listen = "127.0.0.1";
   int port = 8080;
   std::vector<std::string> origins;  // that may open the page's WebSocket beside the page's own
-  int picture_width = 960;           // pixels at most
+  int picture_width = 1280;          // pixels at most: to scale 1280x720 to 960 costs more than its JPEG
   int quality = 75;                  // of the JPEG pictures, percent
   bool tls = false;                  // with a self-made certificate where none is named
   std::string certificate, key;      // PEM files

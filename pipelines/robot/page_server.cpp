@@ -93,6 +93,8 @@ bool PageServer::open(std::string& error) {
     return false;
   }
   server_ = soup_server_new("server-header", "", nullptr);
+  // JPEG does not become smaller by it: it would cost more than the encoder.
+  soup_server_remove_websocket_extension(server_, SOUP_TYPE_WEBSOCKET_EXTENSION_DEFLATE);
   const auto early = [](SoupServer*, SoupServerMessage* message, const char* path, GHashTable*,
                         gpointer page) { static_cast<PageServer*>(page)->authorize(message, path); };
   soup_server_add_early_handler(server_, nullptr, early, this, nullptr);

@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
-"""The page of cerberusd in Chromium: first password, log in, watch, steer, stop, privacy, a viewer who may not steer. With
-a folder as second argument it leaves screenshots of a phone, an 800x480 touch screen and a desktop there. Skipped where
-chromium, chromium-driver and python3-selenium are not installed."""
+"""The page of cerberusd in Chromium: first password, log in, watch, steer, follow by tap, stop, two tabs of which one steers,
+events (filter, open, delete), a page of another origin, privacy, a viewer who may not steer, a wrong password eleven
+times. With a folder as second argument it leaves screenshots of a phone, an 800x480 touch screen and a desktop there.
+Skipped where chromium, chromium-driver and python3-selenium are not installed."""
+import http.server
 import pathlib
 import re
 import shutil
 import signal
+import sqlite3
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from robot_page import CONFIGURATION, free_port
@@ -41,10 +45,29 @@ def browser():
     return webdriver.Chrome(service=Service(DRIVER), options=options)
 
 
+class Stranger(http.server.BaseHTTPRequestHandler):
+    """A page of another origin that tries to use the robot with the browser's cookies."""
+    port = 0
+
+    def do_GET(self):
+        self.send_response(200)
+        self.send_header('Content-Type', 'text/html')
+        self.end_headers()
+        self.wfile.write(b'''<!doctype html><title>tries</title><link rel=icon href="data:,"><script>
+const socket = new WebSocket('ws://ROBOT/socket');
+const tried = new Promise((done) => { socket.onopen = () => done('opened'); socket.onerror = () => done('refused'); });
+const posted = fetch('http://ROBOT/logout', {method: 'POST', mode: 'no-cors', credentials: 'include'}).catch(() => null);
+Promise.all([tried, posted]).then((all) => { document.title = all[0]; });
+</script>'''.replace(b'ROBOT', f'127.0.0.1:{Stranger.port}'.encode()))
+
+    def log_message(self, *_):
+        pass
+
+
 class Visit:
-    def __init__(self, driver, port):
+    def __init__(self, driver, port, host='127.0.0.1'):
         self.driver = driver
-        self.driver.get(f'http://127.0.0.1:{port}/')
+        self.driver.get(f'http://{host}:{port}/')
 
     def wait(self, what, question):
         WebDriverWait(self.driver, PATIENCE, ignored_exceptions=(Exception,)).until(lambda _: question(), what)
@@ -94,10 +117,15 @@ def owner_visits(driver, port, one_time, folder, robot):
     page.one('auto').click()
     page.wait('automatic', lambda: 'manual' not in page.status())
     drives_by_keys(driver, page, robot / 'drive')
+    follows_by_tap(driver, page)
     driver.execute_script("document.getElementById('passwords').open = true")
-    page.one('whose').send_keys('viewer')
-    page.one('theirs').send_keys('also long' + Keys.ENTER)
-    page.wait('a password is set', lambda: 'is set' in page.one('word').text)
+    for role in ('operator', 'viewer'):
+        page.one('whose').send_keys(role)
+        page.one('theirs').send_keys('also long' + Keys.ENTER)
+        page.wait('a password is set', lambda role=role: f'{role} is set' in page.one('word').text)
+    two_tabs(driver, page, port)
+    events(driver, page, robot)
+    stranger(driver, page, port)
     driver.find_element(By.CSS_SELECTOR, '[data-mode=privacy]').click()
     page.wait('privacy', lambda: 'Privacy' in page.one('veil').text and 'off' in page.status())
     driver.find_element(By.CSS_SELECTOR, '[data-mode=armed]').click()
@@ -105,6 +133,121 @@ def owner_visits(driver, port, one_time, folder, robot):
     driver.find_element(By.CSS_SELECTOR, '[data-mode=armed]').click()
     page.one('logout').click()
     page.wait('logged out', lambda: page.one('password').is_displayed())
+
+
+def follows_by_tap(driver, page):
+    """A tap on an object gives its number to the head, which then is not turned by hand."""
+    page.one('stop').click()
+    page.wait('stopped', lambda: 'manual' in page.status() or 'stopped' in page.status())
+
+    def tapped():
+        if 'follows number' in page.one('word').text:
+            return True
+        where = driver.execute_script("""
+            const one = facts && facts.objects && facts.objects.find((object) => object.id !== null);
+            const box = picture.getBoundingClientRect();
+            return one ? [box.left + (one.x + one.w / 2) / facts.width * box.width,
+                          box.top + (one.y + one.h / 2) / facts.height * box.height] : null""")
+        for kind in ('mousePressed', 'mouseReleased') if where else ():
+            driver.execute_cdp_cmd('Input.dispatchMouseEvent', {
+                'type': kind, 'x': where[0], 'y': where[1], 'button': 'left', 'clickCount': 1})
+        return False
+    driver.execute_script('scrollTo(0, 0)')
+    page.wait('a tap follows', tapped)
+    page.wait('the head follows', lambda: not re.search('manual|stopped', page.status()))
+
+
+def two_tabs(driver, page, port):
+    """Of two sessions one steers; the other one is refused, but it may stop."""
+    driver.execute_script("window.holder = setInterval(() => send('turn 0.2 0'), 100)")
+    first = driver.current_window_handle
+    driver.switch_to.new_window('tab')
+    other = Visit(driver, port, 'localhost')  # an address of its own, so that its session is another one
+    other.log_in('operator', 'also long')
+    other.wait('a picture', other.has_picture)
+
+    def is_refused():
+        driver.execute_script("send('turn -0.5 0')")
+        return 'else is steering' in other.one('word').text
+    other.wait('the second tab is refused', is_refused)
+    driver.execute_script("document.getElementById('word').textContent = ''")
+    other.one('stop').click()
+    driver.switch_to.window(first)
+    page.wait('the first tab is stopped', lambda: 'stopped from another page' in page.one('word').text)
+    driver.execute_script("clearInterval(window.holder); send('turn 0 0')")
+    driver.switch_to.window(driver.window_handles[-1])
+    other.one('logout').click()
+    other.wait('logged out', lambda: other.one('password').is_displayed())
+    driver.close()
+    driver.switch_to.window(first)
+
+
+def events(driver, page, robot):
+    """A recording is filtered, opened, and deleted with all that belongs to it."""
+    items = lambda: driver.find_elements(By.CSS_SELECTOR, '#strip li')
+    label = lambda words: [one for one in driver.find_elements(By.CSS_SELECTOR, '#strip button') if one.text == words]
+
+    def has_ended():
+        page.one('reload').click()
+        time.sleep(.3)
+        return label('Delete')
+    page.wait('a recording that ended', has_ended)
+    driver.find_element(By.CSS_SELECTOR, '[data-mode=disarmed]').click()  # no further one begins
+    page.wait('disarmed', lambda: 'disarmed' in page.one('mode-now').text and page.one('recording').text == 'not recording')
+    page.one('filter-kept').click()
+    page.wait('no kept one', lambda: [one.text for one in items()] == ['No event is like that.'])
+    page.one('filter-kept').click()
+    page.wait('all of them', lambda: label('Keep'))
+    label('Keep')[0].click()
+    page.wait('it is kept', lambda: label('Free'))
+    page.one('filter-kept').click()
+    page.wait('the kept one', lambda: len(items()) == 1 and label('Free'))
+    driver.execute_script("arguments[0].value = 'track'; arguments[0].dispatchEvent(new Event('change'))", page.one('filter-reason'))
+    page.wait('the kept one of this reason', lambda: len(items()) == 1 and label('Free'))
+    identity = re.search('/events/front/([0-9]+)/video', driver.find_element(By.CSS_SELECTOR, '#strip a').get_attribute('href'))[1]
+    label('Play')[0].click()
+    page.wait('it is opened', lambda: page.one('video').is_displayed() and driver.execute_script(
+        "const video = document.getElementById('video'); return video.videoWidth > 0 || video.error"))
+    page.one('shut').click()
+    page.wait('it is shut', lambda: not page.one('video').is_displayed())
+    with sqlite3.connect(f'file:{robot}/recordings/recordings.sqlite?mode=ro', uri=True) as database:
+        rows = lambda: database.execute('select file from recordings where id = ?', (identity,)).fetchall()
+        stem = pathlib.Path(rows()[0][0]).stem
+        files = lambda: sorted(one.suffix for one in (robot / 'recordings').rglob(stem + '.*'))
+        assert len(files()) == 3, files()
+        label('Delete')[0].click()
+        driver.switch_to.alert.dismiss()
+        assert len(files()) == 3 and rows(), 'deleted without consent'
+        label('Delete')[0].click()
+        driver.switch_to.alert.accept()
+        page.wait('it is deleted', lambda: not label('Free'))
+        assert not files() and not rows(), (files(), rows())
+    page.one('filter-kept').click()
+
+
+def stranger(driver, page, port):
+    """Cookies do not tell ports apart: only its origin tells that a page is none of the robot's."""
+    Stranger.port = port
+    server = http.server.ThreadingHTTPServer(('127.0.0.1', 0), Stranger)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    own = severe(driver)
+    assert not own, own
+    first = driver.current_window_handle
+    driver.switch_to.new_window('tab')
+    driver.get(f'http://127.0.0.1:{server.server_port}/')
+    page.wait('the stranger has tried', lambda: driver.title in ('opened', 'refused'))
+    assert driver.title == 'refused', driver.title
+    assert any('/socket' in entry['message'] for entry in driver.get_log('browser'))
+    driver.close()
+    driver.switch_to.window(first)
+    server.shutdown()
+    server.server_close()
+    assert driver.execute_script("return fetch('/session').then((answer) => answer.json())")['role'] == 'owner'
+
+
+def severe(driver):
+    return [entry for entry in driver.get_log('browser') if entry['level'] == 'SEVERE'
+            and '/events' not in entry['message'] and '/login' not in entry['message']]
 
 
 def key(driver, kind, name, code, **more):
@@ -143,6 +286,21 @@ def viewer_visits(driver, port):
     for button in driver.find_elements(By.CSS_SELECTOR, '#steering button, [data-mode]'):
         assert not button.is_enabled(), button.text
     assert not page.one('passwords').is_displayed()
+    page.one('logout').click()
+    page.wait('logged out', lambda: page.one('password').is_displayed())
+
+
+def guesses(driver, port):
+    """Eleven wrong passwords: after a few the page asks for patience, also for the right one."""
+    page, words = Visit(driver, port), []
+    page.wait('the entrance', lambda: page.one('password').is_displayed())
+    page.one('user').send_keys('operator')
+    for password in ['a guess'] * 11 + ['also long']:
+        driver.execute_script("document.getElementById('entrance-word').textContent = ''")
+        page.one('password').send_keys(password + Keys.ENTER)
+        page.wait('an answer', lambda: page.one('entrance-word').text)
+        words.append(page.one('entrance-word').text)
+    assert words[0] == 'wrong password' and all('too many wrong passwords' in word for word in words[-2:]), words
 
 
 def main():
@@ -166,8 +324,8 @@ max-speed = 0.5
                 assert one_time, 'cerberusd printed no one-time password'
                 owner_visits(driver, port, one_time[1], pictures, folder)
                 viewer_visits(driver, port)
-                errors = [entry for entry in driver.get_log('browser') if entry['level'] == 'SEVERE'
-                          and '/events' not in entry['message'] and '/login' not in entry['message']]
+                guesses(driver, port)
+                errors = severe(driver)
                 assert not errors, errors
             except BaseException:
                 print((folder / 'log').read_text(), file=sys.stderr)
