@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: LGPL-2.1-or-later
 """cerberusd as a service manager sees it: ready, fed by frames, a camera that fails beside one that works, stopped by
-SIGTERM with complete recordings; and in privacy mode, which survives a restart, without any."""
+SIGTERM with complete recordings; a network camera whose password changes; and in privacy mode, which survives a restart,
+without any."""
+import base64
 import os
 import pathlib
 import queue
 import signal
 import socket
+import socketserver
 import sqlite3
 import subprocess
 import sys
@@ -38,6 +41,17 @@ file = "no-video.avi"
 '''
 
 
+LOCKED = '''
+[[camera]]
+name = "locked"
+kind = "rtsp"
+uri = "rtsp://127.0.0.1:PORT/main"
+user = "anna"
+password-file = "password"
+codec = "jpeg"
+'''
+
+
 # The same camera with another threshold, and another one in place of the broken one.
 RELOADED = CONFIGURATION.split('[[camera]]\nname = "broken"')[0].replace('[camera.head]', """[camera.detection]
 minimum-area = 30
@@ -53,6 +67,25 @@ def free_port():
     with socket.socket() as probe:
         probe.bind(('127.0.0.1', 0))
         return probe.getsockname()[1]
+
+
+class LockedCamera(socketserver.StreamRequestHandler):
+    """A camera that asks for a log-in (RFC 2326, RFC 7617), keeps it in mind, and has no stream."""
+    log_ins = []
+
+    def handle(self):
+        while True:
+            lines = []
+            while (line := self.rfile.readline()) != b'\r\n':
+                if not line:
+                    return  # closed
+                lines.append(line.decode().strip())
+            fields = dict(line.split(': ', 1) for line in lines[1:])
+            answer = '401 Unauthorized\r\nWWW-Authenticate: Basic realm="camera"'
+            if 'Authorization' in fields:
+                LockedCamera.log_ins.append(base64.b64decode(fields['Authorization'].split()[1]).decode())
+                answer = '404 Not Found'
+            self.wfile.write(f'RTSP/1.0 {answer}\r\nCSeq: {fields["CSeq"]}\r\n\r\n'.encode())
 
 
 class Service:
@@ -111,10 +144,22 @@ def rows(folder):
         return []
 
 
+def wait_until(what, question):
+    end = time.monotonic() + PATIENCE
+    while not question():
+        assert time.monotonic() < end, f'in vain: {what}'
+        time.sleep(.05)
+
+
 def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
-        (folder / 'robot.toml').write_text(CONFIGURATION)
+        server = socketserver.ThreadingTCPServer(('127.0.0.1', 0), LockedCamera)
+        server.daemon_threads = True
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        (folder / 'robot.toml').write_text(CONFIGURATION + LOCKED.replace('PORT', str(server.server_address[1])))
+        (folder / 'password').write_text('the first\n')
+        (folder / 'password').chmod(0o600)
         (folder / 'no-video.avi').write_text('this is no video\n')
 
         service = Service(folder)
@@ -122,10 +167,12 @@ def main():
             service.wait_for('READY=1')
             service.wait_for('STATUS=armed', 'good running', 'broken waiting')
             service.wait_for('WATCHDOG=1')
-            end = time.monotonic() + PATIENCE
-            while not rows(folder) and time.monotonic() < end:
-                time.sleep(.05)
-            assert rows(folder), 'nothing was recorded'
+            wait_until('a recording', lambda: rows(folder))
+            wait_until('the first password', lambda: 'anna:the first' in LockedCamera.log_ins)
+            (folder / 'password').write_text('the second\n')
+            log = service.reload()
+            assert 'locked: changed, its pipeline starts anew\n' in log and 'good: ' not in log, log
+            wait_until('the second password', lambda: 'anna:the second' in LockedCamera.log_ins)
             (folder / 'robot.toml').write_text(RELOADED.replace('minimum-area', 'minimal-area'))
             log = service.reload()
             assert 'is "minimum-area" meant?' in log and 'the robot goes on as before' in log, log
@@ -150,7 +197,7 @@ def main():
         finally:
             service.process.kill()
         assert code == 0, f'exit code {code}: {log}'
-        assert 'a part of GStreamer is missing' not in log, log
+        assert 'a part of GStreamer is missing' not in log and 'the first' not in log and 'the second' not in log, log
         assert 'broken: camera: ' in log and 'it is tried again in 1 s' in log, log
         recorded = rows(folder)
         for file, is_open, size in recorded:

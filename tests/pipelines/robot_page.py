@@ -52,6 +52,7 @@ longest-file = 2
 RTSP = '''
 [rtsp]
 port = STREAM
+tls = TLS
 users-file = "viewers"
 encoder = "jpegenc"
 '''
@@ -476,7 +477,7 @@ def main():
         page = f'port = {port}\n' + ('tls = true' if tls else '')
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('port = PORT', page)
                                            + WEBHOOK.replace('HOOK', str(receiver.server_port)).replace('FOLDER', name)
-                                           + (RTSP.replace('STREAM', str(stream)) if stream else ''))
+                                           + (RTSP.replace('STREAM', str(stream)).replace('TLS', str(bool(tls)).lower()) if stream else ''))
         with open(folder / 'log', 'w+', encoding='utf-8') as log:
             taken = socket.create_server(('127.0.0.1', port))
             process = subprocess.Popen([sys.argv[1], folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
@@ -490,6 +491,7 @@ def main():
                     Page.certificate = folder / 'state' / 'page-certificate.pem'
                     assert (folder / 'state' / 'page-key.pem').stat().st_mode & 0o777 == 0o600
                 owner = Page(port)
+                Rtsp.context = owner.context
                 first_password(owner, one_time)
                 operator, viewer = Page(port), Page(port)
                 assert operator.log_in('operator', 'password of operator') == 200

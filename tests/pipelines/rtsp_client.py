@@ -3,14 +3,21 @@
 import hashlib
 import re
 import socket
+import ssl
 import time
 
 PATIENCE = 100  # seconds
 
 
 class Rtsp:
+    """With `context`, of TLS, by rtsps."""
+    context = None
+
     def __init__(self, port, user='', password=''):
         self.line = socket.create_connection(('127.0.0.1', port), PATIENCE)
+        self.scheme = 'rtsp'
+        if self.context:
+            self.line, self.scheme = self.context.wrap_socket(self.line, server_hostname='127.0.0.1'), 'rtsps'
         self.user, self.password, self.port = user, password, port
         self.number, self.challenge, self.session, self.rest = 0, '', '', b''
 
@@ -33,11 +40,11 @@ class Rtsp:
         """Status, headers and body of a request; the second time with the log-in that the server asks for."""
         for last in (False, True):
             self.number += 1
-            lines = [f'{method} rtsp://127.0.0.1:{self.port}{path} RTSP/1.0', f'CSeq: {self.number}', *headers]
+            lines = [f'{method} {self.scheme}://127.0.0.1:{self.port}{path} RTSP/1.0', f'CSeq: {self.number}', *headers]
             if self.session:
                 lines.append(f'Session: {self.session}')
             if self.challenge:
-                lines.append(self.authorization(method, f'rtsp://127.0.0.1:{self.port}{path}'))
+                lines.append(self.authorization(method, f'{self.scheme}://127.0.0.1:{self.port}{path}'))
             self.line.sendall(('\r\n'.join(lines) + '\r\n\r\n').encode())
             status, found, body = self.answer()
             if status != 401 or last or not self.user:
@@ -91,6 +98,6 @@ class Rtsp:
         try:
             while time.monotonic() < end:
                 self.packet()
-        except ConnectionError:
+        except (ConnectionError, ssl.SSLError):
             return True
         raise TimeoutError('packets come all the time')
