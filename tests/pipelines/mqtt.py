@@ -3,8 +3,10 @@
 """mqttpublish against a real mosquitto on loopback, with TLS (where the openssl tool is), passwords and an ACL: a broker
 that is absent at the start, a wrong password, a certificate of another CA, killed and started again; retained state, tracks,
 last will, orders for the head, 10,000 orders that are refused. With the program cerberusd as argument: the page's list of
-cameras, a picture on demand, the newest recording and its deletion. Skipped where mosquitto is not installed."""
+cameras, a picture on demand, the newest recording and its deletion. CERBERUS_MESSAGES=10000 publishes so many messages, of
+which none may be lost or come in another order. Skipped where mosquitto is not installed."""
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -15,6 +17,7 @@ import struct
 import subprocess
 import sys
 import tempfile
+import threading
 import time
 
 from page_client import Page, Socket
@@ -55,7 +58,7 @@ class Client:
             raise PermissionError(body)
         if subscribe:
             self.packet(0x82, struct.pack('>H', 1) + text(b'#') + b'\0')
-        self.retained, self.tracks = {}, []
+        self.retained, self.tracks, self.counted = {}, [], []
 
     def packet(self, kind, body):
         size, length = b'', len(body)
@@ -95,6 +98,8 @@ class Client:
                 topic, payload = body[2:2 + size].decode(), body[2 + size:]
                 if topic.endswith('/track'):
                     self.tracks.append(json.loads(payload))
+                elif topic.endswith('/count'):
+                    self.counted.append(int(payload))
                 else:
                     self.retained[topic] = payload.decode(errors='replace')
 
@@ -217,6 +222,35 @@ def robot(program, folder, port, ca, client):
         process.kill()
 
 
+def outbound(folder, port, ca, count):
+    """Numbers that mqttpublish publishes as fast as it takes them, while it reports what a camera sees."""
+    import gi
+    gi.require_version('Gst', '1.0')
+    from gi.repository import GLib, Gst
+    Gst.init(None)
+    words = line(folder, port, 'password')[2:]
+    words.insert(words.index('mqttpublish') + 1, 'name=mqtt')
+    pipeline = Gst.parse_launchv(words)
+    mqtt, refused = pipeline.get_by_name('mqtt'), [0]
+    pipeline.set_state(Gst.State.PLAYING)
+    client = Client(port, ca)
+    client.wait('online', lambda: client.retained.get('cerberus/front/status') == 'online')
+
+    def publish():
+        for number in range(count):
+            while not mqtt.emit('publish', 'count', GLib.Bytes.new(str(number).encode()), False):
+                refused[0] += 1
+                time.sleep(.005)
+    begin = time.monotonic()
+    threading.Thread(target=publish, daemon=True).start()
+    client.wait('every message', lambda: client.counted and client.counted[-1] == count - 1)
+    print(f'{count} messages in {time.monotonic() - begin:.1f} s; {count - len(client.counted)} are missing; refused and given '
+          f'again: {refused[0]}')
+    assert client.counted == list(range(count))
+    pipeline.set_state(Gst.State.NULL)
+    client.wait('offline', lambda: client.retained.get('cerberus/front/status') == 'offline')
+
+
 def log_has(path, *words):
     end = time.monotonic() + PATIENCE
     while time.monotonic() < end:
@@ -245,7 +279,7 @@ def main():
             ca = folder / 'ca.pem'
         (folder / 'mosquitto.conf').write_text(
             f'listener {port} 127.0.0.1\n{tls}allow_anonymous false\npassword_file {folder / "users"}\n'
-            f'acl_file {folder / "acl"}\npersistence false\n')
+            f'acl_file {folder / "acl"}\npersistence false\nmax_queued_messages 100000\n')
         (folder / 'password').write_text('of the camera\n')
         (folder / 'wrong').write_text('of nobody\n')
 
@@ -320,6 +354,8 @@ def main():
             camera.send_signal(signal.SIGINT)
             client.wait('offline at the end', lambda: has('status', 'offline'))
             assert camera.wait(PATIENCE) == 0
+            if 'CERBERUS_MESSAGES' in os.environ:
+                outbound(folder, port, ca, int(os.environ['CERBERUS_MESSAGES']))
             if len(sys.argv) > 1:
                 robot(sys.argv[1], folder, port, ca, client)
         except BaseException:
