@@ -36,8 +36,7 @@ const char* keep(const char* word) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;
-  constexpr std::uint64_t kFrame = std::uint64_t{1}
-                                   << 63;  // half way: no distance is cut off but the longest
+  constexpr std::uint64_t kFrame = std::numeric_limits<std::int64_t>::max();  // no distance is cut off
   const auto bytes = std::as_bytes(std::span(data, size)).subspan(1);
   Example example;
   Unpacker from(bytes, data[0], kFrame, keep);
