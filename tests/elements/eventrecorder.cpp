@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The recorder's files: which frames, at which times, in which container.
+//
+// CERBERUS_EVENTS=200: so many random events instead of a few.
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <random>
 
 #include "recorder_rig.h"
 
@@ -15,6 +21,90 @@ namespace {
 // Times in a file are in its track's scale, which may be rounded to a millisecond (Matroska).
 bool near(GstClockTime a, GstClockTime b) {
   return GST_CLOCK_DIFF(a, b) <= gint64{GST_MSECOND} && GST_CLOCK_DIFF(b, a) <= gint64{GST_MSECOND};
+}
+
+// The running time with which each file begins, by the messages that it has started.
+struct Begins {
+  explicit Begins(GstBus* bus) {
+    gst_bus_set_sync_handler(
+        bus,
+        [](GstBus*, GstMessage* message, gpointer self) {
+          static_cast<Begins*>(self)->note(gst_message_get_structure(message));
+          return GST_BUS_PASS;
+        },
+        this, nullptr);
+  }
+  void note(const GstStructure* facts) {
+    guint64 begin = 0;
+    if (!facts || g_strcmp0(gst_structure_get_string(facts, "state"), "started") != 0) return;
+    gst_structure_get_uint64(facts, "running-time", &begin);
+    const std::lock_guard guard(lock);
+    of[gst_structure_get_string(facts, "location")] = begin;
+  }
+  std::mutex lock;
+  std::map<std::string, GstClockTime> of;
+};
+
+constexpr GstClockTime kHours = 1000 * 3600 * GST_SECOND;  // x264enc's stamps begin here
+constexpr int kUsualEvents = 8, kEventsOfARecorder = 2;
+constexpr guint32 kInput = 700;  // frames
+
+// Two random events of one recorder, from `seed`.
+struct RandomEvents {
+  struct Event {
+    guint32 start, stop;  // the frames that are pushed last before each
+  };
+
+  explicit RandomEvents(unsigned seed) : random(seed) {
+    gop = seed == 0 ? 1 : seed == 1 ? 250 : draw(1, 250);
+    // Shown 0 3 1 2 | 4 7 5 6, with closed GOPs.
+    if ((b_frames = gop >= 4 && draw(0, 2) == 0)) gop -= gop % 4;
+    audio = draw(0, 1);
+    matroska = draw(0, 3) == 0;
+    pre_roll = draw(0, 3000), post_roll = draw(0, 2000), join = draw(0, 1000);
+    longest = draw(0, 1) * draw(1, 5);
+    guint32 from = 0;
+    for (Event& event : events) {
+      event.start = from + static_cast<guint32>(draw(0, 250));
+      event.stop = event.start + static_cast<guint32>(draw(0, 80));
+      from = event.stop + 1;
+    }
+  }
+  int draw(int from, int to) { return std::uniform_int_distribution<>(from, to)(random); }
+  // The picture that is the kth in the order of decoding, and when the kth is decoded.
+  guint32 shown(guint32 k) const {
+    constexpr guint32 kOrder[] = {0, 3, 1, 2};
+    return b_frames ? k / 4 * 4 + kOrder[k % 4] : k;
+  }
+  // In running time: below zero for the first ones of a stream with B-frames.
+  gint64 decoded(guint32 k) const { return (gint64{k} - (b_frames ? 2 : 0)) * gint64{kFrame}; }
+  bool is_keyframe(guint32 k) const { return k % static_cast<guint32>(gop) == 0; }
+  // Whether the pre-roll or the post-roll of an event reaches to the frame.
+  bool wants(guint32 frame) const {
+    const auto time = static_cast<gint64>(frame * kFrame), ms = gint64{GST_MSECOND};
+    return std::ranges::any_of(events, [&](const Event& event) {
+      return time >= decoded(event.start) - pre_roll * ms && time <= decoded(event.stop) + post_roll * ms;
+    });
+  }
+
+  std::mt19937 random;
+  int gop, pre_roll, post_roll, join, longest;
+  bool b_frames, audio, matroska;
+  Event events[kEventsOfARecorder];
+};
+
+void play(Rig& rig, const RandomEvents& what) {
+  rig.start();
+  for (guint32 k = 0; k < kInput; ++k) {
+    rig.video->push(unit(what.shown(k), kHours + what.shown(k) * kFrame, what.is_keyframe(k),
+                         static_cast<GstClockTime>(gint64{kHours} + what.decoded(k))));
+    if (rig.audio) rig.audio->push(unit(k, k * kFrame + 7 * GST_MSECOND, true));
+    for (const auto& event : what.events) {
+      if (k == event.start) rig.start_event();
+      if (k == event.stop) rig.stop_event();
+    }
+  }
+  rig.finish();
 }
 
 }  // namespace
@@ -150,9 +240,8 @@ GST_START_TEST(the_element_records_again_after_it_was_stopped) {
 }
 GST_END_TEST
 
-// x264enc's stamps begin at 1000 hours, and its decoding times lie before its segment.
+// x264enc's decoding times lie before its segment.
 GST_START_TEST(stamps_that_begin_at_1000_hours_and_b_frames_become_times_from_zero) {
-  constexpr GstClockTime kHours = 1000 * 3600 * GST_SECOND;
   Rig rig;
   rig.video.reset();
   rig.video = std::make_unique<Stream>(rig.element, "video", kH264, kHours);
@@ -337,6 +426,59 @@ GST_START_TEST(no_frame_is_lost_or_doubled_between_the_files_of_an_event) {
 }
 GST_END_TEST
 
+// Every presentation time of the input that an event reaches to is in one file, once, and no other file has it.
+GST_START_TEST(no_frame_of_random_events_is_lost_or_doubled_and_each_has_its_time) {
+  const char* wanted = getenv("CERBERUS_EVENTS");
+  const int recorders = (wanted ? std::max(1, atoi(wanted)) : kUsualEvents) / kEventsOfARecorder;
+  int files = 0, frames_seen = 0;
+  for (int seed = 0; seed < std::max(1, recorders); ++seed) {
+    const RandomEvents what(static_cast<unsigned>(seed));
+    Rig rig(what.gop);
+    rig.video.reset();
+    rig.video = std::make_unique<Stream>(rig.element, "video", kH264, kHours);
+    Begins begins(rig.bus);
+    g_object_set(rig.element, "pre-roll", what.pre_roll * GST_MSECOND, "post-roll",
+                 what.post_roll * GST_MSECOND, "join", what.join * GST_MSECOND, "longest-file",
+                 what.longest * GST_SECOND, "container", what.matroska ? 2 : 1, nullptr);
+    if (what.audio) rig.audio = std::make_unique<Stream>(rig.element, "audio_0", kAac);
+    play(rig, what);
+
+    std::vector<int> times(kInput), sounds(kInput);
+    for (const auto& file : rig.folder.files()) {
+      auto frames = read_back(file);
+      fail_unless(!frames.empty() && frames[0].keyframe && begins.of.contains(file), "%s", file.c_str());
+      // A track of B-frames may begin late in its file, by the time between decoding and showing its first frame.
+      const GstClockTime late = what.b_frames ? frames[0].pts : 0, begin = begins.of[file];
+      fail_unless(late <= 2 * kFrame + GST_MSECOND);
+      for (const Frame& frame : frames) {
+        fail_unless(near(begin + frame.pts, frame.number * kFrame + late),
+                    "seed %d: frame %u of %s is at %" GST_TIME_FORMAT, seed, frame.number, file.c_str(),
+                    GST_TIME_ARGS(begin + frame.pts));
+        ++times[frame.number];
+      }
+      ++files;
+      frames_seen += static_cast<int>(frames.size());
+      if (!what.audio) continue;
+      for (const Frame& packet : read_back(file, "audio_0")) {
+        if (!what.b_frames)
+          fail_unless(near(begin + packet.pts, packet.number * kFrame + 7 * GST_MSECOND),
+                      "seed %d: packet %u", seed, packet.number);
+        ++sounds[packet.number];
+      }
+    }
+    for (guint32 k = 0; k < kInput; ++k) {
+      fail_unless(times[k] <= 1 && (times[k] == 1 || !what.wants(k)), "seed %d: frame %u is in %d files",
+                  seed, k, times[k]);
+      fail_unless(sounds[k] <= 1, "seed %d: packet %u is in %d files", seed, k, sounds[k]);
+      if (what.audio && !what.b_frames && k + 1 < kInput && times[k] && times[k + 1])
+        fail_unless(sounds[k] == 1, "seed %d: packet %u is in no file", seed, k);
+    }
+  }
+  g_print("%d random events: %d frames in %d files, each once\n", recorders * kEventsOfARecorder, frames_seen,
+          files);
+}
+GST_END_TEST
+
 GST_START_TEST(two_recorders_in_one_folder_overwrite_nothing) {
   Rig a, b;
   g_object_set(b.element, "location", a.folder.path().c_str(), nullptr);
@@ -376,6 +518,10 @@ static Suite* eventrecorder_suite() {
   tcase_add_test(tests, two_recorders_in_one_folder_overwrite_nothing);
   tcase_add_loop_test(tests, no_frame_is_lost_or_doubled_between_the_files_of_an_event, 0, 4);
   suite_add_tcase(suite, tests);
+  TCase* random = tcase_create("random events");
+  tcase_set_timeout(random, getenv("CERBERUS_EVENTS") ? 1000 : 60);
+  tcase_add_test(random, no_frame_of_random_events_is_lost_or_doubled_and_each_has_its_time);
+  suite_add_tcase(suite, random);
   return suite;
 }
 
