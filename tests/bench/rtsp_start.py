@@ -57,7 +57,7 @@ def main():
         port = int(re.search(r':(\d+)/plain', server.stdout.readline())[1])
         other = Rtsp(port)
         assert other.watch('/plain') == 200
-        threading.Thread(target=other.frames, args=(1 << 30,), daemon=True).start()
+        threading.Thread(target=other.is_closed, daemon=True).start()  # reads until the server ends
         times = []
         for _ in range(clients):
             time.sleep(.2 + random.random())
