@@ -13,7 +13,9 @@
 using namespace cerberus::record;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::string folder = "/tmp/cerberus-fuzz-index-" + std::to_string(getpid());
+  // In memory where there is such a disk: every row is synchronised.
+  static const std::string folder = (std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp") +
+                                    ("/cerberus-fuzz-index-" + std::to_string(getpid()));
   std::filesystem::remove_all(folder);
   std::filesystem::create_directories(folder + "/in");
   std::ofstream(folder + "/precious.mp4") << "x";
