@@ -77,7 +77,7 @@ inline std::vector<Frame> read_back(const std::string& file, const std::string& 
   gst_element_set_state(pipeline, GST_STATE_PLAYING);
   g_autoptr(GstBus) bus = gst_element_get_bus(pipeline);
   g_autoptr(GstMessage) message = gst_bus_timed_pop_filtered(
-      bus, 10 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
+      bus, 60 * GST_SECOND, static_cast<GstMessageType>(GST_MESSAGE_EOS | GST_MESSAGE_ERROR));
   fail_unless(message && GST_MESSAGE_TYPE(message) == GST_MESSAGE_EOS, "%s cannot be read", file.c_str());
   gst_element_set_state(pipeline, GST_STATE_NULL);
   gst_object_unref(pipeline);
@@ -208,7 +208,7 @@ struct Rig {
       if (stream) stream->end();
     wait_for(GST_MESSAGE_EOS);
   }
-  GstMessage* take(GstMessageType type) { return gst_bus_timed_pop_filtered(bus, 10 * GST_SECOND, type); }
+  GstMessage* take(GstMessageType type) { return gst_bus_timed_pop_filtered(bus, 60 * GST_SECOND, type); }
   void wait_for(GstMessageType type) {
     g_autoptr(GstMessage) message = take(type);
     fail_unless(message != nullptr);
