@@ -247,9 +247,9 @@ class Writer {
 
   void pictures() {
     add(std::string("  found. ! queue name=picture-queue ") + kNewest +
-        " ! motionoverlay crosshair=true ! videoconvert ! videoscale ! video/x-raw,width=[1," +
-        std::to_string(page_.picture_width) +
-        "],pixel-aspect-ratio=1/1 ! jpegenc name=jpeg quality=" + std::to_string(page_.quality) +
+        " ! videoconvert ! videoscale ! video/x-raw,width=[1," + std::to_string(page_.picture_width) +
+        "],pixel-aspect-ratio=1/1 ! motionoverlay crosshair=true ! jpegenc name=jpeg quality=" +
+        std::to_string(page_.quality) +
         " ! appsink name=picture sync=false async=false max-buffers=2 drop=true");
     // One stage's result, while the page shows it: only then the frames keep the record (keep-planes).
     add(std::string("  found. ! queue name=stage-queue ") + kNewest +
