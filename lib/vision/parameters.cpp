@@ -54,6 +54,9 @@ void name(Numbers n, RegionParameters& p) {
          N(across),
          N(down),
          N(joined),
+         N(least_unknown),
+         N(walked_to_be_seen),
+         N(beside),
          N(loose),
          N(slack),
          N(explained),
@@ -69,9 +72,10 @@ void name(Numbers n, PeopleFinder::Part& p) {
 }
 
 void name(Numbers n, PeopleFinder::Parameters& p) {
-  n.add({N(elsewhere), N(price), N(height_weight), N(spread), N(other_height), N(least_gain), N(aspect),
-         N(cells), N(above), N(below), N(least_feet), N(least_part), N(edge_part), N(edge_step), N(one_wide),
-         N(solid), N(block_width), N(gaps), N(gaps_after)});
+  n.add({N(elsewhere),    N(price),      N(height_weight), N(spread),    N(unknown_spread), N(unknown_step),
+         N(other_height), N(least_gain), N(aspect),        N(cells),     N(above),          N(below),
+         N(least_feet),   N(least_part), N(edge_part),     N(edge_step), N(one_wide),       N(solid),
+         N(block_width),  N(gaps),       N(gaps_after)});
   name(n.part("free_space"), p.free_space);
   name(n.part("head"), p.body[0]);
   name(n.part("trunk"), p.body[1]);
@@ -91,6 +95,14 @@ void name(Numbers n, PersonBoxParameters& p) {
   n.add({N(aspect), N(measured), N(reach), N(column), N(below_head), N(above_feet), N(head_reach),
          N(head_row), N(head_rise), N(head_fall), N(leg_reach), N(foot_row), N(foot_fall), N(shadow_reach),
          N(legs_from), N(legs_to), N(shadow_wide), N(shadow_from), N(shadow_tip)});
+}
+
+void name(Numbers n, FreeHeadParameters& p) {
+  n.add({N(rows), N(core), N(beside_from), N(beside_to), N(least_core), N(most_beside)});
+}
+
+void name(Numbers n, WalkingBodies::Parameters& p) {
+  n.add({N(step_x), N(step_y), N(same_height), N(least_frames), N(stride)});
 }
 
 void name(Numbers n, TwoFrameConfirmation::Parameters& p) {
@@ -139,6 +151,7 @@ void name(Numbers n, TrackParameters& p) {
          N(jumped_misfit),
          N(shrinking_misfit),
          N(extent_known),
+         N(shared_group),
          N(fragment_walk),
          N(stand_speed),
          N(settled),
@@ -222,6 +235,8 @@ std::vector<NamedNumber> named_numbers(DetectorParameters& p) {
   stage("height", p.detection.height);
   stage("outline", p.detection.outline);
   stage("box", p.detection.box);
+  stage("head", p.detection.head);
+  stage("bodies", p.detection.bodies);
   stage("confirmation", p.detection.confirmation);
   stage("track", p.tracking.track);
   stage("life", p.tracking.life);

@@ -61,6 +61,8 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   check_all_are_named(p, d.height);
   check_all_are_named(p, d.outline);
   check_all_are_named(p, d.box);
+  check_all_are_named(p, d.head);
+  check_all_are_named(p, d.bodies);
   check_all_are_named(p, d.confirmation);
   check_all_are_named(p, t.track);
   check_all_are_named(p, t.life);

@@ -135,6 +135,28 @@ START_TEST(a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box) {
 }
 END_TEST
 
+// Of a person of 100 pixels the head is 13 rows high and 13 columns wide; beside it are 11 columns on both sides.
+START_TEST(a_head_is_free_where_at_most_a_quarter_of_what_is_beside_it_is_foreground) {
+  for (const int covered : {0, 5, 6, 11}) {
+    Picture picture;
+    picture.fill(153, 100, 167, 113);
+    picture.fill(143, 113, 177, 200);
+    picture.fill(168, 100, 168 + covered, 113);
+    pack(picture.mask.view(), picture.bits.view());
+    ck_assert_msg(has_free_head(picture.bits.view(), kSize, kExpected) == (covered <= 5), "%d", covered);
+  }
+}
+END_TEST
+
+START_TEST(a_body_without_foreground_where_its_head_should_be_has_none) {
+  Picture picture;
+  picture.fill(143, 108, 177, 200);
+  pack(picture.mask.view(), picture.bits.view());
+  ck_assert(!has_free_head(picture.bits.view(), kSize, kExpected));
+  ck_assert(!has_free_head(picture.bits.view(), kSize, {143, -5, 34, 100}));  // cut by the picture's edge
+}
+END_TEST
+
 int main() {
   return cerberus::tests::run_suite(
       "person_box",
@@ -142,5 +164,7 @@ int main() {
        an_outstretched_hand_and_a_shadow_beside_the_feet_do_not_widen_the_box, a_stride_widens_the_box,
        the_feet_are_in_the_middle_of_the_shadow_around_them, feet_without_a_shadow_are_where_the_pixels_end,
        a_head_that_is_not_where_it_is_expected_is_found_near_by, pixels_belong_to_the_nearer_of_two_persons,
-       a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box});
+       a_person_without_pixels_or_outside_the_picture_keeps_a_finite_box,
+       a_head_is_free_where_at_most_a_quarter_of_what_is_beside_it_is_foreground,
+       a_body_without_foreground_where_its_head_should_be_has_none});
 }

@@ -167,6 +167,36 @@ START_TEST(a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps) {
 }
 END_TEST
 
+// The box of a group, and in it one person who is seen alone.
+START_TEST(a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while) {
+  for (const RegionKind before : {RegionKind::group, RegionKind::thing, RegionKind::person_like}) {
+    TrackHypothesis track = TrackHypothesis::first_seen({{200, 100, 200, 120}, 20000, 0.9, 1, before});
+    LifeCycle::confirm(track, 7);
+    const Region person{{300, 110, 40, 100}, 3000, 0.9, 1, RegionKind::person_like};
+    track.correct(person, true, 0.04, kFrame);
+    const bool adopted = std::abs(track.width() - 40) < 1;
+    ck_assert(adopted == (before != RegionKind::person_like));
+    for (int k = 0; k < 5; ++k) track.correct(person, true, 0.04, kFrame);
+    ck_assert_double_eq_tol(track.width(), 40, 1);
+  }
+}
+END_TEST
+
+START_TEST(a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_group) {
+  TrackHypothesis track = walker(200, 240);
+  LifeCycle::confirm(track, 7);
+  track.correct({{182, 192, 40, 100}, 2000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
+  ck_assert(track.kind == RegionKind::group);
+  TrackHypothesis other = walker(200, 240);
+  LifeCycle::confirm(other, 7);
+  other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
+  ck_assert(other.kind == RegionKind::thing);
+  other.shared.time = 0.2;  // s: long enough
+  other.correct({{150, 192, 200, 100}, 9000, 0.9, 1, RegionKind::group}, false, 0.04, kFrame);
+  ck_assert(other.kind == RegionKind::group);
+}
+END_TEST
+
 START_TEST(each_transition_leads_to_its_state) {
   const Box seen{180, 190, 40, 100};
   const CameraOrientation camera{Lens(60 * kDegree, kFrame), 0, 0};
@@ -206,10 +236,13 @@ END_TEST
 
 int main() {
   return cerberus::tests::run_suite(
-      "track_hypothesis", {each_transition_leads_to_its_state, a_zoom_scales_all_of_its_lengths,
-                           a_camera_that_rolls_turns_the_velocity,
-                           a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
-                           towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
-                           it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,
-                           a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps});
+      "track_hypothesis",
+      {each_transition_leads_to_its_state, a_zoom_scales_all_of_its_lengths,
+       a_camera_that_rolls_turns_the_velocity,
+       a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
+       towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
+       a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while,
+       a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_group,
+       it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,
+       a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps});
 }

@@ -53,6 +53,8 @@ PeopleFinder::PeopleFinder(const Parameters& parameters) : parameters_(parameter
     return Scale{factor, kUnit * q.height_weight * deviation * deviation / 2};
   };
   scales_ = {scale(1, q.spread), scale(1 - q.other_height, q.spread), scale(1 + q.other_height, q.spread)};
+  for (std::size_t i = 0; i < unknown_scales_.size(); ++i)
+    unknown_scales_[i] = scale(1 - static_cast<double>(i) * q.unknown_step, q.unknown_spread);
 }
 
 void PeopleFinder::preallocate(Size picture) {
@@ -118,7 +120,7 @@ void PeopleFinder::lay_grid(BitView pixels, const Bounds& window, double tallest
   }
   shapes_.assign(static_cast<std::size_t>(rows_) + 1, {});
   for (int r = 0; r <= rows_; ++r) {
-    const double height = prior_->height(y0_ + r * step_) / step_;
+    const double height = (height_known_ ? prior_->height(y0_ + r * step_) : tallest) / step_;
     if (height > 0)
       shapes_[r] = {std::max(2, whole(height)), std::max(1, whole(parameters_.aspect * height))};
   }
@@ -201,10 +203,12 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
   const int end = std::min({to + w / 2, columns_ - reach + 1, inside_.right + 1});
   if (first >= end) return;
   const int cost = static_cast<int>(scale.cost * h * h);
-  const int least = std::max(best.score, static_cast<int>(kUnit * q.least_gain * h * h));
-  // All that moves in these rows may be too little.
+  const int least =
+      std::max(best.score, static_cast<int>(kUnit * (height_known_ ? q.least_gain : 0) * h * h));
+  // All that moves in these rows, within reach of these axes, may be too little.
   const int dearest = bands_[2].core_moving;
-  const int moving = static_cast<int>((sums(foot)[columns_] - sums(foot - h)[columns_]) & 0xffff);
+  const auto before = [&](int x) { return sums(foot)[x] - sums(foot - h)[x]; };
+  const int moving = static_cast<int>((before(end - 1 + reach) - before(first - reach)) & 0xffff);
   if (moving * dearest - cost <= least) return;
   int highest = score(foot, h, first, end) - cost;
   if (highest <= least) return;
@@ -223,10 +227,17 @@ void PeopleFinder::try_row(int foot, const Scale& scale, int from, int to, int a
 }
 
 // The best position for one more person whose left edge lies in [from, to). Score 0: none. The expected height is tried
-// everywhere, and the others where that fits best.
+// everywhere, and the others where that fits best; where the height is not known, all of them everywhere.
 PeopleFinder::Candidate PeopleFinder::best(int from, int to, int anchor) {
   Candidate best;
-  for (int foot = rows_; foot > window_.top; --foot) try_row(foot, scales_[0], from, to, anchor, best);
+  const auto try_everywhere = [&](const Scale& scale) {
+    for (int foot = rows_; foot > window_.top; --foot) try_row(foot, scale, from, to, anchor, best);
+  };
+  if (!height_known_) {
+    for (const Scale& scale : unknown_scales_) try_everywhere(scale);
+    return best;
+  }
+  try_everywhere(scales_[0]);
   if (best.score == 0) return best;
   const Candidate usual = best;
   constexpr int kAround = 2;  // cells
@@ -336,6 +347,7 @@ double PeopleFinder::gaps() {
 // Is the group a car or a door, not people?
 bool PeopleFinder::is_block(bool was_wide) {
   const std::size_t n = chosen_.size();
+  if (!height_known_) return n > 0 && (gaps() < parameters_.gaps || filled() > parameters_.solid);
   const bool wide = n > 2 && window_.width() >= parameters_.block_width * shapes_[window_.bottom].width;
   wide_block_ = (wide && gaps() < parameters_.gaps) || (was_wide && n > 1 && gaps() < parameters_.gaps_after);
   return wide_block_ || (n > 2 && filled() > parameters_.solid);
@@ -350,7 +362,8 @@ void PeopleFinder::choose(bool was_wide_block) {
     if (explain(true) <= best_first) std::swap(chosen_, other_);
     settle();
   }
-  if (is_block(was_wide_block)) return;
+  block_ = is_block(was_wide_block);
+  if (block_ && height_known_) return;
   for (const Candidate& c : chosen_)
     people_.push_back(
         {{static_cast<double>(x0_ + c.left * step_), static_cast<double>(y0_ + c.top * step_),
@@ -361,15 +374,16 @@ void PeopleFinder::choose(bool was_wide_block) {
 std::span<const Person> PeopleFinder::find(BitView pixels, const Bounds& window, const HeightPrior& prior,
                                            bool was_wide_block) {
   people_.clear();
-  wide_block_ = false;
+  block_ = wide_block_ = false;
   prior_ = &prior;
-  const double tallest = prior.height(window.bottom);
-  if (tallest <= 0) return people_;
+  const double expected = prior.height(window.bottom);
+  height_known_ = expected > 0;
+  if (window.height() <= 0) return people_;
   std::array<std::uint8_t, kMostCells> cells;
   std::array<std::uint32_t, kMostCells> sums;
   cells_ = cells;
   sums_ = sums;
-  lay_grid(pixels, window, tallest);
+  lay_grid(pixels, window, height_known_ ? expected : window.height());
   choose(was_wide_block);
   cells_ = {};
   sums_ = {};

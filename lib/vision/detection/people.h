@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // People in a group of foreground blobs: the foreground is explained by as few standing persons as possible, so that
 // fragments of one person are joined and persons beside and behind one another are parted by the same rule. A person is
-// a body of three parts (head, trunk, legs), as tall as the height prior expects.
+// a body of three parts (head, trunk, legs), as tall as the height prior expects or, where that is not known, at most as
+// tall as the blob.
 #pragma once
 
 #include <array>
@@ -52,6 +53,10 @@ class PeopleFinder {
     // Of the logarithm of the height: adults differ by 5 %, the line is as uncertain. measured: MOTA on PETS09-S2L1 71.8
     // with .08 and 73.5 with .11, where a clock over the picture costs 2 % of the recall.
     double spread = 0.08;
+    // Where the height is not known the blob's is expected, and smaller ones are tried by steps. measured: prior and step
+    // of the trial on TUD-Campus.
+    double unknown_spread = 0.3;  // of the logarithm of the height
+    double unknown_step = 0.08;   // of the blob's height
     double other_height = 0.08;  // a height that is tried as well is by so much lower or higher than expected
     // Nats of a squared height: less is the rest of a person already found. measured: MOTA on PETS09-S2L1 68.9 with .05,
     // 70.4 with .07, 71.8 with .09, 73.5 with .12, where a window of it loses 2 % of the people.
@@ -81,14 +86,17 @@ class PeopleFinder {
   // Takes the memory for pictures of this size; find() takes none.
   void preallocate(Size picture);
 
-  // pixels: one bit a pixel of a picture of the size given to preallocate(). Reads the window only. Returns nothing
-  // where the prior does not know the height, and for a block: foreground without the gaps that people side by side
-  // leave. was_wide_block: the result of found_wide_block() a frame ago. Deterministic; the span lives until the next
-  // call.
+  // pixels: one bit a pixel of a picture of the size given to preallocate(). Reads the window only. Where the prior knows
+  // the height, nothing is returned for a block: foreground without the gaps that people side by side leave. Where it
+  // does not know it, the window is that of one blob, and the bodies that explain a block are returned as well:
+  // found_block() tells them apart. was_wide_block: the result of found_wide_block() a frame ago. Deterministic; the
+  // span lives until the next call.
   std::span<const Person> find(BitView pixels, const Bounds& window, const HeightPrior& prior,
                                bool was_wide_block = false);
   // Returns whether the last find() found a block that is too wide for people, or the rest of one.
   bool found_wide_block() const { return wide_block_; }
+  // Returns whether the last find() found a block.
+  bool found_block() const { return block_; }
 
   std::size_t bytes() const;
 
@@ -135,9 +143,11 @@ class PeopleFinder {
   std::array<BodyBand, kParts> bands_;  // gains only
   std::array<Body, kTallest + 1> bodies_;
   std::array<Scale, 3> scales_;
+  std::array<Scale, 6> unknown_scales_;  // of the blob's height
   Size picture_;
   const HeightPrior* prior_ = nullptr;
-  bool wide_block_ = false;
+  bool height_known_ = false;
+  bool block_ = false, wide_block_ = false;
   // The grid: cells of step_ x step_ pixels, the first one's corner at (x0_, y0_); the picture and the window in it.
   int step_ = 1, x0_ = 0, y0_ = 0, columns_ = 0, rows_ = 0;
   Bounds inside_, window_;

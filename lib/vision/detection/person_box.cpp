@@ -112,7 +112,30 @@ double foot(BitView moving, const Bounds& window, Interval columns, int top, int
   return shadow < bottom ? (shadow + bottom + 1) / 2 : bottom;
 }
 
+// Share of the rectangle that is foreground: columns from `from` to `to`, rows [top, bottom). Nothing moves outside the
+// picture.
+double share(BitView moving, Size picture, double from, double to, int top, int bottom) {
+  const int left = std::clamp(static_cast<int>(std::lround(from)), 0, picture.width);
+  const int right = std::clamp(static_cast<int>(std::lround(to)), left, picture.width);
+  int n = 0;
+  for (int y = std::max(0, top); y < std::min(bottom, picture.height); ++y)
+    n += count(moving, y, {left, right});
+  const int pixels = std::max(1, right - left) * std::max(1, bottom - top);
+  return static_cast<double>(n) / pixels;
+}
+
 }  // namespace
+
+bool has_free_head(BitView moving, Size picture, const Box& body, const FreeHeadParameters& q) {
+  const double h = body.height, axis = body.x + body.width / 2;
+  const int top = static_cast<int>(std::lround(body.y)),
+            bottom = static_cast<int>(std::lround(body.y + q.rows * h));
+  const auto beside = [&](double from, double to) {
+    return share(moving, picture, axis + from * h, axis + to * h, top, bottom);
+  };
+  return top >= 0 && beside(-q.core, q.core) > q.least_core &&
+         (beside(-q.beside_to, -q.beside_from) + beside(q.beside_from, q.beside_to)) / 2 < q.most_beside;
+}
 
 Box fit_box(BitView moving, const Bounds& window, std::size_t self, std::span<const Person> all,
             const PersonBoxParameters& q) {

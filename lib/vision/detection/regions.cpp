@@ -2,6 +2,7 @@
 #include "vision/detection/regions.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstdlib>
@@ -18,7 +19,7 @@ namespace cerberus::vision {
 namespace {
 
 constexpr std::size_t kMostParts = 128;   // components beyond which a picture is clutter, not people
-constexpr std::size_t kMostWalkers = 32;  // isolated walking persons, at a time
+constexpr std::size_t kMostWalkers = 24;  // isolated walking persons, at a time
 constexpr std::size_t kMostBlocks = 16;   // cars and the like at a time
 constexpr std::size_t kMostRegions = 2 * kMostParts;  // persons and the components that they do not explain
 
@@ -51,14 +52,15 @@ struct RegionFinder::State {
   TwoFrameConfirmation newcomers{parameters.confirmation};
   struct Walker {      // a blob that looks like one person
     Point foot, from;  // its present place and the first one, both in pixels of the present frame
-    double height;
+    float height;
     int looks;
   };
   std::vector<Walker> walkers, walkers_before;
   std::vector<Box> blocks, blocks_before;  // groups too wide and too solid for people, now and a frame ago
   std::vector<int> group;                  // of each component
   OutlineFinder outline_finder{parameters.outline};
-  std::vector<Outline> outlines;  // of each component
+  std::vector<Outline> outlines;            // of each component
+  WalkingBodies bodies{parameters.bodies};  // with a free head
   std::vector<Region> regions;
   int seen = 0;  // frames of this scene
 
@@ -70,6 +72,8 @@ struct RegionFinder::State {
   void learn(const Transform& motion);
   void group_components();
   void explain(int group);
+  void explain_unknown(int group, const Bounds& window);
+  double walked(const Box& body);
   void add_plain(std::size_t component, RegionKind kind = RegionKind::thing);
   RegionKind kind_of(const Component& unexplained) const;
   double unexplained(const Bounds& window, std::span<const Person> people) const;
@@ -90,6 +94,7 @@ void RegionFinder::State::preallocate(Size picture) {
   vision::preallocate(group, std::min(parts, kMostParts));
   outline_finder.preallocate(picture.width);
   vision::preallocate(outlines, parts);
+  bodies.preallocate();
   vision::preallocate(regions, std::max(parts, std::min(2 * parts, kMostRegions)));
   size = picture;  // assigned last: after a failed allocation the next call tries again
 }
@@ -110,7 +115,8 @@ void RegionFinder::State::learn(const Transform& motion) {
                                     [&](const Component& o) { return &o != &c && are_within(reach, c, o); });
     if (!alone || walkers.size() == kMostWalkers) continue;
     const double h = c.height();
-    Walker walker{{(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, h, 1};
+    Walker walker{
+        {(body.left + body.right) / 2.0, static_cast<double>(c.bottom)}, {}, static_cast<float>(h), 1};
     walker.from = walker.foot;
     for (const Walker& w : walkers_before) {
       const Point foot = motion.apply(w.foot);
@@ -153,7 +159,8 @@ void RegionFinder::State::group_components() {
 // What no person explains, where no block was found.
 RegionKind RegionFinder::State::kind_of(const Component& c) const {
   const double expected = prior.height(c.bottom);
-  if (expected <= 0 || c.height() > parameters.regions.tallest * expected) return RegionKind::thing;
+  if (expected <= 0) return RegionKind::group;
+  if (c.height() > parameters.regions.tallest * expected) return RegionKind::thing;
   return c.height() < parameters.regions.usual_least * expected ? RegionKind::part : RegionKind::group;
 }
 
@@ -225,6 +232,33 @@ void RegionFinder::State::add_people(int g, const Bounds& window, std::span<cons
   }
 }
 
+// Returns how far a body with a free head has been from its first place, in heights; 0 for any other. It teaches its
+// height by every stride, as a walker does: where people are never alone, and where the line of the heights is steeper
+// than expected. A body that no longer walks may be the place that a person has left.
+double RegionFinder::State::walked(const Box& body) {
+  if (!has_free_head(moving.view(), size, body, parameters.head)) return 0;
+  const WalkingBodies::Walk walk = bodies.add(body);
+  if (walk.goes_on) prior.learn(body.bottom(), body.height, body.height);
+  return walk.farthest;
+}
+
+// A blob before the height of people is known. The bodies that explain it are persons where their heads are seen and they
+// walk: bodies explain cars, noise and the place that a person has left as well. Otherwise several bodies are a group, and
+// so is one that leaves much unexplained, if there are the gaps that people leave.
+void RegionFinder::State::explain_unknown(int g, const Bounds& window) {
+  const RegionParameters& p = parameters.regions;
+  const auto found = people.find(moving.view(), window, prior);
+  std::array<Person, PeopleFinder::kMostPeople> persons;
+  const auto end = std::ranges::copy_if(found, persons.begin(), [&](const Person& person) {
+                     return walked(person.box) > p.walked_to_be_seen;
+                   }).out;
+  const std::span<const Person> walking(persons.begin(), end);
+  const double rest = unexplained(window, found);
+  if (!walking.empty() && !(found.size() == 1 && rest > p.loose)) return add_people(g, window, walking);
+  const bool several = !people.found_block() && (found.size() > 1 || (found.size() == 1 && rest > p.beside));
+  add_plain(static_cast<std::size_t>(g), several ? RegionKind::group : RegionKind::thing);
+}
+
 // One group of components: persons, or what it is otherwise.
 void RegionFinder::State::explain(int g) {
   const RegionParameters& p = parameters.regions;
@@ -247,6 +281,8 @@ void RegionFinder::State::explain(int g) {
       if (group[i] == g) add_plain(i, kind(parts[i]));
   };
   const double expected = prior.height(window.bottom);
+  if (expected <= 0 && window.height() >= p.least_unknown && window.top > 0)
+    return explain_unknown(g, window);
   if (expected <= 0 || window.height() > p.tallest * expected)
     return add_all([](const Component&) { return RegionKind::thing; });
   const Box whole = box_of(window);
@@ -264,11 +300,14 @@ void RegionFinder::State::explain(int g) {
     const Person person{{middle - width / 2, whole.y, width, whole.height}, 0};
     return add_people(g, window, {&person, 1});
   }
+  for (const Person& person : found) walked(person.box);
   const bool alone = found.size() == 1;
-  // A person who lunges or bends: upright bodies do not explain the blob, which is no higher than one.
-  if (alone && members == 1 && window.height() < p.usual_most * expected &&
-      unexplained(window, found) > p.loose)
-    return add_all([](const Component&) { return RegionKind::person_like; });
+  // A person who lunges or bends: upright bodies do not explain the blob, which is no higher than one. Or several people.
+  if (alone && members == 1 && window.height() < p.usual_most * expected) {
+    const double rest = unexplained(window, found);
+    const auto kind = rest > p.beside ? RegionKind::group : RegionKind::person_like;
+    if (rest > p.loose) return add_all([kind](const Component&) { return kind; });
+  }
   add_people(g, window, found);
 }
 
@@ -290,6 +329,7 @@ void RegionFinder::set_parameters(const DetectionParameters& parameters) {
 void RegionFinder::reset() {
   state_->prior.reset();
   state_->walkers.clear();
+  state_->bodies.reset();
   state_->blocks.clear();
   state_->blocks_before.clear();
   state_->regions.clear();
@@ -302,7 +342,7 @@ std::size_t RegionFinder::bytes() const {
   return sizeof(State) + s.moving.bytes() + s.closed.bytes() + s.morphology.bytes() + s.labeller.bytes() +
          s.people.bytes() + s.newcomers.bytes() + bytes_of(s.walkers) + bytes_of(s.walkers_before) +
          bytes_of(s.blocks) + bytes_of(s.blocks_before) + bytes_of(s.group) + bytes_of(s.outlines) +
-         s.outline_finder.bytes() + bytes_of(s.regions);
+         s.bodies.bytes() + s.outline_finder.bytes() + bytes_of(s.regions);
 }
 
 std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uint16_t> labels,
@@ -317,6 +357,7 @@ std::span<const Region> RegionFinder::update(MutableGrayView mask, View<std::uin
   }
   ++s.seen;
   s.prior.advance(motion, s.size);
+  s.bodies.advance(motion);
   pack(mask, s.moving.view());
   std::memcpy(s.closed.view().data, s.moving.view().data, s.moving.bytes());
   const int side = static_cast<int>(std::lround(s.options.closing * mask.width / 320.0));

@@ -24,9 +24,10 @@ struct RegionOptions {
 // What a region is, as far as its size and the people of the scene say.
 enum class RegionKind {
   person_like,  // one whole person, whose extent can be trusted
-  group,        // as high as a person and wider: several people, or one with something
-  part,         // too low for a person: a piece of one
-  thing,        // neither: much larger, solid, or in a scene whose people's height is not known yet
+  group,  // as high as a person and wider: several people, or one with something; before people's height is
+          // known: explained by several bodies whose heads are not seen
+  part,   // too low for a person: a piece of one
+  thing,  // neither: much larger, solid, or what shows no head before people's height is known
 };
 
 struct Region {

@@ -34,6 +34,9 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
       brake_fragment(how, seconds);
   }
   if (alone) last = seen, kind = region.kind;
+  // The track's box is the group's, or it cannot be told where in the group the object is.
+  const bool within = !alone && shared.time + seconds >= parameters->shared_group;
+  if (region.kind == RegionKind::group && (how.fits || within)) kind = region.kind;
   if (!alone && !match.occluded && !how.stays) shrink_into(seen);
   if (!how.cut()) uncut.velocity = {x.velocity, y.velocity};
   uncut.width = std::max(uncut.width, width());
@@ -72,7 +75,7 @@ bool TrackHypothesis::is_cut(double from, double to, double largest, int side) c
 
 // One object, one region, extents that disagree: does the region's extent replace the track's?
 //   cut by the picture's edge: yes, the object comes or goes.
-//   person-like: after whole_misfit.
+//   person-like: at once if the track's box was that of a group or of an unknown object, else after whole_misfit.
 //   larger: soon. Only a part was seen before, or the object runs off and its region stretches from the place where it
 //     stood, which stays foreground until the background model has learnt it. Later if the region jumped: it may be a group.
 //   smaller: a fragment (an arm) of a standing object, as long as it stays in place. Yes if the object moved, if its
@@ -88,7 +91,7 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
   fit.jumped = fit.jumped || jumps(seen, stands() ? seconds : seconds + unseen);
   fit.misfit += seconds;
   if (cut || match.reshaped) return true;
-  if (is_person_like(region)) return fit.misfit >= q.whole_misfit;
+  if (is_person_like(region)) return kind != RegionKind::person_like || fit.misfit >= q.whole_misfit;
   const bool known = fit.time >= q.extent_known;
   if (seen.area() > box().area())
     return fit.misfit >= (known && fit.jumped ? q.jumped_misfit : q.growing_misfit);
