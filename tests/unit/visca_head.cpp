@@ -117,6 +117,17 @@ START_TEST(a_camera_turns_reports_and_stops_on_every_line) {
 }
 END_TEST
 
+START_TEST(a_camera_that_is_slow_to_answer_at_first_is_one_with_positions) {
+  ViscaFaults faults;
+  faults.delay =
+      260ms;  // of each answer: longer than kAnswerTime, the first one for the Stop of the beginning
+  faults.acknowledges = false;
+  ViscaCamera camera(ViscaCamera::Line::tcp, faults);
+  Served served(options_for(camera));
+  assert_text(served.line("ready"), "ready 1 velocity feedback rate 20");
+}
+END_TEST
+
 START_TEST(silence_and_the_end_of_the_pipeline_stop_the_camera_within_half_a_second) {
   for (const bool silent : {true, false}) {
     ViscaCamera camera(kLines[_i]);
@@ -504,6 +515,7 @@ int main() {
   for (const TTest* test :
        {cameras_that_never_acknowledge_are_driven_all_the_same,
         a_camera_finds_its_home_and_says_so,
+        a_camera_that_is_slow_to_answer_at_first_is_one_with_positions,
         a_stop_is_sent_until_the_camera_obeys,
         what_a_full_camera_refused_is_sent_again,
         a_lost_move_is_sent_again,

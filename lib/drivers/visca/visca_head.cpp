@@ -76,11 +76,14 @@ std::string ViscaHead::open(const HeadSetup& setup, Time now) {
   if (std::string wrong = connect(setup, now); !wrong.empty()) return wrong;
   if (!options_.feedback) return {};
   send(visca::position_inquiry(options_.address));
-  const auto begin = std::chrono::steady_clock::now();
-  while (!reports_ && stream_.is_open() && std::chrono::steady_clock::now() - begin < kAnswerTime) {
+  using Clock = std::chrono::steady_clock;
+  const auto last = Clock::now() + kFirstAnswerTime;
+  auto end = last;
+  while (!reports_ && stream_.is_open() && Clock::now() < end) {
     pollfd wait{stream_.fd(), POLLIN, 0};
-    ::poll(&wait, 1, 10);
+    const bool answers = ::poll(&wait, 1, 10) > 0;
     read(now);
+    if (answers) end = std::min(last, Clock::now() + kAnswerTime);
   }
   return check_answers();
 }

@@ -39,8 +39,9 @@ class ViscaHead final : public StreamDevice {
       : StreamDevice("VISCA camera", options.device, options.baud), options_(options) {
     unanswered_orders_.reserve(kMostOrders);
   }
-  // Blocks up to kAnswerTime to learn whether the camera answers position inquiries. A camera that answers nothing is
-  // warned of, one whose bytes are no VISCA is refused: its baud rate is another one.
+  // Blocks to learn whether the camera answers position inquiries: up to kFirstAnswerTime, and once it answers anything
+  // until it is silent for kAnswerTime. A camera that answers nothing is warned of, one whose bytes are no
+  // VISCA is refused: its baud rate is another one.
   std::string open(const HeadSetup& setup, Time now) override;
   HeadAbilities abilities() const override;
   void move(const motion::AxisCommand& pan, const motion::AxisCommand& tilt, Time now) override;
@@ -54,7 +55,9 @@ class ViscaHead final : public StreamDevice {
   std::optional<double> take_zoom() override { return std::exchange(zoom_, std::nullopt); }
 
   static constexpr std::chrono::milliseconds kAnswerTime{
-      200};                                      // VISCA: an answer within 16 ms; slow firmwares need more
+      200};  // VISCA: an answer within 16 ms; slow firmwares need more
+  // A camera or a network that is busy when the connection is made. chosen: 5 times kAnswerTime.
+  static constexpr std::chrono::milliseconds kFirstAnswerTime{1000};
   static constexpr std::size_t kLeastReply = 3;  // bytes of the shortest; fewer may be noise of the line
   static constexpr std::chrono::milliseconds kStopAgain{100};
   static constexpr int kStopsWithoutAnswer = 5;  // to a camera that never acknowledged anything
