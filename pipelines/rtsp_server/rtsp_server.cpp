@@ -5,18 +5,20 @@
 
 #include <algorithm>
 
+#include "rtsp_server/client_connection.h"
 #include "rtsp_server/limited_auth.h"
 
 namespace cerberus::rtsp {
 namespace {
 
 constexpr char kRole[] = "viewer";
-constexpr guint kMostSessions = 100;  // of all clients
-constexpr guint kMostClients = 128;   // connections, with and without a session
+constexpr guint kMostClients = 128;         // connections, with and without a session
+constexpr guint kMostSessionsOfClient = 4;  // a player needs one
+constexpr guint kMostSessions = 256;        // of all clients: above those that one address may have (48 * 4)
 constexpr int kThreads = 8;  // for all clients: one that waits for a mount's first frame blocks its thread
 constexpr guint kCleaningPeriod = 2;   // seconds after which sessions without a client are looked for
 constexpr gulong kEndingPause = 5000;  // microseconds between looks whether connections have ended
-constexpr int kEndingTries = 400;      // looks: 2 s
+constexpr int kEndingTries = 40;       // looks: .2 s, in which the caller's main loop stands
 
 // What packs a stream into RTP. Parameter sets go along with every keyframe, so that a client that joins has them.
 std::string payloader_of(const GstCaps* caps) {
@@ -110,17 +112,6 @@ GstRTSPFilterResult find_session(GstRTSPClient*, GstRTSPSession* session, gpoint
   return any ? GST_RTSP_FILTER_REF : GST_RTSP_FILTER_KEEP;
 }
 
-// Closes the connection: the client's own thread reads its end and tears the client down. That would race here, as
-// connections are not thread-safe.
-void shut_down(GstRTSPClient* client) {
-  GstRTSPConnection* connection = gst_rtsp_client_get_connection(client);
-  if (!connection) return;
-  // Two where RTSP goes through HTTP.
-  for (GSocket* socket :
-       {gst_rtsp_connection_get_read_socket(connection), gst_rtsp_connection_get_write_socket(connection)})
-    if (socket) g_socket_shutdown(socket, TRUE, TRUE, nullptr);
-}
-
 // Closes the connection of a client of the folder.
 GstRTSPFilterResult end_of_folder(GstRTSPServer*, GstRTSPClient* client, gpointer folder) {
   GList* found = gst_rtsp_client_session_filter(client, find_session, folder);
@@ -129,10 +120,14 @@ GstRTSPFilterResult end_of_folder(GstRTSPServer*, GstRTSPClient* client, gpointe
   return GST_RTSP_FILTER_KEEP;
 }
 
-std::string address_of(GstRTSPClient* client) {
-  GstRTSPConnection* connection = gst_rtsp_client_get_connection(client);
-  const char* address = connection ? gst_rtsp_connection_get_ip(connection) : nullptr;
-  return address ? address : "";
+// Refuses a request that would begin one session too many of its connection.
+GstRTSPStatusCode on_setup(GstRTSPClient* client, GstRTSPContext* context, gpointer) {
+  note_session(client);
+  if (context->session) return GST_RTSP_STS_OK;
+  GList* sessions = gst_rtsp_client_session_filter(client, nullptr, nullptr);
+  const guint count = g_list_length(sessions);
+  g_list_free_full(sessions, g_object_unref);
+  return count < kMostSessionsOfClient ? GST_RTSP_STS_OK : GST_RTSP_STS_SERVICE_UNAVAILABLE;
 }
 
 constexpr char kIdleSince[] = "cerberus-idle-since";  // of a GstRTSPClient: seconds of the monotonic clock
@@ -181,14 +176,15 @@ RtspServer::~RtspServer() {
   g_clear_object(&certificate_);
 }
 
+// Before the client has a thread.
 void RtspServer::accept(GstRTSPClient* client) {
+  note_connection(client);
   GList* all = gst_rtsp_server_client_filter(server_.get(), nullptr, nullptr);
   guint others = 0, of_address = 0;
-  const std::string address = address_of(client);
   for (GList* one = all; one; one = one->next) {
     if (one->data == client) continue;
     ++others;
-    of_address += address_of(GST_RTSP_CLIENT(one->data)) == address;
+    of_address += g_strcmp0(address_of(GST_RTSP_CLIENT(one->data)), address_of(client)) == 0;
   }
   g_list_free_full(all, g_object_unref);
   if (others >= kMostClients || of_address >= settings_.most_of_address) {
@@ -196,6 +192,7 @@ void RtspServer::accept(GstRTSPClient* client) {
     return;
   }
   g_object_set_data(G_OBJECT(client), kIdleSince, GSIZE_TO_POINTER(seconds_now()));
+  g_signal_connect(client, "pre-setup-request", G_CALLBACK(on_setup), nullptr);
   g_signal_connect(client, "play-request", G_CALLBACK(on_play), nullptr);
 }
 

@@ -28,7 +28,7 @@ struct ServerSettings {
 class RtspServer {
  public:
   explicit RtspServer(ServerSettings settings);
-  // Closes the port and all connections, and waits until their threads have torn them down, 2 s at most.
+  // Closes the port and all connections, and waits until their threads have torn them down, .2 s at most.
   ~RtspServer();
   RtspServer(const RtspServer&) = delete;
   RtspServer& operator=(const RtspServer&) = delete;

@@ -2,6 +2,7 @@
 // The RTSP server of pipelines/rtsp, with clients over loopback. What a client gets is compared with what the encoder
 // and onvifmeta gave out in the same process. Nothing here depends on how long anything takes.
 #include <algorithm>
+#include <cstdio>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -441,6 +442,39 @@ GST_START_TEST(an_address_has_few_connections) {
 }
 GST_END_TEST
 
+// The status of the answer to a request on this connection.
+int answer_to(GSocketConnection* connection, const std::string& request) {
+  GSocket* socket = g_socket_connection_get_socket(connection);
+  fail_unless_equals_int(g_socket_send(socket, request.data(), request.size(), nullptr, nullptr),
+                         static_cast<int>(request.size()));
+  std::string answer;
+  wait_for("an answer", [&] {
+    char bytes[512];
+    const gssize count = g_socket_receive_with_blocking(socket, bytes, sizeof bytes, FALSE, nullptr, nullptr);
+    if (count > 0) answer.append(bytes, static_cast<std::size_t>(count));
+    return count == 0 || answer.find("\r\n\r\n") != answer.npos;
+  });
+  int status = 0;
+  std::sscanf(answer.c_str(), "RTSP/1.0 %d", &status);
+  return status;
+}
+
+GST_START_TEST(a_connection_has_few_sessions) {
+  Served served(kPlain);
+  const std::vector<GSocketConnection*> all = connect(served, 1);
+  for (int k = 0; k < 6; ++k) {
+    const std::string channels = std::to_string(2 * k) + "-" + std::to_string(2 * k + 1);
+    const int status = answer_to(
+        all[0], "SETUP " + served.address("plain") + "/stream=0 RTSP/1.0\r\nCSeq: " + std::to_string(k + 1) +
+                    "\r\nTransport: RTP/AVP/TCP;unicast;interleaved=" + channels + "\r\n\r\n");
+    fail_unless_equals_int(status, k < 4 ? 200 : 503);
+  }
+  Client other(served.address("plain"), "protocols=tcp");
+  wait_for_pictures(other, 3);
+  for (GSocketConnection* each : all) g_object_unref(each);
+}
+GST_END_TEST
+
 GST_START_TEST(a_connection_without_a_session_ends_after_a_while_and_a_player_goes_on) {
   ServerSettings settings;
   settings.idle = std::chrono::seconds(1);
@@ -547,6 +581,7 @@ static Suite* rtsp_suite() {
   tcase_add_test(cases, only_a_user_with_the_right_password_plays);
   tcase_add_test(cases, an_address_with_wrong_passwords_is_refused_for_a_while_and_longer_each_time);
   tcase_add_test(cases, an_address_has_few_connections);
+  tcase_add_test(cases, a_connection_has_few_sessions);
   tcase_add_test(cases, a_connection_without_a_session_ends_after_a_while_and_a_player_goes_on);
   tcase_add_test(cases, connections_are_limited_and_others_take_the_place_of_those_that_end);
   tcase_add_test(cases, tls_plays_with_the_certificate_that_was_given_and_not_in_the_clear);
