@@ -72,7 +72,7 @@ std::optional<std::string> DiskWriter::opened_within(std::chrono::nanoseconds lo
 void DiskWriter::enqueue(Command command, std::uint64_t bytes) {
   {
     const std::lock_guard guard(lock_);
-    commands_.push_back(std::move(command));
+    commands_.push_back({std::move(command), bytes});
     queued_ += bytes;
   }
   changed_.notify_all();
@@ -95,8 +95,8 @@ std::vector<FileReport> DiskWriter::give_up() {
   std::vector<FileReport> lost;
   const std::lock_guard guard(lock_);
   given_up_ = true;
-  for (const Command& command : commands_)
-    if (const auto* open = std::get_if<Open>(&command))
+  for (const Queued& queued : commands_)
+    if (const auto* open = std::get_if<Open>(&queued.command))
       unfinished_[open->spec->start.file] = {open->spec, ""};
   for (const auto& [number, file] : unfinished_)
     lost.push_back({FileReport::State::failed,
@@ -153,13 +153,10 @@ void DiskWriter::run(const record::Archive::Settings& archive) {
         changed_.wait_until(guard, next_retention, ready);
       if (given_up_) break;
       if (!commands_.empty()) {
-        command = std::move(commands_.front());
+        command = std::move(commands_.front().command);
+        queued_ -= commands_.front().bytes;
         commands_.pop_front();
-        if (const auto* write = std::get_if<Write>(&*command))
-          queued_ -= gst_buffer_get_size(write->buffer.get());
-        else if (const auto* line = std::get_if<Line>(&*command))
-          queued_ -= line->text.size();
-        else if (const auto* open = std::get_if<Open>(&*command))
+        if (const auto* open = std::get_if<Open>(&*command))
           unfinished_[open->spec->start.file] = {open->spec, ""};
       } else if (stopping_) {
         for (auto& [number, file] : files_)

@@ -77,9 +77,10 @@ class DiskWriter {
   // The thread: opens the archive, which reconciles it, and carries out commands until every one is done and every file
   // complete after stop(), or until give_up().
   void run(const record::Archive::Settings& archive);
-  // Waits so long until the archive is open. Returns what is wrong with its folder, empty: nothing; nullopt: the disk has
-  // not answered yet. What is wrong then is a warning, and every file is tried as while the recorder runs.
+  // Waits for the archive to open, at most `longest`. Returns the fault of its folder (empty: none), or nullopt where the
+  // disk has not answered; a fault that shows later is a warning.
   std::optional<std::string> opened_within(std::chrono::nanoseconds longest);
+  // `bytes` of it wait for the disk.
   void enqueue(Command command, std::uint64_t bytes = 0);
   void stop();
   // Returns whether run() has ended, for which it waits so long.
@@ -138,11 +139,15 @@ class DiskWriter {
   Warn warn_;
   mutable std::mutex lock_;
   std::condition_variable changed_, lower_, opened_, over_;
-  std::deque<Command> commands_;
+  struct Queued {
+    Command command;
+    std::uint64_t bytes;
+  };
+  std::deque<Queued> commands_;
   std::uint64_t queued_ = 0, level_ = 0;  // bytes in commands_, and in the files' pipelines
   bool stopping_ = false, given_up_ = false, ended_ = false;
   std::optional<std::string> folder_fault_;  // see opened_within()
-  bool late_ = false;                        // that returned nullopt
+  bool late_ = false;  // opened_within() gave up; a fault of the folder is then a warning
   std::map<std::uint32_t, Unfinished> unfinished_;
 
   // Of the writer's thread:

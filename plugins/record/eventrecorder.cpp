@@ -34,7 +34,7 @@
  * An event of `start-event` goes on where the stream's times fall back (a source that begins anew, a flush), in another
  * file; any other event ends there.
  *
- * Files: MP4 in fragments of half a second (H.264, H.265), which play after a crash as far as they were written and become
+ * Files: MP4 in fragments of .4 s (H.264, H.265), which play after a crash as far as they were written and become
  * a plain MP4 at their end, or Matroska (JPEG always; A-law and µ-law). They are made with mode 0640 in `location`, a
  * folder that must exist, under a name by `file-name`: conversions of strftime (local time of the first frame), {camera},
  * {event}, {part}; folders in it are made. Nothing is overwritten: a second file of a name becomes `name~1`.
@@ -57,8 +57,8 @@
  * a warning names it, the stream goes on, and every 5 s another file is tried, from the frames that no file has yet. If
  * `location` is missing or not writable at the start, the element does not start. Faults of lines, picture and index
  * are warnings, and recording goes on. A disk that does not answer when the element is stopped is waited for as long as
- * `stop-timeout`; files that are not complete then are reported as failed. A start goes on after `stop-timeout` (2 s at
- * least) with a warning, and what is recorded waits until the disk answers.
+ * `stop-timeout`; files that are not complete then are reported as failed. A start waits as long, but 2 to 5 s, and goes
+ * on with a warning; what is recorded waits until the disk answers.
  *
  * Posts element messages `cerberus-recording` with `state` (string: `started`, `ended`, `failed`; `deleted` by retention,
  * with `location` only), `event`, `part` (uint),

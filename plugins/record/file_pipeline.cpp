@@ -10,8 +10,8 @@ namespace cerberus::plugin {
 namespace {
 
 // A fragment of this length is written at once. Derived: with the frame that the muxer holds back, the first frames are on
-// the disk .5 s after a keyframe at 25 frames a second, and a killed process loses no more; with 500 it was up to .52 s.
-// Measured: smaller ones cost size (1.6 kB each). Guarded by the benchmark first_bytes.
+// the disk .5 s after a keyframe at 25 frames a second, and a killed process loses no more. Measured: smaller ones cost
+// size (1.6 kB each). Guarded by the benchmark first_bytes.
 constexpr guint kFragmentMilliseconds = 400;
 constexpr int kUnbuffered = 2;  // filesink: a buffer of 64 KiB would delay the first byte by seconds
 // Audio that is so much later than the video is no longer waited for: a muxer writes nothing while one track is silent.

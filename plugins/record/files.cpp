@@ -107,6 +107,7 @@ void Files::write_line(std::uint32_t file, record::Time time, std::string_view l
 }
 
 void Files::complete(const record::FileEnd& end, record::Findings findings) {
+  if (!patient_ && writer_.pending() > kMostPending) findings.picture.reset();
   writer_.close(end, std::move(findings));
 }
 

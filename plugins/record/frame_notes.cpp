@@ -129,6 +129,10 @@ std::optional<record::Note> FrameNotes::note(GstBuffer* buffer, const CerberusSt
   return note;
 }
 
+std::uint64_t size_of(const record::Picture& picture) {
+  return picture ? gst_buffer_get_size(gst_sample_get_buffer(static_cast<GstSample*>(picture.get()))) : 0;
+}
+
 GstSample* encode_jpeg(const record::Picture& picture, std::string& fault) {
   auto* sample = static_cast<GstSample*>(picture.get());
   if (gst_structure_has_name(gst_caps_get_structure(gst_sample_get_caps(sample), 0), "image/jpeg"))

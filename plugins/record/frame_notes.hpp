@@ -41,6 +41,8 @@ class FrameNotes {
   text::JsonLine line_;
 };
 
+// Bytes of a picture of a note as it is kept; 0: there is none.
+std::uint64_t size_of(const record::Picture& picture);
 // Encodes a picture of a note as JPEG, where it is none. Blocks, some ten milliseconds. nullptr, and what is wrong in `fault`: it failed.
 GstSample* encode_jpeg(const record::Picture& picture, std::string& fault);
 

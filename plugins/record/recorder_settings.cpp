@@ -70,8 +70,9 @@ const Property<Settings> kProperties[] = {
              "MiB that are to be free on the disk; the oldest recordings are deleted; 0 = no limit"),
     property(
         "stop-timeout", &Settings::stop_timeout,
-        "Nanoseconds for which the element's start (2 s at least) and stop wait for the disk at most; at a "
-        "stop files that are not complete then are reported as failed, and stay as far as they are written"),
+        "Nanoseconds for which the element's stop waits for the disk at most; files that are not complete "
+        "then are reported as failed, and stay as far as they are written. A start waits as long, but no "
+        "less than 2 s and no longer than 5 s, and goes on"),
 };
 
 std::uint64_t mebibytes(int count) {

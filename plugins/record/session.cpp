@@ -9,9 +9,12 @@ namespace cerberus::plugin {
 
 namespace {
 
-// How long a start waits for the disk at least. Chosen: several times what opening a large index takes, and no more than
-// a user waits for. Guarded by the test of a disk that does not answer at the start.
+// A start waits for the disk as long as a stop does, within these limits. At least: chosen, several times what opening a
+// large index takes. At most: it goes on anyway, and an application starts its pipelines in its main loop; derived from
+// cerberusd, whose cameras are stalled after 15 s and whose watchdog takes 30 s. Guarded by the tests of a disk that does
+// not answer at the start.
 constexpr std::chrono::nanoseconds kShortestStart = std::chrono::seconds(2);
+constexpr std::chrono::nanoseconds kLongestStart = std::chrono::seconds(5);
 
 // How long a stop waits for the disk. An unlimited `stop-timeout` is a day.
 std::chrono::nanoseconds longest_wait(const RecorderSettings& settings) {
@@ -121,7 +124,7 @@ std::string Session::begin(Writer::Report report, Writer::Warn warn) {
   live_.reset();
   warn_ = warn;
   std::string fault = writer_.start(archive_settings(settings), report, warn,
-                                    std::max(longest_wait(settings), kShortestStart));
+                                    std::clamp(longest_wait(settings), kShortestStart, kLongestStart));
   const std::lock_guard guard(lock_);
   settings_.refresh();
   apply_settings();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "writer.hpp"
 
+#include "frame_notes.hpp"
+
 namespace cerberus::plugin {
 
 namespace {
@@ -64,7 +66,8 @@ void Writer::write_line(std::uint32_t file, std::string line) {
   disk()->enqueue(DiskWriter::Line{file, std::move(line)}, bytes);
 }
 void Writer::close(const record::FileEnd& end, record::Findings findings) {
-  disk()->enqueue(DiskWriter::Close{end, std::move(findings)});
+  const std::uint64_t bytes = size_of(findings.picture);
+  disk()->enqueue(DiskWriter::Close{end, std::move(findings)}, bytes);
 }
 void Writer::set_limits(const record::Limits& limits) {
   disk()->enqueue(DiskWriter::Limit{limits});

@@ -5,7 +5,7 @@
     first_bytes.py [EVENTS]
 
 A live stream of 640x480 at 25 frames a second, and events at random moments. With 2 s of pre-roll the ring fills a fragment
-(.5 s) at once; without a pre-roll a file begins with the last keyframe. The first frames can be played
+(.4 s) at once; without a pre-roll a file begins with the last keyframe. The first frames can be played
 once the first fragment is there (its index, moov). Judged: both within 100 ms, or .5 s, of every event.
 """
 import os

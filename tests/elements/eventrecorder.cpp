@@ -25,7 +25,7 @@ bool near(GstClockTime a, GstClockTime b) {
 
 // The running time with which each file begins, by the messages that it has started.
 struct Begins {
-  explicit Begins(GstBus* bus) {
+  explicit Begins(GstBus* of_files) : bus(of_files) {
     gst_bus_set_sync_handler(
         bus,
         [](GstBus*, GstMessage* message, gpointer self) {
@@ -34,6 +34,9 @@ struct Begins {
         },
         this, nullptr);
   }
+  ~Begins() { gst_bus_set_sync_handler(bus, nullptr, nullptr, nullptr); }
+  Begins(const Begins&) = delete;
+  Begins& operator=(const Begins&) = delete;
   void note(const GstStructure* facts) {
     guint64 begin = 0;
     if (!facts || g_strcmp0(gst_structure_get_string(facts, "state"), "started") != 0) return;
@@ -41,6 +44,7 @@ struct Begins {
     const std::lock_guard guard(lock);
     of[gst_structure_get_string(facts, "location")] = begin;
   }
+  GstBus* bus;
   std::mutex lock;
   std::map<std::string, GstClockTime> of;
 };
@@ -184,7 +188,7 @@ GST_START_TEST(the_pre_roll_is_on_disk_before_another_frame_comes) {
   rig.start_event();
   g_autoptr(GstStructure) started = rig.wait_for_file("started");
   const std::string file = gst_structure_get_string(started, "location");
-  // 25 frames and more of 64 bytes: the fragment of the first .5 s.
+  // 25 frames and more of 64 bytes: the fragment of the first .4 s.
   while (std::filesystem::file_size(file) < 12 * 64) g_usleep(1000);
   fail_unless(rig.folder.files().size() == 1);
 }

@@ -419,6 +419,34 @@ GST_START_TEST(a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_
 }
 GST_END_TEST
 
+GST_START_TEST(the_picture_of_an_event_that_ended_counts_among_the_bytes_that_wait_for_the_disk) {
+  StuckDisk disk;
+  {
+    Rig rig;
+    rig.analysis = std::make_unique<Stream>(rig.element, "analysis", kRaw);
+    gst_bus_set_sync_handler(rig.bus, StuckDisk::handle, &disk, nullptr);
+    g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
+    g_object_set(rig.element, "stop-timeout", guint64{0}, "json-lines", FALSE, nullptr);
+    rig.start();
+    for (guint32 k = 0; k < 120; ++k) {  // the event ends at frame 60
+      rig.play_to(k);
+      rig.analysis->push(picture(k, k < 50 ? 48 : 0));
+    }
+    disk.wait();
+    rig.stop();
+    g_autoptr(GstMessage) warning = rig.take(GST_MESSAGE_WARNING);
+    g_autofree gchar* detail = nullptr;
+    gst_message_parse_warning(warning, nullptr, &detail);
+    const char* last = strrchr(detail, '\n');
+    const long bytes = atol(last ? last + 1 : detail);
+    fail_unless(bytes >= 320 * 240 && bytes < 320 * 240 + 120 * 64, "%s", detail);
+  }
+  disk.release();
+  std::unique_lock guard(disk.lock);
+  disk.changed.wait(guard, [&] { return disk.left && disk.gone; });
+}
+GST_END_TEST
+
 GST_START_TEST(a_disk_that_does_not_answer_at_the_start_holds_nothing_up_and_costs_no_frame) {
   Rig rig;
   g_object_set(rig.element, "stop-timeout", guint64{0}, nullptr);
@@ -444,13 +472,14 @@ GST_START_TEST(a_start_and_a_stop_return_though_the_disk_never_answers) {
   StuckDisk disk;
   {
     Rig rig;
-    g_object_set(rig.element, "stop-timeout", guint64{0}, nullptr);
+    g_object_set(rig.element, "stop-timeout", GST_CLOCK_TIME_NONE, nullptr);  // a start waits 5 s at most
     g_object_weak_ref(G_OBJECT(rig.element), StuckDisk::note_gone, &disk);
     blocked_folder.block(rig.folder.path());
     rig.start();
     rig.play_to(20);
     rig.start_event();
     rig.play_to(40);
+    g_object_set(rig.element, "stop-timeout", guint64{0}, nullptr);
     rig.stop();
     g_autoptr(GstStructure) failed = rig.wait_for_file("failed");
   }
@@ -519,6 +548,7 @@ static Suite* eventrecorder_archive_suite() {
   tcase_add_test(tests, retention_deletes_the_oldest_recordings_but_those_that_are_kept);
   tcase_add_test(tests, a_disk_that_does_not_answer_costs_the_event_and_never_stops_the_stream);
   tcase_add_test(tests, a_stop_does_not_wait_for_a_disk_that_does_not_answer_and_reports_what_is_lost);
+  tcase_add_test(tests, the_picture_of_an_event_that_ended_counts_among_the_bytes_that_wait_for_the_disk);
   tcase_add_test(tests, a_disk_that_does_not_answer_at_the_start_holds_nothing_up_and_costs_no_frame);
   tcase_add_test(tests, a_start_and_a_stop_return_though_the_disk_never_answers);
   tcase_add_test(tests, a_pre_roll_larger_than_what_may_wait_for_the_disk_is_recorded);
