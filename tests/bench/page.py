@@ -133,16 +133,24 @@ class Robot:
         (folder / 'robot.toml').write_text(CONFIGURATION.replace('PORT', str(self.port)).replace('FOLDER', str(folder))
                                            .replace('PICTURE', str(picture)))
         self.source = multiprocessing.Process(target=camera, args=(folder / 'pipe', folder.parent / 'pictures'), daemon=True)
-        self.source.start()
         with open(folder / 'log', 'w', encoding='utf-8') as log:
             self.process = subprocess.Popen([program, folder / 'robot.toml'], stdout=log, stderr=subprocess.STDOUT)
-        self.one_time = self.one_time_password()
-        os.replace(folder / 'pipe', folder / 'video')
+        try:
+            self.source.start()
+            self.one_time = self.one_time_password()
+            os.replace(folder / 'pipe', folder / 'video')
+        except BaseException:
+            self.close()
+            raise
 
     def close(self):
-        self.process.send_signal(signal.SIGTERM)
-        self.process.wait()
-        self.source.kill()
+        try:
+            self.process.send_signal(signal.SIGTERM)
+            self.process.wait(60)
+        finally:
+            self.process.kill()
+            if self.source.pid:
+                self.source.kill()
 
     def one_time_password(self):
         while self.process.poll() is None:
@@ -297,9 +305,11 @@ def measure(program, folder, picture):
         print((folder / 'log').read_text(), file=sys.stderr)
         raise
     finally:
-        if driver:
-            driver.quit()
-        robot.close()
+        try:
+            if driver:
+                driver.quit()
+        finally:
+            robot.close()
     return missed
 
 

@@ -232,22 +232,24 @@ def outbound(folder, port, ca, count):
     words.insert(words.index('mqttpublish') + 1, 'name=mqtt')
     pipeline = Gst.parse_launchv(words)
     mqtt, refused = pipeline.get_by_name('mqtt'), [0]
-    pipeline.set_state(Gst.State.PLAYING)
-    client = Client(port, ca)
-    client.wait('online', lambda: client.retained.get('cerberus/front/status') == 'online')
 
     def publish():
         for number in range(count):
             while not mqtt.emit('publish', 'count', GLib.Bytes.new(str(number).encode()), False):
                 refused[0] += 1
                 time.sleep(.005)
-    begin = time.monotonic()
-    threading.Thread(target=publish, daemon=True).start()
-    client.wait('every message', lambda: client.counted and client.counted[-1] == count - 1)
-    print(f'{count} messages in {time.monotonic() - begin:.1f} s; {count - len(client.counted)} are missing; refused and given '
-          f'again: {refused[0]}')
-    assert client.counted == list(range(count))
-    pipeline.set_state(Gst.State.NULL)
+    pipeline.set_state(Gst.State.PLAYING)
+    try:
+        client = Client(port, ca)
+        client.wait('online', lambda: client.retained.get('cerberus/front/status') == 'online')
+        begin = time.monotonic()
+        threading.Thread(target=publish, daemon=True).start()
+        client.wait('every message', lambda: client.counted and client.counted[-1] == count - 1)
+        print(f'{count} messages in {time.monotonic() - begin:.1f} s; {count - len(client.counted)} are missing; refused and '
+              f'given again: {refused[0]}')
+        assert client.counted == list(range(count))
+    finally:
+        pipeline.set_state(Gst.State.NULL)
     client.wait('offline', lambda: client.retained.get('cerberus/front/status') == 'offline')
 
 
