@@ -18,9 +18,10 @@ class Numbers {
   struct Number {
     const char* name;
     std::variant<double*, int*> number;
+    int least = 0;
   };
   void add(std::initializer_list<Number> numbers) {
-    for (const Number& n : numbers) all_.push_back({stage_ + '.' + n.name, n.number});
+    for (const Number& n : numbers) all_.push_back({stage_ + '.' + n.name, n.number, n.least});
   }
 
  private:
@@ -33,6 +34,8 @@ class Numbers {
   Numbers::Number {    \
     #member, &p.member \
   }
+// The same of a divisor.
+#define D(member) Numbers::Number{#member, &p.member, 1}
 
 void name(Numbers n, RegionParameters& p) {
   n.add({N(least_share),
@@ -73,8 +76,8 @@ void name(Numbers n, PeopleFinder::Part& p) {
 
 void name(Numbers n, PeopleFinder::Parameters& p) {
   n.add({N(elsewhere),    N(price),      N(height_weight), N(spread),    N(unknown_spread), N(unknown_step),
-         N(other_height), N(least_gain), N(aspect),        N(cells),     N(above),          N(below),
-         N(least_feet),   N(least_part), N(edge_part),     N(edge_step), N(one_wide),       N(solid),
+         N(other_height), N(least_gain), N(aspect),        D(cells),     N(above),          N(below),
+         N(least_feet),   D(least_part), D(edge_part),     D(edge_step), N(one_wide),       N(solid),
          N(block_width),  N(gaps),       N(gaps_after)});
   name(n.part("free_space"), p.free_space);
   name(n.part("head"), p.body[0]);
@@ -83,8 +86,8 @@ void name(Numbers n, PeopleFinder::Parameters& p) {
 }
 
 void name(Numbers n, HeightPrior::Parameters& p) {
-  n.add({N(spread), N(agree), N(share), N(least), N(uncertain), N(repeats), N(guesses), N(through_horizon),
-         N(baseline), N(steepest), N(refit), N(least_height), N(zoom)});
+  n.add({N(spread), N(agree), N(share), N(least), N(uncertain), N(repeats), N(guesses), D(through_horizon),
+         N(baseline), N(steepest), D(refit), N(least_height), N(zoom)});
 }
 
 void name(Numbers n, OutlineFinder::Parameters& p) {
@@ -191,7 +194,7 @@ void name(Numbers n, DataAssociation::Parameters& p) {
 }
 
 void name(Numbers n, RegionAppearances::Parameters& p) {
-  n.add({N(samples), N(rough_samples), N(familiar), N(reach), N(reach_up), N(columns), N(displacement),
+  n.add({D(samples), D(rough_samples), N(familiar), N(reach), N(reach_up), N(columns), N(displacement),
          N(least_reach), N(steps), N(inside)});
 }
 
@@ -208,6 +211,7 @@ void name(Numbers n, ViewParameters& p) {
   n.add({N(newly_visible), N(newly_visible_share)});
 }
 
+#undef D
 #undef N
 
 std::string quoted(std::string_view text) {
@@ -256,20 +260,28 @@ std::string set_number(DetectorParameters& parameters, std::string_view assignme
   const std::string_view name = assignment.substr(0, equals), value = assignment.substr(equals + 1);
   const auto found = std::ranges::find(all, name, &NamedNumber::name);
   if (found == all.end()) return "no number is named " + quoted(name) + names_like(all, name);
-  const bool set = std::visit(
-      [&](auto* number) {
-        auto read = *number;
-        const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), read);
-        if (error != std::errc() || end != value.data() + value.size() || !std::isfinite(1.0 * read))
-          return false;
-        *number = read;
-        return true;
-      },
-      found->number);
-  if (set) return {};
-  const bool whole = std::holds_alternative<int*>(found->number);
-  return std::string(name) + " takes " + (whole ? "a whole number" : "a number") + ", not " + quoted(value) +
-         names_like(all, name);
+  const auto read = [&](auto& number) {
+    const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+    return error == std::errc() && end == value.data() + value.size();
+  };
+  std::string takes;
+  if (int* const* whole = std::get_if<int*>(&found->number)) {
+    constexpr int kMost = 1'000'000;  // no count of pixels, frames or samples is as large
+    int number = 0;
+    if (read(number) && number >= found->least && number <= kMost) {
+      **whole = number;
+      return {};
+    }
+    takes = "a whole number from " + std::to_string(found->least) + " to " + std::to_string(kMost);
+  } else {
+    double number = 0;
+    if (read(number) && std::isfinite(number)) {
+      *std::get<double*>(found->number) = number;
+      return {};
+    }
+    takes = "a number";
+  }
+  return std::string(name) + " takes " + takes + ", not " + quoted(value) + names_like(all, name);
 }
 
 }  // namespace cerberus::vision

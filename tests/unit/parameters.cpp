@@ -6,6 +6,8 @@
 
 #include <cstdint>
 #include <set>
+#include <string>
+#include <utility>
 
 #include "support/suite.h"
 #include "vision/tracking/tracker.h"
@@ -16,24 +18,31 @@ namespace {
 
 constexpr Size kFrame{640, 480};
 
-// Whether the numbers of a stage fill its struct from the first byte to the last, but for what alignment takes.
+// The number of a struct's members: the most values that it can be initialised with.
+struct AnyValue {
+  template <class T>
+  operator T() const;
+};
+template <class P, class... Values>
+constexpr std::size_t members() {
+  if constexpr (requires { P{std::declval<Values>()..., std::declval<AnyValue>()}; })
+    return members<P, Values..., AnyValue>();
+  else
+    return sizeof...(Values);
+}
+
+// The names of a stage; each one's number lies in `of`, and has no other name.
 template <class P>
-void check_all_are_named(DetectorParameters& parameters, const P& of) {
+std::size_t names_in(DetectorParameters& parameters, const char* stage, const P& of) {
   const auto at = [](const auto* p) { return reinterpret_cast<std::uintptr_t>(p); };
-  std::set<std::pair<std::uintptr_t, std::uintptr_t>> places;  // first byte, first byte behind
-  for (const NamedNumber& n : named_numbers(parameters))
-    std::visit(
-        [&](auto* number) {
-          if (at(number) >= at(&of) && at(number) < at(&of + 1)) places.insert({at(number), at(number + 1)});
-        },
-        n.number);
-  std::uintptr_t end = at(&of);
-  for (const auto& [first, behind] : places) {
-    ck_assert_msg(first - end < sizeof(int) + (behind - first == sizeof(double)),
-                  "%zu bytes of %s have no name", first - end, typeid(of).name());
-    end = behind;
+  std::set<std::uintptr_t> places;
+  for (const NamedNumber& n : named_numbers(parameters)) {
+    if (!n.name.starts_with(std::string(stage) + '.')) continue;
+    const std::uintptr_t place = std::visit(at, n.number);
+    ck_assert_msg(place >= at(&of) && place < at(&of + 1) && places.insert(place).second, "%s",
+                  n.name.c_str());
   }
-  ck_assert_msg(at(&of + 1) - end <= sizeof(int), "the last numbers of %s have no name", typeid(of).name());
+  return places.size();
 }
 
 // Tracks after a person has walked for a second.
@@ -56,21 +65,26 @@ START_TEST(every_number_of_every_stage_has_a_name_of_its_own) {
   DetectorParameters p;
   const DetectionParameters& d = p.detection;
   const TrackingParameters& t = p.tracking;
-  check_all_are_named(p, d.regions);
-  check_all_are_named(p, d.people);
-  check_all_are_named(p, d.height);
-  check_all_are_named(p, d.outline);
-  check_all_are_named(p, d.box);
-  check_all_are_named(p, d.head);
-  check_all_are_named(p, d.bodies);
-  check_all_are_named(p, d.confirmation);
-  check_all_are_named(p, t.track);
-  check_all_are_named(p, t.life);
-  check_all_are_named(p, t.association);
-  check_all_are_named(p, t.search);
-  check_all_are_named(p, t.appearance);
-  check_all_are_named(p, t.swap);
-  check_all_are_named(p, t.view);
+  const auto all_are_named = [&]<class P>(const char* stage, const P& of) {
+    ck_assert_msg(names_in(p, stage, of) == members<P>(), "%s has %zu members", stage, members<P>());
+  };
+  all_are_named("regions", d.regions);
+  const std::size_t parts = 1 + d.people.body.size();  // each a member of its own or of an array
+  ck_assert_uint_eq(names_in(p, "people", d.people),
+                    members<PeopleFinder::Parameters>() - 2 + parts * members<PeopleFinder::Part>());
+  all_are_named("height", d.height);
+  all_are_named("outline", d.outline);
+  all_are_named("box", d.box);
+  all_are_named("head", d.head);
+  all_are_named("bodies", d.bodies);
+  all_are_named("confirmation", d.confirmation);
+  all_are_named("track", t.track);
+  all_are_named("life", t.life);
+  all_are_named("association", t.association);
+  all_are_named("search", t.search);
+  all_are_named("appearance", t.appearance);
+  all_are_named("swap", t.swap);
+  all_are_named("view", t.view);
   std::set<std::string> names;
   for (const NamedNumber& n : named_numbers(p))
     ck_assert_msg(names.insert(n.name).second, "%s", n.name.c_str());
@@ -103,8 +117,11 @@ START_TEST(a_wrong_assignment_changes_nothing_and_the_error_lists_the_names) {
       {"track.gate=3,5", "track.gate takes a number, not \"3,5\"", " track.gate "},
       {"track.gate=nan", "track.gate takes a number, not \"nan\"", " track.gate "},
       {"track.gate=inf", "track.gate takes a number, not \"inf\"", " track.gate "},
-      {"life.least_hits=2.5", "life.least_hits takes a whole number, not \"2.5\"", " life.least_hits "},
+      {"life.least_hits=2.5", "life.least_hits takes a whole number from 0 to 1000000, not \"2.5\"",
+       " life.least_hits "},
       {"life.least_hits=99999999999", "life.least_hits takes a whole number", " life.least_hits "},
+      {"life.least_hits=-1", "life.least_hits takes a whole number", " life.least_hits "},
+      {"people.cells=1000001", "people.cells takes a whole number from 1 to 1000000", " people.cells "},
   };
   for (const auto& w : wrong) {
     DetectorParameters p;
@@ -114,6 +131,19 @@ START_TEST(a_wrong_assignment_changes_nothing_and_the_error_lists_the_names) {
     ck_assert_double_eq(p.tracking.track.gate, TrackParameters().gate);
     ck_assert_int_eq(p.tracking.life.least_hits, LifeCycle::Parameters().least_hits);
   }
+}
+END_TEST
+
+START_TEST(a_number_by_which_something_is_divided_is_at_least_1) {
+  for (const std::string name :
+       {"people.cells", "people.least_part", "people.edge_part", "people.edge_step", "height.through_horizon",
+        "height.refit", "search.samples", "search.rough_samples"}) {
+    DetectorParameters p;
+    ck_assert(set_number(p, name + "=0").starts_with(name + " takes a whole number from 1 "));
+    ck_assert(set_number(p, name + "=1").empty());
+  }
+  DetectorParameters p;
+  ck_assert(set_number(p, "regions.young=0").empty());  // no frame is
 }
 END_TEST
 
@@ -143,6 +173,6 @@ int main() {
       "parameters",
       {every_number_of_every_stage_has_a_name_of_its_own, an_assignment_sets_the_number_of_that_name_only,
        a_wrong_assignment_changes_nothing_and_the_error_lists_the_names,
-       the_tracker_works_with_the_numbers_that_were_set,
+       a_number_by_which_something_is_divided_is_at_least_1, the_tracker_works_with_the_numbers_that_were_set,
        the_region_finder_works_with_the_numbers_that_were_set});
 }
