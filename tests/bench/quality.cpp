@@ -17,6 +17,7 @@
 #include "support/data.h"
 #include "tracks.h"
 #include "vision/detector.h"
+#include "vision/frame_history.h"
 #include "vision/parameters.h"
 
 using namespace cerberus;
@@ -78,13 +79,13 @@ std::vector<Found> found_on(GstBuffer* frame) {
   return found;
 }
 
-// vision::Detector as motiondetect uses it with no property set.
+// vision::Detector as motiondetect uses it with no property set: frames that repeat a picture, and times that are missing
+// or go backwards, are treated as there.
 class SetDetector {
  public:
   explicit SetDetector(const vision::DetectorParameters& numbers) {
-    vision::DetectorOptions options;
-    options.burnt_in = true;
-    detector_.set_options(options);
+    options_.burnt_in = true;
+    detector_.set_options(options_);
     detector_.set_parameters(numbers);
   }
 
@@ -100,25 +101,52 @@ class SetDetector {
         detector_.begin({static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&mapped, 0)), info.width,
                          info.height, GST_VIDEO_FRAME_PLANE_STRIDE(&mapped, 0), 1, false, 0, 0, 0});
     gst_video_frame_unmap(&mapped);
+    std::optional<Time> time;
+    if (GST_BUFFER_PTS_IS_VALID(buffer)) time = Time(GST_BUFFER_PTS(buffer));
+    const double nominal =
+        GST_VIDEO_INFO_FPS_N(&info) > 0 ? 1.0 * GST_VIDEO_INFO_FPS_D(&info) / GST_VIDEO_INFO_FPS_N(&info) : 0;
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_DISCONT) && !history_.misses_frames(time, nominal))
+      history_.drop();
+    vision::FrameHistory history = history_;
+    const vision::FrameHistory::Step step = history.next(time, nominal);
     vision::DetectorFrame frame;
     frame.size = {info.width, info.height};
-    frame.fresh = number_ == 0;
-    frame.number = ++number_;
-    if (!frame.fresh) frame.seconds = 1e-9 * static_cast<double>(GST_BUFFER_PTS(buffer) - last_);
-    last_ = GST_BUFFER_PTS(buffer);
+    frame.fresh = step.fresh;
+    frame.seconds = step.seconds;
+    frame.number = number_ + 1;
+    if (GST_BUFFER_FLAG_IS_SET(buffer, GST_BUFFER_FLAG_GAP) ||
+        detector_.repeats(*record, frame, step.repeatable)) {
+      const auto since = history_.repeat(time, nominal);
+      std::erase_if(tracks_, [&](const vision::Track& t) {
+        return !since || !vision::outlasts(t.state, *since, options_.tracks);
+      });
+      return found();
+    }
+    history_ = history;
+    number_ = frame.number;
     detector_.run(*record, frame);
-    std::vector<Found> found;
-    for (const vision::Track& t : *record->tracks)
-      found.push_back({{static_cast<int>(t.id), t.box}, t.kind == vision::RegionKind::group});
-    return found;
+    tracks_.assign(record->tracks->begin(), record->tracks->end());
+    return found();
   }
 
  private:
+  using Time = vision::FrameHistory::Time;
+
+  std::vector<Found> found() const {
+    std::vector<Found> all;
+    for (const vision::Track& t : tracks_)
+      all.push_back({{static_cast<int>(t.id), t.box}, t.kind == vision::RegionKind::group});
+    return all;
+  }
+
+  vision::DetectorOptions options_;
   vision::Detector detector_;
+  vision::FrameHistory history_;
+  std::vector<vision::Track> tracks_;  // of the last picture
   std::uint64_t number_ = 0;
-  GstClockTime last_ = 0;
 };
 
+// False: not all frames could be read, and what is printed of them is nothing.
 bool for_each_frame(const std::string& source, const Finder& finder, const OnFrame& each) {
   if (!finder.numbers)
     return for_each_sample(source + " ! " + finder.name + " ! appsink name=out sync=false",
@@ -160,17 +188,18 @@ void masks(const fs::path& data, const std::string& detector, Asked& asked) {
       "  (two, AND: differences of two and three frames; tolerant: compensated, with a tolerance of 3 x 3)");
 }
 
-void boxes(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
+// False: they could not be measured.
+bool boxes(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
   const fs::path folder = data / "pets09_s2l1_view1";
   const auto keys = read_people(folder / "gt_keyframes.txt"),
              between = read_people(folder / "gt_interpolated.txt");
   Counts on_keys, on_all;
-  if (!for_each_frame(video, finder, [&](const std::vector<Found>& all, int n) {
-        const auto found = scored(all);
-        if (const auto t = keys.find(n); t != keys.end()) match(on_keys, found, boxes_of(t->second));
-        if (const auto t = between.find(n); t != between.end()) match(on_all, found, boxes_of(t->second));
-      }))
-    on_keys = on_all = {};
+  const bool measured = for_each_frame(video, finder, [&](const std::vector<Found>& all, int n) {
+    const auto found = scored(all);
+    if (const auto t = keys.find(n); t != keys.end()) match(on_keys, found, boxes_of(t->second));
+    if (const auto t = between.find(n); t != between.end()) match(on_all, found, boxes_of(t->second));
+  });
+  if (!measured) on_keys = on_all = {};
   const auto line = [&](const char* name, double on_key, double all) {
     std::printf("  %-16s %20.3f %10.3f%s\n", name, on_key, all,
                 finder.judged() ? asked.at_least(name, on_key, 0.7).c_str() : "");
@@ -179,6 +208,7 @@ void boxes(const fs::path& data, const std::string& video, const Finder& finder,
               finder.name.c_str());
   line("precision", on_keys.precision(), on_all.precision());
   line("recall", on_keys.recall(), on_all.recall());
+  return measured;
 }
 
 // Tracks, all frames and all of the picture. Groups count on neither side: they claim no person.
@@ -199,7 +229,8 @@ struct Tracks {
   bool promised;
 };
 
-void tracks(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
+// As boxes(). A sequence that is not there is skipped.
+bool tracks(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
   const auto file = [&](const char* path) {
     return "filesrc location=" + (data / path).string() + " ! decodebin";
   };
@@ -212,6 +243,7 @@ void tracks(const fs::path& data, const std::string& video, const Finder& finder
                          data / "davis_tennis" / "boxes.txt", 0, 0, 1000, false}};
   std::printf("\nTracks of people, %s, IoU >= 0.5     MOTA   IDF1  precision  recall  switches\n",
               finder.name.c_str());
+  bool all_measured = true;
   for (const Tracks& t : all) {
     if (!fs::exists(t.truth)) {
       std::printf("  %-16s %s\n", t.name, tests::kNoData);
@@ -219,11 +251,12 @@ void tracks(const fs::path& data, const std::string& video, const Finder& finder
     }
     const People truth = read_people(t.truth, 1e9);
     TrackScore score;
-    if (!for_each_frame(t.source, finder, [&](const std::vector<Found>& found, int n) {
-          if (const auto people = truth.find(n); people != truth.end())
-            score.add(people->second, people_of(found));
-        }))
-      score = {};
+    const bool measured = for_each_frame(t.source, finder, [&](const std::vector<Found>& found, int n) {
+      if (const auto people = truth.find(n); people != truth.end())
+        score.add(people->second, people_of(found));
+    });
+    if (!measured) score = {};
+    all_measured = all_measured && measured;
     const bool judged = finder.judged();
     const std::string name = t.name;
     std::printf("  %-16s %20.3f %6.3f %10.3f %7.3f %9d%s%s%s\n", t.name, score.mota(), score.idf1(),
@@ -234,6 +267,7 @@ void tracks(const fs::path& data, const std::string& video, const Finder& finder
                     ? asked.at_most("switches on " + name, score.switches(), t.switches).c_str()
                     : "");
   }
+  return all_measured;
 }
 
 // Reads the arguments --set NAME=VALUE into `numbers`, the others are launch lines. False: prints what is wrong.
@@ -272,17 +306,19 @@ int main(int argc, char** argv) {
     return 77;
   }
   Asked asked;
+  bool measured = true;
   if (!set.empty()) {  // judged by the one who sweeps
-    boxes(*data, *video, {set, &numbers}, asked);
-    tracks(*data, *video, {set, &numbers}, asked);
-    if (detectors.empty()) return 0;
+    measured = boxes(*data, *video, {set, &numbers}, asked);
+    measured = tracks(*data, *video, {set, &numbers}, asked) && measured;
+    if (detectors.empty()) return measured ? 0 : 1;
   } else if (detectors.empty()) {
     detectors = {kJudged, "motiondetect preset=paper"};
   }
   for (const std::string& detector : detectors) {
     masks(*data, detector, asked);
-    boxes(*data, *video, {detector}, asked);
-    if (detector == kJudged) tracks(*data, *video, {detector}, asked);
+    measured = boxes(*data, *video, {detector}, asked) && measured;
+    if (detector == kJudged) measured = tracks(*data, *video, {detector}, asked) && measured;
   }
-  return asked.verdict();
+  const int verdict = asked.verdict();
+  return measured ? verdict : 1;
 }
