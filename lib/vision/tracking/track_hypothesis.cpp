@@ -1,10 +1,21 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 #include "vision/tracking/track_hypothesis.h"
 
+#include <type_traits>
+
 #include "sensing/angles.h"
 
 namespace cerberus::vision {
 namespace {
+
+// phase_of() takes an alternative's index for its phase.
+template <TrackPhase phase, class Data>
+constexpr bool kHasData =
+    std::is_same_v<std::variant_alternative_t<static_cast<std::size_t>(phase), TrackLife>, Data>;
+static_assert(kHasData<TrackPhase::tentative, Tentative> && kHasData<TrackPhase::confirmed, Confirmed> &&
+              kHasData<TrackPhase::coasted, Coasted> && kHasData<TrackPhase::stopped, Stopped> &&
+              kHasData<TrackPhase::off_screen, OffScreen> && kHasData<TrackPhase::lost, Lost> &&
+              std::variant_size_v<TrackLife> == 6);
 
 constexpr double kHalfPixel = 0.5;  // boxes count from pixels' corners, transforms from their centres
 

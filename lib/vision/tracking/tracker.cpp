@@ -222,8 +222,11 @@ std::span<const Track> Tracker::update(std::span<const Region> regions, const Tr
   if (frame.width != s.frame.width || frame.height != s.frame.height)
     s.established = {0, 0, static_cast<double>(frame.width), static_cast<double>(frame.height)};
   s.frame = frame;
-  if (s.orientation.update(camera, motion, frame))  // angles have another origin now
-    std::erase_if(s.tracks, [](const TrackHypothesis& t) { return t.is(TrackPhase::off_screen); });
+  if (s.orientation.update(camera, motion, frame)) {  // angles have another origin now
+    for (TrackHypothesis& t : s.tracks)
+      if (t.is(TrackPhase::off_screen)) LifeCycle::lose(t);
+    s.remove_lost();
+  }
   s.update_view(motion);
   s.take(regions);
   s.appearances.update(input, s.regions, motion, frame);

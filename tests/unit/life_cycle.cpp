@@ -1,0 +1,403 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The rules of a track's life, each on both sides of its limit. Expected: by hand from LifeCycle::Parameters, the options'
+// defaults (confirm-time .2 s, coast-time 1 s, hold-stopped 30 s, away-time 5 s) and frames of .04 s.
+#include "vision/tracking/life_cycle.h"
+
+#include <check.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "support/suite.h"
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr Size kFrame{640, 480};
+constexpr double kSeconds = 0.04;
+
+const CameraOrientation& camera() {
+  static const CameraOrientation turned{Lens(1.0, kFrame), 0.5, -0.25};
+  return turned;
+}
+
+// 40 x 100 pixels, so that S is 100, with its left upper corner there.
+TrackHypothesis track_at(double x, double y, TrackLife life) {
+  TrackHypothesis t = TrackHypothesis::first_seen({{x, y, 40, 100}, 2000, 0.9, 1});
+  t.life = life;
+  t.id = std::holds_alternative<Tentative>(life) ? 0 : 1;
+  t.age = 10;
+  return t;
+}
+
+// In the middle of the picture.
+TrackHypothesis track(TrackLife life) {
+  return track_at(300, 190, life);
+}
+
+// Seen for long, then slower until it stood.
+TrackHypothesis standing(double x = 300) {
+  TrackHypothesis t = track_at(x, 190, Confirmed{});
+  t.slow = 0.3;
+  t.fit.time = t.fit.longest = 0.5;
+  t.travel.most = 0.45;
+  t.age = 1.55;
+  return t;
+}
+
+// The state after a frame in which each track has the region of its match.
+TrackPhase after(std::vector<TrackHypothesis> tracks, bool turning = false, TrackOptions options = {}) {
+  LifeCycle life;
+  life.advance(tracks, {kFrame, kSeconds, turning, camera()}, options);
+  return tracks[0].phase();
+}
+
+TrackPhase after(const TrackHypothesis& t) {
+  return after(std::vector{t});
+}
+
+// With a change.
+TrackPhase after(TrackHypothesis t, const std::function<void(TrackHypothesis&)>& change,
+                 bool turning = false) {
+  change(t);
+  return after(std::vector{t}, turning);
+}
+
+std::optional<TrackState> published(TrackHypothesis t, const std::function<void(TrackHypothesis&)>& change) {
+  change(t);
+  LifeCycle life;
+  life.advance({}, {kFrame, kSeconds, false, camera()}, {});
+  return life.published(t);
+}
+
+}  // namespace
+
+START_TEST(a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_moved) {
+  const struct {
+    int hits, frames;
+    double age, travel;
+    bool newly_visible, confirmed;
+  } cases[] = {
+      {3, 5, 0.2, 0.12, false, true},    // 3 = .6 x 5
+      {3, 6, 0.2, 0.12, false, false},   // 3 < .6 x 6
+      {2, 3, 0.2, 0.12, false, false},   // too few,
+      {2, 3, 0.59, 0.12, false, false},  //
+      {2, 3, 0.61, 0.12, false, true},   // but for a low frame rate: 3 x .2 s
+      {3, 5, 0.19, 0.12, false, false},  // .99 x .2 s
+      {3, 5, 0.2, 0.11, false, false},   // it has not moved,
+      {3, 5, 0.2, 0, true, true},        // which it need not where the camera has turned to
+  };
+  for (const auto& c : cases) {
+    TrackHypothesis t = track(Tentative{c.hits, c.frames, c.newly_visible});
+    t.age = c.age;
+    t.travel.most = c.travel;
+    t.match.region = 0;
+    std::vector<TrackHypothesis> tracks{t, t};
+    LifeCycle life;
+    life.advance(tracks, {kFrame, kSeconds, false, camera()}, {});
+    ck_assert_int_eq(tracks[0].is(TrackPhase::confirmed), c.confirmed);
+    ck_assert_uint_eq(tracks[0].id, c.confirmed ? 1 : 0);
+    ck_assert_uint_eq(tracks[1].id, c.confirmed ? 2 : 0);
+  }
+  TrackHypothesis first = track(Tentative{});
+  first.age = 0;
+  first.match.region = 0;
+  ck_assert(after({first}, false, {.confirm_time = 0}) == TrackPhase::confirmed);
+}
+END_TEST
+
+START_TEST(a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_half_of_confirm_time) {
+  const auto unseen = [](int hits, double before) {
+    return after(track(Tentative{hits, 4}), [&](TrackHypothesis& t) { t.unseen = before; });
+  };
+  ck_assert(unseen(2, 0.07) == TrackPhase::lost);       // .11 s, 2 < .6 x 4
+  ck_assert(unseen(2, 0.05) == TrackPhase::tentative);  // .09 s
+  ck_assert(unseen(3, 0.07) == TrackPhase::tentative);
+}
+END_TEST
+
+START_TEST(a_track_without_region_is_coasted_and_lost_after_its_time) {
+  const auto coasted = [](double seen, double before, double x = 300) {
+    TrackHypothesis t = track_at(x, 190, Confirmed{});
+    t.unseen = before;
+    t.age = seen + before + kSeconds;
+    return after(t);
+  };
+  ck_assert(coasted(9, 0) == TrackPhase::coasted);
+  ck_assert(coasted(9, 0.95) == TrackPhase::coasted);  // .99 s
+  ck_assert(coasted(9, 0.97) == TrackPhase::lost);     // 1.01 s
+  ck_assert(coasted(0.8, 0.35) == TrackPhase::coasted);
+  ck_assert(coasted(0.8, 0.37) == TrackPhase::lost);  // .41 s, half of .8
+  ck_assert(coasted(9, 0.25, 5) == TrackPhase::coasted);
+  ck_assert(coasted(9, 0.27, 5) == TrackPhase::lost);  // at the edge, up to .1 S: .3 of it
+  ck_assert(coasted(9, 0.27, 11) == TrackPhase::coasted);
+  ck_assert(coasted(9, 0, -19) == TrackPhase::coasted);
+  ck_assert(coasted(9, 0, -21) == TrackPhase::lost);  // its centre is outside
+}
+END_TEST
+
+START_TEST(a_track_stops_that_came_and_stood_before_it_had_no_region) {
+  ck_assert(after(standing()) == TrackPhase::stopped);
+  const std::function<void(TrackHypothesis&)> lacks[] = {
+      [](TrackHypothesis& t) { t.slow = 0.29; },          [](TrackHypothesis& t) { t.fit.time = 0.49; },
+      [](TrackHypothesis& t) { t.travel.most = 0.44; },   [](TrackHypothesis& t) { t.age = 1.53; },
+      [](TrackHypothesis& t) { t.uncut.leaving = true; },
+  };
+  for (const auto& lack : lacks) ck_assert(after(standing(), lack) == TrackPhase::coasted);
+  TrackHypothesis stops = standing();
+  stops.x.velocity = 3;
+  LifeCycle::stop(stops);
+  ck_assert_double_eq(stops.speed(), 0);
+}
+END_TEST
+
+START_TEST(a_track_behind_another_one_does_not_stop) {
+  TrackHypothesis other = track_at(331, 190, Confirmed{});  // covers 9 of 40 columns
+  other.match.region = 0;
+  ck_assert(after(std::vector{standing(), other}) == TrackPhase::coasted);
+  other.match.region = -1;  // where it is is not seen
+  ck_assert(after(std::vector{standing(), other}) == TrackPhase::stopped);
+  other = track_at(333, 190, Confirmed{});  // 7 of 40
+  other.match.region = 0;
+  ck_assert(after(std::vector{standing(), other}) == TrackPhase::stopped);
+}
+END_TEST
+
+START_TEST(a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise) {
+  const auto changed = [](double x, double slow, double change) {
+    return after(standing(x), [&](TrackHypothesis& t) {
+      t.slow = slow;
+      t.appearance.place_change = change;
+    });
+  };
+  ck_assert(changed(5, 1, 0.16) == TrackPhase::coasted);
+  ck_assert(changed(5, 1, 0.14) == TrackPhase::stopped);    // less than .15: as before
+  ck_assert(changed(5, 0.9, 0.14) == TrackPhase::coasted);  // has not stood for long enough to tell
+  ck_assert(changed(5, 0.9, -1) == TrackPhase::stopped);    // nothing to compare with
+  ck_assert(changed(300, 1, 0.16) == TrackPhase::stopped);  // no way out
+}
+END_TEST
+
+START_TEST(a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_by_the_edge) {
+  const auto stopped = [](double x, double before, double absent, double change) {
+    return after(track_at(x, 190, Stopped{absent}), [&](TrackHypothesis& t) {
+      t.age = 50;
+      t.unseen = before;
+      t.appearance.place_change = change;
+    });
+  };
+  ck_assert(stopped(300, 29.95, 0, 0.1) == TrackPhase::stopped);
+  ck_assert(stopped(300, 29.97, 0, 0.1) == TrackPhase::lost);
+  ck_assert(stopped(5, 1, 0.25, 0.2) == TrackPhase::stopped);  // .29 s of .3 x 1 s
+  ck_assert(stopped(5, 1, 0.27, 0.2) == TrackPhase::lost);
+  ck_assert(stopped(5, 1, 0.27, 0.1) == TrackPhase::stopped);
+  ck_assert(stopped(300, 1, 0.27, 0.2) == TrackPhase::stopped);
+  ck_assert(stopped(-21, 1, 0, -1) == TrackPhase::lost);
+  TrackHypothesis other = track_at(5, 190, Confirmed{});
+  other.match.region = 0;
+  TrackHypothesis behind = track_at(5, 190, Stopped{0.27});
+  behind.appearance.place_change = 0.2;
+  ck_assert(after(std::vector{behind, other}) == TrackPhase::stopped);
+}
+END_TEST
+
+START_TEST(a_known_object_from_which_the_camera_turns_away_is_off_screen) {
+  const auto gone = [](bool turning, const std::function<void(TrackHypothesis&)>& change) {
+    TrackHypothesis t = track_at(-21, 190, Coasted{});
+    t.fit.longest = 0.5;
+    t.travel.most = 0.45;
+    return after(t, change, turning);
+  };
+  ck_assert(gone(true, [](TrackHypothesis&) {}) == TrackPhase::off_screen);
+  ck_assert(gone(false, [](TrackHypothesis&) {}) == TrackPhase::lost);
+  ck_assert(gone(true, [](TrackHypothesis& t) { t.fit.longest = 0.49; }) == TrackPhase::lost);
+  ck_assert(gone(true, [](TrackHypothesis& t) { t.travel.most = 0.44; }) == TrackPhase::lost);
+  ck_assert(gone(true, [](TrackHypothesis& t) { t.unseen = 4.95; }) == TrackPhase::off_screen);
+  ck_assert(gone(true, [](TrackHypothesis& t) { t.unseen = 4.97; }) == TrackPhase::lost);
+  // Nor in the middle of the picture, where something else hides it.
+  const auto hidden = [](TrackHypothesis& t) {
+    t.x.position = 320;
+    t.unseen = 1;
+  };
+  ck_assert(gone(true, hidden) == TrackPhase::lost);
+}
+END_TEST
+
+START_TEST(a_track_that_leaves_keeps_its_direction_and_what_was_not_cut) {
+  for (const bool stopped : {false, true}) {
+    TrackHypothesis t = track(stopped ? TrackLife(Stopped{}) : TrackLife(Coasted{}));
+    t.x.velocity = 5;
+    t.uncut = {44, 110, {30, -12}, true};
+    t.fit.misfit = 1;
+    LifeCycle::leave(t, camera());
+    const OffScreen& away = std::get<OffScreen>(t.life);
+    // (320, 240) is on the camera's axis.
+    ck_assert_double_eq_tol(away.direction.bearing, 0.5, 1e-9);
+    ck_assert_double_eq_tol(away.direction.elevation, -0.25, 1e-9);
+    ck_assert_double_eq_tol(away.magnification, 1, 1e-9);
+    ck_assert_int_eq(away.stopped, stopped);
+    ck_assert_double_eq(t.x.velocity, stopped ? 0 : 30);
+    ck_assert_double_eq(t.y.velocity, stopped ? 0 : -12);
+    ck_assert_double_eq_tol(t.width(), 44, 1e-9);
+    ck_assert_double_eq_tol(t.height(), 110, 1e-9);
+    ck_assert_double_eq(t.fit.misfit, 0);
+  }
+}
+END_TEST
+
+START_TEST(a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_region) {
+  for (const bool stopped : {false, true}) {
+    TrackHypothesis t = track(OffScreen{{}, 1, true, stopped, 0});
+    LifeCycle::come_back(t, {100, 50, 30, 80});
+    ck_assert(t.is(stopped ? TrackPhase::stopped : TrackPhase::coasted));
+    ck_assert_double_eq_tol(t.box().x, 100, 1e-9);
+    ck_assert_double_eq_tol(t.box().bottom(), 130, 1e-9);
+    LifeCycle::see(t);
+    ck_assert(t.is(TrackPhase::confirmed));
+  }
+}
+END_TEST
+
+START_TEST(an_off_screen_track_is_lost_after_its_time_or_where_it_is_expected) {
+  const auto away = [](bool stopped, double x, double before, double absent) {
+    return after(track_at(x, 190, OffScreen{{}, 1, true, stopped, absent}),
+                 [&](TrackHypothesis& t) { t.unseen = before; });
+  };
+  ck_assert(away(false, -50, 4.95, 0) == TrackPhase::off_screen);
+  ck_assert(away(false, -50, 4.97, 0) == TrackPhase::lost);
+  ck_assert(away(true, -50, 29.95, 0) == TrackPhase::off_screen);
+  ck_assert(away(true, -50, 29.97, 0) == TrackPhase::lost);
+  ck_assert(away(false, 300, 2, 0.95) == TrackPhase::off_screen);
+  ck_assert(away(false, 300, 2, 0.97) == TrackPhase::lost);       // expected for 1.01 s
+  ck_assert(away(false, -1, 2, 0.97) == TrackPhase::off_screen);  // not all of it is
+  ck_assert(away(true, 300, 2, 0) == TrackPhase::stopped);        // nothing moves at its place
+  TrackHypothesis behind_the_camera = track(OffScreen{{}, 1, false, false, 0.97});
+  ck_assert(after(behind_the_camera) == TrackPhase::off_screen);
+}
+END_TEST
+
+START_TEST(tracks_in_view_are_published_while_their_place_is_certain) {
+  const auto as_it_is = [](TrackHypothesis&) {};
+  ck_assert(!published(track(Tentative{}), as_it_is));
+  ck_assert(!published(track(OffScreen{}), as_it_is));
+  ck_assert(!published(track(Lost{}), as_it_is));
+  ck_assert(published(track(Confirmed{}), as_it_is) == TrackState::seen);
+  ck_assert(published(track(Stopped{}), as_it_is) == TrackState::stopped);
+  ck_assert(published(track(Coasted{}), as_it_is) == TrackState::coasted);
+  const auto coasted = [](const std::function<void(TrackHypothesis&)>& change) {
+    return published(track(Coasted{}), change).has_value();
+  };
+  ck_assert(coasted([](TrackHypothesis& t) { t.x.pp = 15.9 * 15.9; }));  // .4 x 40
+  ck_assert(!coasted([](TrackHypothesis& t) { t.x.pp = 16.1 * 16.1; }));
+  ck_assert(coasted([](TrackHypothesis& t) { t.x.position = 31; }));
+  ck_assert(!coasted([](TrackHypothesis& t) { t.x.position = 29; }));  // its box begins in .1 S
+  ck_assert(coasted([](TrackHypothesis& t) { t.age = 0.61; }));        // 3 x .2 s
+  ck_assert(!coasted([](TrackHypothesis& t) { t.age = 0.59; }));
+  for (const TrackLife& life : {TrackLife(Confirmed{}), TrackLife(Coasted{}), TrackLife(Stopped{})}) {
+    const auto shared = [&](bool occluded, double unlocated) {
+      return published(track(life),
+                       [&](TrackHypothesis& t) {
+                         t.match.occluded = occluded;
+                         t.shared.unlocated = unlocated;
+                       })
+          .has_value();
+    };
+    ck_assert(shared(true, 0.29));
+    ck_assert(!shared(true, 0.31));
+    ck_assert(shared(false, 2.9));
+    ck_assert_int_eq(shared(false, 3), std::holds_alternative<Confirmed>(life));
+  }
+}
+END_TEST
+
+START_TEST(a_blob_that_came_apart_ends) {
+  const auto left = [](const TrackHypothesis& t, std::initializer_list<Box> boxes) {
+    std::vector<Region> regions;
+    for (const Box& box : boxes) regions.push_back({box, box.area(), 0.9, 1});
+    std::array tracks{t};
+    LifeCycle().end_hollow(tracks, regions);
+    return !tracks[0].is(TrackPhase::lost);
+  };
+  const Box one{300, 190, 20, 30}, two{320, 260, 20, 30};
+  ck_assert(!left(track(Confirmed{}), {one, two}));
+  ck_assert(!left(track(Stopped{}), {one, two}));
+  ck_assert(left(track(Confirmed{}), {one}));
+  ck_assert(left(track(Confirmed{}), {one, {320, 260, 10, 39}}));   // less than .1 of 40 x 100
+  ck_assert(!left(track(Confirmed{}), {one, {320, 240, 10, 41}}));  //
+  ck_assert(left(track(Confirmed{}), {one, {329, 260, 20, 30}}));   // 11 of 20 columns: less than .6
+  ck_assert(!left(track(Confirmed{}), {one, {327, 260, 20, 30}}));  // 13 of 20
+  ck_assert(left(track(OffScreen{}), {one, two}));
+  ck_assert(left(track(Tentative{}), {one, two}));
+  TrackHypothesis seen = track(Confirmed{});
+  seen.match.region = 0;
+  ck_assert(left(seen, {one, two}));
+}
+END_TEST
+
+// Which of two tracks end.
+START_TEST(of_two_tracks_on_one_object_one_ends) {
+  using Pair = std::array<TrackHypothesis, 2>;
+  const auto ends = [](const std::function<void(TrackHypothesis&, TrackHypothesis&)>& change) {
+    Pair two{track(Coasted{}), track(Coasted{})};
+    change(two[0], two[1]);
+    LifeCycle().end_duplicates(two);
+    return (two[0].is(TrackPhase::lost) ? 1 : 0) + (two[1].is(TrackPhase::lost) ? 2 : 0);
+  };
+  using T = TrackHypothesis;
+  ck_assert_int_eq(ends([](T& a, T&) { a.unseen = 0.49; }), 0);
+  ck_assert_int_eq(ends([](T& a, T&) { a.unseen = 0.5; }), 1);
+  ck_assert_int_eq(ends([](T& a, T& b) { a.unseen = 0.5, b.unseen = 0.6; }), 2);
+  const auto one_seen = [](T& a, T& b) {
+    a.life = Confirmed{};
+    a.match.region = 0;
+    b.unseen = 0.5;
+  };
+  ck_assert_int_eq(ends(one_seen), 2);
+  // 33 of 47 columns overlap, .70, and 32 of 48, .67.
+  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.x.position += 7; }), 2);
+  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.x.position += 8; }), 0);
+  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.life = OffScreen{}; }), 0);
+  ck_assert_int_eq(ends([&](T& a, T& b) { one_seen(a, b), b.match.region = 1; }), 0);
+  // One stands, and the other came from elsewhere, .5 S away.
+  const auto passes = [&](T& a, T& b) {
+    one_seen(a, b);
+    b.life = Stopped{};
+    a.travel.origin.x -= 50;
+  };
+  ck_assert_int_eq(ends(passes), 0);
+  ck_assert_int_eq(ends([&](T& a, T& b) { passes(a, b), a.travel.origin.x += 25; }), 2);
+  // In one region the younger one ends.
+  const auto share = [](double time, double from) {
+    return [=](T& a, T& b) {
+      for (T* t : {&a, &b}) t->life = Confirmed{}, t->match.region = 0;
+      a.age = 9;
+      b.shared.time = time;
+      b.travel.origin.x -= from;
+    };
+  };
+  ck_assert_int_eq(ends(share(0.9, 0)), 0);
+  ck_assert_int_eq(ends(share(1, 0)), 1);
+  ck_assert_int_eq(ends(share(2.9, 50)), 0);
+  ck_assert_int_eq(ends(share(3, 50)), 1);
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "life_cycle",
+      {a_track_is_confirmed_that_was_seen_often_for_long_enough_and_has_moved,
+       a_tentative_track_is_lost_that_mostly_had_no_region_and_has_none_for_half_of_confirm_time,
+       a_track_without_region_is_coasted_and_lost_after_its_time,
+       a_track_stops_that_came_and_stood_before_it_had_no_region, a_track_behind_another_one_does_not_stop,
+       a_track_does_not_stop_at_the_edge_where_its_place_looks_otherwise,
+       a_stopped_track_is_lost_after_hold_stopped_or_where_it_has_left_by_the_edge,
+       a_known_object_from_which_the_camera_turns_away_is_off_screen,
+       a_track_that_leaves_keeps_its_direction_and_what_was_not_cut,
+       a_track_that_comes_back_is_what_it_was_and_takes_the_place_of_its_region,
+       an_off_screen_track_is_lost_after_its_time_or_where_it_is_expected,
+       tracks_in_view_are_published_while_their_place_is_certain, a_blob_that_came_apart_ends,
+       of_two_tracks_on_one_object_one_ends});
+}
