@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // The loadable module of PIR sensors.
-#include <gst/gst.h>
+#include <cerberus/cerberus.h>
 
 GST_ELEMENT_REGISTER_DECLARE(pirsrc)
 
 static gboolean plugin_init(GstPlugin* plugin) {
+  cerberus_init();
   return GST_ELEMENT_REGISTER(pirsrc, plugin);
 }
 

@@ -6,6 +6,7 @@
 #include <gst/gst.h>
 
 #include <type_traits>
+#include <utility>
 
 #include "publish/packing.h"
 
@@ -49,6 +50,10 @@ const GstMetaInfo* register_meta_info(GType api, const char* name, gsize size, G
   }
   return gst_meta_info_register(info);
 #else
+  if constexpr (!std::is_void_v<Packing>) {  // compiled all the same
+    constexpr auto kUnused = std::pair(&Packing::pack, &Packing::unpack);
+    static_cast<void>(kUnused);
+  }
   return gst_meta_register(api, name, size, init, free, transform);
 #endif
 }
