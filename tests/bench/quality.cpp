@@ -8,11 +8,13 @@
 #include <cerberus/cerberus.h>
 #include <gst/video/video.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 
 #include "asked.h"
 #include "boxes.h"
+#include "people_sequences.h"
 #include "sequences.h"
 #include "support/data.h"
 #include "tracks.h"
@@ -61,23 +63,7 @@ struct Finder {
   bool judged() const { return name == kJudged; }
 };
 
-struct Found {
-  Person person;
-  bool group = false;
-};
 using OnFrame = std::function<void(const std::vector<Found>&, int)>;
-
-std::vector<Found> found_on(GstBuffer* frame) {
-  std::vector<Found> found;
-  GPtrArray* regions = cerberus_buffer_get_regions(frame);
-  for (guint i = 0; i < regions->len; ++i) {
-    const auto* r = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
-    found.push_back({{static_cast<int>(r->id), {r->x, r->y, r->width, r->height}},
-                     r->kind == CERBERUS_REGION_KIND_GROUP});
-  }
-  g_ptr_array_unref(regions);
-  return found;
-}
 
 // vision::Detector as motiondetect uses it with no property set: frames that repeat a picture, and times that are missing
 // or go backwards, are treated as there.
@@ -211,47 +197,33 @@ bool boxes(const fs::path& data, const std::string& video, const Finder& finder,
   return measured;
 }
 
-// Tracks, all frames and all of the picture. Groups count on neither side: they claim no person.
-std::vector<Person> people_of(const std::vector<Found>& found) {
-  std::vector<Person> people;
-  for (const Found& f : found)
-    if (!f.group) people.push_back(f.person);
-  return people;
-}
-
-// What a sequence's tracks must reach; `promised` as Asked has it.
-struct Tracks {
+// What the tracks of a sequence of people_sequences() must reach; `promised` as Asked has it.
+struct AskedOfTracks {
   const char* name;
-  std::string source;
-  fs::path truth;
   double mota, idf1;
   int switches;
   bool promised;
 };
+constexpr AskedOfTracks kTracks[] = {{"PETS09-S2L1", 0.7, 0.75, 32, true},
+                                     {"TUD-Campus", 0.35, 0, 1000, false},
+                                     {"TUD-Stadtmitte", 0.05, 0, 1000, false},
+                                     {"davis_tennis", 0, 0, 1000, false}};
 
 // As boxes(). A sequence that is not there is skipped.
 bool tracks(const fs::path& data, const std::string& video, const Finder& finder, Asked& asked) {
-  const auto file = [&](const char* path) {
-    return "filesrc location=" + (data / path).string() + " ! decodebin";
-  };
-  const Tracks all[] = {{"PETS09-S2L1", video, data / "pets09_s2l1_view1" / "gt.txt", 0.7, 0.75, 32, true},
-                        {"TUD-Campus", file("mot15_tud_campus/TUD-Campus.mp4"),
-                         data / "mot15_tud_campus" / "gt.txt", 0.35, 0, 1000, false},
-                        {"TUD-Stadtmitte", file("mot15_tud_stadtmitte/TUD-Stadtmitte.mp4"),
-                         data / "mot15_tud_stadtmitte" / "gt.txt", 0.05, 0, 1000, false},
-                        {"davis_tennis", source_of(sequence("tennis"), data),
-                         data / "davis_tennis" / "boxes.txt", 0, 0, 1000, false}};
   std::printf("\nTracks of people, %s, IoU >= 0.5     MOTA   IDF1  precision  recall  switches\n",
               finder.name.c_str());
   bool all_measured = true;
-  for (const Tracks& t : all) {
-    if (!fs::exists(t.truth)) {
+  for (const PeopleSequence& s : people_sequences(data, video)) {
+    const AskedOfTracks& t =
+        *std::ranges::find(kTracks, s.name, [](const AskedOfTracks& a) { return a.name; });
+    if (!fs::exists(s.truth)) {
       std::printf("  %-16s %s\n", t.name, tests::kNoData);
       continue;
     }
-    const People truth = read_people(t.truth, 1e9);
+    const People truth = read_people(s.truth, 1e9);
     TrackScore score;
-    const bool measured = for_each_frame(t.source, finder, [&](const std::vector<Found>& found, int n) {
+    const bool measured = for_each_frame(s.source, finder, [&](const std::vector<Found>& found, int n) {
       if (const auto people = truth.find(n); people != truth.end())
         score.add(people->second, people_of(found));
     });

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include "people_sequences.h"
+
+#include <cerberus/cerberus.h>
+
+#include "sequences.h"
+
+namespace cerberus::bench {
+
+std::vector<PeopleSequence> people_sequences(const std::filesystem::path& data, const std::string& video) {
+  const auto file = [&](const char* path) {
+    return "filesrc location=" + (data / path).string() + " ! decodebin";
+  };
+  return {{"PETS09-S2L1", video, data / "pets09_s2l1_view1" / "gt.txt"},
+          {"TUD-Campus", file("mot15_tud_campus/TUD-Campus.mp4"), data / "mot15_tud_campus" / "gt.txt"},
+          {"TUD-Stadtmitte", file("mot15_tud_stadtmitte/TUD-Stadtmitte.mp4"),
+           data / "mot15_tud_stadtmitte" / "gt.txt"},
+          {"davis_tennis", source_of(sequence("tennis"), data), data / "davis_tennis" / "boxes.txt"}};
+}
+
+std::vector<Found> found_on(GstBuffer* frame) {
+  std::vector<Found> found;
+  GPtrArray* regions = cerberus_buffer_get_regions(frame);
+  for (guint i = 0; i < regions->len; ++i) {
+    const auto* r = static_cast<const CerberusRegion*>(g_ptr_array_index(regions, i));
+    found.push_back({{static_cast<int>(r->id), {r->x, r->y, r->width, r->height}},
+                     r->kind == CERBERUS_REGION_KIND_GROUP});
+  }
+  g_ptr_array_unref(regions);
+  return found;
+}
+
+std::vector<Person> people_of(const std::vector<Found>& found) {
+  std::vector<Person> people;
+  for (const Found& f : found)
+    if (!f.group) people.push_back(f.person);
+  return people;
+}
+
+}  // namespace cerberus::bench

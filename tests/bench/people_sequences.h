@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// The sequences whose people are annotated in every frame, with identities, and what elements found on a frame of them.
+#pragma once
+
+#include <gst/gst.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "boxes.h"
+
+namespace cerberus::bench {
+
+struct PeopleSequence {
+  std::string name;
+  std::string source;           // launch line that ends in decoded video
+  std::filesystem::path truth;  // for read_people(), all of the picture
+};
+// video: source of vtest.avi. A sequence that is not there is listed all the same.
+std::vector<PeopleSequence> people_sequences(const std::filesystem::path& data, const std::string& video);
+
+struct Found {
+  Person person;
+  bool group = false;
+};
+std::vector<Found> found_on(GstBuffer* frame);
+// Without the groups, which count on neither side: they claim no person.
+std::vector<Person> people_of(const std::vector<Found>& found);
+
+}  // namespace cerberus::bench

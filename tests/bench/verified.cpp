@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// How well `motiondetect ! personverify` follows annotated people, as the mean of runs whose first look is put off by
+// equal parts of the time between two looks: which frames are looked at is a matter of luck.
+//
+//   bench-verified [RUNS] [SEQUENCE]...    8 runs; all sequences
+#include <gst/gst.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <span>
+
+#include "asked.h"
+#include "boxes.h"
+#include "people_sequences.h"
+#include "support/data.h"
+#include "tracks.h"
+
+using namespace cerberus;
+using namespace cerberus::bench;
+namespace fs = std::filesystem;
+
+namespace {
+
+// Of the mean, at least; of the switches at most.
+struct AskedOfMean {
+  const char* name;
+  double mota, idf1, precision, recall, switches;
+  bool promised;
+};
+constexpr AskedOfMean kAsked[] = {{"PETS09-S2L1", 0.75, 0.74, 0, 0, 25, false},
+                                  {"TUD-Campus", 0.5, 0.65, 0.8, 0.6, 1000, false},
+                                  {"TUD-Stadtmitte", 0.3, 0, 0.7, 0.45, 1000, true},
+                                  {"davis_tennis", 0, 0, 0.85, 0.85, 1000, false}};
+
+struct Figure {
+  const char* name;
+  double (*of)(const TrackScore&);
+  double AskedOfMean::*asked;
+};
+constexpr Figure kFigures[] = {
+    {"MOTA", [](const TrackScore& s) { return s.mota(); }, &AskedOfMean::mota},
+    {"IDF1", [](const TrackScore& s) { return s.idf1(); }, &AskedOfMean::idf1},
+    {"precision", [](const TrackScore& s) { return s.precision(); }, &AskedOfMean::precision},
+    {"recall", [](const TrackScore& s) { return s.recall(); }, &AskedOfMean::recall},
+    {"switches", [](const TrackScore& s) { return double(s.switches()); }, &AskedOfMean::switches}};
+
+std::optional<TrackScore> run(const PeopleSequence& sequence, double phase) {
+  const People truth = read_people(sequence.truth, 1e9);
+  char verify[60];
+  std::snprintf(verify, sizeof verify, " ! motiondetect ! personverify phase=%.6f", phase);
+  TrackScore score;
+  const bool measured = for_each_sample(
+      sequence.source + verify + " ! appsink name=out sync=false", [&](GstSample* sample, int n) {
+        if (const auto people = truth.find(n); people != truth.end())
+          score.add(people->second, people_of(found_on(gst_sample_get_buffer(sample))));
+      });
+  if (!measured) return std::nullopt;
+  return score;
+}
+
+// False: it could not be measured.
+bool measure(const PeopleSequence& sequence, int runs, Asked& asked) {
+  std::vector<TrackScore> scores;
+  for (int i = 0; i < runs; ++i) {
+    const auto score = run(sequence, static_cast<double>(i) / runs);
+    if (!score) return false;
+    scores.push_back(*score);
+  }
+  const AskedOfMean& wanted =
+      *std::ranges::find(kAsked, sequence.name, [](const AskedOfMean& a) { return std::string(a.name); });
+  std::printf("%s, %d runs                mean    least    most\n", sequence.name.c_str(), runs);
+  for (const Figure& figure : kFigures) {
+    double sum = 0, least = 1e9, most = -1e9;
+    for (const TrackScore& score : scores) {
+      const double value = figure.of(score);
+      sum += value, least = std::min(least, value), most = std::max(most, value);
+    }
+    const double mean = sum / runs, limit = wanted.*figure.asked;
+    const std::string what = std::string(figure.name) + " on " + sequence.name;
+    const bool counted = figure.asked == &AskedOfMean::switches;
+    std::string verdict;
+    if (counted && limit < 1000) verdict = asked.at_most(what, mean, limit, wanted.promised);
+    if (!counted && limit > 0) verdict = asked.at_least(what, mean, limit, wanted.promised);
+    std::printf("  %-24s %7.3f %8.3f %7.3f%s\n", figure.name, mean, least, most, verdict.c_str());
+  }
+  return true;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  gst_init(&argc, &argv);
+  const int runs = argc > 1 ? std::atoi(argv[1]) : 8;
+  if (runs < 1) {
+    std::fprintf(stderr, "bench-verified [RUNS] [SEQUENCE]...: %s is no number of runs\n", argv[1]);
+    return 2;
+  }
+  const std::span<char*> wanted(argv + std::min(argc, 2), argv + argc);
+  const auto data = tests::data_folder();
+  const auto video = tests::vtest_source();
+  if (!data || !video) {
+    std::printf("skipped: %s\n", data ? tests::kNoVtest : tests::kNoData);
+    return 77;
+  }
+  Asked asked;
+  bool measured = true;
+  for (const PeopleSequence& sequence : people_sequences(*data, *video)) {
+    if (!wanted.empty() &&
+        std::ranges::find(wanted, sequence.name, [](char* w) { return std::string(w); }) == wanted.end())
+      continue;
+    if (fs::exists(sequence.truth))
+      measured = measure(sequence, runs, asked) && measured;
+    else
+      std::printf("%-16s %s\n", sequence.name.c_str(), tests::kNoData);
+  }
+  const int verdict = asked.verdict();
+  return measured ? verdict : 1;
+}
