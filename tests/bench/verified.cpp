@@ -2,7 +2,7 @@
 // How well `motiondetect ! personverify` follows annotated people, as the mean of runs whose first look is put off by
 // equal parts of the time between two looks: which frames are looked at is a matter of luck.
 //
-//   bench-verified [RUNS] [SEQUENCE]...    8 runs; all sequences
+//   bench-verified [RUNS] [SEQUENCE]...    8 runs; all sequences. Named ones are judged by the one who looks.
 #include <gst/gst.h>
 
 #include <algorithm>
@@ -115,6 +115,6 @@ int main(int argc, char** argv) {
     else
       std::printf("%-16s %s\n", sequence.name.c_str(), tests::kNoData);
   }
-  const int verdict = asked.verdict();
+  const int verdict = wanted.empty() ? asked.verdict() : 0;
   return measured ? verdict : 1;
 }
