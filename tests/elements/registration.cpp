@@ -28,13 +28,22 @@ void meet() {
 }  // namespace
 
 // In place of GStreamer's function, which it calls.
+#if GST_CHECK_VERSION(1, 24, 0)
+GstMetaInfo* gst_meta_info_new(GType api, const gchar* impl, gsize size) {
+  static const auto original =
+      reinterpret_cast<decltype(&gst_meta_info_new)>(dlsym(RTLD_NEXT, "gst_meta_info_new"));
+  if (std::strcmp(impl, "CerberusRecordMeta") == 0) meet();
+  return original(api, impl, size);
+}
+#else
 const GstMetaInfo* gst_meta_register(GType api, const gchar* impl, gsize size, GstMetaInitFunction init,
                                      GstMetaFreeFunction free, GstMetaTransformFunction transform) {
-  using Register = decltype(&gst_meta_register);
-  static const auto original = reinterpret_cast<Register>(dlsym(RTLD_NEXT, "gst_meta_register"));
+  static const auto original =
+      reinterpret_cast<decltype(&gst_meta_register)>(dlsym(RTLD_NEXT, "gst_meta_register"));
   if (std::strcmp(impl, "CerberusRecordMeta") == 0) meet();
   return original(api, impl, size, init, free, transform);
 }
+#endif
 
 GST_START_TEST(a_meta_that_two_modules_need_at_once_is_registered_once) {
   scene::Line detects("motiondetect"), shows("motionview stage=luma");
