@@ -32,7 +32,7 @@ struct AskedOfMean {
 constexpr AskedOfMean kAsked[] = {{"PETS09-S2L1", 0.75, 0.74, 0, 0, 25, false},
                                   {"TUD-Campus", 0.5, 0.65, 0.8, 0.6, 1000, false},
                                   {"TUD-Stadtmitte", 0.3, 0, 0.7, 0.45, 1000, true},
-                                  {"davis_tennis", 0, 0, 0.85, 0.85, 1000, false}};
+                                  {"davis_tennis", 0, 0, 0.85, 0.85, 1000, true}};
 
 struct Figure {
   const char* name;

@@ -197,6 +197,25 @@ START_TEST(a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_gro
 }
 END_TEST
 
+START_TEST(a_person_whose_region_is_a_group_for_some_frames_stays_a_person_and_is_a_group_when_it_lasts) {
+  const Box box{180, 190, 40, 100};
+  TrackHypothesis track = walker(200, 240);
+  LifeCycle::confirm(track, 7);
+  const auto see = [&](RegionKind kind, int frames) {
+    for (int k = 0; k < frames; ++k) track.correct({box, 2000, 0.9, 1, kind}, true, 0.04, kFrame);
+    return track.kind;
+  };
+  ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
+  for (int round = 0; round < 3; ++round) {
+    ck_assert(see(RegionKind::group, 3) == RegionKind::person_like);
+    ck_assert(see(RegionKind::person_like, 1) == RegionKind::person_like);
+  }
+  ck_assert(see(RegionKind::group, 6) == RegionKind::group);
+  ck_assert(see(RegionKind::part, 1) == RegionKind::part);
+  ck_assert(see(RegionKind::group, 1) == RegionKind::group);  // no person before
+}
+END_TEST
+
 START_TEST(each_transition_leads_to_its_state) {
   const Box seen{180, 190, 40, 100};
   const CameraOrientation camera{Lens(60 * kDegree, kFrame), 0, 0};
@@ -243,6 +262,7 @@ int main() {
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
        a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while,
        a_track_that_has_a_group_s_box_or_shares_its_region_for_long_is_a_group,
+       a_person_whose_region_is_a_group_for_some_frames_stays_a_person_and_is_a_group_when_it_lasts,
        it_stays_where_it_has_stood_for_a_second_while_its_place_looks_the_same,
        a_region_of_a_person_running_off_stretches_and_of_a_meeting_jumps});
 }

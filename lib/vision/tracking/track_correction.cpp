@@ -33,15 +33,26 @@ void TrackHypothesis::correct(const Region& region, bool alone, double seconds, 
     else if (alone && how.smaller)
       brake_fragment(how, seconds);
   }
-  if (alone) last = seen, kind = region.kind;
-  // The track's box is the group's, or it cannot be told where in the group the object is.
-  const bool within = !alone && shared.time + seconds >= parameters->shared_group;
-  if (region.kind == RegionKind::group && (how.fits || within)) kind = region.kind;
+  if (alone) last = seen;
+  take_kind(region.kind, alone, how.fits, seconds);
   if (!alone && !match.occluded && !how.stays) shrink_into(seen);
   if (!how.cut()) uncut.velocity = {x.velocity, y.velocity};
   uncut.width = std::max(uncut.width, width());
   uncut.height = std::max(uncut.height, height());
   note_seen(region.confidence, how.fits, before, seconds);
+}
+
+// A group's kind is taken where the track's box is the group's, but of a person only after some time: bodies that fail to
+// explain one person for some frames look like a group, too. Within a larger group it cannot be told, after that time,
+// where the object is.
+void TrackHypothesis::take_kind(RegionKind seen, bool alone, bool fits, double seconds) {
+  const bool group = seen == RegionKind::group;
+  in_group = group ? in_group + seconds : 0;
+  if (alone && !group) kind = seen;
+  const double least = parameters->shared_group;
+  const bool own = (alone || fits) && (kind != RegionKind::person_like || in_group >= least);
+  const bool within = !alone && shared.time + seconds >= least;
+  if (group && (own || within)) kind = seen;
 }
 
 TrackHypothesis::Comparison TrackHypothesis::compare(const Box& seen, Size frame) const {

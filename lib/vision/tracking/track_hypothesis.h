@@ -123,7 +123,8 @@ struct TrackHypothesis {
   double age = 0, unseen = 0;           // s since first and since last seen
   double slow = 0;                      // s that it has been seen standing, or nearly, up to now
   Box last;                             // the last region that the track had alone, carried with the scene
-  RegionKind kind = RegionKind::thing;  // of that region
+  RegionKind kind = RegionKind::thing;  // of that region, or of a group that it has been for long enough
+  double in_group = 0;                  // s that its regions have been groups up to now
   Travel travel;
   Uncut uncut;
   Fit fit;
@@ -219,6 +220,7 @@ struct TrackHypothesis {
   void follow_ends(const Box& seen, double seconds, Size frame);
   void brake_fragment(const Comparison& how, double seconds);
   void shrink_into(const Box& region);
+  void take_kind(RegionKind seen, bool alone, bool fits, double seconds);
   void note_seen(double seen_confidence, bool fits, double size_before, double seconds);
 };
 

@@ -64,8 +64,9 @@ struct TrackParameters {
   // instead of .44; MOTA on TUD-Campus and TUD-Stadtmitte is .01 higher.
   double shrinking_misfit = 0.2;
   double extent_known = 0.5;  // s of fitting regions from which on the extent is well known
-  // s for which a track has shared a group's region and from which on it is of that kind. measured: MOTA on TUD-Stadtmitte
-  // is -.02 with .2, -.03 with .5 and -.13 without, that on PETS09-S2L1 the same.
+  // s for which a track has shared a group's region, or a person's region was a group, and from which on it is of that kind.
+  // measured: MOTA on TUD-Stadtmitte is -.13 without the first, davis_tennis's player has .84 recall instead of .89 without
+  // the second. docs/quality.md has other values.
   double shared_group = 0.2;
   double fragment_walk = 0.5;  // S that a fragment of a standing object moves before it replaces the object
 
