@@ -14,7 +14,8 @@
  * - other tracks stay as they were, or are left out (`require=person`): `pirfusion` and `pantiltsink` behind then
  *   follow persons only.
  *
- * Between two looks of the detector a person is followed in the picture.
+ * Between two looks of the detector a person is followed in the picture. One without a track whom the last look at the
+ * place missed is left out until a look shows the person again.
  *
  * The detector is OpenCV's one for pedestrians (histograms of oriented gradients, trained on the Daimler data set):
  * upright people who are at least 24 pixels high. It costs up to 60 ms a look on one core. It does not see people who

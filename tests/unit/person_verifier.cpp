@@ -212,6 +212,29 @@ START_TEST(a_person_whom_looks_do_not_confirm_is_none_any_more) {
 }
 END_TEST
 
+START_TEST(a_person_without_a_track_whom_a_look_misses_is_left_out_and_comes_back_with_its_identity) {
+  Rig rig;
+  const std::vector<Candidate> group{{.id = 9, .box = {195, 95, 150, 170}, .kind = RegionKind::group}};
+  const PersonDetection left{person_at(200), 3}, right{person_at(280), 2.5};
+  const auto see = [&](std::vector<PersonDetection> found) {
+    rig.frame({person_at(200), person_at(280)}, group);
+    const auto look = rig.verifier.choose();
+    ck_assert(look.has_value());
+    rig.found(*look, std::move(found));
+    return rig.result();
+  };
+  see({left, right});
+  const auto both = see({left, right});
+  ck_assert_uint_eq(both.size(), 2);
+  const auto one = see({left});
+  ck_assert_uint_eq(std::ranges::count_if(one, &VerifiedRegion::person), 1);
+  ck_assert_uint_eq(one[0].id, both[0].id);
+  const auto again = see({left, right});
+  ck_assert_uint_eq(again.size(), 2);
+  ck_assert(again[0].id == both[0].id && again[1].id == both[1].id);
+}
+END_TEST
+
 START_TEST(a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most) {
   std::uint32_t last = 7;
   const std::vector<Candidate> before{{.id = 3, .box = {0, 0, 100, 100}},
@@ -380,6 +403,7 @@ int main() {
        a_track_that_persons_cover_in_part_is_a_group,
        what_looks_like_a_person_where_nothing_moves_is_none_and_what_never_moved_ends,
        a_person_whom_looks_do_not_confirm_is_none_any_more,
+       a_person_without_a_track_whom_a_look_misses_is_left_out_and_comes_back_with_its_identity,
        a_region_without_identity_keeps_that_of_the_one_before_which_it_overlaps_most,
        following_and_choosing_allocate_nothing, the_worker_returns_what_its_detector_found_or_threw,
        the_input_size_of_an_onnx_model_is_read_from_its_file,

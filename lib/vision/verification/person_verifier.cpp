@@ -202,6 +202,7 @@ bool PersonVerifier::is_explained(const Candidate& candidate, bool& group) const
   double covered = 0;
   bool holds = false;
   for (const Person& person : people_) {
+    if (!person.is_shown()) continue;
     const double within = share_within(person.box, candidate.box);
     if (within >= p_.inside) holds = true;
     covered += within * person.box.area();
@@ -263,7 +264,7 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> fo
     if (same) {
       hit_[same - people_.data()] = 1;
       approach(same->box, next.box, p_.place_gain, p_.size_gain);
-      same->evidence = std::min(same->evidence + 1, p_.most_evidence);
+      same->evidence = std::min(same->evidence + 1, p_.most_evidence), same->missed = false;
       same->confidence += 0.5 * (confidence(detection.score) - same->confidence);
       if (same->moved || supported) same->since_seen = 0;
     } else if (supported && !is_part(next.box)) {
@@ -274,7 +275,8 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> fo
   const LookRegion& r = look.region;
   const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
   for (std::size_t i = 0; i < before; ++i)
-    if (!hit_[i] && share_within(people_[i].box, seen) > 0.8 && people_[i].age > 0) people_[i].evidence -= 1;
+    if (!hit_[i] && share_within(people_[i].box, seen) > 0.8 && people_[i].age > 0)
+      people_[i].evidence -= 1, people_[i].missed = true;
   std::erase_if(people_, [](const Person& person) { return person.evidence <= 0; });
   bind();
   for (const Candidate& each : candidates_) {
@@ -290,6 +292,7 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> fo
 std::span<const VerifiedRegion> PersonVerifier::result() {
   result_.clear();
   for (const Person& person : people_) {
+    if (!person.is_shown()) continue;
     VerifiedRegion region{.candidate = person.candidate, .id = person.id, .box = person.box, .person = true};
     region.confidence = person.confidence, region.age = person.age;
     const double sx = static_cast<double>(frame_.width) / past(number_).picture.size().width;

@@ -77,7 +77,10 @@ class PersonVerifier {
     double since_support = 0;   // s since the person lay on a track
     double wayx = 0, wayy = 0;  // frame pixels from where it was first seen, camera motion taken out
     bool moved = false;
-    int candidate = -1;  // of this frame
+    bool missed = false;  // by the last look at its place
+    int candidate = -1;   // of this frame
+    // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
+    bool is_shown() const { return candidate >= 0 || !missed; }
   };
   struct TrackRecord {
     std::uint32_t id = 0;
