@@ -49,7 +49,7 @@ struct VerificationParameters {
   double changed = 0.3;          // of a detection, where no track is: else it is background
 
   // Where to look. A look's region is scaled so that the most doubtful box is `look_height` pixels high.
-  double look_height = 180;
+  double look_height = 150;  // the detector sees 83 and more. docs/quality.md has other values
   double side_margin =
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
   double top_margin = 0.14;  // of the box's height, above and below
