@@ -114,6 +114,7 @@ void name(Numbers n, TwoFrameConfirmation::Parameters& p) {
 
 void name(Numbers n, TrackParameters& p) {
   n.add({N(acceleration),
+         N(panned_acceleration),
          N(birth_speed),
          N(position_noise),
          N(grain),
@@ -153,6 +154,7 @@ void name(Numbers n, TrackParameters& p) {
          N(growing_misfit),
          N(jumped_misfit),
          N(shrinking_misfit),
+         N(panned_misfit),
          N(extent_known),
          N(shared_group),
          N(fragment_walk),

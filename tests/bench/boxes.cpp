@@ -30,6 +30,17 @@ People read_people(const std::filesystem::path& file, double truth_ends) {
   return people;
 }
 
+std::vector<Box> read_boxes(const std::filesystem::path& file) {
+  std::vector<Box> boxes;
+  std::ifstream in(file);
+  for (std::string line; std::getline(in, line);) {
+    std::replace(line.begin(), line.end(), ',', ' ');
+    std::istringstream fields(line);
+    if (double x, y, w, h; fields >> x >> y >> w >> h) boxes.push_back({x - 1, y - 1, w, h});
+  }
+  return boxes;
+}
+
 std::vector<Box> found_boxes(GstBuffer* frame) {
   std::vector<Box> found;
   GPtrArray* regions = cerberus_buffer_get_regions(frame);

@@ -29,6 +29,8 @@ constexpr double kTruthEnds = 736;
 // frame (from 1), id, x, y, w, h and perhaps a flag a line; 0 in the flag: not to be scored. Boxes that end beyond
 // `truth_ends` are left out.
 People read_people(const std::filesystem::path& file, double truth_ends = kTruthEnds);
+// x, y, w, h a line, of one person in frame after frame; pixels are counted from 1.
+std::vector<vision::Box> read_boxes(const std::filesystem::path& file);
 // What is on the frame.
 std::vector<vision::Box> found_boxes(GstBuffer* frame);
 // Greedy by overlap, IoU >= 0.5.

@@ -216,6 +216,33 @@ START_TEST(a_person_whose_region_is_a_group_for_some_frames_stays_a_person_and_i
 }
 END_TEST
 
+// Frames until a region of half the height has replaced the extent of a moving track.
+static int frames_until_shrunk(double seconds, bool camera_moves) {
+  TrackHypothesis track = walker(200, 240);
+  for (int frame = 1;; ++frame) {
+    ck_assert(track.predict(seconds, camera_moves));
+    track.correct({{track.x.position - 20, track.y.position - 25, 40, 50}, 1000, 0.9, 1}, true, seconds, kFrame);
+    if (track.height() < 75 || frame == 100) return frame;
+  }
+}
+
+START_TEST(a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least) {
+  ck_assert_int_eq(frames_until_shrunk(0.0334, true), 2);
+  ck_assert_int_eq(frames_until_shrunk(0.0334, false), 6);
+  ck_assert_int_eq(frames_until_shrunk(0.1001, true), 2);  // one frame alone is not believed
+  ck_assert_int_eq(frames_until_shrunk(0.01001, true), 5);
+}
+END_TEST
+
+START_TEST(before_a_moving_camera_a_track_s_velocity_is_less_certain) {
+  TrackHypothesis still = walker(200, 240), panned = still;
+  const double known = still.x.vv;
+  still.predict(0.1), panned.predict(0.1, true);
+  ck_assert_double_gt(still.x.vv, known);
+  ck_assert_double_gt(panned.x.vv - known, 4 * (still.x.vv - known));
+}
+END_TEST
+
 START_TEST(each_transition_leads_to_its_state) {
   const Box seen{180, 190, 40, 100};
   const CameraOrientation camera{Lens(60 * kDegree, kFrame), 0, 0};
@@ -256,8 +283,9 @@ END_TEST
 int main() {
   return cerberus::tests::run_suite(
       "track_hypothesis",
-      {each_transition_leads_to_its_state, a_zoom_scales_all_of_its_lengths,
-       a_camera_that_rolls_turns_the_velocity,
+      {a_moving_camera_s_track_shrinks_in_its_second_frame_of_a_twentieth_second_at_least,
+       before_a_moving_camera_a_track_s_velocity_is_less_certain, each_transition_leads_to_its_state,
+       a_zoom_scales_all_of_its_lengths, a_camera_that_rolls_turns_the_velocity,
        a_fragment_replaces_the_track_if_it_leaves_its_place_in_the_scene,
        towards_the_picture_s_middle_an_off_screen_track_shrinks_as_a_pinhole_projects_it,
        a_person_s_own_region_replaces_a_group_s_extent_at_once_and_a_person_s_after_a_while,

@@ -108,7 +108,10 @@ bool TrackHypothesis::outgrown(const Region& region, bool cut, double seconds) {
     return fit.misfit >= (known && fit.jumped ? q.jumped_misfit : q.growing_misfit);
   const Point to = centre(seen);
   const double gone = std::hypot(to.x - fit.misfit_from.x, to.y - fit.misfit_from.y);
-  return fit.misfit >= q.shrinking_misfit && (!fit.was_still || !known || gone > q.fragment_walk * size());
+  // While the camera moves a smaller region is believed in its second frame.
+  const bool lasts = camera_moved ? fit.misfit >= q.panned_misfit && fit.misfit > seconds
+                                  : fit.misfit >= q.shrinking_misfit;
+  return lasts && (!fit.was_still || !known || gone > q.fragment_walk * size());
 }
 
 // A region that grows by so much from one frame to the next has met another object, or reveals more of its own.

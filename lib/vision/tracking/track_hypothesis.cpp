@@ -75,16 +75,17 @@ bool TrackHypothesis::at_border(Size frame) const {
          b.bottom() > frame.height - margin;
 }
 
-bool TrackHypothesis::predict(double seconds) {
+bool TrackHypothesis::predict(double seconds, bool camera_moves) {
   const TrackParameters& q = *parameters;
   const double s = size();
+  camera_moved = camera_moves;
   if (stands()) {
     x.velocity = y.velocity = 0;
     for (MovingValue* a : {&x, &y})
       a->pp = std::min(a->pp + square(q.stopped_wander * s) * seconds,
                        std::max(square(q.stopped_uncertainty * s), a->pp));
   } else {
-    for (MovingValue* a : {&x, &y}) a->predict(seconds, q.acceleration * s * s);
+    for (MovingValue* a : {&x, &y}) a->predict(seconds, (camera_moves ? q.panned_acceleration : q.acceleration) * s * s);
   }
   for (SlowValue* e : {&w, &h}) e->predict(seconds, q.size_wander);
   age += seconds;

@@ -130,7 +130,8 @@ struct TrackHypothesis {
   Fit fit;
   Shared shared;
   Appearance appearance;
-  Match match;  // of this frame
+  Match match;              // of this frame
+  bool camera_moved = false;  // since the frame before
 
   static TrackHypothesis first_seen(const Region& region,
                                     const TrackParameters& parameters = kTrackParameters);
@@ -155,8 +156,9 @@ struct TrackHypothesis {
   Box visible(Size frame) const;
   bool at_border(Size frame) const;
 
-  // Along its own velocity from frame k-1's time to frame k's. False: the position is not finite.
-  bool predict(double seconds);
+  // Along its own velocity from frame k-1's time to frame k's; camera_moves: between the two. False: the position is not
+  // finite.
+  bool predict(double seconds, bool camera_moves = false);
   // With the camera into frame k's pixels. False: it has no position there.
   bool carry(const Transform& motion, Size frame);
   // Both for an off-screen track, by angles.

@@ -97,7 +97,7 @@ void Tracker::State::predict(const Transform& motion) {
   for (TrackHypothesis& t : tracks) {
     if (t.is(TrackPhase::off_screen))
       t.predict_off_screen(seconds, orientation.gaze());
-    else if (!t.predict(seconds) || !t.carry(motion, frame))
+    else if (!t.predict(seconds, turning) || !t.carry(motion, frame))
       LifeCycle::lose(t);
   }
   remove_lost();
