@@ -186,10 +186,11 @@ gboolean cerberus_person_verify_start(GstBaseTransform* transform) {
                       : model                ? kModelThreshold
                                              : kDaimlerThreshold;
     state.certain = std::max(model ? kModelCertain : kDaimlerCertain, state.threshold);
+    const double floor = vision::VerificationParameters{}.line_floor * state.threshold;
     std::string wrong;
-    auto detector =
-        model ? cerberus::plugin::make_model_detector(settings.model, settings.labels, state.threshold, wrong)
-              : cerberus::plugin::make_daimler_detector(state.threshold);
+    auto detector = model
+                        ? cerberus::plugin::make_model_detector(settings.model, settings.labels, floor, wrong)
+                        : cerberus::plugin::make_daimler_detector(floor);
     if (!detector) {
       CERBERUS_ELEMENT_ERROR(transform, RESOURCE, SETTINGS, (wrong), ("the property model cannot be used"));
       return FALSE;
@@ -306,7 +307,6 @@ void take_in(State& state, GstClockTime now) {
   const Pending pending = *std::exchange(state.pending, std::nullopt);
   for (vision::PersonDetection& hit : hits)
     hit.box.x += pending.look.region.x, hit.box.y += pending.look.region.y;
-  vision::merge_hits(hits, state.threshold);
   for (const vision::PersonDetection& hit : hits)
     GST_LOG("%" GST_TIME_FORMAT ": %.0f,%.0f %.0fx%.0f, score %.2f", GST_TIME_ARGS(pending.time), hit.box.x,
             hit.box.y, hit.box.width, hit.box.height, hit.score);

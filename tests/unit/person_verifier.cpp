@@ -112,17 +112,19 @@ END_TEST
 
 START_TEST(the_most_doubtful_box_is_looked_at_with_neighbours_that_fit) {
   const VerificationParameters p;
-  const std::array<LookTarget, 4> targets{
-      {{{300, 100, 40, 90}, 3}, {{350, 105, 40, 90}, 1}, {{20, 300, 40, 90}, 1}, {{500, 100, 9, 12}, 9}}};
+  const std::array<LookTarget, 4> targets{{{{300, 100, 40, 90}, 3, 90},
+                                           {{350, 105, 40, 80}, 1, 80},
+                                           {{20, 900, 40, 90}, 1, 90},
+                                           {{500, 100, 9, 12}, 9, 12}}};
   const auto look = choose_look(targets, {2000, 1500}, p);
   ck_assert(look.has_value());
-  ck_assert_double_eq_tol(look->scale, p.look_height / 90, 1e-9);
+  ck_assert_double_eq_tol(look->scale, p.look_height / 80, 1e-9);  // of the lowest who is looked for
   ck_assert(look->x < 300 && look->x + look->width > 390 && look->y < 100 && look->y + look->height > 195);
   ck_assert(look->width * look->height * look->scale * look->scale <= p.most_area * 1.05);
-  ck_assert(look->y + look->height < 300);
+  ck_assert(look->y + look->height < 900);
   ck_assert(!choose_look({}, {2000, 1500}, p));
   // A group as wide as the picture is cut to what a look may cost.
-  const std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1}}};
+  const std::array<LookTarget, 1> wide{{{{0, 100, 2000, 90}, 1, 90}}};
   const auto middle = choose_look(wide, {2000, 1500}, p);
   ck_assert(middle->width * middle->height * middle->scale * middle->scale <= p.most_area * 1.05);
 }

@@ -12,8 +12,9 @@
 namespace cerberus::vision {
 
 struct LookTarget {
-  Box box;           // frame pixels
-  double doubt = 0;  // the larger, the sooner; 0: no look is needed
+  Box box;            // frame pixels
+  double doubt = 0;   // the larger, the sooner; 0: no look is needed
+  double height = 0;  // frame pixels: of a person in it, as far as it is known
 };
 
 struct LookRegion {

@@ -4,26 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "vision/verification/patch_matching.h"
-
 namespace cerberus::vision {
 
 namespace {
 
-Box core_of(const Box& box, const VerificationParameters& p) {
-  return {box.x + box.width * (1 - p.core_width) / 2, box.y + box.height * (1 - p.core_height) / 2,
-          box.width * p.core_width, box.height * p.core_height};
-}
-
-Box scaled(const Box& box, double x, double y) {
-  return {box.x * x, box.y * y, box.width * x, box.height * y};
-}
-
-void approach(Box& box, const Box& to, double place, double size) {
-  const double cx = box.x + box.width / 2, cy = box.y + box.height / 2;
-  const double tx = to.x + to.width / 2, ty = to.y + to.height / 2;
-  box.width += size * (to.width - box.width), box.height += size * (to.height - box.height);
-  box.x = cx + place * (tx - cx) - box.width / 2, box.y = cy + place * (ty - cy) - box.height / 2;
+Point middle_of(const Box& box) {
+  return {box.x + box.width / 2, box.y + box.height / 2};
 }
 
 double share_within(const Box& box, const Box& outer) {
@@ -46,9 +32,10 @@ void keep_identities(std::span<const Candidate> before, std::span<Candidate> now
 }
 
 void PersonVerifier::reset() {
-  people_.clear(), records_.clear(), candidates_.clear(), result_.clear();
-  number_ = 0;
+  people_.clear(), lost_.clear(), records_.clear(), candidates_.clear(), result_.clear();
+  pictures_.reset();
   changes_.reset();
+  line_.reset();
 }
 
 PersonVerifier::TrackRecord& PersonVerifier::record(std::uint32_t id) {
@@ -59,125 +46,144 @@ PersonVerifier::TrackRecord& PersonVerifier::record(std::uint32_t id) {
 
 void PersonVerifier::update(GrayView picture, Size frame, const Transform& motion, double seconds,
                             std::span<const Candidate> candidates) {
-  ++number_;
-  frame_ = frame, seconds_ = seconds;
-  Past& now = past(number_);
-  now.picture.resize(picture.size());
-  for (int y = 0; y < picture.height; ++y)
-    std::copy_n(picture.row(y), picture.width, now.picture.view().row(y));
-  now.motion = motion.rescaled(frame, picture.size());
-
+  seconds_ = seconds;
+  pictures_.add(picture, frame, motion);
+  line_.move(motion);
   compare();
   candidates_.assign(candidates.begin(), candidates.end());
-  for (TrackRecord& each : records_) each.since_look += seconds, each.since_seen += seconds;
+  for (TrackRecord& each : records_)
+    each.since_look += seconds, each.since_seen += seconds, each.age += seconds;
   std::erase_if(records_, [](const TrackRecord& each) { return each.since_seen > 60; });
   for (const Candidate& each : candidates_) record(each.id).since_seen = 0;
+  carry_lost(motion);
   for (Person& person : people_) {
-    follow(person, number_);
+    person.follow(pictures_.number(), pictures_, p_);
     person.age += seconds, person.since_seen += seconds, person.since_look += seconds;
   }
   bind();
   for (Person& person : people_) {
     person.since_support += seconds;
-    if (is_supported(person.box)) person.since_support = 0;
+    if (is_supported(person.box())) person.since_support = 0;
   }
-  std::erase_if(people_, [&](const Person& person) {
-    const Box picture_box{0, 0, double(frame_.width), double(frame_.height)};
-    return person.evidence <= 0 || share_within(person.box, picture_box) < 0.4 ||
-           person.since_support > p_.longest_still ||
-           (person.candidate < 0 && person.since_seen > (person.moved ? p_.longest : p_.longest_still));
+  forget_if([&](const Person& person) {
+    const double longest = person.moved() ? p_.longest : p_.longest_still;
+    return person.evidence <= 0 || pictures_.seen(person.box()).area() < p_.leaves * person.box().area() ||
+           person.since_support > p_.longest_still || (person.candidate < 0 && person.since_seen > longest);
   });
 }
 
 // With a picture of some frames before, if the camera has stood since.
 void PersonVerifier::compare() {
-  const auto back = static_cast<std::uint64_t>(p_.change_frames);
-  bool stood = number_ > back;
-  for (std::uint64_t n = number_; stood && n > number_ - back; --n)
-    stood = past(n).motion.corner_motion(past(n).picture.size()) < p_.stands;
-  changes_.update(past(number_).picture.view(), stood ? past(number_ - back).picture.view() : GrayView{},
-                  seconds_, p_);
+  const auto back = static_cast<std::uint64_t>(p_.change_frames), now = pictures_.number();
+  bool stood = now > back;
+  for (std::uint64_t n = now; stood && n > now - back; --n)
+    stood = pictures_.motion(n).corner_motion(pictures_.picture(n).size()) < p_.stands;
+  changes_.update(pictures_.picture(now), stood ? pictures_.picture(now - back) : GrayView{}, seconds_, p_);
 }
 
-Box PersonVerifier::reduced(const Box& box) const {
-  const Size small = past_[number_ % kKept].picture.size();
-  return scaled(box, static_cast<double>(small.width) / frame_.width,
-                static_cast<double>(small.height) / frame_.height);
+template <typename Condition>
+void PersonVerifier::forget_if(Condition ends) {
+  for (const Person& person : people_)
+    if (ends(person) && person.id != 0 && person.looks() > 1 && lost_.size() < kMostLost)
+      lost_.push_back({person.id, person.box(), person.velocity(), person.age, 0});
+  std::erase_if(people_, ends);
+}
+
+void PersonVerifier::carry_lost(const Transform& motion) {
+  for (Lost& each : lost_) {
+    const Point middle = middle_of(each.box), moved = motion.apply(middle);
+    each.box.x += moved.x - middle.x + each.velocity.x, each.box.y += moved.y - middle.y + each.velocity.y;
+    each.since += seconds_;
+  }
+  std::erase_if(lost_, [&](const Lost& each) { return each.since > p_.hidden; });
+}
+
+bool PersonVerifier::is_owned(std::uint32_t id) const {
+  return std::ranges::any_of(people_, [&](const Person& person) { return person.id == id; });
+}
+
+// The identity of somebody who was hidden and may be this person, whose age it continues; 0: none.
+std::uint32_t PersonVerifier::lost_identity(Person& person) {
+  const Box& box = person.box();
+  const Point at = middle_of(box);
+  const Lost* found = nullptr;
+  double nearest = 1;
+  for (const Lost& each : lost_) {
+    const Point was = middle_of(each.box);
+    const double reach = box.height * (p_.hidden_reach + p_.hidden_speed * each.since);
+    const double distance = std::hypot(at.x - was.x, at.y - was.y) / reach;
+    const bool is_track =
+        std::ranges::any_of(candidates_, [&](const Candidate& c) { return c.id == each.id; });
+    if (distance > nearest || std::abs(std::log(each.box.height / box.height)) > p_.hidden_height ||
+        is_owned(each.id) || is_track)
+      continue;
+    nearest = distance, found = &each;
+  }
+  if (!found) return 0;
+  const std::uint32_t id = found->id;
+  person.age = std::max(person.age, found->age + found->since);
+  std::erase_if(lost_, [&](const Lost& each) { return each.id == id; });
+  return id;
 }
 
 // Something moves there.
 bool PersonVerifier::is_supported(const Box& box) const {
-  return share_on_tracks(box) >= p_.on_track || changes_.share(reduced(box)) >= p_.changed;
+  return share_on_tracks(box) >= p_.on_track || changes_.share(pictures_.reduced(box)) >= p_.changed;
 }
 
-// One frame on: by the picture, near the prediction.
-void PersonVerifier::follow(Person& person, std::uint64_t to) {
-  Past &before = past(to - 1), &now = past(to);
-  if (to < 2 || before.picture.size() != now.picture.size()) return;
-  const double sx = static_cast<double>(now.picture.size().width) / frame_.width;
-  const double sy = static_cast<double>(now.picture.size().height) / frame_.height;
-  const Box small = scaled(person.box, sx, sy);
-  const Point middle{small.x + small.width / 2, small.y + small.height / 2};
-  const Point moved = now.motion.apply(middle);
-  const Point camera{moved.x - middle.x, moved.y - middle.y};
-  const Point guess{camera.x + person.vx, camera.y + person.vy};
-  const int reach = std::max(2, static_cast<int>(std::ceil(p_.reach * small.height)));
-  const Point step = match_patch(before.picture.view(), now.picture.view(), core_of(small, p_), guess, reach);
-  person.vx = p_.inertia * person.vx + (1 - p_.inertia) * (step.x - camera.x);
-  person.vy = p_.inertia * person.vy + (1 - p_.inertia) * (step.y - camera.y);
-  person.box.x += step.x / sx, person.box.y += step.y / sy;
-  person.wayx += (step.x - camera.x) / sx, person.wayy += (step.y - camera.y) / sy;
-  if (std::hypot(person.wayx, person.wayy) > p_.moved * person.box.width) person.moved = true;
+// The track shows one person, about as high and as wide as the looks showed this one.
+bool PersonVerifier::is_whole(const Candidate& c, const Person& person) const {
+  const Box& box = person.box();
+  return c.state == TrackState::seen && c.kind == RegionKind::person_like &&
+         line_.judge(c.box, p_) != HeightLine::Fit::contradicts &&
+         std::abs(std::log(c.box.height / box.height)) < p_.alike_height &&
+         std::abs(std::log(c.box.width / box.width)) < p_.alike_width;
 }
 
-Box PersonVerifier::carried(Box box, std::uint64_t from, double& vx, double& vy) {
-  Person person;
-  person.box = box, person.vx = vx, person.vy = vy;
-  for (std::uint64_t n = from + 1; n <= number_; ++n) follow(person, n);
-  vx = person.vx, vy = person.vy;
-  return person.box;
+void PersonVerifier::bind(Person& person, std::size_t candidate) {
+  const Candidate& c = candidates_[candidate];
+  person.candidate = static_cast<int>(candidate), taken_[candidate] = 1;
+  if (person.track != c.id) person.agreed = 0;
+  person.track = c.id;
+  person.track_boxes[pictures_.number() % PictureHistory::kKept] = c.box;
+  // The older identity counts, of tracks that are no group's or thing's.
+  const bool sure = c.state == TrackState::seen && c.kind == RegionKind::person_like;
+  const bool older = person.id >= kFirstOwn && sure && record(c.id).age > person.age;
+  if ((person.id == 0 || older) && !is_owned(c.id)) person.id = c.id;
+  if (person.agreed >= p_.agreed && is_whole(c, person)) {  // looks have shown that the track is right
+    const bool near = intersection_over_union(person.box(), c.box) >= p_.unbound;
+    person.pull(c.box, near ? p_.track_gain : 1, p_.track_gain, pictures_, p_);
+  }
 }
 
 // Each track to the person that it fits best; a bound pair first.
 void PersonVerifier::bind() {
-  for (Person& person : people_) person.candidate = -1;
+  for (Person& person : people_)
+    person.candidate = -1, person.track_boxes[pictures_.number() % PictureHistory::kKept] = {};
   taken_.assign(candidates_.size(), 0);
-  const auto pair = [&](Person& person, std::size_t i) {
-    const Candidate& c = candidates_[i];
-    person.candidate = static_cast<int>(i), taken_[i] = 1;
-    person.track = person.id = c.id;
-    if (c.state != TrackState::coasted && c.kind == RegionKind::person_like)
-      approach(person.box, c.box, intersection_over_union(person.box, c.box) < p_.unbound ? 1 : p_.track_gain,
-               p_.track_gain);
+  const auto shared = [&](const Person& person, std::size_t i) {
+    const bool free = !taken_[i] && candidates_[i].kind != RegionKind::group;
+    return free ? intersection_over_union(person.box(), candidates_[i].box) : -1;
   };
   for (Person& person : people_)
-    for (std::size_t i = 0; i < candidates_.size(); ++i)
-      if (person.track == candidates_[i].id && !taken_[i] &&
-          intersection_over_union(person.box, candidates_[i].box) >=
-              (candidates_[i].kind == RegionKind::person_like && candidates_[i].state == TrackState::seen
-                   ? p_.unbound_sure
-                   : p_.unbound))
-        pair(person, i);
+    for (std::size_t i = 0; i < candidates_.size() && person.candidate < 0; ++i)
+      if (person.track == candidates_[i].id &&
+          shared(person, i) >= (is_whole(candidates_[i], person) ? p_.unbound_whole : p_.unbound))
+        bind(person, i);
   for (;;) {
     double best = p_.bound;
     Person* who = nullptr;
     std::size_t which = 0;
-    for (Person& person : people_) {
-      if (person.candidate >= 0) continue;
-      for (std::size_t i = 0; i < candidates_.size(); ++i) {
-        const double shared = taken_[i] ? 0 : intersection_over_union(person.box, candidates_[i].box);
-        if (shared >= best) best = shared, who = &person, which = i;
-      }
-    }
+    for (Person& person : people_)
+      for (std::size_t i = 0; i < candidates_.size() && person.candidate < 0; ++i)
+        if (shared(person, i) >= best) best = shared(person, i), who = &person, which = i;
     if (!who) break;
-    pair(*who, which);
+    bind(*who, which);
   }
   for (Person& person : people_) {
-    if (person.candidate >= 0) continue;
-    person.track = 0;
-    const bool taken_over =
-        std::ranges::any_of(candidates_, [&](const Candidate& c) { return c.id == person.id; });
-    if (taken_over || person.id == 0) person.id = next_own_++;
+    if (person.candidate < 0) person.track = 0;
+    if (person.id == 0) person.id = lost_identity(person);
+    if (person.id == 0) person.id = next_own_++;
   }
 }
 
@@ -186,7 +192,7 @@ bool PersonVerifier::is_part(const Box& box) const {
   const auto is_of = [&](const Box& whole) {
     return box.height < p_.part_height * whole.height && share_within(box, whole) >= p_.part;
   };
-  return std::ranges::any_of(people_, [&](const Person& q) { return is_of(q.box); }) ||
+  return std::ranges::any_of(people_, [&](const Person& q) { return is_of(q.box()); }) ||
          std::ranges::any_of(candidates_, [&](const Candidate& c) {
            return c.kind == RegionKind::person_like && is_of(c.box);
          });
@@ -203,9 +209,9 @@ bool PersonVerifier::is_explained(const Candidate& candidate, bool& group) const
   bool holds = false;
   for (const Person& person : people_) {
     if (!person.is_shown()) continue;
-    const double within = share_within(person.box, candidate.box);
+    const double within = share_within(person.box(), candidate.box);
     if (within >= p_.inside) holds = true;
-    covered += within * person.box.area();
+    covered += within * person.box().area();
   }
   const bool all = holds && covered >= p_.covered * candidate.box.area();
   group = holds && !all;
@@ -219,55 +225,75 @@ std::optional<PersonVerifier::Look> PersonVerifier::choose() {
     if (bound) continue;
     const TrackRecord& own = record(each.id);
     const double waited = std::min(own.since_look, p_.most_waited);
-    targets_.push_back({each.box, waited / (1 + own.refuted)});
+    const bool one = each.kind == RegionKind::person_like;
+    targets_.push_back({each.box, waited / (1 + own.refuted), (one ? 1 : p_.in_group) * each.box.height});
   }
   for (const Person& each : people_)
-    targets_.push_back({each.box, each.since_look * (each.candidate < 0 ? 1 : 0.6)});
+    targets_.push_back({each.box(), each.since_look * (each.candidate < 0 ? 1 : 0.6), each.box().height});
   hidden_.clear();
-  for (const Candidate& each : candidates_) hidden_.push_back(reduced(each.box));
-  for (const Person& each : people_) hidden_.push_back(reduced(each.box));
-  const Size small = past(number_).picture.size();
+  for (const Candidate& each : candidates_) hidden_.push_back(pictures_.reduced(each.box));
+  for (const Person& each : people_) hidden_.push_back(pictures_.reduced(each.box()));
+  const double across = 1 / pictures_.across(), down = 1 / pictures_.down();
   for (const LookTarget& place : changes_.places(hidden_, p_))
-    targets_.push_back({scaled(place.box, static_cast<double>(frame_.width) / small.width,
-                               static_cast<double>(frame_.height) / small.height),
-                        p_.place_doubt * place.doubt});
-  const auto region = choose_look(targets_, frame_, p_);
+    targets_.push_back(
+        {{place.box.x * across, place.box.y * down, place.box.width * across, place.box.height * down},
+         p_.place_doubt * place.doubt,
+         p_.in_group * place.box.height * down});
+  const auto region = choose_look(targets_, pictures_.frame(), p_);
   if (!region) return std::nullopt;
   const Box seen{double(region->x), double(region->y), double(region->width), double(region->height)};
-  changes_.looked(reduced(seen));
+  changes_.looked(pictures_.reduced(seen));
   for (const Candidate& each : candidates_)
     if (share_within(each.box, seen) > 0.8) record(each.id).since_look = 0;
   for (Person& each : people_)
-    if (share_within(each.box, seen) > 0.8) each.since_look = 0;
-  return Look{*region, number_};
+    if (share_within(pictures_.seen(each.box()), seen) > 0.8) each.since_look = 0;
+  return Look{*region, pictures_.number()};
 }
 
-void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> found, double floor,
+// Fills found_ with one detection a person.
+void PersonVerifier::take_persons(std::span<const PersonDetection> hits, double threshold) {
+  found_.clear();
+  for (const PersonDetection& hit : hits) {
+    const HeightLine::Fit fit = line_.judge(hit.box, p_);
+    const double least = fit == HeightLine::Fit::fits ? p_.line_floor * threshold : threshold;
+    if (fit != HeightLine::Fit::contradicts && hit.score >= least) found_.push_back(hit);
+  }
+  merge_hits(found_, p_.line_floor * threshold);
+  for (const PersonDetection& person : found_)
+    if (person.score >= p_.line_certain * threshold) line_.learn(person.box, p_);
+}
+
+void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> hits, double threshold,
                            double certain) {
-  if (look.frame > number_ || number_ - look.frame >= kKept) return;
+  if (!pictures_.holds(look.frame)) return;
+  take_persons(hits, threshold);
   const auto confidence = [&](double score) {
-    return std::clamp(0.5 + 0.5 * (score - floor) / std::max(certain - floor, 1e-9), 0.0, 1.0);
+    return std::clamp(0.5 + 0.5 * (score - threshold) / std::max(certain - threshold, 1e-9), 0.0, 1.0);
   };
   const std::size_t before = people_.size();
   hit_.assign(before, 0);
-  for (const PersonDetection& detection : found) {
+  for (const PersonDetection& detection : found_) {
     Person next;
-    next.box = carried(detection.box, look.frame, next.vx, next.vy);
+    next.begin(detection.box, look.frame, pictures_, p_);
     // Background is no person: something moves there, or the person has moved.
-    const bool supported = is_supported(next.box);
+    const bool supported = is_supported(next.box());
     Person* same = nullptr;
     double best = p_.same;
     for (std::size_t i = 0; i < before; ++i) {
-      const double shared = hit_[i] ? 0 : intersection_over_union(people_[i].box, next.box);
+      const Box& then = people_[i].box_at(look.frame);
+      const double shared = hit_[i] ? 0 : intersection_over_union(then, detection.box);
       if (shared >= best) best = shared, same = &people_[i];
     }
     if (same) {
       hit_[same - people_.data()] = 1;
-      approach(same->box, next.box, p_.place_gain, p_.size_gain);
+      const Box& track = same->track_boxes[look.frame % PictureHistory::kKept];
+      if (track.area() > 0)
+        same->agreed = intersection_over_union(track, detection.box) >= p_.agrees ? same->agreed + 1 : 0;
+      same->correct(detection.box, look.frame, pictures_, p_);
       same->evidence = std::min(same->evidence + 1, p_.most_evidence), same->missed = false;
       same->confidence += 0.5 * (confidence(detection.score) - same->confidence);
-      if (same->moved || supported) same->since_seen = 0;
-    } else if (supported && !is_part(next.box)) {
+      if (same->moved() || supported) same->since_seen = 0;
+    } else if (supported && !is_part(next.box())) {
       next.evidence = 1, next.confidence = confidence(detection.score);
       people_.push_back(next);
     }
@@ -275,15 +301,15 @@ void PersonVerifier::apply(const Look& look, std::span<const PersonDetection> fo
   const LookRegion& r = look.region;
   const Box seen{double(r.x), double(r.y), double(r.width), double(r.height)};
   for (std::size_t i = 0; i < before; ++i)
-    if (!hit_[i] && share_within(people_[i].box, seen) > 0.8 && people_[i].age > 0)
+    if (!hit_[i] && share_within(pictures_.seen(people_[i].box()), seen) > 0.8 && people_[i].age > 0)
       people_[i].evidence -= 1, people_[i].missed = true;
-  std::erase_if(people_, [](const Person& person) { return person.evidence <= 0; });
+  forget_if([](const Person& person) { return person.evidence <= 0; });
   bind();
   for (const Candidate& each : candidates_) {
     if (share_within(each.box, seen) < 0.8) continue;
     bool explained = false;
     for (const Person& person : people_)
-      explained = explained || person.track == each.id || share_within(person.box, each.box) >= p_.inside;
+      explained = explained || person.track == each.id || share_within(person.box(), each.box) >= p_.inside;
     TrackRecord& own = record(each.id);
     own.refuted = explained ? 0 : own.refuted + 1;
   }
@@ -293,18 +319,18 @@ std::span<const VerifiedRegion> PersonVerifier::result() {
   result_.clear();
   for (const Person& person : people_) {
     if (!person.is_shown()) continue;
-    VerifiedRegion region{.candidate = person.candidate, .id = person.id, .box = person.box, .person = true};
+    VerifiedRegion region{
+        .candidate = person.candidate, .id = person.id, .box = person.box(), .person = true};
     region.confidence = person.confidence, region.age = person.age;
-    const double sx = static_cast<double>(frame_.width) / past(number_).picture.size().width;
-    region.vx = person.vx * sx / seconds_, region.vy = person.vy * sx / seconds_;
+    region.vx = person.velocity().x / seconds_, region.vy = person.velocity().y / seconds_;
     result_.push_back(region);
   }
   for (std::size_t i = 0; i < candidates_.size(); ++i) {
     const Candidate& each = candidates_[i];
-    if (std::ranges::any_of(people_, [&](const Person& q) { return q.candidate == static_cast<int>(i); }))
-      continue;
+    const auto is_bound = [&](const Person& person) { return person.candidate == static_cast<int>(i); };
     bool group = false;
-    if (is_explained(each, group)) continue;
+    // A track whose identity a person has taken along shows that person no more, and its new one is not known yet.
+    if (std::ranges::any_of(people_, is_bound) || is_explained(each, group) || is_owned(each.id)) continue;
     VerifiedRegion region{
         .candidate = static_cast<int>(i), .id = each.id, .box = each.box, .kind = each.kind};
     if (group) region.kind = RegionKind::group;

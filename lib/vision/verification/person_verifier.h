@@ -3,6 +3,7 @@
 // and replaces a track that holds several.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,6 +12,8 @@
 #include "vision/geometry/transform.h"
 #include "vision/tracking/tracker.h"
 #include "vision/verification/changed_places.h"
+#include "vision/verification/followed_person.h"
+#include "vision/verification/height_line.h"
 #include "vision/verification/look_schedule.h"
 #include "vision/verification/person_detector.h"
 #include "vision/verification/verification_parameters.h"
@@ -59,65 +62,72 @@ class PersonVerifier {
               std::span<const Candidate> candidates);
   // Where the detector is to look in the present frame, the most doubtful first; nullopt: nowhere.
   std::optional<Look> choose();
-  // Takes in what a look showed, up to kKept frames later: boxes in pixels of the frame, merged (merge_hits()), which
-  // are carried on to the present frame. certain: the score that counts as certain; floor: the least there is.
-  void apply(const Look& look, std::span<const PersonDetection> found, double floor, double certain);
+  // Takes in what a look showed, up to PictureHistory::kKept frames later: every hit, boxes in pixels of the frame.
+  // threshold: the score of a person; line_floor times as much is enough where people are known to be as high; certain:
+  // the score that counts as certain.
+  void apply(const Look& look, std::span<const PersonDetection> hits, double threshold, double certain);
   // What is published for the present frame: persons, and the candidates that they do not replace. Valid until the next
   // call.
   std::span<const VerifiedRegion> result();
 
  private:
-  static constexpr std::size_t kKept = 32;  // pictures: a second at 30 frames a second
-
-  struct Person {
+  struct Person : FollowedPerson {
     std::uint32_t id = 0, track = 0;  // track: id of the one that is bound; 0: none
-    Box box;
-    double vx = 0, vy = 0;  // reduced pixels a frame, camera motion taken out
     double evidence = 0, confidence = 0, age = 0, since_seen = 0, since_look = 0;
-    double since_support = 0;   // s since the person lay on a track
-    double wayx = 0, wayy = 0;  // frame pixels from where it was first seen, camera motion taken out
-    bool moved = false;
-    bool missed = false;  // by the last look at its place
-    int candidate = -1;   // of this frame
+    double since_support = 0;  // s since something moved where the person is
+    int candidate = -1;        // of this frame
+    // Looks in a row that showed the person where the bound track was then, and the boxes of that track by frame.
+    int agreed = 0;
+    std::array<Box, PictureHistory::kKept> track_boxes{};  // empty: none was bound
+    bool missed = false;                                   // by the last look at its place
     // Without a track of its own, and missed, it may have been drawn away from the person: it waits for a further look.
     bool is_shown() const { return candidate >= 0 || !missed; }
   };
+  // Somebody whom looks do not find any more, who may be hidden: carried on by the last velocity.
+  struct Lost {
+    std::uint32_t id = 0;
+    Box box;
+    Point velocity;
+    double age = 0, since = 0;  // s
+  };
+  static constexpr std::size_t kMostLost = 32;
+
   struct TrackRecord {
     std::uint32_t id = 0;
-    double since_look = 1e9, since_seen = 0;
+    double since_look = 1e9, since_seen = 0, age = 0;
     int refuted = 0;
   };
-  struct Past {
-    Image<std::uint8_t> picture;
-    Transform motion;  // from the picture before, reduced pixels
-  };
-
   TrackRecord& record(std::uint32_t id);
-  Past& past(std::uint64_t number) { return past_[number % kKept]; }
-  void follow(Person& person, std::uint64_t to);
-  Box carried(Box box, std::uint64_t from, double& vx, double& vy);
+  // Takes those out who end, and keeps in mind whom looks had found repeatedly.
+  template <typename Condition>
+  void forget_if(Condition ends);
+  void carry_lost(const Transform& motion);
+  std::uint32_t lost_identity(Person& person);
+  bool is_owned(std::uint32_t id) const;
+  void take_persons(std::span<const PersonDetection> hits, double threshold);
   bool is_part(const Box& box) const;
   double share_on_tracks(const Box& box) const;
+  bool is_whole(const Candidate& c, const Person& person) const;
+  void bind(Person& person, std::size_t candidate);
   void bind();
   bool is_explained(const Candidate& candidate, bool& group) const;
-
   bool is_supported(const Box& box) const;
-  Box reduced(const Box& box) const;
   void compare();
 
   VerificationParameters p_;
   ChangedPlaces changes_;
+  HeightLine line_;
+  std::vector<PersonDetection> found_;
   std::vector<Box> hidden_;
   std::vector<Person> people_;
+  std::vector<Lost> lost_;
   std::vector<TrackRecord> records_;
   std::vector<Candidate> candidates_;
   std::vector<VerifiedRegion> result_;
   std::vector<char> taken_, hit_;  // of candidates, of people
   std::vector<LookTarget> targets_;
-  std::vector<Past> past_ = std::vector<Past>(kKept);
-  std::uint64_t number_ = 0;  // of the present frame, from 1
+  PictureHistory pictures_;
   std::uint32_t next_own_ = kFirstOwn;
-  Size frame_;
   double seconds_ = 0;
 };
 

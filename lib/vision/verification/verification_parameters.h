@@ -10,29 +10,54 @@ namespace cerberus::vision {
 struct VerificationParameters {
   // Following a person from picture to picture. Shares of the person's box and height.
   double core_width = 0.6,
-         core_height = 0.8;  // part of the box that is compared: the background is at its edges
-  double reach = 0.06;       // farther than this from the prediction is not searched
-  double inertia = 0.7;      // of the velocity that stays from one picture to the next
+         core_height = 0.8;    // part of the box that is compared: the background is at its edges
+  double reach = 0.06;         // farther than this from the prediction is not searched
+  double reach_known = 0.015;  // the same of a person whose velocity two looks have shown; a pixel at least
+  double whole = 0.99;         // share of a person that is in the picture: less, and the edge cuts it
+  double inertia = 0.7;        // of the velocity that stays from one picture to the next
 
   // Detections and persons. Intersections over unions.
   double same = 0.4;      // a detection is of the person
   double bound = 0.5;     // a track is of the person,
   double unbound = 0.35;  // and stays so down to this,
-  double unbound_sure =
-      0.1;  // or this where the track is seen and like a person: the person was lost in the picture
+  double unbound_whole =
+      0.1;  // or this where the track is as high and wide as the person: that one was lost in the picture
+  double agrees = 0.7;  // a look shows the person where the track is,
+  int agreed = 2;       // and so often in a row before the person is drawn towards the track
+  // Natural logarithms of a track's height and width over a person's: more, and it is not this person alone.
+  double alike_height = 0.2, alike_width = 0.4;
   double part =
       0.45;  // share of a smaller detection in a person, or in a person-like track: it is a part of it,
   double part_height = 0.75;  // if it is lower than this share of its height
   double on_track = 0.3;      // share of a detection that lies on tracks: else it is background
 
-  double place_gain = 0.6, size_gain = 0.4;  // of a detection, against the box that was followed
+  double place_gain = 0.7, size_gain = 0.4;  // of a detection, against the box that was followed
+  double velocity_gain = 0.5;                // of the velocity between the last two detections
   double track_gain = 0.3;                   // of a track, each frame
+
+  // The line of the heights (height_line.cpp). Shares of a person's height, but for the slope.
+  double line_noise = 0.07;  // of a detection's height about the line. Measured: .05 of true boxes
+  double line_slope = 1,
+         line_slope_spread =
+             1;  // before anything is known, and its standard deviation: of cameras as high as people
+  double line_least = 6;        // samples: with fewer nothing is known
+  double line_doubt = 0.1;      // standard deviation of the line: where it is larger nothing is known
+  double line_tolerance = 0.2;  // logarithm of a height over the line's that a person may have
+  double line_certain = 1.3;    // in thresholds: the score of a detection that teaches
+  double line_floor = 0.7;      // in thresholds: the score of a detection whose height fits
 
   // Evidence for a person, in detections.
   double most_evidence = 2;
   double longest = 3;          // s without a detection, where no track is bound,
   double longest_still = 0.6;  // and of one that never moved by `moved` widths: it may be background
   double moved = 0.4;
+
+  double leaves = 0.4;  // share of a person that is in the picture: less, and it has left
+
+  // Who was hidden and is found again. `hidden`: s after which it is somebody else. Asked.
+  double hidden = 3;
+  double hidden_reach = 0.3, hidden_speed = 0.3;  // heights, and heights a second, from where it would be
+  double hidden_height = 0.25;                    // logarithm of the heights' ratio
 
   // A track that persons explain: shares of areas.
   double inside = 0.6;   // of a person that lies in the track
@@ -48,8 +73,9 @@ struct VerificationParameters {
   double stands = 0.5;           // pixels that a corner moves a frame, at most, where the camera stands
   double changed = 0.3;          // of a detection, where no track is: else it is background
 
-  // Where to look. A look's region is scaled so that the most doubtful box is `look_height` pixels high.
-  double look_height = 150;  // the detector sees 83 and more. docs/quality.md has other values
+  // Where to look. A look's region is scaled so that a person in the most doubtful box is `look_height` pixels high.
+  double look_height = 95;  // 83 is the least that the Daimler detector sees
+  double in_group = 0.5;    // height of a person in a box that holds several, or things: a share of the box's
   double side_margin =
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
   double top_margin = 0.14;  // of the box's height, above and below

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Persons between the looks of a detector, and the line of their heights. The pictures are grey: they say nothing, so that
+// what is expected follows from the looks alone.
+#include "vision/verification/followed_person.h"
+
+#include <vector>
+
+#include "support/suite.h"
+#include "vision/verification/height_line.h"
+#include "vision/verification/person_verifier.h"
+
+using namespace cerberus::vision;
+
+namespace {
+
+constexpr Size kFrame{640, 480}, kSmall{320, 240};
+const VerificationParameters kNumbers;
+
+struct Stream {
+  Image<std::uint8_t> grey{kSmall};
+  PictureHistory pictures;
+  void next(const Transform& motion = {}) { pictures.add(grey.view(), kFrame, motion); }
+  void follow(FollowedPerson& person, int frames, const Transform& motion = {}) {
+    for (int n = 0; n < frames; ++n) {
+      next(motion);
+      person.follow(pictures.number(), pictures, kNumbers);
+    }
+  }
+};
+
+Box person_at(double x) {
+  return {x, 100, 60, 160};
+}
+
+// On a ground whose horizon is row 100, people are .8 times as high as their feet are below it.
+Box standing(double foot, double times = 1) {
+  const double height = times * 0.8 * (foot - 100);
+  return {200, foot - height, height / 3, height};
+}
+
+void learn(HeightLine& line) {
+  for (const double foot : {250, 280, 310, 340, 370, 400, 430}) line.learn(standing(foot), kNumbers);
+}
+
+}  // namespace
+
+START_TEST(two_looks_show_how_fast_a_person_goes) {
+  Stream stream;
+  stream.next();
+  FollowedPerson person;
+  person.begin(person_at(100), 1, stream.pictures, kNumbers);
+  stream.follow(person, 6);
+  ck_assert_double_eq_tol(person.box().x, 100, 1e-9);
+  person.correct(person_at(160), 7, stream.pictures, kNumbers);
+  ck_assert_double_eq_tol(person.velocity().x, 10, 1e-9);  // 60 pixels in 6 frames
+  ck_assert_double_eq_tol(person.box().x, 160, 1e-9);
+  stream.follow(person, 6);
+  ck_assert_double_eq_tol(person.box().x, 220, 1e-9);
+  ck_assert(person.moved());
+}
+END_TEST
+
+START_TEST(a_look_that_comes_late_counts_from_its_frame) {
+  Stream stream;
+  stream.next();
+  FollowedPerson person;
+  person.begin(person_at(100), 1, stream.pictures, kNumbers);
+  stream.follow(person, 9);
+  // Of frame 7, three frames ago: 160 then, 10 a frame since.
+  person.correct(person_at(160), 7, stream.pictures, kNumbers);
+  ck_assert_double_eq_tol(person.box().x, 190, 1e-9);
+}
+END_TEST
+
+START_TEST(the_cameras_own_turning_is_no_velocity_of_the_person) {
+  Stream stream;
+  stream.next();
+  FollowedPerson person;
+  person.begin(person_at(100), 1, stream.pictures, kNumbers);
+  const Transform turns = Transform::translation(6, 0);
+  stream.follow(person, 5, turns);
+  ck_assert_double_eq_tol(person.box().x, 130, 1e-6);
+  person.correct(person_at(150), 6, stream.pictures, kNumbers);  // 20 of 50 are the person's own
+  ck_assert_double_eq_tol(person.velocity().x, 4, 1e-6);
+  stream.follow(person, 5);  // the camera stands
+  ck_assert_double_eq_tol(person.box().x, 170, 1e-6);
+}
+END_TEST
+
+START_TEST(a_person_whom_the_edge_cuts_does_not_slow_down) {
+  Stream stream;
+  stream.next();
+  FollowedPerson person;
+  person.begin(person_at(500), 1, stream.pictures, kNumbers);
+  stream.follow(person, 6);
+  person.correct(person_at(560), 7, stream.pictures, kNumbers);
+  stream.follow(person, 4);  // to 600, of which 40 are in the picture
+  person.correct({595, 100, 45, 160}, 11, stream.pictures, kNumbers);
+  ck_assert_double_eq_tol(person.velocity().x, 10, 1e-9);
+}
+END_TEST
+
+START_TEST(heights_are_judged_by_where_the_feet_are) {
+  HeightLine line;
+  ck_assert(line.judge(standing(300), kNumbers) == HeightLine::Fit::unknown);
+  learn(line);
+  for (const double foot : {260, 300, 420}) {
+    ck_assert(line.judge(standing(foot), kNumbers) == HeightLine::Fit::fits);
+    ck_assert(line.judge(standing(foot, 0.6), kNumbers) == HeightLine::Fit::contradicts);
+    ck_assert(line.judge(standing(foot, 1.6), kNumbers) == HeightLine::Fit::contradicts);
+  }
+  // Above the horizon nobody stands, and nothing is known.
+  ck_assert(line.judge({200, 20, 20, 60}, kNumbers) == HeightLine::Fit::unknown);
+  line.reset();
+  ck_assert(line.judge(standing(300), kNumbers) == HeightLine::Fit::unknown);
+}
+END_TEST
+
+START_TEST(two_wrong_heights_do_not_bend_the_line) {
+  HeightLine line;
+  learn(line), learn(line);
+  line.learn(standing(300, 0.4), kNumbers), line.learn(standing(400, 0.4), kNumbers);
+  ck_assert(line.judge(standing(350), kNumbers) == HeightLine::Fit::fits);
+  ck_assert(line.judge(standing(350, 0.75), kNumbers) == HeightLine::Fit::contradicts);
+}
+END_TEST
+
+START_TEST(the_line_tilts_with_the_camera) {
+  HeightLine line;
+  learn(line);
+  line.move(Transform::translation(0, 80));
+  Box moved = standing(300);
+  ck_assert(line.judge(moved, kNumbers) == HeightLine::Fit::contradicts);
+  moved.y += 80;
+  ck_assert(line.judge(moved, kNumbers) == HeightLine::Fit::fits);
+}
+END_TEST
+
+namespace {
+
+// People among a group that never ends, frames of 40 ms.
+struct Rig {
+  Image<std::uint8_t> grey{kSmall};
+  PersonVerifier verifier;
+  std::vector<Candidate> tracks{{.id = 9, .box = {20, 90, 600, 200}, .kind = RegionKind::group}};
+  void frames(int count) {
+    for (int n = 0; n < count; ++n) verifier.update(grey.view(), kFrame, {}, 0.04, tracks);
+  }
+  void look(std::vector<PersonDetection> found) {
+    frames(1);
+    const auto look = verifier.choose();
+    ck_assert(look.has_value());
+    verifier.apply(*look, found, 1.7, 3.7);
+  }
+  const VerifiedRegion* person() {
+    for (const VerifiedRegion& each : verifier.result())
+      if (each.person) return &each;
+    return nullptr;
+  }
+};
+
+}  // namespace
+
+START_TEST(who_was_hidden_for_less_than_three_seconds_keeps_the_identity) {
+  for (const double seconds : {1.0, 2.5, 3.5}) {
+    Rig rig;
+    rig.look({{person_at(200), 3}});
+    rig.look({{person_at(200), 3}});
+    ck_assert_ptr_nonnull(rig.person());
+    const auto before = rig.person()->id;
+    for (int n = 0; n < 3; ++n) rig.look({});
+    ck_assert_ptr_null(rig.person());
+    rig.frames(static_cast<int>(seconds / 0.04));
+    rig.look({{person_at(200), 3}});
+    ck_assert_ptr_nonnull(rig.person());
+    ck_assert((rig.person()->id == before) == (seconds < 3));
+  }
+}
+END_TEST
+
+START_TEST(a_person_follows_a_track_that_looks_have_found_right) {
+  for (const int looks : {2, 3}) {
+    Rig rig;
+    rig.tracks = {{.id = 4, .box = person_at(200)}};
+    for (int n = 0; n < looks; ++n) rig.look({{person_at(200), 3}});
+    for (int n = 1; n <= 5; ++n) {
+      rig.tracks[0].box = person_at(200 + 4 * n);
+      rig.frames(1);
+    }
+    const bool followed = rig.person()->box.x > 208;
+    ck_assert(followed == (looks == 3));
+  }
+}
+END_TEST
+
+START_TEST(an_identity_is_published_once) {
+  Rig rig;
+  rig.tracks = {{.id = 4, .box = person_at(200)}};
+  rig.look({{person_at(200), 3}});
+  ck_assert_uint_eq(rig.person()->id, 4);
+  rig.tracks[0].box = person_at(500);  // the track has gone to somebody else
+  rig.frames(1);
+  ck_assert_uint_eq(rig.verifier.result().size(), 1);
+  ck_assert_uint_eq(rig.person()->id, 4);
+}
+END_TEST
+
+START_TEST(a_weak_hit_counts_where_its_height_is_that_of_people) {
+  Rig rig;
+  for (const double foot : {260, 270, 275, 280, 285, 288, 265}) rig.look({{standing(foot), 3}});
+  for (int n = 0; n < 3; ++n) rig.look({});
+  ck_assert_ptr_null(rig.person());
+  rig.look({{standing(282, 0.6), 3}});  // certain, and no person's height
+  ck_assert_ptr_null(rig.person());
+  rig.look({{standing(282), 1.3}});  // less than 1.7
+  ck_assert_ptr_nonnull(rig.person());
+}
+END_TEST
+
+int main() {
+  return cerberus::tests::run_suite(
+      "followed_person",
+      {two_looks_show_how_fast_a_person_goes, a_look_that_comes_late_counts_from_its_frame,
+       the_cameras_own_turning_is_no_velocity_of_the_person, a_person_whom_the_edge_cuts_does_not_slow_down,
+       heights_are_judged_by_where_the_feet_are, two_wrong_heights_do_not_bend_the_line,
+       the_line_tilts_with_the_camera, who_was_hidden_for_less_than_three_seconds_keeps_the_identity,
+       a_person_follows_a_track_that_looks_have_found_right, an_identity_is_published_once,
+       a_weak_hit_counts_where_its_height_is_that_of_people});
+}
