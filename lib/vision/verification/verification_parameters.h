@@ -74,7 +74,7 @@ struct VerificationParameters {
   double changed = 0.3;          // of a detection, where no track is: else it is background
 
   // Where to look. A look's region is scaled so that a person in the most doubtful box is `look_height` pixels high.
-  double look_height = 95;  // 83 is the least that the Daimler detector sees
+  double look_height = 85;  // Derived: 83 is the least that the Daimler detector sees
   double in_group = 0.5;    // height of a person in a box that holds several, or things: a share of the box's
   double side_margin =
       0.35;  // of the box's height, left and right: the detector's window is wider than a person
